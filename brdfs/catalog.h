@@ -1,0 +1,77 @@
+#pragma once
+
+#include <hshfit/brdf.h>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// One parameter of an analytic model, as listed, parsed, checked and documented.
+struct Parameter {
+    enum class Kind {
+        number,  ///< one value in [min, max]
+        colour,  ///< one value, or three as r/g/b; each in [min, max]
+        choice,  ///< one of `choices`
+    };
+    std::string_view name;
+    std::string_view help;
+    Kind kind = Kind::number;
+    std::optional<double> fallback;  ///< none: the parameter has to be given
+    double min = 0, max = 0;
+    std::vector<std::string_view> choices;  ///< the first is the default
+};
+
+/// Checked parameter values, defaults filled in. Asking for an undeclared name is our bug.
+class Parameters {
+public:
+    double number(std::string_view name) const;
+    std::vector<double> colour(std::string_view name) const;  ///< 1 or 3 values
+    std::string choice(std::string_view name) const;
+    /// "key=value,…" in the order of the table, without values equal to the default.
+    std::string canonical() const;
+
+    std::map<std::string, std::vector<double>, std::less<>> numbers;
+    std::map<std::string, std::string, std::less<>> words;
+    std::string text;
+};
+
+/// One row of the table of analytic models.
+struct Model {
+    std::string_view name;
+    std::string_view help;
+    std::string_view source;  ///< author, year, DOI
+    std::vector<Parameter> parameters;
+    /// What every member of this model promises; the instance's laws() may promise more
+    /// (Ward with ax = ay is isotropic), never less.
+    Laws laws;
+    std::unique_ptr<Brdf> (*make)(const Parameters& parameters);
+};
+
+/// One row of the table of measured formats.
+struct Format {
+    std::string_view name;
+    std::string_view help;
+    std::string_view extension;  ///< with the dot; used only where the content does not tell
+    /// Whether the first bytes and the size look like this format.
+    bool (*recognises)(std::span<const unsigned char> head, std::uint64_t fileSize);
+    std::vector<Parameter> parameters;  ///< options after the path: PATH:key=value
+    std::unique_ptr<Brdf> (*open)(const std::string& path, const Parameters& parameters);
+};
+
+std::span<const Model> models();
+std::span<const Format> formats();
+
+/// Opens a BRDF specification:
+///     model[:key=value,…] | path of a measured file[:key=value,…] | path of a preset .json |
+///     preset:NAME
+/// Throws UsageError for an unknown model, key or value (naming the valid ones) and InputError for
+/// a file that is absent, of no known format, or invalid.
+std::unique_ptr<Brdf> open(std::string_view spec);
+
+}  // namespace hshfit::brdfs

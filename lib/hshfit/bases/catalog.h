@@ -1,0 +1,35 @@
+#pragma once
+
+#include <hshfit/bases/basis.h>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::bases {
+
+/// One row of the table of bases.
+struct Entry {
+    std::string_view name;    ///< as on the command line
+    std::string_view help;    ///< one line
+    std::string_view source;  ///< where the definition was published
+    int maxOrder;             ///< 1000, or less where the set is finite or the solve is
+    bool orthonormal;         ///< in the inner product that the basis names
+    std::unique_ptr<Basis> (*make)(int order, BasisOptions options);
+};
+
+/// The table, in the order in which listings and reports show it.
+std::span<const Entry> catalog();
+
+/// Throws UsageError naming the known ones if `name` is not in the table.
+const Entry& find(std::string_view name);
+
+/// Throws UsageError if the name is unknown or the order is outside 1 .. maxOrder.
+std::unique_ptr<Basis> make(std::string_view name, int order, BasisOptions options = {});
+
+/// "all" or a comma-separated list of names, as rows of the table.
+std::vector<const Entry*> select(std::string_view names);
+
+}  // namespace hshfit::bases
