@@ -17,8 +17,8 @@ std::string quantityName(Quantity quantity);
 
 /// An energy integral with its error; `finite` is false where it does not exist.
 struct Energy {
-    double value = 0;   ///< NaN where it does not exist
-    double error = 0;   ///< absolute, from the difference of two quadrature levels
+    double value = 0;  ///< NaN where it does not exist
+    double error = 0;  ///< absolute, from the difference of two quadrature levels
     bool finite = true;
     std::string reason;  ///< why it does not exist
 };

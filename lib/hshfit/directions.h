@@ -36,11 +36,17 @@ double dot(const Direction& a, const Direction& b);
 Direction rotateAboutZ(const Direction& d, double angle);
 
 /// The mirror direction of `d` about the normal: (-x, -y, z).
-inline Direction mirrored(const Direction& d) { return {-d.x, -d.y, d.z}; }
+inline Direction mirrored(const Direction& d) {
+    return {-d.x, -d.y, d.z};
+}
 
 constexpr double pi = 3.14159265358979323846264338327950288;
 
-inline double radians(double degrees) { return degrees * (pi / 180); }
-inline double degrees(double radians) { return radians * (180 / pi); }
+inline double radians(double degrees) {
+    return degrees * (pi / 180);
+}
+inline double degrees(double radians) {
+    return radians * (180 / pi);
+}
 
 }  // namespace hshfit

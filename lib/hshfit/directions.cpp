@@ -1,0 +1,33 @@
+#include <hshfit/directions.h>
+
+#include <cmath>
+
+namespace hshfit {
+
+Direction directionFromAngles(double theta, double phi) {
+    const double s = std::sin(theta);
+    return {s * std::cos(phi), s * std::sin(phi), std::cos(theta)};
+}
+
+double polarAngle(const Direction& d) {
+    return std::atan2(std::hypot(d.x, d.y), d.z);
+}
+
+double azimuth(const Direction& d) {
+    return d.x == 0 && d.y == 0 ? 0.0 : std::atan2(d.y, d.x);
+}
+
+double oneMinusZ(const Direction& d) {
+    return d.z > 0 ? (d.x * d.x + d.y * d.y) / (1 + d.z) : 1 - d.z;
+}
+
+double dot(const Direction& a, const Direction& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+Direction rotateAboutZ(const Direction& d, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {c * d.x - s * d.y, s * d.x + c * d.y, d.z};
+}
+
+}  // namespace hshfit

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <hshfit/bases/basis.h>
+#include <hshfit/brdf.h>
+
+#include <vector>
+
+namespace hshfit {
+
+/// Nodes, ascending, and weights of a Gauss-Legendre rule on [-1, 1].
+struct GaussRule {
+    std::vector<double> nodes, weights;
+};
+
+/// The n-point rule, computed by Newton steps in theta on the Legendre recurrence in differences,
+/// in extended precision: nodes within 1 ulp, weights within a few, for n from 1 to many thousands
+/// (O(n^2) work once; cached for the life of the process). Safe from many threads.
+/// Throws UsageError unless 1 <= n <= 100000.
+const GaussRule& gaussLegendre(int n);
+
+/// Rings of constant elevation, in groups that share a number of equispaced azimuths.
+/// The integral of q over the hemisphere is the sum over rings of
+///     weight * (2 pi / azimuths) * (sum over the ring's azimuths of q).
+struct HemisphereGrid {
+    struct Panel {
+        std::size_t firstRing = 0, rings = 0;
+        std::size_t azimuths = 0;  ///< even; phi_j = (j + 1/2) 2 pi / azimuths
+    };
+    std::vector<Elevation<double>> elevations;  ///< per ring
+    std::vector<double> sines;                  ///< sin(theta) per ring
+    std::vector<double> weights;                ///< d mu per ring; they sum to 1
+    std::vector<Panel> panels;
+
+    std::size_t points() const;
+};
+
+struct GridOptions {
+    int order = 7;  ///< bands that have to be resolved exactly
+    /// Refinement: every level has half as many nodes again, in both directions.
+    int level = 0;
+};
+
+/// A grid for integrands made of a BRDF with these lobes at `wo`, its square, and basis functions.
+///
+/// Elevation: Gauss-Legendre panels in u = sqrt(cos theta), in which functions that behave like
+/// sqrt(cos theta) at the horizon are smooth. Each lobe is taken as a complex singularity at its
+/// width's distance from the real axis; panels are halved until it lies outside a fixed Bernstein
+/// ellipse of each, so that a lobe of width w costs O(log 1/w) panels. Azimuth: the number of
+/// equispaced nodes follows, ring by ring, from the same singularity seen along phi.
+HemisphereGrid gridFor(const std::vector<Lobe>& lobes, const Direction& wo,
+                       const GridOptions& options);
+
+}  // namespace hshfit
