@@ -3,8 +3,9 @@ file(READ ${INPUT} hex HEX)
 string(LENGTH "${hex}" digits)
 math(EXPR size "${digits} / 2")
 string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${hex}")
-string(REGEX REPLACE "(................................................................................)"
-       "\\1\n" bytes "${bytes}")
+# 16 bytes a line.
+string(REPEAT "." 80 line)
+string(REGEX REPLACE "(${line})" "\\1\n" bytes "${bytes}")
 file(WRITE ${OUTPUT}
 "#include <string_view>
 namespace hshfit::embedded {

@@ -1,0 +1,75 @@
+#!/bin/sh
+# Runs `./run test` (or the command given) as root in a fresh, minimal Debian 12: what a new user
+# on a new machine would see. Needs root, debootstrap and an apt mirror.
+#   tests/bare_root.sh [-k] [COMMAND…]    -k keeps the root; default command: ./run test
+# The root is made under ${BARE_ROOT:-a temporary folder} and reused if it is there already.
+# This machine's apt sources, keys, host table and certificates are copied into it when it is
+# made, so that it finds the same mirror; none of that is part of the repository.
+set -eu
+
+keep=no
+if [ "${1:-}" = -k ]; then
+    keep=yes
+    shift
+fi
+[ $# -gt 0 ] || set -- ./run test
+[ "$(id -u)" = 0 ] || { echo "bare_root: has to run as root" >&2; exit 2; }
+command -v debootstrap >/dev/null || { echo "bare_root: debootstrap is not installed" >&2; exit 2; }
+
+project=$(cd "$(dirname "$0")/.." && pwd)
+root=${BARE_ROOT:-$(mktemp -d "${TMPDIR:-/tmp}/bare_root.XXXXXX")}
+
+# Copies PATH… into the root, keeping their places; what is absent here is left out.
+carry() {
+    for path in "$@"; do
+        [ -e "$path" ] || continue
+        mkdir -p "$root$(dirname "$path")"
+        cp -rL "$path" "$root$(dirname "$path")/"
+    done
+}
+
+if [ ! -e "$root/etc/debian_version" ]; then
+    # shellcheck disable=SC2016  # apt expands these, not the shell
+    mirror=$(apt-get indextargets --format '$(CODENAME) $(REPO_URI)' 'Created-By: Packages' |
+        awk '$1 == "bookworm" { print $2; exit }')
+    echo "bare_root: minimal Debian 12 from ${mirror:-the default mirror} into $root"
+    # shellcheck disable=SC2086  # no mirror means no argument
+    debootstrap --variant=minbase bookworm "$root" $mirror >"$root.log" 2>&1 ||
+        { tail -n 20 "$root.log" >&2; exit 1; }
+    rm -rf "$root/etc/apt/sources.list"
+    carry /etc/apt/sources.list /etc/apt/sources.list.d /etc/apt/apt.conf.d /etc/apt/trusted.gpg.d \
+        /etc/apt/keyrings /usr/share/keyrings /etc/hosts /etc/resolv.conf \
+        /etc/ssl/certs/ca-certificates.crt
+    # Hooks of packages that the bare root does not have.
+    rm -f "$root"/etc/apt/apt.conf.d/20packagekit "$root"/etc/apt/apt.conf.d/50appstream
+fi
+
+echo "bare_root: copying the committed tree $(git -C "$project" rev-parse --short HEAD)"
+rm -rf "$root/src/hshfit"
+mkdir -p "$root/src/hshfit"
+git -C "$project" archive HEAD | tar -x -C "$root/src/hshfit"
+if [ -d "$project/../shared" ] && [ ! -d "$root/src/shared" ]; then
+    cp -r "$project/../shared" "$root/src/shared"
+fi
+
+# A mount namespace of its own, so that /proc and /dev vanish with the command.
+code=0
+start=$(date +%s)
+# shellcheck disable=SC2016  # expanded by the inner shell
+unshare --mount sh -c '
+    root=$1
+    shift
+    mount -t proc proc "$root/proc"
+    mount --rbind /dev "$root/dev"
+    exec chroot "$root" /usr/bin/env -i HOME=/root LANG=C.UTF-8 \
+        PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
+        sh -c "cd /src/hshfit && exec \"\$@\"" sh "$@"
+' sh "$root" "$@" || code=$?
+echo "bare_root: '$*' ended with $code after $(($(date +%s) - start)) s"
+
+if [ "$keep" = no ] && [ -z "${BARE_ROOT:-}" ]; then
+    rm -rf --one-file-system "$root" "$root.log"
+else
+    echo "bare_root: the root stays at $root"
+fi
+exit "$code"

@@ -1,0 +1,70 @@
+#!/bin/sh
+# The rules of the house that a machine can check, over the tracked files. Prints every breach as
+# file:line and ends with 1 if there is one; warnings do not count.
+set -eu
+cd "$(dirname "$0")/.."
+for tool in git clang-format shellcheck python3; do
+    command -v "$tool" >/dev/null || { echo "house rules: $tool is not installed" >&2; exit 2; }
+done
+git ls-files --error-unmatch run >/dev/null || exit 2
+breaches=$(mktemp)
+trap 'rm -f "$breaches"' EXIT
+
+# Reads breaches from standard input and puts them under a heading.
+rule() {
+    found=$(cat)
+    [ -z "$found" ] || printf '%s:\n%s\n' "$1" "$found" >>"$breaches"
+}
+tracked() { git ls-files -- "$@" | while read -r file; do [ ! -f "$file" ] || echo "$file"; done; }
+# matches PATTERN PATHSPEC…: extended regular expression, over tracked files.
+matches() {
+    pattern=$1
+    shift
+    git grep -nIE -e "$pattern" -- "$@" || [ $? -eq 1 ]
+}
+
+scripts=$(tracked | while read -r file; do
+    head -n 1 "$file" 2>/dev/null | grep -aqE '^#!.*[/ ](ba)?sh$' && echo "$file"
+done || true)
+
+tracked '*.h' '*.cpp' | xargs -r clang-format --dry-run -Werror 2>&1 |
+    grep -E 'error:' | rule 'clang-format would change these' || true
+# shellcheck disable=SC2086  # a list of paths without spaces
+shellcheck $scripts | rule 'shellcheck' || true
+
+tracked '*.h' '*.cpp' '*.cmake' '*CMakeLists.txt' '*.py' '*.sh' run .ci/run bench/summary |
+    LC_ALL=C.UTF-8 xargs -r grep -HnE '^.{101,}' | cut -c -80 |
+    rule 'lines past 100 columns'
+tracked '*.h' '*.cpp' '*.sh' '*.py' run | while read -r file; do
+    lines=$(wc -l <"$file")
+    [ "$lines" -le 500 ] || echo "$file: $lines lines"
+done | rule 'files past 500 lines'
+tracked '*.h' | while read -r file; do
+    lines=$(wc -l <"$file")
+    [ "$lines" -le 120 ] || echo "warning: $file: $lines lines, a header should keep to 120"
+done
+
+matches 'file *\( *GLOB' '*.cmake' '*CMakeLists.txt' | rule 'sources are listed, never globbed'
+matches '#include *[<"](brdfs|cli)/' lib | rule 'lib includes nothing from brdfs or cli'
+matches 'hshfit::brdfs|hshfit_brdfs' 'lib/**CMakeLists.txt' | rule 'lib links nothing from brdfs'
+matches '#include *[<"]cli/' brdfs | rule 'brdfs includes nothing from cli'
+matches '#include *[<"](Eigen|OpenEXR|Imf|Imath|nlohmann)' 'lib/*.h' |
+    rule 'third-party headers stay out of public headers'
+matches '/(work|home|Users)/[[:alnum:]]' . | rule 'paths of one machine'
+matches '(TEST|TEST_F|TEST_P)\(.*DISABLED_|^ *#if 0' '*.h' '*.cpp' | rule 'switched-off code'
+tracked '*.h' '*.cpp' | grep -E '(^|[/_])(utils?|common|helpers?|manager)[_.]' |
+    rule 'names that say nothing' || true
+
+tracked '*.json' | python3 -c '
+import json, sys
+for path in sys.stdin.read().split("\n"):
+    try:
+        if path: json.load(open(path, encoding="utf-8"))
+    except ValueError as error:
+        print(f"{path}: {error}")' | rule 'JSON that does not parse'
+
+if [ -s "$breaches" ]; then
+    cat "$breaches" >&2
+    exit 1
+fi
+echo "house rules: clean, $(git ls-files | wc -l) tracked files"
