@@ -1,0 +1,36 @@
+#pragma once
+
+#include <hshfit/brdf.h>
+#include <hshfit/coefficients.h>
+#include <hshfit/quadrature.h>
+
+#include <vector>
+
+namespace hshfit {
+
+/// The azimuth transform of q = f or f cos(theta_i) on every ring of a grid, for one wo:
+///     part(m, c)[ring] = integral over phi of q_c(theta_ring, phi) az_m(phi) d phi.
+/// It is what every basis shares; only the theta functions differ between them.
+struct RingSpectrum {
+    int order = 0;
+    std::size_t channels = 0, rings = 0;
+    std::size_t evaluations = 0;  ///< BRDF evaluations made
+    std::vector<double> parts;    ///< [order - 1 + m][channel][ring]
+    std::vector<double> squares;  ///< per ring: integral over phi of q^2, summed over channels
+
+    const double* part(int m, std::size_t channel) const {
+        return parts.data() + ((order - 1 + m) * channels + channel) * rings;
+    }
+    double* part(int m, std::size_t channel) {
+        return parts.data() + ((order - 1 + m) * channels + channel) * rings;
+    }
+};
+
+/// Samples q on the grid and transforms it for |m| < order. With `even`, q is taken to be even in
+/// phi, and only half of each ring is evaluated. Parallel over groups of rings; the result does
+/// not depend on the number of threads.
+/// Throws NumericError with the directions where q is not finite.
+RingSpectrum sampleRings(const Brdf& brdf, const Direction& wo, const HemisphereGrid& grid,
+                         Quantity quantity, int order, bool even);
+
+}  // namespace hshfit
