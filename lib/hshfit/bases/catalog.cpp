@@ -1,0 +1,82 @@
+#include <hshfit/bases/catalog.h>
+
+#include <hshfit/bases/h_basis.h>
+#include <hshfit/bases/hsh.h>
+#include <hshfit/bases/makhotkin.h>
+#include <hshfit/bases/sh.h>
+#include <hshfit/bases/zernike.h>
+#include <hshfit/error.h>
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+namespace hshfit::bases {
+
+namespace {
+
+constexpr std::array table{
+    Entry{"hsh", "hemispherical harmonics: Legendre functions of 2 cos(theta) - 1",
+          "Gautron et al. 2004", 1000, true, makeHsh},
+    Entry{"sh", "spherical harmonics, the function being 0 below the horizon",
+          "Laplace 1782; Schönefeld 2005", 1000, true, makeSh},
+    Entry{"esh", "even spherical harmonics, the function being mirrored at the horizon",
+          "Westin et al. 1992", 1000, true, makeEsh},
+    Entry{"zernike", "Zernike polynomials on the disc of radius sqrt(2) sin(theta/2)",
+          "Koenderink et al. 1996", 1000, true, makeZernike},
+    Entry{"makhotkin", "associated Jacobi polynomials times sqrt(cos(theta)); reconstructed",
+          "Makhotkin 1996", 1000, true, makeMakhotkin},
+    Entry{"makhotkin-flux", "the same for the weight cos(theta): one function carries all flux",
+          "Makhotkin 1996", 1000, true, makeMakhotkinFlux},
+    Entry{"h-basis", "six functions for irradiance; orders 1 to 3", "Habel & Wimmer 2010", 3, true,
+          makeHBasis},
+};
+
+std::string knownNames() {
+    std::string names;
+    for (const Entry& entry : table)
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", entry.name);
+    return names;
+}
+
+}  // namespace
+
+std::span<const Entry> catalog() {
+    return table;
+}
+
+const Entry& find(std::string_view name) {
+    const auto* row = std::find_if(table.begin(), table.end(),
+                                   [&](const Entry& entry) { return entry.name == name; });
+    if (row == table.end())
+        throw UsageError(fmt::format("unknown basis '{}'; known: {}", name, knownNames()));
+    return *row;
+}
+
+std::unique_ptr<Basis> make(std::string_view name, int order, BasisOptions options) {
+    const Entry& entry = find(name);
+    if (order < 1 || order > entry.maxOrder)
+        throw UsageError(fmt::format("order {} of basis '{}' is outside 1 .. {}", order, entry.name,
+                                     entry.maxOrder));
+    return entry.make(order, options);
+}
+
+std::vector<const Entry*> select(std::string_view names) {
+    std::vector<const Entry*> rows;
+    const auto add = [&](const Entry& entry) {
+        if (std::find(rows.begin(), rows.end(), &entry) == rows.end()) rows.push_back(&entry);
+    };
+    if (names == "all") {
+        for (const Entry& entry : table) add(entry);
+        return rows;
+    }
+    for (std::size_t first = 0; first <= names.size();) {
+        const std::size_t last = std::min(names.find(',', first), names.size());
+        add(find(names.substr(first, last - first)));
+        first = last + 1;
+    }
+    return rows;
+}
+
+}  // namespace hshfit::bases

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <hshfit/bases/basis.h>
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::bases {
+
+/// What tells one member of the Jacobi family from another:
+///     T_l^m = c_m F^m W p_k(t) / p_0,  p_k orthonormal for (1-t)^alpha (1+t)^beta on [-1, 1],
+///     l = m + k bandStep,  with F the factor below and W = sqrt(mu) or 1.
+struct JacobiFamily {
+    enum class Argument {
+        cosine,       ///< t = mu: functions on the whole sphere
+        shifted,      ///< t = 2 mu - 1
+        shiftedDown,  ///< t = 1 - 2 mu
+    };
+    enum class Factor {
+        sine,   ///< F = sin(theta) = sqrt((1 - mu)(1 + mu))
+        hump,   ///< F = 2 sqrt(mu (1 - mu))
+        chord,  ///< F = sqrt(1 - mu) = sqrt(2) sin(theta / 2)
+    };
+    /// An exponent of the Jacobi weight: slope * m + offset.
+    struct Exponent {
+        int slope = 1, offset = 0;
+        int at(int m) const { return slope * m + offset; }
+    };
+
+    std::string_view name;
+    Argument argument = Argument::shifted;
+    Factor factor = Factor::hump;
+    Exponent alpha{}, beta{};
+    double startSquared = 1;               ///< c_0^2
+    double (*startGrowth)(int) = nullptr;  ///< m -> c_m^2 / c_{m-1}^2
+    int bandStep = 1;                      ///< Zernike: 2
+    bool evenOnly = false;                 ///< ESH: leave out functions with l + m odd
+    bool timesRootCosine = false;          ///< W = sqrt(mu)
+    Basis::Inner inner = Basis::Inner::solidAngle;
+};
+
+/// HSH, SH, ESH, Zernike and Makhotkin, by one three-term recurrence in k at fixed m.
+///
+/// The recurrence runs in differences from the nearer end of [-1, 1] (Reinsch's form; Gentleman
+/// 1969) and takes 1 - mu or mu itself as the distance to that end, so that its rounding errors do
+/// not pile up there as k^{3/2}. F^m below the range of the number type is carried with an exponent
+/// of its own until the values come back into range.
+/// Below the horizon (mu < 0) all but the whole-sphere members (SH, ESH) are 0.
+class JacobiBasis : public Basis {
+public:
+    JacobiBasis(const JacobiFamily& family, int order, BasisOptions options);
+
+    std::string name() const override { return std::string(family_.name); }
+    Inner inner() const override { return family_.inner; }
+    bool has(int l, int m) const override;
+    void theta(int m, std::span<const Elevation<double>> points, double* out) const override;
+    void theta(int m, std::span<const Elevation<float>> points, float* out) const override;
+
+    /// d_k = slope y p_k + carry d_{k-1},  p_{k+1} = ratio p_k + d_k,  y = t - 1 or t + 1.
+    struct Step {
+        double slope, ratio, carry;
+    };
+
+private:
+    /// Functions T_l^m, l < order, that the recurrence produces.
+    int functions(int m) const { return (order() - m + family_.bandStep - 1) / family_.bandStep; }
+    template <class Real>
+    void fill(int m, std::span<const Elevation<Real>> points, Real* out) const;
+
+    JacobiFamily family_;
+    std::vector<double> starts_;              ///< c_m
+    std::vector<std::size_t> offsets_;        ///< where the steps of each m begin
+    std::array<std::vector<Step>, 2> steps_;  ///< from t = 1 and from t = -1
+};
+
+}  // namespace hshfit::bases
