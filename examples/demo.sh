@@ -1,0 +1,61 @@
+#!/bin/sh
+# What `./run demo` does once the program is built: three BRDFs to coefficients and reports in out/.
+set -eu
+cd "$(dirname "$0")/.."
+hshfit=build/hshfit
+mkdir -p out
+
+# Runs the program, showing the command as one would type it.
+show() {
+    echo "\$ hshfit $*"
+    "$hshfit" "$@"
+}
+
+# finding TEXT COMMAND…: a command that is known to end with exit code 4, and what that means.
+finding() {
+    text=$1
+    shift
+    code=0
+    show "$@" || code=$?
+    [ "$code" = 4 ] || { echo "demo: expected exit code 4, not $code" >&2; exit 1; }
+    echo "  exit code 4, and rightly so: $text"
+}
+
+phong=phong:exponent=22
+ward=ward:ax=0.2,ay=0.5
+ggx=ggx:alpha=0.3
+
+echo "1. Coefficients: hemispherical harmonics of order 7 for 32 x 32 outgoing directions."
+show project $phong -o out/phong.json
+show project $phong --cosine -o out/phong_cosine.json
+show project $ward --cosine -o out/ward_cosine.json
+
+echo
+echo "2. A measured material: a MERL-layout file that the program writes itself."
+show convert $ggx out/ggx.binary
+show info out/ggx.binary
+show project out/ggx.binary --cosine -o out/ggx_cosine.exr
+
+echo
+echo "3. Accuracy reports: the energy that each basis captures, by order (Eq. 15)."
+show report $phong -o out/report_phong
+show report $phong $ward out/ggx.binary --cosine -o out/report_cosine
+finding "f of the Ward BRDF grows as 1/sqrt(cos theta) towards the horizon, so that the
+  integral of its square does not exist; f cos, above, is fine." \
+    report $ward -o out/report_ward
+
+echo
+echo "Captured energy of f cos with order 7 (49 slots) and the files it went to:"
+# The columns after the BRDF and the outgoing directions, which may hold commas.
+awk -F, '
+    NR == 1 { for (i = 1; i <= NF; ++i) fromEnd[$i] = NF - i; next }
+    $(NF - fromEnd["order"]) == 7 {
+        printf "  %-44s %-16s %3d coefficients  %s\n", $1, $(NF - fromEnd["basis"]),
+               $(NF - fromEnd["coefficients"]), $(NF - fromEnd["accuracy"])
+    }' out/report_cosine/curves.csv
+for file in out/phong.json out/phong_cosine.json out/ward_cosine.json out/ggx_cosine.exr; do
+    printf '  %-28s %8d KB\n' "$file" $(($(wc -c <"$file") / 1000))
+done
+echo
+echo "Open out/report_cosine/report.html, and report_phong and report_ward beside it;"
+echo "the coefficients are out/*.json and out/*.exr: build/hshfit info out/ward_cosine.json"
