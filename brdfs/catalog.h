@@ -22,9 +22,11 @@ struct Parameter {
     std::string_view name;
     std::string_view help;
     Kind kind = Kind::number;
-    std::optional<double> fallback;  ///< none: the parameter has to be given
+    /// None: the parameter has to be given. Outside [min, max]: what the help says of leaving it
+    /// out.
+    std::optional<double> fallback = {};
     double min = 0, max = 0;
-    std::vector<std::string_view> choices;  ///< the first is the default
+    std::vector<std::string_view> choices = {};  ///< the first is the default
 };
 
 /// Checked parameter values, defaults filled in. Asking for an undeclared name is our bug.
@@ -66,6 +68,9 @@ struct Format {
 
 std::span<const Model> models();
 std::span<const Format> formats();
+
+/// Opens "model[:key=value,…]". Throws UsageError as `open` does.
+std::unique_ptr<Brdf> openModel(std::string_view spec);
 
 /// Opens a BRDF specification:
 ///     model[:key=value,…] | path of a measured file[:key=value,…] | path of a preset .json |

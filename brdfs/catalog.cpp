@@ -1,0 +1,143 @@
+#include <brdfs/catalog.h>
+
+#include <brdfs/analytic/lambert.h>
+#include <brdfs/analytic/phong.h>
+#include <brdfs/analytic/ward.h>
+#include <brdfs/preset.h>
+#include <brdfs/spec.h>
+#include <hshfit/error.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace hshfit::brdfs {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class Row>
+std::vector<std::string_view> namesOf(std::span<const Row> table) {
+    std::vector<std::string_view> names;
+    for (const Row& row : table) names.push_back(row.name);
+    return names;
+}
+
+const Model* findModel(std::string_view name) {
+    const auto found = std::ranges::find(models(), name, &Model::name);
+    return found == models().end() ? nullptr : &*found;
+}
+
+UsageError unknownModel(std::string_view name) {
+    const std::vector<std::string_view> known = namesOf(models());
+    return UsageError(fmt::format("unknown model '{}'{}; known: {}", name, suggestion(name, known),
+                                  joined(known)));
+}
+
+std::unique_ptr<Brdf> openNamedPreset(std::string_view name) {
+    const auto found = std::ranges::find(presets(), name, &Preset::name);
+    if (found != presets().end()) return openPreset(found->text, fmt::format("preset:{}", name));
+    const std::vector<std::string_view> known = namesOf(presets());
+    throw UsageError(fmt::format("unknown preset '{}'{}; known: {}", name, suggestion(name, known),
+                                 joined(known)));
+}
+
+/// The first `most` bytes of a file; all of them if it has fewer.
+std::vector<unsigned char> readHead(const std::string& path, std::size_t most) {
+    std::ifstream file(path, std::ios::binary);
+    std::vector<unsigned char> head(most);
+    if (file) file.read(reinterpret_cast<char*>(head.data()), static_cast<std::streamsize>(most));
+    if (!file.is_open() || file.bad()) throw InputError(path + ": cannot be read");
+    head.resize(static_cast<std::size_t>(file.gcount()));
+    return head;
+}
+
+/// By content first, so that a wrong extension does not matter; then by extension.
+const Format& formatOf(const std::string& path, std::uint64_t size) {
+    constexpr std::size_t headSize = 4096;
+    const std::vector<unsigned char> head = readHead(path, headSize);
+    for (const Format& format : formats())
+        if (format.recognises(head, size)) return format;
+    const std::string extension = fs::path(path).extension().string();
+    for (const Format& format : formats())
+        if (format.extension == extension) return format;
+    throw InputError(fmt::format("{}: of no known format ({} bytes); known: {}, preset (.json)",
+                                 path, size, joined(namesOf(formats()))));
+}
+
+std::unique_ptr<Brdf> openPresetFile(const std::string& path, std::uint64_t size,
+                                     std::string_view options) {
+    constexpr std::uint64_t most = 1 << 20;
+    if (!options.empty())
+        throw UsageError(
+            fmt::format("{}: a preset takes no options, '{}' was given", path, options));
+    if (size > most)
+        throw InputError(fmt::format("{}: {} bytes are too many for a preset", path, size));
+    const std::vector<unsigned char> text = readHead(path, most);
+    return openPreset({reinterpret_cast<const char*>(text.data()), text.size()}, path);
+}
+
+std::unique_ptr<Brdf> openFile(const std::string& path, std::string_view options) {
+    std::error_code error;
+    if (fs::is_directory(path, error)) throw InputError(path + ": is a directory, not a BRDF file");
+    if (!fs::is_regular_file(path, error)) throw InputError(path + ": is not a regular file");
+    const std::uint64_t size = fs::file_size(path, error);
+    if (error) throw InputError(fmt::format("{}: {}", path, error.message()));
+    if (size == 0) throw InputError(path + ": is empty");
+    if (fs::path(path).extension() == ".json") return openPresetFile(path, size, options);
+    const Format& format = formatOf(path, size);
+    return format.open(path, parseParameters(format.name, format.parameters, options));
+}
+
+bool exists(std::string_view path) {
+    std::error_code error;
+    return fs::exists(fs::path(path), error);
+}
+
+/// A path, not a misspelt model: it has a folder or an extension.
+bool looksLikePath(std::string_view text) {
+    return text.find('/') != std::string_view::npos || fs::path(text).has_extension();
+}
+
+}  // namespace
+
+std::span<const Model> models() {
+    static const std::vector<Model> table{lambertModel(), phongModel(), wardModel()};
+    return table;
+}
+
+std::span<const Format> formats() {
+    return {};
+}
+
+std::unique_ptr<Brdf> openModel(std::string_view spec) {
+    const std::size_t colon = spec.find(':');
+    const Model* model = findModel(spec.substr(0, colon));
+    if (!model) throw unknownModel(spec.substr(0, colon));
+    const std::string_view values =
+        colon == std::string_view::npos ? std::string_view() : spec.substr(colon + 1);
+    return model->make(parseParameters(model->name, model->parameters, values));
+}
+
+std::unique_ptr<Brdf> open(std::string_view spec) {
+    if (spec.empty())
+        throw UsageError(
+            fmt::format("empty BRDF specification; give model[:key=value,...], a file "
+                        "or preset:NAME; models: {}",
+                        joined(namesOf(models()))));
+    constexpr std::string_view presetPrefix = "preset:";
+    if (spec.starts_with(presetPrefix)) return openNamedPreset(spec.substr(presetPrefix.size()));
+    if (findModel(spec.substr(0, spec.find(':')))) return openModel(spec);
+    if (exists(spec)) return openFile(std::string(spec), {});
+    const std::size_t colon = spec.rfind(':');
+    const std::string_view path = spec.substr(0, colon);
+    if (colon != std::string_view::npos && exists(path))
+        return openFile(std::string(path), spec.substr(colon + 1));
+    if (looksLikePath(path)) throw InputError(fmt::format("{}: no such file", path));
+    throw unknownModel(spec.substr(0, spec.find(':')));
+}
+
+}  // namespace hshfit::brdfs

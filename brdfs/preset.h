@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace hshfit {
+class Brdf;
+}
+
+namespace hshfit::brdfs {
+
+/// One row of the table of presets that are part of the program: parameter values from published
+/// work, kept in brdfs/presets/NAME.json:
+///     {"format": "hshfit-preset", "version": 1, "model": "ward",
+///      "parameters": {"ax": 0.2, "kd": [0.1, 0.2, 0.3], "variant": "duer"}, "source": "…"}
+struct Preset {
+    std::string_view name;
+    std::string_view help;
+    std::string_view text;  ///< the JSON
+};
+std::span<const Preset> presets();
+
+/// What a preset holds: the specification of its model, and where the values come from.
+struct PresetContent {
+    std::string spec;
+    std::string source;
+};
+
+/// Reads the JSON of a preset. `where` (a path or "preset:NAME") starts every message.
+/// Throws InputError: not JSON, another format or version, a field absent or of the wrong type.
+PresetContent parsePreset(std::string_view text, const std::string& where);
+
+/// Opens the model that a preset names. Fields other than the five above are left alone, so that
+/// the result of a fit is a preset too. Throws InputError as above, or for an invalid parameter.
+std::unique_ptr<Brdf> openPreset(std::string_view text, const std::string& where);
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,196 @@
+#include <brdfs/spec.h>
+
+#include <hshfit/error.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+
+namespace hshfit::brdfs {
+namespace {
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> parts;
+    while (true) {
+        const std::size_t end = text.find(separator);
+        parts.push_back(text.substr(0, end));
+        if (end == std::string_view::npos) return parts;
+        text.remove_prefix(end + 1);
+    }
+}
+
+std::size_t editDistance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({substituted, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+double parseNumber(std::string_view owner, const Parameter& parameter, std::string_view value,
+                   std::string_view part) {
+    double number = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
+    const std::string valid = validValues(parameter);
+    // "1e999" is a number, but one that no double holds.
+    if (error == std::errc::result_out_of_range || !std::isfinite(number))
+        throw UsageError(fmt::format("{}: {}={} is not a finite number; valid: {}", owner,
+                                     parameter.name, value, valid));
+    if (error != std::errc{} || end != part.data() + part.size())
+        throw UsageError(fmt::format("{}: {}='{}' is not a number; valid: {}", owner,
+                                     parameter.name, value, valid));
+    if (number < parameter.min || number > parameter.max)
+        throw UsageError(fmt::format("{}: {}={} is out of range; valid: {}", owner, parameter.name,
+                                     value, valid));
+    return number + 0.0;  // -0 becomes 0
+}
+
+std::vector<double> parseNumbers(std::string_view owner, const Parameter& parameter,
+                                 std::string_view value) {
+    const std::vector<std::string_view> parts = split(value, '/');
+    const bool colour = parameter.kind == Parameter::Kind::colour;
+    if (parts.size() != 1 && !(colour && parts.size() == 3))
+        throw UsageError(fmt::format("{}: {}={} has {} values; valid: {}", owner, parameter.name,
+                                     value, parts.size(), validValues(parameter)));
+    std::vector<double> numbers;
+    for (const std::string_view part : parts)
+        numbers.push_back(parseNumber(owner, parameter, value, part));
+    if (numbers.size() == 3 && numbers[0] == numbers[1] && numbers[1] == numbers[2])
+        numbers.resize(1);
+    return numbers;
+}
+
+std::string parseChoice(std::string_view owner, const Parameter& parameter,
+                        std::string_view value) {
+    if (std::ranges::find(parameter.choices, value) == parameter.choices.end())
+        throw UsageError(fmt::format("{}: {}='{}' is unknown; valid: {}", owner, parameter.name,
+                                     value, validValues(parameter)));
+    return std::string(value);
+}
+
+const Parameter& findParameter(std::string_view owner, std::span<const Parameter> declared,
+                               std::string_view key) {
+    std::vector<std::string_view> names;
+    for (const Parameter& parameter : declared) {
+        if (parameter.name == key) return parameter;
+        names.push_back(parameter.name);
+    }
+    throw UsageError(fmt::format("{}: unknown key '{}'{}; valid: {}", owner, key,
+                                 suggestion(key, names),
+                                 names.empty() ? std::string("none") : joined(names)));
+}
+
+void readItem(std::string_view owner, std::span<const Parameter> declared, std::string_view item,
+              Parameters& parsed) {
+    const std::size_t equals = item.find('=');
+    if (equals == std::string_view::npos || equals == 0 || equals + 1 == item.size())
+        throw UsageError(fmt::format("{}: '{}' is not of the form key=value", owner, item));
+    const Parameter& parameter = findParameter(owner, declared, item.substr(0, equals));
+    const std::string_view value = item.substr(equals + 1);
+    const bool fresh =
+        parameter.kind == Parameter::Kind::choice
+            ? parsed.words
+                  .try_emplace(std::string(parameter.name), parseChoice(owner, parameter, value))
+                  .second
+            : parsed.numbers
+                  .try_emplace(std::string(parameter.name), parseNumbers(owner, parameter, value))
+                  .second;
+    if (!fresh) throw UsageError(fmt::format("{}: {} is given twice", owner, parameter.name));
+}
+
+/// Fills in the default of one parameter, or adds its value to the canonical text.
+void complete(std::string_view owner, const Parameter& parameter, Parameters& parsed) {
+    const std::string separator = parsed.text.empty() ? "" : ",";
+    const std::string name(parameter.name);
+    if (parameter.kind == Parameter::Kind::choice) {
+        const std::string fallback(parameter.choices.front());
+        const std::string& word = parsed.words.try_emplace(name, fallback).first->second;
+        if (word != fallback) parsed.text += fmt::format("{}{}={}", separator, name, word);
+        return;
+    }
+    const auto found = parsed.numbers.find(name);
+    if (found == parsed.numbers.end()) {
+        if (!parameter.fallback)
+            throw UsageError(fmt::format("{}: {} has to be given; valid: {}", owner, name,
+                                         validValues(parameter)));
+        parsed.numbers.emplace(name, std::vector<double>{*parameter.fallback});
+        return;
+    }
+    const std::vector<double>& values = found->second;
+    if (values.size() == 1 && parameter.fallback && values[0] == *parameter.fallback) return;
+    parsed.text += fmt::format("{}{}={}", separator, name, fmt::join(values, "/"));
+}
+
+}  // namespace
+
+double Parameters::number(std::string_view name) const {
+    const auto found = numbers.find(name);
+    assert(found != numbers.end() && found->second.size() == 1);
+    return found->second.front();
+}
+
+std::vector<double> Parameters::colour(std::string_view name) const {
+    const auto found = numbers.find(name);
+    assert(found != numbers.end());
+    return found->second;
+}
+
+std::string Parameters::choice(std::string_view name) const {
+    const auto found = words.find(name);
+    assert(found != words.end());
+    return found->second;
+}
+
+std::string Parameters::canonical() const {
+    return text;
+}
+
+Parameters parseParameters(std::string_view owner, std::span<const Parameter> declared,
+                           std::string_view text) {
+    Parameters parsed;
+    if (!text.empty())
+        for (const std::string_view item : split(text, ','))
+            readItem(owner, declared, item, parsed);
+    for (const Parameter& parameter : declared) complete(owner, parameter, parsed);
+    return parsed;
+}
+
+std::string validValues(const Parameter& parameter) {
+    if (parameter.kind == Parameter::Kind::choice)
+        return fmt::format("{}", fmt::join(parameter.choices, "|"));
+    const std::string range = fmt::format("{} to {}", parameter.min, parameter.max);
+    return parameter.kind == Parameter::Kind::colour ? range + ", or three such values as r/g/b"
+                                                     : range;
+}
+
+std::string suggestion(std::string_view word, std::span<const std::string_view> known) {
+    std::string_view best;
+    std::size_t least = 3;
+    for (const std::string_view candidate : known) {
+        const std::size_t distance = editDistance(word, candidate);
+        // Two edits turn any two-letter word into any other: not a resemblance.
+        if (distance < least && distance < candidate.size()) {
+            least = distance;
+            best = candidate;
+        }
+    }
+    return best.empty() ? "" : fmt::format(" (did you mean '{}'?)", best);
+}
+
+std::string joined(std::span<const std::string_view> words) {
+    return fmt::format("{}", fmt::join(words, ", "));
+}
+
+}  // namespace hshfit::brdfs

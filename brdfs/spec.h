@@ -1,0 +1,30 @@
+#pragma once
+
+#include <brdfs/catalog.h>
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// Parses "key=value,key=value" (may be empty) against the table's parameters: every key declared
+/// and given once, every value finite and in range, every parameter without a default given. Three
+/// equal colour values become one, so that grey stays grey.
+///
+/// `owner` ("ward") starts every message. Throws UsageError that names the key, the value and what
+/// would be valid.
+Parameters parseParameters(std::string_view owner, std::span<const Parameter> declared,
+                           std::string_view text);
+
+/// What a parameter accepts, for messages and listings: "0 to 1, or r/g/b", "1992|duer".
+std::string validValues(const Parameter& parameter);
+
+/// " (did you mean 'ggx'?)" if one of `known` is within two edits of `word`, else "".
+std::string suggestion(std::string_view word, std::span<const std::string_view> known);
+
+/// "a, b, c".
+std::string joined(std::span<const std::string_view> words);
+
+}  // namespace hshfit::brdfs
