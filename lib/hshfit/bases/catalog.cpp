@@ -2,6 +2,7 @@
 
 #include <hshfit/bases/h_basis.h>
 #include <hshfit/bases/hsh.h>
+#include <hshfit/bases/lsosh.h>
 #include <hshfit/bases/makhotkin.h>
 #include <hshfit/bases/sh.h>
 #include <hshfit/bases/zernike.h>
@@ -23,6 +24,8 @@ constexpr std::array table{
           "Laplace 1782; Schönefeld 2005", 1000, true, makeSh},
     Entry{"esh", "even spherical harmonics, the function being mirrored at the horizon",
           "Westin et al. 1992", 1000, true, makeEsh},
+    Entry{"lsosh", "spherical harmonics fitted by least squares on the hemisphere only",
+          "Sloan et al. 2003", 100, false, makeLsosh},
     Entry{"zernike", "Zernike polynomials on the disc of radius sqrt(2) sin(theta/2)",
           "Koenderink et al. 1996", 1000, true, makeZernike},
     Entry{"makhotkin", "associated Jacobi polynomials times sqrt(cos(theta)); reconstructed",

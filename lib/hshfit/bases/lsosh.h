@@ -1,0 +1,21 @@
+#pragma once
+
+#include <hshfit/bases/basis.h>
+
+#include <memory>
+
+namespace hshfit::bases {
+
+/// Least-squares optimal spherical harmonics: the functions of `makeSh`, with the coefficients that
+/// fit f best on the hemisphere, c = G^+ b with G_ij the hemisphere integral of Y_i Y_j.
+///
+/// The functions are not orthogonal there (condition of G: 14 at order 2, 1e11 at 9), so f is
+/// analysed by polynomials in mu that are orthonormal for (1 - mu^2)^m on [0, 1] and span the same
+/// space band by band; coefficients follow from R c = moments, R_kj = <q_k, Y_j>, whose condition
+/// is the square root of that of G. Directions that the hemisphere hardly sees, with singular
+/// values of R below 1e-11 of the largest, are left out: evaluation in double leaves noise of
+/// eps/sigma there. That happens from about order 16 on; what is kept is the Slepian basis.
+/// Order at most 100: a solve costs order^4 operations.
+std::unique_ptr<Basis> makeLsosh(int order, BasisOptions options);
+
+}  // namespace hshfit::bases
