@@ -206,11 +206,17 @@ void projection(benchmark::State& state, double tolerance) {
     state.counters["shared_ratio_asked"] = shared().secondsTo(tolerance) / seconds;
 }
 
-BENCHMARK_CAPTURE(monteCarlo, textbook, textbook)->UseManualTime()->Iterations(1);
-BENCHMARK_CAPTURE(monteCarlo, shared, shared)->UseManualTime()->Iterations(1);
-BENCHMARK_CAPTURE(projection, 1e-2, 1e-2)->UseManualTime();
-BENCHMARK_CAPTURE(projection, 1e-3, 1e-3)->UseManualTime();
-BENCHMARK_CAPTURE(projection, 1e-6, 1e-6)->UseManualTime();
+BENCHMARK_CAPTURE(monteCarlo, textbook, textbook)
+    ->UseManualTime()
+    ->Iterations(1)
+    ->Unit(benchmark::kSecond);
+BENCHMARK_CAPTURE(monteCarlo, shared, shared)
+    ->UseManualTime()
+    ->Iterations(1)
+    ->Unit(benchmark::kSecond);
+BENCHMARK_CAPTURE(projection, 1e-2, 1e-2)->UseManualTime()->Unit(benchmark::kSecond);
+BENCHMARK_CAPTURE(projection, 1e-3, 1e-3)->UseManualTime()->Unit(benchmark::kSecond);
+BENCHMARK_CAPTURE(projection, 1e-6, 1e-6)->UseManualTime()->Unit(benchmark::kSecond);
 
 }  // namespace
 
