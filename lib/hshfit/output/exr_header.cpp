@@ -1,0 +1,197 @@
+#include <hshfit/error.h>
+#include <hshfit/output/exr_header.h>
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <set>
+
+#include <fmt/format.h>
+
+static_assert(std::endian::native == std::endian::little, "EXR integers are little-endian");
+
+namespace hshfit {
+namespace {
+
+constexpr std::string_view magic("\x76\x2f\x31\x01", 4);
+constexpr std::uint32_t versionMask = 0xff, longNames = 0x400;
+constexpr std::uint32_t tiled = 0x200, deep = 0x800, multiPart = 0x1000;
+constexpr std::int32_t floatPixels = 2;
+constexpr int lastLossless = 3;  // none, RLE, ZIPS, ZIP
+constexpr std::int32_t maxSide = 1 << 16;
+constexpr std::uint64_t maxInflation = 1032;
+
+/// Reads forward through bytes; nothing when they end too early.
+class Cursor {
+public:
+    explicit Cursor(std::string_view bytes) : bytes_(bytes) {}
+
+    template <class Integer>
+    std::optional<Integer> integer() {
+        const auto raw = take(sizeof(Integer));
+        if (!raw) return std::nullopt;
+        Integer value;
+        std::memcpy(&value, raw->data(), sizeof value);
+        return value;
+    }
+    std::optional<std::string_view> word() {
+        const auto end = bytes_.find('\0');
+        if (end == std::string_view::npos) return std::nullopt;
+        const auto result = bytes_.substr(0, end);
+        bytes_.remove_prefix(end + 1);
+        return result;
+    }
+    std::optional<std::string_view> take(std::size_t count) {
+        if (count > bytes_.size()) return std::nullopt;
+        const auto result = bytes_.substr(0, count);
+        bytes_.remove_prefix(count);
+        return result;
+    }
+
+private:
+    std::string_view bytes_;
+};
+
+struct Attribute {
+    std::string_view name, type, value;
+};
+
+/// The next attribute; an empty name at the end of the header, nothing where the file breaks off.
+std::optional<Attribute> nextAttribute(Cursor& cursor) {
+    const auto name = cursor.word();
+    if (!name) return std::nullopt;
+    if (name->empty()) return Attribute{};
+    const auto type = cursor.word();
+    if (!type) return std::nullopt;
+    const auto size = cursor.integer<std::int32_t>();
+    if (!size || *size < 0) return std::nullopt;
+    const auto value = cursor.take(static_cast<std::size_t>(*size));
+    if (!value) return std::nullopt;
+    return Attribute{*name, *type, *value};
+}
+
+class Checker {
+public:
+    Checker(std::string_view bytes, const std::string& file) : bytes_(bytes), file_(file) {}
+
+    ExrHeader check() {
+        Cursor cursor(bytes_);
+        cursor.take(magic.size());
+        checkFlags(cursor);
+        std::set<std::string_view> seen;
+        for (;;) {
+            const auto attribute = nextAttribute(cursor);
+            if (!attribute) fail("the header breaks off or an attribute is longer than the file");
+            if (attribute->name.empty()) break;
+            if (!seen.insert(attribute->name).second) {
+                fail(
+                    fmt::format("the attribute '{}' appears twice", attribute->name.substr(0, 40)));
+            }
+            if (attribute->name == "channels") countChannels(attribute->value);
+            if (attribute->name == "dataWindow") measure(attribute->value);
+            if (attribute->name == "compression") checkCompression(attribute->value);
+        }
+        if (header_.channels == 0) fail("the header names no channels");
+        if (header_.width == 0) fail("the header has no data window");
+        const std::uint64_t inflated =
+            std::uint64_t{header_.width} * header_.height * header_.channels * sizeof(float);
+        if (inflated / maxInflation > bytes_.size()) {
+            fail(fmt::format("{} x {} pixels of {} channels cannot come out of {} bytes",
+                             header_.width, header_.height, header_.channels, bytes_.size()));
+        }
+        return header_;
+    }
+
+private:
+    [[noreturn]] void fail(std::string_view what) const {
+        throw InputError(fmt::format("{}: invalid OpenEXR data: {}", file_, what));
+    }
+
+    void checkFlags(Cursor& cursor) const {
+        const auto version = cursor.integer<std::uint32_t>();
+        if (!version) fail("the header breaks off");
+        if (*version & multiPart) fail("it has several parts; coefficient files have one");
+        if (*version & deep) fail("it is a deep image; coefficient files are flat");
+        if (*version & tiled) fail("it is tiled; coefficient files have scan lines");
+        if ((*version & versionMask) != 2 || (*version & ~(versionMask | longNames)) != 0) {
+            fail(fmt::format("unknown version field {:#x}", *version));
+        }
+    }
+
+    void countChannels(std::string_view list) {
+        Cursor cursor(list);
+        for (;;) {
+            const auto name = cursor.word();
+            if (!name) fail("the channel list breaks off");
+            if (name->empty()) return;
+            const auto type = cursor.integer<std::int32_t>();
+            cursor.take(4);
+            const auto x = cursor.integer<std::int32_t>(), y = cursor.integer<std::int32_t>();
+            if (!type || !x || !y) fail("the channel list breaks off");
+            if (*type != floatPixels) {
+                fail(fmt::format("channel '{}' is not of type float", name->substr(0, 40)));
+            }
+            if (*x != 1 || *y != 1) {
+                fail(fmt::format("channel '{}' is subsampled", name->substr(0, 40)));
+            }
+            ++header_.channels;
+        }
+    }
+
+    void measure(std::string_view box) {
+        Cursor cursor(box);
+        const auto left = cursor.integer<std::int32_t>(), top = cursor.integer<std::int32_t>();
+        const auto right = cursor.integer<std::int32_t>(), bottom = cursor.integer<std::int32_t>();
+        if (!bottom) fail("the data window breaks off");
+        if (*left != 0 || *top != 0 || *right < 0 || *bottom < 0 || *right >= maxSide ||
+            *bottom >= maxSide) {
+            fail(
+                fmt::format("the data window ({}, {}) - ({}, {}) has to start at (0, 0) and be at "
+                            "most {} pixels a side",
+                            *left, *top, *right, *bottom, maxSide));
+        }
+        header_.width = static_cast<std::size_t>(*right) + 1;
+        header_.height = static_cast<std::size_t>(*bottom) + 1;
+    }
+
+    void checkCompression(std::string_view value) const {
+        const auto method = Cursor(value).integer<std::uint8_t>();
+        if (!method || *method > lastLossless) {
+            fail("the compression has to be none, RLE, ZIPS or ZIP");
+        }
+    }
+
+    std::string_view bytes_;
+    const std::string& file_;
+    ExrHeader header_;
+};
+
+}  // namespace
+
+bool hasExrMagic(std::string_view bytes) {
+    return bytes.starts_with(magic);
+}
+
+ExrHeader checkExrHeader(std::string_view bytes, const std::string& file) {
+    if (!hasExrMagic(bytes)) {
+        throw InputError(
+            fmt::format("{}: is not an OpenEXR file: the first four bytes have to be "
+                        "76 2f 31 01",
+                        file));
+    }
+    return Checker(bytes, file).check();
+}
+
+bool exrSaysCoefficients(std::string_view bytes) {
+    if (!hasExrMagic(bytes)) return false;
+    Cursor cursor(bytes);
+    cursor.take(magic.size() + sizeof(std::uint32_t));
+    for (;;) {
+        const auto attribute = nextAttribute(cursor);
+        if (!attribute || attribute->name.empty()) return false;
+        if (attribute->name == "hshfit:format") return true;
+    }
+}
+
+}  // namespace hshfit
