@@ -32,7 +32,7 @@ show project $ward --cosine -o out/ward_cosine.json
 
 echo
 echo "2. A measured material: a MERL-layout file that the program writes itself."
-show convert $ggx out/ggx.binary
+show convert $ggx out/ggx.binary --force
 show info out/ggx.binary
 show project out/ggx.binary --cosine -o out/ggx_cosine.exr
 
