@@ -1,6 +1,13 @@
 #include <brdfs/catalog.h>
 
+#include <brdfs/analytic/ashikhmin_shirley.h>
+#include <brdfs/analytic/beckmann.h>
+#include <brdfs/analytic/blinn_phong.h>
+#include <brdfs/analytic/cook_torrance.h>
+#include <brdfs/analytic/ggx.h>
+#include <brdfs/analytic/lafortune.h>
 #include <brdfs/analytic/lambert.h>
+#include <brdfs/analytic/oren_nayar.h>
 #include <brdfs/analytic/phong.h>
 #include <brdfs/analytic/ward.h>
 #include <brdfs/preset.h>
@@ -105,7 +112,18 @@ bool looksLikePath(std::string_view text) {
 }  // namespace
 
 std::span<const Model> models() {
-    static const std::vector<Model> table{lambertModel(), phongModel(), wardModel()};
+    static const std::vector<Model> table{
+        lambertModel(),
+        orenNayarModel(),
+        phongModel(),
+        blinnPhongModel(),
+        lafortuneModel(),
+        wardModel(),
+        ashikhminShirleyModel(),
+        cookTorranceModel(),
+        beckmannModel(),
+        ggxModel(),
+    };
     return table;
 }
 

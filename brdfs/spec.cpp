@@ -179,6 +179,10 @@ std::string suggestion(std::string_view word, std::span<const std::string_view> 
     std::string_view best;
     std::size_t least = 3;
     for (const std::string_view candidate : known) {
+        if (word.size() > 1 && candidate.starts_with(word)) {
+            best = candidate;
+            break;
+        }
         const std::size_t distance = editDistance(word, candidate);
         // Two edits turn any two-letter word into any other: not a resemblance.
         if (distance < least && distance < candidate.size()) {

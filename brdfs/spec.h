@@ -21,7 +21,8 @@ Parameters parseParameters(std::string_view owner, std::span<const Parameter> de
 /// What a parameter accepts, for messages and listings: "0 to 1, or r/g/b", "1992|duer".
 std::string validValues(const Parameter& parameter);
 
-/// " (did you mean 'ggx'?)" if one of `known` is within two edits of `word`, else "".
+/// " (did you mean 'ggx'?)" if one of `known` starts with `word` or is within two edits of it, else
+/// "".
 std::string suggestion(std::string_view word, std::span<const std::string_view> known);
 
 /// "a, b, c".

@@ -1,0 +1,97 @@
+#include <brdfs/analytic/ashikhmin_shirley.h>
+
+#include <brdfs/analytic/half_vector.h>
+#include <brdfs/analytic/parameters.h>
+#include <brdfs/analytic/term_brdf.h>
+
+#include <cmath>
+
+namespace hshfit::brdfs {
+namespace {
+
+constexpr Laws claims{
+    .nonNegative = true, .reciprocal = true, .mirrorSymmetric = true, .energyConserving = true};
+
+Laws lawsOf(const Parameters& p) {
+    Laws result = claims;
+    result.isotropic = p.number("nu") == p.number("nv");
+    return result;
+}
+
+Colour diffuseWeight(const Parameters& p) {
+    return mapped(p.colour("Rd"), p.colour("Rs"),
+                  [](double rd, double rs) { return 28 * rd / (23 * pi) * (1 - rs); });
+}
+
+/// 1 - (1 - c/2)^5.
+double diffuseFalloff(double cosine) {
+    return 1 - schlickWeight(cosine / 2);
+}
+
+class AshikhminShirley final : public TermBrdf {
+public:
+    explicit AshikhminShirley(const Parameters& p)
+        : TermBrdf(ashikhminShirleyModel(), p, lawsOf(p), {0.0},
+                   {p.colour("Rs"), {1.0}, diffuseWeight(p)}),
+          nu_(p.number("nu")),
+          nv_(p.number("nv")) {}
+
+    std::vector<Lobe> lobes(const Direction&) const override {
+        const double sharpest = std::max(nu_, nv_);
+        return {{Lobe::About::halfway, std::min(1.0, 2.5 / std::sqrt(sharpest + 1)), {}}};
+    }
+
+protected:
+    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
+        const double peak = std::sqrt((nu_ + 1) * (nv_ + 1)) / (8 * pi);
+        const double outgoingFalloff = diffuseFalloff(wo.z);
+        for (std::size_t k = 0; k < wi.count; ++k) {
+            const HalfVector h(wo, wi.x[k], wi.y[k], wi.z[k]);
+            const double squaredSlope = h.squaredSlope();
+            // log((h.z)^-2) per squared slope: log1p(t^2) / t^2.
+            const double perSlope = squaredSlope > 0 ? std::log1p(squaredSlope) / squaredSlope : 1;
+            const double tx = h.slopeX(), ty = h.slopeY();
+            const double power = std::exp(-0.5 * (nu_ * tx * tx + nv_ * ty * ty) * perSlope);
+            const double cosine = h.dotOutgoing();
+            const double lobe = bounded(peak * power / cosine / std::max(wi.z[k], wo.z));
+            const double weight = schlickWeight(cosine);
+            out[k] = lobe * (1 - weight);
+            out[wi.count + k] = lobe * weight;
+            out[2 * wi.count + k] = diffuseFalloff(wi.z[k]) * outgoingFalloff;
+        }
+    }
+
+private:
+    double nu_, nv_;
+};
+
+std::unique_ptr<Brdf> make(const Parameters& p) {
+    return std::make_unique<AshikhminShirley>(p);
+}
+
+Parameter reflectance(std::string_view name, std::string_view help, double fallback) {
+    return {.name = name,
+            .help = help,
+            .kind = Parameter::Kind::colour,
+            .fallback = fallback,
+            .min = 0,
+            .max = 1};
+}
+
+}  // namespace
+
+const Model& ashikhminShirleyModel() {
+    static const Model model{
+        .name = "ashikhmin-shirley",
+        .help = "anisotropic Phong lobe with Fresnel reflectance over a coupled diffuse term",
+        .source = "Ashikhmin & Shirley 2000, 10.1080/10867651.2000.10487522",
+        .parameters = {reflectance("Rs", "specular reflectance at normal incidence", 1),
+                       reflectance("Rd", "diffuse reflectance of the substrate", 0),
+                       exponentParameter("nu", "exponent along x"),
+                       exponentParameter("nv", "exponent along y")},
+        .laws = claims,
+        .make = make};
+    return model;
+}
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,78 @@
+#include <brdfs/analytic/blinn_phong.h>
+
+#include <brdfs/analytic/half_vector.h>
+#include <brdfs/analytic/parameters.h>
+#include <brdfs/analytic/term_brdf.h>
+
+#include <cmath>
+
+namespace hshfit::brdfs {
+namespace {
+
+constexpr Laws claims{
+    .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
+
+/// The factor that gives the lobe an albedo of 1 at normal incidence.
+double exactFactor(double n) {
+    return (n + 2) * (n + 4) / (8 * pi * (std::exp2(-n / 2) + n));
+}
+
+double normalisation(const Parameters& p) {
+    return p.choice("normalized") == "true" ? exactFactor(p.number("exponent")) : 1.0;
+}
+
+/// The albedo is largest at normal incidence.
+Laws lawsOf(const Parameters& p) {
+    Laws result = claims;
+    const double lobe = normalisation(p) / exactFactor(p.number("exponent"));
+    const Colour albedo = mapped(p.colour("kd"), p.colour("ks"),
+                                 [&](double kd, double ks) { return kd + ks * lobe; });
+    result.energyConserving = largest(albedo) <= 1;
+    return result;
+}
+
+class BlinnPhong final : public TermBrdf {
+public:
+    explicit BlinnPhong(const Parameters& p)
+        : TermBrdf(blinnPhongModel(), p, lawsOf(p), overPi(p.colour("kd")),
+                   {mapped(p.colour("ks"), [&](double ks) { return ks * normalisation(p); })}),
+          exponent_(p.number("exponent")) {}
+
+    /// In the slope t the lobe is (1 + t^2)^(-n/2): nearly Gaussian, and singular at t = i.
+    std::vector<Lobe> lobes(const Direction&) const override {
+        return {{Lobe::About::halfway, std::min(1.0, 2.5 / std::sqrt(exponent_ + 1)), {}}};
+    }
+
+protected:
+    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
+        for (std::size_t k = 0; k < wi.count; ++k) {
+            const HalfVector h(wo, wi.x[k], wi.y[k], wi.z[k]);
+            out[k] = std::exp(-0.5 * exponent_ * std::log1p(h.squaredSlope()));
+        }
+    }
+
+private:
+    double exponent_;
+};
+
+std::unique_ptr<Brdf> make(const Parameters& p) {
+    return std::make_unique<BlinnPhong>(p);
+}
+
+}  // namespace
+
+const Model& blinnPhongModel() {
+    static const Model model{
+        .name = "blinn-phong",
+        .help = "power of the cosine between half vector and normal",
+        .source = "Blinn 1977, 10.1145/563858.563893",
+        .parameters = {kdParameter(0, 1e6),
+                       ksParameter("scale of the lobe; its normal albedo if normalized"),
+                       exponentParameter("exponent", "of cos(theta_h)"),
+                       switchParameter("normalized", "scale the lobe to a normal albedo of ks")},
+        .laws = claims,
+        .make = make};
+    return model;
+}
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,95 @@
+#include <brdfs/analytic/lafortune.h>
+
+#include <brdfs/analytic/parameters.h>
+#include <brdfs/analytic/term_brdf.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hshfit::brdfs {
+namespace {
+
+constexpr Laws claims{.nonNegative = true, .reciprocal = true, .mirrorSymmetric = true};
+
+/// For |wo| = 1 the lobe is at most (max |C| cos)^exponent about some axis, whose albedo is at most
+/// that of a lobe about the normal: ks max |C|^exponent 2 pi / (exponent + 2).
+Laws lawsOf(const Parameters& p) {
+    Laws result = claims;
+    result.isotropic = p.number("Cx") == p.number("Cy");
+    const double exponent = p.number("exponent");
+    const double reach =
+        std::max({std::abs(p.number("Cx")), std::abs(p.number("Cy")), std::abs(p.number("Cz"))});
+    const double lobe = bounded(std::pow(reach, exponent)) * 2 * pi / (exponent + 2);
+    const Colour albedo = mapped(p.colour("kd"), p.colour("ks"),
+                                 [&](double kd, double ks) { return kd + ks * lobe; });
+    result.energyConserving = largest(albedo) <= 1;
+    return result;
+}
+
+class Lafortune final : public TermBrdf {
+public:
+    explicit Lafortune(const Parameters& p)
+        : TermBrdf(lafortuneModel(), p, lawsOf(p), overPi(p.colour("kd")), {p.colour("ks")}),
+          c_{p.number("Cx"), p.number("Cy"), p.number("Cz")},
+          exponent_(p.number("exponent")) {}
+
+    std::vector<Lobe> lobes(const Direction& wo) const override {
+        const Direction a{c_.x * wo.x, c_.y * wo.y, c_.z * wo.z};
+        const double length = std::sqrt(dot(a, a));
+        if (!(length > 0)) return {};
+        return {{Lobe::About::axis,
+                 2.5 / std::sqrt(exponent_ + 1),
+                 {a.x / length, a.y / length, a.z / length}}};
+    }
+
+protected:
+    /// Half of a^2 + b^2 - 2 c a b, without cancellation where |c| = 1 and b is near c a.
+    static double halfSquare(double c, double a, double b) {
+        const double sign = c < 0 ? -1 : 1;
+        const double difference = a - sign * b;
+        return 0.5 * difference * difference - (c - sign) * (a * b);
+    }
+
+    /// wi C wo = 1 - (|wi|^2 + |wo|^2) / 2 + wi C wo for unit vectors, so that log1p applies.
+    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
+        for (std::size_t k = 0; k < wi.count; ++k) {
+            const double less = halfSquare(c_.x, wi.x[k], wo.x) + halfSquare(c_.y, wi.y[k], wo.y) +
+                                halfSquare(c_.z, wi.z[k], wo.z);
+            out[k] = less < 1 ? std::exp(exponent_ * std::log1p(-less)) : 0;
+        }
+    }
+
+private:
+    Direction c_;  ///< the diagonal of C
+    double exponent_;
+};
+
+std::unique_ptr<Brdf> make(const Parameters& p) {
+    return std::make_unique<Lafortune>(p);
+}
+
+Parameter weightParameter(std::string_view name, double fallback) {
+    return {.name = name,
+            .help = "weight of that component's product",
+            .fallback = fallback,
+            .min = -10,
+            .max = 10};
+}
+
+}  // namespace
+
+const Model& lafortuneModel() {
+    static const Model model{
+        .name = "lafortune",
+        .help = "one generalised cosine lobe: off-specular, retroreflective, anisotropic",
+        .source = "Lafortune, Foo, Torrance & Greenberg 1997, 10.1145/258734.258801",
+        .parameters = {kdParameter(0, 1e6), ksParameter("scale of the lobe"),
+                       weightParameter("Cx", -1), weightParameter("Cy", -1),
+                       weightParameter("Cz", 1),
+                       exponentParameter("exponent", "of the weighted cosine")},
+        .laws = claims,
+        .make = make};
+    return model;
+}
+
+}  // namespace hshfit::brdfs

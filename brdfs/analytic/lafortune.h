@@ -1,0 +1,15 @@
+#pragma once
+
+#include <brdfs/catalog.h>
+
+namespace hshfit::brdfs {
+
+/// f = kd / pi + ks max(0, Cx xi xo + Cy yi yo + Cz zi zo)^exponent: one generalised cosine lobe.
+/// Lafortune, Foo, Torrance & Greenberg 1997, 10.1145/258734.258801.
+///
+/// Cx = Cy = -1, Cz = 1 is Phong's lobe; Cz < |Cx| leans it towards grazing (off-specular peaks),
+/// Cx > 0 makes it retroreflective, Cx != Cy anisotropic. With |C| > 1 and a large exponent values
+/// exceed the largest double and are cut to it.
+const Model& lafortuneModel();
+
+}  // namespace hshfit::brdfs

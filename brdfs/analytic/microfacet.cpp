@@ -1,0 +1,45 @@
+#include <brdfs/analytic/microfacet.h>
+
+#include <brdfs/analytic/parameters.h>
+#include <brdfs/spec.h>
+#include <hshfit/error.h>
+
+#include <fmt/format.h>
+
+namespace hshfit::brdfs {
+
+std::vector<Parameter> microfacetParameters() {
+    constexpr double notGiven = 0;
+    Parameter alpha = roughnessParameter("alpha", "roughness, the same along x and y");
+    Parameter ax = roughnessParameter("ax", "roughness along x, in place of alpha");
+    Parameter ay = roughnessParameter("ay", "roughness along y, in place of alpha");
+    for (Parameter* parameter : {&alpha, &ax, &ay}) parameter->fallback = notGiven;
+    return {kdParameter(0, 1),
+            f0Parameter(),
+            alpha,
+            ax,
+            ay,
+            {.name = "masking",
+             .help = "Smith's, with heights correlated or each direction by itself",
+             .kind = Parameter::Kind::choice,
+             .choices = {"correlated", "separable"}}};
+}
+
+Roughness roughnessOf(const Model& model, const Parameters& p) {
+    const double alpha = p.number("alpha"), ax = p.number("ax"), ay = p.number("ay");
+    if (alpha > 0 && ax == 0 && ay == 0) return {alpha, alpha};
+    if (alpha == 0 && ax > 0 && ay > 0) return {ax, ay};
+    const std::string valid = validValues(roughnessParameter("alpha", ""));
+    throw UsageError(
+        fmt::format("{}: give either alpha or both ax and ay; valid: {}", model.name, valid));
+}
+
+/// The facets reflect at most F <= 1 of the light; a diffuse term comes on top of that.
+Laws microfacetLaws(const Parameters& p, const Roughness& roughness) {
+    Laws laws = microfacetClaims;
+    laws.isotropic = roughness.ax == roughness.ay;
+    laws.energyConserving = largest(p.colour("kd")) == 0;
+    return laws;
+}
+
+}  // namespace hshfit::brdfs

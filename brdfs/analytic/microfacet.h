@@ -1,0 +1,62 @@
+#pragma once
+
+#include <brdfs/analytic/half_vector.h>
+#include <brdfs/analytic/term_brdf.h>
+
+namespace hshfit::brdfs {
+
+/// Roughness along the two axes: both equal to `alpha`, or `ax` and `ay`.
+struct Roughness {
+    double ax, ay;
+};
+
+/// kd, F0, alpha | ax, ay, and masking: what the microfacet models have in common.
+std::vector<Parameter> microfacetParameters();
+/// Throws UsageError unless either alpha or both ax and ay are given.
+Roughness roughnessOf(const Model& model, const Parameters& parameters);
+Laws microfacetLaws(const Parameters& parameters, const Roughness& roughness);
+inline constexpr Laws microfacetClaims{
+    .nonNegative = true, .reciprocal = true, .mirrorSymmetric = true};
+
+/// f = kd / pi + F D G / (4 cos_i cos_o),  F = F0 + (1 - F0)(1 - h.wo)^5 (Schlick 1994), with
+/// Smith's masking in terms of Lambda (Heitz 2014, JCGT 3(2)):
+///     correlated  G = 1 / (1 + Lambda_i + Lambda_o)   (heights of both directions correlated)
+///     separable   G = 1 / ((1 + Lambda_i)(1 + Lambda_o))
+///
+/// `Distribution` gives D of a half vector, z Lambda(w) of a direction w with height z (finite at
+/// the horizon, where Lambda is not), and the width of its peak in units of slope.
+template <class Distribution>
+class Microfacet final : public TermBrdf {
+public:
+    Microfacet(const Model& model, const Parameters& p, const Roughness& roughness)
+        : TermBrdf(model, p, microfacetLaws(p, roughness), overPi(p.colour("kd")),
+                   {p.colour("F0"), {1.0}}),
+          distribution_(roughness),
+          correlated_(p.choice("masking") == "correlated") {}
+
+    std::vector<Lobe> lobes(const Direction&) const override {
+        return {{Lobe::About::halfway, distribution_.width(), {}}};
+    }
+
+protected:
+    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
+        const double outgoing = distribution_.scaledLambda(wo.x, wo.y, wo.z);
+        for (std::size_t k = 0; k < wi.count; ++k) {
+            const double z = wi.z[k];
+            const HalfVector h(wo, wi.x[k], wi.y[k], z);
+            const double incoming = distribution_.scaledLambda(wi.x[k], wi.y[k], z);
+            const double visible = correlated_ ? z * wo.z + wo.z * incoming + z * outgoing
+                                               : (z + incoming) * (wo.z + outgoing);
+            const double lobe = bounded(distribution_.density(h) * bounded(0.25 / visible));
+            const double weight = schlickWeight(h.dotOutgoing());
+            out[k] = lobe * (1 - weight);
+            out[wi.count + k] = lobe * weight;
+        }
+    }
+
+private:
+    Distribution distribution_;
+    bool correlated_;
+};
+
+}  // namespace hshfit::brdfs
