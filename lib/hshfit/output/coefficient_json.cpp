@@ -54,7 +54,6 @@ public:
     }
 
     void requireShape(const Coefficients& c) const {
-        if (!found_) fail("has no 'coefficients'");
         if (channels_ != c.channels.count()) {
             fail(
                 fmt::format("'coefficients' has {} channels for each outgoing direction; "
@@ -87,7 +86,7 @@ private:
         if (!keys_.back().insert(key).second) {
             fail(fmt::format("the key '{}' appears twice", key.substr(0, 40)));
         }
-        if (depth == 1 && key == "coefficients") awaited_ = found_ = true;
+        if (depth == 1 && key == "coefficients") awaited_ = true;
         return true;
     }
 
@@ -115,7 +114,7 @@ private:
 
     const std::string& file_;
     std::vector<std::set<std::string>> keys_;
-    bool awaited_ = false, found_ = false;
+    bool awaited_ = false;
     int level_ = 0;
     std::size_t outgoing_ = 0, rows_ = 0, countInRow_ = 0, channels_ = 0, slots_ = 0;
 };

@@ -224,10 +224,10 @@ OutgoingSet readDirection(const Fields& fields) {
 OutgoingSet readOutgoing(const Fields& fields, std::size_t present) {
     const std::string map = fields.word("map");
     const auto requireCount = [&](std::size_t stated) {
-        if (stated != present) {
-            fields.fail(
-                fmt::format("states {} outgoing directions, but the file has {}", stated, present));
-        }
+        if (stated == present) return;
+        const std::string found = present == 0 ? "'coefficients' is missing or empty"
+                                               : fmt::format("the file has {}", present);
+        fields.fail(fmt::format("states {} outgoing directions, but {}", stated, found));
     };
     const auto requireRing = [&] {
         if (fields.number("horizon_ring_degrees") != horizonRingDegrees) {
