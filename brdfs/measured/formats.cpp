@@ -1,0 +1,71 @@
+#include <brdfs/measured/formats.h>
+#include <brdfs/measured/merl.h>
+#include <brdfs/measured/rgl.h>
+#include <brdfs/measured/tensor_file.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+
+namespace hshfit::brdfs {
+namespace {
+
+// Either the dimensions or the size: a file that lost one of them is told what is wrong with it.
+bool looksLikeMerl(std::span<const unsigned char> head, std::uint64_t fileSize) {
+    if (fileSize == MerlLayout{.azimuthCount = 180}.fileBytes() ||
+        fileSize == MerlLayout{.azimuthCount = 360}.fileBytes()) {
+        return true;
+    }
+    std::int32_t dimensions[3];
+    if (head.size() < sizeof dimensions) return false;
+    std::memcpy(dimensions, head.data(), sizeof dimensions);
+    return dimensions[0] == 90 && dimensions[1] == 90 &&
+           (dimensions[2] == 180 || dimensions[2] == 360);
+}
+
+std::unique_ptr<Brdf> openMerl(const std::string& path, const Parameters& parameters) {
+    const bool nearest = parameters.choice("interpolation") == "nearest";
+    return std::make_unique<MerlBrdf>(
+        path, nearest ? MerlInterpolation::nearest : MerlInterpolation::linear);
+}
+
+bool looksLikeRgl(std::span<const unsigned char> head, std::uint64_t) {
+    return head.size() >= TensorFile::magic.size() &&
+           std::equal(TensorFile::magic.begin(), TensorFile::magic.end(), head.begin());
+}
+
+std::unique_ptr<Brdf> openRgl(const std::string& path, const Parameters&) {
+    return RglBrdf::open(path);
+}
+
+}  // namespace
+
+const Format& merlFormat() {
+    static const Format format{
+        .name = "merl",
+        .help = "MERL table of half and difference angles, isotropic, RGB",
+        .extension = ".binary",
+        .recognises = looksLikeMerl,
+        .parameters = {{.name = "interpolation",
+                        .help = "between the nodes of the table",
+                        .kind = Parameter::Kind::choice,
+                        .fallback = {},
+                        .choices = {"linear", "nearest"}}},
+        .open = openMerl,
+    };
+    return format;
+}
+
+const Format& rglFormat() {
+    static const Format format{
+        .name = "rgl",
+        .help = "RGL adaptive parameterisation, isotropic or not, RGB or spectral",
+        .extension = ".bsdf",
+        .recognises = looksLikeRgl,
+        .parameters = {},
+        .open = openRgl,
+    };
+    return format;
+}
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,277 @@
+#include <brdfs/measured/angles.h>
+#include <brdfs/measured/merl.h>
+#include <hshfit/error.h>
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace hshfit::brdfs {
+
+static_assert(std::endian::native == std::endian::little, "MERL files are little-endian");
+
+namespace {
+
+constexpr std::size_t blockSize = 64;
+/// Evaluations between asking for cells and using them; 4 to 8 are equally good (measured_eval in
+/// bench/), without it an evaluation takes half as long again.
+constexpr std::size_t prefetchDistance = 6;
+
+MerlLayout checkedLayout(const MappedFile& file) {
+    if (file.size() < MerlLayout::headerBytes) {
+        throw InputError(
+            fmt::format("{}: {} bytes are too few for the 12-byte header of a MERL "
+                        "file (int32 90, 90, 180)",
+                        file.path(), file.size()));
+    }
+    std::int32_t dimensions[3];
+    std::memcpy(dimensions, file.data(), sizeof dimensions);
+    constexpr const char* names[] = {"theta_h", "theta_d", "phi_d"};
+    for (int i = 0; i < 3; ++i) {
+        const bool valid =
+            i < 2 ? dimensions[i] == 90 : dimensions[i] == 180 || dimensions[i] == 360;
+        if (!valid) {
+            throw InputError(fmt::format("{}: dimension {} ({}, offset {}) is {}, expected {}",
+                                         file.path(), i, names[i], 4 * i, dimensions[i],
+                                         i < 2 ? "90" : "180, or 360 if not reciprocal"));
+        }
+    }
+    const MerlLayout layout{.azimuthCount = static_cast<std::size_t>(dimensions[2])};
+    if (file.size() != layout.fileBytes()) {
+        throw InputError(
+            fmt::format("{}: the file has {} bytes, expected {} for 90 x 90 x {} "
+                        "cells in three channels",
+                        file.path(), file.size(), layout.fileBytes(), layout.azimuthCount));
+    }
+    return layout;
+}
+
+bool isValue(double v) {
+    return v >= 0 && v <= std::numeric_limits<double>::max();
+}
+
+}  // namespace
+
+/// Fractional indices of a block of direction pairs.
+struct MerlBrdf::Indices {
+    double h[blockSize], d[blockSize], p[blockSize];
+
+    void set(const Direction& wo, const DirectionBatch& wi, std::size_t begin, std::size_t count,
+             bool reciprocal);
+};
+
+// With u = wi + wo and v = wi - wo (so that h = u/|u|, and v is at right angles to it):
+//     theta_h = atan2(|u_xy|, u_z),    theta_d = atan2(|v|, |u|),
+//     phi_d = atan2((u x v)_z, -|u| v_z)      and (u x v)_z = 2 (wo x wi)_z.
+// One short loop per angle, over arrays that cannot overlap: the compiler vectorises these.
+void MerlBrdf::Indices::set(const Direction& wo, const DirectionBatch& wi, std::size_t begin,
+                            std::size_t count, bool reciprocal) {
+    double x[blockSize], y[blockSize], z[blockSize];
+    std::copy_n(wi.x + begin, count, x);
+    std::copy_n(wi.y + begin, count, y);
+    std::copy_n(wi.z + begin, count, z);
+    double ux[blockSize], uz[blockSize], u[blockSize], v[blockSize];
+    double sine[blockSize], cosine[blockSize];
+    for (std::size_t k = 0; k < count; ++k) {
+        const double sx = x[k] + wo.x, sy = y[k] + wo.y, sz = z[k] + wo.z;
+        const double dx = x[k] - wo.x, dy = y[k] - wo.y, dz = z[k] - wo.z;
+        const double across2 = sx * sx + sy * sy;
+        ux[k] = std::sqrt(across2);
+        uz[k] = std::max(sz, 0.0);
+        u[k] = std::sqrt(across2 + sz * sz);
+        v[k] = std::sqrt(dx * dx + dy * dy + dz * dz);
+        // Both are 0 but for rounding where h is the normal or wi = wo: any phi_d is right
+        // there, but it has to be the same one when the pair turns about the normal.
+        const double defined = across2 > 1e-28 ? 1.0 : 0.0;
+        sine[k] = 2 * (wo.x * y[k] - x[k] * wo.y) * defined;
+        cosine[k] = -dz * u[k] * defined;
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        h[k] = std::sqrt(16200 / pi * quadrantAngle(ux[k], uz[k]));
+    }
+    for (std::size_t k = 0; k < count; ++k) d[k] = 180 / pi * quadrantAngle(v[k], u[k]);
+    if (reciprocal) {
+        for (std::size_t k = 0; k < count; ++k) p[k] = 180 / pi * lineAngle(sine[k], cosine[k]);
+        return;
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        const double angle = 180 / pi * rayAngle(sine[k], cosine[k]);
+        p[k] = angle < 0 ? angle + 360 : angle;
+    }
+}
+
+MerlBrdf::MerlBrdf(const std::string& path, MerlInterpolation interpolation)
+    : file_(path), interpolation_(interpolation), layout_(checkedLayout(file_)) {
+    laws_.nonNegative = true;
+    laws_.isotropic = true;
+    laws_.reciprocal = layout_.azimuthCount == 180;
+}
+
+std::string MerlBrdf::name() const {
+    return interpolation_ == MerlInterpolation::nearest ? file_.path() + ":interpolation=nearest"
+                                                        : file_.path();
+}
+
+// The cells follow a 12-byte header, so that they are not aligned.
+inline double MerlBrdf::raw(std::size_t channel, std::size_t cell) const {
+    double value;
+    std::memcpy(&value,
+                file_.data() + MerlLayout::headerBytes +
+                    (channel * layout_.cells() + cell) * sizeof(double),
+                sizeof value);
+    return value;
+}
+
+double MerlBrdf::stored(std::size_t channel, std::size_t cell) const {
+    return raw(channel, cell) * merlScale[channel];
+}
+
+void MerlBrdf::remember(std::size_t channel, std::size_t cell) const {
+    corruptCell_.store(static_cast<std::int64_t>(channel * layout_.cells() + cell),
+                       std::memory_order_relaxed);
+}
+
+double MerlBrdf::averageOfValid(const std::size_t (&cells)[8], const double (&weights)[8],
+                                std::size_t channel) const {
+    double sum = 0, weight = 0;
+    for (int i = 0; i < 8; ++i) {
+        if (weights[i] <= 0) continue;
+        const double v = raw(channel, cells[i]);
+        if (isValue(v)) {
+            sum += weights[i] * v;
+            weight += weights[i];
+        } else if (!std::isfinite(v)) {
+            remember(channel, cells[i]);
+        }
+    }
+    return weight > 0 ? sum / weight : 0;
+}
+
+/// The eight cells around each of a block of positions: four rows in phi_d (h and d, each at both
+/// ends), two cells of each row, and the fractions between them.
+struct MerlBrdf::Corners {
+    std::uint32_t row[4][blockSize];
+    std::uint32_t p0[blockSize], p1[blockSize];
+    double th[blockSize], td[blockSize], tp[blockSize];
+
+    void set(const Indices& at, std::size_t count, const MerlLayout& layout) {
+        const auto azimuths = static_cast<std::int32_t>(layout.azimuthCount);
+        const std::int32_t hStep =
+            azimuths * static_cast<std::int32_t>(MerlLayout::differenceCount);
+        for (std::size_t k = 0; k < count; ++k) {
+            // Beyond node 89 both ends are that node; a whole turn is node 0 again.
+            const std::int32_t h = std::min(static_cast<std::int32_t>(at.h[k]), 89);
+            const std::int32_t d = std::min(static_cast<std::int32_t>(at.d[k]), 89);
+            const std::int32_t p = static_cast<std::int32_t>(at.p[k]);
+            const std::int32_t low = h * hStep + d * azimuths;
+            const std::int32_t dStep = d < 89 ? azimuths : 0, up = h < 89 ? hStep : 0;
+            th[k] = at.h[k] - h;
+            td[k] = at.d[k] - d;
+            tp[k] = at.p[k] - p;
+            row[0][k] = static_cast<std::uint32_t>(low);
+            row[1][k] = static_cast<std::uint32_t>(low + dStep);
+            row[2][k] = static_cast<std::uint32_t>(low + up);
+            row[3][k] = static_cast<std::uint32_t>(low + up + dStep);
+            p0[k] = static_cast<std::uint32_t>(p < azimuths ? p : 0);
+            p1[k] = static_cast<std::uint32_t>(p < azimuths - 1 ? p + 1 : p - (azimuths - 1));
+        }
+    }
+};
+
+inline void MerlBrdf::prefetch(const Corners& at, std::size_t k) const {
+    for (std::size_t c = 0; c < 3; ++c) {
+        const std::size_t first = c * layout_.cells() + at.p0[k];
+        for (const auto& row : at.row) {
+            __builtin_prefetch(file_.data() + MerlLayout::headerBytes +
+                               (first + row[k]) * sizeof(double));
+        }
+    }
+}
+
+inline void MerlBrdf::interpolateLinear(const Corners& at, std::size_t k, double* out,
+                                        std::size_t stride) const {
+    const double th = at.th[k], td = at.td[k], tp = at.tp[k];
+    const double across[4] = {(1 - th) * (1 - td), (1 - th) * td, th * (1 - td), th * td};
+    for (std::size_t c = 0; c < 3; ++c) {
+        double sum = 0, least = 0;
+        for (int i = 0; i < 4; ++i) {
+            const double a = raw(c, at.row[i][k] + at.p0[k]);
+            const double b = raw(c, at.row[i][k] + at.p1[k]);
+            sum += across[i] * (a + tp * (b - a));
+            least = std::min(least, std::min(a, b));
+        }
+        // False for any negative, NaN or infinite cell: then only the valid cells count.
+        if (!(least >= 0 && isValue(sum))) [[unlikely]] {
+            std::size_t cells[8];
+            double weights[8];
+            for (int i = 0; i < 8; ++i) {
+                cells[i] = at.row[i / 2][k] + (i % 2 == 0 ? at.p0[k] : at.p1[k]);
+                weights[i] = across[i / 2] * (i % 2 == 0 ? 1 - tp : tp);
+            }
+            sum = averageOfValid(cells, weights, c);
+        }
+        out[c * stride] = sum * merlScale[c];
+    }
+}
+
+inline void MerlBrdf::lookUpNearest(const Indices& at, std::size_t k, double* out,
+                                    std::size_t stride) const {
+    const std::size_t azimuths = layout_.azimuthCount;
+    const auto h = std::min<std::size_t>(static_cast<unsigned>(at.h[k] + 0.5), 89);
+    const auto d = std::min<std::size_t>(static_cast<unsigned>(at.d[k] + 0.5), 89);
+    const std::size_t p = static_cast<unsigned>(at.p[k] + 0.5) % azimuths;
+    const std::size_t cell = layout_.cell(h, d, p);
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double v = raw(c, cell);
+        if (!std::isfinite(v)) remember(c, cell);
+        out[c * stride] = isValue(v) ? v * merlScale[c] : 0;
+    }
+}
+
+void MerlBrdf::eval(const Direction& wo, DirectionBatch wi, double* out) const {
+    if (!(wo.z > 0)) {
+        std::fill_n(out, 3 * wi.count, 0.0);
+        return;
+    }
+    Indices at;
+    Corners corners;
+    const bool linear = interpolation_ == MerlInterpolation::linear;
+    for (std::size_t begin = 0; begin < wi.count; begin += blockSize) {
+        const std::size_t count = std::min(blockSize, wi.count - begin);
+        at.set(wo, wi, begin, count, layout_.azimuthCount == 180);
+        if (linear) corners.set(at, count, layout_);
+        for (std::size_t k = 0; k < count; ++k) {
+            if (linear && k + prefetchDistance < count) {
+                prefetch(corners, k + prefetchDistance);
+            }
+            double* to = out + begin + k;
+            if (!(wi.z[begin + k] > 0)) {
+                for (std::size_t c = 0; c < 3; ++c) to[c * wi.count] = 0;
+            } else if (linear) {
+                interpolateLinear(corners, k, to, wi.count);
+            } else {
+                lookUpNearest(at, k, to, wi.count);
+            }
+        }
+    }
+}
+
+void MerlBrdf::checkIntact() const {
+    file_.checkIntact();
+    const std::int64_t corrupt = corruptCell_.load(std::memory_order_relaxed);
+    if (corrupt < 0) return;
+    const auto index = static_cast<std::size_t>(corrupt);
+    const std::size_t channel = index / layout_.cells(), cell = index % layout_.cells();
+    const std::size_t p = cell % layout_.azimuthCount, row = cell / layout_.azimuthCount;
+    throw InputError(
+        fmt::format("{}: cell (theta_h {}, theta_d {}, phi_d {}) of channel {}, "
+                    "offset {}, is {}, expected a finite number",
+                    file_.path(), row / 90, row % 90, p, "RGB"[channel],
+                    MerlLayout::headerBytes + index * sizeof(double), stored(channel, cell)));
+}
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <brdfs/measured/merl_layout.h>
+#include <hshfit/brdf.h>
+#include <hshfit/mapped_file.h>
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+namespace hshfit::brdfs {
+
+/// How a MERL table is read between its nodes.
+enum class MerlInterpolation {
+    linear,   ///< trilinear in the indices (h, d, p), over the valid cells among the eight
+    nearest,  ///< the node whose indices are nearest
+};
+
+/// A measured isotropic BRDF in a MERL `.binary` file (see merl_layout.h), read from the map: only
+/// the pages whose cells are asked for are touched.
+///
+/// Beyond the last node (theta_h > 88.01 deg, theta_d > 89 deg) the table is continued constantly.
+/// Where none of the cells is valid, f is 0. A cell that is NaN or infinite is taken as invalid and
+/// remembered, and checkIntact() throws InputError naming it. Indices are accurate to 1e-9.
+class MerlBrdf : public Brdf {
+public:
+    /// Throws InputError if the dimensions or the size of the file are not those of a MERL file.
+    explicit MerlBrdf(const std::string& path,
+                      MerlInterpolation interpolation = MerlInterpolation::linear);
+
+    std::string name() const override;
+    const Channels& channels() const override { return channels_; }
+    const Laws& laws() const override { return laws_; }
+    void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
+
+    /// One lobe about the half vector, as wide as the table's: where f at theta_d = theta_o and
+    /// phi_d = 90 deg has fallen from its value at theta_h = 0 half-way to its least.
+    std::vector<Lobe> lobes(const Direction& wo) const override;
+    /// 1e-3: the interpolation has a kink at every node, and the measurements err by more.
+    double defaultTolerance() const override { return 1e-3; }
+    /// Reads the whole table.
+    std::vector<Fact> facts() const override;
+    void checkIntact() const override;
+
+    const MerlLayout& layout() const { return layout_; }
+    /// What the file says, times merlScale: f at a node in 1/sr if it is valid.
+    double stored(std::size_t channel, std::size_t cell) const;
+
+private:
+    struct Indices;
+    struct Corners;
+    void prefetch(const Corners& at, std::size_t k) const;
+    void interpolateLinear(const Corners& at, std::size_t k, double* out, std::size_t stride) const;
+    void lookUpNearest(const Indices& at, std::size_t k, double* out, std::size_t stride) const;
+    double averageOfValid(const std::size_t (&cells)[8], const double (&weights)[8],
+                          std::size_t channel) const;
+    double raw(std::size_t channel, std::size_t cell) const;
+    void remember(std::size_t channel, std::size_t cell) const;
+
+    MappedFile file_;
+    MerlInterpolation interpolation_;
+    MerlLayout layout_;
+    Channels channels_ = Channels::rgb();
+    Laws laws_;
+    mutable std::atomic<std::int64_t> corruptCell_{-1};  ///< channel * cells + cell
+};
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,197 @@
+#include <brdfs/measured/angles.h>
+#include <brdfs/measured/rgl.h>
+#include <brdfs/measured/tensor_file.h>
+#include <hshfit/error.h>
+#include <hshfit/mapped_file.h>
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hshfit::brdfs {
+namespace {
+
+constexpr std::size_t blockSize = 64;
+
+/// tan(theta_h) where the normals' density, averaged over azimuth, has fallen to half its greatest
+/// value, as the alpha of the GGX distribution that falls to half there.
+double widthOf(const Plane& ndf) {
+    std::vector<double> profile(ndf.columns, 0.0);
+    for (std::size_t i = 0; i < ndf.values.size(); ++i) profile[i % ndf.columns] += ndf.values[i];
+    const auto peak = std::ranges::max_element(profile);
+    std::size_t fallen = static_cast<std::size_t>(peak - profile.begin()) + 1;
+    while (fallen < profile.size() && profile[fallen] > *peak / 2) ++fallen;
+    if (fallen >= profile.size()) return 1;
+    const double u = static_cast<double>(fallen) / static_cast<double>(profile.size() - 1);
+    const double ggx = std::sqrt(std::sqrt(2.0) - 1);  // tan(theta) / alpha at half the peak
+    return std::min(std::tan(std::min(u * u * pi / 2, 1.0)) / ggx, 1.0);
+}
+
+}  // namespace
+
+/// Positions in the tables for a block of wi.
+struct RglBrdf::Block {
+    double uIncident[blockSize], thetaIncident[blockSize], phiIncident[blockSize];
+    double uHalf[blockSize], vHalf[blockSize];
+
+    void set(const RglTables& tables, Direction wo, const DirectionBatch& wi, std::size_t begin,
+             std::size_t count);
+
+private:
+    // A copy of a block of wi, with its wo, folded into the measured azimuths.
+    double ix_[blockSize], iy_[blockSize], iz_[blockSize];
+    double hx_[blockSize], hy_[blockSize], hz_[blockSize];
+
+    void fold(const RglTables& tables, const Direction& wo, const DirectionBatch& wi,
+              std::size_t begin, std::size_t count);
+};
+
+void RglBrdf::Block::fold(const RglTables& tables, const Direction& wo, const DirectionBatch& wi,
+                          std::size_t begin, std::size_t count) {
+    const auto& phi = tables.incident.phi;
+    const double middle = (phi.front() + phi.back()) / 2;
+    const double cx = std::cos(middle), cy = std::sin(middle);
+    for (std::size_t k = 0; k < count; ++k) {
+        const double x = wi.x[begin + k], y = wi.y[begin + k];
+        double signX = 1, signY = 1;
+        if (tables.reduction == 2) {
+            signX = signY = x * cx + y * cy < 0 ? -1 : 1;
+        } else if (tables.reduction == 4) {
+            signX = x * cx < 0 ? -1 : 1;
+            signY = y * cy < 0 ? -1 : 1;
+        }
+        ix_[k] = signX * x;
+        iy_[k] = signY * y;
+        iz_[k] = std::max(wi.z[begin + k], 0.0);
+        hx_[k] = signX * (x + wo.x);
+        hy_[k] = signY * (y + wo.y);
+        hz_[k] = iz_[k] + wo.z;
+    }
+}
+
+// One short loop per angle, over arrays that cannot overlap: the compiler vectorises these.
+void RglBrdf::Block::set(const RglTables& tables, Direction wo, const DirectionBatch& wi,
+                         std::size_t begin, std::size_t count) {
+    fold(tables, wo, wi, begin, count);
+    for (std::size_t k = 0; k < count; ++k) {
+        const double sine = std::sqrt(ix_[k] * ix_[k] + iy_[k] * iy_[k]);
+        thetaIncident[k] = quadrantAngle(sine, iz_[k]);
+        uIncident[k] = std::sqrt(2 / pi * thetaIncident[k]);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        const double sine = std::sqrt(hx_[k] * hx_[k] + hy_[k] * hy_[k]);
+        uHalf[k] = std::sqrt(2 / pi * quadrantAngle(sine, hz_[k]));
+    }
+    if (tables.reduction == 0) {
+        // The azimuth of h as seen from that of wi, which at the normal is any.
+        for (std::size_t k = 0; k < count; ++k) {
+            const double sine = ix_[k] * hy_[k] - iy_[k] * hx_[k];
+            const double cosine = ix_[k] * hx_[k] + iy_[k] * hy_[k];
+            vHalf[k] = rayAngle(sine, cosine) / (2 * pi) + 0.5;
+        }
+    } else {
+        for (std::size_t k = 0; k < count; ++k) {
+            vHalf[k] = rayAngle(hy_[k], hx_[k]) / (2 * pi) + 0.5;
+        }
+    }
+    if (tables.isotropic) {
+        std::fill_n(phiIncident, count, 0.0);
+        return;
+    }
+    // Into the turn that has the measured azimuths in its middle.
+    const auto& phi = tables.incident.phi;
+    const double start = (phi.front() + phi.back()) / 2 - pi;
+    for (std::size_t k = 0; k < count; ++k) {
+        const double angle = rayAngle(iy_[k], ix_[k]);
+        phiIncident[k] = angle - 2 * pi * std::floor((angle - start) / (2 * pi));
+    }
+}
+
+RglBrdf::RglBrdf(std::span<const unsigned char> bytes, std::string name) : name_(std::move(name)) {
+    tables_ = RglTables::load(TensorFile(bytes, name_));
+    laws_.nonNegative = true;
+    laws_.isotropic = tables_.isotropic;
+    laws_.mirrorSymmetric = tables_.reduction == 4;
+    lobeWidth_ = widthOf(tables_.ndf);
+}
+
+std::unique_ptr<RglBrdf> RglBrdf::open(const std::string& path) {
+    const MappedFile file(path);
+    try {
+        auto brdf = std::make_unique<RglBrdf>(file.bytes(), path);
+        file.checkIntact();
+        return brdf;
+    } catch (const InputError&) {
+        file.checkIntact();  // says so if the file was lost, and was not invalid to begin with
+        throw;
+    }
+}
+
+inline void RglBrdf::evalAt(const Block& block, std::size_t k, double cosine, double* out,
+                            std::size_t stride) const {
+    const double u = block.uHalf[k], v = block.vHalf[k];
+    const Slices slices = tables_.incident.slices(block.phiIncident[k], block.thetaIncident[k]);
+    const VisibleNormals::Point point = tables_.normals->invert(u, v, slices);
+    double factor = 1 / cosine;
+    if (tables_.jacobian) {
+        const double vIncident = block.phiIncident[k] / (2 * pi) + 0.5;
+        factor *= tables_.ndf.at(u, v) /
+                  (4 * tables_.sigma.at(block.uIncident[k], vIncident - std::floor(vIncident)));
+    }
+    tables_.spectra.at(point, slices, factor, out, stride);
+}
+
+void RglBrdf::eval(const Direction& wo, DirectionBatch wi, double* out) const {
+    const std::size_t channelCount = tables_.spectra.channels;
+    if (!(wo.z > 0)) {
+        std::fill_n(out, channelCount * wi.count, 0.0);
+        return;
+    }
+    const double cosine = std::max(wo.z, 1e-9);
+    Block block;
+    for (std::size_t begin = 0; begin < wi.count; begin += blockSize) {
+        const std::size_t count = std::min(blockSize, wi.count - begin);
+        block.set(tables_, wo, wi, begin, count);
+        for (std::size_t k = 0; k < count; ++k) {
+            double* to = out + begin + k;
+            if (wi.z[begin + k] > 0) {
+                evalAt(block, k, cosine, to, wi.count);
+            } else {
+                for (std::size_t c = 0; c < channelCount; ++c) to[c * wi.count] = 0;
+            }
+        }
+    }
+}
+
+std::vector<Lobe> RglBrdf::lobes(const Direction&) const {
+    return {{.about = Lobe::About::halfway, .width = lobeWidth_, .axis = {}}};
+}
+
+std::vector<Fact> RglBrdf::facts() const {
+    const Spectra& spectra = tables_.spectra;
+    const auto negative = std::ranges::count_if(spectra.values, [](float v) { return v < 0; });
+    std::vector<Fact> facts = {
+        {"format", "rgl"},
+        {"description", tables_.description},
+        {"incident_elevations", static_cast<std::int64_t>(tables_.incident.theta.size())},
+        {"incident_azimuths", static_cast<std::int64_t>(tables_.incident.phi.size())},
+        {"azimuth_symmetry", tables_.reduction == 0   ? "isotropic"
+                             : tables_.reduction == 1 ? "none"
+                             : tables_.reduction == 2 ? "turned by 180 degrees"
+                                                      : "mirrored at both axes"},
+        {"normals_grid",
+         fmt::format("{} x {}", tables_.normals->rows(), tables_.normals->columns())},
+        {"colour_grid", fmt::format("{} x {}", spectra.rows, spectra.columns)},
+        {"divided_by_jacobian", tables_.jacobian},
+        {"out_of_gamut_values", static_cast<std::int64_t>(negative)},
+    };
+    if (tables_.channels.kind == Channels::Kind::spectral) {
+        facts.emplace_back("first_wavelength_nm", tables_.channels.wavelengths.front());
+        facts.emplace_back("last_wavelength_nm", tables_.channels.wavelengths.back());
+    }
+    return facts;
+}
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <brdfs/measured/rgl_tables.h>
+#include <hshfit/brdf.h>
+
+#include <memory>
+#include <span>
+#include <string>
+
+namespace hshfit::brdfs {
+
+class TensorFile;
+
+/// What an RGL file holds, checked.
+struct RglTables {
+    std::string description;
+    IncidentGrid incident;
+    /// How many times the measured azimuths cover the circle by symmetry: 0 isotropic, 1 all
+    /// measured, 2 half of them (turned by 180 deg), 4 a quarter (mirrored at both axes).
+    int reduction = 0;
+    /// Whether f depends on the azimuth difference alone: `reduction` is 0 and no table, sigma
+    /// among them, varies with phi_i.
+    bool isotropic = false;
+    bool jacobian = true;  ///< false: the values are f cos already, without ndf and sigma
+    Plane ndf, sigma;
+    std::unique_ptr<VisibleNormals> normals;
+    Spectra spectra;
+    Channels channels;
+
+    /// Throws InputError naming the field and its offset.
+    static RglTables load(const TensorFile& file);
+};
+
+/// A measured BRDF in an RGL `.bsdf` file (see rgl_tables.h and tensor_file.h). With h the half
+/// vector, u(theta) = sqrt(2 theta / pi), v(phi) = phi / 2 pi + 1/2, and phi_h - phi_i in place of
+/// phi_h for isotropic materials:
+///     f(wi, wo) cos(theta_o) = spectra_wi(x, y) ndf(h) / (4 sigma(wi)),
+///     (x, y) = P_wi(u(theta_h), v(phi_h)),      P: cumulative distribution of visible normals.
+/// wi is the direction that the file calls incident. eval divides by cos(theta_o), taken as at
+/// least 1e-9: values are finite, but grow without bound as wo nears the horizon, where the tables
+/// do not fall to 0. Negative colours (outside of Rec. 709) become 0 after interpolation. The
+/// tables are copied: the file may go once it is open.
+///
+/// Reciprocity is not built in, and does not hold: the two sides were measured independently.
+class RglBrdf : public Brdf {
+public:
+    /// `name` is where the bytes come from, for messages. Throws InputError if they are invalid.
+    RglBrdf(std::span<const unsigned char> bytes, std::string name);
+    static std::unique_ptr<RglBrdf> open(const std::string& path);
+
+    std::string name() const override { return name_; }
+    const Channels& channels() const override { return tables_.channels; }
+    const Laws& laws() const override { return laws_; }
+    void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
+
+    /// One lobe about the half vector, as wide as the distribution of normals.
+    std::vector<Lobe> lobes(const Direction& wo) const override;
+    /// 1e-3: the interpolation has kinks, and the measurements err by more.
+    double defaultTolerance() const override { return 1e-3; }
+    std::vector<Fact> facts() const override;
+
+private:
+    struct Block;
+    void evalAt(const Block& block, std::size_t k, double cosine, double* out,
+                std::size_t stride) const;
+
+    std::string name_;
+    RglTables tables_;
+    Laws laws_;
+    double lobeWidth_ = 1;
+};
+
+}  // namespace hshfit::brdfs

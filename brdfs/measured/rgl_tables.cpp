@@ -1,0 +1,150 @@
+#include <brdfs/measured/rgl_tables.h>
+
+#include <algorithm>
+
+namespace hshfit::brdfs {
+namespace {
+
+double lerp(double t, double from, double to) {
+    return from + t * (to - from);
+}
+
+/// Where `value` lies among ascending nodes: the lower node and the weight of the next.
+struct Between {
+    std::size_t lower = 0;
+    double fraction = 0;
+};
+
+Between locate(const std::vector<double>& nodes, double value) {
+    if (nodes.size() < 2 || !(value > nodes.front())) return {};
+    // A handful of nodes: counting those below beats bisection.
+    std::size_t lower = 0;
+    for (std::size_t i = 1; i + 1 < nodes.size(); ++i) lower += nodes[i] <= value ? 1 : 0;
+    const double fraction = (value - nodes[lower]) / (nodes[lower + 1] - nodes[lower]);
+    return {lower, std::min(fraction, 1.0)};
+}
+
+}  // namespace
+
+GridPosition::GridPosition(double u, double v, std::size_t columns, std::size_t rows) {
+    const double x = std::clamp(u, 0.0, 1.0) * static_cast<double>(columns - 1);
+    const double y = std::clamp(v, 0.0, 1.0) * static_cast<double>(rows - 1);
+    column = std::min<std::size_t>(static_cast<unsigned>(x), columns - 2);
+    row = std::min<std::size_t>(static_cast<unsigned>(y), rows - 2);
+    a = x - static_cast<double>(column);
+    b = y - static_cast<double>(row);
+}
+
+double Plane::at(double u, double v) const {
+    const GridPosition p(u, v, columns, rows);
+    const float* corner = values.data() + p.row * columns + p.column;
+    return lerp(p.b, lerp(p.a, corner[0], corner[1]),
+                lerp(p.a, corner[columns], corner[columns + 1]));
+}
+
+Slices IncidentGrid::slices(double phiIncident, double thetaIncident) const {
+    const Between p = locate(phi, phiIncident), t = locate(theta, thetaIncident);
+    Slices slices;
+    for (int i = 0; i < 4; ++i) {
+        const std::size_t dp = i / 2, dt = i % 2;
+        const double weight =
+            (dp != 0 ? p.fraction : 1 - p.fraction) * (dt != 0 ? t.fraction : 1 - t.fraction);
+        if (weight <= 0) continue;
+        slices.index[slices.count] =
+            static_cast<std::uint32_t>((p.lower + dp) * theta.size() + t.lower + dt);
+        slices.weight[slices.count] = weight;
+        ++slices.count;
+    }
+    return slices;
+}
+
+VisibleNormals::VisibleNormals(const std::vector<float>& densities, std::size_t rows,
+                               std::size_t columns)
+    : rows_(rows), columns_(columns) {
+    const std::size_t slices = densities.size() / (rows * columns);
+    vertices_.reserve(densities.size());
+    below_.reserve(slices * rows);
+    for (std::size_t s = 0; s < slices; ++s) {
+        double square = 0, lastRow = 0;
+        for (std::size_t r = 0; r < rows; ++r) {
+            const float* density = densities.data() + (s * rows + r) * columns;
+            double row = 0;
+            for (std::size_t c = 0; c < columns; ++c) {
+                if (c > 0) row += 0.5 * (static_cast<double>(density[c - 1]) + density[c]);
+                vertices_.push_back({density[c], static_cast<float>(row)});
+            }
+            if (r > 0) square += 0.5 * (lastRow + row);
+            below_.push_back(static_cast<float>(square));
+            lastRow = row;
+        }
+        scale_.push_back(1 / square);
+    }
+}
+
+// All sums over slices are linear, so that the interpolated density and its integrals belong to
+// each other exactly.
+VisibleNormals::Point VisibleNormals::invert(double u, double v, const Slices& slices) const {
+    const GridPosition p(u, v, columns_, rows_);
+    double low = 0, high = 0, before = 0;          // along the row at v
+    double rowBelow = 0, rowAbove = 0, below = 0;  // whole rows
+    for (int i = 0; i < slices.count; ++i) {
+        const double weight = slices.weight[i] * scale_[slices.index[i]];
+        const std::size_t row = slices.index[i] * rows_ + p.row;
+        const Vertex* lower = vertices_.data() + row * columns_;
+        const Vertex* upper = lower + columns_;
+        low += weight * lerp(p.b, lower[p.column].density, upper[p.column].density);
+        high += weight * lerp(p.b, lower[p.column + 1].density, upper[p.column + 1].density);
+        before += weight * lerp(p.b, lower[p.column].before, upper[p.column].before);
+        rowBelow += weight * lower[columns_ - 1].before;
+        rowAbove += weight * upper[columns_ - 1].before;
+        below += weight * below_[row];
+    }
+    const double whole = lerp(p.b, rowBelow, rowAbove);
+    const double part = before + p.a * (low + 0.5 * p.a * (high - low));
+    return {.x = whole > 0 ? part / whole : u,
+            .y = below + p.b * (rowBelow + 0.5 * p.b * (rowAbove - rowBelow))};
+}
+
+namespace {
+
+// `count` channels from `first` on; a constant for RGB, so that the loops unroll.
+template <std::size_t most>
+void interpolateChannels(const Spectra& spectra, const GridPosition& p, const Slices& slices,
+                         double factor, std::size_t first, std::size_t count, double* out,
+                         std::size_t stride) {
+    const std::size_t n = spectra.channels;
+    const double weights[4] = {(1 - p.a) * (1 - p.b), p.a * (1 - p.b), (1 - p.a) * p.b, p.a * p.b};
+    const std::size_t offsets[4] = {0, n, spectra.columns * n, (spectra.columns + 1) * n};
+    std::array<double, most> sum{};
+    for (int i = 0; i < slices.count; ++i) {
+        const float* corner =
+            spectra.values.data() +
+            ((slices.index[i] * spectra.rows + p.row) * spectra.columns + p.column) * n + first;
+        for (int k = 0; k < 4; ++k) {
+            const double weight = slices.weight[i] * weights[k];
+            const float* from = corner + offsets[k];
+            for (std::size_t c = 0; c < count; ++c) sum[c] += weight * from[c];
+        }
+    }
+    for (std::size_t c = 0; c < count; ++c) {
+        out[(first + c) * stride] = std::max(sum[c] * factor, 0.0);
+    }
+}
+
+}  // namespace
+
+void Spectra::at(VisibleNormals::Point point, const Slices& slices, double factor, double* out,
+                 std::size_t stride) const {
+    const GridPosition p(point.x, point.y, columns, rows);
+    if (channels == 3) {
+        interpolateChannels<3>(*this, p, slices, factor, 0, 3, out, stride);
+        return;
+    }
+    constexpr std::size_t chunk = 32;
+    for (std::size_t first = 0; first < channels; first += chunk) {
+        interpolateChannels<chunk>(*this, p, slices, factor, first,
+                                   std::min(chunk, channels - first), out, stride);
+    }
+}
+
+}  // namespace hshfit::brdfs

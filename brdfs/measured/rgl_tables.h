@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+// The tables of Dupuy & Jakob 2018, "An Adaptive Parameterization for Efficient Material
+// Acquisition and Rendering", ACM TOG 37(6). Points (u, v) of the unit square are bilinear between
+// vertices; u runs along columns (elevation), v along rows (azimuth).
+
+/// A cell of a grid of vertices over the unit square, and the position within it.
+struct GridPosition {
+    std::size_t column, row;
+    double a, b;  ///< from the cell's lower corner, 0 to 1, along u and v
+
+    GridPosition(double u, double v, std::size_t columns, std::size_t rows);
+};
+
+/// A plain table over the square.
+struct Plane {
+    std::size_t rows = 0, columns = 0;
+    std::vector<float> values;  ///< row by row
+
+    double at(double u, double v) const;
+};
+
+/// Up to four slices of a table that depends on wi, with the weights of a bilinear interpolation
+/// between the measured (phi_i, theta_i).
+struct Slices {
+    int count = 0;
+    std::array<std::uint32_t, 4> index{};
+    std::array<double, 4> weight{};
+};
+
+/// The measured incident directions, and where one of them lies between.
+struct IncidentGrid {
+    std::vector<double> phi, theta;  ///< ascending, radians
+
+    /// Angles outside of the grid take its nearest edge. Slice of (phi p, theta t): p |theta| + t.
+    Slices slices(double phiIncident, double thetaIncident) const;
+};
+
+/// The distributions of visible normals, one per incident direction, and their cumulative
+/// distributions: what turns a half vector into the place in the unit square where its colour is
+/// stored. Between incident directions the normalised densities are interpolated.
+class VisibleNormals {
+public:
+    /// densities[slice][row][column], not negative, every slice with a positive sum.
+    VisibleNormals(const std::vector<float>& densities, std::size_t rows, std::size_t columns);
+
+    struct Point {
+        double x, y;
+    };
+    /// The inverse of sampling: y = P(row < v), x = P(column < u | v). Rows without any density
+    /// keep x = u.
+    Point invert(double u, double v, const Slices& slices) const;
+
+    std::size_t rows() const { return rows_; }
+    std::size_t columns() const { return columns_; }
+
+private:
+    struct Vertex {
+        float density;
+        float before;  ///< integral over the row up to here, in units of columns
+    };
+    std::size_t rows_, columns_;
+    std::vector<Vertex> vertices_;  ///< [slice][row][column]
+    std::vector<float> below_;      ///< [slice][row]: integral over the rows up to here
+    std::vector<double> scale_;     ///< [slice]: 1 / integral over the square
+};
+
+/// Colours over the square per incident direction.
+struct Spectra {
+    std::size_t channels = 0, rows = 0, columns = 0;
+    std::vector<float> values;  ///< [slice][row][column][channel]
+
+    /// out[c * stride] for every channel.
+    void at(VisibleNormals::Point point, const Slices& slices, double factor, double* out,
+            std::size_t stride) const;
+};
+
+}  // namespace hshfit::brdfs
