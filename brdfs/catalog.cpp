@@ -10,6 +10,7 @@
 #include <brdfs/analytic/oren_nayar.h>
 #include <brdfs/analytic/phong.h>
 #include <brdfs/analytic/ward.h>
+#include <brdfs/measured/formats.h>
 #include <brdfs/preset.h>
 #include <brdfs/spec.h>
 #include <hshfit/error.h>
@@ -128,7 +129,8 @@ std::span<const Model> models() {
 }
 
 std::span<const Format> formats() {
-    return {};
+    static const std::vector<Format> table{merlFormat(), rglFormat()};
+    return table;
 }
 
 std::unique_ptr<Brdf> openModel(std::string_view spec) {
