@@ -90,7 +90,7 @@ std::vector<Lobe> MerlBrdf::lobes(const Direction& wo) const {
     }
     const double half = least + (*profile[0] - least) / 2;
     std::size_t fallen = 1;
-    while (fallen < profile.size() && !(profile[fallen] && *profile[fallen] <= half)) ++fallen;
+    while (fallen < profile.size() && !(profile[fallen] && *profile[fallen] < half)) ++fallen;
     if (fallen == profile.size()) return {};
     // GGX falls to half where tan(theta_h) = sqrt(sqrt(2) - 1) alpha = 0.6436 alpha. Node 1, at
     // 0.011 deg, is the finest that the table resolves.
