@@ -50,6 +50,8 @@ Json parseJson(std::string_view text, const std::string& where) {
         return Json::parse(text);
     } catch (const Json::parse_error& error) {
         throw InputError(fmt::format("{}: not valid JSON (byte {})", where, error.byte));
+    } catch (const Json::exception&) {
+        throw InputError(fmt::format("{}: not valid JSON (a number too large)", where));
     }
 }
 
@@ -77,6 +79,8 @@ PresetContent parsePreset(std::string_view text, const std::string& where) {
 
     PresetContent content;
     content.spec = stringField(preset, "model", where);
+    if (content.spec.find(':') != std::string::npos)
+        throw InputError(fmt::format("{}: unknown model '{}'", where, content.spec));
     if (preset.contains("source")) content.source = stringField(preset, "source", where);
     const auto parameters = preset.find("parameters");
     if (parameters == preset.end() || !parameters->is_object())

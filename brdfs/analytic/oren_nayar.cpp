@@ -83,9 +83,10 @@ protected:
             const Polar& beta = outgoingLower ? i : o;
             const double bend = 4 * alpha.theta * beta.theta / (pi * pi);
             const double tilt = 2 * beta.theta / pi;
-            out[k] = r_.direct + r_.sameSide * cosine * slopeTerm(alpha, beta, cosine) +
-                     r_.across * bend * bend * (1 - std::abs(cosine)) /
-                         std::tan((alpha.complement + beta.complement) / 2);
+            const double halfwaySlope =
+                bounded(1 / std::tan((alpha.complement + beta.complement) / 2));
+            out[k] = r_.direct + r_.sameSide * cosine * bounded(slopeTerm(alpha, beta, cosine)) +
+                     r_.across * bend * bend * (1 - std::abs(cosine)) * halfwaySlope;
             out[wi.count + k] = r_.interreflected * (1 - cosine * tilt * tilt);
         }
     }
