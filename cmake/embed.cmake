@@ -7,7 +7,10 @@ function(hshfit_embed target name file)
     OUTPUT ${source}
     COMMAND ${CMAKE_COMMAND} -DNAME=${name} -DINPUT=${CMAKE_CURRENT_SOURCE_DIR}/${file}
             -DOUTPUT=${source} -P ${PROJECT_SOURCE_DIR}/cmake/embed_file.cmake
-    DEPENDS ${file} ${PROJECT_SOURCE_DIR}/cmake/embed_file.cmake
+    DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${file} ${PROJECT_SOURCE_DIR}/cmake/embed_file.cmake
     VERBATIM)
+  # Rules belong to a folder: this target carries them to one that was added elsewhere.
+  add_custom_target(embed_${name} DEPENDS ${source})
+  add_dependencies(${target} embed_${name})
   target_sources(${target} PRIVATE ${source})
 endfunction()
