@@ -87,6 +87,8 @@ PresetContent parsePreset(std::string_view text, const std::string& where) {
         throw InputError(fmt::format("{}: 'parameters' has to be an object", where));
     char separator = ':';
     for (const auto& [key, value] : parameters->items()) {
+        if (key.find_first_of(",=") != std::string::npos)
+            throw InputError(fmt::format("{}: '{}' is no name of a parameter", where, key));
         content.spec += fmt::format("{}{}={}", separator, key, specValue(value, key, where));
         separator = ',';
     }
