@@ -37,8 +37,8 @@ public:
           nv_(p.number("nv")) {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
-        const double sharpest = std::max(nu_, nv_);
-        return {{Lobe::About::halfway, std::min(1.0, 2.5 / std::sqrt(sharpest + 1)), {}}};
+        const auto width = [](double n) { return std::min(1.0, 2.5 / std::sqrt(n + 1)); };
+        return {{Lobe::About::halfway, width(std::max(nu_, nv_)), {}, width(std::min(nu_, nv_))}};
     }
 
 protected:

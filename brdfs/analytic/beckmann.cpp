@@ -27,6 +27,7 @@ public:
 
     /// exp(-(t / alpha)^2) has a standard deviation of alpha / sqrt(2).
     double width() const { return 2.5 / std::numbers::sqrt2 * std::min(r_.ax, r_.ay); }
+    double spread() const { return 2.5 / std::numbers::sqrt2 * std::max(r_.ax, r_.ay); }
 
 private:
     Roughness r_;

@@ -26,6 +26,7 @@ public:
 
     /// D has a pole at the slope i alpha.
     double width() const { return std::min(r_.ax, r_.ay); }
+    double spread() const { return std::max(r_.ax, r_.ay); }
 
 private:
     Roughness r_;

@@ -35,7 +35,7 @@ public:
           correlated_(p.choice("masking") == "correlated") {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
-        return {{Lobe::About::halfway, distribution_.width(), {}}};
+        return {{Lobe::About::halfway, distribution_.width(), {}, distribution_.spread()}};
     }
 
 protected:

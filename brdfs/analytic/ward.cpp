@@ -41,7 +41,11 @@ public:
 
     /// exp(-(t / a)^2) has a standard deviation of a / sqrt(2).
     std::vector<Lobe> lobes(const Direction&) const override {
-        return {{Lobe::About::halfway, 2.5 / std::numbers::sqrt2 * std::min(ax_, ay_), {}}};
+        constexpr double deviations = 2.5 / std::numbers::sqrt2;
+        return {{Lobe::About::halfway,
+                 deviations * std::min(ax_, ay_),
+                 {},
+                 deviations * std::max(ax_, ay_)}};
     }
 
 protected:

@@ -35,7 +35,10 @@ struct Lobe {
     /// point off the real axis where f stops being smooth: alpha for GGX; 2.5 standard deviations
     /// for a Gaussian, whose trapezoid sums converge faster. Smaller costs more nodes.
     double width = 1;
-    Direction axis;  ///< only for About::axis
+    Direction axis = {};  ///< only for About::axis
+    /// The width across the direction in which the lobe is widest, for an anisotropic half-vector
+    /// lobe; 0: as `width`. Away from the peak the lobe stays narrow over this distance.
+    double spread = 0;
 };
 
 /// One line of `info`: a name in snake_case and its value.

@@ -39,8 +39,8 @@ struct MetricValue {
 
 struct CompareOptions {
     /// Two quadrature levels are compared; each level has 2.25 times the points of the one before.
-    int level = 1;
-    std::function<void(std::size_t, std::size_t)> progress;
+    int level = 3;
+    std::function<void(std::size_t, std::size_t)> progress = {};
 };
 
 /// Every metric asked for, of `g` against `f`, over `outgoing`. A grey BRDF compares with any

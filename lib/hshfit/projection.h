@@ -20,7 +20,7 @@ struct ProjectionOptions {
     /// BRDF evaluations per outgoing direction after which refinement gives up: bounds the time.
     std::size_t maxEvaluations = std::size_t{1} << 26;
     /// Called from any thread with outgoing directions done and in all.
-    std::function<void(std::size_t, std::size_t)> progress;
+    std::function<void(std::size_t, std::size_t)> progress = {};
 };
 
 /// The coefficients in one basis, and the energy that each order captures.

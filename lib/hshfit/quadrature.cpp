@@ -68,9 +68,10 @@ double bernstein(double a, double b, Complex z) {
 }
 
 /// Gauss-Legendre converges like rho^(-2 p) with p nodes a panel; halving until rho >= 2.4 gives
-/// 1e-6 at 8 nodes and 1e-9 at 12.
+/// 1e-4 at 5 nodes and 1e-9 at 12. Trapezoid sums over azimuth converge like exp(-N psi) for a
+/// singularity at distance psi: the exponent at level 0 is enough to see the lobe, not more.
 constexpr double panelEllipse = 2.4;
-constexpr double firstNodes = 9, firstAzimuthExponent = 12, levelGrowth = 1.5;
+constexpr double firstNodes = 5, firstAzimuthExponent = 4.5, levelGrowth = 1.5;
 constexpr std::size_t maxAzimuths = std::size_t{1} << 22;
 
 /// Points of the complex u plane where the BRDF is not smooth.
@@ -109,20 +110,27 @@ void splitPanels(double a, double b, const std::vector<Complex>& points, int dep
 }
 
 /// Distance of the lobe's nearest singularity from the real phi axis on the ring (s, mu):
-/// acosh(1 + q/2), where q is the squared distance in the plane of incidence over s s'.
+/// acosh(1 + q/2), where q is the squared distance in the plane of incidence over s s'; infinite at
+/// the pole, where nothing depends on phi.
 double azimuthScale(const Lobe& lobe, const Direction& wo, double s, double mu) {
-    double q;
+    const auto acosh1 = [](double q) { return 2 * std::asinh(std::sqrt(q) / 2); };
     if (lobe.about == Lobe::About::axis) {
         const double axisSine = std::hypot(lobe.axis.x, lobe.axis.y);
         const double across = std::atan2(s, mu) - std::atan2(axisSine, lobe.axis.z);
-        q = (across * across + lobe.width * lobe.width) / (s * axisSine);
-    } else {
-        const double woSine = std::hypot(wo.x, wo.y);
-        const double slope = lobe.width * (mu + wo.z);
-        q = ((s - woSine) * (s - woSine) + slope * slope) / (s * woSine);
+        return acosh1((across * across + lobe.width * lobe.width) / (s * axisSine));
     }
-    // acosh(1 + q/2) = 2 asinh(sqrt(q)/2); infinite at the pole, where nothing depends on phi.
-    return 2 * std::asinh(std::sqrt(q) / 2);
+    // Off the peak by `away` along the wide axis, the narrow one has grown by hypot(1, away /
+    // spread) only; `across` is what that makes of the width, times mu + mu_o.
+    const double woSine = std::hypot(wo.x, wo.y), heights = mu + wo.z;
+    const double ratio = lobe.spread > lobe.width ? lobe.width / lobe.spread : 1;
+    const double away = (s - woSine) * ratio, across = lobe.width * heights;
+    const double scale = acosh1((away * away + across * across) / (s * woSine));
+    if (ratio == 1) return scale;
+    // An anisotropic lobe varies with phi even about the pole: with slope t on the ring,
+    // 1 + t^2 (cos^2 phi / spread^2 + sin^2 phi / width^2) vanishes at phi = i asinh(…).
+    const double reach = lobe.spread * heights / (s + woSine);
+    return std::min(scale,
+                    std::asinh(ratio * std::sqrt((1 + reach * reach) / (1 - ratio * ratio))));
 }
 
 std::size_t azimuthsFor(const std::vector<Lobe>& lobes, const Direction& wo, double a, double b,
@@ -141,10 +149,12 @@ std::size_t azimuthsFor(const std::vector<Lobe>& lobes, const Direction& wo, dou
         const double u = std::sqrt(std::clamp(peak, 0.0, 1.0));
         if (u > a && u < b) visit(u);
     }
-    const double nodes = options.order + firstAzimuthExponent * refinement / narrowest;
-    const double exact = 2.0 * options.order;  // for which the trigonometric part is exact
-    const auto count = static_cast<std::size_t>(
-        std::min(std::ceil(std::max(nodes, exact)), static_cast<double>(maxAzimuths)));
+    // Products with the highest basis function need `order` more than the lobe alone. At least 8
+    // and `order` of the rest grow with the level, so that no two levels use the same azimuths.
+    const double forLobe =
+        std::max({firstAzimuthExponent / narrowest, static_cast<double>(options.order), 8.0});
+    const auto count = static_cast<std::size_t>(std::min(
+        std::ceil(options.order + forLobe * refinement), static_cast<double>(maxAzimuths)));
     return (count + 3) / 4 * 4;
 }
 
@@ -172,28 +182,36 @@ std::size_t HemisphereGrid::points() const {
     return total;
 }
 
-HemisphereGrid gridFor(const std::vector<Lobe>& lobes, const Direction& wo,
-                       const GridOptions& options) {
+std::vector<double> panelBreaks(const std::vector<Lobe>& lobes, const Direction& wo) {
     std::vector<double> breaks = {0.0};
     splitPanels(0, 1, singularities(lobes, wo), 0, breaks);
+    return breaks;
+}
 
-    const double refinement = std::pow(levelGrowth, options.level);
+void appendPanel(HemisphereGrid& grid, double a, double b, const std::vector<Lobe>& lobes,
+                 const Direction& wo, const GridOptions& options) {
+    const double refinement = std::pow(levelGrowth, options.level), half = 0.5 * (b - a);
+    // Basis functions are polynomials of degree 2 order in u: half as many nodes, by length.
+    const int nodes =
+        static_cast<int>(std::ceil(firstNodes * refinement + options.order * (b - a) * 1.3));
+    const GaussRule& rule = gaussLegendre(nodes);
+    grid.panels.push_back({grid.weights.size(), static_cast<std::size_t>(nodes),
+                           azimuthsFor(lobes, wo, a, b, options, refinement)});
+    for (int i = 0; i < nodes; ++i) {
+        const double u = a + half * (1 + rule.nodes[i]);
+        const double mu = u * u, oneMinusMu = (1 - u) * (1 + u);
+        grid.elevations.push_back({mu, oneMinusMu});
+        grid.sines.push_back(std::sqrt(oneMinusMu * (1 + mu)));
+        grid.weights.push_back(2 * u * half * rule.weights[i]);
+    }
+}
+
+HemisphereGrid gridFor(const std::vector<Lobe>& lobes, const Direction& wo,
+                       const GridOptions& options) {
+    const std::vector<double> breaks = panelBreaks(lobes, wo);
     HemisphereGrid grid;
     for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-        const double a = breaks[k], b = breaks[k + 1], half = 0.5 * (b - a);
-        // Basis functions are polynomials of degree 2 order in u: half as many nodes, by length.
-        const int nodes =
-            static_cast<int>(std::ceil(firstNodes * refinement + options.order * (b - a) * 1.3));
-        const GaussRule& rule = gaussLegendre(nodes);
-        grid.panels.push_back({grid.weights.size(), static_cast<std::size_t>(nodes),
-                               azimuthsFor(lobes, wo, a, b, options, refinement)});
-        for (int i = 0; i < nodes; ++i) {
-            const double u = a + half * (1 + rule.nodes[i]);
-            const double mu = u * u, oneMinusMu = (1 - u) * (1 + u);
-            grid.elevations.push_back({mu, oneMinusMu});
-            grid.sines.push_back(std::sqrt(oneMinusMu * (1 + mu)));
-            grid.weights.push_back(2 * u * half * rule.weights[i]);
-        }
+        appendPanel(grid, breaks[k], breaks[k + 1], lobes, wo, options);
     }
     return grid;
 }

@@ -36,17 +36,25 @@ struct HemisphereGrid {
 
 struct GridOptions {
     int order = 7;  ///< bands that have to be resolved exactly
-    /// Refinement: every level has half as many nodes again, in both directions.
+    /// Refinement: every level has half as many nodes again, in both directions. Lobes are seen at
+    /// level 0, are right to about 1e-3 at level 2 and to 1e-6 at level 4.
     int level = 0;
 };
 
-/// A grid for integrands made of a BRDF with these lobes at `wo`, its square, and basis functions.
-///
-/// Elevation: Gauss-Legendre panels in u = sqrt(cos theta), in which functions that behave like
-/// sqrt(cos theta) at the horizon are smooth. Each lobe is taken as a complex singularity at its
-/// width's distance from the real axis; panels are halved until it lies outside a fixed Bernstein
-/// ellipse of each, so that a lobe of width w costs O(log 1/w) panels. Azimuth: the number of
-/// equispaced nodes follows, ring by ring, from the same singularity seen along phi.
+/// Ends of the elevation panels, in u = sqrt(cos theta) from 0 to 1, for a BRDF with these lobes.
+/// Each lobe is taken as a complex singularity at its width's distance from the real axis; panels
+/// are halved until it lies outside a fixed Bernstein ellipse of each, so that a lobe of width w
+/// costs O(log 1/w) panels.
+std::vector<double> panelBreaks(const std::vector<Lobe>& lobes, const Direction& wo);
+
+/// Adds the panel [a, b] in u: Gauss-Legendre rings times equispaced azimuths, whose number follows
+/// from the same singularities seen along phi. In u, functions that behave like sqrt(cos theta) at
+/// the horizon are smooth.
+void appendPanel(HemisphereGrid& grid, double a, double b, const std::vector<Lobe>& lobes,
+                 const Direction& wo, const GridOptions& options);
+
+/// All panels at one level: a grid for integrands made of a BRDF with these lobes at `wo`, its
+/// square, and basis functions.
 HemisphereGrid gridFor(const std::vector<Lobe>& lobes, const Direction& wo,
                        const GridOptions& options);
 

@@ -1,0 +1,117 @@
+#include "command.h"
+
+#include <hshfit/error.h>
+#include <hshfit/output/coefficient_file.h>
+#include <hshfit/reconstruction.h>
+
+#include <brdfs/catalog.h>
+
+#include <fmt/format.h>
+#include <unistd.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <mutex>
+
+namespace hshfit::cli {
+
+CLI::App& addCommand(CLI::App& app, Globals& globals, const std::string& name,
+                     const std::string& help, const std::string& example) {
+    CLI::App& command = *app.add_subcommand(name, help);
+    command.footer("Example: " + example);
+    command.add_flag("--json", globals.json, "Print a machine-readable answer to standard output");
+    command.add_flag("--quiet", globals.quiet, "No progress and no notes on standard error");
+    command.add_option("--threads", globals.threads, "Threads to use; 0: all cores")
+        ->check(CLI::Range(0, 4096));
+    return command;
+}
+
+std::unique_ptr<Brdf> openSource(const std::string& spec) {
+    if (looksLikeCoefficients(spec)) {
+        return std::make_unique<Reconstruction>(readCoefficients(spec));
+    }
+    return brdfs::open(spec);
+}
+
+Direction parseDirection(const std::string& text, std::string_view option) {
+    const char *at = text.data(), *end = at + text.size();
+    double theta = 0, phi = 0;
+    const auto first = std::from_chars(at, end, theta);
+    const bool comma = first.ec == std::errc() && first.ptr != end && *first.ptr == ',';
+    const auto second = comma ? std::from_chars(first.ptr + 1, end, phi) : first;
+    if (!comma || second.ec != std::errc() || second.ptr != end || !(theta >= 0) ||
+        !(theta <= 90) || !std::isfinite(phi)) {
+        throw UsageError(
+            fmt::format("{} '{}': give THETA,PHI in degrees, theta from 0 to 90 (for example 45,0)",
+                        option, text));
+    }
+    return directionFromAngles(radians(theta), radians(phi));
+}
+
+OutgoingSet outgoingOrDefault(const std::string& text, const Brdf& brdf) {
+    if (!text.empty()) return OutgoingSet::parse(text);
+    return brdf.laws().isotropic ? OutgoingSet::elevations(16) : OutgoingSet::parabolic(16, 16);
+}
+
+void printText(std::string_view text) {
+    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+    if (!written || std::fflush(stdout) != 0) {
+        throw OutputError(fmt::format("standard output: {}", std::strerror(errno)));
+    }
+}
+
+void printJson(const nlohmann::ordered_json& document) {
+    printText(document.dump(2) + "\n");
+}
+
+nlohmann::ordered_json directionJson(const Direction& d) {
+    return {{"theta", degrees(polarAngle(d))}, {"phi", degrees(azimuth(d))}};
+}
+
+void note(const Globals& globals, std::string_view message) {
+    if (!globals.quiet) fmt::print(stderr, "hshfit: {}\n", message);
+}
+
+struct Progress::State {
+    using Clock = std::chrono::steady_clock;
+    std::string what;
+    std::mutex mutex;
+    Clock::time_point start = Clock::now(), shown = start;
+    bool visible = false;
+
+    void update(std::size_t done, std::size_t total) {
+        constexpr auto interval = std::chrono::milliseconds(200);
+        const std::lock_guard lock(mutex);
+        const auto now = Clock::now();
+        if (now - shown < interval || done == 0) return;
+        shown = now;
+        visible = true;
+        const double seconds = std::chrono::duration<double>(now - start).count();
+        const double share = static_cast<double>(done) / static_cast<double>(total);
+        fmt::print(stderr, "\r\x1b[K{}  {}/{}  {:.0f} s left", what, done, total,
+                   seconds * (1 - share) / share);
+        std::fflush(stderr);
+    }
+};
+
+Progress::Progress(const Globals& globals, std::string what) {
+    if (globals.quiet || !isatty(STDERR_FILENO)) return;
+    state_ = std::make_shared<State>();
+    state_->what = std::move(what);
+}
+
+Progress::~Progress() {
+    if (state_ && state_->visible) fmt::print(stderr, "\r\x1b[K");
+}
+
+std::function<void(std::size_t, std::size_t)> Progress::callback() {
+    if (!state_) return {};
+    return [state = state_](std::size_t done, std::size_t total) { state->update(done, total); };
+}
+
+}  // namespace hshfit::cli

@@ -1,0 +1,106 @@
+#include "command.h"
+
+#include <hshfit/metrics.h>
+#include <hshfit/reconstruction.h>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace hshfit::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct CompareArguments {
+    std::string a, b, metrics = "all", outgoing;
+};
+
+/// Coefficients are compared at their own outgoing directions unless others are asked for.
+OutgoingSet outgoingOf(const CompareArguments& arguments, const Brdf& a, const Brdf& b) {
+    if (arguments.outgoing.empty()) {
+        for (const Brdf* brdf : {&b, &a}) {
+            if (const auto* r = dynamic_cast<const Reconstruction*>(brdf)) {
+                return r->coefficients().outgoing;
+            }
+        }
+    }
+    return outgoingOrDefault(arguments.outgoing, a.laws().isotropic ? b : a);
+}
+
+Json metricJson(const MetricValue& result) {
+    Json json = {{"name", result.metric->name},
+                 {"value", result.value ? Json(*result.value) : Json(nullptr)}};
+    if (result.value) json["error"] = result.error;
+    if (!result.reason.empty()) json["reason"] = result.reason;
+    if (result.wo) {
+        Json at;
+        if (result.wi) at["wi"] = directionJson(*result.wi);
+        at["wo"] = directionJson(*result.wo);
+        json["at"] = at;
+    }
+    return json;
+}
+
+std::string metricText(const MetricValue& result) {
+    std::string text = fmt::format("  {:<20} ", result.metric->name);
+    if (!result.value) return text + "-  (" + result.reason + ")\n";
+    text +=
+        fmt::format("{:<12.6g} +- {:<8.1e} {}", *result.value, result.error, result.metric->help);
+    for (const auto& [name, direction] : {std::pair("wi", result.wi), std::pair("wo", result.wo)}) {
+        if (!direction) continue;
+        text += fmt::format("; {} {:.2f},{:.2f}", name, degrees(polarAngle(*direction)),
+                            degrees(azimuth(*direction)));
+    }
+    return text + "\n";
+}
+
+void runCompare(const CompareArguments& arguments, Globals& globals) {
+    const auto metrics = selectMetrics(arguments.metrics);
+    const auto a = openSource(arguments.a), b = openSource(arguments.b);
+    const OutgoingSet outgoing = outgoingOf(arguments, *a, *b);
+    Progress progress(globals, "compare");
+    const auto results = compare(*a, *b, outgoing, metrics, {.progress = progress.callback()});
+
+    Json document = {{"format", "hshfit-compare"},
+                     {"version", 1},
+                     {"a", a->name()},
+                     {"b", b->name()},
+                     {"outgoing", outgoing.spec()},
+                     {"metrics", Json::array()}};
+    std::string text =
+        fmt::format("{} against {}, outgoing {}\n", arguments.b, arguments.a, outgoing.spec());
+    for (const MetricValue& result : results) {
+        document["metrics"].push_back(metricJson(result));
+        text += metricText(result);
+    }
+    if (globals.json) {
+        printJson(document);
+    } else {
+        printText(text);
+    }
+    // Asked for by name, a metric that does not exist is an error; among all of them it is a row.
+    const bool named = arguments.metrics != "all";
+    for (const MetricValue& result : results) {
+        if (named && !result.value) globals.exitCode = 4;
+    }
+}
+
+}  // namespace
+
+void addCompare(CLI::App& app, Globals& globals) {
+    auto arguments = std::make_shared<CompareArguments>();
+    CLI::App& command = addCommand(
+        app, globals, "compare", "Error metrics between two BRDFs, or a BRDF and its coefficients",
+        "hshfit compare ward:ax=.2,ay=.5 ward.json");
+    command.add_option("A", arguments->a, "Reference: BRDF or coefficient file")->required();
+    command.add_option("B", arguments->b, "Approximation: BRDF or coefficient file")->required();
+    command.add_option("--metrics", arguments->metrics, "all, or names from hshfit list metrics")
+        ->capture_default_str();
+    command.add_option("--outgoing", arguments->outgoing,
+                       "WxH, N or THETA,PHI (default: those of the coefficient file; else 16, or "
+                       "16x16 if anisotropic)");
+    command.callback([arguments, &globals] { runCompare(*arguments, globals); });
+}
+
+}  // namespace hshfit::cli

@@ -1,0 +1,191 @@
+#include "command.h"
+
+#include <hshfit/bases/catalog.h>
+#include <hshfit/metrics.h>
+
+#include <brdfs/catalog.h>
+#include <brdfs/preset.h>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hshfit::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json lawsJson(const Laws& laws) {
+    return {{"non_negative", laws.nonNegative},
+            {"reciprocal", laws.reciprocal},
+            {"isotropic", laws.isotropic},
+            {"mirror_symmetric", laws.mirrorSymmetric},
+            {"energy_conserving", laws.energyConserving}};
+}
+
+Json limitJson(double limit) {
+    return std::isfinite(limit) ? Json(limit) : Json(nullptr);
+}
+
+Json parameterJson(const brdfs::Parameter& parameter) {
+    using Kind = brdfs::Parameter::Kind;
+    Json json = {{"name", parameter.name}, {"help", parameter.help}};
+    if (parameter.kind == Kind::choice) {
+        json["kind"] = "choice";
+        json["default"] = parameter.choices.front();
+        json["choices"] = parameter.choices;
+        return json;
+    }
+    json["kind"] = parameter.kind == Kind::colour ? "colour" : "number";
+    const auto fallback = parameter.fallback;
+    const bool stated = fallback && *fallback >= parameter.min && *fallback <= parameter.max;
+    json["default"] = stated ? Json(*fallback) : Json(nullptr);
+    json["min"] = limitJson(parameter.min);
+    json["max"] = limitJson(parameter.max);
+    return json;
+}
+
+Json parametersJson(const std::vector<brdfs::Parameter>& parameters) {
+    Json json = Json::array();
+    for (const auto& parameter : parameters) json.push_back(parameterJson(parameter));
+    return json;
+}
+
+Json modelsJson() {
+    Json rows = Json::array();
+    for (const auto& model : brdfs::models()) {
+        rows.push_back({{"name", model.name},
+                        {"help", model.help},
+                        {"source", model.source},
+                        {"parameters", parametersJson(model.parameters)},
+                        {"laws", lawsJson(model.laws)}});
+    }
+    return rows;
+}
+
+Json formatsJson() {
+    Json rows = Json::array();
+    for (const auto& format : brdfs::formats()) {
+        rows.push_back({{"name", format.name},
+                        {"help", format.help},
+                        {"extension", format.extension},
+                        {"parameters", parametersJson(format.parameters)}});
+    }
+    return rows;
+}
+
+Json basesJson() {
+    Json rows = Json::array();
+    for (const auto& basis : bases::catalog()) {
+        rows.push_back({{"name", basis.name},
+                        {"help", basis.help},
+                        {"source", basis.source},
+                        {"max_order", basis.maxOrder},
+                        {"orthonormal", basis.orthonormal}});
+    }
+    return rows;
+}
+
+Json metricsJson() {
+    Json rows = Json::array();
+    for (const auto& metric : metricCatalog()) {
+        rows.push_back({{"name", metric.name}, {"help", metric.help}, {"source", metric.source}});
+    }
+    return rows;
+}
+
+Json presetsJson() {
+    Json rows = Json::array();
+    for (const auto& preset : brdfs::presets()) {
+        const auto content = brdfs::parsePreset(preset.text, "preset:" + std::string(preset.name));
+        rows.push_back({{"name", preset.name},
+                        {"help", preset.help},
+                        {"source", content.source},
+                        {"spec", content.spec}});
+    }
+    return rows;
+}
+
+struct Section {
+    const char* name;
+    Json (*rows)();
+};
+constexpr Section sections[] = {{"models", modelsJson},   {"formats", formatsJson},
+                                {"bases", basesJson},     {"metrics", metricsJson},
+                                {"targets", Json::array}, {"presets", presetsJson}};
+
+std::string parameterText(const Json& parameter) {
+    std::string text = fmt::format("      {:<14} {}", parameter["name"].get<std::string>(),
+                                   parameter["help"].get<std::string>());
+    if (parameter["kind"] == "choice") {
+        return text + fmt::format(" ({}; default {})", parameter["choices"].dump(),
+                                  parameter["default"].get<std::string>());
+    }
+    const auto shown = [](const Json& limit) {
+        return limit.is_null() ? std::string("inf") : fmt::format("{:g}", limit.get<double>());
+    };
+    text += fmt::format(" ({} to {}", shown(parameter["min"]), shown(parameter["max"]));
+    if (!parameter["default"].is_null())
+        text += fmt::format("; default {}", shown(parameter["default"]));
+    return text + ")";
+}
+
+std::string lawsText(const Json& laws) {
+    std::string text;
+    for (const auto& [law, holds] : laws.items()) {
+        if (!holds.get<bool>()) continue;
+        std::string words = law;
+        std::replace(words.begin(), words.end(), '_', ' ');
+        text += (text.empty() ? "" : ", ") + words;
+    }
+    return text;
+}
+
+void printSection(const char* name, const Json& rows) {
+    std::string text = fmt::format("{}\n", name);
+    if (rows.empty()) text += "  none yet\n";
+    for (const Json& row : rows) {
+        text += fmt::format("  {:<18} {}\n", row["name"].get<std::string>(),
+                            row["help"].get<std::string>());
+        if (const std::string source = row.value("source", ""); !source.empty()) {
+            text += fmt::format("      {:<14} {}\n", "source", source);
+        }
+        for (const Json& parameter : row.value("parameters", Json::array())) {
+            text += parameterText(parameter) + "\n";
+        }
+        if (row.contains("laws")) {
+            text += fmt::format("      {:<14} {}\n", "laws", lawsText(row["laws"]));
+        }
+    }
+    printText(text + "\n");
+}
+
+}  // namespace
+
+void addList(CLI::App& app, Globals& globals) {
+    auto section = std::make_shared<std::string>();
+    CLI::App& command = addCommand(
+        app, globals, "list", "The catalogs: models, formats, bases, metrics, targets, presets",
+        "hshfit list bases");
+    std::vector<std::string> names;
+    for (const Section& s : sections) names.emplace_back(s.name);
+    command.add_option("SECTION", *section, "One catalog; all of them if left out")
+        ->check(CLI::IsMember(names));
+    command.callback([section, &globals] {
+        Json document = {{"format", "hshfit-list"}, {"version", 1}};
+        for (const Section& s : sections) {
+            if (!section->empty() && *section != s.name) continue;
+            if (globals.json) {
+                document[s.name] = s.rows();
+            } else {
+                printSection(s.name, s.rows());
+            }
+        }
+        if (globals.json) printJson(document);
+    });
+}
+
+}  // namespace hshfit::cli

@@ -1,0 +1,38 @@
+#include <hshfit/albedo.h>
+
+#include <hshfit/error.h>
+#include <hshfit/rings.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace hshfit {
+
+std::vector<double> directionalAlbedo(const Brdf& brdf, const Direction& wo, double tolerance) {
+    constexpr std::size_t maxEvaluations = std::size_t{1} << 26;
+    const std::vector<Lobe> lobes = brdf.lobes(wo);
+    std::vector<double> previous;
+    std::size_t evaluations = 0;
+    for (int level = 0;; ++level) {
+        const HemisphereGrid grid = gridFor(lobes, wo, {.order = 1, .level = level});
+        evaluations += grid.points();
+        if (evaluations > maxEvaluations) break;
+        const RingSpectrum spectrum =
+            sampleRings(brdf, wo, grid, Quantity::brdfCosine, 1, /*even=*/false);
+        std::vector<double> albedo(spectrum.channels, 0.0);
+        double change = 0;
+        for (std::size_t c = 0; c < spectrum.channels; ++c) {
+            for (std::size_t r = 0; r < spectrum.rings; ++r) {
+                albedo[c] += grid.weights[r] * spectrum.part(0, c)[r] * std::sqrt(2 * pi);
+            }
+            if (level > 0) change = std::max(change, std::abs(albedo[c] - previous[c]));
+        }
+        if (level > 0 && change <= tolerance) return albedo;
+        previous = std::move(albedo);
+    }
+    throw NumericError(fmt::format("{}: the albedo at theta_o = {:.6g} degrees did not converge",
+                                   brdf.name(), degrees(polarAngle(wo))));
+}
+
+}  // namespace hshfit

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <hshfit/bases/basis.h>
+#include <hshfit/brdf.h>
+#include <hshfit/coefficients.h>
+#include <hshfit/horizon.h>
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace hshfit {
+
+/// Values for Basis::Inner::solidAngle and ::projectedSolidAngle.
+using PerInner = std::array<double, 2>;
+
+/// Converged moments of q = f or f cos(theta_i) for one outgoing direction.
+struct RefinedMoments {
+    std::vector<std::vector<double>> moments;  ///< per basis: [channel][slot]
+    PerInner energy{};                         ///< integral of q^2, summed over channels
+    PerInner energyError{};                    ///< absolute
+    double error = 0;                          ///< relative, the larger of coefficients and energy
+    std::size_t evaluations = 0;
+    HorizonBehaviour horizon;
+};
+
+struct RefinementOptions {
+    Quantity quantity = Quantity::brdf;
+    bool even = false;  ///< f is even in phi_i for this wo
+    double tolerance = 1e-6;
+    std::size_t maxEvaluations = std::size_t{1} << 26;
+};
+
+/// Integrates q against the analysis functions of every basis. Each elevation panel is refined on
+/// its own until the changes of all panels add up to no more than the tolerance, relative to the
+/// norm of each basis' moments and to each energy that exists: panels that hold next to nothing
+/// stay coarse. The error is the sum of every panel's last change.
+///
+/// Throws NumericError where the moments do not exist, do not converge within the evaluations
+/// allowed, or q is not finite.
+RefinedMoments refineMoments(const Brdf& brdf, std::span<const Basis* const> bases,
+                             const Direction& wo, const RefinementOptions& options);
+
+}  // namespace hshfit
