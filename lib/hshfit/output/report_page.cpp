@@ -47,12 +47,14 @@ std::string inlined(std::string svg, std::size_t index) {
     return svg;
 }
 
-/// The fewest coefficients over all curves that reach a threshold, 0 if none does.
+/// The fewest coefficients with which a curve reaches a threshold, 0 if none does. Only of bases
+/// that measure the same energy.
 int fewest(const ReportEntry& entry, double threshold) {
     int best = 0;
     for (const auto& curve : entry.curves) {
         const auto point = firstReaching(curve, threshold);
-        if (point && (best == 0 || point->coefficients < best)) best = point->coefficients;
+        if (point && !curve.energy && (best == 0 || point->coefficients < best))
+            best = point->coefficients;
     }
     return best;
 }
@@ -65,7 +67,7 @@ data needsOf(const ReportEntry& entry) {
             data cell;
             const auto point = firstReaching(curve, threshold);
             if (point) {
-                const bool best = point->coefficients == fewest(entry, threshold);
+                const bool best = !curve.energy && point->coefficients == fewest(entry, threshold);
                 cell.set("text", fmt::format("{} ({})", point->coefficients, point->order));
                 cell.set("class", best ? "best" : "reached");
             } else {
@@ -120,7 +122,9 @@ data entryData(const ReportEntry& entry, std::size_t index) {
     fields.set("channels", fmt::format("{}", fmt::join(entry.channels.names(), ", ")));
     fields.set("energy", energyText(entry.energy));
     fields.set("error",
-               fmt::format("{:.1e} relative, asked for {:.0e}", entry.error, entry.tolerance));
+               std::isfinite(entry.error)
+                   ? fmt::format("{:.1e} relative, asked for {:.0e}", entry.error, entry.tolerance)
+                   : "none: no coefficients were reached");
     fields.set("evaluations", std::to_string(entry.evaluations));
     if (!entry.energy.finite) fields.set("reason", entry.energy.reason);
     fields.set("hasAccuracy", hasAccuracy(entry));

@@ -55,8 +55,8 @@ std::vector<std::string> basesOf(const Report& report) {
     return names;
 }
 
-/// Where the axis of what is missing ends: the decade below the best point, between 10 % and 1e-6,
-/// which is as much as the default tolerance of a projection says.
+/// Where the axis of what is missing ends: below the best point at 50 %, 20 % or a power of ten,
+/// but not below 1e-6, which is as much as the default tolerance of a projection says.
 double leastMissing(const ReportEntry& entry) {
     double least = 1;
     for (const auto& curve : entry.curves) {
@@ -64,8 +64,8 @@ double leastMissing(const ReportEntry& entry) {
             if (point.accuracy) least = std::min(least, 1 - *point.accuracy);
         }
     }
-    if (!(least > 1e-6)) return 1e-6;
-    return std::pow(10, std::min(-1.0, std::floor(std::log10(least))));
+    if (least > 0.2) return least > 0.5 ? 0.5 : 0.2;
+    return least > 1e-6 ? std::pow(10, std::floor(std::log10(least))) : 1e-6;
 }
 
 /// `text` with line breaks instead of the spaces before `width` characters are exceeded.

@@ -41,11 +41,9 @@ missing(row) = 1 - column(6) < leastMissing[row] ? leastMissing[row] : \
 
 set border 3 linewidth 0.8 linecolor rgb 'black'
 set tics nomirror out scale 0.6
-set grid linecolor rgb '#a0a0a0' linewidth 0.4 dashtype 3
+set grid linecolor rgb '#c8c8c8' linewidth 0.5 dashtype 1, linecolor rgb '#c8c8c8' linewidth 0.5 dashtype 1
 set logscale y
 set format y ''
-set ytics ('0 %%' 1, '50 %%' 0.5, '80 %%' 0.2, '90 %%' 1e-1, '99 %%' 1e-2, '99.9 %%' 1e-3, \
-           '99.99 %%' 1e-4, '99.999 %%' 1e-5, '99.9999 %%' 1e-6)
 unset key
 
 rows = last - first + 1
@@ -58,7 +56,7 @@ do for [pass = 1:2] {
             font 'DejaVu Sans,Helvetica,Arial,sans-serif' fontscale 1.0
     } else {
         set terminal pdfcairo size 11, 3.8 * rows noenhanced \
-            font 'DejaVu Sans,11'
+            font 'DejaVu Sans,11' linewidth 1.6
     }
     set output file
     set multiplot
@@ -67,16 +65,24 @@ do for [pass = 1:2] {
         set bmargin at screen bottom + 0.16 * rowHeight
         set tmargin at screen bottom + 0.86 * rowHeight
         set yrange [1:leastMissing[row]]
-        set label 1 rowTitle[row] at screen 0.075, screen bottom + 0.93 * rowHeight left
+        if (leastMissing[row] > 0.3) {
+            set ytics ('0 %%' 1, '10 %%' 0.9, '20 %%' 0.8, '30 %%' 0.7, '40 %%' 0.6, '50 %%' 0.5)
+        } else { if (leastMissing[row] > 0.05) {
+            set ytics ('0 %%' 1, '20 %%' 0.8, '40 %%' 0.6, '60 %%' 0.4, '80 %%' 0.2, '90 %%' 0.1)
+        } else {
+            set ytics ('0 %%' 1, '50 %%' 0.5, '80 %%' 0.2, '90 %%' 1e-1, '99 %%' 1e-2, \
+                       '99.9 %%' 1e-3, '99.99 %%' 1e-4, '99.999 %%' 1e-5, '99.9999 %%' 1e-6)
+        } }
+        set label 1 rowTitle[row] at screen 0.105, screen bottom + 0.93 * rowHeight left
         if (reason[row] eq '') {
             unset label 2
         } else {
             set label 2 reason[row] at graph 0.5, graph 0.55 center
         }
 
-        set lmargin at screen 0.075
+        set lmargin at screen 0.105
         set rmargin at screen 0.435
-        set ylabel 'captured energy' offset 0.5
+        set ylabel 'captured energy' offset screen -0.005, 0
         set xlabel 'coefficients'
         set logscale x
         set xrange [1:maxCount[row]]
@@ -86,15 +92,17 @@ do for [pass = 1:2] {
             with linespoints linetype basis pointinterval interval[row]
 
         unset label 1
-        set lmargin at screen 0.50
-        set rmargin at screen 0.86
+        set lmargin at screen 0.52
+        set rmargin at screen 0.85
         unset ylabel
         set xlabel 'order'
         unset logscale x
         set xrange [1:maxOrder[row]]
         set xtics autofreq
-        set key at screen 0.875, screen bottom + 0.84 * rowHeight left top Left reverse \
-            samplen 2.5 spacing 1.25 noautotitle
+        if (reason[row] eq '') {
+            set key at screen 0.86, screen bottom + 0.84 * rowHeight left top Left reverse \
+                samplen 2.5 spacing 1.25 noautotitle
+        }
         plot for [basis = 1:words(bases)] 'curves.csv' skip 1 \
             using (is(row, basis) ? column(3) : NaN):(missing(row)) \
             title word(bases, basis) \
