@@ -199,6 +199,9 @@ void runScaled(std::size_t point, const Scaled& start, Real y, const Step* steps
 JacobiBasis::JacobiBasis(const JacobiFamily& family, int order, BasisOptions options)
     : Basis(order, options), family_(family) {
     assert(order > 0);
+    std::size_t total = 0;
+    for (int m = 0; m < order; ++m) total += static_cast<std::size_t>(functions(m) - 1);
+    for (std::vector<Step>& steps : steps_) steps.reserve(total);
     double squared = family.startSquared;
     for (int m = 0; m < order; ++m) {
         if (m > 0) squared *= family.startGrowth(m);
