@@ -44,9 +44,14 @@ constexpr std::array<double, atanTerms> atanPowers() {
 
 inline double atanUnit(double t) {
     constexpr std::array<double, atanTerms> c = atanPowers();
-    const double s = t * t;
-    double value = c[atanTerms - 1];
-    for (int j = atanTerms - 2; j >= 0; --j) value = value * s + c[j];
+    // In groups of four (Estrin), so that multiplications do not wait for each other.
+    static_assert(atanTerms == 14);
+    const double s = t * t, s2 = s * s, s4 = s2 * s2;
+    const double g0 = (c[0] + c[1] * s) + (c[2] + c[3] * s) * s2;
+    const double g1 = (c[4] + c[5] * s) + (c[6] + c[7] * s) * s2;
+    const double g2 = (c[8] + c[9] * s) + (c[10] + c[11] * s) * s2;
+    const double g3 = c[12] + c[13] * s;
+    const double value = (g0 + g1 * s4) + (g2 + g3 * s4) * (s4 * s4);
     return value * t;
 }
 

@@ -135,22 +135,6 @@ void MerlBrdf::remember(std::size_t channel, std::size_t cell) const {
                        std::memory_order_relaxed);
 }
 
-double MerlBrdf::averageOfValid(const std::size_t (&cells)[8], const double (&weights)[8],
-                                std::size_t channel) const {
-    double sum = 0, weight = 0;
-    for (int i = 0; i < 8; ++i) {
-        if (weights[i] <= 0) continue;
-        const double v = raw(channel, cells[i]);
-        if (isValue(v)) {
-            sum += weights[i] * v;
-            weight += weights[i];
-        } else if (!std::isfinite(v)) {
-            remember(channel, cells[i]);
-        }
-    }
-    return weight > 0 ? sum / weight : 0;
-}
-
 /// The eight cells around each of a block of positions: four rows in phi_d (h and d, each at both
 /// ends), two cells of each row, and the fractions between them.
 struct MerlBrdf::Corners {
@@ -192,27 +176,54 @@ inline void MerlBrdf::prefetch(const Corners& at, std::size_t k) const {
     }
 }
 
+double MerlBrdf::averageOfValid(const Corners& at, std::size_t k, const double (&across)[4],
+                                std::size_t channel) const {
+    double sum = 0, weight = 0;
+    for (int i = 0; i < 8; ++i) {
+        const double w = across[i / 2] * (i % 2 == 0 ? 1 - at.tp[k] : at.tp[k]);
+        if (w <= 0) continue;
+        const std::size_t cell = at.row[i / 2][k] + (i % 2 == 0 ? at.p0[k] : at.p1[k]);
+        const double v = raw(channel, cell);
+        if (isValue(v)) {
+            sum += w * v;
+            weight += w;
+        } else if (!std::isfinite(v)) {
+            remember(channel, cell);
+        }
+    }
+    return weight > 0 ? sum / weight : 0;
+}
+
+inline MerlBrdf::Pair MerlBrdf::rawPair(std::size_t channel, const Corners& at, int row,
+                                        std::size_t k) const {
+    const std::size_t first = at.row[row][k] + at.p0[k];
+    if (at.p1[k] == 0) [[unlikely]] {
+        return Pair{raw(channel, first), raw(channel, at.row[row][k])};
+    }
+    Pair pair;
+    std::memcpy(&pair,
+                file_.data() + MerlLayout::headerBytes +
+                    (channel * layout_.cells() + first) * sizeof(double),
+                sizeof pair);
+    return pair;
+}
+
 inline void MerlBrdf::interpolateLinear(const Corners& at, std::size_t k, double* out,
                                         std::size_t stride) const {
     const double th = at.th[k], td = at.td[k], tp = at.tp[k];
     const double across[4] = {(1 - th) * (1 - td), (1 - th) * td, th * (1 - td), th * td};
     for (std::size_t c = 0; c < 3; ++c) {
-        double sum = 0, least = 0;
+        Pair pair = {};
+        PairBits bits = {};
         for (int i = 0; i < 4; ++i) {
-            const double a = raw(c, at.row[i][k] + at.p0[k]);
-            const double b = raw(c, at.row[i][k] + at.p1[k]);
-            sum += across[i] * (a + tp * (b - a));
-            least = std::min(least, std::min(a, b));
+            const Pair cells = rawPair(c, at, i, k);
+            pair += across[i] * cells;
+            bits |= std::bit_cast<PairBits>(cells);
         }
-        // False for any negative, NaN or infinite cell: then only the valid cells count.
-        if (!(least >= 0 && isValue(sum))) [[unlikely]] {
-            std::size_t cells[8];
-            double weights[8];
-            for (int i = 0; i < 8; ++i) {
-                cells[i] = at.row[i / 2][k] + (i % 2 == 0 ? at.p0[k] : at.p1[k]);
-                weights[i] = across[i / 2] * (i % 2 == 0 ? 1 - tp : tp);
-            }
-            sum = averageOfValid(cells, weights, c);
+        double sum = pair[0] + tp * (pair[1] - pair[0]);
+        // A sign bit, NaN or infinity: then only the valid cells count.
+        if (((bits[0] | bits[1]) < 0) || !isValue(sum)) [[unlikely]] {
+            sum = averageOfValid(at, k, across, c);
         }
         out[c * stride] = sum * merlScale[c];
     }

@@ -52,8 +52,12 @@ private:
     void prefetch(const Corners& at, std::size_t k) const;
     void interpolateLinear(const Corners& at, std::size_t k, double* out, std::size_t stride) const;
     void lookUpNearest(const Indices& at, std::size_t k, double* out, std::size_t stride) const;
-    double averageOfValid(const std::size_t (&cells)[8], const double (&weights)[8],
+    double averageOfValid(const Corners& at, std::size_t k, const double (&across)[4],
                           std::size_t channel) const;
+    /// Two cells of a row, in one vector register.
+    using Pair [[gnu::vector_size(16)]] = double;
+    using PairBits [[gnu::vector_size(16)]] = std::int64_t;
+    Pair rawPair(std::size_t channel, const Corners& at, int row, std::size_t k) const;
     double raw(std::size_t channel, std::size_t cell) const;
     void remember(std::size_t channel, std::size_t cell) const;
 

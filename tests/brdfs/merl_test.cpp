@@ -142,7 +142,7 @@ TEST(Merl, continuesConstantlyBeyondTheLastNodes) {
 
 TEST(Merl, holdsItsLawsOnATableWithoutAnySymmetry) {
     const Table table([](int c, int h, int d, int p) {
-        return static_cast<double>((c * 7919 + h * 104729 + d * 1299709 + p * 15485863) % 1000);
+        return static_cast<double>((c * 7919 + h * 104729 + d * 1299709 + p * 15485863LL) % 1000);
     });
     ASSERT_TRUE(table.brdf.laws().isotropic && table.brdf.laws().reciprocal);
     std::mt19937 random(10);
