@@ -1,0 +1,107 @@
+// What one RGB value of a measured BRDF costs, on one thread: batches of one outgoing direction and
+// a grid over all incoming ones, for 110 outgoing elevations. The MERL file is a GGX lobe; the RGL
+// file is synthetic, of the sizes of the isotropic RGL files.
+
+#include <brdfs/catalog.h>
+#include <brdfs/measured/merl_writer.h>
+
+#include <benchmark/benchmark.h>
+#include <brdfs/tensor_writer.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+using hshfit::Direction;
+
+/// A folder for the files of this run, removed at the end.
+struct Folder {
+    std::filesystem::path path;
+    Folder() {
+        std::string name =
+            (std::filesystem::temp_directory_path() / "hshfit-bench-XXXXXX").string();
+        if (!mkdtemp(name.data())) std::abort();
+        path = name;
+    }
+    ~Folder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path, ignored);
+    }
+};
+
+const Folder& folder() {
+    static const Folder only;
+    return only;
+}
+
+std::string merlPath() {
+    const std::string path = folder().path / "ggx.binary";
+    if (!std::filesystem::exists(path)) {
+        hshfit::brdfs::writeMerl(*hshfit::brdfs::open("ggx:alpha=0.1"), path, false);
+    }
+    return path;
+}
+
+std::string rglPath() {
+    const std::string path = folder().path / "synthetic.bsdf";
+    hshfit::test::RglShape shape{.theta = {},
+                                 .normalRows = 128,
+                                 .normalColumns = 128,
+                                 .colourRows = 32,
+                                 .colourColumns = 32};
+    for (int i = 0; i < 8; ++i) shape.theta.push_back(1.57F * static_cast<float>(i) / 7);
+    const std::string bytes = hshfit::test::tensorFile(hshfit::test::rglFields(shape));
+    std::ofstream(path, std::ios::binary)
+        .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    return path;
+}
+
+void evaluate(benchmark::State& state, const std::string& spec) {
+    const auto brdf = hshfit::brdfs::open(spec);
+    constexpr int elevations = 150, azimuths = 200, outgoing = 110;
+    std::vector<double> x, y, z;
+    for (int i = 0; i < elevations; ++i) {
+        for (int k = 0; k < azimuths; ++k) {
+            const Direction wi = hshfit::directionFromAngles(
+                (i + 0.5) / elevations * hshfit::pi / 2, (k + 0.5) / azimuths * 2 * hshfit::pi);
+            x.push_back(wi.x);
+            y.push_back(wi.y);
+            z.push_back(wi.z);
+        }
+    }
+    std::vector<double> out(3 * x.size());
+    for (auto _ : state) {
+        for (int i = 0; i < outgoing; ++i) {
+            const Direction wo =
+                hshfit::directionFromAngles((i + 0.3) / outgoing * hshfit::pi / 2, 0);
+            brdf->eval(wo, {x.data(), y.data(), z.data(), x.size()}, out.data());
+            benchmark::DoNotOptimize(out.data());
+        }
+    }
+    brdf->checkIntact();
+    const double values = static_cast<double>(x.size()) * outgoing;
+    state.counters["per_rgb_value"] = benchmark::Counter(
+        values, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void merlLinear(benchmark::State& state) {
+    evaluate(state, merlPath());
+}
+void merlNearest(benchmark::State& state) {
+    evaluate(state, merlPath() + ":interpolation=nearest");
+}
+void rgl(benchmark::State& state) {
+    evaluate(state, rglPath());
+}
+
+BENCHMARK(merlLinear)->Unit(benchmark::kMillisecond);
+BENCHMARK(merlNearest)->Unit(benchmark::kMillisecond);
+BENCHMARK(rgl)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();
