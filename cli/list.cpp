@@ -109,13 +109,18 @@ Json presetsJson() {
     return rows;
 }
 
+/// Export targets: none in this version.
+Json targetsJson() {
+    return Json::array();
+}
+
 struct Section {
     const char* name;
     Json (*rows)();
 };
 constexpr Section sections[] = {{"models", modelsJson},   {"formats", formatsJson},
                                 {"bases", basesJson},     {"metrics", metricsJson},
-                                {"targets", Json::array}, {"presets", presetsJson}};
+                                {"targets", targetsJson}, {"presets", presetsJson}};
 
 std::string parameterText(const Json& parameter) {
     std::string text = fmt::format("      {:<14} {}", parameter["name"].get<std::string>(),
