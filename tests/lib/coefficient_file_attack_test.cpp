@@ -14,6 +14,7 @@
 #include <utility>
 
 #include <ImfChannelList.h>
+#include <ImfFloatVectorAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIntAttribute.h>
@@ -392,6 +393,36 @@ TEST_F(CoefficientFileAttack, ExrHeaders) {
     change("is not finite at column 0, row 0", none, std::nanf(""));
     change("is not finite", none, std::numeric_limits<float>::infinity());
     change("invalid OpenEXR data", none, 1, 0);
+}
+
+// OpenEXR reads as many bytes as a type has and not as many as the file states, and then takes what
+// follows for the next attribute, with a size of its own.
+TEST_F(CoefficientFileAttack, ExrAttributesThatDoNotFillTheirSize) {
+    const Plan plan = planOf(exr);
+    save(plan.header, exr);
+    const std::string good = samples::contentOf(exr);
+    const struct {
+        const char *name, *type, *fragment;
+    } cases[] = {{"displayWindow", "box2i", "'displayWindow' has 17 bytes; its type has 16"},
+                 {"screenWindowWidth", "float", "'screenWindowWidth' has 5 bytes; its type has 4"},
+                 {"channels", "chlist", "ends before its stated size"}};
+    for (const auto& [name, type, fragment] : cases) {
+        const std::string start = std::string(name) + '\0' + type + '\0';
+        const auto at = good.find(start) + start.size();
+        ASSERT_GT(at, start.size());
+        std::int32_t size = 0;
+        std::memcpy(&size, good.data() + at, 4);
+        std::string bad = good;
+        bad.insert(at + 4 + static_cast<std::size_t>(size), 1, '\0');
+        ++size;
+        std::memcpy(bad.data() + at, &size, 4);
+        samples::put(exr, bad);
+        expectRefused(exr, fragment);
+    }
+    Imf::Header header = plan.header;
+    header.insert("remark", Imf::FloatVectorAttribute({1, 2}));
+    save(header, exr);
+    expectRefused(exr, "'remark' has a type that coefficient files do not use");
 }
 
 TEST_F(CoefficientFileAttack, ExrKindsThatWeDoNotWrite) {

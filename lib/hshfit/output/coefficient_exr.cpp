@@ -134,7 +134,8 @@ std::string metadataText(const Imf::Header& header, const std::string& file) {
         if (!name.starts_with(prefix)) continue;
         const auto* attribute = dynamic_cast<const Imf::StringAttribute*>(&i.attribute());
         if (!attribute) {
-            throw InputError(fmt::format("{}: the attribute '{}' has to be a string", file, name));
+            throw InputError(
+                fmt::format("{}: the attribute '{}' has to be a string", file, printable(name)));
         }
         const std::string key(name.substr(prefix.size()));
         const bool bare = std::find(stringKeys.begin(), stringKeys.end(), key) != stringKeys.end();
@@ -144,7 +145,8 @@ std::string metadataText(const Imf::Header& header, const std::string& file) {
         };
         const std::string value = bare ? quote(attribute->value()) : attribute->value();
         if (!Json::accept(value)) {
-            throw InputError(fmt::format("{}: the attribute '{}' is not valid JSON", file, name));
+            throw InputError(
+                fmt::format("{}: the attribute '{}' is not valid JSON", file, printable(name)));
         }
         text += fmt::format("{}{}:{}", text.size() > 1 ? "," : "", quote(key), value);
     }
@@ -226,9 +228,8 @@ Coefficients coefficientsFromExr(std::string_view bytes, const std::string& file
     } catch (const Error&) {
         throw;
     } catch (const std::exception& error) {
-        std::string reason = error.what();
-        std::replace(reason.begin(), reason.end(), '\n', ' ');
-        throw InputError(fmt::format("{}: invalid OpenEXR data: {}", file, reason));
+        throw InputError(
+            fmt::format("{}: invalid OpenEXR data: {}", file, printable(error.what())));
     }
 }
 

@@ -61,6 +61,14 @@ std::string readBytes(const std::string& path, std::size_t limit) {
 
 }  // namespace
 
+std::string printable(std::string_view text) {
+    std::string out(text);
+    for (char& c : out) {
+        if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = '?';
+    }
+    return out;
+}
+
 void writeCoefficients(const Coefficients& coefficients, const std::string& path) {
     const Form form = formByExtension(path);
     if (form == Form::none) {

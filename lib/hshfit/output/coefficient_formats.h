@@ -27,6 +27,9 @@ Coefficients coefficientsFromMetadata(std::string_view text, std::size_t outgoin
 /// Throws NumericError at the first coefficient that is not finite.
 void requireFinite(const Coefficients& coefficients);
 
+/// `text`, which may quote a file, on one line and without control characters.
+std::string printable(std::string_view text);
+
 std::string coefficientsToJson(const Coefficients& coefficients);
 Coefficients coefficientsFromJson(std::string_view text, const std::string& file);
 

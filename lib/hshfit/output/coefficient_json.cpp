@@ -73,7 +73,7 @@ private:
     static constexpr int maxDepth = 8;
 
     [[noreturn]] void fail(std::string_view what) const {
-        throw InputError(fmt::format("{}: {}", file_, what));
+        throw InputError(fmt::format("{}: {}", file_, printable(what)));
     }
     [[noreturn]] void failShape() const {
         fail("'coefficients' has to be [outgoing][channel][slot], arrays of numbers");
@@ -163,7 +163,7 @@ Coefficients coefficientsFromJson(std::string_view text, const std::string& file
     try {
         tree = Json::parse(text.begin(), text.end(), std::ref(collector));
     } catch (const Json::exception& error) {
-        throw InputError(fmt::format("{}: not valid JSON: {}", file, reasonOf(error)));
+        throw InputError(fmt::format("{}: not valid JSON: {}", file, printable(reasonOf(error))));
     }
     const std::string metadata = tree.dump(-1, ' ', false, Json::error_handler_t::replace);
     Coefficients result = coefficientsFromMetadata(metadata, collector.outgoing(), file);

@@ -87,7 +87,7 @@ public:
         if (!name.empty() && !key.empty()) name += '.';
         name += key;
         if (name.empty()) throw InputError(fmt::format("{}: the content {}", file_, what));
-        throw InputError(fmt::format("{}: '{}' {}", file_, name, what));
+        throw InputError(fmt::format("{}: '{}' {}", file_, name, printable(what)));
     }
     bool has(const char* key) const { return object_.contains(key); }
     const Json& at(const char* key) const {

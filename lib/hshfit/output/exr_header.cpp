@@ -1,9 +1,12 @@
 #include <hshfit/error.h>
+#include <hshfit/output/coefficient_formats.h>
 #include <hshfit/output/exr_header.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <optional>
 #include <set>
 
@@ -21,6 +24,24 @@ constexpr std::int32_t floatPixels = 2;
 constexpr int lastLossless = 3;  // none, RLE, ZIPS, ZIP
 constexpr std::int32_t maxSide = 1 << 16;
 constexpr std::uint64_t maxInflation = 1032;
+constexpr std::size_t maxName = 255;
+
+/// Bytes of the attribute types that are let through, besides string and chlist. OpenEXR reads as
+/// many as the type has, whatever the file states, and so would lose its place.
+struct TypeSize {
+    std::string_view type;
+    std::size_t bytes;
+};
+constexpr TypeSize typeSizes[] = {
+    {"box2f", 16},      {"box2i", 16}, {"chromaticities", 32},
+    {"compression", 1}, {"double", 8}, {"envmap", 1},
+    {"float", 4},       {"int", 4},    {"keycode", 28},
+    {"lineOrder", 1},   {"m33d", 72},  {"m33f", 36},
+    {"m44d", 128},      {"m44f", 64},  {"rational", 8},
+    {"timecode", 8},    {"v2d", 16},   {"v2f", 8},
+    {"v2i", 8},         {"v3d", 24},   {"v3f", 12},
+    {"v3i", 12},
+};
 
 /// Reads forward through bytes; nothing when they end too early.
 class Cursor {
@@ -37,7 +58,7 @@ public:
     }
     std::optional<std::string_view> word() {
         const auto end = bytes_.find('\0');
-        if (end == std::string_view::npos) return std::nullopt;
+        if (end == std::string_view::npos || end > maxName) return std::nullopt;
         const auto result = bytes_.substr(0, end);
         bytes_.remove_prefix(end + 1);
         return result;
@@ -48,6 +69,8 @@ public:
         bytes_.remove_prefix(count);
         return result;
     }
+
+    bool atEnd() const { return bytes_.empty(); }
 
 private:
     std::string_view bytes_;
@@ -88,7 +111,8 @@ public:
                 fail(
                     fmt::format("the attribute '{}' appears twice", attribute->name.substr(0, 40)));
             }
-            if (attribute->name == "channels") countChannels(attribute->value);
+            checkSize(*attribute);
+            if (attribute->type == "chlist") countChannels(attribute->value);
             if (attribute->name == "dataWindow") measure(attribute->value);
             if (attribute->name == "compression") checkCompression(attribute->value);
         }
@@ -105,7 +129,7 @@ public:
 
 private:
     [[noreturn]] void fail(std::string_view what) const {
-        throw InputError(fmt::format("{}: invalid OpenEXR data: {}", file_, what));
+        throw InputError(fmt::format("{}: invalid OpenEXR data: {}", file_, printable(what)));
     }
 
     void checkFlags(Cursor& cursor) const {
@@ -119,12 +143,31 @@ private:
         }
     }
 
+    void checkSize(const Attribute& attribute) const {
+        if (attribute.type == "string") return;
+        if (attribute.type == "chlist" && attribute.name == "channels") return;
+        const auto known =
+            std::find_if(std::begin(typeSizes), std::end(typeSizes),
+                         [&](const TypeSize& row) { return row.type == attribute.type; });
+        if (known == std::end(typeSizes)) {
+            fail(fmt::format("the attribute '{}' has a type that coefficient files do not use",
+                             attribute.name.substr(0, 40)));
+        }
+        if (attribute.value.size() != known->bytes) {
+            fail(fmt::format("the attribute '{}' has {} bytes; its type has {}",
+                             attribute.name.substr(0, 40), attribute.value.size(), known->bytes));
+        }
+    }
+
     void countChannels(std::string_view list) {
         Cursor cursor(list);
         for (;;) {
             const auto name = cursor.word();
             if (!name) fail("the channel list breaks off");
-            if (name->empty()) return;
+            if (name->empty()) {
+                if (!cursor.atEnd()) fail("the channel list ends before its stated size");
+                return;
+            }
             const auto type = cursor.integer<std::int32_t>();
             cursor.take(4);
             const auto x = cursor.integer<std::int32_t>(), y = cursor.integer<std::int32_t>();

@@ -12,10 +12,10 @@ struct ExrHeader {
 };
 
 /// Walks the header of an EXR file before OpenEXR does, which allocates from sizes that it reads.
-/// Passes single-part scan-line files whose attributes lie within `bytes`, whose data window starts
-/// at (0, 0) and is at most 65536 a side, whose channels are all FLOAT and not subsampled, whose
-/// compression is lossless, and that could inflate to their stated size (deflate reaches 1032 : 1).
-/// Throws InputError that starts with `file`.
+/// Passes single-part scan-line files whose attributes lie within `bytes`, are of plain types and
+/// as long as these; whose data window starts at (0, 0) and is at most 65536 a side; whose channels
+/// are all FLOAT and not subsampled; whose compression is lossless; and that could inflate to their
+/// stated size (deflate reaches 1032 : 1). Throws InputError that starts with `file`.
 ExrHeader checkExrHeader(std::string_view bytes, const std::string& file);
 
 bool hasExrMagic(std::string_view bytes);
