@@ -60,14 +60,23 @@ std::string rglPath() {
     return path;
 }
 
-void evaluate(benchmark::State& state, const std::string& spec) {
+/// wi over the whole hemisphere, or around one direction, where the cells stay in the cache.
+enum class Incoming { everywhere, lobe };
+
+void evaluate(benchmark::State& state, const std::string& spec,
+              Incoming incoming = Incoming::everywhere) {
     const auto brdf = hshfit::brdfs::open(spec);
     constexpr int elevations = 150, azimuths = 200, outgoing = 110;
     std::vector<double> x, y, z;
     for (int i = 0; i < elevations; ++i) {
         for (int k = 0; k < azimuths; ++k) {
-            const Direction wi = hshfit::directionFromAngles(
-                (i + 0.5) / elevations * hshfit::pi / 2, (k + 0.5) / azimuths * 2 * hshfit::pi);
+            double theta = (i + 0.5) / elevations * hshfit::pi / 2;
+            double phi = (k + 0.5) / azimuths * 2 * hshfit::pi;
+            if (incoming == Incoming::lobe) {
+                theta = 0.5 + theta / 16;
+                phi /= 32;
+            }
+            const Direction wi = hshfit::directionFromAngles(theta, phi);
             x.push_back(wi.x);
             y.push_back(wi.y);
             z.push_back(wi.z);
@@ -91,6 +100,9 @@ void evaluate(benchmark::State& state, const std::string& spec) {
 void merlLinear(benchmark::State& state) {
     evaluate(state, merlPath());
 }
+void merlLinearInALobe(benchmark::State& state) {
+    evaluate(state, merlPath(), Incoming::lobe);
+}
 void merlNearest(benchmark::State& state) {
     evaluate(state, merlPath() + ":interpolation=nearest");
 }
@@ -99,6 +111,7 @@ void rgl(benchmark::State& state) {
 }
 
 BENCHMARK(merlLinear)->Unit(benchmark::kMillisecond);
+BENCHMARK(merlLinearInALobe)->Unit(benchmark::kMillisecond);
 BENCHMARK(merlNearest)->Unit(benchmark::kMillisecond);
 BENCHMARK(rgl)->Unit(benchmark::kMillisecond);
 
