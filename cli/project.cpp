@@ -104,7 +104,7 @@ void addProject(CLI::App& app, Globals& globals) {
                      "Give functions of odd m the Condon-Shortley sign");
     command
         .add_option("--tolerance", options->tolerance,
-                    "Relative agreement of two quadrature levels (default: 1e-6, tables 1e-3)")
+                    "Relative agreement of two quadrature levels (default: 1e-6, tables 3e-3)")
         ->check(CLI::Range(1e-13, 1.0));
     command
         .add_option("--max-evaluations", options->maxEvaluations,

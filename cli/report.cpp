@@ -141,7 +141,7 @@ void addReport(CLI::App& app, Globals& globals) {
     command.add_flag("--cosine", options->cosine, "Report f cos(theta_i) instead of f");
     command
         .add_option("--tolerance", options->tolerance,
-                    "Relative agreement of two quadrature levels (default: 1e-6, tables 1e-3)")
+                    "Relative agreement of two quadrature levels (default: 1e-6, tables 3e-3)")
         ->check(CLI::Range(1e-13, 1.0));
     command
         .add_option("--max-evaluations", options->maxEvaluations,

@@ -55,8 +55,8 @@ public:
 
     /// One lobe about the half vector, as wide as the distribution of normals.
     std::vector<Lobe> lobes(const Direction& wo) const override;
-    /// 1e-3: the interpolation has kinks, and the measurements err by more.
-    double defaultTolerance() const override { return 1e-3; }
+    /// 3e-3: the interpolation has kinks, and the measurements err by more.
+    double defaultTolerance() const override { return 3e-3; }
     std::vector<Fact> facts() const override;
 
 private:

@@ -15,9 +15,10 @@
 namespace hshfit {
 namespace {
 
-/// Lowest elevation kept: 0.1 degrees above the horizon, where models with 1/cos(theta_o) are still
-/// finite and what lies beyond is 0.03 % of the projected hemisphere.
-const double horizonRing = radians(89.9);
+/// Lowest elevation kept: 1 degree above the horizon. Texels beyond stand for what bilinear lookups
+/// blend in from outside the disc; models with 1/cos(theta_o) would make them dominate their
+/// neighbours further down (docs/accuracy.md measures it).
+const double horizonRing = radians(89);
 const double horizonRadius = std::tan(horizonRing / 2);
 constexpr int maxSize = 16384;
 

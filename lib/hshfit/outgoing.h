@@ -17,7 +17,7 @@ namespace hshfit {
 /// elevations  N radii r_k = tan(theta_k / 2) = k / (N - 1/2), phi = 0; for isotropic BRDFs only.
 /// direction   one direction, weight 1.
 ///
-/// Directions never go below `horizonRing`, 0.1 degrees above the horizon.
+/// Directions never go below `horizonRing`, 1 degree above the horizon.
 struct OutgoingSet {
     enum class Map { parabolic, elevations, direction };
 

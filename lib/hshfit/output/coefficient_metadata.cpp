@@ -21,7 +21,8 @@ constexpr const char* formatName = "hshfit-coefficients";
 constexpr int formatVersion = 1;
 constexpr const char* slotRule = "l*(l+1)+m";
 // The constants of OutgoingSet that a reader needs in order to rebuild the directions.
-constexpr double insetTexels = 1, horizonRingDegrees = 0.1;
+constexpr int insetTexels = 1;
+constexpr double horizonRingDegrees = 0.1;
 constexpr int maxMapSide = 1 << 16;
 constexpr int maxDepth = 8;
 
