@@ -1,7 +1,9 @@
-// make_seeds FOLDER: FOLDER/fuzz_rgl and FOLDER/fuzz_merl with small synthetic inputs to start
-// from.
+// make_seeds FOLDER: FOLDER/fuzz_NAME with small synthetic inputs for each target to start from.
+
+#include <hshfit/output/coefficient_file.h>
 
 #include <brdfs/tensor_writer.h>
+#include <lib/coefficient_samples.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -42,6 +44,20 @@ std::string merlScript(std::int32_t azimuths, std::uint8_t length, std::uint8_t 
     return bytes;
 }
 
+void coefficientFiles(const std::filesystem::path& folder) {
+    using namespace hshfit;
+    std::filesystem::create_directories(folder);
+    int number = 0;
+    for (const OutgoingSet& outgoing :
+         {OutgoingSet::direction(1, 2), OutgoingSet::elevations(3), OutgoingSet::parabolic(4, 5)}) {
+        for (const Channels& channels : samples::allChannels()) {
+            const auto c = samples::make(outgoing, channels, Quantity::brdf, 2, 1);
+            writeCoefficients(c, folder / (std::to_string(number) + ".json"));
+            writeCoefficients(c, folder / (std::to_string(number++) + ".exr"));
+        }
+    }
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -50,6 +66,7 @@ int main(int count, char** arguments) {
         return 2;
     }
     const std::filesystem::path folder = arguments[1];
+    coefficientFiles(folder / "fuzz_coefficients");
     int number = 0;
     for (const std::vector<float>& phi :
          {std::vector<float>{0}, {0, 1}, {-3.1415927F, -1.5707964F, 0}, {0, 0.5F, 1.5707964F}}) {
