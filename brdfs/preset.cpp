@@ -12,8 +12,6 @@
 namespace hshfit::embedded {
 extern const std::string_view preset_hsh_phong;
 extern const std::string_view preset_hsh_ward;
-extern const std::string_view preset_ward_brushed_aluminium;
-extern const std::string_view preset_ward_varnished_plywood;
 }  // namespace hshfit::embedded
 
 namespace hshfit::brdfs {
@@ -61,10 +59,6 @@ std::span<const Preset> presets() {
     static const std::array table{
         Preset{"hsh-phong", "Phong lobe of the HSH paper, exponent 22", embedded::preset_hsh_phong},
         Preset{"hsh-ward", "anisotropic Ward BRDF of the HSH paper", embedded::preset_hsh_ward},
-        Preset{"ward-brushed-aluminium", "lightly brushed aluminium, measured by Ward",
-               embedded::preset_ward_brushed_aluminium},
-        Preset{"ward-varnished-plywood", "varnished plywood, measured by Ward",
-               embedded::preset_ward_varnished_plywood},
     };
     return table;
 }

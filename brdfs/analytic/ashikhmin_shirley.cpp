@@ -41,6 +41,9 @@ public:
         return {{Lobe::About::halfway, width(std::max(nu_, nv_)), {}, width(std::min(nu_, nv_))}};
     }
 
+    /// max(cos theta_i, cos theta_o).
+    std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
+
 protected:
     void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
         const double peak = std::sqrt((nu_ + 1) * (nv_ + 1)) / (8 * pi);

@@ -44,6 +44,9 @@ public:
               {mapped(p.colour("kd"),
                       [&](double kd) { return kd / pi * SigmaTerms(p).sameSide; })}) {}
 
+    /// The larger and the smaller of the two polar angles change places.
+    std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
+
 protected:
     void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
         for (std::size_t k = 0; k < wi.count; ++k)
@@ -70,6 +73,9 @@ public:
                    {overPi(p.colour("kd")),
                     mapped(p.colour("kd"), [](double kd) { return kd * kd / pi; })}),
           r_(p) {}
+
+    /// As for the simplified form.
+    std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
 
 protected:
     void terms(const Direction& wo, DirectionBatch wi, double* out) const override {

@@ -63,6 +63,10 @@ public:
     /// Where f peaks as a function of wi. None for a BRDF as smooth as Lambert's.
     virtual std::vector<Lobe> lobes(const Direction& wo) const;
 
+    /// Heights cos(theta_i) of rings on which f has a kink for this wo, such as max(cos theta_i,
+    /// cos theta_o): quadrature puts panel ends there.
+    virtual std::vector<double> kinks(const Direction& wo) const;
+
     /// The relative quadrature tolerance to ask for by default. Interpolated tables have kinks in
     /// their values, and far larger measurement errors, so that 1e-6 would buy nothing there.
     virtual double defaultTolerance() const { return 1e-6; }

@@ -182,9 +182,21 @@ std::size_t HemisphereGrid::points() const {
     return total;
 }
 
-std::vector<double> panelBreaks(const std::vector<Lobe>& lobes, const Direction& wo) {
+std::vector<double> panelBreaks(const std::vector<Lobe>& lobes, const Direction& wo,
+                                const std::vector<double>& kinks) {
+    std::vector<double> ends = {0.0};
+    for (double mu : kinks) {
+        if (mu > 0 && mu < 1) ends.push_back(std::sqrt(mu));
+    }
+    ends.push_back(1.0);
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+
+    const std::vector<Complex> points = singularities(lobes, wo);
     std::vector<double> breaks = {0.0};
-    splitPanels(0, 1, singularities(lobes, wo), 0, breaks);
+    for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+        splitPanels(ends[k], ends[k + 1], points, 0, breaks);
+    }
     return breaks;
 }
 

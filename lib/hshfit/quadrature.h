@@ -44,8 +44,9 @@ struct GridOptions {
 /// Ends of the elevation panels, in u = sqrt(cos theta) from 0 to 1, for a BRDF with these lobes.
 /// Each lobe is taken as a complex singularity at its width's distance from the real axis; panels
 /// are halved until it lies outside a fixed Bernstein ellipse of each, so that a lobe of width w
-/// costs O(log 1/w) panels.
-std::vector<double> panelBreaks(const std::vector<Lobe>& lobes, const Direction& wo);
+/// costs O(log 1/w) panels. Panels also end at the heights cos(theta) of `kinks`.
+std::vector<double> panelBreaks(const std::vector<Lobe>& lobes, const Direction& wo,
+                                const std::vector<double>& kinks = {});
 
 /// Adds the panel [a, b] in u: Gauss-Legendre rings times equispaced azimuths, whose number follows
 /// from the same singularities seen along phi. In u, functions that behave like sqrt(cos theta) at

@@ -85,7 +85,7 @@ public:
                const RefinementOptions& options)
         : brdf_(brdf), bases_(bases), wo_(wo), options_(options), lobes_(brdf.lobes(wo)) {
         for (const Basis* basis : bases) order_ = std::max(order_, basis->order());
-        const std::vector<double> breaks = panelBreaks(lobes_, wo);
+        const std::vector<double> breaks = panelBreaks(lobes_, wo, brdf.kinks(wo));
         for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
             panels_.push_back({.a = breaks[k], .b = breaks[k + 1]});
         }
