@@ -8,9 +8,9 @@ namespace hshfit::brdfs {
 /// N = 1, or (exponent + 2) / (2 pi) if normalized, which makes ks the albedo at normal incidence.
 ///
 /// Phong 1975 (10.1145/360825.360839) gives reflected light, that is f cos(theta_i); taken as a
-/// BRDF, as here and in Lafortune & Willems 1994 (which has N), the lobe is reciprocal. The albedo of
-/// a narrow lobe falls as cos(theta_o).
-/// cos alpha is 1 - |wi - mirror|^2 / 2, so that exponents of 1e6 keep their digits.
+/// BRDF, as here and in Lafortune & Willems 1994 (which has N), the lobe is reciprocal. The albedo
+/// of a narrow lobe falls as cos(theta_o). cos alpha is 1 - |wi - mirror|^2 / 2, so that exponents
+/// of 1e6 keep their digits.
 const Model& phongModel();
 
 }  // namespace hshfit::brdfs

@@ -20,7 +20,9 @@ Elevation<double> elevationOf(const Direction& d);
 
 /// Slot of (l, m) in a coefficient vector: l(l+1) + m. Every basis uses it, with zeros in the
 /// slots of functions that it does not have.
-constexpr int slotOf(int l, int m) { return l * (l + 1) + m; }
+constexpr int slotOf(int l, int m) {
+    return l * (l + 1) + m;
+}
 
 struct BasisOptions {
     /// Multiply functions of odd m by -1, as both source papers do.
@@ -61,11 +63,11 @@ public:
     /// The functions that f is integrated against, laid out as for `theta`. They are the basis
     /// functions themselves, except for a basis that solves a Gram system (LSOSH), which uses an
     /// orthonormal set that spans the same space band by band.
-    virtual void analysisTheta(int m, std::span<const Elevation<double>> points,
-                               double* out) const;
+    virtual void analysisTheta(int m, std::span<const Elevation<double>> points, double* out) const;
 
     /// Coefficients of this basis truncated to `order` bands (order^2 values to `out`) from the
-    /// moments <f, analysis function>, given in slots; a prefix copy unless a Gram system is solved.
+    /// moments <f, analysis function>, given in slots; a prefix copy unless a Gram system is
+    /// solved.
     virtual void coefficientsFromMoments(const double* moments, int order, double* out) const;
 
     /// Squared norm of the projection of f onto the first `order` bands: the sum of the squared
