@@ -197,7 +197,7 @@ TEST_F(CoefficientFileAttack, WrongValues) {
         {"/outgoing/height", 65536, "states 262144 outgoing directions, but the file has 20"},
         {"/outgoing/width", 0, "'outgoing.width' is 0"},
         {"/outgoing/inset_texels", 2, "'outgoing.inset_texels' has to be 1"},
-        {"/outgoing/horizon_ring_degrees", 1, "'outgoing.horizon_ring_degrees' has to be 0.1"},
+        {"/outgoing/horizon_ring_degrees", 0.1, "'outgoing.horizon_ring_degrees' has to be 1"},
         {"/coefficients", Json::array(),
          "states 20 outgoing directions, but 'coefficients' is missing or empty"},
         {"/coefficients/3/1/2", nullptr, "coefficients[3][1][2] is not a number"},
@@ -365,7 +365,7 @@ TEST_F(CoefficientFileAttack, ExrHeaders) {
     change("is 4 x 5 pixels; its outgoing directions are 5 x 4",
            attribute("hshfit:outgoing",
                      "{\"map\":\"parabolic\",\"width\":5,\"height\":4,"
-                     "\"inset_texels\":1,\"horizon_ring_degrees\":0.1}"));
+                     "\"inset_texels\":1,\"horizon_ring_degrees\":1}"));
     change("has 12 channels; order 3 and 3 colour channels need 27",
            attribute("hshfit:basis",
                      "{\"name\":\"hsh\",\"order\":3,\"condon_shortley\":false,"

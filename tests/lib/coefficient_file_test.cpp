@@ -6,6 +6,7 @@
 
 #include "lib/coefficient_samples.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdio>
@@ -214,6 +215,24 @@ TEST(CoefficientFile, WritingTwiceGivesTheSameBytes) {
         writeCoefficients(c, folder / ("a" + extension));
         writeCoefficients(c, folder / ("b" + extension));
         EXPECT_EQ(contentOf(folder / ("a" + extension)), contentOf(folder / ("b" + extension)));
+    }
+}
+
+// The ring that the file states is the one that the directions have.
+TEST(CoefficientFile, StatesTheHorizonRing) {
+    const Folder folder;
+    for (const auto& set : {OutgoingSet::parabolic(6, 6), OutgoingSet::elevations(2000)}) {
+        double lowest = 90;
+        for (const Direction& d : set.directions) {
+            lowest = std::min(lowest, 90 - degrees(polarAngle(d)));
+        }
+        writeCoefficients(samples::make(set, Channels::grey(), Quantity::brdf, 1, 1),
+                          folder / "c.json");
+        const std::string content = contentOf(folder / "c.json");
+        const std::string key = "\"horizon_ring_degrees\":";
+        const auto at = content.find(key);
+        ASSERT_NE(at, std::string::npos);
+        EXPECT_NEAR(std::stod(content.substr(at + key.size())), lowest, 1e-9);
     }
 }
 

@@ -22,7 +22,7 @@ constexpr int formatVersion = 1;
 constexpr const char* slotRule = "l*(l+1)+m";
 // The constants of OutgoingSet that a reader needs in order to rebuild the directions.
 constexpr int insetTexels = 1;
-constexpr double horizonRingDegrees = 0.1;
+constexpr double horizonRingDegrees = 1;
 constexpr int maxMapSide = 1 << 16;
 constexpr int maxDepth = 8;
 
