@@ -255,7 +255,7 @@ TEST_F(Files, BadPresets) {
 }
 
 TEST(Presets, AllOpenAndNameTheirSource) {
-    EXPECT_GE(presets().size(), 3u);
+    EXPECT_GE(presets().size(), 2u);
     for (const Preset& preset : presets()) {
         const std::string spec = "preset:" + std::string(preset.name);
         EXPECT_NO_THROW(open(spec)) << spec;
