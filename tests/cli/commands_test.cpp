@@ -1,0 +1,206 @@
+// The program as a user meets it: exit codes, one-line errors, nothing half-written, the same bytes
+// whatever the threads.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <sys/wait.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Answer {
+    int code;
+    std::string out, err;
+};
+
+class Cli : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string name = fs::temp_directory_path() / "hshfit-cli-XXXXXX";
+        ASSERT_NE(mkdtemp(name.data()), nullptr);
+        folder_ = name;
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    std::string path(const std::string& name) const { return folder_ / name; }
+
+    Answer run(const std::string& arguments) const {
+        const std::string err = path("stderr");
+        std::FILE* pipe =
+            popen((std::string(HSHFIT_PROGRAM) + " " + arguments + " 2>" + err).c_str(), "r");
+        Answer answer{};
+        std::array<char, 4096> buffer;
+        while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
+            answer.out.append(buffer.data(), n);
+        }
+        answer.code = WEXITSTATUS(pclose(pipe));
+        answer.err = read(err);
+        fs::remove(err);
+        return answer;
+    }
+
+    static std::string read(const std::string& file) {
+        std::ifstream in(file, std::ios::binary);
+        std::stringstream text;
+        text << in.rdbuf();
+        return text.str();
+    }
+    void write(const std::string& name, const std::string& text) const {
+        std::ofstream(path(name), std::ios::binary) << text;
+    }
+
+    /// Exit code, one line on standard error that contains `part`, and no files but those known.
+    void expectError(const std::string& arguments, int code, const std::string& part,
+                     std::ptrdiff_t files) const {
+        const Answer answer = run(arguments);
+        EXPECT_EQ(answer.code, code) << arguments << "\n" << answer.err;
+        EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1) << answer.err;
+        EXPECT_NE(answer.err.find(part), std::string::npos) << answer.err;
+        EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), files) << arguments;
+    }
+
+    fs::path folder_;
+};
+
+TEST_F(Cli, EveryCommandHasHelpWithAnExample) {
+    for (const char* command :
+         {"list", "info", "eval", "project", "report", "compare", "convert"}) {
+        const Answer answer = run(std::string(command) + " --help");
+        EXPECT_EQ(answer.code, 0);
+        EXPECT_NE(answer.out.find("Example: hshfit " + std::string(command)), std::string::npos);
+    }
+}
+
+TEST_F(Cli, UsageErrorsNameWhatIsValid) {
+    expectError("frobnicate", 2, "--help", 0);
+    expectError("eval lambret --wi 0,0 --wo 0,0", 2, "lambert", 0);
+    expectError("eval phong:expnent=3 --wi 0,0 --wo 0,0", 2, "exponent", 0);
+    expectError("eval lambert --wi 0 --wo 0,0", 2, "THETA,PHI", 0);
+    expectError("eval lambert --wi 120,0 --wo 0,0", 2, "0 to 90", 0);
+    expectError("project lambert -o " + path("x.json") + " --basis hsw", 2, "zernike", 0);
+    expectError("project lambert -o " + path("x.json") + " --order 0", 2, "order", 0);
+    expectError("project lambert -o " + path("x.txt"), 2, ".json", 0);
+    expectError("project lambert -o " + path("x.json") + " --outgoing 3y3", 2, "32x32", 0);
+    expectError("project ward:ax=.1,ay=.2 -o " + path("x.json") + " --outgoing 8", 2, "anisotropic",
+                0);
+    expectError("compare lambert lambert --metrics nope", 2, "relative-l2", 0);
+    expectError("report lambert", 2, "-o DIR", 0);
+}
+
+TEST_F(Cli, BadInputIsOneLineAndLeavesNothing) {
+    write("empty.binary", "");
+    write("noise.bsdf", "tensor_file");
+    write("short.json", R"({"format":"hshfit-coefficients","version":1,)");
+    write("columns.csv", "wi_x,wi_y,wi_z,wo_x,wo_y\n0,0,1,0,0\n");
+    write("length.csv", "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,2,0,0,1\n");
+    write("nan.csv", "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\nnan,0,1,0,0,1\n");
+    expectError("info " + path("empty.binary"), 3, "empty.binary", 6);
+    expectError("info " + path("noise.bsdf"), 3, "noise.bsdf", 6);
+    expectError("info " + path("short.json"), 3, "short.json", 6);
+    expectError("info " + folder_.string(), 3, folder_.filename(), 6);
+    expectError("project " + path("noise.bsdf") + " -o " + path("x.json"), 3, "noise.bsdf", 6);
+    for (const char* csv : {"columns.csv", "length.csv", "nan.csv"}) {
+        expectError("eval lambert --pairs " + path(csv) + " -o " + path("out.csv"), 3, csv, 6);
+    }
+}
+
+TEST_F(Cli, NumbersThatDoNotExistEndInFour) {
+    const Answer ward = run("report ward:ax=.2,ay=.5 --json --outgoing 45,0 --max-order 3");
+    EXPECT_EQ(ward.code, 4);
+    EXPECT_NE(ward.out.find("\"finite\": false"), std::string::npos);
+    EXPECT_NE(ward.out.find("\"value\": null"), std::string::npos);
+    EXPECT_NE(ward.err.find("--cosine"), std::string::npos);
+    expectError("project ward:ax=.2,ay=.5,variant=duer -o " + path("x.json"), 4, "--cosine", 0);
+    expectError(
+        "project phong:exponent=1e6 --outgoing 45,0 --max-evaluations 1000 -o " + path("x.json"), 4,
+        "not converged", 0);
+}
+
+TEST_F(Cli, OutputErrorsEndInFive) {
+    expectError("project lambert --outgoing 0,0 -o " + path("absent/x.json"), 5, "absent", 0);
+    EXPECT_EQ(run("list bases >/dev/full").code, 5);
+}
+
+TEST_F(Cli, EvalPrintsTheFormula) {
+    EXPECT_NEAR(std::stod(run("eval lambert:kd=.5 --wi 10,0 --wo 20,0").out.substr(5)), 0.5 / M_PI,
+                1e-15);
+    const std::string cosine = run("eval phong:exponent=3 --wi 60,0 --wo 50,180 --cosine").out;
+    EXPECT_NEAR(std::stod(cosine.substr(5)), std::pow(std::cos(M_PI / 18), 3) * 0.5, 1e-14);
+}
+
+TEST_F(Cli, PairsIgnoreOtherColumnsAndRepeatGrey) {
+    write("in.csv", "id,wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n7,0,0.6,0.8,0,0,1\n");
+    const Answer answer = run("eval lambert --cosine --pairs " + path("in.csv"));
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    std::stringstream lines(answer.out);
+    std::string header, row;
+    std::getline(lines, header);
+    std::getline(lines, row);
+    EXPECT_EQ(header, "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,r,g,b");
+    const auto last = row.rfind(',');
+    EXPECT_NEAR(std::stod(row.substr(last + 1)), 0.8 / M_PI, 1e-15);
+}
+
+TEST_F(Cli, SameBytesWhateverTheThreads) {
+    const std::string job = "project ggx:alpha=.3 --cosine --order 5 --outgoing 12x12 ";
+    ASSERT_EQ(run(job + "--threads 1 -o " + path("a.json")).code, 0);
+    ASSERT_EQ(run(job + "--threads 2 -o " + path("b.json")).code, 0);
+    EXPECT_EQ(read(path("a.json")), read(path("b.json")));
+    EXPECT_FALSE(read(path("a.json")).empty());
+}
+
+TEST_F(Cli, CoefficientFilesReconstructTheSameFunction) {
+    const std::string job = "project ggx:alpha=.5 --cosine --order 6 --outgoing 50,20 -o ";
+    ASSERT_EQ(run(job + path("c.json")).code, 0);
+    ASSERT_EQ(run(job + path("c.exr")).code, 0);
+    const std::string at = " --wi 40,200 --wo 50,20";
+    const double json = std::stod(run("eval " + path("c.json") + at).out.substr(5));
+    const double exr = std::stod(run("eval " + path("c.exr") + at).out.substr(5));
+    EXPECT_NEAR(json, exr, 1e-5 * std::abs(json));
+    EXPECT_NEAR(json, std::stod(run("eval ggx:alpha=.5" + at).out.substr(5)), 0.3 * json);
+}
+
+TEST_F(Cli, ConvertWritesWhatIsReadBack) {
+    ASSERT_EQ(run("convert lambert:kd=.5 " + path("l.binary")).code, 0);
+    const std::string value = run("eval " + path("l.binary") + " --wi 30,0 --wo 40,90").out;
+    EXPECT_NEAR(std::stod(value.substr(2)), 0.5 / M_PI, 1e-9);
+    expectError("convert lambert " + path("l.binary"), 5, "l.binary", 1);
+    EXPECT_EQ(run("convert lambert --force " + path("l.binary")).code, 0);
+}
+
+TEST_F(Cli, JsonAnswersKeepTheirSchemas) {
+    if (std::system("/usr/bin/python3 -c 'import jsonschema' 2>/dev/null") != 0) {
+        GTEST_SKIP() << "python3-jsonschema is not installed";
+    }
+    const std::pair<const char*, std::string> answers[] = {
+        {"list", "list --json"},
+        {"info", "info ggx:alpha=.4 --json"},
+        {"eval", "eval lambert --wi 0,0 --wo 0,0 --json"},
+        {"project", "project lambert --outgoing 4 --json -o " + path("x.json")},
+        {"report", "report phong:exponent=5 --outgoing 20,0 --max-order 4 --json"},
+        {"compare", "compare lambert phong:exponent=2 --outgoing 4 --json"},
+        {"convert", "convert lambert --json " + path("x.binary")}};
+    for (const auto& [name, arguments] : answers) {
+        const Answer answer = run(arguments);
+        ASSERT_EQ(answer.code, 0) << arguments << answer.err;
+        write("answer.json", answer.out);
+        const std::string source = HSHFIT_SOURCE;
+        const std::string check = "/usr/bin/python3 " + source + "/tests/validate_schema.py " +
+                                  source + "/docs/schemas/" + name + ".schema.json " +
+                                  path("answer.json");
+        EXPECT_EQ(std::system(check.c_str()), 0) << name;
+    }
+}
+
+}  // namespace
