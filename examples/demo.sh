@@ -46,12 +46,14 @@ finding "f of the Ward BRDF grows as 1/sqrt(cos theta) towards the horizon, so t
 
 echo
 echo "Captured energy of f cos with order 7 (49 slots) and the files it went to:"
-# The columns after the BRDF and the outgoing directions, which may hold commas.
+# The BRDF is the last column, in quotes and with commas of its own.
 awk -F, '
-    NR == 1 { for (i = 1; i <= NF; ++i) fromEnd[$i] = NF - i; next }
-    $(NF - fromEnd["order"]) == 7 {
-        printf "  %-44s %-16s %3d coefficients  %s\n", $1, $(NF - fromEnd["basis"]),
-               $(NF - fromEnd["coefficients"]), $(NF - fromEnd["accuracy"])
+    NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
+    $at["order"] == 7 {
+        split($0, quoted, "\"")
+        name = quoted[4]
+        printf "  %-24s %-16s %3d coefficients  %.6f\n", name, $at["basis"],
+               $at["coefficients"], $at["accuracy"]
     }' out/report_cosine/curves.csv
 for file in out/phong.json out/phong_cosine.json out/ward_cosine.json out/ggx_cosine.exr; do
     printf '  %-28s %8d KB\n' "$file" $(($(wc -c <"$file") / 1000))
