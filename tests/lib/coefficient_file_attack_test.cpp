@@ -308,6 +308,15 @@ Plan planOf(const std::string& path) {
     return plan;
 }
 
+/// `header` without one attribute; Header::erase leaks it.
+Imf::Header without(const Imf::Header& header, const std::string& name) {
+    Imf::Header result(4, 5);
+    for (auto i = header.begin(); i != header.end(); ++i) {
+        if (i.name() != name) result.insert(i.name(), i.attribute());
+    }
+    return result;
+}
+
 void save(const Imf::Header& header, const std::string& path, float value = 1, int rows = -1) {
     const auto& box = header.dataWindow();
     const int width = box.max.x - box.min.x + 1, height = box.max.y - box.min.y + 1;
@@ -348,9 +357,9 @@ TEST_F(CoefficientFileAttack, ExrHeaders) {
         const std::string name = i.name();
         if (!name.starts_with("hshfit:")) continue;
         change(("'" + name.substr(7) + "' is missing").c_str(),
-               [&](Imf::Header& h) { h.erase(name); });
+               [&](Imf::Header& h) { h = without(h, name); });
         change("has to be a string", [&](Imf::Header& h) {
-            h.erase(name);
+            h = without(h, name);
             h.insert(name, Imf::IntAttribute(1));
         });
     }

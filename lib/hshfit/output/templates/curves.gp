@@ -82,7 +82,8 @@ do for [pass = 1:2] {
 
         set lmargin at screen 0.105
         set rmargin at screen 0.435
-        set ylabel 'captured energy' offset screen -0.005, 0
+        set label 3 'captured energy' at screen 0.016, screen bottom + 0.51 * rowHeight \
+            center rotate
         set xlabel 'coefficients'
         set logscale x
         set xrange [1:maxCount[row]]
@@ -92,9 +93,9 @@ do for [pass = 1:2] {
             with linespoints linetype basis pointinterval interval[row]
 
         unset label 1
+        unset label 3
         set lmargin at screen 0.52
         set rmargin at screen 0.85
-        unset ylabel
         set xlabel 'order'
         unset logscale x
         set xrange [1:maxOrder[row]]
