@@ -41,7 +41,7 @@ const Folder& folder() {
 std::string merlPath() {
     const std::string path = folder().path / "ggx.binary";
     if (!std::filesystem::exists(path)) {
-        hshfit::brdfs::writeMerl(*hshfit::brdfs::open("ggx:alpha=0.1"), path, false);
+        hshfit::brdfs::writeMerl(*hshfit::brdfs::open("ggx:alpha=0.1"), path, {});
     }
     return path;
 }

@@ -10,7 +10,9 @@
 #include <brdfs/analytic/oren_nayar.h>
 #include <brdfs/analytic/phong.h>
 #include <brdfs/analytic/ward.h>
-#include <brdfs/measured/formats.h>
+#include <brdfs/measured/merl.h>
+#include <brdfs/measured/merl_writer.h>
+#include <brdfs/measured/rgl.h>
 #include <brdfs/preset.h>
 #include <brdfs/spec.h>
 #include <hshfit/error.h>
@@ -130,6 +132,11 @@ std::span<const Model> models() {
 
 std::span<const Format> formats() {
     static const std::vector<Format> table{merlFormat(), rglFormat()};
+    return table;
+}
+
+std::span<const Writer> writers() {
+    static const std::vector<Writer> table{merlWriter()};
     return table;
 }
 

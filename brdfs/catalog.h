@@ -2,6 +2,7 @@
 
 #include <hshfit/brdf.h>
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -66,8 +67,27 @@ struct Format {
     std::unique_ptr<Brdf> (*open)(const std::string& path, const Parameters& parameters);
 };
 
+struct WriteOptions {
+    bool force = false;  ///< replace a file that stands
+    std::function<void(std::size_t, std::size_t)> progress = {};
+};
+
+/// One row of the table of formats that can be written.
+struct Writer {
+    std::string_view name;  ///< that of the format which reads it back, if there is one
+    std::string_view help;
+    std::string_view extension;         ///< with the dot; `convert` chooses by it
+    std::vector<Parameter> parameters;  ///< options: --to NAME:key=value
+    /// Samples a BRDF at the nodes of the format and writes them through an AtomicFile. Returns
+    /// what the format leaves out or alters apart from sampling, a sentence each. Throws UsageError
+    /// for a BRDF that the format cannot hold, NumericError for values that it cannot, OutputError.
+    std::vector<std::string> (*write)(const Brdf& brdf, const std::string& path,
+                                      const Parameters& parameters, const WriteOptions& options);
+};
+
 std::span<const Model> models();
 std::span<const Format> formats();
+std::span<const Writer> writers();
 
 /// Opens "model[:key=value,…]". Throws UsageError as `open` does.
 std::unique_ptr<Brdf> openModel(std::string_view spec);

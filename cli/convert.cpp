@@ -27,7 +27,7 @@ void runConvert(const ConvertOptions& options, const Globals& globals) {
                         options.output));
     }
     const auto brdf = openSource(options.input);
-    brdfs::writeMerl(*brdf, options.output, options.force);
+    brdfs::writeMerl(*brdf, options.output, {.force = options.force});
     brdf->checkIntact();
     const auto bytes = std::filesystem::file_size(path);
     if (globals.json) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <brdfs/catalog.h>
 #include <brdfs/measured/merl_layout.h>
 #include <hshfit/brdf.h>
 #include <hshfit/mapped_file.h>
@@ -68,5 +69,8 @@ private:
     Laws laws_;
     mutable std::atomic<std::int64_t> corruptCell_{-1};  ///< channel * cells + cell
 };
+
+/// The row of the table of formats.
+const Format& merlFormat();
 
 }  // namespace hshfit::brdfs

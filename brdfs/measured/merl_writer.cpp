@@ -51,9 +51,10 @@ std::array<double, 3> sampleNode(const Brdf& brdf, std::size_t h, std::size_t d,
 
 }  // namespace
 
-void writeMerl(const Brdf& brdf, const std::string& path, bool force) {
+void writeMerl(const Brdf& brdf, const std::string& path, const WriteOptions& options) {
     checkRepresentable(brdf);
-    AtomicFile file(path, force ? AtomicFile::Existing::replace : AtomicFile::Existing::refuse);
+    AtomicFile file(path,
+                    options.force ? AtomicFile::Existing::replace : AtomicFile::Existing::refuse);
     const MerlLayout layout{.azimuthCount = brdf.laws().reciprocal ? 180u : 360u};
     std::vector<double> cells(3 * layout.cells());
     tbb::parallel_for(
@@ -75,6 +76,22 @@ void writeMerl(const Brdf& brdf, const std::string& path, bool force) {
     file.write(std::as_bytes(std::span(header)));
     file.write(std::as_bytes(std::span(cells)));
     file.commit();
+}
+
+const Writer& merlWriter() {
+    static const Writer writer{
+        .name = "merl",
+        .help = "MERL table of half and difference angles, isotropic, RGB",
+        .extension = ".binary",
+        .parameters = {},
+        .write =
+            [](const Brdf& brdf, const std::string& path, const Parameters&,
+               const WriteOptions& options) {
+                writeMerl(brdf, path, options);
+                return std::vector<std::string>();
+            },
+    };
+    return writer;
 }
 
 }  // namespace hshfit::brdfs

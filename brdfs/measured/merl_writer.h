@@ -1,6 +1,6 @@
 #pragma once
 
-#include <hshfit/brdf.h>
+#include <brdfs/catalog.h>
 
 #include <string>
 
@@ -10,10 +10,13 @@ namespace hshfit::brdfs {
 /// as a MERL `.binary` file; read back, the nodes have the same values to rounding. A BRDF that
 /// does not claim reciprocity is written with 360 differences in azimuth (69,984,012 bytes) in
 /// place of 180 (34,992,012 bytes). Cells with a direction below the horizon hold -1; grey values
-/// go to all three channels. The file appears only once it is complete; `force` replaces one.
+/// go to all three channels. The file appears only once it is complete.
 ///
 /// Throws UsageError for an anisotropic or spectral BRDF, NumericError where f is negative or not
 /// finite, OutputError if the file cannot be written or stands and is not to be replaced.
-void writeMerl(const Brdf& brdf, const std::string& path, bool force);
+void writeMerl(const Brdf& brdf, const std::string& path, const WriteOptions& options);
+
+/// The row of the table of writers.
+const Writer& merlWriter();
 
 }  // namespace hshfit::brdfs

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <brdfs/catalog.h>
 #include <brdfs/measured/rgl_tables.h>
 #include <hshfit/brdf.h>
 
@@ -69,5 +70,8 @@ private:
     Laws laws_;
     double lobeWidth_ = 1;
 };
+
+/// The row of the table of formats.
+const Format& rglFormat();
 
 }  // namespace hshfit::brdfs

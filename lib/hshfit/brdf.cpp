@@ -2,6 +2,10 @@
 
 namespace hshfit {
 
+void Brdf::coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const {
+    for (std::size_t k = 0; k < wi.count; ++k) covered[k] = wo.z > 0 && wi.z[k] > 0;
+}
+
 std::vector<Lobe> Brdf::lobes(const Direction&) const {
     return {};
 }

@@ -60,6 +60,10 @@ public:
     /// wi.z <= 0 or wo.z <= 0. Must not throw for any pair of unit vectors.
     virtual void eval(const Direction& wo, DirectionBatch wi, double* out) const = 0;
 
+    /// covered[k] = 1 where f rests on measured samples, 0 where it was continued beyond them or is
+    /// absent. A model covers every pair of directions above the horizon.
+    virtual void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const;
+
     /// Where f peaks as a function of wi. None for a BRDF as smooth as Lambert's.
     virtual std::vector<Lobe> lobes(const Direction& wo) const;
 

@@ -33,7 +33,7 @@ double storedAt(const std::string& bytes, std::size_t azimuths, std::size_t c, s
 void expectNodesKept(const std::string& spec, std::size_t azimuths) {
     const auto brdf = brdfs::open(spec);
     const TemporaryFile file("standing", ".binary");
-    brdfs::writeMerl(*brdf, file.path(), true);
+    brdfs::writeMerl(*brdf, file.path(), {.force = true});
     const std::string bytes = contentOf(file.path());
     ASSERT_EQ(bytes.size(), 12 + 3 * 8 * 8100 * azimuths);
     std::int32_t header[3];
@@ -90,7 +90,7 @@ TEST(MerlWriter, whatIsNotReciprocalGetsTheWholeCircle) {
         Laws laws_{.isotropic = true};
     };
     const TemporaryFile file;
-    brdfs::writeMerl(OneSided(), file.path(), true);
+    brdfs::writeMerl(OneSided(), file.path(), {.force = true});
     const MerlBrdf read(file.path());
     EXPECT_EQ(read.layout().azimuthCount, 360u);
     for (const double p : {20.0, 200.0, 359.0}) {
@@ -102,7 +102,7 @@ TEST(MerlWriter, whatIsNotReciprocalGetsTheWholeCircle) {
 TEST(MerlWriter, refusesWhatTheFormatCannotHold) {
     const TemporaryFile file("standing");
     try {
-        brdfs::writeMerl(*brdfs::open("ward:ax=0.2,ay=0.5"), file.path(), true);
+        brdfs::writeMerl(*brdfs::open("ward:ax=0.2,ay=0.5"), file.path(), {.force = true});
         ADD_FAILURE() << "anisotropic BRDF written";
     } catch (const UsageError& error) {
         EXPECT_NE(std::string(error.what()).find("anisotropic"), std::string::npos);
@@ -113,9 +113,10 @@ TEST(MerlWriter, refusesWhatTheFormatCannotHold) {
 TEST(MerlWriter, replacesOnlyIfForcedAndLeavesNothingElse) {
     const TemporaryFile file("standing");
     const auto lambert = brdfs::open("lambert");
-    EXPECT_THROW(brdfs::writeMerl(*lambert, file.path(), false), OutputError);
+    EXPECT_THROW(brdfs::writeMerl(*lambert, file.path(), {}), OutputError);
     EXPECT_EQ(contentOf(file.path()), "standing");
-    EXPECT_THROW(brdfs::writeMerl(*lambert, "/no/such/folder/x.binary", true), OutputError);
+    EXPECT_THROW(brdfs::writeMerl(*lambert, "/no/such/folder/x.binary", {.force = true}),
+                 OutputError);
 
     class Broken : public Brdf {
     public:
@@ -130,7 +131,7 @@ TEST(MerlWriter, replacesOnlyIfForcedAndLeavesNothingElse) {
     };
     const std::string folder = file.path() + ".folder";
     std::filesystem::create_directory(folder);
-    EXPECT_THROW(brdfs::writeMerl(Broken(), folder + "/x.binary", false), NumericError);
+    EXPECT_THROW(brdfs::writeMerl(Broken(), folder + "/x.binary", {}), NumericError);
     EXPECT_TRUE(std::filesystem::is_empty(folder));
     std::filesystem::remove(folder);
 }

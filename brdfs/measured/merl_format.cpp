@@ -1,9 +1,5 @@
-#include <brdfs/measured/formats.h>
 #include <brdfs/measured/merl.h>
-#include <brdfs/measured/rgl.h>
-#include <brdfs/measured/tensor_file.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <cstring>
 
@@ -29,15 +25,6 @@ std::unique_ptr<Brdf> openMerl(const std::string& path, const Parameters& parame
         path, nearest ? MerlInterpolation::nearest : MerlInterpolation::linear);
 }
 
-bool looksLikeRgl(std::span<const unsigned char> head, std::uint64_t) {
-    return head.size() >= TensorFile::magic.size() &&
-           std::equal(TensorFile::magic.begin(), TensorFile::magic.end(), head.begin());
-}
-
-std::unique_ptr<Brdf> openRgl(const std::string& path, const Parameters&) {
-    return RglBrdf::open(path);
-}
-
 }  // namespace
 
 const Format& merlFormat() {
@@ -52,18 +39,6 @@ const Format& merlFormat() {
                         .fallback = {},
                         .choices = {"linear", "nearest"}}},
         .open = openMerl,
-    };
-    return format;
-}
-
-const Format& rglFormat() {
-    static const Format format{
-        .name = "rgl",
-        .help = "RGL adaptive parameterisation, isotropic or not, RGB or spectral",
-        .extension = ".bsdf",
-        .recognises = looksLikeRgl,
-        .parameters = {},
-        .open = openRgl,
     };
     return format;
 }

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <hshfit/brdf.h>
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// What the stored values of a file are like, counted one by one (a channel of a cell is a value).
+struct Census {
+    std::uint64_t values = 0;        ///< stored in the file
+    std::uint64_t belowHorizon = 0;  ///< of cells with a direction below the horizon
+    /// The rest are values above the horizon.
+    std::uint64_t invalid = 0;   ///< marked as not measured by the format's own convention
+    std::uint64_t negative = 0;  ///< below zero and not such a mark
+    std::uint64_t notANumber = 0, infinite = 0;
+    /// Over the finite values above the horizon that are not marked invalid, as f in 1/sr.
+    double least = std::numeric_limits<double>::infinity();
+    double greatest = -std::numeric_limits<double>::infinity();
+
+    /// Counts one value of a cell above the horizon that is not marked invalid.
+    void add(double value);
+};
+
+/// How densely one coordinate is sampled.
+struct Axis {
+    std::string name;  ///< "theta_half", "phi_i", "wavelength", …
+    std::string unit;  ///< "degrees" or "nm"
+    std::size_t count = 0;
+    double first = 0, last = 0;
+    double largestGap = 0;  ///< between neighbouring nodes
+};
+
+/// A BRDF behind which stand stored values.
+class MeasuredBrdf : public Brdf {
+public:
+    /// Reads all stored values.
+    virtual Census census() const = 0;
+    /// The coordinates of a table; for scattered samples, what the samples span.
+    virtual std::vector<Axis> axes() const = 0;
+};
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,32 @@
+#include <brdfs/measured/rgl.h>
+#include <brdfs/measured/tensor_file.h>
+
+#include <algorithm>
+
+namespace hshfit::brdfs {
+namespace {
+
+bool looksLikeRgl(std::span<const unsigned char> head, std::uint64_t) {
+    return head.size() >= TensorFile::magic.size() &&
+           std::equal(TensorFile::magic.begin(), TensorFile::magic.end(), head.begin());
+}
+
+std::unique_ptr<Brdf> openRgl(const std::string& path, const Parameters&) {
+    return RglBrdf::open(path);
+}
+
+}  // namespace
+
+const Format& rglFormat() {
+    static const Format format{
+        .name = "rgl",
+        .help = "RGL adaptive parameterisation, isotropic or not, RGB or spectral",
+        .extension = ".bsdf",
+        .recognises = looksLikeRgl,
+        .parameters = {},
+        .open = openRgl,
+    };
+    return format;
+}
+
+}  // namespace hshfit::brdfs
