@@ -41,6 +41,10 @@ public:
     virtual Census census() const = 0;
     /// The coordinates of a table; for scattered samples, what the samples span.
     virtual std::vector<Axis> axes() const = 0;
+
+    /// As checkIntact(), but takes stored values that are no numbers for missing ones. For whoever
+    /// reports on them or fills them in.
+    virtual void checkReadable() const { checkIntact(); }
 };
 
 }  // namespace hshfit::brdfs

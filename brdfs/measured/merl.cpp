@@ -62,6 +62,8 @@ struct MerlBrdf::Indices {
 
     void set(const Direction& wo, const DirectionBatch& wi, std::size_t begin, std::size_t count,
              bool reciprocal);
+    /// To the nearest nodes.
+    void round(std::size_t count, std::size_t azimuths);
 };
 
 // With u = wi + wo and v = wi - wo (so that h = u/|u|, and v is at right angles to it):
@@ -101,6 +103,14 @@ void MerlBrdf::Indices::set(const Direction& wo, const DirectionBatch& wi, std::
     for (std::size_t k = 0; k < count; ++k) {
         const double angle = 180 / pi * rayAngle(sine[k], cosine[k]);
         p[k] = angle < 0 ? angle + 360 : angle;
+    }
+}
+
+void MerlBrdf::Indices::round(std::size_t count, std::size_t azimuths) {
+    for (std::size_t k = 0; k < count; ++k) {
+        h[k] = std::min(std::floor(h[k] + 0.5), 89.0);
+        d[k] = std::min(std::floor(d[k] + 0.5), 89.0);
+        p[k] = static_cast<double>(static_cast<std::size_t>(p[k] + 0.5) % azimuths);
     }
 }
 
@@ -231,11 +241,9 @@ inline void MerlBrdf::interpolateLinear(const Corners& at, std::size_t k, double
 
 inline void MerlBrdf::lookUpNearest(const Indices& at, std::size_t k, double* out,
                                     std::size_t stride) const {
-    const std::size_t azimuths = layout_.azimuthCount;
-    const auto h = std::min<std::size_t>(static_cast<unsigned>(at.h[k] + 0.5), 89);
-    const auto d = std::min<std::size_t>(static_cast<unsigned>(at.d[k] + 0.5), 89);
-    const std::size_t p = static_cast<unsigned>(at.p[k] + 0.5) % azimuths;
-    const std::size_t cell = layout_.cell(h, d, p);
+    const std::size_t cell =
+        layout_.cell(static_cast<unsigned>(at.h[k]), static_cast<unsigned>(at.d[k]),
+                     static_cast<unsigned>(at.p[k]));
     for (std::size_t c = 0; c < 3; ++c) {
         const double v = raw(c, cell);
         if (!std::isfinite(v)) remember(c, cell);
@@ -254,7 +262,11 @@ void MerlBrdf::eval(const Direction& wo, DirectionBatch wi, double* out) const {
     for (std::size_t begin = 0; begin < wi.count; begin += blockSize) {
         const std::size_t count = std::min(blockSize, wi.count - begin);
         at.set(wo, wi, begin, count, layout_.azimuthCount == 180);
-        if (linear) corners.set(at, count, layout_);
+        if (linear) {
+            corners.set(at, count, layout_);
+        } else {
+            at.round(count, layout_.azimuthCount);
+        }
         for (std::size_t k = 0; k < count; ++k) {
             if (linear && k + prefetchDistance < count) {
                 prefetch(corners, k + prefetchDistance);
@@ -267,6 +279,36 @@ void MerlBrdf::eval(const Direction& wo, DirectionBatch wi, double* out) const {
             } else {
                 lookUpNearest(at, k, to, wi.count);
             }
+        }
+    }
+}
+
+bool MerlBrdf::rests(const Corners& at, std::size_t k) const {
+    int valid = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+        bool any = false;
+        for (int i = 0; i < 8 && !any; ++i) {
+            const double t[3] = {i & 4 ? at.th[k] : 1 - at.th[k], i & 2 ? at.td[k] : 1 - at.td[k],
+                                 i & 1 ? at.tp[k] : 1 - at.tp[k]};
+            if (t[0] * t[1] * t[2] <= 0) continue;
+            any = isValue(raw(c, at.row[i / 2][k] + (i % 2 == 0 ? at.p0[k] : at.p1[k])));
+        }
+        valid += any;
+    }
+    return valid == 3;
+}
+
+void MerlBrdf::coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const {
+    Indices at;
+    Corners corners;
+    for (std::size_t begin = 0; begin < wi.count; begin += blockSize) {
+        const std::size_t count = std::min(blockSize, wi.count - begin);
+        at.set(wo, wi, begin, count, layout_.azimuthCount == 180);
+        if (interpolation_ == MerlInterpolation::nearest) at.round(count, layout_.azimuthCount);
+        corners.set(at, count, layout_);
+        for (std::size_t k = 0; k < count; ++k) {
+            const bool above = wo.z > 0 && wi.z[begin + k] > 0;
+            covered[begin + k] = above && rests(corners, k);
         }
     }
 }

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <brdfs/catalog.h>
+#include <brdfs/measured/measured_brdf.h>
 #include <brdfs/measured/merl_layout.h>
-#include <hshfit/brdf.h>
 #include <hshfit/mapped_file.h>
 
 #include <atomic>
@@ -23,7 +23,7 @@ enum class MerlInterpolation {
 /// Beyond the last node (theta_h > 88.01 deg, theta_d > 89 deg) the table is continued constantly.
 /// Where none of the cells is valid, f is 0. A cell that is NaN or infinite is taken as invalid and
 /// remembered, and checkIntact() throws InputError naming it. Indices are accurate to 1e-9.
-class MerlBrdf : public Brdf {
+class MerlBrdf : public MeasuredBrdf {
 public:
     /// Throws InputError if the dimensions or the size of the file are not those of a MERL file.
     explicit MerlBrdf(const std::string& path,
@@ -39,9 +39,15 @@ public:
     std::vector<Lobe> lobes(const Direction& wo) const override;
     /// 3e-3: the interpolation has a kink at every node, and the measurements err by more.
     double defaultTolerance() const override { return 3e-3; }
-    /// Reads the whole table.
     std::vector<Fact> facts() const override;
     void checkIntact() const override;
+    void checkReadable() const override { file_.checkIntact(); }
+
+    /// Where one of the cells that f is interpolated from is valid in every channel.
+    void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
+    /// Invalid are the values -1; negative are others below zero, which count as invalid as well.
+    Census census() const override;
+    std::vector<Axis> axes() const override;
 
     const MerlLayout& layout() const { return layout_; }
     /// What the file says, times merlScale: f at a node in 1/sr if it is valid.
@@ -53,6 +59,7 @@ private:
     void prefetch(const Corners& at, std::size_t k) const;
     void interpolateLinear(const Corners& at, std::size_t k, double* out, std::size_t stride) const;
     void lookUpNearest(const Indices& at, std::size_t k, double* out, std::size_t stride) const;
+    bool rests(const Corners& at, std::size_t k) const;
     double averageOfValid(const Corners& at, std::size_t k, const double (&across)[4],
                           std::size_t channel) const;
     /// Two cells of a row, in one vector register.

@@ -7,61 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 namespace hshfit::brdfs {
 namespace {
-
-struct Scan {
-    std::int64_t belowHorizon = 0;         ///< cells (not times channels) below by geometry
-    std::int64_t invalidBelow = 0;         ///< negative values there
-    std::int64_t invalidAbove = 0;         ///< negative values elsewhere
-    std::int64_t negativeNotMinusOne = 0;  ///< among all negative values
-    std::int64_t notANumber = 0, infinite = 0;
-    double least = std::numeric_limits<double>::infinity();
-    double greatest = -std::numeric_limits<double>::infinity();
-
-    void add(double stored, double scale, bool below) {
-        if (std::isnan(stored)) {
-            ++notANumber;
-        } else if (std::isinf(stored)) {
-            ++infinite;
-        } else if (stored < 0) {
-            ++(below ? invalidBelow : invalidAbove);
-            // -1 is stored unscaled; the product and the quotient round.
-            if (std::fabs(stored / scale + 1) > 1e-12) ++negativeNotMinusOne;
-        } else if (!below) {
-            least = std::min(least, stored);
-            greatest = std::max(greatest, stored);
-        }
-    }
-};
-
-Scan scan(const MerlBrdf& brdf) {
-    const MerlLayout& layout = brdf.layout();
-    Scan result;
-    std::vector<double> cosines(layout.azimuthCount);
-    for (std::size_t p = 0; p < cosines.size(); ++p) {
-        cosines[p] = std::cos(radians(static_cast<double>(p)));
-    }
-    for (std::size_t c = 0; c < 3; ++c) {
-        for (std::size_t h = 0; h < MerlLayout::halfCount; ++h) {
-            for (std::size_t d = 0; d < MerlLayout::differenceCount; ++d) {
-                const double thetaHalf = merlHalfAngle(static_cast<double>(h));
-                const double thetaDifference = radians(static_cast<double>(d));
-                const double along = std::cos(thetaHalf) * std::cos(thetaDifference);
-                const double across = std::sin(thetaHalf) * std::sin(thetaDifference);
-                for (std::size_t p = 0; p < layout.azimuthCount; ++p) {
-                    const bool below = along - across * std::fabs(cosines[p]) < 1e-12;
-                    if (c == 0 && below) ++result.belowHorizon;
-                    result.add(brdf.stored(c, layout.cell(h, d, p)), merlScale[c], below);
-                }
-            }
-        }
-    }
-    return result;
-}
 
 /// Sum of the valid channels at a node on phi_d = 90 deg, none if no channel is valid there.
 std::optional<double> brightness(const MerlBrdf& brdf, std::size_t h, std::size_t d) {
@@ -99,25 +48,53 @@ std::vector<Lobe> MerlBrdf::lobes(const Direction& wo) const {
 }
 
 std::vector<Fact> MerlBrdf::facts() const {
-    const Scan found = scan(*this);
     const bool nearest = interpolation_ == MerlInterpolation::nearest;
-    std::vector<Fact> facts = {
+    return {
         {"format", "merl"},
         {"dimensions", fmt::format("90 x 90 x {}", layout_.azimuthCount)},
         {"interpolation", nearest ? "nearest" : "linear"},
         {"cells", static_cast<std::int64_t>(layout_.cells())},
-        {"cells_below_horizon", found.belowHorizon},
-        {"invalid_values_below_horizon", found.invalidBelow},
-        {"invalid_values_above_horizon", found.invalidAbove},
-        {"negative_values_not_minus_one", found.negativeNotMinusOne},
-        {"nan_values", found.notANumber},
-        {"infinite_values", found.infinite},
     };
-    if (found.greatest >= found.least) {
-        facts.emplace_back("least_value", found.least);
-        facts.emplace_back("greatest_value", found.greatest);
+}
+
+Census MerlBrdf::census() const {
+    Census census;
+    census.values = 3 * layout_.cells();
+    std::vector<double> cosines(layout_.azimuthCount);
+    for (std::size_t p = 0; p < cosines.size(); ++p) {
+        cosines[p] = std::cos(radians(static_cast<double>(p)));
     }
-    return facts;
+    const auto row = [&](std::size_t c, std::size_t h, std::size_t d) {
+        const double thetaHalf = merlHalfAngle(static_cast<double>(h));
+        const double thetaDifference = radians(static_cast<double>(d));
+        const double along = std::cos(thetaHalf) * std::cos(thetaDifference);
+        const double across = std::sin(thetaHalf) * std::sin(thetaDifference);
+        for (std::size_t p = 0; p < layout_.azimuthCount; ++p) {
+            const double value = stored(c, layout_.cell(h, d, p));
+            if (along - across * std::fabs(cosines[p]) < 1e-12) {
+                ++census.belowHorizon;
+            } else if (std::fabs(value / merlScale[c] + 1) < 1e-12) {
+                ++census.invalid;  // -1 in the file; the product and the quotient round
+            } else {
+                census.add(value);
+            }
+        }
+    };
+    for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t h = 0; h < MerlLayout::halfCount; ++h) {
+            for (std::size_t d = 0; d < MerlLayout::differenceCount; ++d) row(c, h, d);
+        }
+    }
+    return census;
+}
+
+std::vector<Axis> MerlBrdf::axes() const {
+    const double lastHalf = degrees(merlHalfAngle(89));
+    const double halfGap = lastHalf - degrees(merlHalfAngle(88));
+    const std::size_t azimuths = layout_.azimuthCount;
+    return {{"theta_half", "degrees", MerlLayout::halfCount, 0, lastHalf, halfGap},
+            {"theta_difference", "degrees", MerlLayout::differenceCount, 0, 89, 1},
+            {"phi_difference", "degrees", azimuths, 0, static_cast<double>(azimuths - 1), 1}};
 }
 
 }  // namespace hshfit::brdfs

@@ -243,26 +243,40 @@ TEST(Merl, batchesEqualSingleEvaluations) {
     EXPECT_EQ(evaluate(table.brdf, {0, 0, 1}, {0.6, 0, -0.8}), std::vector<double>(3, 0.0));
 }
 
-TEST(Merl, factsCountWhatIsInTheFile) {
+TEST(Merl, censusCountsWhatIsInTheFile) {
     const Table table([](int c, int h, int d, int p) {
         if (c == 0 && h == 10 && d == 10) return p < 5 ? std::nan("") : p < 8 ? INFINITY : 7.0;
         if (c == 1 && h == 11 && d == 10) return p < 4 ? -1.0 : p < 10 ? -0.5 : 6.0;
         return brdfs::merlBelowHorizon(h, d, p) ? -1.0 : 2.0;
     });
-    std::map<std::string, std::int64_t> counts;
-    std::map<std::string, double> values;
-    for (const auto& [name, value] : table.brdf.facts()) {
-        if (const auto* n = std::get_if<std::int64_t>(&value)) counts[name] = *n;
-        if (const auto* v = std::get_if<double>(&value)) values[name] = *v;
-    }
-    EXPECT_EQ(counts["cells"], 1458000);
-    EXPECT_EQ(counts["invalid_values_below_horizon"], 3 * counts["cells_below_horizon"]);
-    EXPECT_EQ(counts["invalid_values_above_horizon"], 10);
-    EXPECT_EQ(counts["negative_values_not_minus_one"], 6);
-    EXPECT_EQ(counts["nan_values"], 5);
-    EXPECT_EQ(counts["infinite_values"], 3);
-    EXPECT_NEAR(values["least_value"], 2 * merlScale[0], 1e-12);
-    EXPECT_NEAR(values["greatest_value"], 7 * merlScale[0], 1e-12);
+    std::uint64_t below = 0;
+    for (int h = 0; h < 90; ++h)
+        for (int d = 0; d < 90; ++d)
+            for (int p = 0; p < 180; ++p) below += brdfs::merlBelowHorizon(h, d, p) ? 3 : 0;
+    const brdfs::Census census = table.brdf.census();
+    EXPECT_EQ(census.values, 3u * 1458000u);
+    EXPECT_EQ(census.belowHorizon, below);
+    EXPECT_EQ(census.invalid, 4u);
+    EXPECT_EQ(census.negative, 6u);
+    EXPECT_EQ(census.notANumber, 5u);
+    EXPECT_EQ(census.infinite, 3u);
+    EXPECT_NEAR(census.least, -0.5 * merlScale[1], 1e-12);
+    EXPECT_NEAR(census.greatest, 7 * merlScale[0], 1e-12);
+}
+
+TEST(Merl, coversWhatValidCellsSurround) {
+    const Table table(
+        [](int c, int h, int d, int) { return c == 1 && h > 40 && d > 50 ? -1.0 : 2.0; });
+    const auto covered = [&](double h, double d) {
+        const auto pair = brdfs::merlDirections(h, d, 90);
+        unsigned char result = 2;
+        table.brdf.coverage(pair.wo, {&pair.wi.x, &pair.wi.y, &pair.wi.z, 1}, &result);
+        return int(result);
+    };
+    EXPECT_EQ(covered(20, 20), 1);
+    EXPECT_EQ(covered(40.5, 60.5), 1) << "one side is valid";
+    EXPECT_EQ(covered(41.5, 60.5), 0);
+    EXPECT_EQ(covered(70, 80), 0);
 }
 
 // 361,784 of the 1,458,000 bin centres: a published property of the layout.
