@@ -1,5 +1,6 @@
 #include <brdfs/analytic/ashikhmin_shirley.h>
 
+#include <brdfs/analytic/fresnel.h>
 #include <brdfs/analytic/half_vector.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>

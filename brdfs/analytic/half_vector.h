@@ -34,11 +34,4 @@ struct HalfVector {
     double dotOutgoing() const { return std::min(1.0, 0.5 * scale * std::sqrt(squaredLength())); }
 };
 
-/// Schlick's (1 - cos)^5, the weight of 1 - F0.
-inline double schlickWeight(double cosine) {
-    const double rest = 1 - cosine;
-    const double squared = rest * rest;
-    return squared * squared * rest;
-}
-
 }  // namespace hshfit::brdfs

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <brdfs/analytic/fresnel.h>
 #include <brdfs/analytic/half_vector.h>
 #include <brdfs/analytic/term_brdf.h>
 
