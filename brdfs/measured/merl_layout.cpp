@@ -1,18 +1,9 @@
 #include <brdfs/measured/merl_layout.h>
 
-#include <cmath>
-
 namespace hshfit::brdfs {
 
 DirectionPair merlDirections(double h, double d, double p) {
-    const double thetaHalf = merlHalfAngle(h);
-    const Direction half = directionFromAngles(thetaHalf, 0);
-    const Direction difference = directionFromAngles(radians(d), radians(p));
-    // wi = R_y(theta_h) difference; wo has the opposite azimuth about the half vector.
-    const double along = difference.z, across = difference.x;
-    return {
-        .wi = {half.z * across + half.x * along, difference.y, half.z * along - half.x * across},
-        .wo = {half.x * along - half.z * across, -difference.y, half.z * along + half.x * across}};
+    return fromHalfDifference(merlHalfAngle(h), 0, radians(d), radians(p));
 }
 
 bool merlBelowHorizon(double h, double d, double p) {

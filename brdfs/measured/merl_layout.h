@@ -36,10 +36,6 @@ constexpr double merlHalfAngle(double h) {
     return (h / 90) * (h / 90) * (pi / 2);
 }
 
-struct DirectionPair {
-    Direction wi, wo;
-};
-
 /// The pair of directions at (fractional) indices; the half vector is at azimuth 0. Either may lie
 /// below the horizon.
 DirectionPair merlDirections(double h, double d, double p);

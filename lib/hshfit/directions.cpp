@@ -30,4 +30,17 @@ Direction rotateAboutZ(const Direction& d, double angle) {
     return {c * d.x - s * d.y, s * d.x + c * d.y, d.z};
 }
 
+DirectionPair fromHalfDifference(double thetaHalf, double phiHalf, double thetaDifference,
+                                 double phiDifference) {
+    const Direction half = directionFromAngles(thetaHalf, 0);
+    const Direction difference = directionFromAngles(thetaDifference, phiDifference);
+    // wi = R_z(phi_h) R_y(theta_h) difference; wo has the opposite azimuth about the half vector.
+    const double along = difference.z, across = difference.x;
+    const DirectionPair pair{
+        {half.z * across + half.x * along, difference.y, half.z * along - half.x * across},
+        {half.x * along - half.z * across, -difference.y, half.z * along + half.x * across}};
+    if (phiHalf == 0) return pair;
+    return {rotateAboutZ(pair.wi, phiHalf), rotateAboutZ(pair.wo, phiHalf)};
+}
+
 }  // namespace hshfit

@@ -40,6 +40,16 @@ inline Direction mirrored(const Direction& d) {
     return {-d.x, -d.y, d.z};
 }
 
+struct DirectionPair {
+    Direction wi, wo;
+};
+
+/// The pair with the given half and difference angles (Rusinkiewicz 1998), radians: h is at
+/// (thetaHalf, phiHalf), and (thetaDifference, phiDifference) is wi in the frame in which h is the
+/// pole and the normal lies at azimuth pi. Either may lie below the horizon.
+DirectionPair fromHalfDifference(double thetaHalf, double phiHalf, double thetaDifference,
+                                 double phiDifference);
+
 constexpr double pi = 3.14159265358979323846264338327950288;
 
 inline double radians(double degrees) {
