@@ -1,0 +1,55 @@
+#pragma once
+
+#include <hshfit/brdf.h>
+#include <hshfit/health.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// One row of the table of repairs, in the order in which they are applied.
+struct Repair {
+    std::string_view name;
+    std::string_view help;
+    /// Whether the BRDF needs it, and why: "" if not.
+    std::string (*reason)(const Brdf& brdf, const Health& health);
+};
+
+std::span<const Repair> repairs();
+
+/// What a repair did while the BRDF was evaluated (a channel of a direction pair is a value).
+struct RepairCount {
+    std::string_view name;
+    std::uint64_t changed = 0;  ///< values
+    std::uint64_t left = 0;     ///< values that it could not repair
+};
+
+/// A BRDF with repairs, each of which changes only what it names:
+///
+/// missing      where nothing was measured, f is that of the pair with the same half vector, phi_d
+///              and the largest theta_d below (by 1 degree) that is covered; left as it is if none
+///              is
+/// negative     values below 0 become 0
+/// reciprocity  (f(wi, wo) + f(wo, wi)) / 2; where only one of the two is covered, that one
+/// energy       f min(s(wi), s(wo)) with s(w) = 1 / max(1, albedo(w)) in each channel: reciprocity
+///              is kept, and no albedo is above 1. Albedos are tabulated every 1.5 degrees of theta
+///              (anisotropic: every 4.5 and, in phi, 15 degrees) and interpolated linearly.
+class RepairedBrdf : public Brdf {
+public:
+    virtual std::uint64_t evaluated() const = 0;  ///< values
+    virtual std::vector<RepairCount> counts() const = 0;
+};
+
+/// `names`: "missing,energy" and the like, or "all". Throws UsageError for an unknown name and
+/// NumericError if an albedo that `energy` needs does not converge. `progress` is for its table.
+std::unique_ptr<RepairedBrdf> repaired(
+    std::unique_ptr<Brdf> brdf, std::string_view names,
+    const std::function<void(std::size_t, std::size_t)>& progress = {});
+
+}  // namespace hshfit::brdfs
