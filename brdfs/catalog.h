@@ -83,6 +83,7 @@ struct Writer {
     /// for a BRDF that the format cannot hold, NumericError for values that it cannot, OutputError.
     std::vector<std::string> (*write)(const Brdf& brdf, const std::string& path,
                                       const Parameters& parameters, const WriteOptions& options);
+    bool readBack = true;  ///< `open` opens what was written
 };
 
 std::span<const Model> models();

@@ -1,5 +1,6 @@
 #include "command.h"
 
+#include <hshfit/colour.h>
 #include <hshfit/error.h>
 #include <hshfit/output/coefficient_file.h>
 #include <hshfit/reconstruction.h>
@@ -31,11 +32,27 @@ CLI::App& addCommand(CLI::App& app, Globals& globals, const std::string& name,
     return command;
 }
 
-std::unique_ptr<Brdf> openSource(const std::string& spec) {
-    if (looksLikeCoefficients(spec)) {
-        return std::make_unique<Reconstruction>(readCoefficients(spec));
-    }
-    return brdfs::open(spec);
+namespace {
+
+std::unique_ptr<Brdf> seenAsRgb(std::unique_ptr<Brdf> brdf, bool rgb) {
+    if (!rgb || brdf->channels().kind != Channels::Kind::spectral) return brdf;
+    return asRgb(std::move(brdf));
+}
+
+}  // namespace
+
+std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb) {
+    return seenAsRgb(brdfs::open(spec), rgb);
+}
+
+std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb) {
+    if (!looksLikeCoefficients(spec)) return openBrdf(spec, rgb);
+    return seenAsRgb(std::make_unique<Reconstruction>(readCoefficients(spec)), rgb);
+}
+
+void addRgb(CLI::App& command, bool& rgb) {
+    command.add_flag("--rgb", rgb,
+                     "Turn wavelengths into linear Rec. 709 (CIE 1931 2 degrees, D65)");
 }
 
 Direction parseDirection(const std::string& text, std::string_view option) {
@@ -67,10 +84,6 @@ void printText(std::string_view text) {
 
 void printJson(const nlohmann::ordered_json& document) {
     printText(document.dump(2) + "\n");
-}
-
-nlohmann::ordered_json directionJson(const Direction& d) {
-    return {{"theta", degrees(polarAngle(d))}, {"phi", degrees(azimuth(d))}};
 }
 
 void note(const Globals& globals, std::string_view message) {

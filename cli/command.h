@@ -38,8 +38,12 @@ void addReport(CLI::App& app, Globals& globals);
 void addCompare(CLI::App& app, Globals& globals);
 void addConvert(CLI::App& app, Globals& globals);
 
-/// A BRDF specification or a coefficient file, as a BRDF.
-std::unique_ptr<Brdf> openSource(const std::string& spec);
+/// A BRDF specification. With `rgb`, a spectral one as linear Rec. 709; others stay as they are.
+std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb);
+/// A BRDF specification or a coefficient file, as a BRDF; `rgb` likewise.
+std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb);
+/// The option --rgb.
+void addRgb(CLI::App& command, bool& rgb);
 
 /// "THETA,PHI" in degrees, theta from 0 to 90. Throws UsageError naming `option`.
 Direction parseDirection(const std::string& text, std::string_view option);
@@ -51,9 +55,6 @@ OutgoingSet outgoingOrDefault(const std::string& text, const Brdf& brdf);
 void printJson(const nlohmann::ordered_json& document);
 /// Prints text to standard output, likewise.
 void printText(std::string_view text);
-
-/// {"theta": degrees, "phi": degrees}
-nlohmann::ordered_json directionJson(const Direction& d);
 
 /// A progress line on standard error, only on a terminal and unless --quiet: what is done, how much
 /// of it, and the time left. Empty where nothing would be shown.

@@ -1,4 +1,5 @@
 #include "command.h"
+#include "documents.h"
 
 #include <hshfit/metrics.h>
 #include <hshfit/reconstruction.h>
@@ -14,6 +15,7 @@ using Json = nlohmann::ordered_json;
 
 struct CompareArguments {
     std::string a, b, metrics = "all", outgoing;
+    bool rgb = false;
 };
 
 /// Coefficients are compared at their own outgoing directions unless others are asked for.
@@ -28,36 +30,10 @@ OutgoingSet outgoingOf(const CompareArguments& arguments, const Brdf& a, const B
     return outgoingOrDefault(arguments.outgoing, a.laws().isotropic ? b : a);
 }
 
-Json metricJson(const MetricValue& result) {
-    Json json = {{"name", result.metric->name},
-                 {"value", result.value ? Json(*result.value) : Json(nullptr)}};
-    if (result.value) json["error"] = result.error;
-    if (!result.reason.empty()) json["reason"] = result.reason;
-    if (result.wo) {
-        Json at;
-        if (result.wi) at["wi"] = directionJson(*result.wi);
-        at["wo"] = directionJson(*result.wo);
-        json["at"] = at;
-    }
-    return json;
-}
-
-std::string metricText(const MetricValue& result) {
-    std::string text = fmt::format("  {:<20} ", result.metric->name);
-    if (!result.value) return text + "-  (" + result.reason + ")\n";
-    text +=
-        fmt::format("{:<12.6g} +- {:<8.1e} {}", *result.value, result.error, result.metric->help);
-    for (const auto& [name, direction] : {std::pair("wi", result.wi), std::pair("wo", result.wo)}) {
-        if (!direction) continue;
-        text += fmt::format("; {} {:.2f},{:.2f}", name, degrees(polarAngle(*direction)),
-                            degrees(azimuth(*direction)));
-    }
-    return text + "\n";
-}
-
 void runCompare(const CompareArguments& arguments, Globals& globals) {
     const auto metrics = selectMetrics(arguments.metrics);
-    const auto a = openSource(arguments.a), b = openSource(arguments.b);
+    const auto a = openSource(arguments.a, arguments.rgb),
+               b = openSource(arguments.b, arguments.rgb);
     const OutgoingSet outgoing = outgoingOf(arguments, *a, *b);
     Progress progress(globals, "compare");
     const auto results = compare(*a, *b, outgoing, metrics, {.progress = progress.callback()});
@@ -100,6 +76,7 @@ void addCompare(CLI::App& app, Globals& globals) {
     command.add_option("--outgoing", arguments->outgoing,
                        "WxH, N or THETA,PHI (default: those of the coefficient file; else 16, or "
                        "16x16 if anisotropic)");
+    addRgb(command, arguments->rgb);
     command.callback([arguments, &globals] { runCompare(*arguments, globals); });
 }
 

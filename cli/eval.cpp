@@ -1,4 +1,5 @@
 #include "command.h"
+#include "documents.h"
 
 #include <hshfit/error.h>
 #include <hshfit/output/atomic_file.h>
@@ -20,7 +21,7 @@ namespace {
 
 struct EvalOptions {
     std::string spec, wi, wo, pairs, output;
-    bool cosine = false;
+    bool cosine = false, rgb = false;
 };
 
 std::vector<double> evaluatePair(const Brdf& brdf, const Direction& wi, const Direction& wo,
@@ -33,7 +34,7 @@ std::vector<double> evaluatePair(const Brdf& brdf, const Direction& wi, const Di
 void evaluateOne(const EvalOptions& options, const Globals& globals) {
     const Direction wi = parseDirection(options.wi, "--wi");
     const Direction wo = parseDirection(options.wo, "--wo");
-    const auto brdf = openSource(options.spec);
+    const auto brdf = openSource(options.spec, options.rgb);
     const std::vector<double> values = evaluatePair(*brdf, wi, wo, options.cosine);
     brdf->checkIntact();
     const std::vector<std::string> names = brdf->channels().names();
@@ -104,7 +105,7 @@ std::string evaluateRows(const Brdf& brdf, const EvalOptions& options) {
 }
 
 void evaluatePairs(const EvalOptions& options) {
-    const auto brdf = openSource(options.spec);
+    const auto brdf = openSource(options.spec, options.rgb);
     std::string csv;
     try {
         csv = evaluateRows(*brdf, options);
@@ -134,6 +135,7 @@ void addEval(CLI::App& app, Globals& globals) {
         "CSV of direction pairs: columns wi_x, wi_y, wi_z, wo_x, wo_y, wo_z; others are ignored");
     command.add_option("-o,--output", options->output, "CSV to write (default: standard output)")
         ->needs(pairs);
+    addRgb(command, options->rgb);
     command.add_flag("--cosine", options->cosine, "Print f cos(theta_i) instead of f");
     wi->needs(wo)->excludes(pairs);
     wo->needs(wi)->excludes(pairs);

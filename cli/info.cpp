@@ -1,9 +1,11 @@
 #include "command.h"
+#include "documents.h"
+#include "health.h"
 
-#include <hshfit/albedo.h>
-#include <hshfit/error.h>
 #include <hshfit/quadrature.h>
 #include <hshfit/reconstruction.h>
+
+#include <brdfs/measured/measured_brdf.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,8 +20,6 @@ namespace hshfit::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double albedoAngles[] = {0, 30, 60, 80};
 
 /// Smallest and largest f over 12 outgoing directions and the grid that quadrature would use.
 Json rangeJson(const Brdf& brdf) {
@@ -51,35 +51,12 @@ Json rangeJson(const Brdf& brdf) {
             {"max", std::isfinite(high) ? Json(high) : Json(nullptr)}};
 }
 
-Json albedoJson(const Brdf& brdf) {
-    Json rows = Json::array();
-    for (double theta : albedoAngles) {
-        Json row = {{"theta", theta}};
-        try {
-            row["values"] = directionalAlbedo(brdf, directionFromAngles(radians(theta), 0));
-        } catch (const NumericError& error) {
-            row["values"] = nullptr;
-            row["reason"] = error.what();
-        }
-        rows.push_back(std::move(row));
-    }
-    return rows;
-}
-
 Json factsJson(const std::vector<Fact>& facts) {
     Json json = Json::object();
     for (const auto& [name, value] : facts) {
         std::visit([&, &key = name](const auto& v) { json[key] = v; }, value);
     }
     return json;
-}
-
-Json lawsJson(const Laws& laws) {
-    return {{"non_negative", laws.nonNegative},
-            {"reciprocal", laws.reciprocal},
-            {"isotropic", laws.isotropic},
-            {"mirror_symmetric", laws.mirrorSymmetric},
-            {"energy_conserving", laws.energyConserving}};
 }
 
 void describeCoefficients(const Coefficients& c, Json& document) {
@@ -97,7 +74,7 @@ void describeCoefficients(const Coefficients& c, Json& document) {
                          {"generator", c.generator}};
 }
 
-Json describe(const Brdf& brdf) {
+Json describe(const Brdf& brdf, const Globals& globals) {
     const auto* reconstruction = dynamic_cast<const Reconstruction*>(&brdf);
     Json document = {{"format", "hshfit-info"},
                      {"version", 1},
@@ -110,7 +87,8 @@ Json describe(const Brdf& brdf) {
         document["laws"] = lawsJson(brdf.laws());
         document["facts"] = factsJson(brdf.facts());
     }
-    document["albedo"] = albedoJson(brdf);
+    Progress progress(globals, "info");
+    describeHealth(brdf, examine(brdf, {.progress = progress.callback()}), document);
     document["range"] = rangeJson(brdf);
     return document;
 }
@@ -122,48 +100,44 @@ std::string scalarText(const Json& value) {
 std::string text(const Json& document) {
     std::string out = fmt::format("{}: {}\n", document["kind"].get<std::string>(),
                                   document["name"].get<std::string>());
-    const auto line = [&](std::string name, const std::string& value) {
-        std::replace(name.begin(), name.end(), '_', ' ');
-        out += fmt::format("  {:<28} {}\n", name, value);
-    };
     std::vector<std::string> names = document["channels"];
     if (names.size() > 8)
         names = {fmt::format("{} from {} to {}", names.size(), names.front(), names.back())};
-    line("channels", fmt::format("{}", fmt::join(names, " ")));
+    out += factLine("channels", fmt::format("{}", fmt::join(names, " ")));
     for (const char* section : {"laws", "symmetry", "facts"}) {
         if (!document.contains(section)) continue;
-        for (const auto& [key, value] : document[section].items()) line(key, scalarText(value));
+        for (const auto& [key, value] : document[section].items())
+            out += factLine(key, scalarText(value));
     }
-    line("smallest f found", document["range"]["min"].dump());
-    line("largest f found", document["range"]["max"].dump());
-    for (const Json& row : document["albedo"]) {
-        std::string values;
-        if (row["values"].is_null()) {
-            values = row["reason"];
-        } else {
-            std::vector<double> shown = row["values"];
-            const bool many = shown.size() > 8;
-            if (many) shown.resize(8);
-            values = fmt::format("{:.4f}{}", fmt::join(shown, " "), many ? " …" : "");
-        }
-        line(fmt::format("albedo at {:g} degrees", row["theta"].get<double>()), values);
-    }
+    out += factLine("smallest f found", document["range"]["min"].dump());
+    out += factLine("largest f found", document["range"]["max"].dump());
+    out += healthText(document);
     return out;
 }
 
 }  // namespace
 
 void addInfo(CLI::App& app, Globals& globals) {
-    auto spec = std::make_shared<std::string>();
-    CLI::App& command = addCommand(app, globals, "info",
-                                   "What a BRDF or a coefficient file is: channels, symmetry, "
-                                   "invalid cells, albedo, range",
-                                   "hshfit info ggx:alpha=.2,f0=.9");
-    command.add_option("SPEC", *spec, "BRDF or coefficient file")->required();
-    command.callback([spec, &globals] {
-        const auto brdf = openSource(*spec);
-        const Json document = describe(*brdf);
-        brdf->checkIntact();
+    struct Options {
+        std::string spec;
+        bool rgb = false;
+    };
+    auto options = std::make_shared<Options>();
+    CLI::App& command =
+        addCommand(app, globals, "info",
+                   "What a BRDF or a coefficient file is, and how healthy: channels, symmetry, "
+                   "sampling, invalid values, coverage, reciprocity, albedo, repairs",
+                   "hshfit info ggx:alpha=.2,f0=.9");
+    command.add_option("SPEC", options->spec, "BRDF or coefficient file")->required();
+    addRgb(command, options->rgb);
+    command.callback([options, &globals] {
+        const auto brdf = openSource(options->spec, options->rgb);
+        const Json document = describe(*brdf, globals);
+        if (const auto* measured = dynamic_cast<const brdfs::MeasuredBrdf*>(brdf.get())) {
+            measured->checkReadable();  // what is no number has been counted
+        } else {
+            brdf->checkIntact();
+        }
         if (globals.json) {
             printJson(document);
         } else {

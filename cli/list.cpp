@@ -1,4 +1,5 @@
 #include "command.h"
+#include "documents.h"
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/metrics.h>
@@ -17,14 +18,6 @@ namespace hshfit::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json lawsJson(const Laws& laws) {
-    return {{"non_negative", laws.nonNegative},
-            {"reciprocal", laws.reciprocal},
-            {"isotropic", laws.isotropic},
-            {"mirror_symmetric", laws.mirrorSymmetric},
-            {"energy_conserving", laws.energyConserving}};
-}
 
 Json limitJson(double limit) {
     return std::isfinite(limit) ? Json(limit) : Json(nullptr);

@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 struct ProjectOptions {
     std::string spec, output, basis = "hsh", outgoing = "32x32";
     int order = 7;
-    bool cosine = false, condonShortley = false;
+    bool cosine = false, condonShortley = false, rgb = false;
     double tolerance = 0;
     double maxEvaluations = static_cast<double>(ProjectionOptions{}.maxEvaluations);
 };
@@ -52,7 +52,7 @@ void runProject(const ProjectOptions& options, const Globals& globals) {
     const auto basis =
         bases::make(options.basis, options.order, {.condonShortley = options.condonShortley});
     const OutgoingSet outgoing = OutgoingSet::parse(options.outgoing);
-    const auto brdf = brdfs::open(options.spec);
+    const auto brdf = openBrdf(options.spec, options.rgb);
 
     Progress progress(globals, "project");
     const Basis* const one[] = {basis.get()};
@@ -99,6 +99,7 @@ void addProject(CLI::App& app, Globals& globals) {
         .add_option("--outgoing", options->outgoing,
                     "WxH (parabolic map), N (elevations, isotropic) or THETA,PHI in degrees")
         ->capture_default_str();
+    addRgb(command, options->rgb);
     command.add_flag("--cosine", options->cosine, "Project f cos(theta_i) instead of f");
     command.add_flag("--condon-shortley", options->condonShortley,
                      "Give functions of odd m the Condon-Shortley sign");

@@ -20,7 +20,7 @@ struct ReportOptions {
     std::vector<std::string> specs;
     std::string output, bases = "all", outgoing;
     int maxOrder = 12;
-    bool cosine = false;
+    bool cosine = false, rgb = false;
     double tolerance = 0;
     double maxEvaluations = static_cast<double>(ProjectionOptions{}.maxEvaluations);
 };
@@ -57,7 +57,7 @@ std::vector<Projection> withoutNumbers(const Brdf& brdf, std::span<const Basis* 
 
 std::vector<Projection> projectFor(const std::string& spec, std::span<const Basis* const> bases,
                                    const ReportOptions& options, const Globals& globals) {
-    const auto brdf = brdfs::open(spec);
+    const auto brdf = openBrdf(spec, options.rgb);
     const OutgoingSet outgoing = outgoingOrDefault(options.outgoing, *brdf);
     const Quantity quantity = options.cosine ? Quantity::brdfCosine : Quantity::brdf;
     Progress progress(globals, brdf->name());
@@ -138,6 +138,7 @@ void addReport(CLI::App& app, Globals& globals) {
         ->capture_default_str();
     command.add_option("--outgoing", options->outgoing,
                        "WxH, N or THETA,PHI in degrees (default: 16, or 16x16 if anisotropic)");
+    addRgb(command, options->rgb);
     command.add_flag("--cosine", options->cosine, "Report f cos(theta_i) instead of f");
     command
         .add_option("--tolerance", options->tolerance,

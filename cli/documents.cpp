@@ -1,0 +1,50 @@
+#include "documents.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace hshfit::cli {
+
+using Json = nlohmann::ordered_json;
+
+Json directionJson(const Direction& d) {
+    return {{"theta", degrees(polarAngle(d))}, {"phi", degrees(azimuth(d))}};
+}
+
+std::string directionText(const Direction& d) {
+    return fmt::format("{:.2f},{:.2f}", degrees(polarAngle(d)), degrees(azimuth(d)));
+}
+
+Json lawsJson(const Laws& laws) {
+    return {{"non_negative", laws.nonNegative},
+            {"reciprocal", laws.reciprocal},
+            {"isotropic", laws.isotropic},
+            {"mirror_symmetric", laws.mirrorSymmetric},
+            {"energy_conserving", laws.energyConserving}};
+}
+
+Json metricJson(const MetricValue& result) {
+    Json json = {{"name", result.metric->name},
+                 {"value", result.value ? Json(*result.value) : Json(nullptr)}};
+    if (result.value) json["error"] = result.error;
+    if (!result.reason.empty()) json["reason"] = result.reason;
+    if (result.wo) {
+        Json at;
+        if (result.wi) at["wi"] = directionJson(*result.wi);
+        at["wo"] = directionJson(*result.wo);
+        json["at"] = at;
+    }
+    return json;
+}
+
+std::string metricText(const MetricValue& result) {
+    std::string text = fmt::format("  {:<20} ", result.metric->name);
+    if (!result.value) return text + "-  (" + result.reason + ")\n";
+    text +=
+        fmt::format("{:<12.6g} +- {:<8.1e} {}", *result.value, result.error, result.metric->help);
+    if (result.wi) text += "; wi " + directionText(*result.wi);
+    if (result.wo) text += "; wo " + directionText(*result.wo);
+    return text + "\n";
+}
+
+}  // namespace hshfit::cli

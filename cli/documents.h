@@ -1,0 +1,23 @@
+#pragma once
+
+// Pieces of the answers that several commands give.
+
+#include <hshfit/metrics.h>
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace hshfit::cli {
+
+/// {"theta": degrees, "phi": degrees}
+nlohmann::ordered_json directionJson(const Direction& d);
+/// "52.00,10.00": theta and phi in degrees.
+std::string directionText(const Direction& d);
+
+nlohmann::ordered_json lawsJson(const Laws& laws);
+
+nlohmann::ordered_json metricJson(const MetricValue& result);
+/// A line, indented and ended.
+std::string metricText(const MetricValue& result);
+
+}  // namespace hshfit::cli

@@ -1,0 +1,160 @@
+#include "health.h"
+#include "documents.h"
+
+#include <brdfs/measured/measured_brdf.h>
+#include <brdfs/repair.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hshfit::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json finite(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json censusJson(const brdfs::Census& census) {
+    return {{"values", census.values},       {"below_horizon", census.belowHorizon},
+            {"invalid", census.invalid},     {"negative", census.negative},
+            {"nan", census.notANumber},      {"infinite", census.infinite},
+            {"least", finite(census.least)}, {"greatest", finite(census.greatest)}};
+}
+
+Json axesJson(const std::vector<brdfs::Axis>& axes) {
+    Json rows = Json::array();
+    for (const auto& axis : axes) {
+        rows.push_back({{"name", axis.name},
+                        {"unit", axis.unit},
+                        {"count", axis.count},
+                        {"first", finite(axis.first)},
+                        {"last", finite(axis.last)},
+                        {"largest_gap", finite(axis.largestGap)}});
+    }
+    return rows;
+}
+
+Json albedoJson(const Health& health) {
+    Json rows = Json::array();
+    for (const auto& albedo : health.albedos) {
+        Json row = directionJson(albedo.wo);
+        row["theta"] = std::round(row["theta"].get<double>());  // asked for in whole degrees
+        row["phi"] = std::round(row["phi"].get<double>());
+        row["values"] = albedo.values.empty() ? Json(nullptr) : Json(albedo.values);
+        if (albedo.values.empty()) row["reason"] = "did not converge";
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+Json healthJson(const Brdf& brdf, const Health& health) {
+    Json reciprocity = {{"defect", health.reciprocityDefect}};
+    if (const auto& worst = health.worstExchange) {
+        reciprocity["worst"] = {{"wi", directionJson(worst->wi)},
+                                {"wo", directionJson(worst->wo)},
+                                {"channel", brdf.channels().names()[worst->channel]},
+                                {"value", worst->value},
+                                {"exchanged", worst->exchanged}};
+    }
+    Json repairs = Json::array();
+    for (const auto& repair : brdfs::repairs()) {
+        const std::string reason = repair.reason(brdf, health);
+        if (!reason.empty()) repairs.push_back({{"name", repair.name}, {"reason", reason}});
+    }
+    return {{"pairs", health.pairs},
+            {"coverage", health.coverage},
+            {"values", health.values},
+            {"negative", health.negative},
+            {"not_finite", health.notFinite},
+            {"reciprocity", reciprocity},
+            {"largest_albedo", health.largestAlbedo()},
+            {"albedo_tolerance", health.albedoTolerance},
+            {"suggested_repairs", repairs}};
+}
+
+std::string albedoText(const Json& row) {
+    if (row["values"].is_null()) return row["reason"];
+    std::vector<double> shown = row["values"];
+    const bool many = shown.size() > 8;
+    if (many) shown.resize(8);
+    return fmt::format("{:.4f}{}", fmt::join(shown, " "), many ? " …" : "");
+}
+
+std::string censusText(const Json& census) {
+    std::string text = factLine("stored values", census["values"].dump());
+    for (const auto& [key, value] : census.items()) {
+        if (key == "values" || value == 0) continue;
+        text += factLine("  " + key, value.dump());
+    }
+    return text;
+}
+
+std::string axisText(const Json& axis) {
+    const auto number = [&](const char* key) {
+        return axis[key].is_null() ? "?" : fmt::format("{:.6g}", axis[key].get<double>());
+    };
+    return fmt::format("{} from {} to {} {}, gaps up to {}", axis["count"].get<std::size_t>(),
+                       number("first"), number("last"), axis["unit"].get<std::string>(),
+                       number("largest_gap"));
+}
+
+}  // namespace
+
+std::string factLine(std::string name, const std::string& value) {
+    std::replace(name.begin(), name.end(), '_', ' ');
+    return fmt::format("  {:<28} {}\n", name, value);
+}
+
+void describeHealth(const Brdf& brdf, const Health& health, Json& document) {
+    if (const auto* measured = dynamic_cast<const brdfs::MeasuredBrdf*>(&brdf)) {
+        document["census"] = censusJson(measured->census());
+        document["axes"] = axesJson(measured->axes());
+    }
+    document["albedo"] = albedoJson(health);
+    document["health"] = healthJson(brdf, health);
+}
+
+std::string healthText(const Json& document) {
+    std::string text;
+    if (document.contains("census")) text += censusText(document["census"]);
+    for (const Json& axis : document.value("axes", Json::array())) {
+        text += factLine("sampled " + axis["name"].get<std::string>(), axisText(axis));
+    }
+    for (const Json& row : document["albedo"]) {
+        std::string name = fmt::format("albedo at {:g}", row["theta"].get<double>());
+        if (row["phi"] != 0.0) name += fmt::format(",{:g}", row["phi"].get<double>());
+        text += factLine(name + " degrees", albedoText(row));
+    }
+    const Json& health = document["health"];
+    text += factLine("measured directions",
+                     fmt::format("{:.1f} % of the pairs", 100 * health["coverage"].get<double>()));
+    text += factLine("values below 0", fmt::format("{} of {} sampled", health["negative"].dump(),
+                                                   health["values"].dump()));
+    if (health["not_finite"] != 0)
+        text += factLine("values not finite", health["not_finite"].dump());
+    const Json& reciprocity = health["reciprocity"];
+    std::string defect = fmt::format("{:.2g}", reciprocity["defect"].get<double>());
+    if (reciprocity.contains("worst") && reciprocity["defect"] > 1e-9) {
+        const Json& worst = reciprocity["worst"];
+        defect +=
+            fmt::format(" (most: {:.4g} and {:.4g} in {})", worst["value"].get<double>(),
+                        worst["exchanged"].get<double>(), worst["channel"].get<std::string>());
+    }
+    text += factLine("reciprocity defect", defect);
+    text +=
+        factLine("largest albedo", fmt::format("{:.4f}", health["largest_albedo"].get<double>()));
+    for (const Json& repair : health["suggested_repairs"]) {
+        text +=
+            factLine("suggested repair", fmt::format("{} ({})", repair["name"].get<std::string>(),
+                                                     repair["reason"].get<std::string>()));
+    }
+    return text;
+}
+
+}  // namespace hshfit::cli

@@ -1,0 +1,21 @@
+#pragma once
+
+// What `info` says about the health of a BRDF.
+
+#include <hshfit/health.h>
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace hshfit::cli {
+
+/// The members "albedo", "health", and for a measured BRDF "census" and "axes".
+void describeHealth(const Brdf& brdf, const Health& health, nlohmann::ordered_json& document);
+
+/// The same members as indented lines.
+std::string healthText(const nlohmann::ordered_json& document);
+
+/// A name in two columns: "  coverage      …".
+std::string factLine(std::string name, const std::string& value);
+
+}  // namespace hshfit::cli
