@@ -1,18 +1,22 @@
 #include <brdfs/catalog.h>
 
+#include <brdfs/analytic/abc.h>
 #include <brdfs/analytic/ashikhmin_shirley.h>
 #include <brdfs/analytic/beckmann.h>
 #include <brdfs/analytic/blinn_phong.h>
 #include <brdfs/analytic/cook_torrance.h>
 #include <brdfs/analytic/ggx.h>
+#include <brdfs/analytic/he.h>
 #include <brdfs/analytic/lafortune.h>
 #include <brdfs/analytic/lambert.h>
 #include <brdfs/analytic/oren_nayar.h>
 #include <brdfs/analytic/phong.h>
+#include <brdfs/analytic/sgd.h>
 #include <brdfs/analytic/ward.h>
 #include <brdfs/measured/merl.h>
 #include <brdfs/measured/merl_writer.h>
 #include <brdfs/measured/rgl.h>
+#include <brdfs/measured/rgl_writer.h>
 #include <brdfs/preset.h>
 #include <brdfs/spec.h>
 #include <hshfit/error.h>
@@ -124,6 +128,9 @@ std::span<const Model> models() {
         wardModel(),
         ashikhminShirleyModel(),
         cookTorranceModel(),
+        heModel(),
+        abcModel(),
+        sgdModel(),
         beckmannModel(),
         ggxModel(),
     };
@@ -136,7 +143,7 @@ std::span<const Format> formats() {
 }
 
 std::span<const Writer> writers() {
-    static const std::vector<Writer> table{merlWriter()};
+    static const std::vector<Writer> table{merlWriter(), rglWriter()};
     return table;
 }
 

@@ -4,8 +4,6 @@
 #include <hshfit/error.h>
 #include <hshfit/mapped_file.h>
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -169,29 +167,24 @@ std::vector<Lobe> RglBrdf::lobes(const Direction&) const {
     return {{.about = Lobe::About::halfway, .width = lobeWidth_, .axis = {}}};
 }
 
-std::vector<Fact> RglBrdf::facts() const {
-    const Spectra& spectra = tables_.spectra;
-    const auto negative = std::ranges::count_if(spectra.values, [](float v) { return v < 0; });
-    std::vector<Fact> facts = {
-        {"format", "rgl"},
-        {"description", tables_.description},
-        {"incident_elevations", static_cast<std::int64_t>(tables_.incident.theta.size())},
-        {"incident_azimuths", static_cast<std::int64_t>(tables_.incident.phi.size())},
-        {"azimuth_symmetry", tables_.reduction == 0   ? "isotropic"
-                             : tables_.reduction == 1 ? "none"
-                             : tables_.reduction == 2 ? "turned by 180 degrees"
-                                                      : "mirrored at both axes"},
-        {"normals_grid",
-         fmt::format("{} x {}", tables_.normals->rows(), tables_.normals->columns())},
-        {"colour_grid", fmt::format("{} x {}", spectra.rows, spectra.columns)},
-        {"divided_by_jacobian", tables_.jacobian},
-        {"out_of_gamut_values", static_cast<std::int64_t>(negative)},
-    };
-    if (tables_.channels.kind == Channels::Kind::spectral) {
-        facts.emplace_back("first_wavelength_nm", tables_.channels.wavelengths.front());
-        facts.emplace_back("last_wavelength_nm", tables_.channels.wavelengths.back());
+void RglBrdf::coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const {
+    // The grid's angles are rounded to float.
+    constexpr double rounding = 1e-6;
+    const auto& [phi, theta] = tables_.incident;
+    Block block;
+    for (std::size_t begin = 0; begin < wi.count; begin += blockSize) {
+        const std::size_t count = std::min(blockSize, wi.count - begin);
+        block.set(tables_, wo, wi, begin, count);
+        for (std::size_t k = 0; k < count; ++k) {
+            const bool above = wo.z > 0 && wi.z[begin + k] > 0;
+            const double angle = block.thetaIncident[k], turn = block.phiIncident[k];
+            const bool elevation =
+                angle >= theta.front() - rounding && angle <= theta.back() + rounding;
+            const bool azimuth = tables_.isotropic ||
+                                 (turn >= phi.front() - rounding && turn <= phi.back() + rounding);
+            covered[begin + k] = above && elevation && azimuth ? 1 : 0;
+        }
     }
-    return facts;
 }
 
 }  // namespace hshfit::brdfs

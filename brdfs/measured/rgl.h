@@ -1,6 +1,7 @@
 #pragma once
 
 #include <brdfs/catalog.h>
+#include <brdfs/measured/measured_brdf.h>
 #include <brdfs/measured/rgl_tables.h>
 #include <hshfit/brdf.h>
 
@@ -30,6 +31,17 @@ struct RglTables {
 
     /// Throws InputError naming the field and its offset.
     static RglTables load(const TensorFile& file);
+
+    /// What a vertex of a colour slice stands for: f(wi, wo) wo.z = value * factor. Where wo is not
+    /// above the horizon the value only takes part in the interpolation.
+    struct Node {
+        Direction wi, wo;
+        double factor = 1;
+    };
+    Node node(std::size_t slice, std::size_t row, std::size_t column) const;
+    /// The factor of a node with these directions, wi being that of the slice.
+    double factor(std::size_t slice, const Direction& wi, const Direction& wo) const;
+    double factorAt(double u, double v, double thetaIncident, double phiIncident) const;
 };
 
 /// A measured BRDF in an RGL `.bsdf` file (see rgl_tables.h and tensor_file.h). With h the half
@@ -43,7 +55,7 @@ struct RglTables {
 /// tables are copied: the file may go once it is open.
 ///
 /// Reciprocity is not built in, and does not hold: the two sides were measured independently.
-class RglBrdf : public Brdf {
+class RglBrdf : public MeasuredBrdf {
 public:
     /// `name` is where the bytes come from, for messages. Throws InputError if they are invalid.
     RglBrdf(std::span<const unsigned char> bytes, std::string name);
@@ -54,11 +66,20 @@ public:
     const Laws& laws() const override { return laws_; }
     void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
 
+    /// Covered are incident directions between the file's first and last: beyond them the table is
+    /// continued constantly. Which of the vertices were measured the files do not tell reliably.
+    void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
+
     /// One lobe about the half vector, as wide as the distribution of normals.
     std::vector<Lobe> lobes(const Direction& wo) const override;
     /// 3e-3: the interpolation has kinks, and the measurements err by more.
     double defaultTolerance() const override { return 3e-3; }
     std::vector<Fact> facts() const override;
+    /// A cell is a vertex of a colour slice; f there is its value times factor / cos(theta_o).
+    Census census() const override;
+    std::vector<Axis> axes() const override;
+
+    const RglTables& tables() const { return tables_; }
 
 private:
     struct Block;

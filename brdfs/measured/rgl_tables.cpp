@@ -1,6 +1,7 @@
 #include <brdfs/measured/rgl_tables.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace hshfit::brdfs {
 namespace {
@@ -103,6 +104,47 @@ VisibleNormals::Point VisibleNormals::invert(double u, double v, const Slices& s
     const double part = before + p.a * (low + 0.5 * p.a * (high - low));
     return {.x = whole > 0 ? part / whole : u,
             .y = below + p.b * (rowBelow + 0.5 * p.b * (rowAbove - rowBelow))};
+}
+
+namespace {
+
+/// t in [0, 1] with the integral from 0 to t of lerp(., low, high) equal to `area`.
+double inverseTrapezoid(double low, double high, double area) {
+    const double root = std::sqrt(std::max(low * low + 2 * (high - low) * area, 0.0));
+    return low + root > 0 ? std::clamp(2 * area / (low + root), 0.0, 1.0) : 0;
+}
+
+}  // namespace
+
+VisibleNormals::Point VisibleNormals::sample(double x, double y, std::size_t slice) const {
+    const float* below = below_.data() + slice * rows_;
+    const double area = std::clamp(y, 0.0, 1.0) / scale_[slice];
+    const auto above = std::upper_bound(below + 1, below + rows_ - 1, area);
+    const auto row = static_cast<std::size_t>(above - below) - 1;
+    const Vertex* lower = vertices_.data() + (slice * rows_ + row) * columns_;
+    const Vertex* upper = lower + columns_;
+    const double b =
+        inverseTrapezoid(lower[columns_ - 1].before, upper[columns_ - 1].before, area - below[row]);
+
+    const auto before = [&](std::size_t c) { return lerp(b, lower[c].before, upper[c].before); };
+    const double whole = before(columns_ - 1), part = std::clamp(x, 0.0, 1.0) * whole;
+    const double v = (static_cast<double>(row) + b) / static_cast<double>(rows_ - 1);
+    if (!(whole > 0)) return {x, v};
+    std::size_t column = 0, end = columns_ - 1;  // before(column) <= part < before(end)
+    while (end - column > 1) {
+        const std::size_t middle = (column + end) / 2;
+        (before(middle) <= part ? column : end) = middle;
+    }
+    const double a = inverseTrapezoid(lerp(b, lower[column].density, upper[column].density),
+                                      lerp(b, lower[column + 1].density, upper[column + 1].density),
+                                      part - before(column));
+    return {(static_cast<double>(column) + a) / static_cast<double>(columns_ - 1), v};
+}
+
+std::vector<float> VisibleNormals::densities() const {
+    std::vector<float> values(vertices_.size());
+    std::ranges::transform(vertices_, values.begin(), &Vertex::density);
+    return values;
 }
 
 namespace {

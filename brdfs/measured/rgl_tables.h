@@ -57,7 +57,11 @@ public:
     /// The inverse of sampling: y = P(row < v), x = P(column < u | v). Rows without any density
     /// keep x = u.
     Point invert(double u, double v, const Slices& slices) const;
+    /// Sampling: the (u, v) that `invert` takes to (x, y) for one slice.
+    Point sample(double x, double y, std::size_t slice) const;
 
+    /// As they were given.
+    std::vector<float> densities() const;
     std::size_t rows() const { return rows_; }
     std::size_t columns() const { return columns_; }
 
