@@ -1,0 +1,43 @@
+#pragma once
+
+#include <brdfs/measured/scattered/chart.h>
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// Interpolation of values at scattered points of 1 to 4 dimensions: the modified Shepard method
+/// with linear nodal functions (Franke & Nielson 1980, 10.1002/nme.1620151110; Renka 1988,
+/// 10.1145/45054.45055):
+///     f(x) = sum_k w_k Q_k(x) / sum_k w_k,      w_k = (max(0, R - d_k) / (R d_k))^2
+/// over the nearest nodes (3, 7, 12 or 20 for 1 to 4 dimensions), d_k their distances and R that of
+/// the next one. Q_k goes through node k; its slope is a weighted least-squares fit to the node's
+/// neighbours, and it is held between the least and the greatest value among them.
+///
+/// So f takes the nodes' values there, is continuous, reproduces linear data where the
+/// neighbours span all dimensions, and never leaves the range of the values near by. It does not
+/// depend on the number of threads. Points within 2e-4 of each other become one, with the mean of
+/// their values. Building takes O(n log n), an evaluation O(log n) plus the sum.
+class ScatterInterpolant {
+public:
+    /// values[point * channels + channel]. At least one point, every coordinate and value finite.
+    ScatterInterpolant(int dimensions, std::vector<Point> points, const std::vector<double>& values,
+                       std::size_t channels);
+    ~ScatterInterpolant();
+    ScatterInterpolant(const ScatterInterpolant&) = delete;
+    ScatterInterpolant& operator=(const ScatterInterpolant&) = delete;
+
+    std::size_t nodes() const;
+    /// Writes out[channel * stride] and returns the distance to the nearest node; beyond `limit`
+    /// only the distance is found and zeros are written.
+    double evaluate(const Point& x, double limit, double* out, std::size_t stride) const;
+    double nearest(const Point& x) const;
+
+private:
+    struct Nodes;
+    std::unique_ptr<Nodes> nodes_;
+};
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <brdfs/measured/measured_brdf.h>
+#include <brdfs/measured/scattered/chart.h>
+#include <hshfit/brdf.h>
+#include <hshfit/error.h>
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// Where a sample stands in its file, for messages: "PATH: line N: …".
+struct Row {
+    const std::string& where;
+    std::string_view unit;  ///< "line" or "sample"
+    std::size_t number;
+
+    InputError error(std::string_view message) const;
+};
+
+/// Measured pairs of directions with f in 1/sr for each, as a reader found them in a file.
+struct Samples {
+    std::vector<Direction> wi, wo;
+    std::vector<double> values;  ///< [sample * channels.count() + channel]
+    Channels channels;
+    /// For data that were reduced to fewer coordinates than a pair has: each sample then stands
+    /// for all pairs with the coordinates of its own. Chart::anisotropic says nothing of the kind.
+    Chart chart = Chart::anisotropic;
+    bool isotropic = false;  ///< the file says so
+    Census census;
+    std::vector<Fact> facts;           ///< the format and what its header says
+    std::vector<std::string> leftOut;  ///< what the file holds and is not read
+
+    std::size_t size() const { return wi.size(); }
+
+    /// Appends a sample, or only counts it if one of its directions is below the horizon (by more
+    /// than 1e-6 in z). Values below zero are kept and counted. Throws InputError for a value that
+    /// is no finite number.
+    void add(const Direction& in, const Direction& out, std::span<const double> f, const Row& row);
+};
+
+/// A polar angle in radians as it stands in a file; throws InputError, with the name of the field,
+/// where it is no finite number or exceeds a right angle by more than 1e-3: most likely it is in
+/// degrees. Negative ones are on the other side of the normal.
+double checkedPolarAngle(double theta, const Row& row, std::string_view field);
+/// Likewise for azimuths, which stay within two turns.
+double checkedAzimuth(double phi, const Row& row, std::string_view field);
+
+}  // namespace hshfit::brdfs

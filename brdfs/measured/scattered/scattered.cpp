@@ -1,0 +1,211 @@
+#include <brdfs/measured/scattered/scattered.h>
+#include <hshfit/error.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace hshfit::brdfs {
+namespace {
+
+bool oneAzimuth(const std::vector<Direction>& directions) {
+    const Direction* first = nullptr;
+    for (const Direction& d : directions) {
+        if (std::hypot(d.x, d.y) < 1e-4) continue;
+        if (!first) first = &d;
+        // Both sides of the normal are one plane.
+        const double across = d.x * first->y - d.y * first->x;
+        if (std::fabs(across) > 1e-5 * std::hypot(d.x, d.y) * std::hypot(first->x, first->y)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+Chart chartOf(const Samples& samples, const ScatteredOptions& options) {
+    if (samples.chart != Chart::anisotropic) return samples.chart;
+    const bool implied = oneAzimuth(samples.wi) || oneAzimuth(samples.wo);
+    const bool isotropic = options.isotropic.value_or(samples.isotropic || implied);
+    return isotropic ? Chart::isotropic : Chart::anisotropic;
+}
+
+/// All samples on one side of the plane of incidence: the third Hopf coordinate tells.
+bool oneSided(const Samples& samples) {
+    bool left = false, right = false;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const double side = chartPoint(Chart::isotropic, samples.wi[k], samples.wo[k])[2];
+        left = left || side > 1e-3;
+        right = right || side < -1e-3;
+    }
+    return !(left && right);
+}
+
+Laws lawsOf(Chart chart, const Folding& folding) {
+    Laws laws;
+    laws.nonNegative = true;
+    switch (chart) {
+        case Chart::isotropic:
+        case Chart::anisotropic:
+            laws.reciprocal = folding.exchange;
+            laws.mirrorSymmetric = folding.mirror;
+            laws.isotropic = chart == Chart::isotropic;
+            break;
+        case Chart::halfVector:
+        case Chart::halfVectorDistance:
+            laws.reciprocal = true;
+            break;
+        case Chart::backVector:
+            break;
+        default:  // functions of angles between the directions and the normal alone
+            laws.reciprocal = laws.isotropic = laws.mirrorSymmetric = true;
+            break;
+    }
+    return laws;
+}
+
+std::optional<bool> answer(const std::string& word) {
+    return word == "auto" ? std::nullopt : std::optional(word == "yes");
+}
+
+Axis angleAxis(const std::string& name, std::vector<double> angles) {
+    std::ranges::sort(angles);
+    Axis axis{.name = name, .unit = "degrees", .count = 0, .first = 0, .last = 0, .largestGap = 0};
+    double last = 0;
+    for (const double angle : angles) {
+        const double value = degrees(angle);
+        if (axis.count > 0 && value - last < 1e-2) continue;
+        if (axis.count > 0) axis.largestGap = std::max(axis.largestGap, value - last);
+        if (axis.count == 0) axis.first = value;
+        axis.last = last = value;
+        ++axis.count;
+    }
+    return axis;
+}
+
+}  // namespace
+
+std::vector<Parameter> scatteredParameters(std::vector<Parameter> more) {
+    std::vector<Parameter> parameters{
+        {.name = "isotropic",
+         .help = "take the samples as isotropic; auto: if the file says or implies it",
+         .kind = Parameter::Kind::choice,
+         .choices = {"auto", "yes", "no"}},
+        {.name = "mirror",
+         .help = "mirror the samples at the plane of incidence (anisotropic: at both axes); auto: "
+                 "if they are isotropic and on one side",
+         .kind = Parameter::Kind::choice,
+         .choices = {"auto", "yes", "no"}},
+        {.name = "exchange",
+         .help = "a sample stands for the pair with wi and wo exchanged, too",
+         .kind = Parameter::Kind::choice,
+         .choices = {"yes", "no"}},
+        {.name = "reach",
+         .help = "degrees from a sample within which f rests on it",
+         .kind = Parameter::Kind::number,
+         .fallback = 10,
+         .min = 0.01,
+         .max = 180},
+    };
+    parameters.insert(parameters.end(), more.begin(), more.end());
+    return parameters;
+}
+
+ScatteredOptions scatteredOptions(const Parameters& parameters) {
+    return {.isotropic = answer(parameters.choice("isotropic")),
+            .mirror = answer(parameters.choice("mirror")),
+            .exchange = parameters.choice("exchange") == "yes",
+            .reach = radians(parameters.number("reach"))};
+}
+
+Scattered::Scattered(Samples samples, const ScatteredOptions& options, std::string name)
+    : samples_(std::move(samples)), options_(options), name_(std::move(name)) {
+    if (samples_.size() == 0) {
+        throw InputError(fmt::format("{}: no sample is above the horizon ({} are below it)", name_,
+                                     samples_.census.belowHorizon / samples_.channels.count()));
+    }
+    chart_ = chartOf(samples_, options_);
+    const bool ofPairs = chart_ == Chart::isotropic || chart_ == Chart::anisotropic;
+    folding_.exchange = options_.exchange && ofPairs;
+    folding_.mirror =
+        ofPairs && options_.mirror.value_or(chart_ == Chart::isotropic && oneSided(samples_));
+    laws_ = lawsOf(chart_, folding_);
+    images_ = images(chart_, folding_);
+    std::vector<Point> points;
+    std::vector<double> values;
+    const std::size_t channels = samples_.channels.count();
+    points.reserve(samples_.size() * images_.size());
+    values.reserve(samples_.values.size() * images_.size());
+    for (std::size_t k = 0; k < samples_.size(); ++k) {
+        const Point at = chartPoint(chart_, samples_.wi[k], samples_.wo[k]);
+        for (const Point& signs : images_) {
+            Point image;
+            for (std::size_t c = 0; c < image.size(); ++c) image[c] = at[c] * signs[c];
+            points.push_back(image);
+            for (std::size_t c = 0; c < channels; ++c) {
+                values.push_back(std::max(0.0, samples_.values[k * channels + c]));
+            }
+        }
+    }
+    interpolant_ = std::make_unique<ScatterInterpolant>(dimensions(chart_), std::move(points),
+                                                        values, channels);
+}
+
+void Scattered::eval(const Direction& wo, DirectionBatch wi, double* out) const {
+    const double limit = 1.5 * options_.reach;
+    const std::size_t channels = samples_.channels.count();
+    for (std::size_t k = 0; k < wi.count; ++k) {
+        if (!(wi.z[k] > 0) || !(wo.z > 0)) {
+            for (std::size_t c = 0; c < channels; ++c) out[c * wi.count + k] = 0;
+            continue;
+        }
+        const Point at = folded(chartPoint(chart_, {wi.x[k], wi.y[k], wi.z[k]}, wo), images_);
+        const double away = interpolant_->evaluate(at, limit, out + k, wi.count);
+        if (away <= options_.reach || away > limit) continue;
+        const double t = (limit - away) / (limit - options_.reach);
+        const double fade = t * t * (3 - 2 * t);
+        for (std::size_t c = 0; c < channels; ++c) out[c * wi.count + k] *= fade;
+    }
+}
+
+void Scattered::coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const {
+    for (std::size_t k = 0; k < wi.count; ++k) {
+        covered[k] = 0;
+        if (!(wi.z[k] > 0) || !(wo.z > 0)) continue;
+        const Point at = folded(chartPoint(chart_, {wi.x[k], wi.y[k], wi.z[k]}, wo), images_);
+        covered[k] = interpolant_->nearest(at) <= options_.reach;
+    }
+}
+
+std::vector<Fact> Scattered::facts() const {
+    std::vector<Fact> facts = samples_.facts;
+    facts.emplace_back("samples", static_cast<std::int64_t>(samples_.size()));
+    facts.emplace_back("interpolated_over", std::string(chartName(chart_)));
+    facts.emplace_back("nodes", static_cast<std::int64_t>(interpolant_->nodes()));
+    facts.emplace_back("exchanged", folding_.exchange);
+    facts.emplace_back("mirrored", folding_.mirror);
+    facts.emplace_back("reach_degrees", degrees(options_.reach));
+    if (!samples_.leftOut.empty()) {
+        facts.emplace_back("not_read", fmt::format("{}", fmt::join(samples_.leftOut, "; ")));
+    }
+    return facts;
+}
+
+std::vector<Axis> Scattered::axes() const {
+    std::vector<Axis> axes;
+    const auto add = [&](const std::string& name, const std::vector<Direction>& directions,
+                         double (*angle)(const Direction&)) {
+        std::vector<double> angles;
+        for (const Direction& d : directions) angles.push_back(angle(d));
+        axes.push_back(angleAxis(name, std::move(angles)));
+    };
+    add("theta_i", samples_.wi, polarAngle);
+    add("phi_i", samples_.wi, azimuth);
+    add("theta_o", samples_.wo, polarAngle);
+    add("phi_o", samples_.wo, azimuth);
+    return axes;
+}
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <brdfs/catalog.h>
+#include <brdfs/measured/measured_brdf.h>
+#include <brdfs/measured/scattered/interpolant.h>
+#include <brdfs/measured/scattered/samples.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// What scattered samples are taken to be. None: what the file says, or else what its directions
+/// imply: isotropic if all incident or all outgoing directions have one azimuth, mirrored if the
+/// samples are isotropic and all on one side of the plane of incidence.
+struct ScatteredOptions {
+    std::optional<bool> isotropic = {};
+    std::optional<bool> mirror = {};
+    bool exchange = true;        ///< f(wi, wo) = f(wo, wi): a sample stands for the exchanged pair
+    double reach = radians(10);  ///< how far from a sample f still rests on it
+};
+
+/// The options `isotropic`, `mirror`, `exchange` and `reach` of every scattered format, followed by
+/// `more`.
+std::vector<Parameter> scatteredParameters(std::vector<Parameter> more = {});
+ScatteredOptions scatteredOptions(const Parameters& parameters);
+
+/// A BRDF interpolated between scattered samples: `ScatterInterpolant` in the coordinates of
+/// `Chart`. Within `reach` of the nearest sample (or of its image under the symmetries) f is
+/// interpolated and coverage() is 1; from there to 1.5 reach it fades to 0; beyond it is 0.
+/// Values below zero count as 0. Never negative, continuous above the horizon; reciprocal and
+/// mirror symmetric exactly where folded so, isotropic to rounding.
+class Scattered : public MeasuredBrdf {
+public:
+    /// Throws InputError, starting with `name`, if there are no samples above the horizon.
+    Scattered(Samples samples, const ScatteredOptions& options, std::string name);
+
+    std::string name() const override { return name_; }
+    const Channels& channels() const override { return samples_.channels; }
+    const Laws& laws() const override { return laws_; }
+    void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
+    void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
+    /// 3e-3: measurements err by more.
+    double defaultTolerance() const override { return 3e-3; }
+    std::vector<Fact> facts() const override;
+    Census census() const override { return samples_.census; }
+    std::vector<Axis> axes() const override;
+
+    const Samples& samples() const { return samples_; }
+    bool exchanges() const { return folding_.exchange; }
+
+private:
+    Samples samples_;
+    ScatteredOptions options_;
+    std::string name_;
+    Chart chart_;
+    Folding folding_;
+    Laws laws_;
+    std::vector<Point> images_;
+    std::unique_ptr<ScatterInterpolant> interpolant_;
+};
+
+}  // namespace hshfit::brdfs

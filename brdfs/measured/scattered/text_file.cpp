@@ -1,0 +1,40 @@
+#include <brdfs/measured/scattered/scattered.h>
+#include <brdfs/measured/scattered/text_file.h>
+#include <hshfit/mapped_file.h>
+
+namespace hshfit::brdfs {
+
+void withTextFile(const std::string& path,
+                  const std::function<void(std::string_view, const std::string&)>& read) {
+    const MappedFile file(path);
+    try {
+        read({reinterpret_cast<const char*>(file.data()), file.size()}, path);
+    } catch (const InputError&) {
+        file.checkIntact();
+        throw;
+    }
+    file.checkIntact();
+}
+
+std::unique_ptr<Brdf> openScattered(
+    const std::string& path, const Parameters& parameters,
+    const std::function<Samples(std::string_view, const std::string&)>& read) {
+    Samples samples;
+    withTextFile(path, [&](std::string_view text, const std::string& where) {
+        samples = read(text, where);
+    });
+    const std::string options = parameters.canonical();
+    return std::make_unique<Scattered>(std::move(samples), scatteredOptions(parameters),
+                                       options.empty() ? path : path + ":" + options);
+}
+
+std::string_view asText(std::span<const unsigned char> head) {
+    const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
+    return text.find('\0') == std::string_view::npos ? text : std::string_view();
+}
+
+std::string_view firstLine(std::string_view text) {
+    return text.substr(0, text.find_first_of("\r\n"));
+}
+
+}  // namespace hshfit::brdfs
