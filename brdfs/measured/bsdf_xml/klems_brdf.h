@@ -1,0 +1,69 @@
+#pragma once
+
+#include <brdfs/measured/bsdf_xml/angle_basis.h>
+#include <brdfs/measured/bsdf_xml/document.h>
+#include <brdfs/measured/bsdf_xml/selection.h>
+#include <brdfs/measured/measured_brdf.h>
+
+#include <string>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// Reflection in a matrix of patch pairs (Klems 1994): f is constant where wi stays in one patch of
+/// the incident basis and wo in one of the outgoing basis. With (x, y) in the file's plane (see
+/// BsdfSelection), the outgoing patch is that of (x, y) of wo, and the incident one that of
+/// (-x, -y) of wi, which is where the light goes: a mirror fills the diagonal.
+///
+/// A negative value is taken as 0, as Radiance does; so is one that is NaN or infinite, and
+/// checkIntact() throws InputError if there is any. f is 0 beyond a basis that ends above the
+/// horizon. Laws are claimed where the matrix has them exactly.
+class KlemsBrdf : public MeasuredBrdf {
+public:
+    /// Throws InputError for bases that are unknown, matrices of wrong size, words among the
+    /// numbers.
+    KlemsBrdf(const BsdfDocument& document, BsdfSelection selection);
+
+    std::string name() const override { return selection_.name; }
+    const Channels& channels() const override { return channels_; }
+    const Laws& laws() const override { return laws_; }
+    void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
+    void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
+    /// The rings of the incident basis.
+    std::vector<double> kinks(const Direction& wo) const override;
+    double defaultTolerance() const override { return selection_.tolerance; }
+    std::vector<Fact> facts() const override;
+    void checkIntact() const override { selection_.checkIntact(); }
+    void checkReadable() const override {}
+    Census census() const override { return census_; }
+    std::vector<Axis> axes() const override;
+
+    const AngleBasis& incident() const { return incident_; }
+    const AngleBasis& outgoing() const { return outgoing_; }
+    /// f for a pair of patches.
+    double value(std::size_t channel, std::size_t incident, std::size_t outgoing) const {
+        return values_[(channel * outgoing_.patches() + outgoing) * incident_.patches() + incident];
+    }
+    /// Directional-hemispherical reflectance of an incident patch as the file defines it: the sum
+    /// over outgoing patches of f times projected solid angle.
+    double directionalReflectance(std::size_t channel, std::size_t incident) const;
+
+private:
+    std::vector<double> readMatrix(const BsdfDocument& document, const BsdfBlock& block);
+    void combineColours(std::vector<std::vector<double>> xyz);
+    void findLaws();
+    bool sameUnder(int sign, int turn, bool exchanged) const;
+    bool dependsOnRingsOnly() const;
+    std::size_t incidentPatch(const Direction& wi) const;
+    std::size_t outgoingPatch(const Direction& wo) const;
+
+    BsdfSelection selection_;
+    AngleBasis incident_, outgoing_;
+    Channels channels_;
+    Laws laws_;
+    Census census_;
+    std::vector<double> values_;          ///< [channel][outgoing][incident]
+    std::vector<unsigned char> missing_;  ///< [outgoing][incident]: NaN or infinite
+};
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,145 @@
+// What a matrix is like: laws, reflectances, spacing.
+
+#include <brdfs/measured/bsdf_xml/klems_brdf.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hshfit::brdfs {
+namespace {
+
+std::string describe(const AngleBasis& basis) {
+    std::vector<std::size_t> azimuths;
+    for (const AngleBasis::Ring& ring : basis.rings()) azimuths.push_back(ring.azimuths);
+    return fmt::format("{}: {} patches, {} rings of {}", basis.name, basis.patches(),
+                       basis.rings().size(), fmt::join(azimuths, ", "));
+}
+
+void appendAxes(std::vector<Axis>& axes, const AngleBasis& basis, const char* suffix) {
+    const std::vector<AngleBasis::Ring>& rings = basis.rings();
+    const auto centre = [&](std::size_t k) {
+        return k == 0 && rings[0].azimuths == 1 ? 0 : (rings[k].lower + rings[k].upper) / 2;
+    };
+    Axis theta{fmt::format("theta_{}", suffix), "degrees", rings.size(), centre(0),
+               centre(rings.size() - 1),        0};
+    for (std::size_t k = 1; k < rings.size(); ++k) {
+        theta.largestGap = std::max(theta.largestGap, centre(k) - centre(k - 1));
+    }
+    std::size_t most = 1, least = 0;
+    for (const AngleBasis::Ring& ring : rings) {
+        most = std::max(most, ring.azimuths);
+        if (ring.azimuths > 1) least = least ? std::min(least, ring.azimuths) : ring.azimuths;
+    }
+    const auto step = [](std::size_t n) { return 360.0 / static_cast<double>(n); };
+    axes.push_back(theta);
+    axes.push_back({fmt::format("phi_{}", suffix), "degrees", most, 0, 360 - step(most),
+                    step(least ? least : 1)});
+}
+
+}  // namespace
+
+/// Whether exchanging the directions, if asked to, and moving azimuths leaves every value as it is.
+bool KlemsBrdf::sameUnder(int sign, int turn, bool exchanged) const {
+    const std::size_t incidents = incident_.patches(), outgoings = outgoing_.patches();
+    for (std::size_t c = 0; c < channels_.count(); ++c) {
+        for (std::size_t o = 0; o < outgoings; ++o) {
+            const std::size_t movedO = outgoing_.moved(o, sign, turn);
+            for (std::size_t i = 0; i < incidents; ++i) {
+                const std::size_t movedI = incident_.moved(i, sign, turn);
+                const double image =
+                    exchanged ? value(c, movedO, movedI) : value(c, movedI, movedO);
+                if (value(c, i, o) != image) return false;
+            }
+        }
+    }
+    return true;
+}
+
+bool KlemsBrdf::dependsOnRingsOnly() const {
+    for (std::size_t c = 0; c < channels_.count(); ++c) {
+        for (std::size_t o = 0; o < outgoing_.patches(); ++o) {
+            const std::size_t firstO = outgoing_.rings()[outgoing_.ringOf(o)].first;
+            for (std::size_t i = 0; i < incident_.patches(); ++i) {
+                const std::size_t firstI = incident_.rings()[incident_.ringOf(i)].first;
+                if (value(c, i, o) != value(c, firstI, firstO)) return false;
+            }
+        }
+    }
+    return true;
+}
+
+// Reciprocity, f(wi, wo) = f(wo, wi), exchanges the patches of wo and of -wi; turning both by 180
+// degrees makes that the patches of -wo and wi, which is a transposition with turned patches.
+void KlemsBrdf::findLaws() {
+    const bool movable = incident_.symmetric() && outgoing_.symmetric();
+    bool sameBasis = incident_.patches() == outgoing_.patches() &&
+                     incident_.rings().size() == outgoing_.rings().size();
+    for (std::size_t k = 0; sameBasis && k < incident_.rings().size(); ++k) {
+        sameBasis = incident_.rings()[k].azimuths == outgoing_.rings()[k].azimuths &&
+                    incident_.rings()[k].upper == outgoing_.rings()[k].upper;
+    }
+    laws_.reciprocal = movable && sameBasis && sameUnder(1, 1, true);
+    laws_.mirrorSymmetric = movable && sameUnder(-1, 0, false) && sameUnder(-1, 1, false);
+    laws_.isotropic = dependsOnRingsOnly();
+    double most = 0;
+    for (std::size_t c = 0; c < channels_.count(); ++c) {
+        for (std::size_t o = 0; o < outgoing_.patches(); ++o) {
+            double sum = 0;
+            for (std::size_t i = 0; i < incident_.patches(); ++i) {
+                sum += value(c, i, o) * incident_.projectedSolidAngle(incident_.ringOf(i));
+            }
+            most = std::max(most, sum);
+        }
+    }
+    laws_.energyConserving = most <= 1;
+}
+
+std::vector<Axis> KlemsBrdf::axes() const {
+    std::vector<Axis> axes;
+    appendAxes(axes, incident_, "i");
+    appendAxes(axes, outgoing_, "o");
+    return axes;
+}
+
+std::vector<Fact> KlemsBrdf::facts() const {
+    std::vector<Fact> facts = selection_.facts;
+    facts.emplace_back("incident_basis", describe(incident_));
+    facts.emplace_back("outgoing_basis", describe(outgoing_));
+    facts.emplace_back("negative_values", static_cast<std::int64_t>(census_.negative));
+    facts.emplace_back("nan_values", static_cast<std::int64_t>(census_.notANumber));
+    facts.emplace_back("infinite_values", static_cast<std::int64_t>(census_.infinite));
+    double largest = 0;
+    for (const AngleBasis::Ring& ring : incident_.rings()) {
+        double low = HUGE_VAL, high = 0;
+        for (std::size_t j = 0; j < ring.azimuths; ++j) {
+            for (std::size_t c = 0; c < channels_.count(); ++c) {
+                const double reflectance = directionalReflectance(c, ring.first + j);
+                low = std::min(low, reflectance);
+                high = std::max(high, reflectance);
+            }
+        }
+        largest = std::max(largest, high);
+        facts.emplace_back(fmt::format("reflectance_incident_{:g}_to_{:g}", ring.lower, ring.upper),
+                           fmt::format("{:.6g} to {:.6g}", low, high));
+    }
+    facts.emplace_back("largest_directional_reflectance", largest);
+    const std::vector<std::string> names = channels_.names();
+    // Values of patches at opposite azimuths exchange under reciprocity.
+    if (laws_.reciprocal || !incident_.symmetric() || incident_.patches() != outgoing_.patches()) {
+        return facts;
+    }
+    double defect = 0, sum = 0;
+    for (std::size_t o = 0; o < outgoing_.patches(); ++o) {
+        for (std::size_t i = 0; i < incident_.patches(); ++i) {
+            const double there = value(0, outgoing_.moved(o, 1, 1), incident_.moved(i, 1, 1));
+            defect += std::abs(value(0, i, o) - there);
+            sum += value(0, i, o) + there;
+        }
+    }
+    facts.emplace_back("reciprocity_defect", sum > 0 ? 2 * defect / sum : 0.0);
+    return facts;
+}
+
+}  // namespace hshfit::brdfs

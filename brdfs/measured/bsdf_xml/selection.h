@@ -1,0 +1,64 @@
+#pragma once
+
+#include <brdfs/measured/bsdf_xml/document.h>
+#include <hshfit/brdf.h>
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// What the file calls the sides. Radiance turns the words round: its front, towards +z and the
+/// room, is the file's back.
+enum class BsdfSide { front, back };
+
+/// The blocks of a document that one BRDF is made of, and what stays the same for all kinds of
+/// them.
+///
+/// Directions. Files have one frame for both sides: x and y along the surface, z out of the back.
+/// Local frames are right-handed with +z out of the surface: (x, y, z) on the back, and turned
+/// about y, (-x, y, -z), on the front.
+struct BsdfSelection {
+    std::string name;  ///< that opens the same BRDF again
+    BsdfSide side = BsdfSide::front;
+    std::string wavelength;  ///< as the file spells it
+    const BsdfBlock* main = nullptr;
+    /// CIE-X and CIE-Z for a matrix, CIE-u and CIE-v for a tree; null: grey.
+    std::array<const BsdfBlock*, 2> colour{};
+    double tolerance = 1e-2;  ///< of quadrature: f is a step function
+    std::vector<Fact> facts;  ///< format, side, what was not used, …
+    std::string corrupt;      ///< what checkIntact() throws; empty: nothing
+
+    /// Once they are read: the document may go.
+    void forgetBlocks() {
+        main = nullptr;
+        colour = {};
+    }
+    bool coloured() const { return colour[0] != nullptr; }
+    /// x in the file's frame.
+    double fileX(double x) const { return side == BsdfSide::front ? -x : x; }
+    void checkIntact() const {
+        if (!corrupt.empty()) throw InputError(corrupt);
+    }
+};
+
+/// Finds the blocks for the side and the part of the spectrum ("visible": with colours if the file
+/// has them). Throws InputError if the file lacks them, naming what it has, or has them twice.
+BsdfSelection selectBlocks(const BsdfDocument& document, BsdfSide side,
+                           std::string_view wavelength);
+
+/// Linear RGB of CIE XYZ with the primaries of Rec. 709 and the white of equal energy, which is
+/// what these files mean by a neutral surface: X = Y = Z gives R = G = B. Negative components,
+/// outside of the gamut, are kept.
+std::array<double, 3> rgbOfXyz(double x, double y, double z);
+/// The same of luminance and CIE 1976 (u', v'), taken as at most 1; neutral for v' below 1e-3.
+std::array<double, 3> rgbOfYuv(double y, double u, double v);
+
+/// What stands for a value in `eval`: 0 for one that is negative or NaN.
+inline double asReflectance(double value) {
+    return value > 0 ? value : 0;
+}
+
+}  // namespace hshfit::brdfs

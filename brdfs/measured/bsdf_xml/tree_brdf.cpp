@@ -1,0 +1,169 @@
+#include <brdfs/measured/bsdf_xml/square.h>
+#include <brdfs/measured/bsdf_xml/tree_brdf.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hshfit::brdfs {
+
+TreeBrdf::TreeBrdf(const BsdfDocument& document, BsdfSelection selection)
+    : selection_(std::move(selection)) {
+    addTree(document, *selection_.main);
+    if (selection_.coloured()) {
+        for (const BsdfBlock* block : selection_.colour) addTree(document, *block);
+        channels_ = Channels::rgb();
+    }
+    selection_.forgetBlocks();
+    findLaws();
+}
+
+void TreeBrdf::addTree(const BsdfDocument& document, const BsdfBlock& block) {
+    constexpr const char* square = "LBNL/Shirley-Chiu";
+    if (!sameWord(block.squareBasis, square)) {
+        throw document.error(block.offset, fmt::format("AngleBasis of a tensor tree is '{}', "
+                                                       "expected {}",
+                                                       block.squareBasis, square));
+    }
+    const int rank = document.structure() == BsdfDocument::Structure::tree3 ? 3 : 4;
+    TensorTree& tree = trees_.emplace_back(document, block, rank);
+    if (tree.corruptOffset() != 0 && selection_.corrupt.empty()) {
+        selection_.corrupt =
+            document.error(tree.corruptOffset(), "a value is NaN or infinite, expected a number")
+                .what();
+    }
+    census_.values += tree.values().size();
+    if (trees_.size() == 1) missing_.resize(tree.values().size());
+    tree.forEachLeaf([&](const TensorTree::Leaf& leaf) {
+        double& value = tree.values()[leaf.value];
+        const bool unused = rank == 3 && leaf.corner[0] >= 0.5;
+        // The half that stands for no direction.
+        if (unused) {
+            ++census_.belowHorizon;
+        } else {
+            census_.add(value);
+        }
+        if (std::isfinite(value) && value >= 0) return;
+        if (trees_.size() == 1 && !std::isfinite(value)) missing_[leaf.value] = 1;
+        value = 0;
+    });
+}
+
+// The mirrored coordinates of a mirrored vector are those of the square, so that laws of f are
+// symmetries of the tree: reciprocity is T(p, q) = T(1 - q, 1 - p), because the incident square is
+// that of -wi.
+void TreeBrdf::findLaws() {
+    const bool isotropic = trees_[0].rank() == 3;
+    const auto all = [&](const std::array<int, 4>& from, const std::array<bool, 4>& flipped) {
+        return std::ranges::all_of(
+            trees_, [&](const TensorTree& tree) { return tree.invariant(from, flipped); });
+    };
+    laws_.nonNegative = true;
+    laws_.isotropic = isotropic;
+    constexpr std::array<int, 4> same{0, 1, 2, 3};
+    laws_.mirrorSymmetric =
+        isotropic ? all(same, {false, false, true, false})
+                  : all(same, {true, false, true, false}) && all(same, {false, true, false, true});
+    laws_.reciprocal = !isotropic && all({2, 3, 0, 1}, {true, true, true, true});
+    if (trees_.size() > 1) return;
+    if (isotropic) {
+        // A bound: the albedo is no more than pi times the greatest value.
+        double most = 0;
+        trees_[0].forEachLeaf([&](const TensorTree::Leaf& leaf) {
+            if (leaf.corner[0] < 0.5) most = std::max(most, trees_[0].values()[leaf.value]);
+        });
+        laws_.energyConserving = pi * most <= 1;
+        return;
+    }
+    double most = 0;
+    for (const double average : trees_[0].averagesOverFirst(2)) most = std::max(most, average);
+    laws_.energyConserving = pi * most <= 1;
+}
+
+TensorTree::Point TreeBrdf::pointFor(const Direction& wo, double x, double y) const {
+    // Where the light goes.
+    const double fromX = -selection_.fileX(x), fromY = -y;
+    const double toX = selection_.fileX(wo.x), toY = wo.y;
+    if (trees_[0].rank() == 4) {
+        const SquarePoint p = squareFromDisc(fromX, fromY), q = squareFromDisc(toX, toY);
+        return {p.u, p.v, q.u, q.v};
+    }
+    const double r = std::sqrt(fromX * fromX + fromY * fromY);
+    const double cosine = r > 0 ? fromX / r : 1, sine = r > 0 ? fromY / r : 0;
+    const SquarePoint q = squareFromDisc(cosine * toX + sine * toY, cosine * toY - sine * toX);
+    // Normal incidence is in the last cell below the middle.
+    return {std::min(0.5 * (1 - r), 0.5 - 1e-9), q.u, q.v, 0};
+}
+
+void TreeBrdf::eval(const Direction& wo, DirectionBatch wi, double* out) const {
+    const std::size_t count = channels_.count();
+    if (!(wo.z > 0)) {
+        std::fill_n(out, count * wi.count, 0.0);
+        return;
+    }
+    for (std::size_t k = 0; k < wi.count; ++k) {
+        if (!(wi.z[k] > 0)) {
+            for (std::size_t c = 0; c < count; ++c) out[c * wi.count + k] = 0;
+            continue;
+        }
+        const TensorTree::Point point = pointFor(wo, wi.x[k], wi.y[k]);
+        const double y = trees_[0].at(point);
+        if (count == 1) {
+            out[k] = y;
+            continue;
+        }
+        const std::array<double, 3> rgb = rgbOfYuv(y, trees_[1].at(point), trees_[2].at(point));
+        for (std::size_t c = 0; c < 3; ++c) out[c * wi.count + k] = asReflectance(rgb[c]);
+    }
+}
+
+void TreeBrdf::coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const {
+    for (std::size_t k = 0; k < wi.count; ++k) {
+        const bool above = wo.z > 0 && wi.z[k] > 0;
+        covered[k] = above && missing_[trees_[0].leafAt(pointFor(wo, wi.x[k], wi.y[k]))] == 0;
+    }
+}
+
+std::vector<double> TreeBrdf::directionalReflectances() const {
+    std::vector<double> averages = trees_[0].averagesOverLast(2);
+    if (trees_[0].rank() == 3 && averages.size() > 1) averages.resize(averages.size() / 2);
+    for (double& average : averages) average *= pi;
+    return averages;
+}
+
+std::vector<Axis> TreeBrdf::axes() const {
+    // Cells along the x axis, from the middle of the square to its rim.
+    const int cells = std::max(1 << trees_[0].levels() >> 1, 1);
+    const auto theta = [&](double cell) { return degrees(std::asin(cell / cells)); };
+    Axis axis{"theta_i",  "degrees",          static_cast<std::size_t>(cells),
+              theta(0.5), theta(cells - 0.5), 0};
+    for (int k = 1; k < cells; ++k) {
+        axis.largestGap = std::max(axis.largestGap, theta(k + 0.5) - theta(k - 0.5));
+    }
+    std::vector<Axis> axes{axis, axis};
+    axes[1].name = "theta_o";
+    return axes;
+}
+
+std::vector<Fact> TreeBrdf::facts() const {
+    std::vector<Fact> facts = selection_.facts;
+    const TensorTree& tree = trees_[0];
+    facts.emplace_back("levels", static_cast<std::int64_t>(tree.levels()));
+    facts.emplace_back("leaves", static_cast<std::int64_t>(tree.values().size()));
+    facts.emplace_back("negative_values", static_cast<std::int64_t>(census_.negative));
+    facts.emplace_back("nan_values", static_cast<std::int64_t>(census_.notANumber));
+    facts.emplace_back("infinite_values", static_cast<std::int64_t>(census_.infinite));
+    const std::vector<double> reflectances = directionalReflectances();
+    const auto [least, most] = std::ranges::minmax(reflectances);
+    facts.emplace_back("least_directional_reflectance", least);
+    facts.emplace_back("largest_directional_reflectance", most);
+    if (tree.rank() == 4) {
+        double mean = 0;
+        for (const double r : reflectances) mean += r / static_cast<double>(reflectances.size());
+        facts.emplace_back("mean_reflectance", mean);
+    }
+    return facts;
+}
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <brdfs/measured/bsdf_xml/document.h>
+#include <brdfs/measured/bsdf_xml/selection.h>
+#include <brdfs/measured/bsdf_xml/tensor_tree.h>
+#include <brdfs/measured/measured_brdf.h>
+
+#include <string>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// Reflection in a tensor tree over the squares of squareFromDisc, constant on each leaf. With
+/// (x, y) in the file's plane (see BsdfSelection):
+///     rank 4:  (u, v) of (-x, -y) of wi, (u, v) of (x, y) of wo;
+///     rank 3:  (1 - sin(theta_i)) / 2, (u, v) of (x, y) of wo turned so that -wi has azimuth 0.
+/// Half of the cube of rank 3 stands for nothing. A mirror lies on the diagonal of rank 4.
+///
+/// A negative value is taken as 0, as Radiance does; so is one that is NaN or infinite, and
+/// checkIntact() throws InputError if there is any. With trees for CIE u' and v' the BRDF is RGB.
+/// Laws are claimed where the tree has them exactly; rank 3 never claims reciprocity, nor a
+/// coloured tree conservation of energy.
+class TreeBrdf : public MeasuredBrdf {
+public:
+    /// Throws InputError as TensorTree does.
+    TreeBrdf(const BsdfDocument& document, BsdfSelection selection);
+
+    std::string name() const override { return selection_.name; }
+    const Channels& channels() const override { return channels_; }
+    const Laws& laws() const override { return laws_; }
+    void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
+    void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
+    double defaultTolerance() const override { return selection_.tolerance; }
+    std::vector<Fact> facts() const override;
+    void checkIntact() const override { selection_.checkIntact(); }
+    void checkReadable() const override {}
+    Census census() const override { return census_; }
+    std::vector<Axis> axes() const override;
+
+    /// Of f, or of luminance.
+    const TensorTree& tree() const { return trees_[0]; }
+    /// Directional-hemispherical reflectances as the file defines them: pi times the average over
+    /// the outgoing square, for each cell of the finest grid of incident coordinates, first
+    /// coordinate fastest. Rank 3: from grazing (first) to normal incidence.
+    std::vector<double> directionalReflectances() const;
+
+private:
+    TensorTree::Point pointFor(const Direction& wo, double x, double y) const;
+    void addTree(const BsdfDocument& document, const BsdfBlock& block);
+    void findLaws();
+
+    BsdfSelection selection_;
+    Channels channels_;
+    Laws laws_;
+    Census census_;
+    std::vector<TensorTree> trees_;       ///< one, or Y, u' and v'
+    std::vector<unsigned char> missing_;  ///< leaves of the first that are NaN or infinite
+};
+
+}  // namespace hshfit::brdfs
