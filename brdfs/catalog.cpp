@@ -13,6 +13,7 @@
 #include <brdfs/analytic/phong.h>
 #include <brdfs/analytic/sgd.h>
 #include <brdfs/analytic/ward.h>
+#include <brdfs/measured/bsdf_xml/bsdf_xml.h>
 #include <brdfs/measured/merl.h>
 #include <brdfs/measured/merl_writer.h>
 #include <brdfs/measured/rgl.h>
@@ -138,7 +139,7 @@ std::span<const Model> models() {
 }
 
 std::span<const Format> formats() {
-    static const std::vector<Format> table{merlFormat(), rglFormat()};
+    static const std::vector<Format> table{merlFormat(), rglFormat(), bsdfXmlFormat()};
     return table;
 }
 
