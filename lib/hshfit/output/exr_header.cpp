@@ -20,8 +20,8 @@ namespace {
 constexpr std::string_view magic("\x76\x2f\x31\x01", 4);
 constexpr std::uint32_t versionMask = 0xff, longNames = 0x400;
 constexpr std::uint32_t tiled = 0x200, deep = 0x800, multiPart = 0x1000;
-constexpr std::int32_t floatPixels = 2;
-constexpr int lastLossless = 3;  // none, RLE, ZIPS, ZIP
+constexpr std::int32_t halfPixels = 1, floatPixels = 2;
+constexpr int zipCompression = 3, pizCompression = 4;  // before them: none, RLE, ZIPS
 constexpr std::int32_t maxSide = 1 << 16;
 constexpr std::uint64_t maxInflation = 1032;
 constexpr std::size_t maxName = 255;
@@ -96,7 +96,8 @@ std::optional<Attribute> nextAttribute(Cursor& cursor) {
 
 class Checker {
 public:
-    Checker(std::string_view bytes, const std::string& file) : bytes_(bytes), file_(file) {}
+    Checker(std::string_view bytes, const std::string& file, const ExrRules& rules)
+        : bytes_(bytes), file_(file), rules_(rules) {}
 
     ExrHeader check() {
         Cursor cursor(bytes_);
@@ -135,9 +136,10 @@ private:
     void checkFlags(Cursor& cursor) const {
         const auto version = cursor.integer<std::uint32_t>();
         if (!version) fail("the header breaks off");
-        if (*version & multiPart) fail("it has several parts; coefficient files have one");
-        if (*version & deep) fail("it is a deep image; coefficient files are flat");
-        if (*version & tiled) fail("it is tiled; coefficient files have scan lines");
+        if (*version & multiPart)
+            fail(fmt::format("it has several parts; {} have one", rules_.files));
+        if (*version & deep) fail(fmt::format("it is a deep image; {} are flat", rules_.files));
+        if (*version & tiled) fail(fmt::format("it is tiled; {} have scan lines", rules_.files));
         if ((*version & versionMask) != 2 || (*version & ~(versionMask | longNames)) != 0) {
             fail(fmt::format("unknown version field {:#x}", *version));
         }
@@ -150,8 +152,8 @@ private:
             std::find_if(std::begin(typeSizes), std::end(typeSizes),
                          [&](const TypeSize& row) { return row.type == attribute.type; });
         if (known == std::end(typeSizes)) {
-            fail(fmt::format("the attribute '{}' has a type that coefficient files do not use",
-                             attribute.name.substr(0, 40)));
+            fail(fmt::format("the attribute '{}' has a type that {} do not use",
+                             attribute.name.substr(0, 40), rules_.files));
         }
         if (attribute.value.size() != known->bytes) {
             fail(fmt::format("the attribute '{}' has {} bytes; its type has {}",
@@ -172,8 +174,9 @@ private:
             cursor.take(4);
             const auto x = cursor.integer<std::int32_t>(), y = cursor.integer<std::int32_t>();
             if (!type || !x || !y) fail("the channel list breaks off");
-            if (*type != floatPixels) {
-                fail(fmt::format("channel '{}' is not of type float", name->substr(0, 40)));
+            if (*type != floatPixels && !(rules_.picture && *type == halfPixels)) {
+                fail(fmt::format("channel '{}' is not of type {}", name->substr(0, 40),
+                                 rules_.picture ? "half or float" : "float"));
             }
             if (*x != 1 || *y != 1) {
                 fail(fmt::format("channel '{}' is subsampled", name->substr(0, 40)));
@@ -200,13 +203,15 @@ private:
 
     void checkCompression(std::string_view value) const {
         const auto method = Cursor(value).integer<std::uint8_t>();
-        if (!method || *method > lastLossless) {
-            fail("the compression has to be none, RLE, ZIPS or ZIP");
+        if (!method || *method > (rules_.picture ? pizCompression : zipCompression)) {
+            fail(fmt::format("the compression has to be none, RLE, ZIPS{}",
+                             rules_.picture ? ", ZIP or PIZ" : " or ZIP"));
         }
     }
 
     std::string_view bytes_;
     const std::string& file_;
+    const ExrRules& rules_;
     ExrHeader header_;
 };
 
@@ -216,24 +221,43 @@ bool hasExrMagic(std::string_view bytes) {
     return bytes.starts_with(magic);
 }
 
-ExrHeader checkExrHeader(std::string_view bytes, const std::string& file) {
+ExrHeader checkExrHeader(std::string_view bytes, const std::string& file, const ExrRules& rules) {
     if (!hasExrMagic(bytes)) {
         throw InputError(
             fmt::format("{}: is not an OpenEXR file: the first four bytes have to be "
                         "76 2f 31 01",
                         file));
     }
-    return Checker(bytes, file).check();
+    return Checker(bytes, file, rules).check();
 }
 
-bool exrSaysCoefficients(std::string_view bytes) {
+bool exrHasAttribute(std::string_view bytes, std::string_view name) {
     if (!hasExrMagic(bytes)) return false;
     Cursor cursor(bytes);
     cursor.take(magic.size() + sizeof(std::uint32_t));
     for (;;) {
         const auto attribute = nextAttribute(cursor);
         if (!attribute || attribute->name.empty()) return false;
-        if (attribute->name == "hshfit:format") return true;
+        if (attribute->name == name) return true;
+    }
+}
+
+bool exrSaysCoefficients(std::string_view bytes) {
+    return exrHasAttribute(bytes, "hshfit:format");
+}
+
+bool exrSaysSize(std::string_view bytes, std::int32_t width, std::int32_t height) {
+    if (!hasExrMagic(bytes)) return false;
+    Cursor cursor(bytes);
+    cursor.take(magic.size() + sizeof(std::uint32_t));
+    for (;;) {
+        const auto attribute = nextAttribute(cursor);
+        if (!attribute || attribute->name.empty()) return false;
+        if (attribute->name != "dataWindow") continue;
+        Cursor box(attribute->value);
+        const auto left = box.integer<std::int32_t>(), top = box.integer<std::int32_t>();
+        const auto right = box.integer<std::int32_t>(), bottom = box.integer<std::int32_t>();
+        return bottom && *left == 0 && *top == 0 && *right == width - 1 && *bottom == height - 1;
     }
 }
 
