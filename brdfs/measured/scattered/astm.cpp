@@ -1,0 +1,190 @@
+#include <brdfs/measured/scattered/astm.h>
+#include <brdfs/measured/scattered/scattered.h>
+#include <brdfs/measured/scattered/text_file.h>
+#include <brdfs/measured/text_reader.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <optional>
+
+namespace hshfit::brdfs {
+namespace {
+
+constexpr std::array<std::string_view, 4> angleNames = {"theta_i", "phi_i", "theta_s", "phi_s"};
+
+struct Columns {
+    std::array<std::optional<std::size_t>, 4> angle;
+    std::vector<std::size_t> values;
+    std::size_t count = 0;
+};
+
+std::string lower(std::string_view word) {
+    std::string text(word);
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+std::string_view trimmed(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(" \t");
+    if (begin == std::string_view::npos) return {};
+    return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
+std::vector<std::string> splitNames(std::string_view list) {
+    std::vector<std::string> names;
+    while (true) {
+        const std::size_t comma = list.find(',');
+        names.emplace_back(trimmed(list.substr(0, comma)));
+        if (comma == std::string_view::npos) return names;
+        list.remove_prefix(comma + 1);
+    }
+}
+
+/// "400nm" or "400 nm".
+std::optional<double> wavelengthOf(std::string_view name) {
+    double nm = 0;
+    if (!takeNumber(name, nm) || lower(trimmed(name)) != "nm") return std::nullopt;
+    return nm;
+}
+
+Channels channelsOf(const std::vector<std::string>& names, const TextReader& reader) {
+    std::vector<double> wavelengths;
+    for (const std::string& name : names) {
+        if (const auto nm = wavelengthOf(name)) wavelengths.push_back(*nm);
+    }
+    if (names.size() == 1 && wavelengths.empty()) return Channels::grey();
+    if (wavelengths.size() == names.size()) {
+        const bool ascending =
+            std::ranges::is_sorted(wavelengths, std::less_equal<>()) && wavelengths[0] > 0;
+        if (!ascending || !std::isfinite(wavelengths.back())) {
+            throw reader.error("the wavelengths of VARS have to be positive and ascending");
+        }
+        return Channels::spectral(wavelengths);
+    }
+    if (names.size() == 3) {
+        const std::string initials = {names[0][0], names[1][0], names[2][0]};
+        if (lower(initials) == "rgb") return Channels::rgb();
+    }
+    throw reader.error(
+        fmt::format("the channels '{}' of VARS are neither one, nor R,G,B, nor wavelengths in nm",
+                    fmt::format("{}", fmt::join(names, ",")).substr(0, 80)));
+}
+
+Columns readColumns(std::string_view list, const TextReader& reader, Channels& channels) {
+    const std::vector<std::string> names = splitNames(list);
+    Columns columns;
+    columns.count = names.size();
+    std::vector<std::string> channelNames;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        if (names[k].empty()) throw reader.error(fmt::format("name {} of VARS is empty", k + 1));
+        const auto found = std::ranges::find(angleNames, lower(names[k]));
+        if (found == angleNames.end()) {
+            columns.values.push_back(k);
+            channelNames.push_back(names[k]);
+            continue;
+        }
+        auto& angle = columns.angle[static_cast<std::size_t>(found - angleNames.begin())];
+        if (angle) throw reader.error(fmt::format("VARS names {} twice", *found));
+        angle = k;
+    }
+    if (!columns.angle[0] || !columns.angle[2] || channelNames.empty()) {
+        throw reader.error("VARS has to name theta_i, theta_s and at least one value");
+    }
+    channels = channelsOf(channelNames, reader);
+    return columns;
+}
+
+bool looksLikeAstm(std::span<const unsigned char> head, std::uint64_t) {
+    std::string_view text = asText(head);
+    TextReader reader(text, "");
+    while (reader.next()) {
+        if (reader.takeWord() != "VARS") continue;
+        const std::string names = lower(reader.line());
+        return names.find("theta_i") != std::string::npos &&
+               names.find("theta_s") != std::string::npos;
+    }
+    return false;
+}
+
+}  // namespace
+
+Samples readAstm(std::string_view text, const std::string& where, bool inDegrees) {
+    TextReader reader(text, where);
+    Samples samples;
+    samples.facts = {{"format", "astm"}};
+    std::optional<double> announced;
+    std::optional<Columns> columns;
+    while (!columns && reader.next()) {
+        const std::string_view keyword = reader.takeWord();
+        if (keyword.empty() || keyword[0] == '#') continue;
+        const std::size_t at = static_cast<std::size_t>(keyword.data() - reader.line().data());
+        std::string_view rest = trimmed(reader.line().substr(at + keyword.size()));
+        if (keyword == "VARS") {
+            columns = readColumns(rest, reader, samples.channels);
+        } else if (keyword == "NUM_POINTS") {
+            double count = 0;
+            if (!takeNumber(rest, count) || !trimmed(rest).empty() || !(count >= 0)) {
+                throw reader.error("NUM_POINTS has to be a number from 0");
+            }
+            announced = count;
+        } else if (keyword == "SAMPLE_NAME" || keyword == "LAB_NAME") {
+            samples.facts.emplace_back(lower(keyword), std::string(rest.substr(0, 200)));
+        }
+    }
+    if (!columns) throw reader.error("the file ends without a line VARS that names its columns");
+    std::vector<double> row, values(columns->values.size());
+    const double unit = inDegrees ? pi / 180 : 1;
+    std::size_t rows = 0;
+    while (reader.next()) {
+        if (reader.blank()) continue;
+        reader.takeNumbers(row, ',');
+        if (row.size() != columns->count) {
+            throw reader.error(
+                fmt::format("{} numbers, but VARS names {}", row.size(), columns->count));
+        }
+        const Row at{where, "line", reader.lineNumber()};
+        std::array<double, 4> angles{};
+        for (std::size_t k = 0; k < 4; ++k) {
+            if (!columns->angle[k]) continue;
+            const double angle = row[*columns->angle[k]] * unit;
+            angles[k] = k % 2 == 0 ? checkedPolarAngle(angle, at, angleNames[k])
+                                   : checkedAzimuth(angle, at, angleNames[k]);
+        }
+        for (std::size_t c = 0; c < values.size(); ++c) values[c] = row[columns->values[c]];
+        samples.add(directionFromAngles(angles[0], angles[1]),
+                    directionFromAngles(angles[2], angles[3]), values, at);
+        ++rows;
+    }
+    if (announced && *announced != static_cast<double>(rows)) {
+        throw reader.error(fmt::format("{} rows, but NUM_POINTS announces {}", rows, *announced));
+    }
+    return samples;
+}
+
+const Format& astmFormat() {
+    static const Format format{
+        .name = "astm",
+        .help = "Scattered samples, ASTM E1392, grey, RGB or spectral",
+        .extension = ".astm",
+        .recognises = looksLikeAstm,
+        .parameters = scatteredParameters({{.name = "angles",
+                                            .help = "unit of the angles in the file",
+                                            .kind = Parameter::Kind::choice,
+                                            .choices = {"radians", "degrees"}}}),
+        .open =
+            [](const std::string& path, const Parameters& parameters) {
+                const bool inDegrees = parameters.choice("angles") == "degrees";
+                return openScattered(path, parameters,
+                                     [=](std::string_view text, const std::string& where) {
+                                         return readAstm(text, where, inDegrees);
+                                     });
+            },
+    };
+    return format;
+}
+
+}  // namespace hshfit::brdfs

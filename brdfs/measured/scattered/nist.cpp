@@ -1,0 +1,118 @@
+#include <brdfs/measured/scattered/nist.h>
+#include <brdfs/measured/scattered/scattered.h>
+#include <brdfs/measured/scattered/text_file.h>
+#include <brdfs/measured/text_reader.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace hshfit::brdfs {
+namespace {
+
+constexpr std::string_view beginning = "lambda,thetai,phi";
+constexpr std::size_t columnCount = 21;
+
+/// Polar and azimuth angles of both directions in degrees, rounded to what instruments resolve.
+using Geometry = std::array<double, 4>;
+
+struct Reading {
+    Geometry at;
+    std::size_t line = 0;
+    std::map<double, double> values;  ///< by wavelength in nm
+};
+
+bool looksLikeNist(std::span<const unsigned char> head, std::uint64_t) {
+    return asText(head).starts_with(beginning);
+}
+
+/// Checks the angles and appends the row to the readings of its geometry.
+void addRow(const std::vector<double>& row, const TextReader& reader,
+            std::map<Geometry, std::size_t>& known, std::vector<Reading>& readings) {
+    constexpr std::array<std::string_view, 5> names = {"lambda", "thetai", "phii", "thetar",
+                                                       "phir"};
+    constexpr std::array<double, 5> most = {1000, 90, 720, 90, 720};
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        if (std::fabs(row[k]) <= most[k]) continue;
+        throw reader.error(fmt::format("{} is {}, expected at most {} {}", names[k], row[k],
+                                       most[k], k == 0 ? "um" : "degrees"));
+    }
+    // In nm to a thousandth: 0.351 um is 351 nm.
+    const double nm = std::round(row[0] * 1e6) / 1e3;
+    if (!(nm > 0)) throw reader.error(fmt::format("lambda is {} um, expected above 0", row[0]));
+    Geometry at;
+    for (std::size_t k = 0; k < 4; ++k) at[k] = std::round(row[k + 1] * 1e4) / 1e4;
+    const auto [place, isNew] = known.try_emplace(at, readings.size());
+    if (isNew) readings.push_back({at, reader.lineNumber(), {}});
+    if (!readings[place->second].values.try_emplace(nm, row[5]).second) {
+        throw reader.error(fmt::format("a second row for these angles at {} nm", nm));
+    }
+}
+
+}  // namespace
+
+Samples readNist(std::string_view text, const std::string& where) {
+    TextReader reader(text, where);
+    if (!reader.next() || !reader.line().starts_with(beginning)) {
+        throw reader.error(fmt::format("expected the names of the columns, '{},...'", beginning));
+    }
+    std::map<Geometry, std::size_t> known;
+    std::vector<Reading> readings;
+    std::map<double, std::size_t> wavelengths;
+    std::vector<double> row;
+    while (reader.next()) {
+        if (reader.blank()) continue;
+        reader.takeNumbers(row, ',');
+        if (row.size() != columnCount) {
+            throw reader.error(fmt::format("{} numbers, expected {}", row.size(), columnCount));
+        }
+        addRow(row, reader, known, readings);
+        ++wavelengths[std::round(row[0] * 1e6) / 1e3];
+    }
+    Samples samples;
+    std::vector<double> nanometres;
+    for (const auto& [nm, count] : wavelengths) nanometres.push_back(nm);
+    if (nanometres.empty()) throw reader.error("the file has no rows");
+    samples.channels = Channels::spectral(nanometres);
+    samples.facts = {{"format", "nist"}};
+    samples.leftOut = {"Mueller elements 12 to 44"};
+    std::size_t incomplete = 0;
+    std::vector<double> values;
+    for (const Reading& reading : readings) {
+        if (reading.values.size() != nanometres.size()) {
+            ++incomplete;
+            continue;
+        }
+        values.clear();
+        for (const auto& [nm, value] : reading.values) values.push_back(value);
+        const Geometry& at = reading.at;
+        samples.add(directionFromAngles(radians(at[0]), radians(at[1])),
+                    directionFromAngles(radians(at[2]), radians(at[3])), values,
+                    {where, "line", reading.line});
+    }
+    if (incomplete > 0) {
+        samples.leftOut.push_back(
+            fmt::format("{} pairs of directions not measured at every wavelength", incomplete));
+    }
+    return samples;
+}
+
+const Format& nistFormat() {
+    static const Format format{
+        .name = "nist",
+        .help = "Mueller-matrix samples of NIST (CSV), spectral; the unpolarised BRDF is read",
+        .extension = ".csv",
+        .recognises = looksLikeNist,
+        .parameters = scatteredParameters(),
+        .open =
+            [](const std::string& path, const Parameters& parameters) {
+                return openScattered(path, parameters, readNist);
+            },
+    };
+    return format;
+}
+
+}  // namespace hshfit::brdfs
