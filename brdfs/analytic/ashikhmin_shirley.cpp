@@ -4,24 +4,39 @@
 #include <brdfs/analytic/half_vector.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
+#include <hshfit/error.h>
 
 #include <cmath>
+#include <functional>
 
 namespace hshfit::brdfs {
 namespace {
 
-constexpr Laws claims{
-    .nonNegative = true, .reciprocal = true, .mirrorSymmetric = true, .energyConserving = true};
+constexpr Laws claims{.nonNegative = true, .reciprocal = true, .mirrorSymmetric = true};
 
 Laws lawsOf(const Parameters& p) {
     Laws result = claims;
     result.isotropic = p.number("nu") == p.number("nv");
+    result.energyConserving = largest(p.colour("kd")) == 0 && largest(p.colour("ks")) <= 1;
     return result;
 }
 
-Colour diffuseWeight(const Parameters& p) {
-    return mapped(p.colour("Rd"), p.colour("Rs"),
-                  [](double rd, double rs) { return 28 * rd / (23 * pi) * (1 - rs); });
+/// Rs, or that of the index given instead.
+Colour normalReflectances(const Parameters& p) {
+    const double ior = p.number("ior");
+    if (ior == 0) return p.colour("Rs");
+    if (p.colour("Rs") != Colour{1.0})
+        throw UsageError("ashikhmin-shirley: give either Rs or ior, not both");
+    return {normalReflectance(ior)};
+}
+
+/// Of lobe times F0 and lobe times Schlick's weight, or of lobe times F and nothing; of diffuse.
+std::vector<Colour> weightsOf(const Parameters& p) {
+    const Colour ks = p.colour("ks"), rs = normalReflectances(p);
+    const Colour first = p.number("ior") == 0 ? mapped(ks, rs, std::multiplies<double>()) : ks;
+    const Colour diffuse = mapped(
+        p.colour("Rd"), rs, [](double rd, double f0) { return 28 * rd / (23 * pi) * (1 - f0); });
+    return {first, ks, diffuse};
 }
 
 /// 1 - (1 - c/2)^5.
@@ -32,10 +47,10 @@ double diffuseFalloff(double cosine) {
 class AshikhminShirley final : public TermBrdf {
 public:
     explicit AshikhminShirley(const Parameters& p)
-        : TermBrdf(ashikhminShirleyModel(), p, lawsOf(p), {0.0},
-                   {p.colour("Rs"), {1.0}, diffuseWeight(p)}),
+        : TermBrdf(ashikhminShirleyModel(), p, lawsOf(p), overPi(p.colour("kd")), weightsOf(p)),
           nu_(p.number("nu")),
-          nv_(p.number("nv")) {}
+          nv_(p.number("nv")),
+          ior_(p.number("ior")) {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
         const auto width = [](double n) { return std::min(1.0, 2.5 / std::sqrt(n + 1)); };
@@ -58,8 +73,8 @@ protected:
             const double power = std::exp(-0.5 * (nu_ * tx * tx + nv_ * ty * ty) * perSlope);
             const double cosine = h.dotOutgoing();
             const double lobe = bounded(peak * power / cosine / std::max(wi.z[k], wo.z));
-            const double weight = schlickWeight(cosine);
-            out[k] = lobe * (1 - weight);
+            const double weight = ior_ == 0 ? schlickWeight(cosine) : 0;
+            out[k] = lobe * (ior_ == 0 ? 1 - weight : dielectricReflectance(cosine, ior_));
             out[wi.count + k] = lobe * weight;
             out[2 * wi.count + k] = diffuseFalloff(wi.z[k]) * outgoingFalloff;
         }
@@ -67,6 +82,7 @@ protected:
 
 private:
     double nu_, nv_;
+    double ior_;  ///< 0: Schlick's approximation from Rs
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
@@ -92,7 +108,14 @@ const Model& ashikhminShirleyModel() {
         .parameters = {reflectance("Rs", "specular reflectance at normal incidence", 1),
                        reflectance("Rd", "diffuse reflectance of the substrate", 0),
                        exponentParameter("nu", "exponent along x"),
-                       exponentParameter("nv", "exponent along y")},
+                       exponentParameter("nv", "exponent along y"),
+                       {.name = "ior",
+                        .help = "index of refraction, instead of Rs: exact Fresnel reflectance",
+                        .fallback = 0,
+                        .min = 1,
+                        .max = 1000},
+                       kdParameter(0, 1e6),
+                       ksParameter("scale of the lobe")},
         .laws = claims,
         .make = make};
     return model;

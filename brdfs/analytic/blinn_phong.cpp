@@ -18,7 +18,9 @@ double exactFactor(double n) {
 }
 
 double normalisation(const Parameters& p) {
-    return p.choice("normalized") == "true" ? exactFactor(p.number("exponent")) : 1.0;
+    const std::string normalized = p.choice("normalized");
+    if (normalized == "true") return exactFactor(p.number("exponent"));
+    return normalized == "phong" ? (p.number("exponent") + 2) / (2 * pi) : 1.0;
 }
 
 /// The albedo is largest at normal incidence.
@@ -69,7 +71,10 @@ const Model& blinnPhongModel() {
         .parameters = {kdParameter(0, 1e6),
                        ksParameter("scale of the lobe; its normal albedo if normalized"),
                        exponentParameter("exponent", "of cos(theta_h)"),
-                       switchParameter("normalized", "scale the lobe to a normal albedo of ks")},
+                       {.name = "normalized",
+                        .help = "true: a normal albedo of ks; phong: times (n + 2) / (2 pi)",
+                        .kind = Parameter::Kind::choice,
+                        .choices = {"false", "true", "phong"}}},
         .laws = claims,
         .make = make};
     return model;

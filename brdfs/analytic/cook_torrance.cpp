@@ -1,8 +1,11 @@
 #include <brdfs/analytic/cook_torrance.h>
 
+#include <brdfs/analytic/fresnel.h>
 #include <brdfs/analytic/half_vector.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
+#include <brdfs/analytic/v_groove.h>
+#include <hshfit/error.h>
 
 #include <cmath>
 #include <numbers>
@@ -13,8 +16,19 @@ namespace {
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
 
-bool energyNorm(const Parameters& p) {
-    return p.choice("norm") == "4";
+/// N of the header.
+double normOf(const Parameters& p) {
+    const std::string norm = p.choice("norm");
+    return norm == "4" ? 4 * pi : norm == "pi" ? pi : pi * pi;
+}
+
+/// F0, or that of the index given instead.
+Colour normalReflectances(const Parameters& p) {
+    const double ior = p.number("ior");
+    if (ior == 0) return p.colour("F0");
+    if (p.colour("F0") != Colour{1.0})
+        throw UsageError("cook-torrance: give either F0 or ior, not both");
+    return {normalReflectance(ior)};
 }
 
 Laws lawsOf(const Parameters& p) {
@@ -22,14 +36,14 @@ Laws lawsOf(const Parameters& p) {
     const Colour albedo =
         mapped(p.colour("kd"), p.colour("ks"), [](double kd, double ks) { return kd + ks; });
     const bool noLobe = largest(p.colour("ks")) == 0;
-    result.energyConserving = (energyNorm(p) || noLobe) && largest(albedo) <= 1;
+    result.energyConserving = (p.choice("norm") == "4" || noLobe) && largest(albedo) <= 1;
     return result;
 }
 
 /// One term per value of F0, weighted by ks in its own channel only.
 std::vector<Colour> weightsOf(const Parameters& p) {
     const Colour ks = p.colour("ks");
-    const std::size_t count = p.colour("F0").size();
+    const std::size_t count = normalReflectances(p).size();
     if (count == 1) return {ks};
     std::vector<Colour> weights;
     for (std::size_t c = 0; c < count; ++c) {
@@ -56,9 +70,10 @@ public:
     explicit CookTorrance(const Parameters& p)
         : TermBrdf(cookTorranceModel(), p, lawsOf(p), overPi(p.colour("kd")), weightsOf(p)),
           m_(p.number("m")),
-          peak_(1 / ((energyNorm(p) ? 4 * pi : pi) * m_ * m_)),
-          inverses_(mapped(p.colour("F0"),
-                           [](double f0) { return (1 - std::sqrt(f0)) / (1 + std::sqrt(f0)); })) {}
+          peak_(1 / (normOf(p) * m_ * m_)),
+          reflectances_(normalReflectances(p)),
+          inverses_(mapped(reflectances_, [](double f0) { return 1 / iorOfReflectance(f0); })),
+          schlick_(p.choice("fresnel") == "schlick") {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
         return {{Lobe::About::halfway, 2.5 / std::numbers::sqrt2 * m_, {}}};
@@ -76,18 +91,19 @@ protected:
             const double rise = 1 + squaredSlope;
             const double density = peak_ * std::exp(-squaredSlope / (m_ * m_)) * rise * rise;
             const double cosine = h.dotOutgoing();
-            // G / (cos_i cos_o), with the cosines divided out term by term.
-            const double open = 1 / wi.z[k] / wo.z;
-            const double blocked = 2 / std::sqrt(rise) / cosine / std::max(wi.z[k], wo.z);
-            const double lobe = bounded(density * bounded(std::min(open, blocked)));
+            const double lobe = bounded(density * bounded(vGrooveVisibility(h, wi.z[k], wo.z)));
             for (std::size_t c = 0; c < inverses_.size(); ++c)
-                out[c * wi.count + k] = lobe * fresnel(inverses_[c], cosine);
+                out[c * wi.count + k] =
+                    lobe * (schlick_ ? schlickReflectance(cosine, reflectances_[c])
+                                     : fresnel(inverses_[c], cosine));
         }
     }
 
 private:
     double m_, peak_;
+    Colour reflectances_;
     Colour inverses_;  ///< 1 / eta
+    bool schlick_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
@@ -104,11 +120,20 @@ const Model& cookTorranceModel() {
         .parameters = {kdParameter(0, 1e6),
                        ksParameter("scale of the lobe"),
                        f0Parameter(),
+                       {.name = "ior",
+                        .help = "index of refraction, instead of F0",
+                        .fallback = 0,
+                        .min = 1,
+                        .max = 1000},
                        roughnessParameter("m", "RMS slope times sqrt(2)"),
                        {.name = "norm",
-                        .help = "divide by pi as printed, or by 4 as derived since",
+                        .help = "divide by pi as printed, by 4 as derived since, or by pi^2",
                         .kind = Parameter::Kind::choice,
-                        .choices = {"pi", "4"}}},
+                        .choices = {"pi", "4", "pi2"}},
+                       {.name = "fresnel",
+                        .help = "exact for a dielectric, or Schlick's approximation",
+                        .kind = Parameter::Kind::choice,
+                        .choices = {"exact", "schlick"}}},
         .laws = claims,
         .make = make};
     return model;

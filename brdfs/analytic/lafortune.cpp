@@ -11,17 +11,34 @@ namespace {
 
 constexpr Laws claims{.nonNegative = true, .reciprocal = true, .mirrorSymmetric = true};
 
+bool normalized(const Parameters& p) {
+    return p.choice("normalized") == "true";
+}
+
+/// The diagonal of C, its largest component made 1 if normalized.
+Direction diagonal(const Parameters& p) {
+    const Direction c{p.number("Cx"), p.number("Cy"), p.number("Cz")};
+    const double most = std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)});
+    if (!normalized(p) || most == 0) return c;
+    return {c.x / most, c.y / most, c.z / most};
+}
+
+Colour weightOf(const Parameters& p) {
+    const double factor = normalized(p) ? (p.number("exponent") + 2) / (2 * pi) : 1;
+    return mapped(p.colour("ks"), [&](double ks) { return factor * ks; });
+}
+
 /// For |wo| = 1 the lobe is at most (max |C| cos)^exponent about some axis, whose albedo is at most
 /// that of a lobe about the normal: ks max |C|^exponent 2 pi / (exponent + 2).
 Laws lawsOf(const Parameters& p) {
     Laws result = claims;
     result.isotropic = p.number("Cx") == p.number("Cy");
     const double exponent = p.number("exponent");
-    const double reach =
-        std::max({std::abs(p.number("Cx")), std::abs(p.number("Cy")), std::abs(p.number("Cz"))});
+    const Direction c = diagonal(p);
+    const double reach = std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)});
     const double lobe = bounded(std::pow(reach, exponent)) * 2 * pi / (exponent + 2);
-    const Colour albedo = mapped(p.colour("kd"), p.colour("ks"),
-                                 [&](double kd, double ks) { return kd + ks * lobe; });
+    const Colour albedo = mapped(p.colour("kd"), weightOf(p),
+                                 [&](double kd, double weight) { return kd + weight * lobe; });
     result.energyConserving = largest(albedo) <= 1;
     return result;
 }
@@ -29,8 +46,8 @@ Laws lawsOf(const Parameters& p) {
 class Lafortune final : public TermBrdf {
 public:
     explicit Lafortune(const Parameters& p)
-        : TermBrdf(lafortuneModel(), p, lawsOf(p), overPi(p.colour("kd")), {p.colour("ks")}),
-          c_{p.number("Cx"), p.number("Cy"), p.number("Cz")},
+        : TermBrdf(lafortuneModel(), p, lawsOf(p), overPi(p.colour("kd")), {weightOf(p)}),
+          c_(diagonal(p)),
           exponent_(p.number("exponent")) {}
 
     std::vector<Lobe> lobes(const Direction& wo) const override {
@@ -86,7 +103,8 @@ const Model& lafortuneModel() {
         .parameters = {kdParameter(0, 1e6), ksParameter("scale of the lobe"),
                        weightParameter("Cx", -1), weightParameter("Cy", -1),
                        weightParameter("Cz", 1),
-                       exponentParameter("exponent", "of the weighted cosine")},
+                       exponentParameter("exponent", "of the weighted cosine"),
+                       switchParameter("normalized", "scale the lobe to a largest albedo of ks")},
         .laws = claims,
         .make = make};
     return model;

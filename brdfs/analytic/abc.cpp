@@ -1,0 +1,107 @@
+#include <brdfs/analytic/abc.h>
+
+#include <brdfs/analytic/fresnel.h>
+#include <brdfs/analytic/half_vector.h>
+#include <brdfs/analytic/parameters.h>
+#include <brdfs/analytic/term_brdf.h>
+#include <brdfs/analytic/v_groove.h>
+
+#include <cmath>
+
+namespace hshfit::brdfs {
+namespace {
+
+constexpr Laws claims{
+    .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
+
+Laws lawsOf(const Parameters& p) {
+    Laws result = claims;
+    result.energyConserving = largest(p.colour("A")) == 0 && largest(p.colour("kd")) <= 1;
+    return result;
+}
+
+/// 1 - cos(theta_h) from the squared slope, with all digits for small slopes.
+double versine(double squaredSlope) {
+    const double secant = std::sqrt(1 + squaredSlope);
+    return squaredSlope / (secant * (1 + secant));
+}
+
+class Abc final : public TermBrdf {
+public:
+    explicit Abc(const Parameters& p)
+        : TermBrdf(abcModel(), p, lawsOf(p), overPi(p.colour("kd")), {p.colour("A")}),
+          b_(p.number("B")),
+          c_(p.number("C")),
+          ior_(p.number("ior")),
+          smooth_(p.choice("variant") == "smooth") {}
+
+    /// Near the mirror direction |D| is the slope times 2 cos(theta_o) and 1 - h.z half its square;
+    /// the powers are singular where these reach -1 / B.
+    std::vector<Lobe> lobes(const Direction& wo) const override {
+        const double width =
+            smooth_ ? 1 / (2 * std::max(wo.z, 1e-3) * std::sqrt(b_)) : std::sqrt(2 / b_);
+        return {{Lobe::About::halfway, std::min(1.0, width), {}}};
+    }
+
+    /// The V-cavity term's kinks lie along curves at which no panel can end.
+    double defaultTolerance() const override { return smooth_ ? 1e-6 : 1e-5; }
+
+protected:
+    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
+        for (std::size_t k = 0; k < wi.count; ++k) {
+            const HalfVector h(wo, wi.x[k], wi.y[k], wi.z[k]);
+            const double reflectance = dielectricReflectance(h.dotOutgoing(), ior_);
+            if (smooth_) {
+                const double squared = h.scale * h.scale * (h.x * h.x + h.y * h.y);
+                out[k] = reflectance * tail(squared);
+            } else {
+                const double visible = vGrooveVisibility(h, wi.z[k], wo.z);
+                out[k] = reflectance * bounded(tail(versine(h.squaredSlope())) * visible / pi);
+            }
+        }
+    }
+
+private:
+    /// (1 + B x)^-C
+    double tail(double x) const { return std::exp(-c_ * std::log1p(b_ * x)); }
+
+    double b_, c_, ior_;
+    bool smooth_;
+};
+
+std::unique_ptr<Brdf> make(const Parameters& p) {
+    return std::make_unique<Abc>(p);
+}
+
+}  // namespace
+
+const Model& abcModel() {
+    static const Model model{
+        .name = "abc",
+        .help = "lobe with a power-law tail, of the projected deviation or of facets",
+        .source = "Löw, Kronander, Ynnerman & Unger 2012, 10.1145/2077341.2077350",
+        .parameters =
+            {kdParameter(0, 1e6),
+             {.name = "A",
+              .help = "height of the lobe before Fresnel's reflectance, 1/sr",
+              .kind = Parameter::Kind::colour,
+              .fallback = 1,
+              .min = 0,
+              .max = 1e8},
+             {.name = "B", .help = "about 1 / width^2 of the peak", .min = 1e-3, .max = 1e12},
+             {.name = "C", .help = "exponent of the tail", .min = 0, .max = 1000},
+             {.name = "ior",
+              .help = "index of refraction of the surface",
+              .fallback = 1.5,
+              .min = 1,
+              .max = 1000},
+             {.name = "variant",
+              .help = "what the lobe is a function of",
+              .kind = Parameter::Kind::choice,
+              .choices = {"smooth", "microfacet"}}},
+        .laws = claims,
+        .make = make};
+    return model;
+}
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <brdfs/catalog.h>
+
+namespace hshfit::brdfs {
+
+/// f = kd / pi + ks F D G1(theta_i) G1(theta_o) / (pi cos_i cos_o), every parameter per channel.
+/// Bagher, Soler & Holzschuch 2012, 10.1111/j.1467-8659.2012.03147.x: shifted gamma distribution.
+///     D  = K exp(-u) / u^p / (pi cos(theta_h)^4),  u = alpha + tan(theta_h)^2 / alpha
+///     F  = F0 - F1 c + (1 - F0)(1 - c)^5, c = (h.wo); F1 = 0 is Schlick's. Below 0 it is cut to 0
+///     G1 = 1 + Lambda (1 - exp(c (theta - theta0)^k)) for theta > theta0, else 1; cut to [0, 1]
+/// Angles in radians. K left out is 1 / (alpha Gamma(1 - p, alpha)), with which D cos(theta_h)
+/// integrates to 1. Lambda = 0 is no masking. The paper fits Lambda, c, k and theta0 to masking
+/// that follows from D, and takes F0 and F1 as free: fits go far beyond reflectances of a surface.
+/// p = 0 is a Gaussian of slopes, p -> 1 has tails almost as long as 1 / t^2 within t < 1.
+const Model& sgdModel();
+
+}  // namespace hshfit::brdfs
