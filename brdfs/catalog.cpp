@@ -4,13 +4,19 @@
 #include <brdfs/analytic/ashikhmin_shirley.h>
 #include <brdfs/analytic/beckmann.h>
 #include <brdfs/analytic/blinn_phong.h>
+#include <brdfs/analytic/charlie.h>
 #include <brdfs/analytic/cook_torrance.h>
+#include <brdfs/analytic/disney.h>
+#include <brdfs/analytic/eon.h>
 #include <brdfs/analytic/ggx.h>
+#include <brdfs/analytic/gtr.h>
 #include <brdfs/analytic/he.h>
 #include <brdfs/analytic/lafortune.h>
 #include <brdfs/analytic/lambert.h>
+#include <brdfs/analytic/minnaert.h>
 #include <brdfs/analytic/oren_nayar.h>
 #include <brdfs/analytic/phong.h>
+#include <brdfs/analytic/sg.h>
 #include <brdfs/analytic/sgd.h>
 #include <brdfs/analytic/ward.h>
 #include <brdfs/measured/bsdf_xml/bsdf_xml.h>
@@ -20,6 +26,7 @@
 #include <brdfs/measured/rgl_writer.h>
 #include <brdfs/preset.h>
 #include <brdfs/spec.h>
+#include <brdfs/sum.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -117,12 +124,36 @@ bool looksLikePath(std::string_view text) {
     return text.find('/') != std::string_view::npos || fs::path(text).has_extension();
 }
 
+/// A file, with or without options after its path.
+bool isFile(std::string_view spec) {
+    return exists(spec) ||
+           (spec.find(':') != std::string_view::npos && exists(spec.substr(0, spec.rfind(':'))));
+}
+
+std::unique_ptr<Brdf> openTerm(std::string_view spec) {
+    constexpr std::string_view presetPrefix = "preset:";
+    if (spec.starts_with(presetPrefix)) return openNamedPreset(spec.substr(presetPrefix.size()));
+    if (findModel(spec.substr(0, spec.find(':')))) return openModel(spec);
+    if (exists(spec)) return openFile(std::string(spec), {});
+    const std::size_t colon = spec.rfind(':');
+    const std::string_view path = spec.substr(0, colon);
+    if (colon != std::string_view::npos && exists(path))
+        return openFile(std::string(path), spec.substr(colon + 1));
+    if (looksLikePath(path)) throw InputError(fmt::format("{}: no such file", path));
+    throw unknownModel(spec.substr(0, spec.find(':')));
+}
+
 }  // namespace
 
 std::span<const Model> models() {
+    // One line a row.
+    // clang-format off
     static const std::vector<Model> table{
         lambertModel(),
         orenNayarModel(),
+        eonModel(),
+        openpbrDiffuseModel(),
+        minnaertModel(),
         phongModel(),
         blinnPhongModel(),
         lafortuneModel(),
@@ -134,7 +165,12 @@ std::span<const Model> models() {
         sgdModel(),
         beckmannModel(),
         ggxModel(),
+        gtrModel(),
+        disneyModel(),
+        charlieModel(),
+        sgModel(),
     };
+    // clang-format on
     return table;
 }
 
@@ -163,16 +199,11 @@ std::unique_ptr<Brdf> open(std::string_view spec) {
             fmt::format("empty BRDF specification; give model[:key=value,...], a file "
                         "or preset:NAME; models: {}",
                         joined(namesOf(models()))));
-    constexpr std::string_view presetPrefix = "preset:";
-    if (spec.starts_with(presetPrefix)) return openNamedPreset(spec.substr(presetPrefix.size()));
-    if (findModel(spec.substr(0, spec.find(':')))) return openModel(spec);
-    if (exists(spec)) return openFile(std::string(spec), {});
-    const std::size_t colon = spec.rfind(':');
-    const std::string_view path = spec.substr(0, colon);
-    if (colon != std::string_view::npos && exists(path))
-        return openFile(std::string(path), spec.substr(colon + 1));
-    if (looksLikePath(path)) throw InputError(fmt::format("{}: no such file", path));
-    throw unknownModel(spec.substr(0, spec.find(':')));
+    const std::vector<WeightedSpec> specs = splitSum(spec, isFile);
+    if (specs.size() == 1 && specs.front().weight == 1) return openTerm(specs.front().spec);
+    std::vector<Sum::Term> terms;
+    for (const WeightedSpec& term : specs) terms.push_back({term.weight, openTerm(term.spec)});
+    return std::make_unique<Sum>(std::move(terms));
 }
 
 }  // namespace hshfit::brdfs

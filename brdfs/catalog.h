@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,11 +37,13 @@ public:
     double number(std::string_view name) const;
     std::vector<double> colour(std::string_view name) const;  ///< 1 or 3 values
     std::string choice(std::string_view name) const;
+    bool given(std::string_view name) const;  ///< stated rather than left to its default
     /// "key=value,…" in the order of the table, without values equal to the default.
     std::string canonical() const;
 
     std::map<std::string, std::vector<double>, std::less<>> numbers;
     std::map<std::string, std::string, std::less<>> words;
+    std::set<std::string, std::less<>> stated;
     std::string text;
 };
 
@@ -95,7 +98,7 @@ std::unique_ptr<Brdf> openModel(std::string_view spec);
 
 /// Opens a BRDF specification:
 ///     model[:key=value,…] | path of a measured file[:key=value,…] | path of a preset .json |
-///     preset:NAME
+///     preset:NAME | a sum of these, "SPEC + WEIGHT * SPEC" (sum.h)
 /// Throws UsageError for an unknown model, key or value (naming the valid ones) and InputError for
 /// a file that is absent, of no known format, or invalid.
 std::unique_ptr<Brdf> open(std::string_view spec);

@@ -108,6 +108,7 @@ void readItem(std::string_view owner, std::span<const Parameter> declared, std::
                   .try_emplace(std::string(parameter.name), parseNumbers(owner, parameter, value))
                   .second;
     if (!fresh) throw UsageError(fmt::format("{}: {} is given twice", owner, parameter.name));
+    parsed.stated.insert(std::string(parameter.name));
 }
 
 /// Fills in the default of one parameter, or adds its value to the canonical text.
@@ -151,6 +152,10 @@ std::string Parameters::choice(std::string_view name) const {
     const auto found = words.find(name);
     assert(found != words.end());
     return found->second;
+}
+
+bool Parameters::given(std::string_view name) const {
+    return stated.contains(name);
 }
 
 std::string Parameters::canonical() const {

@@ -34,8 +34,9 @@ private:
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
-    return std::make_unique<Microfacet<Beckmann>>(beckmannModel(), p,
-                                                  roughnessOf(beckmannModel(), p));
+    const Roughness roughness = roughnessOf(beckmannModel(), p);
+    return std::make_unique<Microfacet<Beckmann>>(beckmannModel(), p, microfacetLaws(p, roughness),
+                                                  Beckmann(roughness));
 }
 
 }  // namespace

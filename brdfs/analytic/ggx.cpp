@@ -33,7 +33,9 @@ private:
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
-    return std::make_unique<Microfacet<Ggx>>(ggxModel(), p, roughnessOf(ggxModel(), p));
+    const Roughness roughness = roughnessOf(ggxModel(), p);
+    return std::make_unique<Microfacet<Ggx>>(ggxModel(), p, microfacetLaws(p, roughness),
+                                             Ggx(roughness));
 }
 
 }  // namespace

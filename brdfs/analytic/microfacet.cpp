@@ -14,15 +14,17 @@ std::vector<Parameter> microfacetParameters() {
     Parameter ax = roughnessParameter("ax", "roughness along x, in place of alpha");
     Parameter ay = roughnessParameter("ay", "roughness along y, in place of alpha");
     for (Parameter* parameter : {&alpha, &ax, &ay}) parameter->fallback = notGiven;
-    return {kdParameter(0, 1),
-            f0Parameter(),
-            alpha,
-            ax,
-            ay,
-            {.name = "masking",
-             .help = "Smith's, with heights correlated or each direction by itself",
-             .kind = Parameter::Kind::choice,
-             .choices = {"correlated", "separable"}}};
+    std::vector<Parameter> parameters{kdParameter(0, 1)};
+    for (const Parameter& parameter : facetFresnelParameters()) parameters.push_back(parameter);
+    parameters.insert(parameters.end(), {alpha, ax, ay, maskingParameter()});
+    return parameters;
+}
+
+Parameter maskingParameter() {
+    return {.name = "masking",
+            .help = "Smith's, with heights correlated or each direction by itself",
+            .kind = Parameter::Kind::choice,
+            .choices = {"correlated", "separable"}};
 }
 
 Roughness roughnessOf(const Model& model, const Parameters& p) {

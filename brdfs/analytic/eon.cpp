@@ -1,0 +1,142 @@
+#include <brdfs/analytic/eon.h>
+
+#include <brdfs/analytic/parameters.h>
+#include <brdfs/analytic/term_brdf.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hshfit::brdfs {
+namespace {
+
+constexpr Laws claims{
+    .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
+
+struct Settings {
+    double roughness;
+    bool exact;
+
+    double single() const { return 1 / (1 + (0.5 - 2 / (3 * pi)) * roughness); }
+    double mean() const { return single() * (1 + (2. / 3 - 28 / (15 * pi)) * roughness); }
+};
+
+/// Of light that a facet reflects, the part that others reflect after it.
+Colour multiple(const Colour& kd, double mean) {
+    return mapped(
+        kd, [&](double value) { return value * value * mean / (1 - value * (1 - mean)) / pi; });
+}
+
+/// The approximate albedo may pass 1 by what the polynomial is off.
+Laws lawsOf(const Colour& kd, const Settings& settings) {
+    Laws laws = claims;
+    laws.energyConserving = settings.exact || largest(kd) <= 0.99 || settings.roughness == 0;
+    return laws;
+}
+
+class Eon final : public TermBrdf {
+public:
+    Eon(const Model& model, const Parameters& p, const Colour& kd, const Settings& settings)
+        : TermBrdf(model, p, lawsOf(kd, settings), {0.0},
+                   {overPi(kd), multiple(kd, settings.mean())}),
+          settings_(settings),
+          single_(settings.single()),
+          scale_(settings.roughness > 0 ? 1 / (1 - settings.mean()) : 0) {}
+
+    /// The larger height changes sides.
+    std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
+
+    /// The kink where s changes sign runs along a curve that no panel can end at.
+    double defaultTolerance() const override { return settings_.roughness > 0 ? 1e-5 : 1e-6; }
+
+protected:
+    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
+        const double outgoing = scale_ * missing(wo.x, wo.y, wo.z);
+        for (std::size_t k = 0; k < wi.count; ++k) {
+            const double across = wi.x[k] * wo.x + wi.y[k] * wo.y;
+            const double height = across > 0 ? std::max(wi.z[k], wo.z) : 1;
+            out[k] = single_ * (1 + settings_.roughness * bounded(across / height));
+            out[wi.count + k] = outgoing * missing(wi.x[k], wi.y[k], wi.z[k]);
+        }
+    }
+
+private:
+    /// 1 - E: what leaves no facet at once.
+    double missing(double x, double y, double z) const {
+        const double g = settings_.exact ? exactG(std::hypot(x, y), z) : approximateG(z);
+        return std::max(0.0, 1 - single_ * (1 + settings_.roughness * g / pi));
+    }
+
+    /// (1 - S^3)/c = c (1 + S + S^2)/(1 + S), which is 0 at the horizon.
+    static double exactG(double sine, double cosine) {
+        const double rest = cosine * (1 + sine + sine * sine) / (1 + sine);
+        return sine * (std::atan2(sine, cosine) - sine * cosine) + 2. / 3 * sine * (rest - 1);
+    }
+
+    /// Listing 1 of the paper: G / pi as a polynomial in 1 - cos.
+    static double approximateG(double cosine) {
+        const double d = 1 - cosine;
+        return pi * d * (0.0571085289 + d * (0.491881867 + d * (-0.332181442 + d * 0.0714429953)));
+    }
+
+    Settings settings_;
+    double single_, scale_;
+};
+
+std::unique_ptr<Brdf> make(const Parameters& p) {
+    return std::make_unique<Eon>(eonModel(), p, p.colour("kd"),
+                                 Settings{p.number("roughness"), p.choice("albedo") == "exact"});
+}
+
+std::unique_ptr<Brdf> makeOpenpbr(const Parameters& p) {
+    const double weight = p.number("base_weight");
+    const Colour kd =
+        mapped(p.colour("base_color"), [&](double colour) { return weight * colour; });
+    return std::make_unique<Eon>(openpbrDiffuseModel(), p, kd,
+                                 Settings{p.number("base_diffuse_roughness"), true});
+}
+
+Parameter unitParameter(std::string_view name, std::string_view help, double fallback) {
+    return {.name = name, .help = help, .fallback = fallback, .min = 0, .max = 1};
+}
+
+}  // namespace
+
+const Model& eonModel() {
+    static const Model model{
+        .name = "eon",
+        .help = "rough diffuse surface that loses no energy (energy-preserving Oren-Nayar)",
+        .source = "Portsmouth, Kutz & Hill 2025, JCGT 14(1), arXiv 2410.18026",
+        .parameters = {kdParameter(1, 1),
+                       {.name = "roughness", .help = "0 is Lambert", .min = 0, .max = 1},
+                       {.name = "albedo",
+                        .help = "of one bounce: in closed form, or the paper's polynomial",
+                        .kind = Parameter::Kind::choice,
+                        .choices = {"exact", "approximate"}}},
+        .laws = claims,
+        .make = make};
+    return model;
+}
+
+const Model& openpbrDiffuseModel() {
+    static const Model model{
+        .name = "openpbr-diffuse",
+        .help = "eon under OpenPBR Surface's names and defaults",
+        .source = "OpenPBR Surface 1.1, Academy Software Foundation; Portsmouth, Kutz & Hill 2025",
+        .parameters = {unitParameter("base_weight", "scale of base_color", 1),
+                       {.name = "base_color",
+                        .help = "albedo of the facets, linear",
+                        .kind = Parameter::Kind::colour,
+                        .fallback = 0.8,
+                        .min = 0,
+                        .max = 1},
+                       unitParameter("base_diffuse_roughness", "0 is Lambert", 0)},
+        .laws = {.nonNegative = true,
+                 .reciprocal = true,
+                 .isotropic = true,
+                 .mirrorSymmetric = true,
+                 .energyConserving = true},
+        .make = makeOpenpbr};
+    return model;
+}
+
+}  // namespace hshfit::brdfs

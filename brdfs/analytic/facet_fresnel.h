@@ -1,0 +1,34 @@
+#pragma once
+
+#include <brdfs/analytic/term_brdf.h>
+
+namespace hshfit::brdfs {
+
+/// F0, fresnel, ior and k: how the facets of a microfacet model reflect.
+///     schlick     F0 + (1 - F0)(1 - cos)^5
+///     dielectric  Fresnel's equations for the index ior; below 1, with total reflection
+///     conductor   the same for ior + i k
+/// Each of F0, ior and k is one value or r/g/b.
+std::vector<Parameter> facetFresnelParameters();
+
+/// F as a sum of terms that all channels share, for TermBrdf: sum_t weight_{t,c} F_t(cos).
+class FacetFresnel {
+public:
+    /// Throws UsageError for a key that the chosen form does not use, or that it lacks.
+    FacetFresnel(const Model& model, const Parameters& parameters);
+
+    /// Of each term, at most three.
+    const std::vector<Colour>& weights() const { return weights_; }
+
+    /// out[t * stride] = lobe F_t(cosine). `lobe` is finite; so is the result.
+    void spread(double lobe, double cosine, double* out, std::size_t stride) const;
+
+private:
+    struct Index {
+        double ior, k;
+    };
+    std::vector<Index> indices_;  ///< empty for Schlick's form
+    std::vector<Colour> weights_;
+};
+
+}  // namespace hshfit::brdfs

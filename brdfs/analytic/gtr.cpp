@@ -1,0 +1,148 @@
+#include <brdfs/analytic/gtr.h>
+
+#include <brdfs/analytic/microfacet.h>
+#include <brdfs/analytic/parameters.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace hshfit::brdfs {
+namespace {
+
+/// (exp(x) - 1)/x.
+double growth(double x) {
+    return x == 0 ? 1 : std::expm1(x) / x;
+}
+
+/// c alpha^(-2 gamma): D is this times ((1 + t^2)/(1 + (t/alpha)^2))^gamma at the slope t.
+double peakOf(double alpha, double gamma) {
+    const double logSquare = 2 * std::log(alpha);
+    return growth(logSquare) / growth((1 - gamma) * logSquare) / pi * std::pow(alpha, -2 * gamma);
+}
+
+/// z Lambda of a direction with slope t = x / z against the normal, at unit length:
+///     z Lambda = s integral_{1/t}^inf (q - 1/t) P(q) dq,
+/// P the density of slopes along one axis. Over circles of slope, w^2 = slope^2 - 1/t^2,
+///     z Lambda = 2 integral_0^inf (s w - z atan(s w/z)) D(slope)/(1 + slope^2)^2 w dw.
+/// In log w the integrand is analytic to Im = pi/2, so that the trapezoid rule converges fast.
+double scaledLambda(double alpha, double gamma, double peak, double sine, double cosine) {
+    const double squaredCotangent = cosine * cosine / (sine * sine);
+    const double scale = std::hypot(alpha, cosine / sine);
+    constexpr double step = 0.15;
+    double sum = 0;
+    for (int i = -60; i <= 240; ++i) {
+        const double w = scale * std::exp(i * step), squared = w * w + squaredCotangent;
+        const double log = std::log1p(squared) - std::log1p(squared / (alpha * alpha));
+        const double slopes = std::exp(gamma * log) / ((1 + squared) * (1 + squared));
+        const double sw = sine * w;
+        // s w - z atan(s w/z), by its series where the two cancel.
+        const double ratio = sw / cosine;
+        const double excess = ratio < 1e-3 ? sw * ratio * ratio * (1. / 3 - ratio * ratio / 5)
+                                           : sw - cosine * std::atan2(sw, cosine);
+        sum += slopes * excess * w * w;
+    }
+    return 2 * peak * sum * step;
+}
+
+/// Lambda over that of GGX, whose logarithm is tabulated over the logarithm of the cotangent: it is
+/// smooth there, and constant beyond both ends.
+class LambdaTable {
+public:
+    LambdaTable(double alpha, double gamma, double peak)
+        : low_(std::log(alpha) - 16), count_(std::size_t((high - low_) / step) + 2) {
+        for (std::size_t k = 0; k < count_; ++k) {
+            const double cotangent = std::exp(low_ + static_cast<double>(k) * step);
+            const double sine = 1 / std::hypot(1, cotangent), cosine = cotangent * sine;
+            const double s = alpha * alpha * sine * sine;
+            const double ggx = 0.5 * s / (cosine + std::sqrt(cosine * cosine + s));
+            values_.push_back(
+                std::log(brdfs::scaledLambda(alpha, gamma, peak, sine, cosine) / ggx));
+        }
+    }
+
+    /// Cubic through the four nearest nodes.
+    double ratio(double logCotangent) const {
+        const double last = static_cast<double>(count_ - 1);
+        const double at = std::clamp((logCotangent - low_) / step, 0.0, last);
+        const std::size_t left = std::clamp<std::size_t>(std::size_t(at), 1, count_ - 3);
+        const double* v = values_.data() + left - 1;
+        const double u = at - static_cast<double>(left);
+        const double a = u + 1, b = u - 1, c = u - 2;
+        return std::exp(-u * b * c / 6 * v[0] + a * b * c / 2 * v[1] - a * u * c / 2 * v[2] +
+                        a * u * b / 6 * v[3]);
+    }
+
+private:
+    static constexpr double step = 0.04, high = 12;
+    double low_;
+    std::size_t count_;
+    std::vector<double> values_;
+};
+
+class Gtr {
+public:
+    Gtr(double alpha, double gamma)
+        : alpha_(alpha),
+          gamma_(gamma),
+          peak_(peakOf(alpha, gamma)),
+          table_(std::make_shared<LambdaTable>(alpha, gamma, peak_)) {}
+
+    double density(const HalfVector& h) const {
+        const double slope = h.squaredSlope();
+        return peak_ *
+               std::exp(gamma_ * (std::log1p(slope) - std::log1p(slope / (alpha_ * alpha_))));
+    }
+
+    double scaledLambda(double x, double y, double z) const {
+        const double sine = std::hypot(x, y), s = alpha_ * alpha_ * sine * sine;
+        if (s == 0) return 0;
+        const double ggx = 0.5 * s / (z + std::sqrt(z * z + s));
+        return ggx * table_->ratio(std::log(z / sine));
+    }
+
+    double width() const { return std::min(1.0, alpha_); }
+    double spread() const { return width(); }
+
+private:
+    double alpha_, gamma_, peak_;
+    std::shared_ptr<const LambdaTable> table_;
+};
+
+std::unique_ptr<Brdf> make(const Parameters& p) {
+    Laws laws = microfacetLaws(p, {1, 1});
+    return std::make_unique<Microfacet<Gtr>>(gtrModel(), p, laws,
+                                             Gtr(p.number("alpha"), p.number("gamma")));
+}
+
+std::vector<Parameter> parameters() {
+    std::vector<Parameter> all{kdParameter(0, 1)};
+    for (const Parameter& parameter : facetFresnelParameters()) all.push_back(parameter);
+    all.push_back({.name = "alpha", .help = "roughness", .min = 1e-4, .max = 1});
+    all.push_back({.name = "gamma",
+                   .help = "fall of the tails; 2 is GGX, 1 the longest",
+                   .min = 0.1,
+                   .max = 10});
+    all.push_back(maskingParameter());
+    return all;
+}
+
+}  // namespace
+
+const Model& gtrModel() {
+    static const Model model{
+        .name = "gtr",
+        .help = "generalised Trowbridge-Reitz microfacets with their own Smith masking",
+        .source =
+            "Burley 2012, Physically-based shading at Disney, SIGGRAPH course notes; "
+            "Heitz 2014, JCGT 3(2)",
+        .parameters = parameters(),
+        .laws = {.nonNegative = true,
+                 .reciprocal = true,
+                 .isotropic = true,
+                 .mirrorSymmetric = true},
+        .make = make};
+    return model;
+}
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <brdfs/catalog.h>
+
+namespace hshfit::brdfs {
+
+/// Microfacets (microfacet.h) distributed by the generalised Trowbridge-Reitz of Burley 2012,
+/// "Physically-based shading at Disney", appendix B:
+///     D = c / (alpha^2 cos^2 theta_h + sin^2 theta_h)^gamma,   alpha <= 1
+///     c = (gamma - 1)(alpha^2 - 1)/(pi (1 - alpha^(2 - 2 gamma))), its limit for gamma = 1,
+/// which makes the integral of D cos 1. gamma = 2 is GGX; 1 has the longest tails (Berry).
+/// Burley leaves the masking open. Here it is Smith's for this very D: Lambda by quadrature of the
+/// distribution of slopes, tabulated over theta when the model is made, to 1e-6 of Lambda; the
+/// energy is then kept as by ggx.
+const Model& gtrModel();
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,105 @@
+#include <brdfs/analytic/sg.h>
+
+#include <brdfs/analytic/half_vector.h>
+#include <brdfs/analytic/parameters.h>
+#include <brdfs/analytic/term_brdf.h>
+
+#include <cmath>
+
+namespace hshfit::brdfs {
+namespace {
+
+constexpr Laws claims{
+    .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
+
+/// The factor that makes the integral over the sphere 1.
+double sphereFactor(double sharpness) {
+    return sharpness > 0 ? sharpness / (-2 * pi * std::expm1(-2 * sharpness)) : 1 / (4 * pi);
+}
+
+bool aboutNormal(const Parameters& p) {
+    return p.choice("axis") == "normal";
+}
+
+double scaleOf(const Parameters& p) {
+    if (p.choice("normalized") == "false") return 1;
+    return sphereFactor(p.number("sharpness")) / (aboutNormal(p) ? 4 : 1);
+}
+
+/// cos_i <= 1 and d omega_i <= 4 d omega_h bound the albedo by the integral over the sphere.
+Laws lawsOf(const Parameters& p) {
+    Laws result = claims;
+    const double lobe = scaleOf(p) * (aboutNormal(p) ? 4 : 1) / sphereFactor(p.number("sharpness"));
+    const Colour bound = mapped(p.colour("kd"), p.colour("ks"),
+                                [&](double kd, double ks) { return kd + ks * lobe; });
+    result.energyConserving = largest(bound) <= 1;
+    return result;
+}
+
+class SphericalGaussian final : public TermBrdf {
+public:
+    explicit SphericalGaussian(const Parameters& p)
+        : TermBrdf(sgModel(), p, lawsOf(p), overPi(p.colour("kd")),
+                   {mapped(p.colour("ks"), [&](double ks) { return ks * scaleOf(p); })}),
+          sharpness_(p.number("sharpness")),
+          aboutNormal_(aboutNormal(p)) {}
+
+    /// Standard deviation 1 / sqrt(lambda), of the angle or of the slope.
+    std::vector<Lobe> lobes(const Direction& wo) const override {
+        const double width = std::min(1.0, 2.5 / std::sqrt(sharpness_ + 1));
+        if (aboutNormal_) return {{Lobe::About::halfway, width, {}}};
+        return {{Lobe::About::axis, width, mirrored(wo)}};
+    }
+
+protected:
+    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
+        for (std::size_t k = 0; k < wi.count; ++k) {
+            const double versine = aboutNormal_
+                                       ? tiltVersine(HalfVector(wo, wi.x[k], wi.y[k], wi.z[k]))
+                                       : mirrorVersine(wo, wi.x[k], wi.y[k], wi.z[k]);
+            out[k] = std::exp(-sharpness_ * versine);
+        }
+    }
+
+private:
+    /// 1 - cos of the angle to the mirror direction, from the distance to it.
+    static double mirrorVersine(const Direction& wo, double x, double y, double z) {
+        const double dx = x + wo.x, dy = y + wo.y, dz = z - wo.z;
+        return (dx * dx + dy * dy + dz * dz) / 2;
+    }
+
+    /// 1 - cos theta_h, from the slope.
+    static double tiltVersine(const HalfVector& h) {
+        const double secant = std::sqrt(1 + h.squaredSlope());
+        return h.squaredSlope() / (secant * (1 + secant));
+    }
+
+    double sharpness_;
+    bool aboutNormal_;
+};
+
+std::unique_ptr<Brdf> make(const Parameters& p) {
+    return std::make_unique<SphericalGaussian>(p);
+}
+
+}  // namespace
+
+const Model& sgModel() {
+    static const Model model{
+        .name = "sg",
+        .help = "spherical Gaussian about the mirror direction, or of the half vector",
+        .source = "Wang, Ren, Gong, Snyder & Guo 2009, 10.1145/1618452.1618479",
+        .parameters = {kdParameter(0, 1e6),
+                       ksParameter("amplitude of the lobe; largest albedo if normalized"),
+                       exponentParameter("sharpness", "lambda; 1 / lambda is its variance"),
+                       {.name = "axis",
+                        .help = "wi about the mirror direction, or half vector about the normal",
+                        .kind = Parameter::Kind::choice,
+                        .choices = {"mirror", "normal"}},
+                       switchParameter("normalized", "scale the lobe to an albedo of up to ks")},
+        .laws = claims,
+        .make = make};
+    return model;
+}
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,192 @@
+#include <brdfs/sum.h>
+
+#include <hshfit/error.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+
+namespace hshfit::brdfs {
+namespace {
+
+constexpr std::string_view plus = " + ", times = " * ";
+constexpr double mostWeight = 1e6;
+
+/// "0.5 * SPEC" as weight and the rest; weight 1 if it does not begin with a number and " * ".
+WeightedSpec parseTerm(std::string_view term) {
+    const std::size_t star = term.find(times);
+    if (star == std::string_view::npos) return {1, std::string(term)};
+    const std::string_view number = term.substr(0, star);
+    double weight = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), weight);
+    if (end != number.data() + number.size()) return {1, std::string(term)};
+    if (error != std::errc{} || !(weight >= 0 && weight <= mostWeight))
+        throw UsageError(fmt::format("sum: weight {} in '{}' is out of range; valid: 0 to {}",
+                                     number, term, mostWeight));
+    return {weight + 0.0, std::string(term.substr(star + times.size()))};
+}
+
+/// The end of the term that starts at `start`: a " + " unless a longer text stands by itself.
+std::size_t endOfTerm(std::string_view spec, std::size_t start, bool (*isWhole)(std::string_view)) {
+    std::vector<std::size_t> ends;
+    for (std::size_t at = spec.find(plus, start); at != std::string_view::npos;
+         at = spec.find(plus, at + 1))
+        ends.push_back(at);
+    ends.push_back(spec.size());
+    for (auto end = ends.rbegin(); end != ends.rend(); ++end) {
+        const std::string_view term = spec.substr(start, *end - start);
+        const std::size_t star = term.find(times);
+        if (isWhole(term) ||
+            (star != std::string_view::npos && isWhole(term.substr(star + times.size()))))
+            return *end;
+    }
+    return ends.front();
+}
+
+bool sameChannels(const Channels& a, const Channels& b) {
+    return a.kind == b.kind && a.wavelengths == b.wavelengths;
+}
+
+/// "wavelengths 400 to 700 nm (31)" and the like.
+std::string described(const Channels& channels) {
+    if (channels.kind != Channels::Kind::spectral)
+        return channels.kind == Channels::Kind::grey ? "grey" : "rgb";
+    return fmt::format("{} wavelengths from {} to {} nm", channels.count(),
+                       channels.wavelengths.front(), channels.wavelengths.back());
+}
+
+Channels mergedChannels(const std::vector<Sum::Term>& terms) {
+    const Brdf* widest = terms.front().brdf.get();
+    for (const Sum::Term& term : terms) {
+        const Channels& channels = term.brdf->channels();
+        if (channels.kind == Channels::Kind::grey) continue;
+        if (widest->channels().kind == Channels::Kind::grey) widest = term.brdf.get();
+        if (!sameChannels(channels, widest->channels()))
+            throw UsageError(
+                fmt::format("sum: '{}' is {} but '{}' is {}; all terms but grey ones "
+                            "have to have the same channels",
+                            widest->name(), described(widest->channels()), term.brdf->name(),
+                            described(channels)));
+    }
+    return widest->channels();
+}
+
+Laws commonLaws(const std::vector<Sum::Term>& terms) {
+    Laws laws{true, true, true, true, true};
+    double total = 0;
+    for (const Sum::Term& term : terms) {
+        const Laws& own = term.brdf->laws();
+        laws.nonNegative &= own.nonNegative;
+        laws.reciprocal &= own.reciprocal;
+        laws.isotropic &= own.isotropic;
+        laws.mirrorSymmetric &= own.mirrorSymmetric;
+        laws.energyConserving &= own.energyConserving || term.weight == 0;
+        if (own.energyConserving) total += term.weight;
+    }
+    laws.energyConserving &= total <= 1;
+    return laws;
+}
+
+std::string joinedNames(const std::vector<Sum::Term>& terms) {
+    std::string name;
+    for (const Sum::Term& term : terms) {
+        if (!name.empty()) name += plus;
+        if (term.weight != 1) name += fmt::format("{}{}", term.weight, times);
+        name += term.brdf->name();
+    }
+    return name;
+}
+
+}  // namespace
+
+std::vector<WeightedSpec> splitSum(std::string_view spec, bool (*isWhole)(std::string_view)) {
+    if (isWhole(spec)) return {{1, std::string(spec)}};
+    std::vector<WeightedSpec> terms;
+    for (std::size_t start = 0;;) {
+        const std::size_t end = endOfTerm(spec, start, isWhole);
+        terms.push_back(parseTerm(spec.substr(start, end - start)));
+        if (end == spec.size()) break;
+        start = end + plus.size();
+    }
+    if (terms.size() > 1)
+        for (const WeightedSpec& term : terms)
+            if (term.spec.find_first_not_of(' ') == std::string::npos)
+                throw UsageError(
+                    fmt::format("sum: '{}' has an empty term; valid: {}", spec, sumHelp));
+    return terms;
+}
+
+Sum::Sum(std::vector<Term> terms)
+    : terms_(std::move(terms)),
+      name_(joinedNames(terms_)),
+      channels_(mergedChannels(terms_)),
+      laws_(commonLaws(terms_)) {}
+
+void Sum::eval(const Direction& wo, DirectionBatch wi, double* out) const {
+    const std::size_t channels = channels_.count();
+    std::fill(out, out + channels * wi.count, 0.0);
+    std::vector<double> values(channels * wi.count);
+    for (const Term& term : terms_) {
+        term.brdf->eval(wo, wi, values.data());
+        const bool grey = term.brdf->channels().kind == Channels::Kind::grey;
+        for (std::size_t c = 0; c < channels; ++c) {
+            const double* own = values.data() + (grey ? 0 : c * wi.count);
+            for (std::size_t k = 0; k < wi.count; ++k)
+                out[c * wi.count + k] += term.weight * own[k];
+        }
+    }
+    constexpr double most = std::numeric_limits<double>::max();
+    for (std::size_t i = 0; i < channels * wi.count; ++i) out[i] = std::min(out[i], most);
+}
+
+void Sum::coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const {
+    terms_.front().brdf->coverage(wo, wi, covered);
+    std::vector<unsigned char> own(wi.count);
+    for (std::size_t t = 1; t < terms_.size(); ++t) {
+        terms_[t].brdf->coverage(wo, wi, own.data());
+        for (std::size_t k = 0; k < wi.count; ++k) covered[k] = covered[k] && own[k];
+    }
+}
+
+std::vector<Lobe> Sum::lobes(const Direction& wo) const {
+    std::vector<Lobe> all;
+    for (const Term& term : terms_)
+        for (const Lobe& lobe : term.brdf->lobes(wo)) all.push_back(lobe);
+    return all;
+}
+
+std::vector<double> Sum::kinks(const Direction& wo) const {
+    std::vector<double> all;
+    for (const Term& term : terms_)
+        for (const double height : term.brdf->kinks(wo)) all.push_back(height);
+    std::ranges::sort(all);
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+}
+
+double Sum::defaultTolerance() const {
+    double largest = 0;
+    for (const Term& term : terms_) largest = std::max(largest, term.brdf->defaultTolerance());
+    return largest;
+}
+
+/// Each fact of a term under its number: "term_2_model".
+std::vector<Fact> Sum::facts() const {
+    std::vector<Fact> all{{"terms", static_cast<std::int64_t>(terms_.size())}};
+    for (std::size_t t = 0; t < terms_.size(); ++t) {
+        const std::string number = fmt::format("term_{}", t + 1);
+        all.push_back({number, terms_[t].brdf->name()});
+        all.push_back({number + "_weight", terms_[t].weight});
+        for (const auto& [name, value] : terms_[t].brdf->facts())
+            all.push_back({number + "_" + name, value});
+    }
+    return all;
+}
+
+void Sum::checkIntact() const {
+    for (const Term& term : terms_) term.brdf->checkIntact();
+}
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <hshfit/brdf.h>
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// What a sum of BRDFs is written as, in one line.
+inline constexpr std::string_view sumHelp =
+    "any specifications joined by ' + ', each with an optional weight: "
+    "'lambert:kd=0.1 + 0.5 * ggx:alpha=0.2'";
+
+/// One term of a sum; the weight is in [0, 1e6].
+struct WeightedSpec {
+    double weight = 1;
+    std::string spec;
+};
+
+/// Splits "SPEC + WEIGHT * SPEC + …" at " + ", with the spaces, but not within what `isWhole` says
+/// stands by itself (a path that exists), the longest first. One term of weight 1 if `spec` is no
+/// sum. Throws UsageError for an empty term or a weight out of range.
+std::vector<WeightedSpec> splitSum(std::string_view spec, bool (*isWhole)(std::string_view));
+
+/// sum_t weight_t f_t. Grey terms count for every channel of the others.
+///   laws       what all terms keep; energy only if every term does and the weights add up to at
+///              most 1, since no more is known of the albedos
+///   coverage   where all terms are covered
+///   lobes, kinks, facts   those of all terms; the tolerance is the largest
+/// Throws UsageError if rgb meets spectral, or spectra of different wavelengths each other.
+class Sum final : public Brdf {
+public:
+    struct Term {
+        double weight = 1;
+        std::unique_ptr<Brdf> brdf;
+    };
+    explicit Sum(std::vector<Term> terms);
+
+    std::string name() const override { return name_; }
+    const Channels& channels() const override { return channels_; }
+    const Laws& laws() const override { return laws_; }
+    void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
+    void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
+    std::vector<Lobe> lobes(const Direction& wo) const override;
+    std::vector<double> kinks(const Direction& wo) const override;
+    double defaultTolerance() const override;
+    std::vector<Fact> facts() const override;
+    void checkIntact() const override;
+
+private:
+    std::vector<Term> terms_;
+    std::string name_;
+    Channels channels_;
+    Laws laws_;
+};
+
+}  // namespace hshfit::brdfs
