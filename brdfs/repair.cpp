@@ -27,13 +27,9 @@ std::string missingReason(const Brdf&, const Health& health) {
                        100 * (1 - health.coverage));
 }
 
-std::string negativeReason(const Brdf& brdf, const Health& health) {
-    std::uint64_t stored = 0;
-    if (const auto* measured = dynamic_cast<const MeasuredBrdf*>(&brdf))
-        stored = measured->census().negative;
-    if (health.negative == 0 && stored == 0) return {};
-    return fmt::format("{} of {} sampled values and {} stored ones are below 0", health.negative,
-                       health.values, stored);
+std::string negativeReason(const Brdf&, const Health& health) {
+    if (health.negative == 0) return {};
+    return fmt::format("{} of {} sampled values are below 0", health.negative, health.values);
 }
 
 std::string reciprocityReason(const Brdf&, const Health& health) {
@@ -78,7 +74,7 @@ public:
         const bool isotropic = brdf.laws().isotropic;
         thetas_ = isotropic ? 61 : 21;
         azimuths_ = isotropic ? 1 : 24;
-        scale_.resize(channels_ * thetas_ * azimuths_);
+        albedo_.resize(channels_ * thetas_ * azimuths_);
         std::atomic<std::size_t> done = 0;
         tbb::parallel_for(std::size_t{0}, thetas_ * azimuths_, [&](std::size_t node) {
             const double theta = thetaStep() * static_cast<double>(node / azimuths_);
@@ -86,9 +82,8 @@ public:
                 2 * pi * static_cast<double>(node % azimuths_) / static_cast<double>(azimuths_);
             // At 90 degrees itself f is 0 by definition; its neighbourhood counts.
             const auto albedo =
-                directionalAlbedo(brdf, directionFromAngles(std::min(theta, radians(89.5)), phi));
-            for (std::size_t c = 0; c < channels_; ++c)
-                scale_[node * channels_ + c] = 1 / std::max(1.0, albedo[c]);
+                directionalAlbedo(brdf, directionFromAngles(std::min(theta, radians(89.9)), phi));
+            for (std::size_t c = 0; c < channels_; ++c) albedo_[node * channels_ + c] = albedo[c];
             if (progress) progress(++done, thetas_ * azimuths_);
         });
     }
@@ -104,10 +99,11 @@ public:
         const double u = column - std::floor(column);
         for (std::size_t c = 0; c < channels_; ++c) {
             const auto node = [&](std::size_t i, std::size_t j) {
-                return scale_[(i * azimuths_ + j) * channels_ + c];
+                return albedo_[(i * azimuths_ + j) * channels_ + c];
             };
-            scale[c] = (1 - t) * ((1 - u) * node(r, p) + u * node(r, q)) +
-                       t * ((1 - u) * node(r + 1, p) + u * node(r + 1, q));
+            const double albedo = (1 - t) * ((1 - u) * node(r, p) + u * node(r, q)) +
+                                  t * ((1 - u) * node(r + 1, p) + u * node(r + 1, q));
+            scale[c] = 1 / std::max(1.0, albedo);
         }
     }
 
@@ -115,7 +111,7 @@ private:
     double thetaStep() const { return pi / 2 / static_cast<double>(thetas_ - 1); }
 
     std::size_t channels_ = 0, thetas_ = 0, azimuths_ = 0;
-    std::vector<double> scale_;
+    std::vector<double> albedo_;
 };
 
 /// One pair of directions, or several of the same wo, with the channels of each together.

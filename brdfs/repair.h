@@ -33,13 +33,14 @@ struct RepairCount {
 /// A BRDF with repairs, each of which changes only what it names:
 ///
 /// missing      where nothing was measured, f is that of the pair with the same half vector, phi_d
-///              and the largest theta_d below (by 1 degree) that is covered; left as it is if none
-///              is
+///              and the largest theta_d below (by whole degrees) that is covered; left as it is if
+///              none is
 /// negative     values below 0 become 0
 /// reciprocity  (f(wi, wo) + f(wo, wi)) / 2; where only one of the two is covered, that one
-/// energy       f min(s(wi), s(wo)) with s(w) = 1 / max(1, albedo(w)) in each channel: reciprocity
-///              is kept, and no albedo is above 1. Albedos are tabulated every 1.5 degrees of theta
-///              (anisotropic: every 4.5 and, in phi, 15 degrees) and interpolated linearly.
+/// energy       f min(s(wi), s(wo)) with s(w) = 1 / max(1, albedo(w)) in each channel, so that
+///              reciprocity is kept. Albedos are tabulated every 1.5 degrees of theta (anisotropic:
+///              every 4.5 and, in phi, 15 degrees) and interpolated linearly: where they bend
+///              downwards, up to about 0.004 above 1 is left.
 class RepairedBrdf : public Brdf {
 public:
     virtual std::uint64_t evaluated() const = 0;  ///< values

@@ -127,7 +127,7 @@ void addInfo(CLI::App& app, Globals& globals) {
         addCommand(app, globals, "info",
                    "What a BRDF or a coefficient file is, and how healthy: channels, symmetry, "
                    "sampling, invalid values, coverage, reciprocity, albedo, repairs",
-                   "hshfit info ggx:alpha=.2,f0=.9");
+                   "hshfit info ggx:alpha=.2,F0=.9");
     command.add_option("SPEC", options->spec, "BRDF or coefficient file")->required();
     addRgb(command, options->rgb);
     command.callback([options, &globals] {

@@ -74,11 +74,12 @@ PairResult examinePair(const Brdf& brdf, const DirectionPair& pair) {
     }
     if (!result.covered || !isCovered(brdf, pair.wo, pair.wi)) return result;
     const auto exchanged = evaluate(brdf, pair.wo, pair.wi);
+    const double cosines = pair.wi.z * pair.wo.z;
     for (std::size_t c = 0; c < values.size(); ++c) {
-        const double difference = std::abs(values[c] - exchanged[c]);
+        const double difference = cosines * std::abs(values[c] - exchanged[c]);
         if (!std::isfinite(difference)) continue;
         result.difference += difference;
-        result.sum += std::abs(values[c]) + std::abs(exchanged[c]);
+        result.sum += cosines * (std::abs(values[c]) + std::abs(exchanged[c]));
         if (difference <= result.largest) continue;
         result.largest = difference;
         result.channel = c;

@@ -15,15 +15,17 @@ struct Health {
     /// Direction pairs evaluated: half of them uniform over both hemispheres, half by half and
     /// difference angles with theta_h crowded towards 0, where lobes are.
     std::size_t pairs = 0;
-    /// The share of the uniform pairs at which f rests on measured samples; 1 for a model.
+    /// The share of the uniform pairs at which f rests on measured samples, to about half a per
+    /// cent of all pairs; 1 for a model.
     double coverage = 1;
     /// Among the values (one per channel and pair).
     std::uint64_t values = 0, negative = 0, notFinite = 0;
 
-    /// Sum of |f(wi, wo) - f(wo, wi)| over that of |f(wi, wo)| + |f(wo, wi)|, over the pairs that
-    /// are covered both ways and all channels: 0 if reciprocal, 1 if one of the two is always 0.
+    /// Sum of |f(wi, wo) - f(wo, wi)| c over that of (|f(wi, wo)| + |f(wo, wi)|) c with
+    /// c = cos(theta_i) cos(theta_o), over the pairs that are covered both ways and all channels:
+    /// 0 if reciprocal, 1 if one of the two is always 0.
     double reciprocityDefect = 0;
-    /// The covered pair with the largest difference in a channel.
+    /// The covered pair with the largest difference, times c, in a channel.
     struct Exchange {
         Direction wi, wo;
         std::size_t channel = 0;
