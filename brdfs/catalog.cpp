@@ -24,6 +24,12 @@
 #include <brdfs/measured/merl_writer.h>
 #include <brdfs/measured/rgl.h>
 #include <brdfs/measured/rgl_writer.h>
+#include <brdfs/measured/scattered/alta.h>
+#include <brdfs/measured/scattered/alta_writer.h>
+#include <brdfs/measured/scattered/astm.h>
+#include <brdfs/measured/scattered/cornell.h>
+#include <brdfs/measured/scattered/nist.h>
+#include <brdfs/measured/scattered/scatmech.h>
 #include <brdfs/preset.h>
 #include <brdfs/spec.h>
 #include <brdfs/sum.h>
@@ -175,12 +181,14 @@ std::span<const Model> models() {
 }
 
 std::span<const Format> formats() {
-    static const std::vector<Format> table{merlFormat(), rglFormat(), bsdfXmlFormat()};
+    static const std::vector<Format> table{merlFormat(), rglFormat(),     bsdfXmlFormat(),
+                                           altaFormat(), astmFormat(),    cornellFormat(),
+                                           nistFormat(), scatmechFormat()};
     return table;
 }
 
 std::span<const Writer> writers() {
-    static const std::vector<Writer> table{merlWriter(), rglWriter()};
+    static const std::vector<Writer> table{merlWriter(), rglWriter(), altaWriter()};
     return table;
 }
 
