@@ -1,0 +1,122 @@
+#include <brdfs/measured/bsdf_xml/xml_frame.h>
+#include <hshfit/output/atomic_file.h>
+
+#include <fmt/format.h>
+#include <pugixml.hpp>
+
+namespace hshfit::brdfs {
+namespace {
+
+void put(pugi::xml_node parent, const char* name, const std::string& text) {
+    parent.append_child(name).text().set(text.c_str());
+}
+
+void putWithUnit(pugi::xml_node parent, const char* name, const char* unit, const char* text) {
+    pugi::xml_node node = parent.append_child(name);
+    node.append_attribute("unit") = unit;
+    node.text().set(text);
+}
+
+void putMaterial(pugi::xml_node layer, const std::string& name) {
+    pugi::xml_node material = layer.append_child("Material");
+    put(material, "Name", name);
+    put(material, "Manufacturer", "hshfit");
+    put(material, "DeviceType", "Other");
+    putWithUnit(material, "Thickness", "meter", "0");
+}
+
+void putBasis(pugi::xml_node definition, const AngleBasis& basis) {
+    pugi::xml_node node = definition.append_child("AngleBasis");
+    put(node, "AngleBasisName", basis.name);
+    for (const AngleBasis::Ring& ring : basis.rings()) {
+        const bool pole = ring.lower == 0 && ring.azimuths == 1;
+        pugi::xml_node block = node.append_child("AngleBasisBlock");
+        put(block, "Theta", fmt::format("{:g}", pole ? 0 : (ring.lower + ring.upper) / 2));
+        put(block, "nPhis", fmt::format("{}", ring.azimuths));
+        pugi::xml_node bounds = block.append_child("ThetaBounds");
+        put(bounds, "LowerTheta", fmt::format("{:g}", ring.lower));
+        put(bounds, "UpperTheta", fmt::format("{:g}", ring.upper));
+    }
+}
+
+void putData(pugi::xml_node layer, const BsdfXmlContent& content) {
+    pugi::xml_node data = layer.append_child("WavelengthData");
+    put(data, "LayerNumber", "System");
+    putWithUnit(data, "Wavelength", "Integral", "Visible");
+    put(data, "SourceSpectrum", "CIE Illuminant D65 1nm.ssp");
+    put(data, "DetectorSpectrum", "ASTM E308 1931 Y.dsp");
+    pugi::xml_node block = data.append_child("WavelengthDataBlock");
+    const bool front = content.side == BsdfSide::front;
+    put(block, "WavelengthDataDirection", front ? "Reflection Front" : "Reflection Back");
+    if (content.basis) {
+        put(block, "ColumnAngleBasis", content.basis->name);
+        put(block, "RowAngleBasis", content.basis->name);
+    } else {
+        put(block, "AngleBasis", "LBNL/Shirley-Chiu");
+    }
+    put(block, "ScatteringDataType", "BRDF");
+    put(block, "ScatteringData", content.scatteringData);
+}
+
+struct FileWriter : pugi::xml_writer {
+    explicit FileWriter(AtomicFile& to) : file(to) {}
+    void write(const void* data, std::size_t size) override {
+        file.write(std::string_view(static_cast<const char*>(data), size));
+    }
+    AtomicFile& file;
+};
+
+}  // namespace
+
+void writeBsdfXml(const BsdfXmlContent& content, const std::string& path,
+                  const WriteOptions& options) {
+    constexpr const char* structures[] = {"Columns", "Rows", "TensorTree3", "TensorTree4"};
+    pugi::xml_document xml;
+    pugi::xml_node declaration = xml.append_child(pugi::node_declaration);
+    declaration.append_attribute("version") = "1.0";
+    declaration.append_attribute("encoding") = "UTF-8";
+    pugi::xml_node root = xml.append_child("WindowElement");
+    root.append_attribute("xmlns") = "http://windows.lbl.gov";
+    root.append_attribute("xmlns:xsi") = "http://www.w3.org/2001/XMLSchema-instance";
+    root.append_attribute("xsi:schemaLocation") = "http://windows.lbl.gov/BSDF-v1.4.xsd";
+    put(root, "WindowElementType", "System");
+    put(root, "FileType", "BSDF");
+    pugi::xml_node layer = root.append_child("Optical").append_child("Layer");
+    putMaterial(layer, content.material);
+    pugi::xml_node definition = layer.append_child("DataDefinition");
+    put(definition, "IncidentDataStructure", structures[static_cast<int>(content.structure)]);
+    if (content.basis) putBasis(definition, *content.basis);
+    putData(layer, content);
+    AtomicFile file(path,
+                    options.force ? AtomicFile::Existing::replace : AtomicFile::Existing::refuse);
+    FileWriter writer(file);
+    xml.save(writer, "\t", pugi::format_indent, pugi::encoding_utf8);
+    file.commit();
+}
+
+std::vector<Parameter> commonWriterParameters() {
+    return {{.name = "side",
+             .help = "of the file; Radiance calls the back front",
+             .kind = Parameter::Kind::choice,
+             .fallback = {},
+             .choices = {"front", "back"}},
+            {.name = "tolerance",
+             .help = "of averages over a cell, relative",
+             .fallback = 1e-3,
+             .min = 1e-6,
+             .max = 0.1}};
+}
+
+BsdfSide sideOf(const Parameters& parameters) {
+    return parameters.choice("side") == "back" ? BsdfSide::back : BsdfSide::front;
+}
+
+void reportUncertain(const CellAverages& averages, std::vector<std::string>& alterations) {
+    if (averages.uncertain == 0) return;
+    alterations.push_back(
+        fmt::format("{} of {} averages did not settle within the tolerance; the last doubling of "
+                    "points changed the worst by {:.2g}",
+                    averages.uncertain, averages.values.size(), averages.worstChange));
+}
+
+}  // namespace hshfit::brdfs
