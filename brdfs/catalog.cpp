@@ -20,6 +20,8 @@
 #include <brdfs/analytic/sgd.h>
 #include <brdfs/analytic/ward.h>
 #include <brdfs/measured/bsdf_xml/bsdf_xml.h>
+#include <brdfs/measured/bsdf_xml/klems_writer.h>
+#include <brdfs/measured/bsdf_xml/tree_writer.h>
 #include <brdfs/measured/merl.h>
 #include <brdfs/measured/merl_writer.h>
 #include <brdfs/measured/rgl.h>
@@ -188,7 +190,8 @@ std::span<const Format> formats() {
 }
 
 std::span<const Writer> writers() {
-    static const std::vector<Writer> table{merlWriter(), rglWriter(), altaWriter()};
+    static const std::vector<Writer> table{merlWriter(), rglWriter(), altaWriter(),
+                                           bsdfKlemsWriter(), bsdfTreeWriter()};
     return table;
 }
 
