@@ -22,6 +22,10 @@
 #include <brdfs/measured/bsdf_xml/bsdf_xml.h>
 #include <brdfs/measured/bsdf_xml/klems_writer.h>
 #include <brdfs/measured/bsdf_xml/tree_writer.h>
+#include <brdfs/measured/gridded/mit.h>
+#include <brdfs/measured/gridded/slice.h>
+#include <brdfs/measured/gridded/slice_writer.h>
+#include <brdfs/measured/gridded/utia.h>
 #include <brdfs/measured/merl.h>
 #include <brdfs/measured/merl_writer.h>
 #include <brdfs/measured/rgl.h>
@@ -35,6 +39,7 @@
 #include <brdfs/preset.h>
 #include <brdfs/spec.h>
 #include <brdfs/sum.h>
+#include <hshfit/colour.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -183,15 +188,16 @@ std::span<const Model> models() {
 }
 
 std::span<const Format> formats() {
-    static const std::vector<Format> table{merlFormat(), rglFormat(),     bsdfXmlFormat(),
-                                           altaFormat(), astmFormat(),    cornellFormat(),
-                                           nistFormat(), scatmechFormat()};
+    static const std::vector<Format> table{merlFormat(), rglFormat(),      bsdfXmlFormat(),
+                                           altaFormat(), astmFormat(),     cornellFormat(),
+                                           nistFormat(), scatmechFormat(), mitFormat(),
+                                           utiaFormat(), slicesFormat(),   merlSliceFormat()};
     return table;
 }
 
 std::span<const Writer> writers() {
-    static const std::vector<Writer> table{merlWriter(), rglWriter(), altaWriter(),
-                                           bsdfKlemsWriter(), bsdfTreeWriter()};
+    static const std::vector<Writer> table{merlWriter(),   rglWriter(),       altaWriter(),
+                                           slicesWriter(), bsdfKlemsWriter(), bsdfTreeWriter()};
     return table;
 }
 
@@ -210,6 +216,8 @@ std::unique_ptr<Brdf> open(std::string_view spec) {
             fmt::format("empty BRDF specification; give model[:key=value,...], a file "
                         "or preset:NAME; models: {}",
                         joined(namesOf(models()))));
+    constexpr std::string_view rgbPrefix = "rgb:";
+    if (spec.starts_with(rgbPrefix)) return asRgb(open(spec.substr(rgbPrefix.size())));
     const std::vector<WeightedSpec> specs = splitSum(spec, isFile);
     if (specs.size() == 1 && specs.front().weight == 1) return openTerm(specs.front().spec);
     std::vector<Sum::Term> terms;

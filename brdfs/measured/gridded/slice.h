@@ -1,0 +1,97 @@
+#pragma once
+
+#include <brdfs/catalog.h>
+#include <brdfs/measured/measured_brdf.h>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// Where the values of slices stand in half and difference angles (Rusinkiewicz 1998). Node i of n
+/// is at x = (i + shift) / n, where
+///     theta_h = 90 x deg, or 90 x^2 deg if `rootHalf`,     theta_d = 90 x deg.
+struct SliceLayout {
+    std::size_t halfCount = 0, differenceCount = 0;
+    bool rootHalf = false;
+    double shift = 0.5;       ///< 0: a value stands for the start of its bin
+    std::vector<double> phi;  ///< phi_d in degrees, ascending, from 0 to below `period`
+    double period = 180;      ///< 180, or 360 for what is not reciprocal
+
+    double thetaHalf(double i) const;        ///< radians
+    double thetaDifference(double i) const;  ///< radians
+    std::size_t nodes() const { return phi.size() * differenceCount * halfCount; }
+};
+
+/// An isotropic BRDF from slices of constant phi_d: one at phi_d = 90 deg, which is the plane of
+/// the figures of Burley 2012 ("Physically Based Shading at Disney", SIGGRAPH course), or several.
+/// One slice is continued constantly in phi_d; between several, f is linear in phi_d, which goes
+/// round. Linear in the indices of theta_h and theta_d, constant beyond the first and last nodes.
+///
+/// A negative value is invalid, as is a node with a direction below the horizon; interpolation
+/// leaves these out, and f is 0 where nothing is left. Values that are no numbers are taken as
+/// invalid, and checkIntact() throws InputError naming the first. Covered is where valid nodes
+/// stand, and with one slice only where the difference direction is within half a degree of it.
+class SliceBrdf : public MeasuredBrdf {
+public:
+    /// `stored`: [phi][theta_d][theta_h][channel]. `kind`: the format's name, for info.
+    SliceBrdf(SliceLayout layout, Channels channels, std::vector<float> stored, std::string name,
+              std::string kind);
+
+    std::string name() const override { return name_; }
+    const Channels& channels() const override { return channels_; }
+    const Laws& laws() const override { return laws_; }
+    void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
+    void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
+    /// One lobe about the half vector, as wide as the slice nearest phi_d = 90 deg: where f at
+    /// theta_d = theta_o has fallen half-way from its value at the first node to its least.
+    std::vector<Lobe> lobes(const Direction& wo) const override;
+    /// 3e-3: the interpolation has a kink at every node, and the measurements err by more.
+    double defaultTolerance() const override { return 3e-3; }
+    std::vector<Fact> facts() const override;
+    Census census() const override { return census_; }
+    std::vector<Axis> axes() const override;
+    void checkIntact() const override;
+    void checkReadable() const override {}
+
+    const SliceLayout& layout() const { return layout_; }
+
+private:
+    struct Corners;
+    Corners corners(double thetaHalf, double thetaDifference, double phi) const;
+    double interpolate(const Corners& at, std::size_t channel, double* weight) const;
+    void takeStock();
+
+    SliceLayout layout_;
+    Channels channels_;
+    std::vector<float> values_;  ///< -1 where invalid
+    std::string name_, kind_;
+    Laws laws_{.nonNegative = true, .isotropic = true};
+    Census census_;
+    std::string damage_;  ///< what checkIntact() throws
+};
+
+/// A `.slice` file of exactly 97,200 bytes: float32 [theta_d 90][theta_h 90][R, G, B], the cells of
+/// a MERL table (merl_layout.h) at phi_d = 90 deg, in 1/sr, little-endian.
+std::unique_ptr<SliceBrdf> readMerlSlice(std::span<const unsigned char> bytes,
+                                         const std::string& name);
+
+/// A picture with theta_h from 0 deg at the left to 90 at the right and theta_d from 0 at the
+/// bottom to 90 at the top, a value standing for the middle of its pixel, in 1/sr. Channels R, G, B
+/// or Y or wavelengths ("550nm") for phi_d = 90 deg. What slice_writer.h writes says so in
+/// attributes, has further slices in layers ("phi045.R") and may have 90 x^2 for theta_h; pictures
+/// without the attributes are taken as above.
+/// Both throw InputError if the bytes are not that.
+std::unique_ptr<SliceBrdf> readSlicePicture(std::span<const unsigned char> bytes,
+                                            const std::string& name);
+
+/// "phi045", "phi022,5": the layer of a slice, phi in degrees.
+std::string sliceLayerName(double phi);
+
+/// Rows of the table of formats.
+const Format& merlSliceFormat();
+const Format& slicesFormat();
+
+}  // namespace hshfit::brdfs
