@@ -37,6 +37,7 @@
 #include <brdfs/measured/scattered/nist.h>
 #include <brdfs/measured/scattered/scatmech.h>
 #include <brdfs/preset.h>
+#include <brdfs/preset_collection.h>
 #include <brdfs/spec.h>
 #include <brdfs/sum.h>
 #include <hshfit/colour.h>
@@ -72,14 +73,6 @@ UsageError unknownModel(std::string_view name) {
                                   joined(known)));
 }
 
-std::unique_ptr<Brdf> openNamedPreset(std::string_view name) {
-    const auto found = std::ranges::find(presets(), name, &Preset::name);
-    if (found != presets().end()) return openPreset(found->text, fmt::format("preset:{}", name));
-    const std::vector<std::string_view> known = namesOf(presets());
-    throw UsageError(fmt::format("unknown preset '{}'{}; known: {}", name, suggestion(name, known),
-                                 joined(known)));
-}
-
 /// The first `most` bytes of a file; all of them if it has fewer.
 std::vector<unsigned char> readHead(const std::string& path, std::size_t most) {
     std::ifstream file(path, std::ios::binary);
@@ -104,15 +97,17 @@ const Format& formatOf(const std::string& path, std::uint64_t size) {
 }
 
 std::unique_ptr<Brdf> openPresetFile(const std::string& path, std::uint64_t size,
-                                     std::string_view options) {
+                                     std::string_view material) {
     constexpr std::uint64_t most = 1 << 20;
-    if (!options.empty())
-        throw UsageError(
-            fmt::format("{}: a preset takes no options, '{}' was given", path, options));
     if (size > most)
         throw InputError(fmt::format("{}: {} bytes are too many for a preset", path, size));
-    const std::vector<unsigned char> text = readHead(path, most);
-    return openPreset({reinterpret_cast<const char*>(text.data()), text.size()}, path);
+    const std::vector<unsigned char> bytes = readHead(path, most);
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (isPresetCollection(text)) return openMaterial(text, path, material);
+    if (!material.empty())
+        throw UsageError(
+            fmt::format("{}: a preset takes no options, '{}' was given", path, material));
+    return openPreset(text, path);
 }
 
 std::unique_ptr<Brdf> openFile(const std::string& path, std::string_view options) {

@@ -1,12 +1,15 @@
 #include <brdfs/preset.h>
 
 #include <brdfs/catalog.h>
+#include <brdfs/preset_collection.h>
+#include <brdfs/preset_json.h>
+#include <brdfs/spec.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <nlohmann/json.hpp>
-
+#include <algorithm>
 #include <array>
 
 namespace hshfit::embedded {
@@ -17,40 +20,37 @@ extern const std::string_view preset_hsh_ward;
 namespace hshfit::brdfs {
 namespace {
 
-using Json = nlohmann::json;
-
-std::string stringField(const Json& preset, const char* name, const std::string& where) {
-    const auto found = preset.find(name);
-    if (found == preset.end() || !found->is_string())
-        throw InputError(fmt::format("{}: '{}' has to be a string", where, name));
-    return found->get<std::string>();
-}
-
-/// A parameter value as it is written in a specification.
-std::string specValue(const Json& value, const std::string& key, const std::string& where) {
-    if (value.is_number()) return fmt::format("{}", value.get<double>());
-    if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
-    if (value.is_string()) {
-        const std::string text = value.get<std::string>();
-        if (text.find_first_of(",=") == std::string::npos && !text.empty()) return text;
-    }
-    if (value.is_array() && value.size() == 3 && value[0].is_number() && value[1].is_number() &&
-        value[2].is_number())
-        return fmt::format("{}/{}/{}", value[0].get<double>(), value[1].get<double>(),
-                           value[2].get<double>());
-    throw InputError(fmt::format(
-        "{}: parameter '{}' has to be a number, an array of three numbers, true, false or a word",
-        where, key));
-}
-
-Json parseJson(std::string_view text, const std::string& where) {
+/// An invalid parameter in a preset is wrong input, not wrong usage.
+std::unique_ptr<Brdf> openSpec(const std::string& spec, const std::string& where) {
     try {
-        return Json::parse(text);
-    } catch (const Json::parse_error& error) {
-        throw InputError(fmt::format("{}: not valid JSON (byte {})", where, error.byte));
-    } catch (const Json::exception&) {
-        throw InputError(fmt::format("{}: not valid JSON (a number too large)", where));
+        return openModel(spec);
+    } catch (const UsageError& error) {
+        throw InputError(fmt::format("{}: {}", where, error.what()));
     }
+}
+
+std::string quoted(const std::vector<std::string>& names) {
+    return fmt::format("'{}'", fmt::join(names, "', '"));
+}
+
+std::unique_ptr<Brdf> openMaterial(const PresetCollection& collection, const std::string& where,
+                                   std::string_view name) {
+    if (const auto* material = findMaterial(collection, name))
+        return openSpec(material->spec, fmt::format("{}/{}", where, name));
+    std::vector<std::string> names;
+    for (const auto& material : collection.materials) names.push_back(material.name);
+    constexpr std::size_t fewNames = 12, nearest = 5;
+    const std::vector<std::string> similar = nearestNames(name, names, nearest);
+    const std::string what = name.empty() ? std::string("name one of its materials")
+                                          : fmt::format("has no material '{}'", name);
+    std::string hint = fmt::format("it has {}", names.size());
+    if (!name.empty() && !similar.empty())
+        hint = fmt::format("nearest: {}", quoted(similar));
+    else if (!names.empty())
+        hint += names.size() <= fewNames
+                    ? fmt::format(": {}", quoted(names))
+                    : fmt::format(": {}, …", quoted({names.begin(), names.begin() + fewNames}));
+    throw UsageError(fmt::format("{}: {}; {}", where, what, hint));
 }
 
 }  // namespace
@@ -64,38 +64,38 @@ std::span<const Preset> presets() {
 }
 
 PresetContent parsePreset(std::string_view text, const std::string& where) {
-    const Json preset = parseJson(text, where);
-    if (!preset.is_object() || preset.value("format", Json()) != "hshfit-preset")
-        throw InputError(
-            fmt::format("{}: not a preset; \"format\" has to be \"hshfit-preset\"", where));
-    if (preset.value("version", Json()) != 1)
-        throw InputError(fmt::format("{}: \"version\" has to be 1", where));
-
+    const Json preset = parsePresetJson(text, "hshfit-preset", where);
+    const std::string model = modelField(preset, where);
     PresetContent content;
-    content.spec = stringField(preset, "model", where);
-    if (content.spec.find(':') != std::string::npos)
-        throw InputError(fmt::format("{}: unknown model '{}'", where, content.spec));
     if (preset.contains("source")) content.source = stringField(preset, "source", where);
-    const auto parameters = preset.find("parameters");
-    if (parameters == preset.end() || !parameters->is_object())
-        throw InputError(fmt::format("{}: 'parameters' has to be an object", where));
-    char separator = ':';
-    for (const auto& [key, value] : parameters->items()) {
-        if (key.find_first_of(",=") != std::string::npos)
-            throw InputError(fmt::format("{}: '{}' is no name of a parameter", where, key));
-        content.spec += fmt::format("{}{}={}", separator, key, specValue(value, key, where));
-        separator = ',';
-    }
+    content.spec = presetSpec(model, objectField(preset, "parameters", where), where);
     return content;
 }
 
 std::unique_ptr<Brdf> openPreset(std::string_view text, const std::string& where) {
-    const PresetContent content = parsePreset(text, where);
-    try {
-        return openModel(content.spec);
-    } catch (const UsageError& error) {
-        throw InputError(fmt::format("{}: {}", where, error.what()));
+    return openSpec(parsePreset(text, where).spec, where);
+}
+
+std::unique_ptr<Brdf> openMaterial(std::string_view collection, const std::string& where,
+                                   std::string_view material) {
+    return openMaterial(parsePresetCollection(collection, where), where, material);
+}
+
+std::unique_ptr<Brdf> openNamedPreset(std::string_view name) {
+    const auto found = std::ranges::find(presets(), name, &Preset::name);
+    if (found != presets().end()) return openPreset(found->text, fmt::format("preset:{}", name));
+    const std::string_view collection = name.substr(0, name.find('/'));
+    if (const auto index = findPresetCollection(collection)) {
+        const std::string_view material =
+            collection.size() < name.size() ? name.substr(collection.size() + 1) : "";
+        return openMaterial(presetCollection(*index), fmt::format("preset:{}", collection),
+                            material);
     }
+    std::vector<std::string_view> known;
+    for (const Preset& preset : presets()) known.push_back(preset.name);
+    for (const CollectionEntry& entry : presetCollections()) known.push_back(entry.name);
+    throw UsageError(fmt::format("unknown preset '{}'{}; known: {}", name,
+                                 suggestion(collection, known), joined(known)));
 }
 
 }  // namespace hshfit::brdfs

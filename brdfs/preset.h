@@ -36,4 +36,13 @@ PresetContent parsePreset(std::string_view text, const std::string& where);
 /// the result of a fit is a preset too. Throws InputError as above, or for an invalid parameter.
 std::unique_ptr<Brdf> openPreset(std::string_view text, const std::string& where);
 
+/// Opens one material of a collection's JSON. Throws UsageError if `material` is empty or not among
+/// them (naming the nearest), InputError as above.
+std::unique_ptr<Brdf> openMaterial(std::string_view collection, const std::string& where,
+                                   std::string_view material);
+
+/// Opens what "preset:NAME" means: a row of the table, or COLLECTION/MATERIAL. Throws UsageError
+/// for an unknown name (naming the nearest).
+std::unique_ptr<Brdf> openNamedPreset(std::string_view name);
+
 }  // namespace hshfit::brdfs

@@ -21,6 +21,9 @@ Parameters parseParameters(std::string_view owner, std::span<const Parameter> de
 /// What a parameter accepts, for messages and listings: "0 to 1, or r/g/b", "1992|duer".
 std::string validValues(const Parameter& parameter);
 
+/// The least number of characters to insert, delete or replace that makes one the other.
+std::size_t editDistance(std::string_view a, std::string_view b);
+
 /// " (did you mean 'ggx'?)" if one of `known` starts with `word` or is within two edits of it, else
 /// "".
 std::string suggestion(std::string_view word, std::span<const std::string_view> known);

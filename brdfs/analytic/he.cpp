@@ -21,11 +21,20 @@ Laws lawsOf(const Parameters& p) {
     return result;
 }
 
-/// log(m!) for m > 0, by Stirling's series; 1e-16 from m = 20 on.
-double logFactorial(double m) {
+/// (1 + x) log(1 + x) - x for x > -1, without cancellation near 0.
+double entropy(double x) {
+    if (std::abs(x) > 0.02) return (1 + x) * std::log1p(x) - x;
+    double sum = 0;
+    for (int n = 9; n >= 2; --n) sum = sum * -x + 1.0 / (n * (n - 1));
+    return sum * x * x;
+}
+
+/// log(g^m exp(-g) / m!) for m > 20, whose digits do not suffer from g and m being large:
+/// Stirling's series, and g log(m / g) + g - m as a function of (m - g) / g (Loader 2000).
+double logPoisson(double m, double g) {
     const double inverse = 1 / m, squared = inverse * inverse;
     const double series = inverse * (1. / 12 - squared * (1. / 360 - squared / 1260));
-    return m * std::log(m) - m + 0.5 * std::log(2 * pi * m) + series;
+    return -g * entropy((m - g) / g) - series - 0.5 * std::log(2 * pi * m);
 }
 
 /// Where the terms are largest: the root of log(m / g) = b / m^2, at least 1. The difference rises
@@ -144,9 +153,9 @@ double heSeries(double g, double b) {
         for (int i = side < 0 ? 1 : 0; i * step <= 1.2 * reach * width + 12; ++i) {
             const double m = middle + side * i * step;
             if (m < 1) break;
-            sum += std::exp((m - 1) * std::log(g) - g - logFactorial(m) - b / m) / m;
+            sum += std::exp(logPoisson(m, g) - b / m) / m;
         }
-    return sum * step;
+    return sum * step / g;
 }
 
 const Model& heModel() {

@@ -150,6 +150,10 @@ TEST(Albedo, ExceedsOneSomewhereWhereNotClaimed) {
         {"lafortune", {"lafortune:exponent=2", .5, .5}},
         {"ward", {"ward:ax=.2,ay=.2", .2, .2}},
         {"cook-torrance", {"cook-torrance:m=.3", .3, .3}},
+        {"ashikhmin-shirley", {"ashikhmin-shirley:nu=10,nv=10,kd=1", .3, .3}},
+        {"abc", {"abc:A=10,B=10,C=1,ior=3", .3, .3}},
+        {"sgd", {"sgd:alpha=.3", .3, .3}},
+        {"he", {"he:sigma=1,tau=5,kd=1", .3, .3}},
         {"beckmann", {"beckmann:kd=1,alpha=.3", .3, .3}},
         {"ggx", {"ggx:kd=1,alpha=.3", .3, .3}},
     };

@@ -75,6 +75,8 @@ TEST(Formulas, Phong) {
 TEST(Formulas, BlinnPhong) {
     expectFormula("blinn-phong:kd=.1,ks=.6,exponent=22",
                   [](const Angles& a) { return .1 / pi + .6 * pow(cos(a.thetaH), 22); });
+    expectFormula("blinn-phong:ks=.6,exponent=22,normalized=phong",
+                  [](const Angles& a) { return .6 * 24 / (2 * pi) * pow(cos(a.thetaH), 22); });
 }
 
 TEST(Formulas, Lafortune) {
@@ -84,6 +86,13 @@ TEST(Formulas, Lafortune) {
                                .7 * si * sin(a.phiI) * so * sin(a.phiO) +
                                .6 * cos(a.thetaI) * cos(a.thetaO);
         return .1 / pi + .6 * pow(std::max(0., product), 7);
+    });
+    // Ngan et al. 2005: (n + 2) / (2 pi max|C|^n).
+    const std::string fitted = "lafortune:ks=.6,Cx=-.577,Cy=-.577,Cz=.5,exponent=7";
+    expectFormula(fitted + ",normalized=true", [](const Angles& a) {
+        const double product = -.577 * sin(a.thetaI) * sin(a.thetaO) * cos(a.phiI - a.phiO) +
+                               .5 * cos(a.thetaI) * cos(a.thetaO);
+        return .6 * 9 / (2 * pi * pow(.577, 7)) * pow(std::max(0., product), 7);
     });
 }
 
@@ -167,6 +176,11 @@ TEST(Formulas, CookTorrance) {
         const std::string spec = fmt::format("cook-torrance:ks=.8,m=.3,F0={}", f0);
         expectFormula(spec, printed);
         expectFormula(spec + ",norm=4", [&](const Angles& a) { return printed(a) / 4; });
+        expectFormula(fmt::format("cook-torrance:ks=.8,m=.3,ior={},norm=pi2", eta),
+                      [&](const Angles& a) { return printed(a) / pi; });
+        expectFormula(spec + ",fresnel=schlick", [&](const Angles& a) {
+            return printed(a) / dielectric(a.cosHO, eta) * (f0 + (1 - f0) * pow(1 - a.cosHO, 5));
+        });
     }
 }
 
@@ -183,6 +197,26 @@ TEST(Formulas, CookTorranceFresnelLimits) {
     EXPECT_NEAR(evaluate(*open("cook-torrance:m=.3,F0=.04"), mirrored(wo), wo)[0] / mirror, 1,
                 1e-3);
     EXPECT_EQ(evaluate(*open("cook-torrance:m=.3,F0=0"), mirrored(wo), wo)[0], 0);
+}
+
+TEST(Formulas, AshikhminShirleyOfAnIndex) {
+    expectFormula("ashikhmin-shirley:nu=50,nv=50,ior=1.4,kd=.2,ks=.7", [](const Angles& a) {
+        return .2 / pi + .7 * 51 / (8 * pi) * pow(cos(a.thetaH), 50) * dielectric(a.cosHO, 1.4) /
+                             (a.cosHO * std::max(cos(a.thetaI), cos(a.thetaO)));
+    });
+}
+
+TEST(Formulas, Abc) {
+    expectFormula("abc:kd=.1,A=5,B=80,C=.7,ior=1.6", [](const Angles& a) {
+        const double squared = square(sin(a.thetaI)) + square(sin(a.thetaO)) +
+                               2 * sin(a.thetaI) * sin(a.thetaO) * cos(a.phiI - a.phiO);
+        return .1 / pi + 5 * dielectric(a.cosHO, 1.6) / pow(1 + 80 * squared, .7);
+    });
+    expectFormula("abc:A=5,B=80,C=.7,ior=1.6,variant=microfacet", [](const Angles& a) {
+        const double ci = cos(a.thetaI), co = cos(a.thetaO), ch = cos(a.thetaH);
+        const double g = std::min({1., 2 * ch * co / a.cosHO, 2 * ch * ci / a.cosHO});
+        return 5 * dielectric(a.cosHO, 1.6) * g / pow(1 + 80 * (1 - ch), .7) / (pi * ci * co);
+    });
 }
 
 // Walter et al. 2007 and Heitz 2014, in polar angles.

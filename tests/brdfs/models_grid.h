@@ -17,6 +17,32 @@ struct Case {
     double sx = 1, sy = 1;
 };
 
+/// Models of which published fits come as presets.
+inline void addFitted(std::vector<Case>& grid) {
+    for (const char* b : {"1e-3", "10", "1e4", "1e12"})
+        for (const char* c : {"0", ".3", "1", "20"})
+            for (const char* rest :
+                 {"", ",variant=microfacet", ",ior=1,kd=.5", ",A=9/5/1,ior=30"}) {
+                const double width = std::min(1., 1 / std::sqrt(std::stod(b)));
+                grid.push_back({"abc:B=" + std::string(b) + ",C=" + c + rest, width, width});
+            }
+    // The last is about what its authors fitted to blue-fabric: F below 0 at normal incidence.
+    for (const char* shape :
+         {"alpha=.1", "alpha=1e-6,p=1.5", "alpha=100,p=3", "alpha=.02/.1/.5,p=.5/1/0,ks=.3/.2/.1",
+          "alpha=.3,Lambda=4,c=.05,k=9,theta0=.4,F0=.04",
+          "alpha=.1,K=5,Lambda=1e7,c=1e109,k=850,theta0=1.2,F0=6,F1=5",
+          "alpha=.853,p=.0001,F0=.56,F1=.64,Lambda=3,c=1e-7,k=20,theta0=-.6,kd=.1"})
+        grid.push_back({"sgd:" + std::string(shape)});
+    for (const char* sigma : {"1e-6", ".01", ".15", "1", "8", "1e4"})
+        for (const char* tau : {"1e-3", "3", "30", "1e6"}) {
+            const std::string surface = "he:sigma=" + std::string(sigma) + ",tau=" + tau;
+            const double slope = std::min(1., 2 * std::stod(sigma) / std::stod(tau));
+            const double width = std::max(slope, std::min(1., .1 / std::stod(tau)));
+            grid.push_back({surface, width, width});
+            grid.push_back({surface + ",wavelength=.6,ks=.3/.2/.1,kd=.1,ior=20", width, width});
+        }
+}
+
 /// Every model of the table, over its parameters and their ends.
 inline std::vector<Case> modelGrid() {
     std::vector<Case> grid{{"lambert"}, {"lambert:kd=0"}, {"lambert:kd=.8/.5/.1"}};
@@ -34,7 +60,7 @@ inline std::vector<Case> modelGrid() {
                                 1 / std::sqrt(std::stod(exponent) + 1),
                                 1 / std::sqrt(std::stod(exponent) + 1)});
     for (const char* c : {"", ",Cx=1,Cy=1", ",Cx=-.9,Cy=-.9,Cz=.6", ",Cx=-1,Cy=-.5", ",Cz=0",
-                          ",Cx=-1.01,Cy=-1.01,Cz=1.01"})
+                          ",Cx=-1.01,Cy=-1.01,Cz=1.01", ",Cx=-.6,Cy=-.6,Cz=.5,normalized=true"})
         for (const char* exponent : {"0", "1", "20", "1e3"})
             grid.push_back({"lafortune:ks=.1,kd=.1,exponent=" + std::string(exponent) + c,
                             1 / std::sqrt(std::stod(exponent) + 1),
@@ -65,13 +91,16 @@ inline std::vector<Case> modelGrid() {
         grid.push_back({"ggx:alpha=" + std::string(alpha), std::stod(alpha), std::stod(alpha)});
     for (const char* m : {"1e-4", ".05", ".3", "1", "10"})
         for (const char* rest :
-             {"", ",norm=4", ",F0=.04,norm=4", ",F0=0,norm=4", ",F0=.9/.5/.1,ks=.7,kd=.3,norm=4"})
+             {"", ",norm=4", ",F0=.04,norm=4", ",F0=0,norm=4", ",F0=.9/.5/.1,ks=.7,kd=.3,norm=4",
+              ",ior=1.4", ",F0=.9/.5/.1,fresnel=schlick,norm=pi2"})
             grid.push_back(
                 {"cook-torrance:m=" + std::string(m) + rest, std::stod(m), std::stod(m)});
     for (const Axes n : {Axes{"0", "0"}, {"1", "1"}, {"10", "1000"}, {"1e6", "1e6"}, {"0", "1e4"}})
-        for (const char* rest : {"", ",Rs=.05,Rd=1", ",Rs=0,Rd=1", ",Rs=.9/.5/.1,Rd=.5/.2/.9"})
+        for (const char* rest : {"", ",Rs=.05,Rd=1", ",Rs=0,Rd=1", ",Rs=.9/.5/.1,Rd=.5/.2/.9",
+                                 ",ior=1.5", ",ior=1.1,Rd=1,ks=.9", ",kd=.4/.5/.1,ks=3"})
             grid.push_back({"ashikhmin-shirley:nu=" + std::string(n.x) + ",nv=" + n.y + rest,
                             1 / std::sqrt(std::stod(n.x) + 1), 1 / std::sqrt(std::stod(n.y) + 1)});
+    addFitted(grid);
     return grid;
 }
 

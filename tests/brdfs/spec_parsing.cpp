@@ -145,7 +145,8 @@ TEST(Spec, EveryNumberIsChecked) {
             if (parameter.kind == Parameter::Kind::number)
                 expectError<UsageError>(head + "1/1/1", {"3 values", range});
             else
-                expectError<UsageError>(head + "0/0/-1", {"out of range", range});
+                expectError<UsageError>(head + "0/0/" + std::to_string(parameter.min - 1),
+                                        {"out of range", range});
         }
 }
 
