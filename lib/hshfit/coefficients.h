@@ -4,6 +4,7 @@
 #include <hshfit/channels.h>
 #include <hshfit/outgoing.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,15 @@ struct Energy {
     double error = 0;  ///< absolute, from the difference of two quadrature levels
     bool finite = true;
     std::string reason;  ///< why it does not exist
+};
+
+/// How coefficients came from scattered samples (least_squares.h).
+struct LeastSquaresNote {
+    double regularisation = 0;
+    double kernelDegrees = 0;
+    double condition = 0;  ///< the largest of the systems, before they were regularised
+    double residual = 0;   ///< relative, over all of them
+    std::size_t samples = 0;
 };
 
 /// Basis coefficients of one BRDF for a set of outgoing directions: what a coefficient file holds.
@@ -45,6 +55,8 @@ struct Coefficients {
     std::string source;     ///< the specification that was projected
     std::string generator;  ///< "hshfit 0.1.0"
     double tolerance = 0;   ///< what the quadrature was asked for
+    /// Present where samples were fitted and no quadrature was made.
+    std::optional<LeastSquaresNote> leastSquares = {};
 
     std::size_t slots() const { return static_cast<std::size_t>(order) * order; }
     const double* at(std::size_t outgoingIndex, std::size_t channel) const {

@@ -94,7 +94,8 @@ bool readKey(TextReader& reader, Header& header) {
         if (!reader.takeNumber(value)) throw reader.error("#SAMPLE_COUNT has no number");
         header.count = wholeNumber(value, 1e15, reader, "#SAMPLE_COUNT");
     } else if (key == "#SAMPLE") {
-        header.sample = reader.line().substr(0, 200);
+        header.sample = reader.line().substr(key.size()).substr(0, 200);
+        header.sample.erase(0, header.sample.find_first_not_of(" \t"));
     }
     return key == "#BEGIN_STREAM";
 }

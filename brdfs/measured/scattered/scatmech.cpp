@@ -110,9 +110,9 @@ ZernikeExpansion::ZernikeExpansion(const std::vector<Term>& terms, std::vector<d
         }
     }
     const auto indexOf = [&](int n, int l) {
-        const auto found = std::ranges::find(radials_, std::pair(n, l));
-        if (found == radials_.end()) radials_.emplace_back(n, l);
-        return static_cast<int>(found - radials_.begin());
+        const auto index = std::ranges::find(radials_, std::pair(n, l)) - radials_.begin();
+        if (index == std::ssize(radials_)) radials_.emplace_back(n, l);
+        return static_cast<int>(index);
     };
     for (auto& [key, sum] : weights) {
         const auto [n, m, l] = key;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 namespace hshfit::brdfs {
@@ -177,6 +176,20 @@ void Scattered::coverage(const Direction& wo, DirectionBatch wi, unsigned char* 
         const Point at = folded(chartPoint(chart_, {wi.x[k], wi.y[k], wi.z[k]}, wo), images_);
         covered[k] = interpolant_->nearest(at) <= options_.reach;
     }
+}
+
+DirectionSamples Scattered::directionSamples() const {
+    if (samples_.chart != Chart::anisotropic) {
+        throw UsageError(fmt::format("{}: holds a function of {}, not of pairs of directions",
+                                     name_, chartName(chart_)));
+    }
+    DirectionSamples view{.wi = samples_.wi,
+                          .wo = samples_.wo,
+                          .values = samples_.values,
+                          .channels = samples_.channels,
+                          .symmetry = laws_,
+                          .name = name_};
+    return view;
 }
 
 std::vector<Fact> Scattered::facts() const {

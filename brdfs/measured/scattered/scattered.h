@@ -4,6 +4,7 @@
 #include <brdfs/measured/measured_brdf.h>
 #include <brdfs/measured/scattered/interpolant.h>
 #include <brdfs/measured/scattered/samples.h>
+#include <hshfit/least_squares.h>
 
 #include <memory>
 #include <optional>
@@ -49,7 +50,9 @@ public:
     std::vector<Axis> axes() const override;
 
     const Samples& samples() const { return samples_; }
-    bool exchanges() const { return folding_.exchange; }
+    /// A view of the samples, values below zero included. Throws UsageError for data that were
+    /// reduced to fewer coordinates than a pair of directions has.
+    DirectionSamples directionSamples() const;
 
 private:
     Samples samples_;

@@ -303,6 +303,13 @@ CoefficientMetadata metadataOf(const Coefficients& c) {
     if (!exists) add("energy_reason", c.energy.reason);
     add("error", finiteOrNull(c.error));
     add("tolerance", finiteOrNull(c.tolerance));
+    if (c.leastSquares) {
+        add("least_squares", {{"regularisation", c.leastSquares->regularisation},
+                              {"kernel_degrees", c.leastSquares->kernelDegrees},
+                              {"condition", c.leastSquares->condition},
+                              {"residual", c.leastSquares->residual},
+                              {"samples", c.leastSquares->samples}});
+    }
     return metadata;
 }
 
@@ -337,6 +344,16 @@ Coefficients coefficientsFromMetadata(std::string_view text, std::size_t outgoin
     result.energy = readEnergy(root);
     result.error = root.numberOrNull("error").value_or(none);
     result.tolerance = root.numberOrNull("tolerance").value_or(none);
+    if (root.has("least_squares")) {
+        const Fields fit = root.object("least_squares");
+        result.leastSquares = LeastSquaresNote{
+            .regularisation = fit.number("regularisation"),
+            .kernelDegrees = fit.number("kernel_degrees"),
+            .condition = fit.number("condition"),
+            .residual = fit.number("residual"),
+            .samples = static_cast<std::size_t>(
+                fit.integer("samples", 0, std::numeric_limits<int>::max()))};
+    }
     return result;
 }
 
