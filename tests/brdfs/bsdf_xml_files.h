@@ -1,0 +1,177 @@
+#pragma once
+
+#include <brdfs/measured/bsdf_xml/bsdf_xml.h>
+#include <brdfs/measured/bsdf_xml/klems_brdf.h>
+#include <brdfs/measured/bsdf_xml/tree_brdf.h>
+
+#include <brdfs/measured_files.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace hshfit::test {
+
+struct KlemsRing {
+    double lower, upper;
+    int azimuths;
+};
+
+inline const std::vector<KlemsRing> klemsFull{{0, 5, 1},    {5, 15, 8},   {15, 25, 16},
+                                              {25, 35, 20}, {35, 45, 24}, {45, 55, 24},
+                                              {55, 65, 24}, {65, 75, 16}, {75, 90, 12}};
+inline const std::vector<KlemsRing> klemsHalf{{0, 6.5, 1},      {6.5, 19.5, 8},   {19.5, 32.5, 12},
+                                              {32.5, 45.5, 16}, {45.5, 58.5, 20}, {58.5, 71.5, 12},
+                                              {71.5, 90, 8}};
+inline const std::vector<KlemsRing> klemsOldHalf{
+    {0, 6.5, 1},      {6.5, 19.5, 8},   {19.5, 32.5, 12}, {32.5, 46.5, 16},
+    {46.5, 61.5, 20}, {61.5, 76.5, 12}, {76.5, 90, 4}};
+inline const std::vector<KlemsRing> klemsQuarter{
+    {0, 9, 1}, {9, 27, 8}, {27, 45, 12}, {45, 63, 12}, {63, 90, 8}};
+
+inline int patchesOf(const std::vector<KlemsRing>& rings) {
+    int sum = 0;
+    for (const KlemsRing& ring : rings) sum += ring.azimuths;
+    return sum;
+}
+
+/// The patch whose centre is nearest in azimuth within the ring of elevation; -1: none.
+inline int patchAt(const std::vector<KlemsRing>& rings, double x, double y, double z) {
+    const double theta = degrees(std::acos(std::min(z, 1.0)));
+    const double phi = degrees(std::atan2(y, x));
+    int first = 0;
+    for (const KlemsRing& ring : rings) {
+        if (theta >= ring.lower && theta < ring.upper) {
+            int best = 0;
+            double nearest = 1000;
+            for (int j = 0; j < ring.azimuths; ++j) {
+                const double away = std::abs(std::remainder(phi - 360.0 * j / ring.azimuths, 360));
+                if (away < nearest) nearest = away, best = j;
+            }
+            return first + best;
+        }
+        first += ring.azimuths;
+    }
+    return -1;
+}
+
+/// Integral of cos(theta) over each patch.
+inline std::vector<double> projectedSolidAngles(const std::vector<KlemsRing>& rings) {
+    std::vector<double> result;
+    for (const KlemsRing& ring : rings) {
+        const double up = std::sin(radians(ring.upper)), low = std::sin(radians(ring.lower));
+        for (int j = 0; j < ring.azimuths; ++j) {
+            result.push_back(pi * (up - low) * (up + low) / ring.azimuths);
+        }
+    }
+    return result;
+}
+
+inline std::string basisXml(const std::string& name, const std::vector<KlemsRing>& rings) {
+    std::string xml = "<AngleBasis><AngleBasisName>" + name + "</AngleBasisName>\n";
+    for (const KlemsRing& ring : rings) {
+        xml += "<AngleBasisBlock><Theta>0</Theta><nPhis>" + std::to_string(ring.azimuths) +
+               "</nPhis><ThetaBounds><LowerTheta>" + std::to_string(ring.lower) +
+               "</LowerTheta><UpperTheta>" + std::to_string(ring.upper) +
+               "</UpperTheta></ThetaBounds></AngleBasisBlock>\n";
+    }
+    return xml + "</AngleBasis>\n";
+}
+
+inline std::string blockXml(const std::string& direction, const std::string& data,
+                            const std::string& basis, const std::string& wavelength = "Visible") {
+    const bool tree = basis == "LBNL/Shirley-Chiu";
+    return "<WavelengthData><LayerNumber>System</LayerNumber>\n<Wavelength unit=\"Integral\">" +
+           wavelength + "</Wavelength>\n<WavelengthDataBlock>\n<WavelengthDataDirection>" +
+           direction + "</WavelengthDataDirection>\n" +
+           (tree ? "<AngleBasis>" + basis + "</AngleBasis>"
+                 : "<ColumnAngleBasis>" + basis + "</ColumnAngleBasis><RowAngleBasis>" + basis +
+                       "</RowAngleBasis>") +
+           "\n<ScatteringDataType>BTDF</ScatteringDataType>\n<ScatteringData>\n" + data +
+           "</ScatteringData>\n</WavelengthDataBlock>\n</WavelengthData>\n";
+}
+
+inline std::string bsdfXml(const std::string& structure, const std::string& basis,
+                           const std::string& blocks) {
+    return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- made by a test -->\n"
+           "<WindowElement xmlns=\"http://windows.lbl.gov\">\n<Optical>\n<Layer>\n"
+           "<Material><Name>a &amp; b</Name><Manufacturer>nobody</Manufacturer></Material>\n"
+           "<DataDefinition>\n<IncidentDataStructure>" +
+           structure + "</IncidentDataStructure>\n" + basis + "</DataDefinition>\n" + blocks +
+           "</Layer>\n</Optical>\n</WindowElement>\n";
+}
+
+/// value(outgoing, incident) in Columns: each line is an outgoing direction.
+inline std::string matrixText(int patches, const std::function<double(int, int)>& value,
+                              bool rows = false) {
+    std::string text;
+    for (int a = 0; a < patches; ++a) {
+        for (int b = 0; b < patches; ++b) {
+            text += std::to_string(rows ? value(b, a) : value(a, b)) + (b % 2 ? ", " : "\t");
+        }
+        text += '\n';
+    }
+    return text;
+}
+
+/// A copy on the heap of exactly the size, so that a sanitizer sees one byte too many.
+inline std::unique_ptr<brdfs::MeasuredBrdf> openBytes(const std::string& xml,
+                                                      brdfs::BsdfSide side = brdfs::BsdfSide::front,
+                                                      std::string_view wavelength = "visible") {
+    const std::vector<unsigned char> copy(xml.begin(), xml.end());
+    return brdfs::openBsdfXml({copy.data(), copy.size()}, "memory", side, wavelength);
+}
+
+inline double valueOf(const Brdf& brdf, const Direction& wi, const Direction& wo) {
+    return evaluate(brdf, wi, wo)[0];
+}
+
+/// Where the file has x: its front side is seen from behind.
+inline double fileX(brdfs::BsdfSide side, double x) {
+    return side == brdfs::BsdfSide::front ? -x : x;
+}
+
+/// The concentric map as the paper gives it, by sectors of azimuth.
+inline std::pair<double, double> shirleyChiu(double x, double y) {
+    const double r = std::hypot(x, y);
+    double phi = std::atan2(y, x);
+    if (phi < -pi / 4) phi += 2 * pi;
+    double a, b;
+    if (phi < pi / 4) {
+        a = r, b = phi * a / (pi / 4);
+    } else if (phi < 3 * pi / 4) {
+        b = r, a = -(phi - pi / 2) * b / (pi / 4);
+    } else if (phi < 5 * pi / 4) {
+        a = -r, b = (phi - pi) * a / (pi / 4);
+    } else {
+        b = -r, a = -(phi - 3 * pi / 2) * b / (pi / 4);
+    }
+    return {(a + 1) / 2, (b + 1) / 2};
+}
+
+/// Directions with equal projected solid angle.
+inline std::vector<Direction> projectedGrid(int rings, int azimuths) {
+    std::vector<Direction> grid;
+    for (int k = 0; k < rings; ++k) {
+        for (int j = 0; j < azimuths; ++j) {
+            const double r = std::sqrt((k + 0.5) / rings);
+            const double phi = 2 * pi * (j + 0.37) / azimuths;
+            grid.push_back({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - r * r)});
+        }
+    }
+    return grid;
+}
+
+/// Directional-hemispherical reflectance for light from wi, summed over a grid.
+inline double reflectanceFrom(const Brdf& brdf, const Direction& wi,
+                              const std::vector<Direction>& grid) {
+    double sum = 0;
+    for (const Direction& wo : grid) sum += valueOf(brdf, wi, wo);
+    return pi * sum / static_cast<double>(grid.size());
+}
+
+}  // namespace hshfit::test
