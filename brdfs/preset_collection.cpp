@@ -98,6 +98,18 @@ std::vector<std::string> wordsOf(std::string_view text) {
     return words;
 }
 
+/// The edits that make every one of `parts` a word of `candidate`.
+std::size_t wordDistance(const std::vector<std::string>& parts, const std::string& candidate) {
+    std::size_t sum = 0;
+    for (const std::string& part : parts) {
+        std::size_t least = part.size();
+        for (const std::string& word : wordsOf(candidate))
+            least = std::min(least, editDistance(part, word));
+        sum += least;
+    }
+    return sum;
+}
+
 }  // namespace
 
 bool isPresetCollection(std::string_view text) {
@@ -178,16 +190,18 @@ std::vector<std::string> nearestNames(std::string_view word, std::span<const std
     const std::string wanted = lowered(word);
     const std::vector<std::string> parts = wordsOf(wanted);
     const std::size_t furthest = std::max<std::size_t>(2, wanted.size() / 3);
+    constexpr std::size_t furthestWords = 2;
     std::vector<std::pair<std::size_t, std::string>> ranked;
     for (const std::string& name : names) {
         const std::string candidate = lowered(name);
-        const bool holdsAll = !parts.empty() && std::ranges::all_of(parts, [&](const auto& part) {
-            return candidate.find(part) != std::string::npos;
-        });
-        const std::size_t rank = candidate.find(wanted) != std::string::npos ? 0
-                                 : holdsAll                                  ? 1
-                                            : 1 + editDistance(wanted, candidate);
-        if (rank <= 1 + furthest) ranked.emplace_back(rank, name);
+        const std::size_t words = wordDistance(parts, candidate);
+        const std::size_t whole = editDistance(wanted, candidate);
+        if (candidate.find(wanted) != std::string::npos)
+            ranked.emplace_back(0, name);
+        else if (words <= furthestWords && words < wanted.size())
+            ranked.emplace_back(1 + words, name);
+        else if (whole <= furthest && whole < wanted.size())
+            ranked.emplace_back(1 + whole, name);
     }
     std::ranges::stable_sort(ranked, {}, &std::pair<std::size_t, std::string>::first);
     std::vector<std::string> nearest;

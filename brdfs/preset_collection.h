@@ -51,9 +51,9 @@ const PresetCollection& presetCollection(std::size_t index);
 /// The index of the collection of this name.
 std::optional<std::size_t> findPresetCollection(std::string_view name);
 
-/// The names that resemble `word` most, best first, at most `most` of them: those that hold it (or
-/// all its words, split at '-' and '/') in any case, then by edit distance to a third of its
-/// length.
+/// The names that resemble `word` most, best first, at most `most` of them, in whatever case: those
+/// that hold it; those with all its words (split at '-' and '/') to two edits; those within edits
+/// of a third of its length.
 std::vector<std::string> nearestNames(std::string_view word, std::span<const std::string> names,
                                       std::size_t most);
 

@@ -2,12 +2,15 @@
 #include "documents.h"
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/error.h>
 #include <hshfit/metrics.h>
 
 #include <brdfs/catalog.h>
 #include <brdfs/preset.h>
+#include <brdfs/preset_collection.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
@@ -90,6 +93,7 @@ Json metricsJson() {
     return rows;
 }
 
+/// Presets that stand by themselves.
 Json presetsJson() {
     Json rows = Json::array();
     for (const auto& preset : brdfs::presets()) {
@@ -102,6 +106,64 @@ Json presetsJson() {
     return rows;
 }
 
+Json collectionsJson() {
+    Json rows = Json::array();
+    for (std::size_t i = 0; i < brdfs::presetCollections().size(); ++i) {
+        const brdfs::PresetCollection& collection = brdfs::presetCollection(i);
+        Json row = {{"name", brdfs::presetCollections()[i].name},
+                    {"help", collection.help},
+                    {"model", collection.model},
+                    {"source", collection.source},
+                    {"materials", collection.materials.size()}};
+        if (!collection.correction.empty()) row["correction"] = collection.correction;
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+/// Those by themselves and every material of every collection, COLLECTION/MATERIAL.
+Json allPresetsJson() {
+    Json rows = presetsJson();
+    for (std::size_t i = 0; i < brdfs::presetCollections().size(); ++i) {
+        const brdfs::PresetCollection& collection = brdfs::presetCollection(i);
+        for (const auto& material : collection.materials)
+            rows.push_back(
+                {{"name", fmt::format("{}/{}", brdfs::presetCollections()[i].name, material.name)},
+                 {"help", collection.help},
+                 {"source", collection.source},
+                 {"spec", material.spec}});
+    }
+    return rows;
+}
+
+std::string lowered(std::string text) {
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
+
+/// The presets whose name holds `text`, in whatever case. Throws UsageError, naming the nearest, if
+/// there is none.
+Json foundPresetsJson(const std::string& text) {
+    Json found = Json::array();
+    std::vector<std::string> names;
+    for (const Json& row : allPresetsJson()) {
+        names.push_back(row["name"]);
+        if (lowered(names.back()).find(lowered(text)) != std::string::npos) found.push_back(row);
+    }
+    if (!found.empty()) return found;
+    // The same material is in many collections: the nearest of them, without these.
+    std::vector<std::string> words;
+    for (const std::string& name : names) {
+        const std::string word = name.substr(name.find('/') + 1);
+        if (std::ranges::find(words, word) == words.end()) words.push_back(word);
+    }
+    std::string hint = "list presets --all prints all";
+    if (const auto nearest = brdfs::nearestNames(text, words, 5); !nearest.empty())
+        hint = fmt::format("nearest: {}", fmt::join(nearest, ", "));
+    throw UsageError(fmt::format("no preset matches '{}'; {}", text, hint));
+}
+
 /// Export targets: none in this version.
 Json targetsJson() {
     return Json::array();
@@ -111,9 +173,11 @@ struct Section {
     const char* name;
     Json (*rows)();
 };
-constexpr Section sections[] = {{"models", modelsJson},   {"formats", formatsJson},
-                                {"bases", basesJson},     {"metrics", metricsJson},
-                                {"targets", targetsJson}, {"presets", presetsJson}};
+constexpr Section sections[] = {{"models", modelsJson},
+                                {"formats", formatsJson},
+                                {"bases", basesJson},
+                                {"metrics", metricsJson},
+                                {"targets", targetsJson}};
 
 std::string parameterText(const Json& parameter) {
     std::string text = fmt::format("      {:<14} {}", parameter["name"].get<std::string>(),
@@ -161,27 +225,62 @@ void printSection(const char* name, const Json& rows) {
     printText(text + "\n");
 }
 
+/// Without a text and unless all are asked for: a line per collection.
+void listPresets(const std::string& text, bool all, bool json, Json& document) {
+    const bool summary = text.empty() && !all;
+    const Json rows = summary         ? presetsJson()
+                      : !text.empty() ? foundPresetsJson(text)
+                                      : allPresetsJson();
+    if (json) {
+        document["presets"] = rows;
+        document["collections"] = collectionsJson();
+        return;
+    }
+    if (!summary) {
+        std::string names;
+        for (const Json& row : rows) names += row["name"].get<std::string>() + "\n";
+        printText(names);
+        return;
+    }
+    printSection("presets", rows);
+    std::string lines = "preset collections (list presets TEXT searches their materials)\n";
+    for (const Json& row : collectionsJson())
+        lines += fmt::format("  {:<25} {:>3} materials  {}\n", row["name"].get<std::string>(),
+                             row["materials"].get<int>(), row["help"].get<std::string>());
+    printText(lines);
+}
+
 }  // namespace
 
 void addList(CLI::App& app, Globals& globals) {
-    auto section = std::make_shared<std::string>();
+    struct Options {
+        std::string section, text;
+        bool all = false;
+    };
+    auto options = std::make_shared<Options>();
     CLI::App& command = addCommand(
         app, globals, "list", "The catalogs: models, formats, bases, metrics, targets, presets",
-        "hshfit list bases");
-    std::vector<std::string> names;
+        "hshfit list presets acrylic");
+    std::vector<std::string> names{"presets"};
     for (const Section& s : sections) names.emplace_back(s.name);
-    command.add_option("SECTION", *section, "One catalog; all of them if left out")
+    command.add_option("SECTION", options->section, "One catalog; all of them if left out")
         ->check(CLI::IsMember(names));
-    command.callback([section, &globals] {
+    command.add_option("TEXT", options->text, "presets: those whose name holds this, in any case");
+    command.add_flag("--all", options->all, "presets: every name, not a line per collection");
+    command.callback([options, &globals] {
+        if (options->section != "presets" && (options->all || !options->text.empty()))
+            throw UsageError("TEXT and --all are for `list presets`");
         Json document = {{"format", "hshfit-list"}, {"version", 1}};
         for (const Section& s : sections) {
-            if (!section->empty() && *section != s.name) continue;
+            if (!options->section.empty() && options->section != s.name) continue;
             if (globals.json) {
                 document[s.name] = s.rows();
             } else {
                 printSection(s.name, s.rows());
             }
         }
+        if (options->section.empty() || options->section == "presets")
+            listPresets(options->text, options->all, globals.json, document);
         if (globals.json) printJson(document);
     });
 }

@@ -272,6 +272,8 @@ TEST(Nearest, SubstringsThenWordsThenEdits) {
     const auto nearest = [&](const char* word) { return nearestNames(word, names, 2); };
     EXPECT_EQ(nearest("ACRYLIC"), (std::vector<std::string>{"blue-acrylic", "white-acrylic"}));
     EXPECT_EQ(nearest("acrylic-blue"), (std::vector<std::string>{"blue-acrylic"}));
+    EXPECT_EQ(nearest("acrylik"), (std::vector<std::string>{"blue-acrylic", "white-acrylic"}));
+    EXPECT_EQ(nearest("bleu-fabric"), (std::vector<std::string>{"blue-fabric"}));
     EXPECT_EQ(nearest("bras"), (std::vector<std::string>{"brass"}));
     EXPECT_EQ(nearest("brsas"), (std::vector<std::string>{"brass"}));
     EXPECT_TRUE(nearest("qqqqqqq").empty());
