@@ -61,7 +61,7 @@ std::vector<std::string> write(const Brdf& brdf, const std::string& path,
     const CellAverages averages = averageOverCells(brdf, weights, cells(-1), cells(1),
                                                    {.tolerance = parameters.number("tolerance"),
                                                     .firstPoints = 2,
-                                                    .mostPoints = 16,
+                                                    .mostPoints = 32,
                                                     .progress = options.progress});
     reportUncertain(averages, alterations);
     writeBsdfXml({.material = brdf.name(),

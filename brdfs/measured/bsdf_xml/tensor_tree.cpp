@@ -171,14 +171,20 @@ std::vector<double> TensorTree::averagesOverFirst(int over) const {
     return averages(over, rank_ - over);
 }
 
-bool TensorTree::invariant(const std::array<int, 4>& from,
-                           const std::array<bool, 4>& flipped) const {
-    return same(root_, root_, from, flipped);
+double TensorTree::asymmetry(const std::array<int, 4>& from,
+                             const std::array<bool, 4>& flipped) const {
+    double integral = 0;
+    forEachLeaf([&](const Leaf& leaf) {
+        integral += std::abs(values_[leaf.value]) * std::pow(leaf.width, rank_);
+    });
+    return integral > 0 ? difference(root_, root_, from, flipped) / integral : 0;
 }
 
-bool TensorTree::same(Reference a, Reference b, const std::array<int, 4>& from,
-                      const std::array<bool, 4>& flipped) const {
-    if (a < 0 && b < 0) return values_[-1 - a] == values_[-1 - b];
+/// Of two cubes, as a share of their volume.
+double TensorTree::difference(Reference a, Reference b, const std::array<int, 4>& from,
+                              const std::array<bool, 4>& flipped) const {
+    if (a < 0 && b < 0) return std::abs(values_[-1 - a] - values_[-1 - b]);
+    double sum = 0;
     for (std::size_t k = 0; k < std::size_t{1} << rank_; ++k) {
         std::size_t image = 0;
         for (int i = 0; i < rank_; ++i) {
@@ -187,9 +193,9 @@ bool TensorTree::same(Reference a, Reference b, const std::array<int, 4>& from,
         }
         const Reference childA = a < 0 ? a : nodes_[static_cast<std::size_t>(a) + k];
         const Reference childB = b < 0 ? b : nodes_[static_cast<std::size_t>(b) + image];
-        if (!same(childA, childB, from, flipped)) return false;
+        sum += difference(childA, childB, from, flipped);
     }
-    return true;
+    return std::ldexp(sum, -rank_);
 }
 
 }  // namespace hshfit::brdfs

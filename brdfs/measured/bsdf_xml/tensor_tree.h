@@ -55,16 +55,17 @@ public:
     std::vector<double> averagesOverLast(int over) const;
     std::vector<double> averagesOverFirst(int over) const;
 
-    /// Whether the function stays the same when dimension i takes the place of `from[i]`, and is
-    /// turned round (u -> 1 - u) where `flipped[i]`.
-    bool invariant(const std::array<int, 4>& from, const std::array<bool, 4>& flipped) const;
+    /// How far the function is from staying the same when dimension i takes the place of `from[i]`
+    /// and is turned round (u -> 1 - u) where `flipped[i]`: the integral of the absolute difference
+    /// over that of the function. 0: it stays exactly the same.
+    double asymmetry(const std::array<int, 4>& from, const std::array<bool, 4>& flipped) const;
 
 private:
     class Parser;
     /// A leaf -1 - value, or the first of 2^rank neighbouring entries of nodes_.
     using Reference = std::int32_t;
-    bool same(Reference a, Reference b, const std::array<int, 4>& from,
-              const std::array<bool, 4>& flipped) const;
+    double difference(Reference a, Reference b, const std::array<int, 4>& from,
+                      const std::array<bool, 4>& flipped) const;
     std::vector<double> averages(int firstKept, int kept) const;
 
     int rank_ = 4, levels_ = 0;

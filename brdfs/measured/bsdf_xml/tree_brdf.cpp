@@ -7,6 +7,12 @@
 #include <cmath>
 
 namespace hshfit::brdfs {
+namespace {
+
+/// Incident and outgoing coordinates change places.
+constexpr std::array<int, 4> exchanged{2, 3, 0, 1};
+
+}  // namespace
 
 TreeBrdf::TreeBrdf(const BsdfDocument& document, BsdfSelection selection)
     : selection_(std::move(selection)) {
@@ -57,7 +63,7 @@ void TreeBrdf::findLaws() {
     const bool isotropic = trees_[0].rank() == 3;
     const auto all = [&](const std::array<int, 4>& from, const std::array<bool, 4>& flipped) {
         return std::ranges::all_of(
-            trees_, [&](const TensorTree& tree) { return tree.invariant(from, flipped); });
+            trees_, [&](const TensorTree& tree) { return tree.asymmetry(from, flipped) == 0; });
     };
     laws_.nonNegative = true;
     laws_.isotropic = isotropic;
@@ -65,7 +71,7 @@ void TreeBrdf::findLaws() {
     laws_.mirrorSymmetric =
         isotropic ? all(same, {false, false, true, false})
                   : all(same, {true, false, true, false}) && all(same, {false, true, false, true});
-    laws_.reciprocal = !isotropic && all({2, 3, 0, 1}, {true, true, true, true});
+    laws_.reciprocal = !isotropic && all(exchanged, {true, true, true, true});
     if (trees_.size() > 1) return;
     if (isotropic) {
         // A bound: the albedo is no more than pi times the greatest value.
@@ -162,6 +168,8 @@ std::vector<Fact> TreeBrdf::facts() const {
         double mean = 0;
         for (const double r : reflectances) mean += r / static_cast<double>(reflectances.size());
         facts.emplace_back("mean_reflectance", mean);
+        facts.emplace_back("reciprocity_defect",
+                           tree.asymmetry(exchanged, {true, true, true, true}));
     }
     return facts;
 }
