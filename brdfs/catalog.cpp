@@ -28,6 +28,7 @@
 #include <brdfs/measured/gridded/utia.h>
 #include <brdfs/measured/merl.h>
 #include <brdfs/measured/merl_writer.h>
+#include <brdfs/measured/pbsdf.h>
 #include <brdfs/measured/rgl.h>
 #include <brdfs/measured/rgl_writer.h>
 #include <brdfs/measured/scattered/alta.h>
@@ -183,7 +184,7 @@ std::span<const Model> models() {
 }
 
 std::span<const Format> formats() {
-    static const std::vector<Format> table{merlFormat(), rglFormat(),      bsdfXmlFormat(),
+    static const std::vector<Format> table{merlFormat(), pbsdfFormat(), rglFormat(),      bsdfXmlFormat(),
                                            altaFormat(), astmFormat(),     cornellFormat(),
                                            nistFormat(), scatmechFormat(), mitFormat(),
                                            utiaFormat(), slicesFormat(),   merlSliceFormat()};

@@ -36,6 +36,7 @@ struct RglTables {
     /// above the horizon the value only takes part in the interpolation.
     struct Node {
         Direction wi, wo;
+        double u = 0, v = 0;  ///< of the half vector
         double factor = 1;
     };
     Node node(std::size_t slice, std::size_t row, std::size_t column) const;

@@ -31,7 +31,7 @@ RglTables::Node RglTables::node(std::size_t slice, std::size_t row, std::size_t 
     const auto [u, v] = normals->sample(x, y, slice);
     const double thetaIncident = incident.theta[slice % incident.theta.size()];
     const double phiIncident = incident.phi[slice / incident.theta.size()];
-    Node node;
+    Node node{.wi = {}, .wo = {}, .u = u, .v = v};
     node.wi = directionFromAngles(thetaIncident, phiIncident);
     const Direction h = directionFromAngles(
         u * u * pi / 2, (v - 0.5) * 2 * pi + (reduction == 0 ? phiIncident : 0));

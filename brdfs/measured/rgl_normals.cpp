@@ -20,11 +20,6 @@ Direction normalAt(double u, double v, double turn = 0) {
     return directionFromAngles(u * u * pi / 2, (v - 0.5) * 2 * pi + turn);
 }
 
-/// Solid angle per du dv of (u, v).
-double jacobianAt(double u) {
-    return std::sin(u * u * pi / 2) * pi * u * 2 * pi;
-}
-
 /// Midpoints of a grid over (u, v) with D times the solid angle.
 struct Facets {
     std::vector<double> x, y, z, weight;
@@ -38,7 +33,7 @@ struct Facets {
                 const double v = (static_cast<double>(r) + 0.5) / static_cast<double>(rows);
                 const Direction h = normalAt(u, v);
                 x.push_back(h.x), y.push_back(h.y), z.push_back(h.z);
-                weight.push_back(ndf.at(u, v) * jacobianAt(u) /
+                weight.push_back(ndf.at(u, v) * normalsJacobian(u) /
                                  static_cast<double>(rows * columns));
             }
         }
@@ -140,6 +135,10 @@ Plane powerIteration(const Plane& retro, NormalsGrid grid) {
 
 }  // namespace
 
+double normalsJacobian(double u) {
+    return std::sin(u * u * pi / 2) * pi * u * 2 * pi;
+}
+
 double brightness(const Channels& channels, const double* values) {
     if (channels.kind == Channels::Kind::rgb) {
         return 0.2126 * values[0] + 0.7152 * values[1] + 0.0722 * values[2];  // Rec. 709
@@ -174,20 +173,21 @@ Plane projectedAreas(const Plane& ndf, std::size_t rows, std::size_t columns) {
 }
 
 std::vector<float> visibleNormals(const Plane& ndf, const Direction& wi, double turn,
-                                  NormalsGrid grid) {
+                                  NormalsGrid grid, double share) {
     std::vector<double> densities;
-    double sum = 0;
+    double sum = 0, seenCount = 0;
     for (std::size_t r = 0; r < grid.rows; ++r) {
         for (std::size_t c = 0; c < grid.columns; ++c) {
             const double u = coordinate(c, grid.columns), v = coordinate(r, grid.rows);
             const double seen = std::max(dot(normalAt(u, v, turn), wi), 0.0);
-            densities.push_back(ndf.at(u, v) * seen * jacobianAt(u));
-            sum += densities.back();
+            densities.push_back(seen > 0 ? ndf.at(u, v) * seen * normalsJacobian(u) : -1);
+            if (seen > 0) ++seenCount, sum += densities.back();
         }
     }
-    std::vector<float> values(densities.size());
+    std::vector<float> values(densities.size(), 0.0F);
     for (std::size_t i = 0; i < values.size(); ++i) {
-        values[i] = static_cast<float>(densities[i] / sum);
+        if (densities[i] < 0) continue;
+        values[i] = static_cast<float>((1 - share) * densities[i] / sum + share / seenCount);
     }
     return values;
 }

@@ -38,10 +38,15 @@ Plane estimateNormals(const Brdf& brdf, NormalsFrom from, NormalsGrid grid, doub
 /// sigma(w), the integral of D(h) max(0, h . w) over the hemisphere, on a grid over (u, v) of w.
 Plane projectedAreas(const Plane& ndf, std::size_t rows, std::size_t columns);
 
-/// Densities over (u, v) of the normals seen from wi, D(h) max(0, h . wi) times the Jacobian; they
-/// sum to 1. `turn` is added to the azimuths of the rows.
+/// Densities over (u, v) of the normals seen from wi, D(h) max(0, h . wi) times the Jacobian. Of
+/// them, `share` is spread evenly over the part of the square that is seen: normals that D knows
+/// little of get their colours too, and the colours are smooth where the Jacobian is 0. They sum to
+/// 1. `turn` is added to the azimuths of the rows.
 std::vector<float> visibleNormals(const Plane& ndf, const Direction& wi, double turn,
-                                  NormalsGrid grid);
+                                  NormalsGrid grid, double share);
+
+/// Solid angle of normals per du dv.
+double normalsJacobian(double u);
 
 /// What a renderer samples by and what is worth looking at: luminance, or the mean of wavelengths.
 double brightness(const Channels& channels, const double* values);

@@ -33,7 +33,8 @@ double unevenness(const Brdf& brdf, const Plane& ndf, bool isotropic) {
         for (const double azimuth : {-170.0, -115.0}) {
             if (isotropic && azimuth > -150) continue;
             const Direction wi = directionFromAngles(radians(elevation), radians(azimuth));
-            const VisibleNormals visible(visibleNormals(ndf, wi, 0, grid), grid.rows, grid.columns);
+            const VisibleNormals visible(visibleNormals(ndf, wi, 0, grid, 0), grid.rows,
+                                         grid.columns);
             for (std::size_t i = 0; i < points * points; ++i) {
                 const double x = (static_cast<double>(i % points) + 0.5) / points;
                 const double y = (static_cast<double>(i / points) + 0.5) / points;
@@ -97,7 +98,7 @@ IncidentGrid incidentGrid(const Brdf& brdf, const RglResolution& resolution) {
     IncidentGrid grid;
     for (std::size_t t = 0; t < resolution.theta; ++t) {
         const double part = static_cast<double>(t) / static_cast<double>(resolution.theta - 1);
-        grid.theta.push_back(static_cast<float>(radians(lastElevation * std::pow(part, 0.8))));
+        grid.theta.push_back(static_cast<float>(radians(lastElevation * std::pow(part, 0.6))));
     }
     if (brdf.laws().isotropic) {
         grid.phi = {0};
@@ -191,7 +192,7 @@ void setNormals(RglTables& tables, Normals normals, const RglResolution& resolut
             const double phi = tables.incident.phi[s / tables.incident.theta.size()];
             const double theta = tables.incident.theta[s % tables.incident.theta.size()];
             const auto slice = visibleNormals(tables.ndf, directionFromAngles(theta, phi),
-                                              tables.isotropic ? phi : 0, grid);
+                                              tables.isotropic ? phi : 0, grid, resolution.share);
             std::ranges::copy(slice, densities.begin() +
                                          static_cast<std::ptrdiff_t>(s * grid.rows * grid.columns));
         });

@@ -141,6 +141,16 @@ VisibleNormals::Point VisibleNormals::sample(double x, double y, std::size_t sli
     return {(static_cast<double>(column) + a) / static_cast<double>(columns_ - 1), v};
 }
 
+double VisibleNormals::density(double u, double v, std::size_t slice) const {
+    const GridPosition p(u, v, columns_, rows_);
+    const Vertex* lower = vertices_.data() + (slice * rows_ + p.row) * columns_ + p.column;
+    const Vertex* upper = lower + columns_;
+    const double cells = static_cast<double>((rows_ - 1) * (columns_ - 1));
+    return cells * scale_[slice] *
+           lerp(p.b, lerp(p.a, lower[0].density, lower[1].density),
+                lerp(p.a, upper[0].density, upper[1].density));
+}
+
 std::vector<float> VisibleNormals::densities() const {
     std::vector<float> values(vertices_.size());
     std::ranges::transform(vertices_, values.begin(), &Vertex::density);

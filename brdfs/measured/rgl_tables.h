@@ -60,6 +60,9 @@ public:
     /// Sampling: the (u, v) that `invert` takes to (x, y) for one slice.
     Point sample(double x, double y, std::size_t slice) const;
 
+    /// Per du dv, with the integral 1 over the square.
+    double density(double u, double v, std::size_t slice) const;
+
     /// As they were given.
     std::vector<float> densities() const;
     std::size_t rows() const { return rows_; }

@@ -3,6 +3,7 @@
 #include <hshfit/error.h>
 
 #include <fmt/core.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -27,21 +28,30 @@ std::vector<float> byChannel(const Spectra& spectra) {
     return values;
 }
 
-/// What renderers sample by: not negative, and nowhere all 0, which could not be normalised.
+/// What renderers sample by: f cos(theta_o) per area of the square, not negative, and nowhere all
+/// 0, which could not be normalised.
 std::vector<float> luminances(const RglTables& tables) {
     const Spectra& spectra = tables.spectra;
     const std::size_t n = spectra.channels, square = spectra.rows * spectra.columns;
-    std::vector<float> values(spectra.values.size() / n);
-    std::vector<double> colour(n);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        std::copy_n(spectra.values.begin() + static_cast<std::ptrdiff_t>(i * n), n, colour.begin());
-        values[i] = static_cast<float>(std::max(brightness(tables.channels, colour.data()), 0.0));
-    }
-    for (auto slice = values.begin(); slice != values.end();) {
-        const auto end = slice + static_cast<std::ptrdiff_t>(square);
-        if (std::all_of(slice, end, [](float v) { return v == 0; })) std::fill(slice, end, 1.0F);
-        slice = end;
-    }
+    std::vector<float> values(spectra.values.size() / n, 0.0F);
+    tbb::parallel_for(std::size_t{0}, values.size() / square, [&](std::size_t slice) {
+        float* to = values.data() + slice * square;
+        std::vector<double> colour(n);
+        for (std::size_t i = 0; i < square; ++i) {
+            const float* from = spectra.values.data() + (slice * square + i) * n;
+            std::copy_n(from, n, colour.begin());
+            const auto node = tables.node(slice, i / spectra.columns, i % spectra.columns);
+            const double density = tables.normals->density(node.u, node.v, slice);
+            if (!(node.wo.z > 0) || !(density > 0)) continue;
+            // d omega_o = 4 (wi . h) d omega_h, and wi . h = sqrt((1 + wi . wo) / 2).
+            const double across = 4 * std::sqrt(std::max(1 + dot(node.wi, node.wo), 0.0) / 2);
+            to[i] = static_cast<float>(std::max(brightness(tables.channels, colour.data()), 0.0) *
+                                       node.factor * across * normalsJacobian(node.u) / density);
+        }
+        if (std::all_of(to, to + square, [](float v) { return v == 0; })) {
+            std::fill_n(to, square, 1.0F);
+        }
+    });
     return values;
 }
 
@@ -120,6 +130,7 @@ RglResolution resolutionOf(const Brdf& brdf, const Parameters& parameters) {
     resolution.slice = chosen(parameters, "slice", resolution.slice);
     resolution.normals = chosen(parameters, "normals", resolution.normals);
     if (isSet(parameters, "floor")) resolution.floor = parameters.number("floor");
+    if (isSet(parameters, "share")) resolution.share = parameters.number("share");
     const std::string from = parameters.choice("from");
     if (from == "retro-reflection") resolution.from = NormalsFrom::retroReflection;
     if (from == "average") resolution.from = NormalsFrom::average;
@@ -131,7 +142,7 @@ RglResolution resolutionOf(const Brdf& brdf, const Parameters& parameters) {
 RglTables tablesOf(const Brdf& brdf, const Parameters& parameters, const WriteOptions& options,
                    std::vector<std::string>& alterations) {
     const auto* source = dynamic_cast<const RglBrdf*>(&brdf);
-    const std::array sampling = {"theta", "phi", "slice", "normals", "floor"};
+    const std::array sampling = {"theta", "phi", "slice", "normals", "floor", "share"};
     const bool kept =
         parameters.choice("from") == "auto" &&
         std::ranges::none_of(sampling, [&](const char* name) { return isSet(parameters, name); });
@@ -207,10 +218,11 @@ const Writer& rglWriter() {
         .parameters =
             {count("theta", "incident elevations (else 32, 16 if anisotropic)", 2, 512),
              count("phi", "incident azimuths of a quarter circle (else 9)", 2, 256),
-             count("slice", "colours per side of a slice (else 64, 32 if anisotropic)", 2, 1024),
+             count("slice", "colours per side of a slice (else 96, 32 if anisotropic)", 2, 1024),
              count("normals", "normals per side of their grid (else 128, 64 if anisotropic)", 2,
                    1024),
              count("floor", "share of a Lambertian distribution of normals (else 0.05)", 1e-6, 1),
+             count("share", "evenly spread share of the normals seen (else 0.5)", 1e-9, 1),
              {.name = "from",
               .help = "what the distribution of normals is estimated from",
               .kind = Parameter::Kind::choice,

@@ -15,20 +15,22 @@ namespace hshfit::brdfs {
 struct RglResolution {
     std::size_t theta = 32;     ///< incident elevations
     std::size_t phi = 9;        ///< incident azimuths of a quarter circle; isotropic: 1
-    std::size_t slice = 64;     ///< colours per side of the square, per incident direction
+    std::size_t slice = 96;     ///< colours per side of the square, per incident direction
     std::size_t normals = 128;  ///< normals per side of theirs
     /// The share of a Lambertian distribution in that of the normals.
     double floor = 0.05;
+    /// The share of an even distribution in that of the normals seen from an incident direction.
+    double share = 0.5;
     /// None: retro-reflection, or the average where that fits the BRDF better, or uniform where
     /// the BRDF gives no distribution.
-    std::optional<NormalsFrom> from;
+    std::optional<NormalsFrom> from = {};
 };
 
 /// f sampled at the vertices of the RGL layout (rgl.h), so that the layout evaluates to f there.
-/// The last incident elevation is 89 degrees. Vertices without an outgoing direction hold a linear
-/// continuation of f cos(theta_o) below the horizon, negative where f is finite at it: what is
-/// interpolated then falls to 0 at the horizon, and not within a cell above it. An anisotropic
-/// BRDF gets the whole circle of azimuths, or a quarter if it is mirror symmetric.
+/// Incident elevations are at 89 (k / (n - 1))^0.6 degrees. Vertices without an outgoing direction
+/// hold a linear continuation of f cos(theta_o) below the horizon, negative where f is finite at
+/// it: what is interpolated then falls to 0 at the horizon, and not within a cell above it. An
+/// anisotropic BRDF gets the whole circle of azimuths, or a quarter if it is mirror symmetric.
 ///
 /// Throws NumericError where a value is not finite or overflows a float.
 RglTables sampleRgl(const Brdf& brdf, const RglResolution& resolution, const WriteOptions& options,

@@ -209,6 +209,10 @@ std::vector<float> TensorFile::floats(const Field& field, std::size_t dimensions
     return values;
 }
 
+std::span<const unsigned char> TensorFile::raw(const Field& field) const {
+    return bytes_.subspan(field.offset, field.count * bytesOf(field.type));
+}
+
 std::span<const unsigned char> TensorFile::octets(const Field& field) const {
     if (field.type != Type::u8) {
         fail(field, fmt::format("has the type {}, expected u8", typeName(field.type)));

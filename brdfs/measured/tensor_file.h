@@ -45,6 +45,9 @@ public:
     /// InputError if it is anything else or if one of its values is NaN or infinite.
     std::vector<float> floats(const Field& field, std::size_t dimensions) const;
 
+    /// The bytes of a field of any type.
+    std::span<const unsigned char> raw(const Field& field) const;
+
     /// The data of a u8 field.
     std::span<const unsigned char> octets(const Field& field) const;
 

@@ -65,7 +65,7 @@ File hop(const Brdf& brdf, std::string_view target, std::size_t number) {
 void run(const std::string& spec, const std::vector<std::string_view>& targets) {
     const auto source = brdfs::open(spec);
     std::vector<File> files;
-    std::string route = fs::path(spec).stem();
+    std::string route = fs::exists(spec) ? fs::path(spec).stem().string() : spec;
     for (const std::string_view target : targets) {
         const Brdf& before = files.empty() ? *source : *files.back().brdf;
         const auto start = std::chrono::steady_clock::now();

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <brdfs/catalog.h>
+#include <brdfs/measured/measured_brdf.h>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// A measured polarimetric BRDF (Baek et al. 2020, "Image-Based Acquisition and Modeling of
+/// Polarimetric Reflectance", ACM TOG 39(4)) in a tensor file (tensor_file.h): Mueller matrices
+/// M[phi_d][theta_d][theta_h][wavelength][4][4], f32, and the nodes phi_d, theta_d, theta_h (f32,
+/// radians, 1 x n) and wvls (u16, nm). Read is M00, the reflectance of unpolarised light in 1/sr;
+/// the other 15 elements, what polarisation does, are ignored. Isotropic, spectral.
+///
+/// theta_h, theta_d and phi_d are Rusinkiewicz's, with wi towards the light and phi_d = 0 where it
+/// leans away from the normal. Between the nodes f is linear in the angles, beyond them constant.
+/// Files with empty angles (shape 0 x n) are read as evenly spaced: theta from 0 to 90, phi_d from
+/// -180 to 180 degrees. Nodes whose M00 is NaN, or 0 as cells below the horizon are, are left out
+/// of the interpolation; where none of the eight has a value, f is 0. Negative values become 0.
+/// Reciprocity does not hold in measured files.
+class PbsdfBrdf : public MeasuredBrdf {
+public:
+    /// `name` is where the bytes come from. Throws InputError naming field and offset.
+    PbsdfBrdf(std::span<const unsigned char> bytes, std::string name);
+    static std::unique_ptr<PbsdfBrdf> open(const std::string& path);
+
+    std::string name() const override { return name_; }
+    const Channels& channels() const override { return channels_; }
+    const Laws& laws() const override { return laws_; }
+    void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
+    /// Covered where one of the eight nodes has a value.
+    void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
+    /// 3e-3: the interpolation has kinks, and the measurements err by more.
+    double defaultTolerance() const override { return 3e-3; }
+    std::vector<Fact> facts() const override;
+    Census census() const override;
+    std::vector<Axis> axes() const override;
+
+private:
+    struct Corners;
+    Corners corners(const Direction& wo, const Direction& wi) const;
+    std::size_t vertex(std::size_t p, std::size_t d, std::size_t h) const;
+    bool hasValue(std::size_t vertex) const;
+
+    std::string name_;
+    Channels channels_;
+    Laws laws_;
+    std::vector<double> phiDifference_, thetaDifference_, thetaHalf_;  ///< ascending, radians
+    bool anglesAssumed_ = false;
+    std::vector<float> values_;  ///< [phi_d][theta_d][theta_h][wavelength]
+};
+
+/// The row of the table of formats.
+const Format& pbsdfFormat();
+
+}  // namespace hshfit::brdfs
