@@ -1,77 +1,17 @@
 // The program as a user meets it: exit codes, one-line errors, nothing half-written, the same bytes
 // whatever the threads.
 
-#include <gtest/gtest.h>
+#include <cli/program.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
-
-#include <sys/wait.h>
 
 namespace {
 
+using hshfit::test::Answer;
+using hshfit::test::Cli;
+
 namespace fs = std::filesystem;
-
-struct Answer {
-    int code;
-    std::string out, err;
-};
-
-class Cli : public testing::Test {
-protected:
-    void SetUp() override {
-        std::string name = fs::temp_directory_path() / "hshfit-cli-XXXXXX";
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    std::string path(const std::string& name) const { return folder_ / name; }
-
-    Answer run(const std::string& arguments) const {
-        const std::string err = path("stderr");
-        std::FILE* pipe =
-            popen((std::string(HSHFIT_PROGRAM) + " " + arguments + " 2>" + err).c_str(), "r");
-        Answer answer{};
-        std::array<char, 4096> buffer;
-        while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
-            answer.out.append(buffer.data(), n);
-        }
-        answer.code = WEXITSTATUS(pclose(pipe));
-        answer.err = read(err);
-        fs::remove(err);
-        return answer;
-    }
-
-    static std::string read(const std::string& file) {
-        std::ifstream in(file, std::ios::binary);
-        std::stringstream text;
-        text << in.rdbuf();
-        return text.str();
-    }
-    void write(const std::string& name, const std::string& text) const {
-        std::ofstream(path(name), std::ios::binary) << text;
-    }
-
-    /// Exit code, one line on standard error that contains `part`, and no files but those known.
-    void expectError(const std::string& arguments, int code, const std::string& part,
-                     std::ptrdiff_t files) const {
-        const Answer answer = run(arguments);
-        EXPECT_EQ(answer.code, code) << arguments << "\n" << answer.err;
-        EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1) << answer.err;
-        EXPECT_NE(answer.err.find(part), std::string::npos) << answer.err;
-        EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), files) << arguments;
-    }
-
-    fs::path folder_;
-};
 
 TEST_F(Cli, EveryCommandHasHelpWithAnExample) {
     for (const char* command :
