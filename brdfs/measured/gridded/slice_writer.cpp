@@ -118,7 +118,7 @@ private:
             for (std::size_t i = 0; i < phi_.size(); ++i) {
                 const DirectionPair pair = fromHalfDifference(thetaHalf, radians(options_.phiHalf),
                                                               thetaDifference, radians(phi_[i]));
-                if (std::min(pair.wi.z, pair.wo.z) <= 0) {
+                if (std::min(pair.wi.z, pair.wo.z) < 1e-12) {
                     ++below_;
                     continue;
                 }
