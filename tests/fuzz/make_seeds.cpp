@@ -1,10 +1,14 @@
 // make_seeds FOLDER: FOLDER/fuzz_NAME with small synthetic inputs for each target to start from.
 
+#include <hshfit/output/atomic_file.h>
 #include <hshfit/output/coefficient_file.h>
+#include <hshfit/output/exr_picture.h>
 
 #include <brdfs/tensor_writer.h>
 #include <lib/coefficient_samples.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -44,6 +48,59 @@ std::string merlScript(std::int32_t azimuths, std::uint8_t length, std::uint8_t 
     return bytes;
 }
 
+std::string mitFile(std::int32_t half, float value) {
+    std::string bytes;
+    for (const std::int32_t field : {2, 3, 4, 2, 0, 0, 1, 0, 0, half, 3, 0, 0, 0, 0, 0}) {
+        put(bytes, field);
+    }
+    for (int i = 0; i < 3 * 2 * 3 * 4 * 2; ++i) put(bytes, i % 7 == 6 ? value : 0.1F);
+    return bytes;
+}
+
+std::string utiaScript(std::uint8_t choice, double value) {
+    std::string bytes;
+    put(bytes, choice);
+    put(bytes, 0.25);
+    for (const std::uint32_t index : {0u, 100u, 82943u, 160000u, 248831u}) {
+        put(bytes, index);
+        put(bytes, value);
+    }
+    return bytes;
+}
+
+/// Slices with the attributes of ours, and pictures without them.
+void pictures(const std::filesystem::path& folder) {
+    using namespace hshfit;
+    std::filesystem::create_directories(folder);
+    int number = 0;
+    const std::vector<std::vector<std::string>> channels = {
+        {"R", "G", "B"}, {"Y"}, {"450nm", "550,5nm"}, {"Y", "phi000.Y"}};
+    for (const auto& names : channels) {
+        for (const ExrPixels pixels : {ExrPixels::half, ExrPixels::single}) {
+            ExrPicture picture{.width = 3, .height = 4, .channels = names};
+            picture.values.assign(12 * names.size(), 0.25F);
+            if (number % 2 == 1) {
+                picture.attributes = {{"hshfit:slices", "1"},
+                                      {"hshfit:theta_half", number % 4 == 1 ? "root" : "linear"},
+                                      {"hshfit:phi_period", "180"},
+                                      {"hshfit:phi_difference", names.size() == 2 ? "90 0" : "90"}};
+            }
+            AtomicFile file(folder / (std::to_string(number++) + ".exr"));
+            writeExrPicture(picture, pixels, file);
+            file.commit();
+        }
+    }
+}
+
+void utiaPicture(const std::filesystem::path& folder) {
+    using namespace hshfit;
+    ExrPicture picture{.width = 288, .height = 288, .channels = {"R", "G", "B"}};
+    picture.values.assign(288 * 288 * 3, 0.25F);
+    AtomicFile file(folder / "picture.exr");
+    writeExrPicture(picture, ExrPixels::half, file);
+    file.commit();
+}
+
 void coefficientFiles(const std::filesystem::path& folder) {
     using namespace hshfit;
     std::filesystem::create_directories(folder);
@@ -78,6 +135,28 @@ int main(int count, char** arguments) {
         }
     }
     const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double value : {-1.0, nan, 1e308}) {
+        const auto single = static_cast<float>(std::min(value, 1e38));
+        for (std::uint8_t choice = 0; choice < 6; ++choice) {
+            write(folder / "fuzz_utia" / std::to_string(number++), utiaScript(choice, value));
+        }
+        write(folder / "fuzz_mit" / std::to_string(number++), mitFile(0, single));
+        write(folder / "fuzz_mit" / std::to_string(number++), mitFile(1, single));
+        std::string values;
+        for (const float v : {0.5F, 0.25F, single}) put(values, v);
+        write(folder / "fuzz_merl_slice" / std::to_string(number++), values);
+    }
+    utiaPicture(folder / "fuzz_utia");
+    pictures(folder / "fuzz_merl_slice");
+    for (const bool withAngles : {true, false}) {
+        write(folder / "fuzz_pbsdf" / std::to_string(number++),
+              tensorFile(pbsdfFields({.azimuths = 3,
+                                      .differences = 2,
+                                      .halves = 2,
+                                      .wavelengths = {450, 650},
+                                      .withAngles = withAngles},
+                                     [](double p, double, double, std::size_t) { return p; })));
+    }
     for (std::uint8_t mode = 0; mode < 4; ++mode) {
         write(folder / "fuzz_merl" / std::to_string(number++), merlScript(180, 0, mode, -1));
         write(folder / "fuzz_merl" / std::to_string(number++), merlScript(360, 1, mode, nan));
