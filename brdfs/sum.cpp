@@ -14,18 +14,33 @@ namespace {
 constexpr std::string_view plus = " + ", times = " * ";
 constexpr double mostWeight = 1e6;
 
-/// "0.5 * SPEC" as weight and the rest; weight 1 if it does not begin with a number and " * ".
+/// "0.5 * SPEC" taken apart; `number` is empty if it does not begin with a number and " * ".
+struct Factors {
+    std::string_view number, rest;
+    double weight = 1;
+    std::errc error = {};
+
+    explicit Factors(std::string_view term) : rest(term) {
+        const std::size_t star = term.find(times);
+        if (star == std::string_view::npos) return;
+        const char* const last = term.data() + star;
+        const auto parsed = std::from_chars(term.data(), last, weight);
+        if (parsed.ptr != last || star == 0) {
+            weight = 1;
+            return;
+        }
+        number = term.substr(0, star);
+        rest = term.substr(star + times.size());
+        error = parsed.ec;
+    }
+};
+
 WeightedSpec parseTerm(std::string_view term) {
-    const std::size_t star = term.find(times);
-    if (star == std::string_view::npos) return {1, std::string(term)};
-    const std::string_view number = term.substr(0, star);
-    double weight = 0;
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), weight);
-    if (end != number.data() + number.size()) return {1, std::string(term)};
-    if (error != std::errc{} || !(weight >= 0 && weight <= mostWeight))
+    const Factors factors(term);
+    if (factors.error != std::errc{} || !(factors.weight >= 0 && factors.weight <= mostWeight))
         throw UsageError(fmt::format("sum: weight {} in '{}' is out of range; valid: 0 to {}",
-                                     number, term, mostWeight));
-    return {weight + 0.0, std::string(term.substr(star + times.size()))};
+                                     factors.number, term, mostWeight));
+    return {factors.weight + 0.0, std::string(factors.rest)};
 }
 
 /// The end of the term that starts at `start`: a " + " unless a longer text stands by itself.
@@ -37,10 +52,7 @@ std::size_t endOfTerm(std::string_view spec, std::size_t start, bool (*isWhole)(
     ends.push_back(spec.size());
     for (auto end = ends.rbegin(); end != ends.rend(); ++end) {
         const std::string_view term = spec.substr(start, *end - start);
-        const std::size_t star = term.find(times);
-        if (isWhole(term) ||
-            (star != std::string_view::npos && isWhole(term.substr(star + times.size()))))
-            return *end;
+        if (isWhole(term) || isWhole(Factors(term).rest)) return *end;
     }
     return ends.front();
 }
@@ -106,7 +118,8 @@ std::vector<WeightedSpec> splitSum(std::string_view spec, bool (*isWhole)(std::s
     std::vector<WeightedSpec> terms;
     for (std::size_t start = 0;;) {
         const std::size_t end = endOfTerm(spec, start, isWhole);
-        terms.push_back(parseTerm(spec.substr(start, end - start)));
+        const std::string_view term = spec.substr(start, end - start);
+        terms.push_back(isWhole(term) ? WeightedSpec{1, std::string(term)} : parseTerm(term));
         if (end == spec.size()) break;
         start = end + plus.size();
     }

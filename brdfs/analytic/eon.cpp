@@ -26,10 +26,10 @@ Colour multiple(const Colour& kd, double mean) {
         kd, [&](double value) { return value * value * mean / (1 - value * (1 - mean)) / pi; });
 }
 
-/// The approximate albedo may pass 1 by what the polynomial is off.
+/// The polynomial lets the albedo pass kd by up to 1.5e-4 of it.
 Laws lawsOf(const Colour& kd, const Settings& settings) {
     Laws laws = claims;
-    laws.energyConserving = settings.exact || largest(kd) <= 0.99 || settings.roughness == 0;
+    laws.energyConserving = settings.exact || largest(kd) <= 0.9998 || settings.roughness == 0;
     return laws;
 }
 
