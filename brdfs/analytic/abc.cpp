@@ -16,7 +16,11 @@ constexpr Laws claims{
 
 Laws lawsOf(const Parameters& p) {
     Laws result = claims;
-    result.energyConserving = largest(p.colour("A")) == 0 && largest(p.colour("kd")) <= 1;
+    // The smooth lobe is at most A, so that its albedo is at most pi A.
+    const bool limited = p.choice("variant") == "smooth" || largest(p.colour("A")) == 0;
+    const Colour albedo =
+        mapped(p.colour("kd"), p.colour("A"), [](double kd, double a) { return kd + pi * a; });
+    result.energyConserving = limited && largest(albedo) <= 1;
     return result;
 }
 

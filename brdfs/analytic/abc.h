@@ -11,8 +11,7 @@ namespace hshfit::brdfs {
 ///     microfacet  f = kd / pi + A F G / (1 + B (1 - h.z))^C / (pi cos_i cos_o), G of V-shaped
 ///                 grooves, h normalised
 /// F is the exact reflectance of a dielectric of index `ior` at (h.wo). A scales the lobe in 1/sr
-/// and is no albedo: nothing is normalised, and any A breaks energy conservation somewhere.
-/// B ~ 1 / width^2, C: steepness of the tail; for C < 1 half the energy may lie far from the peak.
+/// and is no albedo: nothing is normalised. B ~ 1 / width^2, C: steepness of the tail.
 /// The microfacet form is printed without 1 / pi; the published fits were made with it.
 const Model& abcModel();
 

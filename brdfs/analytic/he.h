@@ -22,7 +22,7 @@ namespace hshfit::brdfs {
 const Model& heModel();
 
 /// sum_{m >= 1} g^(m - 1) exp(-g) / (m! m) exp(-b / m) for g, b >= 0, to 1e-12 of its value as long
-/// as that exceeds 1e-280. Takes at most about a hundred exponentials for any g.
+/// as that exceeds 1e-280. Takes at most 150 exponentials for any g.
 double heSeries(double g, double b);
 
 /// The principal branch of Lambert's W, W exp(W) = x, for x >= 0.

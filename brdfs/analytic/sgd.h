@@ -12,7 +12,7 @@ namespace hshfit::brdfs {
 /// Angles in radians. K left out is 1 / (alpha Gamma(1 - p, alpha)), with which D cos(theta_h)
 /// integrates to 1. Lambda = 0 is no masking. The paper fits Lambda, c, k and theta0 to masking
 /// that follows from D, and takes F0 and F1 as free: fits go far beyond reflectances of a surface.
-/// p = 0 is a Gaussian of slopes, p -> 1 has tails almost as long as 1 / t^2 within t < 1.
+/// p = 0 is a Gaussian of slopes t; p > 0 a power law t^(-2 p) from t = alpha to sqrt(alpha).
 const Model& sgdModel();
 
 }  // namespace hshfit::brdfs

@@ -90,9 +90,8 @@ inline std::vector<Case> sumGrid() {
 inline void addFitted(std::vector<Case>& grid) {
     for (const char* b : {"1e-3", "10", "1e4", "1e12"})
         for (const char* c : {"0", ".3", "1", "20"})
-            for (const char* rest :
-                 {"", ",variant=microfacet", ",ior=1,kd=.5", ",A=9/5/1,ior=30",
-                  ",A=.2,kd=.3,ior=1000"}) {
+            for (const char* rest : {"", ",variant=microfacet", ",ior=1,kd=.5", ",A=9/5/1,ior=30",
+                                     ",A=.2,kd=.3,ior=1000"}) {
                 const double width = std::min(1., 1 / std::sqrt(std::stod(b)));
                 grid.push_back({"abc:B=" + std::string(b) + ",C=" + c + rest, width, width});
             }
