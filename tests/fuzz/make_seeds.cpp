@@ -16,8 +16,10 @@
 
 namespace {
 
+using hshfit::test::pbsdfFields;
 using hshfit::test::put;
 using hshfit::test::RglShape;
+using hshfit::test::tensorFile;
 
 void write(const std::filesystem::path& path, const std::string& bytes) {
     std::filesystem::create_directories(path.parent_path());
