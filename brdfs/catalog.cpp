@@ -184,10 +184,10 @@ std::span<const Model> models() {
 }
 
 std::span<const Format> formats() {
-    static const std::vector<Format> table{merlFormat(), pbsdfFormat(), rglFormat(),      bsdfXmlFormat(),
-                                           altaFormat(), astmFormat(),     cornellFormat(),
-                                           nistFormat(), scatmechFormat(), mitFormat(),
-                                           utiaFormat(), slicesFormat(),   merlSliceFormat()};
+    static const std::vector<Format> table{
+        merlFormat(), pbsdfFormat(),   rglFormat(),      bsdfXmlFormat(),  altaFormat(),
+        astmFormat(), cornellFormat(), nistFormat(),     scatmechFormat(), mitFormat(),
+        utiaFormat(), slicesFormat(),  merlSliceFormat()};
     return table;
 }
 

@@ -81,11 +81,14 @@ Normals chooseNormals(const Brdf& brdf, const RglResolution& resolution, Normals
     Normals average = normalsFrom(brdf, NormalsFrom::average, grid, resolution.floor);
     if (retro.unevenness <= 1.25 * average.unevenness && !retro.ndf.values.empty()) return retro;
     if (!average.ndf.values.empty()) {
+        constexpr std::string_view chosen =
+            "the distribution of normals is averaged over difference angles: ";
         alterations.push_back(
-            fmt::format("the distribution of normals is that averaged over difference angles: from "
-                        "retro-reflection, stored values would vary more (mean square over square "
-                        "mean {:.3g}, not {:.3g})",
-                        retro.unevenness, average.unevenness));
+            retro.ndf.values.empty()
+                ? fmt::format("{}there is no retro-reflection to take it from", chosen)
+                : fmt::format("{}with that from retro-reflection, stored values would vary more "
+                              "(mean square over square mean {:.3g}, not {:.3g})",
+                              chosen, retro.unevenness, average.unevenness));
         return average;
     }
     alterations.emplace_back(

@@ -335,7 +335,7 @@ TEST(Rgl, agreesWithTheReferenceLoaderOnMeasuredFiles) {
 TEST(Rgl, polarimetricFilesAreRefusedByName) {
     const std::string path = HSHFIT_SHARED "/data/rgl/spectralon_lowres.pbsdf";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
-    test::expectInputError([&] { brdfs::open(path); },
+    test::expectInputError([&] { RglBrdf::open(path); },
                            {path, "field M", "Mueller", "22 x 9 x 9 x 5 x 4 x 4"});
 }
 

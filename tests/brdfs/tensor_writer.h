@@ -101,4 +101,50 @@ inline std::vector<TensorField> rglFields(const RglShape& shape) {
     return fields;
 }
 
+/// Mueller matrices over difference and half angles; every element but M00 is 777. Without angles:
+/// their fields are empty, as in published files.
+struct PbsdfShape {
+    std::uint64_t azimuths = 7, differences = 5, halves = 4;
+    std::vector<std::uint16_t> wavelengths = {450, 650};
+    bool withAngles = true;
+
+    /// Node i of `count` from `from` to `to`.
+    static double node(std::uint64_t i, std::uint64_t count, double from, double to) {
+        return from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1);
+    }
+};
+
+/// m00(phi_d, theta_d, theta_h, index of the wavelength).
+template <class Reflectance>
+std::vector<TensorField> pbsdfFields(const PbsdfShape& shape, const Reflectance& m00) {
+    const double pi = std::acos(-1.0);
+    const auto angles = [&](const std::string& name, std::uint64_t count, double from, double to) {
+        if (!shape.withAngles) return TensorField{name, 10, {0, count}, ""};
+        std::vector<float> values;
+        for (std::uint64_t i = 0; i < count; ++i) {
+            values.push_back(static_cast<float>(PbsdfShape::node(i, count, from, to)));
+        }
+        return floatField(name, {1, count}, values);
+    };
+    std::vector<float> m;
+    for (std::uint64_t p = 0; p < shape.azimuths; ++p)
+        for (std::uint64_t d = 0; d < shape.differences; ++d)
+            for (std::uint64_t h = 0; h < shape.halves; ++h)
+                for (std::size_t w = 0; w < shape.wavelengths.size(); ++w) {
+                    m.push_back(
+                        static_cast<float>(m00(PbsdfShape::node(p, shape.azimuths, -pi, pi),
+                                               PbsdfShape::node(d, shape.differences, 0, pi / 2),
+                                               PbsdfShape::node(h, shape.halves, 0, pi / 2), w)));
+                    m.insert(m.end(), 15, 777.0F);
+                }
+    return {
+        angles("phi_d", shape.azimuths, -pi, pi),
+        angles("theta_d", shape.differences, 0, pi / 2),
+        angles("theta_h", shape.halves, 0, pi / 2),
+        {"wvls", 3, {shape.wavelengths.size()}, octetsOf(shape.wavelengths)},
+        floatField(
+            "M", {shape.azimuths, shape.differences, shape.halves, shape.wavelengths.size(), 4, 4},
+            m)};
+}
+
 }  // namespace hshfit::test

@@ -9,7 +9,7 @@
 
 namespace {
 
-void check(const hshfit::Brdf& brdf) {
+void check(const hshfit::brdfs::RglBrdf& brdf) {
     constexpr double x[] = {0, 0.6, -0.8, 0.28, 1, 0};
     constexpr double y[] = {0, 0, 0, -0.96, 0, 0.6};
     constexpr double z[] = {1, 0.8, 0.6, 1e-9, 0, -0.8};
@@ -24,6 +24,11 @@ void check(const hshfit::Brdf& brdf) {
         }
         brdf.lobes(wo);
     }
+    unsigned char covered[6];
+    brdf.coverage({0.6, 0, 0.8}, {x, y, z, 6}, covered);
+    const auto census = brdf.census();
+    if (census.belowHorizon > census.values) std::abort();
+    brdf.axes();
     brdf.facts();
     brdf.channels().names();
 }

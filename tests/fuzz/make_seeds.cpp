@@ -152,12 +152,13 @@ int main(int count, char** arguments) {
     pictures(folder / "fuzz_merl_slice");
     for (const bool withAngles : {true, false}) {
         write(folder / "fuzz_pbsdf" / std::to_string(number++),
-              tensorFile(pbsdfFields({.azimuths = 3,
-                                      .differences = 2,
-                                      .halves = 2,
-                                      .wavelengths = {450, 650},
-                                      .withAngles = withAngles},
-                                     [](double p, double, double, std::size_t) { return p; })));
+              tensorFile(hshfit::test::pbsdfFields(
+                  {.azimuths = 3,
+                   .differences = 2,
+                   .halves = 2,
+                   .wavelengths = {450, 650},
+                   .withAngles = withAngles},
+                  [](double p, double, double, std::size_t) { return p; })));
     }
     for (std::uint8_t mode = 0; mode < 4; ++mode) {
         write(folder / "fuzz_merl" / std::to_string(number++), merlScript(180, 0, mode, -1));
