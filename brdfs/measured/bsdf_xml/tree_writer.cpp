@@ -60,7 +60,7 @@ public:
     TreePrinter(const CellAverages& averages, int rank, int levels, double prune)
         : values_(averages.values), rank_(rank), levels_(levels), prune_(prune) {}
 
-    std::string text() const { return "\n" + textOf(build(0, {})) + "\n"; }
+    std::string text() const { return fmt::format("\n{}\n", textOf(build(0, {}))); }
 
 private:
     struct Built {
@@ -112,7 +112,8 @@ private:
         std::string text = "{";
         for (std::size_t k = 0; k < parts.size(); ++k) {
             if (!leaves) {
-                text += "\n" + textOf(parts[k]);
+                text += '\n';
+                text += textOf(parts[k]);
                 continue;
             }
             std::size_t child = 0;
