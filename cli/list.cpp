@@ -8,6 +8,7 @@
 #include <brdfs/catalog.h>
 #include <brdfs/preset.h>
 #include <brdfs/preset_collection.h>
+#include <brdfs/sum.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -172,8 +173,9 @@ Json targetsJson() {
 struct Section {
     const char* name;
     Json (*rows)();
+    std::string_view sums = {};  ///< what is said of sums of the rows
 };
-constexpr Section sections[] = {{"models", modelsJson},
+constexpr Section sections[] = {{"models", modelsJson, brdfs::sumHelp},
                                 {"formats", formatsJson},
                                 {"bases", basesJson},
                                 {"metrics", metricsJson},
@@ -206,7 +208,7 @@ std::string lawsText(const Json& laws) {
     return text;
 }
 
-void printSection(const char* name, const Json& rows) {
+void printSection(const char* name, const Json& rows, std::string_view sums = {}) {
     std::string text = fmt::format("{}\n", name);
     if (rows.empty()) text += "  none yet\n";
     for (const Json& row : rows) {
@@ -222,6 +224,7 @@ void printSection(const char* name, const Json& rows) {
             text += fmt::format("      {:<14} {}\n", "laws", lawsText(row["laws"]));
         }
     }
+    if (!sums.empty()) text += fmt::format("  {:<18} {}\n", "sums", sums);
     printText(text + "\n");
 }
 
@@ -276,7 +279,7 @@ void addList(CLI::App& app, Globals& globals) {
             if (globals.json) {
                 document[s.name] = s.rows();
             } else {
-                printSection(s.name, s.rows());
+                printSection(s.name, s.rows(), s.sums);
             }
         }
         if (options->section.empty() || options->section == "presets")

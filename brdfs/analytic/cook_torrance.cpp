@@ -7,6 +7,7 @@
 #include <brdfs/analytic/v_groove.h>
 #include <hshfit/error.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -22,13 +23,36 @@ double normOf(const Parameters& p) {
     return norm == "4" ? 4 * pi : norm == "pi" ? pi : pi * pi;
 }
 
-/// F0, or that of the index given instead.
-Colour normalReflectances(const Parameters& p) {
-    const double ior = p.number("ior");
-    if (ior == 0) return p.colour("F0");
-    if (p.colour("F0") != Colour{1.0})
+void checkFresnelKeys(const Parameters& p) {
+    const bool conductor = p.choice("fresnel") == "conductor";
+    if (p.given("ior") && p.given("F0") && p.colour("F0") != Colour{1.0})
         throw UsageError("cook-torrance: give either F0 or ior, not both");
-    return {normalReflectance(ior)};
+    if (conductor && !(p.given("ior") && p.given("k")))
+        throw UsageError("cook-torrance: fresnel=conductor needs ior and k");
+    if (!conductor && p.given("k"))
+        throw UsageError("cook-torrance: k is for fresnel=conductor alone");
+}
+
+/// What one channel reflects by: F0, or the index given instead.
+struct Surface {
+    double f0, inverse;  ///< 1 / eta
+    double ior = 0, k = 0;
+};
+
+std::vector<Surface> surfacesOf(const Parameters& p) {
+    checkFresnelKeys(p);
+    std::vector<Surface> surfaces;
+    if (!p.given("ior")) {
+        for (const double f0 : p.colour("F0"))
+            surfaces.push_back({f0, (1 - std::sqrt(f0)) / (1 + std::sqrt(f0))});
+        return surfaces;
+    }
+    const Colour ior = p.colour("ior"), k = p.given("k") ? p.colour("k") : Colour{0.0};
+    for (std::size_t c = 0; c < std::max(ior.size(), k.size()); ++c) {
+        const double n = ior[ior.size() == 1 ? 0 : c], extinction = k[k.size() == 1 ? 0 : c];
+        surfaces.push_back({normalReflectance(n, extinction), 1 / n, n, extinction});
+    }
+    return surfaces;
 }
 
 Laws lawsOf(const Parameters& p) {
@@ -40,10 +64,10 @@ Laws lawsOf(const Parameters& p) {
     return result;
 }
 
-/// One term per value of F0, weighted by ks in its own channel only.
+/// One term per surface, weighted by ks in its own channel only.
 std::vector<Colour> weightsOf(const Parameters& p) {
     const Colour ks = p.colour("ks");
-    const std::size_t count = normalReflectances(p).size();
+    const std::size_t count = surfacesOf(p).size();
     if (count == 1) return {ks};
     std::vector<Colour> weights;
     for (std::size_t c = 0; c < count; ++c) {
@@ -71,8 +95,7 @@ public:
         : TermBrdf(cookTorranceModel(), p, lawsOf(p), overPi(p.colour("kd")), weightsOf(p)),
           m_(p.number("m")),
           peak_(1 / (normOf(p) * m_ * m_)),
-          reflectances_(normalReflectances(p)),
-          inverses_(mapped(reflectances_, [](double f0) { return 1 / iorOfReflectance(f0); })),
+          surfaces_(surfacesOf(p)),
           schlick_(p.choice("fresnel") == "schlick") {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
@@ -92,17 +115,20 @@ protected:
             const double density = peak_ * std::exp(-squaredSlope / (m_ * m_)) * rise * rise;
             const double cosine = h.dotOutgoing();
             const double lobe = bounded(density * bounded(vGrooveVisibility(h, wi.z[k], wo.z)));
-            for (std::size_t c = 0; c < inverses_.size(); ++c)
-                out[c * wi.count + k] =
-                    lobe * (schlick_ ? schlickReflectance(cosine, reflectances_[c])
-                                     : fresnel(inverses_[c], cosine));
+            for (std::size_t c = 0; c < surfaces_.size(); ++c)
+                out[c * wi.count + k] = lobe * reflectance(surfaces_[c], cosine);
         }
     }
 
 private:
+    double reflectance(const Surface& surface, double cosine) const {
+        if (schlick_) return schlickReflectance(cosine, surface.f0);
+        if (surface.ior > 0) return conductorReflectance(cosine, surface.ior, surface.k);
+        return fresnel(surface.inverse, cosine);
+    }
+
     double m_, peak_;
-    Colour reflectances_;
-    Colour inverses_;  ///< 1 / eta
+    std::vector<Surface> surfaces_;
     bool schlick_;
 };
 
@@ -113,6 +139,7 @@ std::unique_ptr<Brdf> make(const Parameters& p) {
 }  // namespace
 
 const Model& cookTorranceModel() {
+    constexpr double notGiven = -1;
     static const Model model{
         .name = "cook-torrance",
         .help = "Beckmann facets in V-shaped grooves with exact Fresnel reflectance",
@@ -122,18 +149,25 @@ const Model& cookTorranceModel() {
                        f0Parameter(),
                        {.name = "ior",
                         .help = "index of refraction, instead of F0",
-                        .fallback = 0,
-                        .min = 1,
+                        .kind = Parameter::Kind::colour,
+                        .fallback = notGiven,
+                        .min = 0.01,
                         .max = 1000},
+                       {.name = "k",
+                        .help = "extinction coefficient, for conductor",
+                        .kind = Parameter::Kind::colour,
+                        .fallback = notGiven,
+                        .min = 0,
+                        .max = 100},
                        roughnessParameter("m", "RMS slope times sqrt(2)"),
                        {.name = "norm",
                         .help = "divide by pi as printed, by 4 as derived since, or by pi^2",
                         .kind = Parameter::Kind::choice,
                         .choices = {"pi", "4", "pi2"}},
                        {.name = "fresnel",
-                        .help = "exact for a dielectric, or Schlick's approximation",
+                        .help = "exact for a dielectric, Schlick's, or exact for ior and k",
                         .kind = Parameter::Kind::choice,
-                        .choices = {"exact", "schlick"}}},
+                        .choices = {"exact", "schlick", "conductor"}}},
         .laws = claims,
         .make = make};
     return model;
