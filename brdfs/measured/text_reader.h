@@ -39,7 +39,8 @@ private:
     void skipBlanks();
 
     std::string where_;
-    std::string_view rest_;  ///< after the line
+    std::string_view rest_;       ///< after the line
+    const char* feed_ = nullptr;  ///< the next LF at or after the start of rest_, or its end
     std::string_view line_;
     std::string_view ahead_;  ///< of the line, not yet taken
     std::size_t number_ = 0;

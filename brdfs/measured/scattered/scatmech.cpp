@@ -174,7 +174,7 @@ std::vector<Fact> ZernikeExpansion::facts() const {
 }
 
 ZernikeExpansion readScatmech(std::string_view text, const std::string& where, std::string name,
-                              double wavelength) {
+                              double wavelength, double scale) {
     TextReader reader(text, where);
     std::vector<ZernikeExpansion::Term> terms;
     std::vector<double> row;
@@ -195,7 +195,7 @@ ZernikeExpansion readScatmech(std::string_view text, const std::string& where, s
             ++others;
             continue;
         }
-        terms.push_back(termOf(at, row[7], reader));
+        terms.push_back(termOf(at, scale * row[7], reader));
         coloured = coloured || at[6] > 0;
     }
     if (terms.empty()) throw reader.error("the file has no row of Mueller element 11");
@@ -220,14 +220,21 @@ const Format& scatmechFormat() {
                         .kind = Parameter::Kind::number,
                         .fallback = 0,
                         .min = 100,
-                        .max = 20000}},
+                        .max = 20000},
+                       {.name = "scale",
+                        .help = "factor, the reflectance of the sample where the table stands for "
+                                "unit reflectance",
+                        .kind = Parameter::Kind::number,
+                        .fallback = 1,
+                        .min = 0,
+                        .max = 1000}},
         .open = [](const std::string& path, const Parameters& parameters) -> std::unique_ptr<Brdf> {
             const std::string options = parameters.canonical();
             std::unique_ptr<Brdf> brdf;
             withTextFile(path, [&](std::string_view text, const std::string& where) {
                 brdf = std::make_unique<ZernikeExpansion>(
                     readScatmech(text, where, options.empty() ? path : path + ":" + options,
-                                 parameters.number("wavelength")));
+                                 parameters.number("wavelength"), parameters.number("scale")));
             });
             return brdf;
         },

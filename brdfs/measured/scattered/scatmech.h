@@ -14,7 +14,7 @@ namespace hshfit::brdfs {
 ///     f = sum a lambda^p N_{nm}^l (R_n^l(r_i) R_m^l(r_o) + R_m^l(r_i) R_n^l(r_o)) cos l (phi_o -
 ///     phi_i),    r = sqrt(2) sin(theta/2),   N = sqrt((n + 1)(m + 1) / D) / (2 pi)
 /// D = 4 for n = 0 or (n = m and l = 0), 2 for n = m or l = 0, else 1; lambda in um. Values below 0
-/// count as 0.
+/// count as 0. Tables may stand for unit reflectance, as that of PTFE does: `scale` is a factor.
 class ZernikeExpansion : public Brdf {
 public:
     /// One line of the file with i = j = 1.
@@ -51,10 +51,11 @@ private:
 
 /// Reads a SCATMECH coefficient table, rows i, j, n, m, k, l, p, a between commas or blanks. Rows
 /// of other Mueller elements than i = j = 1 are checked and left out. `wavelength` in nm; 0: grey
-/// where no row depends on it, else 351, 532, 633 and 1064 nm, at which PTFE was measured.
+/// where no row depends on it, else 351, 532, 633 and 1064 nm, at which PTFE was measured. Every a
+/// is multiplied by `scale`.
 /// Throws InputError, with `where` and the line, for what is not so.
 ZernikeExpansion readScatmech(std::string_view text, const std::string& where, std::string name,
-                              double wavelength = 0);
+                              double wavelength = 0, double scale = 1);
 
 /// The row of the table of formats.
 const Format& scatmechFormat();
