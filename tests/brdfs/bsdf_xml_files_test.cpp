@@ -163,6 +163,17 @@ TEST(BsdfXmlFiles, TensorTree) {
             // Radiance stores symmetric reflection; large values have four digits.
             ASSERT_NEAR(there, here, 6e-4 * there);
         }
+        // The narrow bright cells are not missed, whatever the outgoing cell.
+        const std::vector<double> albedos = tree.tree().averagesOverFirst(2);
+        for (int k = 0; k < 6; ++k) {
+            const Direction wo = randomDirection(random, 0.2);
+            const auto side = back ? brdfs::BsdfSide::back : brdfs::BsdfSide::front;
+            const auto [u, v] = shirleyChiu(fileX(side, wo.x), wo.y);
+            const auto cell =
+                static_cast<std::size_t>(u * 32) + 32 * static_cast<std::size_t>(v * 32);
+            EXPECT_NEAR(directionalAlbedo(*brdf, wo, 1e-3)[0], pi * albedos[cell],
+                        0.1 * pi * albedos[cell]);
+        }
         std::printf("blinds %s: mean reflectance %.4f, largest %.4f\n", back ? "back" : "front",
                     mean, largest);
     }

@@ -131,6 +131,37 @@ void TreeBrdf::coverage(const Direction& wo, DirectionBatch wi, unsigned char* c
     }
 }
 
+std::vector<Lobe> TreeBrdf::lobes(const Direction& wo) const {
+    constexpr std::size_t most = 8;
+    const int side = 1 << std::min(trees_[0].levels(), 8);
+    std::vector<double> values;
+    double average = 0;
+    for (int b = 0; b < side; ++b) {
+        for (int a = 0; a < side; ++a) {
+            const Direction wi = directionFromSquare({(a + 0.5) / side, (b + 0.5) / side});
+            values.push_back(trees_[0].at(pointFor(wo, wi.x, wi.y)));
+            average += values.back() / (side * side);
+        }
+    }
+    std::vector<Lobe> lobes;
+    while (lobes.size() < most) {
+        const auto peak = std::ranges::max_element(values);
+        if (!(*peak > 4 * average)) break;
+        const auto cell = static_cast<int>(peak - values.begin());
+        const int a = cell % side, b = cell / side;
+        // Half a cell is 1 / side across the disc.
+        lobes.push_back({.about = Lobe::About::axis,
+                         .width = 1.0 / side,
+                         .axis = directionFromSquare({(a + 0.5) / side, (b + 0.5) / side})});
+        for (int y = std::max(b - 1, 0); y <= std::min(b + 1, side - 1); ++y) {
+            for (int x = std::max(a - 1, 0); x <= std::min(a + 1, side - 1); ++x) {
+                values[static_cast<std::size_t>(y * side + x)] = 0;
+            }
+        }
+    }
+    return lobes;
+}
+
 std::vector<double> TreeBrdf::directionalReflectances() const {
     std::vector<double> averages = trees_[0].averagesOverLast(2);
     if (trees_[0].rank() == 3 && averages.size() > 1) averages.resize(averages.size() / 2);

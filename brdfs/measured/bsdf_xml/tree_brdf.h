@@ -30,6 +30,8 @@ public:
     const Laws& laws() const override { return laws_; }
     void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
     void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
+    /// The brightest cells, if they are far above the average: narrow ones would be missed.
+    std::vector<Lobe> lobes(const Direction& wo) const override;
     double defaultTolerance() const override { return selection_.tolerance; }
     std::vector<Fact> facts() const override;
     void checkIntact() const override { selection_.checkIntact(); }
