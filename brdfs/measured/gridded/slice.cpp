@@ -53,35 +53,39 @@ SliceBrdf::SliceBrdf(SliceLayout layout, Channels channels, std::vector<float> s
 
 // Counts the stored values and marks those that are none.
 void SliceBrdf::takeStock() {
-    const std::size_t channelCount = channels_.count();
     census_.values = values_.size();
+    std::vector<double> cosines, sines;
+    for (std::size_t h = 0; h < layout_.halfCount; ++h) {
+        const double thetaHalf = layout_.thetaHalf(static_cast<double>(h));
+        cosines.push_back(std::cos(thetaHalf));
+        sines.push_back(std::sin(thetaHalf));
+    }
     std::size_t at = 0;
     for (const double phi : layout_.phi) {
         for (std::size_t d = 0; d < layout_.differenceCount; ++d) {
             const double thetaDifference = layout_.thetaDifference(static_cast<double>(d));
+            const double along = std::cos(thetaDifference);
+            const double across = std::sin(thetaDifference) * std::fabs(std::cos(radians(phi)));
             for (std::size_t h = 0; h < layout_.halfCount; ++h) {
-                const double thetaHalf = layout_.thetaHalf(static_cast<double>(h));
-                const bool below = std::cos(thetaHalf) * std::cos(thetaDifference) -
-                                       std::sin(thetaHalf) * std::sin(thetaDifference) *
-                                           std::fabs(std::cos(radians(phi))) <
-                                   1e-12;
-                for (std::size_t c = 0; c < channelCount; ++c, ++at) {
-                    float& value = values_[at];
+                const bool below = cosines[h] * along - sines[h] * across < 1e-12;
+                for (std::size_t c = 0; c < channels_.count(); ++c, ++at) {
+                    const float value = values_[at];
                     if (below) {
                         ++census_.belowHorizon;
                     } else if (std::isfinite(value) && value < 0) {
                         ++census_.invalid;
                     } else {
                         census_.add(static_cast<double>(value));
+                        if (!std::isfinite(value) && damage_.empty()) {
+                            damage_ = fmt::format(
+                                "{}: the value of channel {} at theta_h {:.4g}, theta_d {:.4g}, "
+                                "phi_d {} degrees is {}, expected a finite number",
+                                name_, channels_.names()[c],
+                                degrees(layout_.thetaHalf(static_cast<double>(h))),
+                                degrees(thetaDifference), phi, value);
+                        }
                     }
-                    if (!below && !std::isfinite(value) && damage_.empty()) {
-                        damage_ = fmt::format(
-                            "{}: the value of channel {} at theta_h {:.4g}, theta_d {:.4g}, phi_d "
-                            "{} degrees is {}, expected a finite number",
-                            name_, channels_.names()[c], degrees(thetaHalf),
-                            degrees(thetaDifference), phi, value);
-                    }
-                    if (below || !std::isfinite(value) || value < 0) value = -1;
+                    if (below || !std::isfinite(value) || value < 0) values_[at] = -1;
                 }
             }
         }
