@@ -224,6 +224,23 @@ TEST(Formulas, ExactFresnelOnFacets) {
     }
 }
 
+TEST(Formulas, CookTorranceOfMetals) {
+    const auto full = open("cook-torrance:m=.3");
+    const auto copper = open("cook-torrance:m=.3,fresnel=conductor,ior=.2/.9/1.1,k=3.9/2.5/2.1");
+    const auto dense = open("cook-torrance:m=.3,ior=.7");
+    const double ior[] = {.2, .9, 1.1}, k[] = {3.9, 2.5, 2.1};
+    for (const Pair& p : ordinaryPairs(44)) {
+        const double f = evaluate(*full, p.wi, p.wo)[0], c = sqrt((1 + dot(p.wi, p.wo)) / 2);
+        const std::vector<double> colour = evaluate(*copper, p.wi, p.wo);
+        for (int i = 0; i < 3; ++i)
+            EXPECT_NEAR(colour.at(i), f * conductorReflectance(c, ior[i], k[i]), 1e-12 * f);
+        EXPECT_NEAR(evaluate(*dense, p.wi, p.wo)[0], f * dielectricReflectance(c, .7), 1e-6 * f);
+    }
+    for (const std::string rest : {"fresnel=conductor,ior=1", "fresnel=conductor,k=1", "k=1",
+                                   "fresnel=schlick,k=1", "F0=.5,ior=1.5"})
+        EXPECT_THROW(open("cook-torrance:m=.3," + rest), UsageError) << rest;
+}
+
 TEST(Formulas, FresnelKeysThatDoNotBelongTogetherAreNamed) {
     const auto expectRefused = [](const std::string& rest, const std::string& part) {
         const std::string spec = "ggx:alpha=.3," + rest;
