@@ -185,7 +185,7 @@ TEST(BsdfXmlFiles, SlatsAlongX) {
     NEEDS("blinds_20deg_t45.xml");
     const auto brdf = brdfs::open(shared("blinds_20deg_t45.xml") + ":side=back");
     std::mt19937 random(4);
-    std::vector<double> alongX, alongY;
+    std::vector<double> alongX, alongY, unturned;
     for (int k = 0; k < 4000; ++k) {
         const Direction a = randomDirection(random), b = randomDirection(random);
         const double f = valueOf(*brdf, a, b);
@@ -193,10 +193,15 @@ TEST(BsdfXmlFiles, SlatsAlongX) {
         const double y = valueOf(*brdf, {a.x, -a.y, a.z}, {b.x, -b.y, b.z});
         alongX.push_back(std::abs(f - x) / (f + x));
         alongY.push_back(std::abs(f - y) / (f + y));
+        // Were incident azimuths those of wi, reciprocity would be lost.
+        const double ab = valueOf(*brdf, mirrored(a), b), ba = valueOf(*brdf, mirrored(b), a);
+        unturned.push_back(std::abs(ab - ba) / (ab + ba));
     }
     std::nth_element(alongX.begin(), alongX.begin() + 2000, alongX.end());
     std::nth_element(alongY.begin(), alongY.begin() + 2000, alongY.end());
+    std::nth_element(unturned.begin(), unturned.begin() + 2000, unturned.end());
     EXPECT_LT(alongX[2000], 0.02);
+    EXPECT_GT(unturned[2000], 0.2);
     EXPECT_GT(alongY[2000], 0.2);
 }
 
