@@ -4,6 +4,7 @@
 #include <hshfit/output/coefficient_file.h>
 #include <hshfit/output/exr_picture.h>
 
+#include <brdfs/bsdf_xml_text.h>
 #include <brdfs/tensor_writer.h>
 #include <lib/coefficient_samples.h>
 
@@ -117,6 +118,34 @@ void coefficientFiles(const std::filesystem::path& folder) {
     }
 }
 
+void bsdfXmlFiles(const std::filesystem::path& folder) {
+    using namespace hshfit::test;
+    const std::vector<KlemsRing> two{{0, 45, 1}, {45, 90, 2}};
+    const std::string nine = "1 2 3\n4, 5, 6\n7 8 9", square = "LBNL/Shirley-Chiu";
+    std::vector<std::string> files;
+    for (const char* structure : {"Columns", "Rows"}) {
+        files.push_back(bsdfXml(structure, basisXml("Two", two),
+                                blockXml("Reflection Front", nine, "Two") +
+                                    blockXml("Reflection Back", nine, "Two", "Solar") +
+                                    blockXml("Reflection Front", nine, "Two", "CIE-X") +
+                                    blockXml("Reflection Front", nine, "Two", "CIE-Z")));
+    }
+    const char* trees[] = {"{{1}{2}{3}{4}{5}{6}{7}{1 2 3 4 5 6 7 8}}",
+                           "{1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16}"};
+    for (const int rank : {3, 4}) {
+        files.push_back(bsdfXml("TensorTree" + std::to_string(rank), "",
+                                blockXml("Reflection Front", trees[rank - 3], square) +
+                                    blockXml("Reflection Front", "{ 0.2 }", square, "CIE-u") +
+                                    blockXml("Reflection Front", "{ 0.5 }", square, "CIE-v")));
+    }
+    int number = 0;
+    for (const std::string& file : files) {
+        for (const char first : {'\0', '\3'}) {
+            write(folder / std::to_string(number++), std::string(1, first) + file);
+        }
+    }
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -126,6 +155,7 @@ int main(int count, char** arguments) {
     }
     const std::filesystem::path folder = arguments[1];
     coefficientFiles(folder / "fuzz_coefficients");
+    bsdfXmlFiles(folder / "fuzz_bsdf_xml");
     int number = 0;
     for (const std::vector<float>& phi :
          {std::vector<float>{0}, {0, 1}, {-3.1415927F, -1.5707964F, 0}, {0, 0.5F, 1.5707964F}}) {
