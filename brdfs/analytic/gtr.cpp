@@ -120,7 +120,7 @@ std::vector<Parameter> parameters() {
     for (const Parameter& parameter : facetFresnelParameters()) all.push_back(parameter);
     all.push_back({.name = "alpha", .help = "roughness", .min = 1e-4, .max = 1});
     all.push_back({.name = "gamma",
-                   .help = "fall of the tails; 2 is GGX, 1 the longest",
+                   .help = "fall of the tails; 2 is GGX, less has longer ones",
                    .min = 0.1,
                    .max = 10});
     all.push_back(maskingParameter());
