@@ -173,10 +173,14 @@ struct Tree {
         return tree;
     }
     std::string text() const {
-        std::string inside;
+        std::string inside = "{";
         for (const Tree& branch : branches) inside += branch.text() + (rank == 3 ? "," : "\n");
-        for (const double value : grid) inside += " " + std::to_string(value);
-        return "{" + inside + " }";
+        for (const double value : grid) {
+            inside += ' ';
+            inside += std::to_string(value);
+        }
+        inside += " }";
+        return inside;
     }
     double at(std::vector<double> p) const {
         std::size_t index = 0;
