@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <iterator>
 
 namespace hshfit::brdfs {
 namespace {
@@ -41,8 +40,8 @@ CellNodes patchNodes(const AngleBasis& basis, std::size_t patch, int points, Bsd
 std::string matrixText(const CellAverages& averages, std::size_t columns) {
     std::string text = "\n";
     for (std::size_t k = 0; k < averages.values.size(); ++k) {
-        fmt::format_to(std::back_inserter(text), "{:.7g}{}", averages.values[k],
-                       (k + 1) % columns == 0 ? '\n' : '\t');
+        text += fmt::format("{:.7g}", averages.values[k]);
+        text += (k + 1) % columns == 0 ? '\n' : '\t';
     }
     return text;
 }

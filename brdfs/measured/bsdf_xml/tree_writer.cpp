@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 
 namespace hshfit::brdfs {
 namespace {
@@ -118,7 +117,7 @@ private:
             }
             std::size_t child = 0;
             for (int i = 0; i < rank_; ++i) child |= (k >> (rank_ - 1 - i) & 1) << i;
-            fmt::format_to(std::back_inserter(text), " {:.7g}", parts[child].mean);
+            text += fmt::format(" {:.7g}", parts[child].mean);
         }
         return text + (leaves ? " }" : "\n}");
     }
