@@ -146,6 +146,28 @@ void bsdfXmlFiles(const std::filesystem::path& folder) {
     }
 }
 
+/// Small files of the formats of scattered samples.
+void scatteredFiles(const std::filesystem::path& folder) {
+    const std::string mueller = ",0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n";
+    write(folder / "fuzz_alta" / "text",
+          "#DIM 4 1\n#VS 2\n#PARAM_IN SPHERICAL_TL_PL_TV_PV\n0.1 0 0.2 0 1 0.9 1.1\n");
+    write(folder / "fuzz_alta" / "stream",
+          "#DIM 2 1\n#PARAM_IN STARK_2D\n#FORMAT binary\n#SAMPLE_COUNT 1\n#ENDIAN little\n"
+          "#BEGIN_STREAM\n" +
+              std::string(24, '\0') + "\n#END_STREAM\n");
+    write(folder / "fuzz_alta" / "function",
+          "#ALTA FUNC HEADER\n#DIM 6 1\n#FUNC nonlinear_function_diffuse\nkd 0.25\n"
+          "#FUNC nonlinear_function_blinn\nKs 2\nN 3\n");
+    write(folder / "fuzz_astm" / "spectral",
+          "NUM_POINTS 1\nVARS theta_i,phi_i,theta_s,phi_s,400nm\n0.1,0,0.2,0,1\n");
+    write(folder / "fuzz_cornell" / "two", "# x\n2\n400 500\n0.1 0 0.2 0.3 1 2\n");
+    write(folder / "fuzz_nist" / "two",
+          "lambda,thetai,phi,thetar,phir\n0.633,-30,0,45,10,0.3" + mueller +
+              "0.532,-30,0,45,10,0.3" + mueller);
+    write(folder / "fuzz_scatmech" / "three",
+          "1, 1, 2, 0, 0, 0, 0, 0.5\n1, 1, 3, 1, 1, 1, 1, 0.5\n2, 2, 1, 1, -1, 1, 0, 3\n");
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -155,6 +177,7 @@ int main(int count, char** arguments) {
     }
     const std::filesystem::path folder = arguments[1];
     coefficientFiles(folder / "fuzz_coefficients");
+    scatteredFiles(folder);
     bsdfXmlFiles(folder / "fuzz_bsdf_xml");
     int number = 0;
     for (const std::vector<float>& phi :
