@@ -70,7 +70,6 @@ protected:
         EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), files) << arguments;
     }
 
-
     /// Holds `document` to docs/schemas/NAME.schema.json; true where python3-jsonschema is missing.
     bool keepsSchema(const std::string& document, const std::string& name) const {
         if (std::system("/usr/bin/python3 -c 'import jsonschema' 2>/dev/null") != 0) return true;
