@@ -8,14 +8,18 @@
 #include <brdfs/measured/scattered/nist.h>
 #include <brdfs/measured/scattered/scatmech.h>
 #include <brdfs/measured/scattered/scattered.h>
+#include <brdfs/measured/text_reader.h>
 #include <brdfs/measured_files.h>
 #include <hshfit/albedo.h>
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <sstream>
 
 namespace hshfit::brdfs {
@@ -27,6 +31,54 @@ void expectNear(const Direction& a, const Direction& b, double tolerance = 1e-12
     EXPECT_NEAR(a.x, b.x, tolerance);
     EXPECT_NEAR(a.y, b.y, tolerance);
     EXPECT_NEAR(a.z, b.z, tolerance);
+}
+
+// The C library rounds correctly, and so has every path of our reader.
+TEST(TextNumbers, areThoseOfTheCLibrary) {
+    std::mt19937_64 engine(5);
+    std::vector<std::string> texts{"0",
+                                   "-0",
+                                   "5.",
+                                   ".5",
+                                   "-.5",
+                                   "9007199254740992",
+                                   "9007199254740993",
+                                   "0.1",
+                                   "1e5",
+                                   "1.5E-3",
+                                   "123456789012345678",
+                                   "0.0000000000000000001",
+                                   "00000000000000000000000.25"};
+    for (int k = 0; k < 200000; ++k) {
+        char text[64];
+        const int decimals = static_cast<int>(engine() % 21);
+        std::snprintf(
+            text, sizeof text, "%.*f", decimals,
+            std::ldexp(static_cast<double>(engine() >> 11), -static_cast<int>(engine() % 70)) *
+                (engine() % 2 ? 1 : -1));
+        texts.emplace_back(text);
+    }
+    for (const std::string& text : texts) {
+        std::string_view rest = text;
+        double value = 0;
+        ASSERT_TRUE(takeNumber(rest, value)) << text;
+        EXPECT_TRUE(rest.empty()) << text;
+        EXPECT_EQ(std::bit_cast<std::uint64_t>(value),
+                  std::bit_cast<std::uint64_t>(std::strtod(text.c_str(), nullptr)))
+            << text;
+    }
+    for (std::string_view none : {"", "-", ".", "-.", "x", "+-1"}) {
+        double value = 0;
+        EXPECT_FALSE(takeNumber(none, value)) << none;
+    }
+}
+
+TEST(TextNumbers, linesEndInAnyWay) {
+    TextReader reader("1\r\n2\n\n3\r4\r\r5", "f");
+    std::string lines;
+    while (reader.next()) lines += std::string(reader.line()) + "|";
+    EXPECT_EQ(lines, "1|2||3|4||5|");
+    EXPECT_EQ(reader.lineNumber(), 7u);
 }
 
 const std::string cornellText =
