@@ -91,10 +91,10 @@ TEST_F(Schemas, Reports) {
 }
 
 TEST_F(Schemas, Presets) {
-    const std::string folder = "'" HSHFIT_SOURCE "'/brdfs/presets/";
-    EXPECT_EQ(validate("preset", folder + "hsh-*.json"), 0);
+    const std::string presets = "'" HSHFIT_SOURCE "'/brdfs/presets/";
+    EXPECT_EQ(validate("preset", presets + "hsh-*.json"), 0);
     for (const std::string origin : {"ngan", "low", "bagher"})
-        EXPECT_EQ(validate("presets", folder + origin + "-*.json"), 0) << origin;
+        EXPECT_EQ(validate("presets", presets + origin + "-*.json"), 0) << origin;
 }
 
 }  // namespace
