@@ -37,7 +37,12 @@ show info out/ggx.binary
 show project out/ggx.binary --cosine -o out/ggx_cosine.exr
 
 echo
-echo "3. Accuracy reports: the energy that each basis captures, by order (Eq. 15)."
+echo "3. From format to format: what it costs, and a published fit of a real material."
+show convert out/ggx.binary out/ggx.bsdf --force --report-loss --outgoing 45,0
+show convert preset:ngan-ward/blue-acrylic out/blue-acrylic.xml --to bsdf-klems --force
+
+echo
+echo "4. Accuracy reports: the energy that each basis captures, by order (Eq. 15)."
 show report $phong -o out/report_phong
 show report $phong $ward out/ggx.binary --cosine -o out/report_cosine
 finding "f of the Ward BRDF grows as 1/sqrt(cos theta) towards the horizon, so that the
