@@ -346,13 +346,12 @@ Coefficients coefficientsFromMetadata(std::string_view text, std::size_t outgoin
     result.tolerance = root.numberOrNull("tolerance").value_or(none);
     if (root.has("least_squares")) {
         const Fields fit = root.object("least_squares");
-        result.leastSquares = LeastSquaresNote{
-            .regularisation = fit.number("regularisation"),
-            .kernelDegrees = fit.number("kernel_degrees"),
-            .condition = fit.number("condition"),
-            .residual = fit.number("residual"),
-            .samples = static_cast<std::size_t>(
-                fit.integer("samples", 0, std::numeric_limits<int>::max()))};
+        result.leastSquares = LeastSquaresNote{.regularisation = fit.number("regularisation"),
+                                               .kernelDegrees = fit.number("kernel_degrees"),
+                                               .condition = fit.number("condition"),
+                                               .residual = fit.number("residual"),
+                                               .samples = static_cast<std::size_t>(fit.integer(
+                                                   "samples", 0, std::numeric_limits<int>::max()))};
     }
     return result;
 }
