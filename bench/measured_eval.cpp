@@ -2,6 +2,8 @@
 // a grid over all incoming ones, for 110 outgoing elevations. The MERL file is a GGX lobe; the RGL
 // file is synthetic, of the sizes of the isotropic RGL files.
 
+#include "bench_folder.h"
+
 #include <brdfs/catalog.h>
 #include <brdfs/measured/merl_writer.h>
 
@@ -18,23 +20,8 @@ namespace {
 
 using hshfit::Direction;
 
-/// A folder for the files of this run, removed at the end.
-struct Folder {
-    std::filesystem::path path;
-    Folder() {
-        std::string name =
-            (std::filesystem::temp_directory_path() / "hshfit-bench-XXXXXX").string();
-        if (!mkdtemp(name.data())) std::abort();
-        path = name;
-    }
-    ~Folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path, ignored);
-    }
-};
-
-const Folder& folder() {
-    static const Folder only;
+const BenchFolder& folder() {
+    static const BenchFolder only;
     return only;
 }
 

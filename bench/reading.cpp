@@ -3,6 +3,8 @@
 // but for MIT's, of which a sixth is written. Pictures are inflated: bytes are those of the numbers
 // that come out.
 
+#include "bench_folder.h"
+
 #include <brdfs/catalog.h>
 #include <brdfs/measured/gridded/slice_writer.h>
 #include <brdfs/measured/measured_brdf.h>
@@ -23,23 +25,8 @@ namespace {
 
 using hshfit::brdfs::MeasuredBrdf;
 
-/// A folder for the files of this run, removed at the end.
-struct Folder {
-    std::filesystem::path path;
-    Folder() {
-        std::string name =
-            (std::filesystem::temp_directory_path() / "hshfit-bench-XXXXXX").string();
-        if (!mkdtemp(name.data())) std::abort();
-        path = name;
-    }
-    ~Folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path, ignored);
-    }
-};
-
 std::string fileNamed(const std::string& name) {
-    static const Folder folder;
+    static const BenchFolder folder;
     return folder.path / name;
 }
 

@@ -64,19 +64,6 @@ Laws lawsOf(const Parameters& p) {
     return result;
 }
 
-/// One term per surface, weighted by ks in its own channel only.
-std::vector<Colour> weightsOf(const Parameters& p) {
-    const Colour ks = p.colour("ks");
-    const std::size_t count = surfacesOf(p).size();
-    if (count == 1) return {ks};
-    std::vector<Colour> weights;
-    for (std::size_t c = 0; c < count; ++c) {
-        weights.push_back(Colour(count, 0.0));
-        weights.back()[c] = ks[ks.size() == 1 ? 0 : c];
-    }
-    return weights;
-}
-
 /// Fresnel's reflectance for unpolarised light; `inverse` is 1 / eta, so that a perfect mirror
 /// (eta = infinity) is nothing special. Cook & Torrance's formula, times inverse throughout.
 double fresnel(double inverse, double cosine) {
@@ -92,7 +79,8 @@ double fresnel(double inverse, double cosine) {
 class CookTorrance final : public TermBrdf {
 public:
     explicit CookTorrance(const Parameters& p)
-        : TermBrdf(cookTorranceModel(), p, lawsOf(p), overPi(p.colour("kd")), weightsOf(p)),
+        : TermBrdf(cookTorranceModel(), p, lawsOf(p), overPi(p.colour("kd")),
+                   eachInItsChannel(p.colour("ks"), surfacesOf(p).size())),
           m_(p.number("m")),
           peak_(1 / (normOf(p) * m_ * m_)),
           surfaces_(surfacesOf(p)),

@@ -30,19 +30,6 @@ std::size_t lobeCount(const Parameters& p) {
     return count;
 }
 
-/// One term per channel, weighted by ks in its own channel only; a single one if all are alike.
-std::vector<Colour> weightsOf(const Parameters& p) {
-    const Colour ks = p.colour("ks");
-    const std::size_t count = lobeCount(p);
-    if (count == 1) return {ks};
-    std::vector<Colour> weights;
-    for (std::size_t c = 0; c < count; ++c) {
-        weights.push_back(Colour(count, 0.0));
-        weights.back()[c] = ks[ks.size() == 1 ? 0 : c];
-    }
-    return weights;
-}
-
 /// Gamma(1 - p, alpha), the integral of exp(-u) u^-p from alpha on: Simpson's rule over log u,
 /// whose integrand exp((1 - p) v - e^v) has vanished at u = 750. For p to 3 it errs by 1e-9.
 double upperGamma(double p, double alpha) {
@@ -100,7 +87,8 @@ private:
 class Sgd final : public TermBrdf {
 public:
     explicit Sgd(const Parameters& p)
-        : TermBrdf(sgdModel(), p, lawsOf(p), overPi(p.colour("kd")), weightsOf(p)) {
+        : TermBrdf(sgdModel(), p, lawsOf(p), overPi(p.colour("kd")),
+                   eachInItsChannel(p.colour("ks"), lobeCount(p))) {
         for (std::size_t c = 0; c < lobeCount(p); ++c) lobes_.emplace_back(p, c);
     }
 

@@ -35,6 +35,16 @@ Colour overPi(const Colour& a) {
     return mapped(a, [](double value) { return value / pi; });
 }
 
+std::vector<Colour> eachInItsChannel(const Colour& colour, std::size_t count) {
+    if (count == 1) return {colour};
+    std::vector<Colour> weights;
+    for (std::size_t c = 0; c < count; ++c) {
+        weights.push_back(Colour(count, 0.0));
+        weights.back()[c] = valueAt(colour, c);
+    }
+    return weights;
+}
+
 TermBrdf::TermBrdf(const Model& model, const Parameters& parameters, Laws laws,
                    const Colour& constant, const std::vector<Colour>& weights)
     : name_(model.name),

@@ -15,6 +15,9 @@ Colour mapped(const Colour& a, const Colour& b, const std::function<double(doubl
 double largest(const Colour& a);
 /// A diffuse albedo as a BRDF value.
 Colour overPi(const Colour& a);
+/// Weights of `count` terms, each of which has `colour` in its own channel only; of a single term,
+/// `colour` itself.
+std::vector<Colour> eachInItsChannel(const Colour& colour, std::size_t count);
 
 /// What the analytic models share: a constant plus terms that all channels have in common,
 ///     f_c(wi, wo) = constant_c + sum_t weight_{t,c} T_t(wi, wo).

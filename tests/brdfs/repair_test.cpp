@@ -5,47 +5,22 @@
 
 #include <brdfs/measured_files.h>
 #include <gtest/gtest.h>
+#include <lib/formula_brdf.h>
 
 #include <cmath>
-#include <functional>
 #include <random>
 
 namespace hshfit {
 namespace {
 
-/// A BRDF of any formula with two channels of which the second is half of the first.
-class Formula : public Brdf {
-public:
-    using Function = std::function<double(const Direction& wi, const Direction& wo)>;
-    using Predicate = std::function<bool(const Direction& wi, const Direction& wo)>;
-    explicit Formula(Function f, Predicate covers = {}, bool isotropic = true)
-        : f_(std::move(f)), covers_(std::move(covers)), laws_{.isotropic = isotropic} {}
-
-    std::string name() const override { return "formula"; }
-    const Channels& channels() const override { return channels_; }
-    const Laws& laws() const override { return laws_; }
-    void eval(const Direction& wo, DirectionBatch wi, double* out) const override {
-        for (std::size_t k = 0; k < wi.count; ++k) {
-            out[k] = f_({wi.x[k], wi.y[k], wi.z[k]}, wo);
-            out[wi.count + k] = out[k] / 2;
-        }
-    }
-    void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override {
-        for (std::size_t k = 0; k < wi.count; ++k)
-            covered[k] = !covers_ || covers_({wi.x[k], wi.y[k], wi.z[k]}, wo);
-    }
-
-private:
-    Function f_;
-    Predicate covers_;
-    Channels channels_ = Channels::spectral({500, 600});
-    Laws laws_;
-};
+using Formula = test::FormulaBrdf;
 
 std::unique_ptr<brdfs::RepairedBrdf> repairedFormula(const char* repairs, Formula::Function f,
                                                      Formula::Predicate covers = {},
                                                      bool isotropic = true) {
-    return brdfs::repaired(std::make_unique<Formula>(f, covers, isotropic), repairs);
+    return brdfs::repaired(std::make_unique<Formula>(f, covers, Laws{.isotropic = isotropic},
+                                                     Channels::spectral({500, 600})),
+                           repairs);
 }
 
 double cosineOfThetaDifference(const Direction& wi, const Direction& wo) {

@@ -1,40 +1,16 @@
 #include <hshfit/health.h>
 
 #include <gtest/gtest.h>
+#include <lib/formula_brdf.h>
 #include <tbb/global_control.h>
 
 #include <cmath>
-#include <functional>
 #include <limits>
 
 namespace hshfit {
 namespace {
 
-/// A grey BRDF of any formula, covered where `covers` says.
-class Formula : public Brdf {
-public:
-    using Function = std::function<double(const Direction& wi, const Direction& wo)>;
-    using Predicate = std::function<bool(const Direction& wi, const Direction& wo)>;
-    explicit Formula(Function f, Predicate covers = {}, Laws laws = {.isotropic = true})
-        : f_(std::move(f)), covers_(std::move(covers)), laws_(laws) {}
-
-    std::string name() const override { return "formula"; }
-    const Channels& channels() const override { return channels_; }
-    const Laws& laws() const override { return laws_; }
-    void eval(const Direction& wo, DirectionBatch wi, double* out) const override {
-        for (std::size_t k = 0; k < wi.count; ++k) out[k] = f_({wi.x[k], wi.y[k], wi.z[k]}, wo);
-    }
-    void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override {
-        for (std::size_t k = 0; k < wi.count; ++k)
-            covered[k] = !covers_ || covers_({wi.x[k], wi.y[k], wi.z[k]}, wo);
-    }
-
-private:
-    Function f_;
-    Predicate covers_;
-    Channels channels_;
-    Laws laws_;
-};
+using Formula = test::FormulaBrdf;
 
 double lambert(const Direction&, const Direction&) {
     return 1 / pi;

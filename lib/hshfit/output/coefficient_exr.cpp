@@ -2,6 +2,7 @@
 #include <hshfit/output/atomic_file.h>
 #include <hshfit/output/coefficient_formats.h>
 #include <hshfit/output/exr_header.h>
+#include <hshfit/output/exr_stream.h>
 
 #include <algorithm>
 #include <array>
@@ -14,7 +15,6 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
@@ -31,50 +31,6 @@ constexpr std::size_t maxChannels = 100'000;
 /// Keys whose attribute holds the bare string; the others hold JSON text.
 constexpr std::array<std::string_view, 5> stringKeys{"format", "generator", "quantity",
                                                      "channel_kind", "energy_reason"};
-
-class ToFile : public Imf::OStream {
-public:
-    explicit ToFile(AtomicFile& file) : OStream("coefficients"), file_(file) {}
-    void write(const char bytes[], int count) override {
-        file_.write(std::string_view(bytes, static_cast<std::size_t>(count)));
-    }
-    std::uint64_t tellp() override {
-        return static_cast<std::uint64_t>(checked(std::ftell(file_.stream())));
-    }
-    void seekp(std::uint64_t position) override {
-        checked(std::fseek(file_.stream(), static_cast<long>(position), SEEK_SET));
-    }
-
-private:
-    static long checked(long result) {
-        if (result < 0) {
-            throw OutputError(fmt::format("cannot write an EXR file that cannot be sought in: {}",
-                                          std::generic_category().message(errno)));
-        }
-        return result;
-    }
-    AtomicFile& file_;
-};
-
-class FromMemory : public Imf::IStream {
-public:
-    explicit FromMemory(std::string_view bytes) : IStream("coefficients"), bytes_(bytes) {}
-    bool read(char out[], int count) override {
-        const auto wanted = static_cast<std::size_t>(count);
-        if (position_ > bytes_.size() || wanted > bytes_.size() - position_) {
-            throw std::runtime_error("the file ends too early");
-        }
-        std::memcpy(out, bytes_.data() + position_, wanted);
-        position_ += wanted;
-        return position_ < bytes_.size();
-    }
-    std::uint64_t tellg() override { return position_; }
-    void seekg(std::uint64_t position) override { position_ = position; }
-
-private:
-    std::string_view bytes_;
-    std::uint64_t position_ = 0;
-};
 
 /// What stands for each colour channel in an EXR channel name: "Y"; "R", "G", "B"; "550,5nm"
 /// (a decimal comma, because a point separates layers).
@@ -154,7 +110,7 @@ std::string metadataText(const Imf::Header& header, const std::string& file) {
 }
 
 Coefficients readChecked(std::string_view bytes, const ExrHeader& size, const std::string& file) {
-    FromMemory stream(bytes);
+    ExrFromMemory stream(bytes);
     Imf::InputFile input(stream, 0);
     const std::size_t count = size.width * size.height;
     Coefficients c = coefficientsFromMetadata(metadataText(input.header(), file), count, file);
@@ -210,7 +166,7 @@ void coefficientsToExr(const Coefficients& c, AtomicFile& file) {
     const auto names = channelNames(c.channels, c.slots());
     for (const auto& name : names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
     try {
-        ToFile stream(file);
+        ExrToFile stream(file);
         Imf::OutputFile output(stream, header, 0);
         output.setFrameBuffer(slices(names, pixels, c.outgoing.width));
         output.writePixels(c.outgoing.height);

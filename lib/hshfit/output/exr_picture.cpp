@@ -3,6 +3,7 @@
 #include <hshfit/output/coefficient_formats.h>
 #include <hshfit/output/exr_header.h>
 #include <hshfit/output/exr_picture.h>
+#include <hshfit/output/exr_stream.h>
 
 #include <cerrno>
 #include <cstring>
@@ -11,7 +12,6 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
@@ -19,50 +19,6 @@
 
 namespace hshfit {
 namespace {
-
-class ToFile : public Imf::OStream {
-public:
-    explicit ToFile(AtomicFile& file) : OStream("picture"), file_(file) {}
-    void write(const char bytes[], int count) override {
-        file_.write(std::string_view(bytes, static_cast<std::size_t>(count)));
-    }
-    std::uint64_t tellp() override {
-        return static_cast<std::uint64_t>(checked(std::ftell(file_.stream())));
-    }
-    void seekp(std::uint64_t position) override {
-        checked(std::fseek(file_.stream(), static_cast<long>(position), SEEK_SET));
-    }
-
-private:
-    static long checked(long result) {
-        if (result < 0) {
-            throw OutputError(fmt::format("cannot write an EXR file that cannot be sought in: {}",
-                                          std::generic_category().message(errno)));
-        }
-        return result;
-    }
-    AtomicFile& file_;
-};
-
-class FromMemory : public Imf::IStream {
-public:
-    explicit FromMemory(std::string_view bytes) : IStream("picture"), bytes_(bytes) {}
-    bool read(char out[], int count) override {
-        const auto wanted = static_cast<std::size_t>(count);
-        if (position_ > bytes_.size() || wanted > bytes_.size() - position_) {
-            throw std::runtime_error("the file ends too early");
-        }
-        std::memcpy(out, bytes_.data() + position_, wanted);
-        position_ += wanted;
-        return position_ < bytes_.size();
-    }
-    std::uint64_t tellg() override { return position_; }
-    void seekg(std::uint64_t position) override { position_ = position; }
-
-private:
-    std::string_view bytes_;
-    std::uint64_t position_ = 0;
-};
 
 /// Channel `index` of `values`, which OpenEXR does not write to when it writes a file.
 template <class Value>
@@ -73,7 +29,7 @@ Imf::Slice slice(Imf::PixelType type, const Value* values, std::size_t index, st
 }
 
 ExrPicture readChecked(std::string_view bytes, const ExrHeader& size) {
-    FromMemory stream(bytes);
+    ExrFromMemory stream(bytes);
     Imf::InputFile input(stream, 0);
     ExrPicture picture{.width = size.width, .height = size.height};
     const auto& header = input.header();
@@ -118,7 +74,7 @@ void writeExrPicture(const ExrPicture& picture, ExrPixels pixels, AtomicFile& fi
                           : slice(type, picture.values.data(), c, count, picture.width));
     }
     try {
-        ToFile stream(file);
+        ExrToFile stream(file);
         Imf::OutputFile output(stream, header, 0);
         output.setFrameBuffer(buffer);
         output.writePixels(static_cast<int>(picture.height));
