@@ -150,7 +150,7 @@ void runConvert(const ConvertOptions& options, const Globals& globals) {
 }
 
 std::string writersHelp() {
-    std::string text = "\nFormats to write (options in hshfit list formats):\n";
+    std::string text = "\nFormats to write (options in hshfit list writers):\n";
     for (const auto& writer : brdfs::writers()) {
         text += fmt::format("  {:<12} {:<10} {}\n", writer.name, writer.extension, writer.help);
     }

@@ -63,15 +63,25 @@ Json modelsJson() {
     return rows;
 }
 
-Json formatsJson() {
+/// A reader or a writer.
+template <class Row>
+Json fileRowsJson(std::span<const Row> table) {
     Json rows = Json::array();
-    for (const auto& format : brdfs::formats()) {
-        rows.push_back({{"name", format.name},
-                        {"help", format.help},
-                        {"extension", format.extension},
-                        {"parameters", parametersJson(format.parameters)}});
+    for (const Row& row : table) {
+        rows.push_back({{"name", row.name},
+                        {"help", row.help},
+                        {"extension", row.extension},
+                        {"parameters", parametersJson(row.parameters)}});
     }
     return rows;
+}
+
+Json formatsJson() {
+    return fileRowsJson(brdfs::formats());
+}
+
+Json writersJson() {
+    return fileRowsJson(brdfs::writers());
 }
 
 Json basesJson() {
@@ -177,6 +187,7 @@ struct Section {
 };
 constexpr Section sections[] = {{"models", modelsJson, brdfs::sumHelp},
                                 {"formats", formatsJson},
+                                {"writers", writersJson},
                                 {"bases", basesJson},
                                 {"metrics", metricsJson},
                                 {"targets", targetsJson}};
@@ -261,9 +272,11 @@ void addList(CLI::App& app, Globals& globals) {
         bool all = false;
     };
     auto options = std::make_shared<Options>();
-    CLI::App& command = addCommand(
-        app, globals, "list", "The catalogs: models, formats, bases, metrics, targets, presets",
-        "hshfit list presets acrylic");
+    CLI::App& command =
+        addCommand(app, globals, "list",
+                   "The catalogs: models, formats (read), writers, bases, metrics, targets, "
+                   "presets",
+                   "hshfit list presets acrylic");
     std::vector<std::string> names{"presets"};
     for (const Section& s : sections) names.emplace_back(s.name);
     command.add_option("SECTION", options->section, "One catalog; all of them if left out")
