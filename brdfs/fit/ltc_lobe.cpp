@@ -63,12 +63,6 @@ private:
     double magnitude_, scale_ = 1;
 };
 
-double integral(const LtcNodes& nodes) {
-    double sum = 0;
-    for (std::size_t k = 0; k < nodes.wi.size(); ++k) sum += nodes.weights[k] * nodes.values[k];
-    return sum;
-}
-
 /// The integral of f cos (1 - cos theta_d)^5: 2 cos^2 theta_d = 1 + wi.wo.
 double fresnelIntegral(const LtcNodes& nodes, const Direction& wo) {
     double sum = 0;
@@ -128,7 +122,7 @@ double distance(const LtcMatrix<double>& m) {
 }
 
 double positiveIntegral(const Brdf& brdf, const Direction& wo, const LtcNodes& nodes) {
-    const double magnitude = integral(nodes);
+    const double magnitude = nodes.integral();
     if (magnitude > 0) return magnitude;
     throw NumericError(fmt::format("{}: is 0 wherever it was looked at for wo at {:.4f},0 degrees",
                                    brdf.name(), degrees(polarAngle(wo))));
@@ -137,14 +131,20 @@ double positiveIntegral(const Brdf& brdf, const Direction& wo, const LtcNodes& n
 }  // namespace
 
 LtcLobe judgeLtc(const Brdf& brdf, const Direction& wo, const Ltc& ltc, const Ltc& around) {
-    const LtcNodes nodes(brdf, wo, around, fineRule()), other(brdf, wo, around, otherRule());
-    LtcLobe lobe{.ltc = ltc, .magnitude = positiveIntegral(brdf, wo, nodes)};
-    lobe.fresnel = fresnelIntegral(nodes, wo);
-    lobe.uncertainty = std::max(std::abs(integral(other) - lobe.magnitude),
-                                std::abs(fresnelIntegral(other, wo) - lobe.fresnel)) /
-                       lobe.magnitude;
-    judge(lobe, nodes);
-    return lobe;
+    constexpr double settled = 2e-4;
+    constexpr int mostNodes = 30;
+    LtcLobe before;
+    for (LtcRule rule = fineRule();; rule.nodes += rule.nodes / 2) {
+        const LtcNodes nodes(brdf, wo, around, rule);
+        LtcLobe lobe{.ltc = ltc, .magnitude = positiveIntegral(brdf, wo, nodes)};
+        lobe.fresnel = fresnelIntegral(nodes, wo);
+        lobe.uncertainty = std::max(std::abs(before.magnitude - lobe.magnitude),
+                                    std::abs(before.fresnel - lobe.fresnel)) /
+                           lobe.magnitude;
+        judge(lobe, nodes);
+        if (lobe.uncertainty < settled || rule.nodes >= mostNodes) return lobe;
+        before = lobe;
+    }
 }
 
 LtcLobe fitLtc(const Brdf& brdf, const Direction& wo, const Ltc& start,
@@ -152,8 +152,9 @@ LtcLobe fitLtc(const Brdf& brdf, const Direction& wo, const Ltc& start,
     Ltc ltc = start;
     int iterations = 0;
     bool converged = false;
+    const LtcRule rule = settledRule(brdf, wo, start, coarseRule(), 2e-3, 12);
     for (int round = 0; round < options.rounds && !converged; ++round) {
-        const LtcNodes nodes(brdf, wo, ltc, coarseRule());
+        const LtcNodes nodes(brdf, wo, ltc, rule);
         const Step step = minimise(nodes, positiveIntegral(brdf, wo, nodes), options.symmetric);
         iterations += step.iterations;
         ltc = product(step.change, ltc);

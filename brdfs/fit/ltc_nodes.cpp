@@ -3,6 +3,8 @@
 #include <hshfit/error.h>
 #include <hshfit/quadrature.h>
 
+#include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -10,50 +12,87 @@
 
 namespace hshfit::brdfs {
 
-// Heights z of the cosine near 0 are what lies far from a narrow lobe: a lobe of width a has there,
-// within z < a, all directions that are more than about 45 degrees away. Hence ever finer panels.
+// What lies far from a narrow lobe is pressed together where the cosine nearly is 0: a lobe of
+// width a has, within a radians of that plane, all directions that are more than about 45 degrees
+// away. Hence ever finer panels towards the ends.
 
 const LtcRule& coarseRule() {
-    static const LtcRule rule{.breaks = {0, 0.02, 0.15, 1}, .rings = 10, .azimuths = 16};
+    static const LtcRule rule{.longitudes = {0, 0.05, 0.3, 0.7, 0.95, 1},
+                              .latitudes = {0, 0.03, 0.2, 0.6, 1},
+                              .nodes = 5};
     return rule;
 }
 
 const LtcRule& fineRule() {
-    static const LtcRule rule{
-        .breaks = {0, 1e-5, 1e-4, 1e-3, 0.01, 0.08, 0.35, 1}, .rings = 8, .azimuths = 32};
+    static const LtcRule rule{.longitudes = {0, 1e-5, 1e-4, 1e-3, 0.01, 0.06, 0.25, 0.5, 0.75, 0.94,
+                                             0.99, 0.999, 0.9999, 0.99999, 1},
+                              .latitudes = {0, 1e-3, 4e-3, 0.016, 0.06, 0.2, 0.5, 0.8, 0.95, 1},
+                              .nodes = 4};
     return rule;
 }
 
-const LtcRule& otherRule() {
-    static const LtcRule rule{
-        .breaks = {0, 3e-5, 3e-4, 3e-3, 0.03, 0.2, 1}, .rings = 7, .azimuths = 23};
+LtcRule settledRule(const Brdf& brdf, const Direction& wo, const Ltc& around, LtcRule rule,
+                    double tolerance, int mostNodes) {
+    for (double before = LtcNodes(brdf, wo, around, rule).integral(); rule.nodes < mostNodes;) {
+        rule.nodes += rule.nodes / 2;
+        const double now = LtcNodes(brdf, wo, around, rule).integral();
+        if (std::abs(now - before) <= tolerance * now) break;
+        before = now;
+    }
     return rule;
 }
+
+namespace {
+
+/// Longitudes, from z towards x, between which the cosine and cos(theta_i) do not change sign, but
+/// for those where both are negative.
+std::array<double, 4> sectors(const Ltc& around) {
+    const double up = std::atan2(-around.c, around.a);  // that of the surface's normal
+    std::array<double, 4> ends{-pi / 2, pi / 2, up - pi / 2, up + pi / 2};
+    std::ranges::sort(ends);
+    return ends;
+}
+
+/// Calls visit(x, weight) at the nodes of [from, to] with panels between these fractions.
+template <class Visit>
+void forNodes(double from, double to, const std::vector<double>& fractions, int nodes,
+              const Visit& visit) {
+    const GaussRule& gauss = gaussLegendre(nodes);
+    for (std::size_t panel = 0; panel + 1 < fractions.size(); ++panel) {
+        const double a = from + (to - from) * fractions[panel];
+        const double half = (from + (to - from) * fractions[panel + 1] - a) / 2;
+        for (int k = 0; k < nodes; ++k)
+            visit(a + half + half * gauss.nodes[k], half * gauss.weights[k]);
+    }
+}
+
+}  // namespace
 
 LtcNodes::LtcNodes(const Brdf& brdf, const Direction& wo, const Ltc& around, const LtcRule& rule) {
-    const GaussRule& gauss = gaussLegendre(rule.rings);
     std::vector<double> x, y, z;
-    const auto addRing = [&](double height, double width) {
-        const double sine = std::sqrt((1 - height) * (1 + height));
-        for (int k = 0; k < rule.azimuths; ++k) {
-            const double phi = (k + 0.5) * pi / rule.azimuths;
-            cosines.push_back({sine * std::cos(phi), sine * std::sin(phi), height});
-            const LtcDirection to = fromCosine(around, cosines.back());
-            wi.push_back(to.w);
-            stretches.push_back(to.stretch);
-            weights.push_back(width * 2 * pi / rule.azimuths * to.stretch);
-            x.push_back(to.w.x);
-            y.push_back(to.w.y);
-            z.push_back(to.w.z);
-        }
+    const auto add = [&](double longitude, double latitude, double area) {
+        const double radius = std::cos(latitude);
+        cosines.push_back(
+            {radius * std::sin(longitude), std::sin(latitude), radius * std::cos(longitude)});
+        const LtcDirection to = fromCosine(around, cosines.back());
+        wi.push_back(to.w);
+        stretches.push_back(to.stretch);
+        weights.push_back(2 * area * radius * to.stretch);
+        x.push_back(to.w.x);
+        y.push_back(to.w.y);
+        z.push_back(to.w.z);
     };
-    for (std::size_t panel = 0; panel + 1 < rule.breaks.size(); ++panel) {
-        const double middle = (rule.breaks[panel + 1] + rule.breaks[panel]) / 2;
-        const double half = (rule.breaks[panel + 1] - rule.breaks[panel]) / 2;
-        for (int k = 0; k < rule.rings; ++k) {
-            addRing(middle + half * gauss.nodes[k], half * gauss.weights[k]);
-            addRing(-middle - half * gauss.nodes[k], half * gauss.weights[k]);
-        }
+    const std::array<double, 4> ends = sectors(around);
+    for (std::size_t sector = 0; sector < 3; ++sector) {
+        constexpr double none = 1e-9;  // of which nothing can be seen
+        if (ends[sector + 1] - ends[sector] < none) continue;
+        forNodes(ends[sector], ends[sector + 1], rule.longitudes, rule.nodes,
+                 [&](double longitude, double width) {
+                     forNodes(0, pi / 2, rule.latitudes, rule.nodes,
+                              [&](double latitude, double height) {
+                                  add(longitude, latitude, width * height);
+                              });
+                 });
     }
     assert(brdf.channels().count() == 1);
     values.resize(wi.size());
@@ -66,6 +105,12 @@ LtcNodes::LtcNodes(const Brdf& brdf, const Direction& wo, const Ltc& around, con
                 degrees(polarAngle(wi[k])), degrees(azimuth(wi[k])), degrees(polarAngle(wo))));
         }
     }
+}
+
+double LtcNodes::integral() const {
+    double sum = 0;
+    for (std::size_t k = 0; k < wi.size(); ++k) sum += weights[k] * values[k];
+    return sum;
 }
 
 }  // namespace hshfit::brdfs
