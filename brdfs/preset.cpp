@@ -4,6 +4,7 @@
 #include <brdfs/preset_collection.h>
 #include <brdfs/preset_json.h>
 #include <brdfs/spec.h>
+#include <brdfs/sum.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -23,7 +24,12 @@ namespace {
 /// An invalid parameter in a preset is wrong input, not wrong usage.
 std::unique_ptr<Brdf> openSpec(const std::string& spec, const std::string& where) {
     try {
-        return openModel(spec);
+        const auto terms = splitSum(spec, [](std::string_view) { return false; });
+        if (terms.size() == 1 && terms.front().weight == 1) return openModel(terms.front().spec);
+        std::vector<Sum::Term> opened;
+        for (const WeightedSpec& term : terms)
+            opened.push_back({term.weight, openModel(term.spec)});
+        return std::make_unique<Sum>(std::move(opened));
     } catch (const UsageError& error) {
         throw InputError(fmt::format("{}: {}", where, error.what()));
     }
@@ -65,9 +71,13 @@ std::span<const Preset> presets() {
 
 PresetContent parsePreset(std::string_view text, const std::string& where) {
     const Json preset = parsePresetJson(text, "hshfit-preset", where);
-    const std::string model = modelField(preset, where);
     PresetContent content;
     if (preset.contains("source")) content.source = stringField(preset, "source", where);
+    if (preset.contains("spec")) {
+        content.spec = stringField(preset, "spec", where);
+        return content;
+    }
+    const std::string model = modelField(preset, where);
     content.spec = presetSpec(model, objectField(preset, "parameters", where), where);
     return content;
 }

@@ -15,6 +15,8 @@ namespace hshfit::brdfs {
 /// work, kept in brdfs/presets/NAME.json:
 ///     {"format": "hshfit-preset", "version": 1, "model": "ward",
 ///      "parameters": {"ax": 0.2, "kd": [0.1, 0.2, 0.3], "variant": "duer"}, "source": "…"}
+/// In place of "model" and "parameters" a preset may have "spec": a model or a sum of models
+/// (sum.h), such as a fit writes.
 struct Preset {
     std::string_view name;
     std::string_view help;
@@ -22,7 +24,7 @@ struct Preset {
 };
 std::span<const Preset> presets();
 
-/// What a preset holds: the specification of its model, and where the values come from.
+/// What a preset holds: the specification of its model or models, and where the values come from.
 struct PresetContent {
     std::string spec;
     std::string source;
@@ -32,7 +34,7 @@ struct PresetContent {
 /// Throws InputError: not JSON, another format or version, a field absent or of the wrong type.
 PresetContent parsePreset(std::string_view text, const std::string& where);
 
-/// Opens the model that a preset names. Fields other than the five above are left alone, so that
+/// Opens what a preset names. Fields other than those above are left alone, so that
 /// the result of a fit is a preset too. Throws InputError as above, or for an invalid parameter.
 std::unique_ptr<Brdf> openPreset(std::string_view text, const std::string& where);
 

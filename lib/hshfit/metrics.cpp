@@ -351,4 +351,40 @@ std::vector<MetricValue> compare(const Brdf& f, const Brdf& g, const OutgoingSet
     return results;
 }
 
+std::vector<MetricValue> compareSamples(std::span<const double> f, std::span<const double> g,
+                                        std::span<const double> cosines,
+                                        std::span<const double> weights) {
+    Sums sums;
+    for (std::size_t k = 0; k < f.size(); ++k) {
+        const std::size_t at = k % cosines.size();
+        const Sample sample{f[k], g[k], cosines[at]};
+        sums.weight += weights[at];
+        for (std::size_t m = 0; m < formulaCount; ++m) {
+            if (!formulas[m].term) continue;
+            sums.term[m] += weights[at] * formulas[m].term(sample);
+            if (formulas[m].scale) sums.scale[m] += weights[at] * formulas[m].scale(sample);
+        }
+        sums.maximum = std::max(sums.maximum, std::abs(g[k] - f[k]) * cosines[at]);
+    }
+    std::vector<MetricValue> results;
+    for (std::size_t m = 0; m < formulaCount; ++m) {
+        MetricValue result;
+        result.metric = &metricCatalog()[m];
+        double value = sums.maximum;
+        if (formulas[m].term) {
+            const double scale = formulas[m].scale ? sums.scale[m] : sums.weight;
+            value = formulas[m].finish(sums.term[m] == 0 ? 0 : sums.term[m] / scale);
+        }
+        if (!formulas[m].term && result.metric->name != "maximum") {
+            result.reason = "takes more than samples";
+        } else if (!std::isfinite(value)) {
+            result.reason = "the reference is zero or a value is not finite";
+        } else {
+            result.value = value;
+        }
+        results.push_back(std::move(result));
+    }
+    return results;
+}
+
 }  // namespace hshfit

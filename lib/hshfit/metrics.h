@@ -49,4 +49,11 @@ std::vector<MetricValue> compare(const Brdf& f, const Brdf& g, const OutgoingSet
                                  std::span<const Metric* const> metrics,
                                  const CompareOptions& options = {});
 
+/// Every metric of values g against f at the same samples, [channel * cosines.size() + sample],
+/// with c = `cosines` and weights in place of solid angles. Albedo and reciprocity need more than
+/// samples and have no value.
+std::vector<MetricValue> compareSamples(std::span<const double> f, std::span<const double> g,
+                                        std::span<const double> cosines,
+                                        std::span<const double> weights);
+
 }  // namespace hshfit

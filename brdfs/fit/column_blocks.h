@@ -1,0 +1,39 @@
+#pragma once
+
+#include <brdfs/fit/fit_samples.h>
+#include <brdfs/fit/parametric_sum.h>
+
+#include <span>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// The columns of a parametric sum at samples, and their derivatives by the shapes' u (central
+/// differences through Brdf::eval), for one u: column 0 and the linear ones, then for each shape j
+/// its derivative of column 0 and of the linear ones of its term.
+class ColumnBlocks {
+public:
+    ColumnBlocks(const FitSamples& samples, const ParametricSum& sum, std::span<const double> u,
+                 bool derivatives);
+
+    std::size_t count() const { return count_; }
+    /// Where the derivatives by shape j stand: of column 0, then of linearsOf(j).
+    std::size_t derivative(std::size_t shape) const { return first_[shape]; }
+
+    static constexpr std::size_t blockSize = 1024;
+    /// out[column * size + k] for samples [begin, begin + size), size <= blockSize. Thread-safe.
+    void fill(std::size_t begin, std::size_t size, double* out) const;
+
+private:
+    struct Difference {
+        Columns above, below;
+        double inverse = 0;
+    };
+    const FitSamples& samples_;
+    Columns columns_;
+    std::vector<Difference> differences_;
+    std::vector<std::size_t> first_;
+    std::size_t count_;
+};
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <brdfs/fit/normal_equations.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// The covariance of the parameters that are not fixed, at a minimum.
+struct Covariance {
+    std::vector<double> variance;      ///< [n]; negative: fixed or not determined
+    std::vector<double> correlations;  ///< [n * n]; 0 where there is no variance
+    /// Sets of indices that act together along one direction without any effect.
+    std::vector<std::vector<std::size_t>> ambiguous;
+};
+
+/// hessian^-1 spread hessian^-1 values / (values - n). Directions in which the Gauss-Newton matrix,
+/// scaled to a diagonal of 1, is below 1e-9 are left out and reported.
+Covariance covarianceOf(const Equations& equations, const std::vector<bool>& fixed,
+                        std::size_t values);
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <brdfs/fit/fit_samples.h>
+#include <brdfs/fit/loss.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+struct FitOptions {
+    std::string model;  ///< "MODEL[:key=value,…][+MODEL…]"
+    Loss::Kind loss = Loss::Kind::cosine;
+    Robust robust = Robust::none;
+    /// Residual, in units of g, at which the kernel sets in. 0: that which keeps 95 % efficiency
+    /// for Gaussian noise of the spread of the residuals without the kernel (Holland & Welsch 1977,
+    /// 10.1080/03610927708827533): 1.345 (Huber) or 2.385 (Cauchy) times 1.4826 median |r|.
+    double robustScale = 0;
+    bool perChannel = false;  ///< shapes of their own for every channel
+    int starts = 16;          ///< local searches
+    std::uint64_t seed = 1;   ///< of the starts
+    int iterations = 200;     ///< of the last search
+    std::function<void(std::size_t, std::size_t)> progress = {};
+};
+
+/// A free parameter after a fit.
+struct FittedParameter {
+    std::string name;     ///< "ggx.alpha"
+    std::string channel;  ///< "R"; empty: all channels
+    double value = 0;
+    std::string bound;  ///< "lower" or "upper" if it came to rest there
+    /// None at a bound, and where the data do not determine it.
+    std::optional<double> standardError = {};
+    bool linear = false;
+};
+
+struct FitResult {
+    std::string model;  ///< as it was asked for
+    std::string spec;   ///< with values filled in: opens the fit
+    std::vector<FittedParameter> parameters;
+    /// Of parameters with a standard error, 0 otherwise: [n * n]. Channels that were fitted apart
+    /// do not correlate.
+    std::vector<double> correlations;
+    /// Sets of parameters that the data do not tell apart, by name and channel.
+    std::vector<std::vector<std::string>> ambiguous;
+    bool converged = false;
+    std::string message;  ///< Ceres' own, of the last search (of the worst channel)
+    int iterations = 0, evaluations = 0, startCount = 0;
+    std::uint64_t seed = 0;
+    double robustScale = 0;
+    std::size_t samples = 0, values = 0;  ///< values: samples times channels
+    double loss = 0;               ///< root of the weighted mean square of g(f) - g(measured)
+    double projectedGradient = 0;  ///< largest component that bounds do not stop, per unit of scale
+    double aic = 0, bic = 0;
+};
+
+/// The parameters with the least loss, from several starts.
+///
+/// Starts are a Halton sequence with a random shift in the box of free_parameters.cpp; the best of
+/// four times `starts` are searched from on at most 4096 of the samples, the best three minima on
+/// all. Linear parameters are eliminated where the loss is linear in f. Standard errors are those
+/// of the sandwich estimator (White 1980, 10.2307/1912934): they hold for weights and noise of any
+/// kind, but take the residuals of samples for independent, and the model for true.
+/// AIC and BIC are those of Gaussian residuals of g with the given weights.
+///
+/// Throws UsageError for the model, NumericError if there are fewer values than parameters.
+FitResult fit(const FitSamples& samples, const FitOptions& options);
+
+/// f of a fitted specification at samples: [channel * size + k].
+std::vector<double> valuesOf(const Brdf& brdf, const FitSamples& samples);
+/// The loss of any BRDF at samples, as FitResult::loss.
+double lossOf(const Brdf& brdf, const FitSamples& samples, Loss::Kind loss);
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,104 @@
+#include <brdfs/fit/fit_json.h>
+
+#include <brdfs/catalog.h>
+#include <hshfit/metrics.h>
+#include <hshfit/version.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace hshfit::brdfs {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json parametersJson(const FitResult& result) {
+    Json list = Json::array();
+    for (const FittedParameter& parameter : result.parameters) {
+        Json json = {{"name", parameter.name}};
+        if (!parameter.channel.empty()) json["channel"] = parameter.channel;
+        json["value"] = parameter.value;
+        json["standard_error"] = parameter.standardError ? Json(*parameter.standardError) : Json();
+        if (!parameter.bound.empty()) json["at_bound"] = parameter.bound;
+        json["linear"] = parameter.linear;
+        list.push_back(std::move(json));
+    }
+    return list;
+}
+
+Json correlationsJson(const FitResult& result) {
+    const std::size_t n = result.parameters.size();
+    Json rows = Json::array();
+    for (std::size_t i = 0; i < n; ++i) {
+        Json row = Json::array();
+        for (std::size_t j = 0; j < n; ++j) row.push_back(result.correlations[i * n + j]);
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+Json metricsJson(const FitReport& report) {
+    const FitSamples& samples = *report.samples;
+    const auto brdf = open(report.result.spec);
+    const std::vector<double> own = valuesOf(*brdf, samples);
+    Json metrics = Json::array();
+    for (const MetricValue& value :
+         compareSamples(samples.values, own, samples.wiZ, samples.weights)) {
+        Json json = {{"name", value.metric->name},
+                     {"value", value.value ? Json(*value.value) : Json()}};
+        if (!value.reason.empty()) json["reason"] = value.reason;
+        metrics.push_back(std::move(json));
+    }
+    return metrics;
+}
+
+}  // namespace
+
+Json fitPreset(const FitReport& report) {
+    const FitResult& result = report.result;
+    const FitOptions& options = report.options;
+    const FitSamples& samples = *report.samples;
+    const Masked& masked = samples.masked;
+    std::string_view loss;
+    for (const Loss& row : losses())
+        if (row.kind == options.loss) loss = row.name;
+    Json fit = {
+        {"data", report.data},
+        {"model", result.model},
+        {"loss", loss},
+        {"robust", robustName(options.robust)},
+        {"weights", samples.solidAngles ? "solid-angle" : "equal"},
+        {"samples", result.samples},
+        {"values", result.values},
+        {"masked",
+         {{"below_horizon", masked.belowHorizon},
+          {"invalid", masked.invalid},
+          {"not_finite", masked.notFinite},
+          {"grazing", masked.grazing},
+          {"not_drawn", masked.notDrawn}}},
+        {"per_channel", options.perChannel},
+        {"converged", result.converged},
+        {"ceres", result.message},
+        {"iterations", result.iterations},
+        {"evaluations", result.evaluations},
+        {"starts", result.startCount},
+        {"seed", result.seed},
+        {"rms", result.loss},
+        {"projected_gradient", result.projectedGradient},
+        {"aic", result.aic},
+        {"bic", result.bic},
+        {"parameters", parametersJson(result)},
+        {"correlations", correlationsJson(result)},
+        {"ambiguous", result.ambiguous},
+        {"metrics", metricsJson(report)},
+    };
+    if (options.robust != Robust::none) fit["robust_scale"] = result.robustScale;
+    return {{"format", "hshfit-preset"},
+            {"version", 1},
+            {"spec", result.spec},
+            {"source", fmt::format("fit of {} to {}", result.model, report.data)},
+            {"generator", fmt::format("hshfit {}", version)},
+            {"fit", std::move(fit)}};
+}
+
+}  // namespace hshfit::brdfs

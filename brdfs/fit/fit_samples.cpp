@@ -1,0 +1,249 @@
+#include <brdfs/fit/fit_samples.h>
+
+#include <brdfs/measured/gridded/slice.h>
+#include <brdfs/measured/merl.h>
+#include <brdfs/measured/scattered/scattered.h>
+#include <hshfit/error.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+namespace hshfit::brdfs {
+namespace {
+
+double square(double x) {
+    return x * x;
+}
+
+/// Takes samples one by one and counts those left out.
+class Gatherer {
+public:
+    Gatherer(const Brdf& data, const SampleOptions& options)
+        : options_(options), channelCount_(data.channels().count()) {
+        samples_.channels = data.channels();
+        samples_.isotropic = data.laws().isotropic;
+        lowest_ = options.grazingCut < 90 ? std::cos(radians(options.grazingCut)) : 0;
+    }
+
+    void belowHorizon() { ++samples_.masked.belowHorizon; }
+    void invalid() { ++samples_.masked.invalid; }
+
+    /// `f`: a value per channel.
+    void add(const DirectionPair& pair, const double* f, double weight) {
+        Masked& masked = samples_.masked;
+        const double least = std::min(pair.wi.z, pair.wo.z);
+        if (!(least > 0)) {
+            ++masked.belowHorizon;
+        } else if (!std::all_of(f, f + channelCount_, [](double v) { return std::isfinite(v); })) {
+            ++masked.notFinite;
+        } else if (least < lowest_) {
+            ++masked.grazing;
+        } else {
+            samples_.wiX.push_back(pair.wi.x);
+            samples_.wiY.push_back(pair.wi.y);
+            samples_.wiZ.push_back(pair.wi.z);
+            samples_.wo.push_back(pair.wo);
+            samples_.weights.push_back(weight);
+            interleaved_.insert(interleaved_.end(), f, f + channelCount_);
+        }
+    }
+
+    void reserve(std::size_t count) {
+        for (auto* list : {&samples_.wiX, &samples_.wiY, &samples_.wiZ, &samples_.weights})
+            list->reserve(count);
+        samples_.wo.reserve(count);
+        interleaved_.reserve(count * channelCount_);
+    }
+
+    FitSamples finish(const Brdf& data, bool solidAngles) {
+        const std::size_t count = samples_.size();
+        const Masked& m = samples_.masked;
+        if (count == 0)
+            throw NumericError(fmt::format(
+                "{}: no sample is left to fit: {} below the horizon, {} invalid or not covered, "
+                "{} not finite, {} beyond the grazing cut",
+                data.name(), m.belowHorizon, m.invalid, m.notFinite, m.grazing));
+        samples_.values.resize(interleaved_.size());
+        for (std::size_t c = 0; c < channelCount_; ++c)
+            for (std::size_t k = 0; k < count; ++k)
+                samples_.values[c * count + k] = interleaved_[k * channelCount_ + c];
+        interleaved_ = {};
+        samples_.solidAngles = options_.weights == SampleWeights::solidAngle ||
+                               (options_.weights == SampleWeights::automatic && solidAngles);
+        if (!samples_.solidAngles) std::ranges::fill(samples_.weights, 1.0);
+        const double sum = std::accumulate(samples_.weights.begin(), samples_.weights.end(), 0.0);
+        for (double& weight : samples_.weights) weight *= static_cast<double>(count) / sum;
+        if (options_.most == 0 || options_.most >= count) return std::move(samples_);
+        FitSamples drawn = samples_.drawn(options_.most, options_.seed);
+        drawn.masked.notDrawn = count - drawn.size();
+        return drawn;
+    }
+
+private:
+    SampleOptions options_;
+    std::size_t channelCount_;
+    double lowest_;
+    FitSamples samples_;
+    std::vector<double> interleaved_;
+};
+
+/// The solid angle between two polar angles, over 2 pi; nothing beyond a right angle.
+double band(double from, double to) {
+    return std::cos(std::max(from, 0.0)) - std::cos(std::min(to, pi / 2));
+}
+
+/// The share of d(wi) d(wo) of bins around the indices h (theta_h of them by `half`) and theta_d.
+template <class Half>
+double cellMeasure(const Half& half, double h, double thetaDifference, double step) {
+    const double low = h > 0.5 ? half(h - 0.5) : 0.0;
+    return band(low, half(h + 0.5)) * 4 * std::cos(thetaDifference) *
+           band(thetaDifference - step / 2, thetaDifference + step / 2);
+}
+
+void gatherMerl(const MerlBrdf& table, Gatherer& gatherer) {
+    const MerlLayout& layout = table.layout();
+    gatherer.reserve(layout.cells() * 4 / 5);
+    for (std::size_t h = 0; h < MerlLayout::halfCount; ++h)
+        for (std::size_t d = 0; d < MerlLayout::differenceCount; ++d) {
+            const double th = static_cast<double>(h), td = static_cast<double>(d);
+            const double measure = cellMeasure(merlHalfAngle, th, radians(td), radians(1));
+            for (std::size_t p = 0; p < layout.azimuthCount; ++p) {
+                const DirectionPair pair = merlDirections(th, td, static_cast<double>(p));
+                if (std::min(pair.wi.z, pair.wo.z) <= 1e-12) {
+                    gatherer.belowHorizon();
+                    continue;
+                }
+                const std::size_t cell = layout.cell(h, d, p);
+                const std::array f{table.stored(0, cell), table.stored(1, cell),
+                                   table.stored(2, cell)};
+                if (std::ranges::any_of(f, [](double v) { return v < 0; }))
+                    gatherer.invalid();
+                else
+                    gatherer.add(pair, f.data(), measure);
+            }
+        }
+}
+
+void addIfCovered(const Brdf& data, const DirectionPair& pair, double measure, Gatherer& gatherer) {
+    if (std::min(pair.wi.z, pair.wo.z) <= 1e-12) return gatherer.belowHorizon();
+    unsigned char covered = 0;
+    data.coverage(pair.wo, {&pair.wi.x, &pair.wi.y, &pair.wi.z, 1}, &covered);
+    if (!covered) return gatherer.invalid();
+    gatherer.add(pair, evaluate(data, pair.wi, pair.wo).data(), measure);
+}
+
+void gatherSlices(const SliceBrdf& slices, Gatherer& gatherer) {
+    const SliceLayout& layout = slices.layout();
+    const auto half = [&](double h) { return layout.thetaHalf(h); };
+    const double step = layout.thetaDifference(1) - layout.thetaDifference(0);
+    for (const double phi : layout.phi)
+        for (std::size_t d = 0; d < layout.differenceCount; ++d)
+            for (std::size_t h = 0; h < layout.halfCount; ++h) {
+                const double th = static_cast<double>(h);
+                const double thetaD = layout.thetaDifference(static_cast<double>(d));
+                addIfCovered(slices, fromHalfDifference(half(th), 0, thetaD, radians(phi)),
+                             cellMeasure(half, th, thetaD, step), gatherer);
+            }
+}
+
+void gatherScattered(const Scattered& scattered, Gatherer& gatherer) {
+    const Samples& samples = scattered.samples();
+    const std::size_t channels = samples.channels.count();
+    for (std::size_t k = 0; k < samples.size(); ++k)
+        gatherer.add({samples.wi[k], samples.wo[k]}, samples.values.data() + k * channels, 1);
+}
+
+/// Any other BRDF, at the nodes that the header names.
+void gatherNodes(const Brdf& data, Gatherer& gatherer) {
+    constexpr int halfCount = 45, differenceCount = 30, azimuthCount = 30, turnCount = 12;
+    const auto half = [](double h) { return pi / 2 * square((h + 0.5) / halfCount); };
+    const int turns = data.laws().isotropic ? 1 : turnCount;
+    for (int h = 0; h < halfCount; ++h)
+        for (int d = 0; d < differenceCount; ++d) {
+            const double thetaD = radians(3 * (d + 0.5));
+            const double measure = cellMeasure(half, h, thetaD, radians(3));
+            for (int p = 0; p < azimuthCount; ++p)
+                for (int t = 0; t < turns; ++t)
+                    addIfCovered(data,
+                                 fromHalfDifference(half(h), (t + 0.5) * 2 * pi / turns, thetaD,
+                                                    radians(12 * (p + 0.5))),
+                                 measure, gatherer);
+        }
+}
+
+}  // namespace
+
+SampleWeights findSampleWeights(std::string_view name) {
+    if (name == "auto") return SampleWeights::automatic;
+    if (name == "equal") return SampleWeights::equal;
+    if (name == "solid-angle") return SampleWeights::solidAngle;
+    throw UsageError(fmt::format("unknown weights '{}'; known: auto, equal, solid-angle", name));
+}
+
+FitSamples FitSamples::subset(const std::vector<std::size_t>& indices) const {
+    FitSamples result;
+    result.channels = channels;
+    result.isotropic = isotropic;
+    result.solidAngles = solidAngles;
+    result.masked = masked;
+    double sum = 0;
+    for (const std::size_t k : indices) {
+        result.wiX.push_back(wiX[k]);
+        result.wiY.push_back(wiY[k]);
+        result.wiZ.push_back(wiZ[k]);
+        result.wo.push_back(wo[k]);
+        result.weights.push_back(weights[k]);
+        sum += weights[k];
+    }
+    for (std::size_t c = 0; c < channels.count(); ++c)
+        for (const std::size_t k : indices) result.values.push_back(value(c, k));
+    const double count = static_cast<double>(indices.size());
+    if (sum > 0)
+        for (double& weight : result.weights) weight *= count / sum;
+    return result;
+}
+
+FitSamples FitSamples::drawn(std::size_t count, std::uint64_t seed) const {
+    if (count >= size()) return *this;
+    std::mt19937_64 random(seed);
+    std::vector<std::size_t> indices;
+    for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t first = k * size() / count, next = (k + 1) * size() / count;
+        indices.push_back(first + random() % (next - first));
+    }
+    return subset(indices);
+}
+
+FitSamples FitSamples::channel(std::size_t c) const {
+    FitSamples result = *this;
+    result.channels = Channels::grey();
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(c * size());
+    result.values.assign(first, first + static_cast<std::ptrdiff_t>(size()));
+    return result;
+}
+
+FitSamples gatherSamples(const Brdf& data, const SampleOptions& options) {
+    if (data.channels().kind == Channels::Kind::spectral)
+        throw UsageError(fmt::format(
+            "{}: has wavelengths; models have R, G and B: fit it with --rgb", data.name()));
+    Gatherer gatherer(data, options);
+    bool solidAngles = true;
+    if (const auto* merl = dynamic_cast<const MerlBrdf*>(&data)) {
+        gatherMerl(*merl, gatherer);
+    } else if (const auto* slices = dynamic_cast<const SliceBrdf*>(&data)) {
+        gatherSlices(*slices, gatherer);
+    } else if (const auto* scattered = dynamic_cast<const Scattered*>(&data)) {
+        gatherScattered(*scattered, gatherer);
+        solidAngles = false;
+    } else {
+        gatherNodes(data, gatherer);
+    }
+    return gatherer.finish(data, solidAngles);
+}
+
+}  // namespace hshfit::brdfs

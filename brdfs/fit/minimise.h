@@ -1,0 +1,36 @@
+#pragma once
+
+#include <brdfs/fit/normal_equations.h>
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+struct MinimiseOptions {
+    int iterations = 200;
+    /// Relative change of the cost, and of x, that counts as converged.
+    double costTolerance = 1e-12, stepTolerance = 1e-10;
+};
+
+/// What Ceres says of a run.
+struct Minimum {
+    std::vector<double> x;
+    double cost = 0;
+    bool converged = false;
+    std::string message;  ///< Ceres' own
+    int iterations = 0;
+    int evaluations = 0;
+};
+
+/// A local minimum within bounds by Ceres' Levenberg-Marquardt method. The equations reach Ceres as
+/// n + 1 residuals with the same cost, gradient and Gauss-Newton matrix. Without parameters it is
+/// the point itself, converged. Ceres has to be given finite values; where they are not, it steps
+/// back.
+Minimum minimise(const std::function<Equations(std::span<const double>, bool)>& equations,
+                 std::vector<double> start, std::span<const double> lower,
+                 std::span<const double> upper, const MinimiseOptions& options = {});
+
+}  // namespace hshfit::brdfs

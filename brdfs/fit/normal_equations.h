@@ -1,0 +1,72 @@
+#pragma once
+
+#include <brdfs/fit/fit_samples.h>
+#include <brdfs/fit/loss.h>
+#include <brdfs/fit/parametric_sum.h>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// A sum of squares (or of robust kernels of squares) at a point: half its value, the gradient and
+/// the Gauss-Newton matrix. gradient^T hessian^-1 gradient <= 2 cost.
+struct Equations {
+    double cost = 0;
+    std::vector<double> gradient;  ///< [n]
+    std::vector<double> hessian;   ///< [n * n]
+    std::vector<double> spread;    ///< [n * n], only if asked for: sum of squared gradient terms
+};
+
+/// The least-squares problem of one fit. Samples are streamed in blocks of a fixed size whose sums
+/// are added in order, so that results do not depend on the number of threads; memory does not
+/// grow with samples times parameters.
+///
+/// cost = sum_{k,c} w_k rho((g(f) - g(measured))^2) / 2, divided by sum_{k,c} w_k g(measured)^2
+/// (by sum w where all is zero).
+class FitProblem {
+public:
+    FitProblem(const FitSamples& samples, const ParametricSum& sum, Loss::Kind loss);
+
+    const FitSamples& samples() const { return samples_; }
+    const ParametricSum& sum() const { return sum_; }
+    Loss::Kind loss() const { return loss_; }
+    std::size_t channels() const { return samples_.channels.count(); }
+    std::size_t shapeCount() const { return sum_.shapes().size(); }
+    std::size_t linearCount() const { return sum_.linears().size() * channels(); }
+    double normalisation() const { return normalisation_; }
+
+    void setRobust(Robust robust, double scale) { robust_ = robust, scale_ = scale; }
+
+    /// By the shapes' u alone, linear parameters at their best within bounds (variable projection:
+    /// Golub & Pereyra 1973, 10.1137/0710036; Kaufman's form of the matrix). `linear[k * channels
+    /// + c]` receives them. For a loss that is not linear, of the problem linearised about the
+    /// measured values: its weights are multiplied by the squared slope of g there.
+    Equations eliminated(std::span<const double> u, bool derivatives,
+                         std::vector<double>& linear) const;
+
+    /// By x = shapes' u, then linear[k * channels + c]; any loss and kernel.
+    Equations joint(std::span<const double> x, bool derivatives, bool spread = false) const;
+
+    /// g(f) - g(measured) at x: [channel * samples + k].
+    std::vector<double> residuals(std::span<const double> x) const;
+    /// f at x, likewise.
+    std::vector<double> values(std::span<const double> x) const;
+
+private:
+    const FitSamples& samples_;
+    const ParametricSum& sum_;
+    Loss::Kind loss_;
+    Robust robust_ = Robust::none;
+    double scale_ = 1;
+    double normalisation_ = 1;
+    std::vector<std::vector<double>> projectionWeights_;  ///< roots; of all channels or of each
+};
+
+/// The minimum of x^T A x / 2 - b^T x for lower <= x <= upper, A positive semidefinite [n * n]:
+/// bounded-variable active sets (Stark & Parker 1995). Columns of norm 0 stay at `lower`.
+std::vector<double> solveBounded(std::span<const double> a, std::span<const double> b,
+                                 std::span<const double> lower, std::span<const double> upper);
+
+}  // namespace hshfit::brdfs

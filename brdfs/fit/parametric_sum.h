@@ -1,0 +1,107 @@
+#pragma once
+
+#include <brdfs/fit/free_parameters.h>
+#include <hshfit/brdf.h>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// A free parameter that f is not linear in. A fit moves `u` = value, or ln(value + offset) if
+/// logarithmic.
+struct ShapeParameter {
+    std::size_t term = 0;  ///< of the sum
+    std::string name;      ///< "ggx.alpha"; as the key alone if the sum has one term
+    FreeParameter free;
+    double offset = 0;  ///< keeps the logarithm finite where the least value is 0
+
+    double toScale(double value) const;
+    double toValue(double u) const;
+    double lower() const { return toScale(free.min); }
+    double upper() const { return toScale(free.max); }
+    double step() const;  ///< of u, for differences
+};
+
+/// A free parameter that f is linear in, whatever the shape; one value per channel. min is 0.
+struct LinearParameter {
+    std::size_t term = 0;
+    std::string name;
+    std::string key;
+    double min = 0, max = 0;
+};
+
+/// The shape-dependent functions of which f is a sum, for one set of shape values:
+///     f_c = column_0 + sum_k linear_{k,c} column_k
+/// for the terms [first, last) of the sum.
+class Columns {
+public:
+    /// out[k * wi.count + j] for the columns of these terms: 0 first, then the linear ones in
+    /// order. Thread-safe.
+    void eval(const Direction& wo, DirectionBatch wi, double* out) const;
+    std::size_t count() const { return count_; }
+
+private:
+    friend class ParametricSum;
+    struct Probe {
+        std::unique_ptr<Brdf> brdf;  ///< channel i has linear parameter first + i - 1 at its unit
+        std::size_t base = 0;        ///< of the term: its first column less one
+        std::size_t linear = 0;      ///< how many of them
+        bool first = true;           ///< of the term: adds to column 0
+        std::vector<double> unit;
+    };
+    std::vector<Probe> probes_;
+    std::size_t count_ = 1;
+};
+
+/// A sum of catalog models with free parameters, "MODEL[:key=value,…][+MODEL…]".
+class ParametricSum {
+public:
+    /// Throws UsageError as parsing does, or if nothing is free.
+    ParametricSum(std::string_view spec, bool isotropic);
+
+    const std::string& spec() const { return spec_; }
+    const std::vector<ShapeParameter>& shapes() const { return shapes_; }
+    const std::vector<LinearParameter>& linears() const { return linears_; }
+    /// Indices of the linear parameters of the term that shape j belongs to.
+    const std::vector<std::size_t>& linearsOf(std::size_t shape) const;
+    /// Whether every term vanishes where its linear parameters are 0.
+    bool scalable() const { return scalable_; }
+
+    /// All terms, or those of one, at values (not u) of all shapes.
+    Columns columns(std::span<const double> shapes) const;
+    Columns columnsOf(std::size_t term, std::span<const double> shapes) const;
+
+    /// The specification with values filled in. `shapes[c]` for each channel c (one: shared),
+    /// linear[k * channels + c]. Throws UsageError if shapes differ between channels in a number
+    /// of a term that does not vanish with its linear parameters.
+    std::string filledIn(const std::vector<std::vector<double>>& shapes,
+                         std::span<const double> linear, std::size_t channels) const;
+
+private:
+    struct Term {
+        const Model* model = nullptr;
+        std::string stated;                ///< as given
+        std::vector<std::size_t> shapes;   ///< indices
+        std::vector<std::size_t> linears;  ///< indices
+    };
+    std::string shapeText(const Term& term, std::span<const double> shapes) const;
+    std::unique_ptr<Brdf> make(const Term& term, std::span<const double> shapes,
+                               const std::string& more) const;
+    void addProbes(const Term& term, std::span<const double> shapes, Columns& columns,
+                   std::size_t base) const;
+    void findLinear(Term& term, std::vector<FreeParameter>& free);
+    std::string filledTerm(const Term& term, const std::vector<std::vector<double>>& shapes,
+                           std::span<const double> linear, std::size_t channels) const;
+
+    std::string spec_;
+    std::vector<Term> terms_;
+    std::vector<ShapeParameter> shapes_;
+    std::vector<LinearParameter> linears_;
+    bool scalable_ = true;
+};
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,134 @@
+#include "command.h"
+
+#include <brdfs/catalog.h>
+#include <brdfs/fit/fit.h>
+#include <brdfs/fit/fit_json.h>
+#include <brdfs/measured/measured_brdf.h>
+#include <hshfit/error.h>
+#include <hshfit/output/atomic_file.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <ctime>
+
+namespace hshfit::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct FitArguments {
+    std::string data, model, output, loss = "cosine", robust = "none", weights = "auto";
+    double robustScale = 0;
+    bool perChannel = false, accept = false, rgb = false;
+    int starts = 16;
+    std::uint64_t seed = 1;
+    brdfs::SampleOptions samples;
+};
+
+brdfs::FitOptions optionsOf(const FitArguments& arguments) {
+    brdfs::FitOptions options;
+    options.model = arguments.model;
+    options.loss = brdfs::findLoss(arguments.loss).kind;
+    options.robust = brdfs::findRobust(arguments.robust);
+    options.robustScale = arguments.robustScale;
+    options.perChannel = arguments.perChannel;
+    options.starts = arguments.starts;
+    options.seed = arguments.seed;
+    return options;
+}
+
+brdfs::FitSamples samplesOf(const FitArguments& arguments, const std::string& data) {
+    brdfs::SampleOptions options = arguments.samples;
+    options.weights = brdfs::findSampleWeights(arguments.weights);
+    options.seed = arguments.seed;
+    const auto brdf = openSource(data, arguments.rgb);
+    brdfs::FitSamples samples = brdfs::gatherSamples(*brdf, options);
+    if (const auto* measured = dynamic_cast<const brdfs::MeasuredBrdf*>(brdf.get()))
+        measured->checkReadable();
+    else
+        brdf->checkIntact();
+    return samples;
+}
+
+std::string text(const brdfs::FitResult& result) {
+    std::string lines = fmt::format("{}\n", result.spec);
+    for (const brdfs::FittedParameter& p : result.parameters) {
+        const std::string error = p.standardError    ? fmt::format("+- {:.3g}", *p.standardError)
+                                  : !p.bound.empty() ? fmt::format("at its {} bound", p.bound)
+                                                     : "not determined by the data";
+        lines += fmt::format("  {:<24} {:>2} {:<14.8g} {}\n", p.name, p.channel, p.value, error);
+    }
+    for (const auto& set : result.ambiguous)
+        lines += fmt::format("  ambiguous together: {}\n", fmt::join(set, ", "));
+    lines += fmt::format("  rms residual {:.6g} over {} values, {} iterations, {}\n", result.loss,
+                         result.values, result.iterations,
+                         result.converged ? "converged" : "NOT CONVERGED");
+    return lines;
+}
+
+void runFit(const FitArguments& arguments, Globals& globals) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t cpuStart = std::clock();
+    brdfs::FitOptions options = optionsOf(arguments);
+    const brdfs::FitSamples samples = samplesOf(arguments, arguments.data);
+    Progress progress(globals, "fit");
+    options.progress = progress.callback();
+    const brdfs::FitResult result = brdfs::fit(samples, options);
+    if (!result.converged && !arguments.accept)
+        throw NumericError(
+            fmt::format("{}: the fit of {} did not converge ({}); --accept takes it as it is",
+                        arguments.data, arguments.model, result.message));
+    Json preset = brdfs::fitPreset({arguments.data, &samples, options, result});
+    if (!arguments.output.empty()) writeFile(arguments.output, preset.dump(2) + "\n");
+    if (!globals.json) return printText(text(result));
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    preset["time"] = {
+        {"seconds", elapsed.count()},
+        {"cpu_seconds", static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC}};
+    printJson(preset);
+}
+
+}  // namespace
+
+void addFit(CLI::App& app, Globals& globals) {
+    auto arguments = std::make_shared<FitArguments>();
+    CLI::App& command = addCommand(app, globals, "fit", "Fit analytic models to data",
+                                   "hshfit fit table.binary --model lambert+ggx -o fit.json");
+    command.add_option("DATA", arguments->data, "BRDF or coefficient file")->required();
+    command
+        .add_option("--model", arguments->model,
+                    "MODEL[:key=value,...][+MODEL...]: what is given is not fitted")
+        ->required();
+    command.add_option("-o,--output", arguments->output, "Where the fit goes, a preset (.json)");
+    command.add_option("--loss", arguments->loss, "l2, cosine, log, cube-root or log-relative")
+        ->capture_default_str();
+    command.add_option("--robust", arguments->robust, "none, huber or cauchy")
+        ->capture_default_str();
+    command
+        .add_option("--robust-scale", arguments->robustScale,
+                    "Residual at which it sets in; 0: from the residuals' spread")
+        ->check(CLI::Range(0.0, 1e300));
+    command.add_flag("--per-channel", arguments->perChannel,
+                     "Shapes of their own for each channel");
+    command.add_option("--weights", arguments->weights, "auto, equal or solid-angle")
+        ->capture_default_str();
+    command
+        .add_option("--grazing-cut", arguments->samples.grazingCut,
+                    "Leave out samples with a polar angle above this, degrees")
+        ->check(CLI::Range(0.0, 90.0));
+    command.add_option("--samples", arguments->samples.most, "Draw so many samples; 0: all");
+    command.add_option("--starts", arguments->starts, "Local searches")
+        ->check(CLI::Range(1, 10000))
+        ->capture_default_str();
+    command.add_option("--seed", arguments->seed, "Of starts and drawn samples")
+        ->capture_default_str();
+    command.add_flag("--accept", arguments->accept, "Take a fit that did not converge");
+    addRgb(command, arguments->rgb);
+    command.callback([arguments, &globals] { runFit(*arguments, globals); });
+}
+
+}  // namespace hshfit::cli
