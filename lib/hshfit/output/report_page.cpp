@@ -1,10 +1,10 @@
+#include <hshfit/output/page_figures.h>
 #include <hshfit/output/report_files.h>
 #include <hshfit/version.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <regex>
 
 #include <fmt/format.h>
 #include <kainjow/mustache.hpp>
@@ -32,19 +32,6 @@ std::string accuracyText(const std::optional<double>& accuracy) {
     if (missing < 5e-9) return "100 %";
     const int digits = std::clamp(static_cast<int>(1 - std::floor(std::log10(missing)) - 1), 1, 8);
     return fmt::format("{:.{}f} %", 100 * *accuracy, digits);
-}
-
-/// The figure as part of a page: no prologue, no fixed size, names of its own.
-std::string inlined(std::string svg, std::size_t index) {
-    svg.erase(0, svg.find("<svg"));
-    svg = std::regex_replace(svg, std::regex(R"re(\s(width|height)="\d+"(?=[^>]*viewBox))re"), "");
-    svg = std::regex_replace(svg, std::regex("<title>[^<]*</title>"), "");
-    svg = std::regex_replace(svg, std::regex("<svg"), "<svg role=\"img\"",
-                             std::regex_constants::format_first_only);
-    const std::string own = fmt::format("f{}-", index);
-    svg = std::regex_replace(svg, std::regex(R"re(( id=["'])(?=[A-Za-z]))re"), "$1" + own);
-    svg = std::regex_replace(svg, std::regex(R"re((href=["']#|url\(#))re"), "$1" + own);
-    return svg;
 }
 
 /// The fewest coefficients with which a curve reaches a threshold, 0 if none does. Only of bases
@@ -149,6 +136,7 @@ std::string reportPage(const Report& report, const std::vector<std::string>& fig
     const std::size_t count = report.reports.size();
     data page;
     page.set("generator", std::string("hshfit ") + version);
+    page.set("style", std::string(pageStyle()));
     page.set("count", std::to_string(count));
     page.set("plural", count == 1 ? "" : "s");
     page.set("many", count > 1);
@@ -162,12 +150,8 @@ std::string reportPage(const Report& report, const std::vector<std::string>& fig
     for (std::size_t i = 0; i < count; ++i) {
         data entry = entryData(report.reports[i], i + 1);
         if (i < figures.size()) {
-            std::smatch match;
-            if (std::regex_search(figures[i], match,
-                                  std::regex("(?:GNUPLOT) (\\d[^<]*?) *</desc>"))) {
-                plotter = "gnuplot " + match[1].str();
-            }
-            entry.set("figure", inlined(figures[i], i + 1));
+            plotter = plotterOf(figures[i]);
+            entry.set("figure", inlinedFigure(figures[i], i + 1));
         }
         entries.push_back(entry);
     }

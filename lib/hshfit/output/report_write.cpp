@@ -1,40 +1,24 @@
 #include <hshfit/error.h>
 #include <hshfit/output/atomic_file.h>
 #include <hshfit/output/gnuplot.h>
+#include <hshfit/output/page_figures.h>
 #include <hshfit/output/report_files.h>
 
-#include <cerrno>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <regex>
-#include <system_error>
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 namespace hshfit {
 namespace {
 
 namespace fs = std::filesystem;
 
-void makeFolder(const std::string& folder) {
-    if (::mkdir(folder.c_str(), 0777) == 0) return;
-    const int error = errno;
-    if (error == EEXIST && fs::is_directory(folder)) return;
-    throw OutputError(fmt::format("cannot make the folder '{}': {}", folder,
-                                  std::generic_category().message(error)));
-}
-
-std::string contentOf(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// Blanks the time at which cairo wrote a PDF; the length, and so the table of offsets, stays.
 void removeCreationDate(const std::string& path) {
-    const std::string pdf = contentOf(path);
+    const std::string pdf = fileContent(path);
     static const std::regex date(R"(/CreationDate \([^)]*\))");
     std::smatch match;
     if (!std::regex_search(pdf, match, date)) return;
@@ -68,7 +52,7 @@ std::vector<std::string> figuresForPage(const std::string& folder, std::size_t c
         const AtomicFile svg(folder + "/figure.svg");
         runGnuplot(folder,
                    script(fmt::format("first={0}; last={0}; svg={1}; pdf=''", i, drawing(svg))));
-        figures.push_back(contentOf(svg.temporaryPath()));
+        figures.push_back(fileContent(svg.temporaryPath()));
     }
     return figures;
 }
