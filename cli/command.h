@@ -37,8 +37,8 @@ void addProject(CLI::App& app, Globals& globals);
 void addReport(CLI::App& app, Globals& globals);
 void addCompare(CLI::App& app, Globals& globals);
 void addConvert(CLI::App& app, Globals& globals);
-void addRender(CLI::App& app, Globals& globals);
 void addFit(CLI::App& app, Globals& globals);
+void addRender(CLI::App& app, Globals& globals);
 void addLtc(CLI::App& app, Globals& globals);
 
 /// A BRDF specification. With `rgb`, a spectral one as linear Rec. 709; others stay as they are.

@@ -36,8 +36,8 @@ int run(int argc, char** argv) {
     cli::addReport(app, globals);
     cli::addCompare(app, globals);
     cli::addConvert(app, globals);
-    cli::addRender(app, globals);
     cli::addFit(app, globals);
+    cli::addRender(app, globals);
     cli::addLtc(app, globals);
 
     try {
