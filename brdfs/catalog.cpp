@@ -19,6 +19,7 @@
 #include <brdfs/analytic/sg.h>
 #include <brdfs/analytic/sgd.h>
 #include <brdfs/analytic/ward.h>
+#include <brdfs/fit/gaussian_mixture_json.h>
 #include <brdfs/measured/bsdf_xml/bsdf_xml.h>
 #include <brdfs/measured/bsdf_xml/klems_writer.h>
 #include <brdfs/measured/bsdf_xml/tree_writer.h>
@@ -105,6 +106,7 @@ std::unique_ptr<Brdf> openPresetFile(const std::string& path, std::uint64_t size
     const std::vector<unsigned char> bytes = readHead(path, most);
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (isPresetCollection(text)) return openMaterial(text, path, material);
+    if (material.empty() && isGaussianMixture(text)) return openGaussianMixture(text, path);
     if (!material.empty())
         throw UsageError(
             fmt::format("{}: a preset takes no options, '{}' was given", path, material));

@@ -40,6 +40,7 @@ void addConvert(CLI::App& app, Globals& globals);
 void addFit(CLI::App& app, Globals& globals);
 void addRender(CLI::App& app, Globals& globals);
 void addLtc(CLI::App& app, Globals& globals);
+void addGaussians(CLI::App& app, Globals& globals);
 
 /// A BRDF specification. With `rgb`, a spectral one as linear Rec. 709; others stay as they are.
 std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb);

@@ -39,6 +39,7 @@ int run(int argc, char** argv) {
     cli::addFit(app, globals);
     cli::addRender(app, globals);
     cli::addLtc(app, globals);
+    cli::addGaussians(app, globals);
 
     try {
         app.parse(argc, argv);
