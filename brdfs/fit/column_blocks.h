@@ -8,9 +8,10 @@
 
 namespace hshfit::brdfs {
 
-/// The columns of a parametric sum at samples, and their derivatives by the shapes' u (central
-/// differences through Brdf::eval), for one u: column 0 and the linear ones, then for each shape j
-/// its derivative of column 0 and of the linear ones of its term.
+/// The columns of a parametric sum at samples, and their derivatives by the shapes' u, for one u:
+/// column 0 and the linear ones, then for each shape j its derivative of column 0 and of the linear
+/// ones of its term. By a LobeFormula where the term has one, else through Brdf::eval with central
+/// differences.
 class ColumnBlocks {
 public:
     ColumnBlocks(const FitSamples& samples, const ParametricSum& sum, std::span<const double> u,
@@ -29,9 +30,21 @@ private:
         Columns above, below;
         double inverse = 0;
     };
+    struct Term {
+        const LobeFormula* formula = nullptr;
+        std::vector<double> shapes;  ///< values, for the formula
+        std::vector<double> slopes;  ///< derivatives of these by u
+        Columns columns;
+        std::vector<Difference> differences;
+        std::size_t linears = 0, firstLinear = 0, firstSlope = 0;
+    };
+    void fillByFormula(const Term& term, std::size_t begin, std::size_t size, double* out) const;
+    void fillByDifferences(const Term& term, std::size_t begin, std::size_t size,
+                           double* out) const;
+
     const FitSamples& samples_;
-    Columns columns_;
-    std::vector<Difference> differences_;
+    bool derivatives_;
+    std::vector<Term> terms_;
     std::vector<std::size_t> first_;
     std::size_t count_;
 };

@@ -171,6 +171,15 @@ double medianSize(std::vector<double> residuals) {
     return *middle;
 }
 
+/// A search that goes on from another one's minimum.
+Minimum refined(const FitProblem& problem, bool linear, const Minimum& start,
+                const MinimiseOptions& options) {
+    const Search search(problem, linear);
+    if (!linear) return search.fromAll(start, options);
+    const auto shapes = static_cast<std::ptrdiff_t>(problem.shapeCount());
+    return search.eliminated({start.x.begin(), start.x.begin() + shapes}, options);
+}
+
 struct Fitted {
     Minimum minimum;
     double robustScale = 0;
@@ -188,9 +197,7 @@ Fitted search(FitProblem& problem, const FitOptions& options) {
     Fitted best;
     int iterations = 0, evaluations = 0;
     for (const Minimum& start : distinct(minima, samples.size() > manySamples ? 1 : 3)) {
-        const std::vector<double> u(
-            start.x.begin(), start.x.begin() + static_cast<std::ptrdiff_t>(problem.shapeCount()));
-        Minimum minimum = linear ? search.eliminated(u, last) : search.fromAll(start, last);
+        Minimum minimum = refined(problem, linear, start, last);
         iterations += minimum.iterations, evaluations += minimum.evaluations;
         if (best.minimum.x.empty() || byCost(minimum, best.minimum))
             best.minimum = std::move(minimum);
@@ -239,7 +246,7 @@ void describe(const FitProblem& problem, const std::vector<double>& x, Part& par
             const ShapeParameter& shape = sum.shapes()[i];
             parameter.name = shape.name;
             parameter.value = shape.toValue(x[i]);
-            slope.push_back(shape.free.logarithmic ? parameter.value + shape.offset : 1);
+            slope.push_back(shape.slope(parameter.value));
             part.shapes.push_back(parameter.value);
         } else {
             const std::size_t k = (i - shapes) / channels, c = (i - shapes) % channels;

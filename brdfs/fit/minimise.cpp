@@ -25,7 +25,7 @@ public:
     bool Evaluate(double const* const* parameters, double* residuals,
                   double** jacobians) const override {
         const bool derivatives = jacobians && jacobians[0];
-        const Equations equations = equations_({parameters[0], count_}, derivatives);
+        const Equations& equations = at(parameters[0]);
         if (!std::isfinite(equations.cost)) return false;
         const auto n = static_cast<Eigen::Index>(count_);
         std::fill_n(residuals, count_ + 1, 0.0);
@@ -56,8 +56,20 @@ public:
     }
 
 private:
+    /// Ceres asks for the cost of a trial, and for its derivatives if it is taken, as most are:
+    /// both at once, remembered.
+    const Equations& at(const double* x) const {
+        if (last_.size() != count_ || !std::equal(last_.begin(), last_.end(), x)) {
+            last_.assign(x, x + count_);
+            remembered_ = equations_({x, count_}, true);
+        }
+        return remembered_;
+    }
+
     const Function& equations_;
     std::size_t count_;
+    mutable std::vector<double> last_;
+    mutable Equations remembered_;
 };
 
 }  // namespace

@@ -69,15 +69,41 @@ Matrix gramOf(const FitSamples& samples, const ColumnBlocks& columns,
     return matrix;
 }
 
-struct JointSums {
+/// Sums of one channel.
+struct ChannelSums {
     double cost = 0;
     Matrix gram;    ///< of [jacobian, residual]
     Matrix spread;  ///< of jacobian times weighted residual; empty unless asked for
+};
+
+struct JointSums {
+    std::vector<ChannelSums> channels;
     void add(const JointSums& other) {
-        cost += other.cost, gram += other.gram;
-        if (spread.size() > 0) spread += other.spread;
+        for (std::size_t c = 0; c < channels.size(); ++c) {
+            channels[c].cost += other.channels[c].cost;
+            channels[c].gram += other.channels[c].gram;
+            if (channels[c].spread.size() > 0) channels[c].spread += other.channels[c].spread;
+        }
     }
 };
+
+/// df / d(u, linear) of one channel from the columns of a block; the last column is left free.
+Matrix jacobianOf(const ParametricSum& sum, const ColumnBlocks& columns, const Matrix& z,
+                  const std::vector<double>& linear) {
+    const auto shapes = static_cast<Eigen::Index>(sum.shapes().size());
+    const auto terms = static_cast<Eigen::Index>(linear.size());
+    Matrix rows(z.rows(), shapes + terms + 1);
+    for (Eigen::Index j = 0; j < shapes; ++j) {
+        const auto first =
+            static_cast<Eigen::Index>(columns.derivative(static_cast<std::size_t>(j)));
+        const auto& own = sum.linearsOf(static_cast<std::size_t>(j));
+        rows.col(j) = z.col(first);
+        for (std::size_t i = 0; i < own.size(); ++i)
+            rows.col(j) += linear[own[i]] * z.col(first + 1 + static_cast<Eigen::Index>(i));
+    }
+    rows.middleCols(shapes, terms) = z.middleCols(1, terms);
+    return rows;
+}
 
 }  // namespace
 
@@ -173,89 +199,74 @@ Equations FitProblem::joint(std::span<const double> x, bool derivatives, bool sp
     const std::size_t shapes = shapeCount(), terms = sum_.linears().size();
     const ColumnBlocks columns(samples_, sum_, x.first(shapes), derivatives);
     const auto n = static_cast<Eigen::Index>(shapes + terms);
-    JointSums zero;
-    zero.gram = Matrix::Zero(derivatives ? n + 1 : 1, derivatives ? n + 1 : 1);
-    if (spread) zero.spread = Matrix::Zero(n, n);
+    ChannelSums none;
+    none.gram = Matrix::Zero(derivatives ? n + 1 : 1, derivatives ? n + 1 : 1);
+    if (spread) none.spread = Matrix::Zero(n, n);
+    const JointSums zero{std::vector<ChannelSums>(channels(), none)};
+
+    const auto addChannel = [&](const Block& block, const Matrix& z, std::size_t c,
+                                ChannelSums& sums) {
+        std::vector<double> linear;
+        for (std::size_t k = 0; k < terms; ++k) linear.push_back(x[shapes + k * channels() + c]);
+        Vector f = z.col(0);
+        for (std::size_t k = 0; k < terms; ++k)
+            f += linear[k] * z.col(static_cast<Eigen::Index>(1 + k));
+        Matrix rows = derivatives ? jacobianOf(sum_, columns, z, linear) : Matrix(z.rows(), 1);
+        Vector root(z.rows()), own(z.rows());
+        for (Eigen::Index k = 0; k < z.rows(); ++k) {
+            const std::size_t at = block.begin + static_cast<std::size_t>(k);
+            const double cosine = samples_.wiZ[at], weight = samples_.weights[at];
+            const Mapped mapped = mapValue(loss_, f(k), cosine);
+            const double r = mapped.value - mapValue(loss_, samples_.value(c, at), cosine).value;
+            const Kernel kernel = applyKernel(robust_, scale_, r * r);
+            sums.cost += 0.5 * weight * kernel.value;
+            root(k) = std::sqrt(weight * kernel.slope);
+            own(k) = root(k) * mapped.slope;
+            rows(k, rows.cols() - 1) = root(k) * r;
+        }
+        if (derivatives) rows.leftCols(n).array().colwise() *= own.array();
+        sums.gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+        if (!spread) return;
+        Matrix pulled = rows.leftCols(n);
+        pulled.array().colwise() *= rows.col(n).array();
+        sums.spread.selfadjointView<Eigen::Lower>().rankUpdate(pulled.transpose());
+    };
+    JointSums sums = sumOverBlocks(samples_.size(), zero, [&](const Block& block) {
+        Matrix z(static_cast<Eigen::Index>(block.size), static_cast<Eigen::Index>(columns.count()));
+        columns.fill(block.begin, block.size, z.data());
+        JointSums result = zero;
+        for (std::size_t c = 0; c < channels(); ++c) addChannel(block, z, c, result.channels[c]);
+        return result;
+    });
+
+    // Where the parameters of each channel stand among all.
     const auto total = static_cast<Eigen::Index>(x.size());
-    Matrix hessian = Matrix::Zero(total, total),
-           meat = Matrix::Zero(spread ? total : 0, spread ? total : 0);
+    Matrix hessian = Matrix::Zero(total, total), meat = Matrix::Zero(total, total);
     Vector gradient = Vector::Zero(total);
     Equations result;
     for (std::size_t c = 0; c < channels(); ++c) {
-        std::vector<double> linear;
-        for (std::size_t k = 0; k < terms; ++k) linear.push_back(x[shapes + k * channels() + c]);
-        const auto work = [&](const Block& block) {
-            const auto size = static_cast<Eigen::Index>(block.size);
-            Matrix z(size, static_cast<Eigen::Index>(columns.count()));
-            columns.fill(block.begin, block.size, z.data());
-            Vector f = z.col(0);
-            for (std::size_t k = 0; k < terms; ++k)
-                f += linear[k] * z.col(static_cast<Eigen::Index>(1 + k));
-            JointSums sums = zero;
-            Matrix rows(size, zero.gram.rows());
-            if (derivatives) {
-                for (std::size_t j = 0; j < shapes; ++j) {
-                    const auto first = static_cast<Eigen::Index>(columns.derivative(j));
-                    const auto& own = sum_.linearsOf(j);
-                    auto slope = rows.col(static_cast<Eigen::Index>(j));
-                    slope = z.col(first);
-                    for (std::size_t i = 0; i < own.size(); ++i)
-                        slope += linear[own[i]] * z.col(first + 1 + static_cast<Eigen::Index>(i));
-                }
-                rows.middleCols(static_cast<Eigen::Index>(shapes),
-                                static_cast<Eigen::Index>(terms)) =
-                    z.middleCols(1, static_cast<Eigen::Index>(terms));
-            }
-            Vector pull(size);
-            for (Eigen::Index k = 0; k < size; ++k) {
-                const std::size_t at = block.begin + static_cast<std::size_t>(k);
-                const double cosine = samples_.wiZ[at], weight = samples_.weights[at];
-                const Mapped own = mapValue(loss_, f(k), cosine);
-                const double r = own.value - mapValue(loss_, samples_.value(c, at), cosine).value;
-                const Kernel kernel = applyKernel(robust_, scale_, r * r);
-                sums.cost += 0.5 * weight * kernel.value;
-                const double root = std::sqrt(weight * kernel.slope);
-                rows(k, rows.cols() - 1) = root * r;
-                if (derivatives) rows.row(k).head(n) *= root * own.slope;
-                pull(k) = root * r;
-            }
-            sums.gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
-            if (spread) {
-                Matrix pulled = rows.leftCols(n);
-                pulled.array().colwise() *= pull.array();
-                sums.spread.selfadjointView<Eigen::Lower>().rankUpdate(pulled.transpose());
-            }
-            return sums;
-        };
-        JointSums sums = sumOverBlocks(samples_.size(), zero, work);
-        result.cost += sums.cost;
+        ChannelSums& own = sums.channels[c];
+        result.cost += own.cost / normalisation_;
         if (!derivatives) continue;
-        sums.gram.triangularView<Eigen::StrictlyUpper>() = sums.gram.transpose();
-        // Where the parameters of this channel stand among all.
-        const auto at = [&](Eigen::Index i) {
-            return i < static_cast<Eigen::Index>(shapes)
-                       ? i
-                       : static_cast<Eigen::Index>(
-                             shapes + (static_cast<std::size_t>(i) - shapes) * channels() + c);
-        };
-        if (spread) sums.spread.triangularView<Eigen::StrictlyUpper>() = sums.spread.transpose();
+        own.gram.triangularView<Eigen::StrictlyUpper>() = own.gram.transpose();
+        if (spread) own.spread.triangularView<Eigen::StrictlyUpper>() = own.spread.transpose();
+        std::vector<Eigen::Index> at;
+        for (std::size_t i = 0; i < shapes + terms; ++i)
+            at.push_back(
+                static_cast<Eigen::Index>(i < shapes ? i : shapes + (i - shapes) * channels() + c));
         for (Eigen::Index i = 0; i < n; ++i) {
-            gradient(at(i)) += sums.gram(i, n);
+            gradient(at[i]) += own.gram(i, n) / normalisation_;
             for (Eigen::Index j = 0; j < n; ++j) {
-                hessian(at(i), at(j)) += sums.gram(i, j);
-                if (spread) meat(at(i), at(j)) += sums.spread(i, j);
+                hessian(at[i], at[j]) += own.gram(i, j) / normalisation_;
+                if (spread)
+                    meat(at[i], at[j]) += own.spread(i, j) / (normalisation_ * normalisation_);
             }
         }
     }
-    result.cost /= normalisation_;
     if (!derivatives) return result;
-    gradient /= normalisation_, hessian /= normalisation_;
     result.gradient.assign(gradient.data(), gradient.data() + total);
     result.hessian.assign(hessian.data(), hessian.data() + total * total);
-    if (spread) {
-        meat /= normalisation_ * normalisation_;
-        result.spread.assign(meat.data(), meat.data() + total * total);
-    }
+    if (spread) result.spread.assign(meat.data(), meat.data() + total * total);
     return result;
 }
 

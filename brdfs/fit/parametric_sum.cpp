@@ -117,7 +117,8 @@ ParametricSum::ParametricSum(std::string_view spec, bool isotropic) {
         Term term{.model = &model,
                   .stated = colon == std::string::npos ? "" : part.substr(colon + 1),
                   .shapes = {},
-                  .linears = {}};
+                  .linears = {},
+                  .formula = {}};
         const Parameters stated = statedParameters(model, term.stated);
         std::vector<FreeParameter> free =
             freeParameters(model, stated, isotropic, parts.size() > 1);
@@ -125,27 +126,28 @@ ParametricSum::ParametricSum(std::string_view spec, bool isotropic) {
             return parts.size() > 1 ? fmt::format("{}.{}", model.name, key) : key;
         };
         const std::size_t firstShape = shapes_.size(), index = terms_.size();
-        for (const FreeParameter& parameter : free) {
-            ShapeParameter shape{
-                .term = index, .name = nameOf(parameter.keys.front()), .free = parameter};
-            if (parameter.logarithmic && !(parameter.min > 0))
-                shape.offset = parameter.startLow / 10;
-            term.shapes.push_back(shapes_.size());
-            shapes_.push_back(std::move(shape));
-        }
+        const auto addShapes = [&] {
+            term.shapes.clear();
+            for (const FreeParameter& parameter : free) {
+                ShapeParameter shape{
+                    .term = index, .name = nameOf(parameter.keys.front()), .free = parameter};
+                if (parameter.logarithmic && !(parameter.min > 0))
+                    shape.offset = parameter.startLow / 10;
+                term.shapes.push_back(shapes_.size());
+                shapes_.push_back(std::move(shape));
+            }
+        };
+        addShapes();
         findLinear(term, free);
         // What turned out to be linear leaves the shapes.
         shapes_.resize(firstShape);
-        term.shapes.clear();
-        for (const FreeParameter& parameter : free) {
-            ShapeParameter shape{
-                .term = index, .name = nameOf(parameter.keys.front()), .free = parameter};
-            if (parameter.logarithmic && !(parameter.min > 0))
-                shape.offset = parameter.startLow / 10;
-            term.shapes.push_back(shapes_.size());
-            shapes_.push_back(std::move(shape));
+        addShapes();
+        std::vector<std::string> keys;
+        for (const std::size_t k : term.linears) {
+            linears_[k].name = nameOf(linears_[k].key);
+            keys.push_back(linears_[k].key);
         }
-        for (const std::size_t k : term.linears) linears_[k].name = nameOf(linears_[k].key);
+        term.formula = makeLobeFormula(model, stated, free, keys);
         spec_ += (spec_.empty() ? "" : " + ") + part;
         terms_.push_back(std::move(term));
     }
@@ -156,6 +158,18 @@ ParametricSum::ParametricSum(std::string_view spec, bool isotropic) {
 
 const std::vector<std::size_t>& ParametricSum::linearsOf(std::size_t shape) const {
     return terms_[shapes_[shape].term].linears;
+}
+
+const std::vector<std::size_t>& ParametricSum::shapesOfTerm(std::size_t term) const {
+    return terms_[term].shapes;
+}
+
+const std::vector<std::size_t>& ParametricSum::linearsOfTerm(std::size_t term) const {
+    return terms_[term].linears;
+}
+
+void ParametricSum::forgetFormulas() {
+    for (Term& term : terms_) term.formula.reset();
 }
 
 std::string ParametricSum::shapeText(const Term& term, std::span<const double> shapes) const {
@@ -254,12 +268,6 @@ void ParametricSum::addProbes(const Term& term, std::span<const double> shapes, 
         columns.probes_.push_back(std::move(probe));
     }
     columns.count_ += term.linears.size();
-}
-
-Columns ParametricSum::columns(std::span<const double> shapes) const {
-    Columns columns;
-    for (const Term& term : terms_) addProbes(term, shapes, columns, columns.count_ - 1);
-    return columns;
 }
 
 Columns ParametricSum::columnsOf(std::size_t term, std::span<const double> shapes) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <brdfs/fit/free_parameters.h>
+#include <brdfs/fit/lobe_formula.h>
 #include <hshfit/brdf.h>
 
 #include <memory>
@@ -24,6 +25,8 @@ struct ShapeParameter {
     double lower() const { return toScale(free.min); }
     double upper() const { return toScale(free.max); }
     double step() const;  ///< of u, for differences
+    /// Derivative of the value by u.
+    double slope(double value) const { return free.logarithmic ? value + offset : 1; }
 };
 
 /// A free parameter that f is linear in, whatever the shape; one value per channel. min is 0.
@@ -68,11 +71,18 @@ public:
     const std::vector<LinearParameter>& linears() const { return linears_; }
     /// Indices of the linear parameters of the term that shape j belongs to.
     const std::vector<std::size_t>& linearsOf(std::size_t shape) const;
+    std::size_t termCount() const { return terms_.size(); }
+    /// Indices of the shapes of a term, consecutive, and of its linear parameters, likewise.
+    const std::vector<std::size_t>& shapesOfTerm(std::size_t term) const;
+    const std::vector<std::size_t>& linearsOfTerm(std::size_t term) const;
+    /// Null: by differences of Brdf::eval.
+    const LobeFormula* formulaOfTerm(std::size_t term) const { return terms_[term].formula.get(); }
+    /// For tests: everything through Brdf::eval.
+    void forgetFormulas();
     /// Whether every term vanishes where its linear parameters are 0.
     bool scalable() const { return scalable_; }
 
-    /// All terms, or those of one, at values (not u) of all shapes.
-    Columns columns(std::span<const double> shapes) const;
+    /// Of one term, at values (not u) of all shapes.
     Columns columnsOf(std::size_t term, std::span<const double> shapes) const;
 
     /// The specification with values filled in. `shapes[c]` for each channel c (one: shared),
@@ -87,6 +97,7 @@ private:
         std::string stated;                ///< as given
         std::vector<std::size_t> shapes;   ///< indices
         std::vector<std::size_t> linears;  ///< indices
+        std::shared_ptr<const LobeFormula> formula;
     };
     std::string shapeText(const Term& term, std::span<const double> shapes) const;
     std::unique_ptr<Brdf> make(const Term& term, std::span<const double> shapes,
