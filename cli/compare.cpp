@@ -2,6 +2,7 @@
 #include "documents.h"
 
 #include <hshfit/metrics.h>
+#include <hshfit/output/comparison.h>
 #include <hshfit/reconstruction.h>
 
 #include <fmt/format.h>
@@ -14,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct CompareArguments {
-    std::string a, b, metrics = "all", outgoing;
+    std::string a, b, metrics = "all", outgoing, output;
     bool rgb = false;
 };
 
@@ -28,6 +29,17 @@ OutgoingSet outgoingOf(const CompareArguments& arguments, const Brdf& a, const B
         }
     }
     return outgoingOrDefault(arguments.outgoing, a.laws().isotropic ? b : a);
+}
+
+/// The page; its table holds every metric, whatever was asked to be printed.
+std::vector<std::string> writePage(const Brdf& a, const Brdf& b, const OutgoingSet& outgoing,
+                                   const std::vector<MetricValue>& results,
+                                   const CompareArguments& arguments, const Globals& globals) {
+    ComparisonOptions options{.outgoing = outgoing};
+    if (arguments.metrics == "all") options.metrics = results;
+    Progress progress(globals, "report");
+    options.progress = options.sphere.progress = progress.callback();
+    return writeComparison(a, b, options, arguments.output);
 }
 
 void runCompare(const CompareArguments& arguments, Globals& globals) {
@@ -49,6 +61,12 @@ void runCompare(const CompareArguments& arguments, Globals& globals) {
     for (const MetricValue& result : results) {
         document["metrics"].push_back(metricJson(result));
         text += metricText(result);
+    }
+    if (!arguments.output.empty()) {
+        const auto files = writePage(*a, *b, outgoing, results, arguments, globals);
+        document["report"] = {{"folder", arguments.output}, {"files", files}};
+        text += fmt::format("written to {}: comparison.html and {} files beside it\n",
+                            arguments.output, files.size() - 1);
     }
     if (globals.json) {
         printJson(document);
@@ -76,6 +94,8 @@ void addCompare(CLI::App& app, Globals& globals) {
     command.add_option("--outgoing", arguments->outgoing,
                        "WxH, N or THETA,PHI (default: those of the coefficient file; else 16, or "
                        "16x16 if anisotropic)");
+    command.add_option("-o,--output", arguments->output,
+                       "Folder for a page with figures and spheres, made if absent");
     addRgb(command, arguments->rgb);
     command.callback([arguments, &globals] { runCompare(*arguments, globals); });
 }
