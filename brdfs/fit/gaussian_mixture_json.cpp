@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace hshfit::brdfs {
 namespace {
@@ -48,14 +47,14 @@ public:
     std::vector<double> numbers(const Json& json, const char* name, std::size_t count) const {
         const auto found = json.find(name);
         std::vector<double> values;
+        constexpr double most = 1e12;  // keeps sums of lobes finite
         if (found != json.end() && found->is_array() && found->size() == count)
             for (const Json& value : *found)
-                if (value.is_number() && value.get<double>() >= 0 &&
-                    std::isfinite(value.get<double>()))
+                if (value.is_number() && value.get<double>() >= 0 && value.get<double>() <= most)
                     values.push_back(value.get<double>());
         if (values.size() == count) return values;
-        throw InputError(fmt::format("{}: '{}' has to be an array of {} numbers of at least 0",
-                                     where_, name, count));
+        throw InputError(fmt::format("{}: '{}' has to be an array of {} numbers from 0 to {}",
+                                     where_, name, count, most));
     }
 
     /// A non-empty array of objects.
