@@ -55,7 +55,7 @@ data metricRows(const std::vector<MetricValue>& metrics) {
         data row;
         row.set("name", std::string(result.metric->name));
         row.set("help", std::string(result.metric->help));
-        row.set("source", std::string(result.metric->source));
+        if (!result.metric->source.empty()) row.set("source", std::string(result.metric->source));
         if (result.value) {
             row.set("value", fmt::format("{:.5g}", *result.value));
             row.set("error", fmt::format("{:.1e}", result.error));

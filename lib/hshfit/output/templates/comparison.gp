@@ -34,6 +34,9 @@ radius(f, p, logarithmic) = logarithmic ? \
     (f <= 0 ? 0 : f >= top[p] ? 1 : f / top[p])
 x(f, p, logarithmic) = radius(f, p, logarithmic) * sin(column(3) * pi / 180)
 y(f, p, logarithmic) = radius(f, p, logarithmic) * cos(column(3) * pi / 180)
+# '+' runs over the range of x, which becomes a half turn.
+ringX(t) = sin(t / 1.12 * pi / 2)
+ringY(t) = cos(t / 1.12 * pi / 2)
 at(azimuth, fixed) = column(1) == azimuth && column(2) == fixed
 
 font = 'DejaVu Sans,Helvetica,Arial,sans-serif'
@@ -47,10 +50,10 @@ do for [k = 1:channels] {
 {{#figures}}
 {{#polar}}
 
-set terminal svg size 1100, 60 + 300 * slices noenhanced font font fontscale 1.0
+set terminal svg size 1100, 40 + 300 * slices noenhanced font font fontscale 1.0
 set output svg{{index}}
 set multiplot
-full = 60.0 + 300.0 * slices
+full = 40.0 + 300.0 * slices
 unset border
 unset tics
 unset key
@@ -65,16 +68,13 @@ do for [row = 1:slices] {
     do for [logarithmic = 0:1] {
         set lmargin at screen 0.02 + 0.5 * logarithmic
         set rmargin at screen 0.48 + 0.5 * logarithmic
-        set bmargin at screen 1 - (30 + 300.0 * row) / full
-        set tmargin at screen 1 - (30 + 300.0 * row - 289) / full
+        set bmargin at screen 1 - (20 + 300.0 * row) / full
+        set tmargin at screen 1 - (20 + 300.0 * row - 289) / full
         unset label
         unset arrow
-        unset object
         rings = logarithmic ? high[p] - low[p] : 4
         do for [ring = 1:rings] {
             r = 1.0 * ring / rings
-            set object circle at 0, 0 size r arc [0:180] nowedge fillstyle empty \
-                border linecolor rgb '#c8c8c8' linewidth 0.5 noclip behind
             set label (logarithmic ? sprintf('%g', 10.0**(low[p] + ring)) : \
                 sprintf('%g', top[p] * r)) at r, -0.07 center textcolor rgb soft font ',10'
         }
@@ -90,8 +90,11 @@ do for [row = 1:slices] {
         set arrow from -1.03 * sin(side), 1.03 * cos(side) to -1.14 * sin(side), 1.14 * cos(side) \
             size 0.03, 20 linewidth 1.5 linecolor rgb 'black'
         set label sprintf('θo = %g°, %s', slice[p], logarithmic ? 'logarithmic' : 'linear') \
-            at -1.1, 1.02 left
-        plot for [k = 1:channels] 'polar.csv' skip 1 \
+            at -1.1, 1.1 left
+        plot for [ring = 1:rings] '+' \
+                using (ringX($1) * ring / rings):(ringY($1) * ring / rings) \
+                with lines linecolor rgb '#c8c8c8' linewidth 0.5 dashtype 1, \
+             for [k = 1:channels] 'polar.csv' skip 1 \
                 using (at({{azimuth}}, slice[p]) ? x(column(2 * k + 2), p, logarithmic) : NaN): \
                       (y(column(2 * k + 2), p, logarithmic)) with lines linetype 2 * k - 1, \
              for [k = 1:channels] 'polar.csv' skip 1 \
@@ -101,7 +104,6 @@ do for [row = 1:slices] {
 }
 unset label
 unset arrow
-unset object
 unset multiplot
 set output
 {{/polar}}
