@@ -14,7 +14,7 @@ const std::string slices = HSHFIT_SHARED "/data/merl_slices";
 
 TEST(FitSlices, NeverWorseThanPublished) {
     if (!std::filesystem::exists(slices)) GTEST_SKIP() << slices << " is absent";
-    for (const std::string material : {"blue-acrylic", "gold-metallic-paint3"}) {
+    for (const std::string material : {"blue-acrylic", "silver-paint"}) {
         const FitSamples samples = samplesOfSlice(slices + "/" + material + ".slice");
         EXPECT_GT(samples.size(), 4000u);
         for (const Rival& rival : {rivals[0], rivals[4]}) {
@@ -35,14 +35,14 @@ TEST(FitSlices, NeverWorseThanPublished) {
 TEST(FitSlices, PublishedFitsAreOfTheirMaterials) {
     if (!std::filesystem::exists(slices)) GTEST_SKIP() << slices << " is absent";
     const FitSamples blue = samplesOfSlice(slices + "/blue-acrylic.slice"),
-                     gold = samplesOfSlice(slices + "/gold-metallic-paint3.slice");
+                     silver = samplesOfSlice(slices + "/silver-paint.slice");
     for (const Rival& rival : rivals) {
         SCOPED_TRACE(rival.collection);
         const PresetCollection& of = presetCollection(*findPresetCollection(rival.collection));
         const auto own = open(findMaterial(of, "blue-acrylic")->spec),
-                   other = open(findMaterial(of, "gold-metallic-paint3")->spec);
+                   other = open(findMaterial(of, "silver-paint")->spec);
         EXPECT_LT(lossOf(*own, blue, rival.loss), lossOf(*other, blue, rival.loss));
-        EXPECT_LT(lossOf(*other, gold, rival.loss), lossOf(*own, gold, rival.loss));
+        EXPECT_LT(lossOf(*other, silver, rival.loss), lossOf(*own, silver, rival.loss));
     }
 }
 
