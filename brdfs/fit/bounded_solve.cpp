@@ -85,8 +85,12 @@ std::vector<double> solveBounded(std::span<const double> a, std::span<const doub
         }
     }
     std::vector<double> result(b.size());
-    for (Eigen::Index i = 0; i < n; ++i)
-        result[i] = std::clamp(x(i) / (norm(i) > 0 ? norm(i) : 1), lower[i], upper[i]);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const double value = x(i) / (norm(i) > 0 ? norm(i) : 1);
+        result[i] = x(i) <= low(i)    ? lower[i]
+                    : x(i) >= high(i) ? upper[i]
+                                      : std::clamp(value, lower[i], upper[i]);
+    }
     return result;
 }
 
