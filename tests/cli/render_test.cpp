@@ -1,0 +1,100 @@
+// `render`, and the page of `compare`, as a user meets them.
+
+#include <cli/program.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace {
+
+using hshfit::test::Answer;
+using hshfit::test::Cli;
+using Json = nlohmann::json;
+
+namespace fs = std::filesystem;
+
+bool hasGnuplot() {
+    return std::system("command -v gnuplot >/dev/null 2>&1") == 0;
+}
+
+TEST_F(Cli, RenderHasHelpWhoseExampleWorks) {
+    const std::string help = run("render --help").out;
+    const std::size_t begin = help.find("Example: hshfit ");
+    ASSERT_NE(begin, std::string::npos);
+    const std::string example = help.substr(begin + 16, help.find('\n', begin) - begin - 16);
+    const std::string line =
+        "cd " + folder_.string() + " && " + HSHFIT_PROGRAM + " " + example + " >out 2>err";
+    EXPECT_EQ(std::system(line.c_str()), 0) << read(path("err"));
+    EXPECT_EQ(read(path("spheres.png")).substr(1, 3), "PNG");
+}
+
+TEST_F(Cli, RenderNamesTheSpheresInTheirOrder) {
+    const Answer answer =
+        run("render ggx:alpha=.3 lambert:kd=.2 --size 16 --light 30,90,2 --json "
+            "--light 120,-45 --dome 0 --exposure -1.5 -o " +
+            path("s.exr"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "render"));
+    const Json json = Json::parse(answer.out);
+    EXPECT_EQ(json["spheres"][0]["brdf"], "ggx:alpha=0.3");
+    EXPECT_EQ(json["spheres"][1]["column"], 16);
+    ASSERT_EQ(json["lights"].size(), 2u);
+    EXPECT_NEAR(json["lights"][1]["theta"].get<double>(), 120, 1e-9);
+    EXPECT_NEAR(json["lights"][1]["phi"].get<double>(), -45, 1e-9);
+    EXPECT_EQ(json["lights"][0]["strength"], 2);
+    EXPECT_EQ(json["lights"][1]["strength"], 1);
+    EXPECT_EQ(json["exposure"], Json({{"automatic", false}, {"stops", -1.5}}));
+}
+
+TEST_F(Cli, RenderRefusesInOneLine) {
+    const std::string to = " -o " + path("s.png");
+    expectError("render lambert", 2, "--output", 0);
+    expectError("render lambert -o " + path("s.jpeg"), 2, ".exr", 0);
+    for (const char* light : {"45", "45,", "181,0", "45,0,-1", "45,0,1,2", "x,0", "45,nan"}) {
+        expectError(std::string("render lambert --light ") + light + to, 2, "THETA,PHI", 0);
+    }
+    expectError("render lambert --exposure bright" + to, 2, "auto", 0);
+    expectError("render lambert --size 4" + to, 2, "--size", 0);
+    expectError("render lambret" + to, 2, "lambert", 0);
+    expectError("render lambert -o " + path("absent/s.png"), 5, "absent", 0);
+}
+
+TEST_F(Cli, RenderGivesTheSameBytesWhateverTheThreads) {
+    const std::string job = "render ward:ax=.1,ay=.4 ggx:alpha=.2 --size 48 ";
+    for (const char* extension : {".png", ".exr"}) {
+        ASSERT_EQ(run(job + "--threads 1 -o " + path("a") + extension).code, 0);
+        ASSERT_EQ(run(job + "--threads 3 -o " + path("b") + extension).code, 0);
+        EXPECT_FALSE(read(path("a") + extension).empty());
+        EXPECT_TRUE(read(path("a") + extension) == read(path("b") + extension)) << extension;
+    }
+}
+
+TEST_F(Cli, CompareWritesAPage) {
+    if (!hasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+    const Answer answer =
+        run("compare ggx:alpha=.4 phong:exponent=9 --outgoing 4 --json -o " + path("page"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "compare"));
+    EXPECT_TRUE(keepsSchema(read(path("page/comparison.json")), "comparison"));
+    const Json printed = Json::parse(answer.out);
+    EXPECT_EQ(printed["metrics"], Json::parse(read(path("page/comparison.json")))["metrics"]);
+    for (const auto& file : printed["report"]["files"]) {
+        EXPECT_TRUE(fs::exists(path("page/") + file.get<std::string>())) << file;
+    }
+    // The page has every metric, whichever were asked for on the command line.
+    ASSERT_EQ(
+        run("compare ggx:alpha=.4 phong:exponent=9 --outgoing 4 --metrics log -o " + path("page"))
+            .code,
+        0);
+    EXPECT_EQ(printed["metrics"], Json::parse(read(path("page/comparison.json")))["metrics"]);
+}
+
+TEST_F(Cli, CompareFailsBeforeItWrites) {
+    write("file", "x");
+    const std::string job = "compare lambert lambert:kd=.5 --outgoing 2 -o ";
+    expectError(job + path("file"), 5, "cannot make the folder", 1);
+    expectError(job + path("absent/page"), 5, "cannot make the folder", 1);
+}
+
+}  // namespace
