@@ -241,7 +241,11 @@ void describe(const FitProblem& problem, const std::vector<double>& x, Part& par
         const double pull = equations.gradient[i];
         if (x[i] <= bounds.lower[i] + reach && pull >= 0) parameter.bound = "lower";
         if (x[i] >= bounds.upper[i] - reach && pull <= 0) parameter.bound = "upper";
-        fixed.push_back(!parameter.bound.empty());
+        // Without a pull worth the name it could as well leave the bound: what the data say of it
+        // is then for the covariance to tell.
+        const double scale = std::sqrt(std::max(equations.hessian[i * x.size() + i], 0.0));
+        const double negligible = 1e-6 * std::sqrt(2 * equations.cost) + 1e-12;
+        fixed.push_back(!parameter.bound.empty() && std::abs(pull) > negligible * scale);
         if (i < shapes) {
             const ShapeParameter& shape = sum.shapes()[i];
             parameter.name = shape.name;
@@ -257,7 +261,6 @@ void describe(const FitProblem& problem, const std::vector<double>& x, Part& par
             slope.push_back(1);
             part.linear.push_back(x[i]);
         }
-        const double scale = std::sqrt(std::max(equations.hessian[i * x.size() + i], 0.0));
         if (!fixed[i] && scale > 0)
             part.result.projectedGradient =
                 std::max(part.result.projectedGradient, std::abs(pull) / scale);

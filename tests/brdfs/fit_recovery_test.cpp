@@ -1,0 +1,252 @@
+// Parameters that made the data come back, within the errors that the fit states, at the rate that
+// these imply; and where they cannot, the fit says so.
+#include <brdfs/catalog.h>
+#include <brdfs/fit/fit.h>
+#include <hshfit/error.h>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace hshfit::brdfs {
+namespace {
+
+struct Drawn {
+    std::string name;
+    double low, high;
+    bool logarithmic = false;
+};
+
+/// A model, and where its parameters are drawn from. Colours are drawn grey.
+struct Case {
+    const char* model;
+    std::vector<Drawn> parameters;
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) {
+    return out << c.model;
+}
+
+const Case cases[] = {
+    {"lambert", {{"kd", 0.02, 0.95}}},
+    {"minnaert", {{"kd", 0.02, 0.95}, {"k", 0.3, 2}}},
+    {"blinn-phong", {{"kd", 0.02, 0.9}, {"ks", 0.05, 2}, {"exponent", 4, 2e3, true}}},
+    {"phong", {{"kd", 0.02, 0.9}, {"ks", 0.05, 2}, {"exponent", 4, 300, true}}},
+    {"ward", {{"kd", 0.02, 0.9}, {"ks", 0.02, 0.6}, {"ax", 0.02, 0.5, true}}},
+    {"ggx", {{"kd", 0.02, 0.9}, {"F0", 0.02, 0.9}, {"alpha", 0.02, 0.7, true}}},
+    {"beckmann", {{"kd", 0.02, 0.9}, {"F0", 0.02, 0.9}, {"alpha", 0.03, 0.6, true}}},
+    {"cook-torrance",
+     {{"kd", 0.02, 0.9}, {"ks", 0.1, 1}, {"F0", 0.02, 0.6}, {"m", 0.03, 0.5, true}}},
+    {"abc:variant=microfacet",
+     {{"kd", 0.02, 0.9}, {"A", 1, 50}, {"B", 50, 1e4, true}, {"C", 0.6, 2}, {"ior", 1.2, 2}}},
+    {"sg", {{"kd", 0.02, 0.9}, {"ks", 0.05, 2}, {"sharpness", 4, 300, true}}},
+};
+
+class Recovery : public testing::TestWithParam<Case> {
+protected:
+    struct Truth {
+        std::string spec;
+        std::vector<std::pair<std::string, double>> values;
+    };
+    Truth draw(std::mt19937_64& random) const {
+        Truth truth{GetParam().model, {}};
+        char separator = truth.spec.find(':') == std::string::npos ? ':' : ',';
+        for (const Drawn& p : GetParam().parameters) {
+            const double share = static_cast<double>(random() >> 11) * 0x1p-53;
+            const double value = p.logarithmic ? p.low * std::pow(p.high / p.low, share)
+                                               : p.low + share * (p.high - p.low);
+            truth.spec += fmt::format("{}{}={}", separator, p.name, value);
+            separator = ',';
+            truth.values.emplace_back(p.name, value);
+            if (p.name == "ax") truth.spec += fmt::format(",ay={}", value);
+        }
+        return truth;
+    }
+    /// Samples of the truth, by everyone's own directions, with relative noise.
+    static FitSamples samplesOf(const Truth& truth, double noise, std::mt19937_64& random) {
+        FitSamples samples = gatherSamples(*open(truth.spec), {}).drawn(3000, random());
+        std::normal_distribution<double> normal;
+        for (double& value : samples.values) value *= 1 + noise * normal(random);
+        return samples;
+    }
+    static const FittedParameter& find(const FitResult& result, const std::string& name) {
+        for (const FittedParameter& parameter : result.parameters)
+            if (parameter.name == name) return parameter;
+        throw std::logic_error(name);
+    }
+};
+
+TEST_P(Recovery, IsExactWithoutNoise) {
+    std::mt19937_64 random(5);
+    for (int trial = 0; trial < 3; ++trial) {
+        const Truth truth = draw(random);
+        const FitSamples samples = samplesOf(truth, 0, random);
+        const FitResult result = fit(samples, {.model = GetParam().model});
+        EXPECT_TRUE(result.converged) << truth.spec << " " << result.message;
+        for (const auto& [name, value] : truth.values) {
+            const FittedParameter& parameter = find(result, name);
+            // f is computed to about 1e-12 of itself, and the search stops where a step no longer
+            // lowers the sum of squares, at the root of the rounding of that sum.
+            if (parameter.standardError) {
+                EXPECT_NEAR(parameter.value, value, 1e-5 * (value + 0.01)) << truth.spec;
+            }
+        }
+        EXPECT_TRUE(result.ambiguous.empty()) << truth.spec;
+    }
+}
+
+// z = (fitted - true) / standard error is normal: of N values the share beyond 2 is 4.6 %. The sum
+// of z^2 over all trials is chi-square with about N degrees of freedom; parameters of one trial
+// correlate, so that trials and not parameters are counted: the bound holds for each parameter by
+// itself.
+TEST_P(Recovery, ErrorsAreAsStatedWithNoise) {
+    std::mt19937_64 random(17);
+    constexpr int trials = 24;
+    std::vector<double> squares(GetParam().parameters.size(), 0.0);
+    std::vector<int> counted(squares.size(), 0);
+    for (int trial = 0; trial < trials; ++trial) {
+        const Truth truth = draw(random);
+        const FitResult result =
+            fit(samplesOf(truth, 0.05, random), {.model = GetParam().model, .starts = 6});
+        EXPECT_TRUE(result.converged) << truth.spec << " " << result.message;
+        for (std::size_t i = 0; i < truth.values.size(); ++i) {
+            const auto& [name, value] = truth.values[i];
+            const FittedParameter& parameter = find(result, name);
+            if (!parameter.standardError) continue;  // at a bound, or ambiguous and said so
+            const double z = (parameter.value - value) / *parameter.standardError;
+            // Normal beyond 5: one in 1.7 million.
+            EXPECT_LT(std::abs(z), 5) << name << " of " << truth.spec;
+            squares[i] += z * z;
+            ++counted[i];
+        }
+    }
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+        ASSERT_GE(counted[i], trials * 3 / 4) << GetParam().parameters[i].name;
+        // Chi-square of n degrees: mean n, deviation sqrt(2 n); four deviations either way, and
+        // a tenth for what the errors themselves err by.
+        const double n = counted[i], four = 4 * std::sqrt(2 * n);
+        EXPECT_LT(squares[i], 1.1 * (n + four)) << GetParam().parameters[i].name;
+        EXPECT_GT(squares[i], 0.9 * (n - four)) << GetParam().parameters[i].name;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, Recovery, testing::ValuesIn(cases));
+
+FitSamples constantSamples() {
+    FitSamples samples = gatherSamples(*open("lambert:kd=.5"), {}).drawn(500, 1);
+    return samples;
+}
+
+TEST(Degenerate, ConstantDataLeaveTheShapeOpen) {
+    const FitResult result = fit(constantSamples(), {.model = "blinn-phong"});
+    // Either ks is at 0, and then the exponent is undetermined, or the exponent is, and then the
+    // lobe is as constant as kd.
+    EXPECT_FALSE(result.ambiguous.empty()) << result.spec;
+    EXPECT_LT(result.loss, 1e-6);
+    for (const FittedParameter& parameter : result.parameters)
+        if (parameter.name == "exponent" && parameter.bound.empty()) {
+            EXPECT_FALSE(parameter.standardError);
+        }
+}
+
+TEST(Degenerate, DarkDataAreFittedByNothing) {
+    FitSamples samples = constantSamples();
+    std::fill(samples.values.begin(), samples.values.end(), 0.0);
+    const FitResult result = fit(samples, {.model = "ward"});
+    for (const FittedParameter& parameter : result.parameters)
+        if (parameter.linear) {
+            EXPECT_EQ(parameter.value, 0);
+            EXPECT_EQ(parameter.bound, "lower");
+        }
+    EXPECT_FALSE(result.ambiguous.empty());
+}
+
+TEST(Degenerate, OneDarkChannelLeavesTheOthers) {
+    FitSamples samples =
+        gatherSamples(*open("ward:kd=.1/.2/.3,ks=.1/.2/.3,ax=.2,ay=.2"), {}).drawn(2000, 1);
+    std::fill_n(samples.values.begin() + static_cast<std::ptrdiff_t>(samples.size()),
+                samples.size(), 0.0);
+    const FitResult result = fit(samples, {.model = "ward"});
+    ASSERT_TRUE(result.converged);
+    for (const FittedParameter& parameter : result.parameters) {
+        if (parameter.channel == "G") {
+            EXPECT_EQ(parameter.value, 0) << parameter.name;
+        }
+        if (parameter.name == "ax") {
+            EXPECT_NEAR(parameter.value, 0.2, 1e-6);
+        }
+        if (parameter.name == "ks" && parameter.channel == "B") {
+            EXPECT_NEAR(parameter.value, 0.3, 1e-6);
+        }
+    }
+}
+
+TEST(Degenerate, OneSampleIsTooFew) {
+    EXPECT_THROW(fit(constantSamples().subset({7}), {.model = "ward"}), NumericError);
+}
+
+TEST(Degenerate, NothingLeftToFitIsAnError) {
+    EXPECT_THROW(gatherSamples(*open("lambert"), {.grazingCut = 0}), NumericError);
+    EXPECT_THROW(fit(constantSamples(), {.model = "lambert:kd=.2"}), UsageError);
+    EXPECT_THROW(fit(constantSamples(), {.model = "lambret"}), UsageError);
+    EXPECT_THROW(fit(constantSamples(), {.model = "ward:axe=1"}), UsageError);
+}
+
+TEST(Degenerate, ShapesPerChannelNeedAScale) {
+    FitSamples samples =
+        gatherSamples(*open("ggx:kd=.1/.2/.3,F0=.1/.2/.3,alpha=.2"), {}).drawn(900, 1);
+    samples.values[5] *= 1.5;
+    EXPECT_THROW(fit(samples, {.model = "ggx", .perChannel = true}), UsageError);
+}
+
+// Twice the same lobe: which of the two is which cannot be told.
+TEST(Ambiguity, TwoEqualTermsAreReported) {
+    const FitSamples samples = gatherSamples(*open("lambert:kd=.3"), {}).drawn(500, 1);
+    const FitResult result = fit(samples, {.model = "lambert+oren-nayar:sigma=0"});
+    ASSERT_EQ(result.ambiguous.size(), 1u);
+    EXPECT_EQ(result.ambiguous.front().size(), 2u);
+    for (const FittedParameter& parameter : result.parameters)
+        EXPECT_FALSE(parameter.standardError) << parameter.name;
+}
+
+TEST(Robust, OutliersPullLess) {
+    FitSamples samples = gatherSamples(*open("ward:kd=.2,ks=.2,ax=.2,ay=.2"), {}).drawn(2000, 1);
+    std::mt19937_64 random(3);
+    for (std::size_t k = 0; k < samples.values.size(); k += 20) samples.values[k] += 3;
+    const auto errorOf = [&](Robust robust) {
+        const FitResult result = fit(samples, {.model = "ward", .robust = robust});
+        double error = 0;
+        for (const FittedParameter& p : result.parameters)
+            error = std::max(error, std::abs(p.value - 0.2));
+        return error;
+    };
+    const double plain = errorOf(Robust::none), huber = errorOf(Robust::huber),
+                 cauchy = errorOf(Robust::cauchy);
+    EXPECT_GT(plain, 0.05);
+    EXPECT_LT(huber, plain / 5);
+    EXPECT_LT(cauchy, plain / 5);
+}
+
+// More starts find nothing better, and every loss is smallest for the fit that minimised it.
+TEST(Losses, EachFitIsBestByItsOwn) {
+    const FitSamples samples =
+        gatherSamples(*open("lambert:kd=.1/.2/.3 + ggx:alpha=.2,F0=.05"), {}).drawn(1500, 2);
+    std::vector<std::string> specs;
+    for (const Loss& loss : losses())
+        specs.push_back(fit(samples, {.model = "ward", .loss = loss.kind}).spec);
+    for (std::size_t own = 0; own < specs.size(); ++own)
+        for (std::size_t other = 0; other < specs.size(); ++other) {
+            const Loss::Kind kind = losses()[own].kind;
+            EXPECT_LE(lossOf(*open(specs[own]), samples, kind),
+                      lossOf(*open(specs[other]), samples, kind) * (1 + 1e-9))
+                << losses()[own].name << " against " << losses()[other].name;
+        }
+}
+
+}  // namespace
+}  // namespace hshfit::brdfs
