@@ -81,6 +81,10 @@ std::vector<double> joined(std::vector<double> u, const std::vector<double>& lin
     return u;
 }
 
+bool byCost(const Minimum& a, const Minimum& b) {
+    return (std::isfinite(a.cost) ? a.cost : 1e300) < (std::isfinite(b.cost) ? b.cost : 1e300);
+}
+
 /// Searches of one problem; `linear`: what is minimised over the shapes alone.
 class Search {
 public:
@@ -90,10 +94,18 @@ public:
           shapes_(shapeBounds(problem.sum())),
           joint_(jointBounds(problem.sum(), problem.channels())) {}
 
-    /// From shapes: eliminated, then, unless that is the loss itself, jointly.
+    /// From shapes: eliminated if that is the loss itself, else jointly, from the linear parameters
+    /// that elimination gives and from those at its minimum, whichever leads further.
     Minimum fromShapes(const std::vector<double>& u, const MinimiseOptions& options) const {
         Minimum minimum = eliminated(u, options);
-        return linear_ ? minimum : fromAll(minimum, options);
+        if (linear_) return minimum;
+        minimum = fromAll(minimum, options);
+        Minimum direct;
+        std::vector<double> best;
+        problem_.eliminated(u, false, best);
+        direct.x = joined(u, best);
+        direct = fromAll(direct, options);
+        return byCost(direct, minimum) ? direct : minimum;
     }
 
     Minimum eliminated(const std::vector<double>& u, const MinimiseOptions& options) const {
@@ -123,10 +135,6 @@ private:
     Bounds shapes_, joint_;
 };
 
-bool byCost(const Minimum& a, const Minimum& b) {
-    return (std::isfinite(a.cost) ? a.cost : 1e300) < (std::isfinite(b.cost) ? b.cost : 1e300);
-}
-
 /// Minima of the problem on few samples, from the best of many starts, best first.
 std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
                                   const FitOptions& options) {
@@ -135,9 +143,10 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
     std::vector<Minimum> candidates;
     for (std::vector<double>& u :
          startsOf(problem.sum(), shapes == 0 ? 1 : 4 * starts, options.seed)) {
-        std::vector<double> ignored;
+        std::vector<double> best;
         Minimum candidate;
-        candidate.cost = problem.eliminated(u, false, ignored).cost;
+        candidate.cost = problem.eliminated(u, false, best).cost;
+        if (!linear) candidate.cost = problem.joint(joined(u, best), false).cost;
         candidate.x = std::move(u);
         candidates.push_back(std::move(candidate));
     }
