@@ -1,6 +1,8 @@
 #include "command.h"
+#include "fit_batch.h"
 
 #include <brdfs/catalog.h>
+#include <brdfs/fit/compare_models.h>
 #include <brdfs/fit/fit.h>
 #include <brdfs/fit/fit_json.h>
 #include <brdfs/measured/measured_brdf.h>
@@ -21,11 +23,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct FitArguments {
-    std::string data, model, output, loss = "cosine", robust = "none", weights = "auto";
+    std::string data, all, model, output, loss = "cosine", robust = "none", weights = "auto";
     double robustScale = 0;
     bool perChannel = false, accept = false, rgb = false;
     int starts = 16;
     std::uint64_t seed = 1;
+    std::vector<std::string> models;  ///< to compare
     brdfs::SampleOptions samples;
 };
 
@@ -70,21 +73,108 @@ std::string text(const brdfs::FitResult& result) {
     return lines;
 }
 
-void runFit(const FitArguments& arguments, Globals& globals) {
-    const auto start = std::chrono::steady_clock::now();
-    const std::clock_t cpuStart = std::clock();
+/// Fits one file. Throws NumericError if it did not converge and that is not accepted.
+Json fitOne(const FitArguments& arguments, const std::string& data, const std::string& output,
+            const Globals& globals, std::string& answer) {
     brdfs::FitOptions options = optionsOf(arguments);
-    const brdfs::FitSamples samples = samplesOf(arguments, arguments.data);
+    const brdfs::FitSamples samples = samplesOf(arguments, data);
     Progress progress(globals, "fit");
     options.progress = progress.callback();
     const brdfs::FitResult result = brdfs::fit(samples, options);
     if (!result.converged && !arguments.accept)
         throw NumericError(
-            fmt::format("{}: the fit of {} did not converge ({}); --accept takes it as it is",
-                        arguments.data, arguments.model, result.message));
-    Json preset = brdfs::fitPreset({arguments.data, &samples, options, result});
-    if (!arguments.output.empty()) writeFile(arguments.output, preset.dump(2) + "\n");
-    if (!globals.json) return printText(text(result));
+            fmt::format("{}: the fit of {} did not converge ({}); --accept takes it as it is", data,
+                        arguments.model, result.message));
+    Json preset = brdfs::fitPreset({data, &samples, options, result});
+    if (!output.empty()) writeFile(output, preset.dump(2) + "\n");
+    answer = text(result);
+    return preset;
+}
+
+void runAll(const FitArguments& arguments, Globals& globals) {
+    if (arguments.output.empty())
+        throw UsageError("fit --all: give -o DIR, the folder for the results");
+    Globals inner = globals;
+    inner.quiet = true;
+    Progress progress(globals, "files");
+    const BatchOutcome outcome = fitFolder(
+        arguments.all, arguments.output,
+        [&](const std::string& file, const std::string& result) {
+            std::string ignored;
+            fitOne(arguments, file, result, inner, ignored);
+        },
+        progress.callback());
+    Json failures = Json::array();
+    std::string lines = fmt::format("{} fitted, {} were there, {} failed\n", outcome.fitted,
+                                    outcome.kept, outcome.failures.size());
+    for (const auto& [file, reason] : outcome.failures) {
+        failures.push_back({{"file", file}, {"reason", reason}});
+        lines += reason.starts_with(file) ? fmt::format("  {}\n", reason)
+                                          : fmt::format("  {}: {}\n", file, reason);
+    }
+    if (!outcome.failures.empty()) globals.exitCode = static_cast<int>(ExitCode::numeric);
+    if (!globals.json) return printText(lines);
+    printJson({{"format", "hshfit-fit-all"},
+               {"version", 1},
+               {"fitted", outcome.fitted},
+               {"kept", outcome.kept},
+               {"failures", failures}});
+}
+
+void runCompareModels(const FitArguments& arguments, Globals& globals) {
+    const brdfs::FitSamples samples = samplesOf(arguments, arguments.data);
+    const auto ranks = brdfs::compareModels(samples, arguments.models, optionsOf(arguments));
+    Json list = Json::array();
+    std::string lines = fmt::format("  {:<28} {:>3} {:>12} {:>12} {:>12} {:>12}\n", "model", "p",
+                                    "held out", "rms", "AIC", "BIC");
+    for (const brdfs::ModelRank& rank : ranks) {
+        if (!rank.failure.empty()) {
+            list.push_back({{"model", rank.model}, {"failure", rank.failure}});
+            lines += fmt::format("  {:<28} {}\n", rank.model, rank.failure);
+            continue;
+        }
+        const brdfs::FitResult& fit = rank.fit;
+        list.push_back({{"model", rank.model},
+                        {"spec", fit.spec},
+                        {"parameters", fit.parameters.size()},
+                        {"held_out_rms", rank.heldOut},
+                        {"rms", fit.loss},
+                        {"aic", fit.aic},
+                        {"bic", fit.bic},
+                        {"converged", fit.converged}});
+        lines += fmt::format("  {:<28} {:>3} {:>12.6g} {:>12.6g} {:>12.8g} {:>12.8g}{}\n",
+                             rank.model, fit.parameters.size(), rank.heldOut, fit.loss, fit.aic,
+                             fit.bic, fit.converged ? "" : "  not converged");
+        if (!fit.converged && !arguments.accept)
+            globals.exitCode = static_cast<int>(ExitCode::numeric);
+    }
+    const Json document = {{"format", "hshfit-fit-models"},
+                           {"version", 1},
+                           {"data", arguments.data},
+                           {"loss", arguments.loss},
+                           {"models", list}};
+    if (!arguments.output.empty()) writeFile(arguments.output, document.dump(2) + "\n");
+    if (globals.json)
+        printJson(document);
+    else
+        printText(lines);
+}
+
+void runFit(const FitArguments& arguments, Globals& globals) {
+    if (arguments.data.empty() == arguments.all.empty())
+        throw UsageError("fit: give either DATA or --all DIR");
+    if (arguments.model.empty() == arguments.models.empty())
+        throw UsageError("fit: give either --model or --compare-models");
+    if (!arguments.all.empty()) {
+        if (arguments.model.empty()) throw UsageError("fit --all: takes one --model");
+        return runAll(arguments, globals);
+    }
+    if (!arguments.models.empty()) return runCompareModels(arguments, globals);
+    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t cpuStart = std::clock();
+    std::string answer;
+    Json preset = fitOne(arguments, arguments.data, arguments.output, globals, answer);
+    if (!globals.json) return printText(answer);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     preset["time"] = {
         {"seconds", elapsed.count()},
@@ -98,11 +188,15 @@ void addFit(CLI::App& app, Globals& globals) {
     auto arguments = std::make_shared<FitArguments>();
     CLI::App& command = addCommand(app, globals, "fit", "Fit analytic models to data",
                                    "hshfit fit table.binary --model lambert+ggx -o fit.json");
-    command.add_option("DATA", arguments->data, "BRDF or coefficient file")->required();
-    command
-        .add_option("--model", arguments->model,
-                    "MODEL[:key=value,...][+MODEL...]: what is given is not fitted")
-        ->required();
+    command.add_option("DATA", arguments->data, "BRDF or coefficient file");
+    command.add_option(
+        "--all", arguments->all,
+        "Fit every file of a folder; -o DIR takes one result each; what stands there "
+        "is not fitted again");
+    command.add_option("--model", arguments->model,
+                       "MODEL[:key=value,...][+MODEL...]: what is given is not fitted");
+    command.add_option("--compare-models", arguments->models,
+                       "Fit each of these models and rank them by held-out directions");
     command.add_option("-o,--output", arguments->output, "Where the fit goes, a preset (.json)");
     command.add_option("--loss", arguments->loss, "l2, cosine, log, cube-root or log-relative")
         ->capture_default_str();

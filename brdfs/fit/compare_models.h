@@ -1,0 +1,27 @@
+#pragma once
+
+#include <brdfs/fit/fit.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// One model among several that were fitted to the same samples.
+struct ModelRank {
+    std::string model;
+    FitResult fit;
+    /// As FitResult::loss, of directions that the fit did not see: five fits, each to four fifths.
+    double heldOut = 0;
+    std::string failure;  ///< why there is no fit; then last
+};
+
+/// Fits every model and ranks them by `heldOut`. Held out are outgoing directions: rings of three
+/// degrees in elevation (and, for anisotropic data, sectors of thirty in azimuth) are dealt to five
+/// folds, so that no held-out value stands between neighbours of its own ring. Data with fewer than
+/// five rings are cut into five runs of their samples instead.
+std::vector<ModelRank> compareModels(const FitSamples& samples, std::span<const std::string> models,
+                                     FitOptions options);
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,46 @@
+#include "fit_batch.h"
+
+#include <hshfit/error.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+
+namespace hshfit::cli {
+
+namespace fs = std::filesystem;
+
+BatchOutcome fitFolder(const std::string& folder, const std::string& results,
+                       const std::function<void(const std::string&, const std::string&)>& fitOne,
+                       const std::function<void(std::size_t, std::size_t)>& progress) {
+    std::error_code error;
+    std::vector<fs::path> files;
+    fs::directory_iterator entries(folder, error);
+    if (error) throw InputError(fmt::format("{}: {}", folder, error.message()));
+    for (const fs::directory_entry& entry : entries)
+        if (entry.is_regular_file(error)) files.push_back(entry.path());
+    std::ranges::sort(files);
+    fs::create_directories(results, error);
+    if (error) throw OutputError(fmt::format("{}: {}", results, error.message()));
+    BatchOutcome outcome;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const fs::path result = fs::path(results) / (files[i].filename().string() + ".json");
+        if (fs::exists(result, error)) {
+            ++outcome.kept;
+        } else {
+            try {
+                fitOne(files[i].string(), result.string());
+                ++outcome.fitted;
+            } catch (const OutputError&) {
+                throw;
+            } catch (const Error& failure) {
+                outcome.failures.push_back({files[i].string(), failure.what()});
+            }
+        }
+        if (progress) progress(i + 1, files.size());
+    }
+    return outcome;
+}
+
+}  // namespace hshfit::cli
