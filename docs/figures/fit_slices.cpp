@@ -1,8 +1,8 @@
 // Our fits next to published ones, on the same samples in the same metric:
-//     fit_slices FOLDER CSV [MODEL [MATERIAL]]
+//     fit_slices FOLDER CSV [MODEL [MATERIAL [CUT]]]
 // writes a row per collection, loss and material of FOLDER (MERL slices, NAME.slice) to CSV, the
 // summary in Markdown to stdout and progress to stderr. MODEL and MATERIAL keep those whose names
-// hold them.
+// hold them; samples with an angle beyond CUT degrees (80) are left out.
 
 #include "../../tests/brdfs/fit_rivals.h"
 
@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -77,22 +78,21 @@ void writeRows(std::ofstream& file, const Rival& rival, const std::vector<Row>& 
             duel.published
                 ? fmt::format("{:.6g},{:.6g},{:.5f}", *duel.published, duel.ours, duel.ratio())
                 : fmt::format(",{:.6g},", duel.ours);
-        file << fmt::format("{},{},{},{},{},{},{:.1f},\"{}\"\n", rival.collection,
+        file << fmt::format("{},{},{},{},{},{}\n", rival.collection,
                             rival.model.substr(0, rival.model.find(':')), lossName(rival.loss),
-                            material, comparison, duel.fit.converged ? "yes" : "no", duel.seconds,
-                            duel.fit.spec);
+                            material, comparison, duel.fit.converged ? "yes" : "no");
     }
     file.flush();
 }
 
 void run(const std::string& folder, const std::string& path, const std::string& model,
-         const std::string& material) {
+         const std::string& material, double cut) {
     const std::vector<std::string> materials = materialsIn(folder, material);
     std::vector<FitSamples> samples;
     for (const std::string& name : materials)
-        samples.push_back(samplesOfSlice(folder + "/" + name + ".slice"));
+        samples.push_back(samplesOfSlice(folder + "/" + name + ".slice", cut));
     std::ofstream file(path);
-    file << "collection,model,loss,material,published,ours,ratio,converged,seconds,fit\n";
+    file << "collection,model,loss,material,published,ours,ratio,converged\n";
     fmt::print(
         "| published | fitted | loss | materials | their loss | ours | ratio | worst | over "
         "10 % better | worse | not converged |\n|{}\n",
@@ -114,8 +114,9 @@ void run(const std::string& folder, const std::string& path, const std::string& 
 }  // namespace
 
 int main(int argc, char** argv) try {
-    if (argc < 3 || argc > 5) return 2;
-    run(argv[1], argv[2], argc > 3 ? argv[3] : "", argc > 4 ? argv[4] : "");
+    if (argc < 3 || argc > 6) return 2;
+    run(argv[1], argv[2], argc > 3 ? argv[3] : "", argc > 4 ? argv[4] : "",
+        argc > 5 ? std::atof(argv[5]) : 80);
     return 0;
 } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());

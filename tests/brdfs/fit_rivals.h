@@ -33,16 +33,17 @@ inline constexpr std::array rivals{
     Rival{"low-cook-torrance-e2", "cook-torrance", Loss::Kind::log},
     Rival{"low-abc-smooth-e2", "abc:variant=smooth", Loss::Kind::log},
     Rival{"low-abc-microfacet-e2", "abc:variant=microfacet", Loss::Kind::log},
-    Rival{"bagher-sgd", "sgd", Loss::Kind::cosine, false, true},
-    Rival{"bagher-sgd", "sgd", Loss::Kind::log, false, true},
+    Rival{"bagher-sgd", "sgd", Loss::Kind::cosine, false, true, 8},
+    Rival{"bagher-sgd", "sgd", Loss::Kind::log, false, true, 8},
     Rival{"ngan-cook-torrance", "ggx", Loss::Kind::cosine, false},
     Rival{"low-cook-torrance-e2", "ggx", Loss::Kind::log, false},
 };
 
 /// What both sides are measured on: the cells of a slice with both directions within 80 degrees of
 /// the normal (Ngan et al. 2005 leave out the rest), weighted by solid angle.
-inline FitSamples samplesOfSlice(const std::string& path) {
-    return gatherSamples(*open(path), {.weights = SampleWeights::solidAngle, .grazingCut = 80});
+inline FitSamples samplesOfSlice(const std::string& path, double grazingCut = 80) {
+    return gatherSamples(*open(path),
+                         {.weights = SampleWeights::solidAngle, .grazingCut = grazingCut});
 }
 
 struct Duel {
