@@ -26,7 +26,7 @@ struct FitArguments {
     std::string data, all, model, output, loss = "cosine", robust = "none", weights = "auto";
     double robustScale = 0;
     bool perChannel = false, accept = false, rgb = false;
-    int starts = 16;
+    int starts = 16, iterations = 200;
     std::uint64_t seed = 1;
     std::vector<std::string> models;  ///< to compare
     brdfs::SampleOptions samples;
@@ -41,6 +41,7 @@ brdfs::FitOptions optionsOf(const FitArguments& arguments) {
     options.perChannel = arguments.perChannel;
     options.starts = arguments.starts;
     options.seed = arguments.seed;
+    options.iterations = arguments.iterations;
     return options;
 }
 
@@ -187,7 +188,7 @@ void runFit(const FitArguments& arguments, Globals& globals) {
 void addFit(CLI::App& app, Globals& globals) {
     auto arguments = std::make_shared<FitArguments>();
     CLI::App& command = addCommand(app, globals, "fit", "Fit analytic models to data",
-                                   "hshfit fit table.binary --model lambert+ggx -o fit.json");
+                                   "hshfit fit ggx:alpha=.2,F0=.3,kd=.1 --model ward -o fit.json");
     command.add_option("DATA", arguments->data, "BRDF or coefficient file");
     command.add_option(
         "--all", arguments->all,
@@ -217,6 +218,9 @@ void addFit(CLI::App& app, Globals& globals) {
     command.add_option("--samples", arguments->samples.most, "Draw so many samples; 0: all");
     command.add_option("--starts", arguments->starts, "Local searches")
         ->check(CLI::Range(1, 10000))
+        ->capture_default_str();
+    command.add_option("--iterations", arguments->iterations, "At most so many in the last search")
+        ->check(CLI::Range(1, 100000))
         ->capture_default_str();
     command.add_option("--seed", arguments->seed, "Of starts and drawn samples")
         ->capture_default_str();

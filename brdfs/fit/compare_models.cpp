@@ -1,6 +1,7 @@
 #include <brdfs/fit/compare_models.h>
 
 #include <brdfs/catalog.h>
+#include <brdfs/fit/parametric_sum.h>
 #include <hshfit/error.h>
 
 #include <algorithm>
@@ -71,6 +72,8 @@ double heldOutLoss(const FitSamples& samples, const Folds& folds, FitOptions opt
 
 std::vector<ModelRank> compareModels(const FitSamples& samples, std::span<const std::string> models,
                                      FitOptions options) {
+    // A model that is misspelt shows before the others are fitted.
+    for (const std::string& model : models) ParametricSum(model, samples.isotropic);
     const Folds folds = foldsOf(samples);
     std::vector<ModelRank> ranks;
     for (const std::string& model : models) {

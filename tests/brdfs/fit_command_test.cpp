@@ -1,0 +1,126 @@
+// `hshfit fit` as a user meets it.
+#include <cli/program.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace {
+
+using hshfit::test::Answer;
+using hshfit::test::Cli;
+using Json = nlohmann::json;
+
+namespace fs = std::filesystem;
+
+const std::string data = "lambert:kd=.1/.2/.3 + ward:ks=.2,ax=.15,ay=.15";
+
+class Fit : public Cli {};
+
+TEST_F(Fit, ResultIsAPresetThatEveryCommandOpens) {
+    const Answer answer =
+        run("fit '" + data + "' --model lambert+ward --samples 3000 -o " + path("fit.json"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const Json preset = Json::parse(read(path("fit.json")));
+    EXPECT_EQ(preset["format"], "hshfit-preset");
+    for (const Json& parameter : preset["fit"]["parameters"])
+        if (parameter["name"] == "ward.ax") {
+            EXPECT_NEAR(parameter["value"], 0.15, 1e-6);
+        }
+    const std::string at = " --wi 30,0 --wo 35,170";
+    const Answer fitted = run("eval " + path("fit.json") + at),
+                 truth = run("eval '" + data + "'" + at);
+    ASSERT_EQ(fitted.code, 0) << fitted.err;
+    EXPECT_NEAR(std::stod(fitted.out.substr(2)), std::stod(truth.out.substr(2)), 1e-6);
+    EXPECT_EQ(run("info " + path("fit.json")).code, 0);
+    EXPECT_TRUE(keepsSchema(read(path("fit.json")), "fit"));
+    EXPECT_TRUE(keepsSchema(read(path("fit.json")), "preset"));
+}
+
+TEST_F(Fit, ThreadsDoNotChangeABit) {
+    for (const char* threads : {"1", "3"})
+        ASSERT_EQ(
+            run("fit '" + data + "' --model lambert+ggx --loss log --samples 5000 --threads " +
+                threads + " -o " + path(threads))
+                .code,
+            0);
+    EXPECT_EQ(read(path("1")), read(path("3")));
+}
+
+TEST_F(Fit, WhatDidNotConvergeIsNoResultUnlessAccepted) {
+    const std::string line = "fit '" + data +
+                             "' --model abc:variant=microfacet --samples 800 --starts 1 "
+                             "--iterations 1 -o " +
+                             path("fit.json");
+    const Answer refused = run(line);
+    EXPECT_EQ(refused.code, 4);
+    EXPECT_NE(refused.err.find("--accept"), std::string::npos) << refused.err;
+    EXPECT_FALSE(fs::exists(path("fit.json")));
+    ASSERT_EQ(run(line + " --accept").code, 0);
+    EXPECT_EQ(Json::parse(read(path("fit.json")))["fit"]["converged"], false);
+}
+
+TEST_F(Fit, FoldersAreResumedAndFailuresListed) {
+    fs::create_directory(path("in"));
+    std::ofstream(path("in/good.alta")) << "#DIM 1 1\n#PARAM_IN COS_TH\n#PARAM_OUT INV_STERADIAN\n"
+                                           "1 .5\n.9 .4\n.8 .3\n.7 .25\n.6 .22\n.5 .2\n";
+    std::ofstream(path("in/bad.binary")) << "no table";
+    const std::string line =
+        "fit --json --all " + path("in") + " --model blinn-phong --loss l2 -o " + path("out");
+    const Answer first = run(line);
+    EXPECT_EQ(first.code, 4);
+    const Json one = Json::parse(first.out);
+    EXPECT_EQ(one["fitted"], 1) << first.out;
+    ASSERT_EQ(one["failures"].size(), 1u);
+    EXPECT_EQ(one["failures"][0]["file"], path("in/bad.binary"));
+    EXPECT_TRUE(fs::exists(path("out/good.alta.json")));
+    EXPECT_FALSE(fs::exists(path("out/bad.binary.json")));
+    const Json two = Json::parse(run(line).out);
+    EXPECT_EQ(two["fitted"], 0);
+    EXPECT_EQ(two["kept"], 1);
+}
+
+TEST_F(Fit, TheModelThatMadeTheDataRanksFirst) {
+    const Answer answer = run("fit --json '" + data +
+                              "' --samples 1500 --compare-models lambert+ggx lambert+ward ward "
+                              "lambert nonsense");
+    EXPECT_EQ(answer.code, 2);
+    const Answer ranked = run("fit --json '" + data +
+                              "' --samples 1500 --starts 4 --compare-models lambert+ggx "
+                              "lambert+sg lambert+ward lambert");
+    ASSERT_EQ(ranked.code, 0) << ranked.err;
+    const Json models = Json::parse(ranked.out)["models"];
+    ASSERT_EQ(models.size(), 4u);
+    EXPECT_EQ(models[0]["model"], "lambert+ward");
+    EXPECT_EQ(models[3]["model"], "lambert");
+    for (const char* criterion : {"aic", "bic"})
+        EXPECT_LT(models[0][criterion], models[1][criterion]);
+}
+
+TEST_F(Fit, ErrorsAreOneLine) {
+    expectError("fit lambert --model lambret", 2, "lambert", 0);
+    expectError("fit lambert", 2, "--model", 0);
+    expectError("fit lambert --model ward --loss l3", 2, "cosine", 0);
+    expectError("fit lambert --model ward:ax=7000", 2, "ax", 0);
+    expectError("fit lambert --model lambert --grazing-cut 0", 4, "grazing", 0);
+    expectError("fit absent.binary --model lambert", 3, "absent.binary", 0);
+}
+
+// A preset may hold a sum of models, and nothing else: no file, not even itself.
+TEST_F(Fit, PresetsHoldSumsOfModelsOnly) {
+    const auto write = [&](const std::string& spec) {
+        std::ofstream(path("p.json"))
+            << R"({"format": "hshfit-preset", "version": 1, "spec": ")" << spec << "\"}";
+    };
+    write("lambert:kd=.5 + 0.5 * lambert");
+    const Answer sum = run("eval " + path("p.json") + " --wi 10,0 --wo 20,0");
+    ASSERT_EQ(sum.code, 0) << sum.err;
+    EXPECT_NEAR(std::stod(sum.out.substr(sum.out.find('\t') + 1)), 1 / M_PI, 1e-12);
+    for (const std::string& spec :
+         {path("p.json"), std::string("preset:hsh-ward"), std::string()}) {
+        write(spec);
+        EXPECT_EQ(run("info " + path("p.json")).code, 3) << spec;
+    }
+}
+
+}  // namespace
