@@ -48,7 +48,7 @@ matches 'file *\( *GLOB' '*.cmake' '*CMakeLists.txt' | rule 'sources are listed,
 matches '#include *[<"](brdfs|cli)/' lib | rule 'lib includes nothing from brdfs or cli'
 matches 'hshfit::brdfs|hshfit_brdfs' 'lib/**CMakeLists.txt' | rule 'lib links nothing from brdfs'
 matches '#include *[<"]cli/' brdfs | rule 'brdfs includes nothing from cli'
-matches '#include *[<"](Eigen|OpenEXR|Imf|Imath|nlohmann)' 'lib/*.h' |
+matches '#include *[<"](Eigen|OpenEXR|Imf|Imath|nlohmann)' 'lib/*.h' ':!lib/**/internal/*.h' |
     rule 'third-party headers stay out of public headers'
 matches '/(work|home|Users)/[[:alnum:]]' . | rule 'paths of one machine'
 matches '(TEST|TEST_F|TEST_P)\(.*DISABLED_|^ *#if 0' '*.h' '*.cpp' | rule 'switched-off code'

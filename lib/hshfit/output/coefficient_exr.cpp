@@ -2,7 +2,7 @@
 #include <hshfit/output/atomic_file.h>
 #include <hshfit/output/coefficient_formats.h>
 #include <hshfit/output/exr_header.h>
-#include <hshfit/output/exr_stream.h>
+#include <hshfit/output/internal/exr_stream.h>
 
 #include <algorithm>
 #include <array>

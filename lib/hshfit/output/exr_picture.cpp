@@ -3,7 +3,7 @@
 #include <hshfit/output/coefficient_formats.h>
 #include <hshfit/output/exr_header.h>
 #include <hshfit/output/exr_picture.h>
-#include <hshfit/output/exr_stream.h>
+#include <hshfit/output/internal/exr_stream.h>
 
 #include <cerrno>
 #include <cstring>

@@ -1,5 +1,5 @@
 #include <hshfit/error.h>
-#include <hshfit/output/exr_stream.h>
+#include <hshfit/output/internal/exr_stream.h>
 
 #include <fmt/format.h>
 
