@@ -1,0 +1,62 @@
+// ltc and gaussians from the command line.
+
+#include <cli/program.h>
+#include <nlohmann/json.hpp>
+
+namespace hshfit::test {
+namespace {
+
+using Json = nlohmann::json;
+
+TEST_F(Cli, LtcWritesEveryForm) {
+    const Answer answer = run("ltc ggx --size 4 --json -o " + path("t.dds") + " -o " +
+                              path("t.exr") + " -o " + path("t.json"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const Json json = Json::parse(answer.out);
+    EXPECT_EQ(json["size"], 4);
+    ASSERT_EQ(json["outputs"].size(), 5u);
+    for (const Json& output : json["outputs"]) {
+        EXPECT_GT(fs::file_size(output.get<std::string>()), 0u);
+    }
+    EXPECT_TRUE(keepsSchema(read(path("t.json")), "ltc"));
+    const Json table = Json::parse(read(path("t.json")));
+    EXPECT_EQ(table["summary"]["mean_error"], json["mean_error"]);
+    EXPECT_EQ(table["values"][3], 1);
+}
+
+TEST_F(Cli, LtcNamesWhatIsWrong) {
+    expectError("ltc ggx -o " + path("t.png"), 2, ".json, .exr or .dds", 0);
+    expectError("ltc ggx:alpha=.2 -o " + path("t.json"), 2, "runs over roughness", 0);
+    expectError("ltc phong -o " + path("t.json"), 2, "exponent", 0);
+    expectError("ltc ggx --size 1 -o " + path("t.json"), 2, "size", 0);
+    expectError("ltc ggx --mapping cube -o " + path("t.json"), 2, "mapping", 0);
+    expectError("ltc lambert --parameter kd --size 2 -o " + path("t.json"), 4, "is 0", 0);
+    expectError("ltc ggx --size 2 -o " + path("no/t.json"), 5, "no/t.json", 0);
+}
+
+TEST_F(Cli, GaussiansAreABrdf) {
+    const Answer answer =
+        run("gaussians ggx:alpha=.3 --lobes 2 --kind asg --outgoing 3 --json "
+            "--metrics relative-l2-cosine -o " +
+            path("g.json"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const Json json = Json::parse(answer.out);
+    EXPECT_TRUE(keepsSchema(read(path("g.json")), "gaussians"));
+    // The same error from the file, by the command that compares BRDFs.
+    const Answer compared = run("compare ggx:alpha=.3 " + path("g.json") +
+                                " --outgoing 3 --metrics relative-l2-cosine --json");
+    ASSERT_EQ(compared.code, 0) << compared.err;
+    EXPECT_NEAR(Json::parse(compared.out)["metrics"][0]["value"].get<double>(),
+                json["metrics"][0]["value"].get<double>(), 1e-9);
+    EXPECT_EQ(run("info " + path("g.json")).code, 0);
+}
+
+TEST_F(Cli, GaussiansNameWhatIsWrong) {
+    expectError("gaussians ward:ax=.1,ay=.3 -o " + path("g.json"), 2, "isotropic", 0);
+    expectError("gaussians ggx:alpha=.3 --outgoing 4x4 -o " + path("g.json"), 2, "elevations", 0);
+    expectError("gaussians ggx:alpha=.3 --kind gs -o " + path("g.json"), 2, "kind", 0);
+    expectError("gaussians lambert:kd=0 -o " + path("g.json"), 4, "is 0", 0);
+}
+
+}  // namespace
+}  // namespace hshfit::test
