@@ -62,7 +62,10 @@ BENCHMARK_CAPTURE(fitTable, ggx_100000, "lambert+ggx", 100000)
 BENCHMARK_CAPTURE(fitTable, ward, "lambert+ward", 0)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(fitTable, beckmann_by_differences, "lambert+beckmann", 0)
+BENCHMARK_CAPTURE(fitTable, beckmann, "lambert+beckmann", 0)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(fitTable, blinn_phong_by_differences, "lambert+blinn-phong:normalized=true", 0)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
 

@@ -94,6 +94,7 @@ const std::vector<Row>& rows() {
         {"blinn-phong", {"exponent"}, "ks", "normalized=false", make<BlinnPhongLobe, 1>},
         {"ward", {"ax"}, "ks", "", make<WardLobe, 1>},
         {"ggx", {"alpha"}, "F0", "fresnel=schlick", make<GgxLobe, 1>},
+        {"beckmann", {"alpha"}, "F0", "fresnel=schlick", make<BeckmannLobe, 1>},
         {"cook-torrance", {"F0", "m"}, "ks", "", make<CookTorranceLobe, 2>},
         {"abc", {"B", "C", "ior"}, "A", "", make<AbcLobe, 3>},
         {"sgd",

@@ -25,8 +25,8 @@ public:
 };
 
 /// Null for a model, or choices or stated numbers of it, that has none. There are formulas of
-/// lambert, blinn-phong (not normalised), ward, ggx (Schlick), cook-torrance (F0), abc and sgd,
-/// isotropic.
+/// lambert, blinn-phong (not normalised), ward, ggx and beckmann (Schlick), cook-torrance (F0), abc
+/// and sgd, isotropic.
 std::unique_ptr<LobeFormula> makeLobeFormula(const Model& model, const Parameters& stated,
                                              const std::vector<FreeParameter>& shapes,
                                              const std::vector<std::string>& linearKeys);

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 
 namespace hshfit::brdfs {
@@ -72,6 +73,18 @@ private:
     char variant_;
 };
 
+/// D F G / (4 cos_i cos_o) with Schlick's F from D and z Lambda of both directions (Smith).
+template <class T>
+T smithLobe(const PairGeometry& g, const T& density, const T& in, const T& out, bool correlated,
+            T& base) {
+    const T visible =
+        correlated ? g.cosI * g.cosO + g.cosO * in + g.cosI * out : (g.cosI + in) * (g.cosO + out);
+    const T lobe = 0.25 * density / visible;
+    const double weight = g.schlick();
+    base += lobe * weight;
+    return lobe * (1 - weight);
+}
+
 template <class T>
 class GgxLobe {
 public:
@@ -79,14 +92,8 @@ public:
         : squared_(shapes[0] * shapes[0]), correlated_(words.at("masking") == "correlated") {}
     T operator()(const PairGeometry& g, T& base) const {
         const T ratio = (1 + g.squaredSlope) / (squared_ + g.squaredSlope);
-        const T density = ratio * ratio * squared_ * (1 / pi);
-        const T in = masked(g.cosI), out = masked(g.cosO);
-        const T visible = correlated_ ? g.cosI * g.cosO + g.cosO * in + g.cosI * out
-                                      : (g.cosI + in) * (g.cosO + out);
-        const T lobe = 0.25 * density / visible;
-        const double weight = g.schlick();
-        base += lobe * weight;
-        return lobe * (1 - weight);
+        return smithLobe(g, ratio * ratio * squared_ * (1 / pi), masked(g.cosI), masked(g.cosO),
+                         correlated_, base);
     }
 
 private:
@@ -97,6 +104,33 @@ private:
         return 0.5 * s / (z + sqrt(z * z + s));
     }
     T squared_;
+    bool correlated_;
+};
+
+template <class T>
+class BeckmannLobe {
+public:
+    BeckmannLobe(const T* shapes, const LobeWords& words)
+        : alpha_(shapes[0]),
+          inverse_(1.0 / (shapes[0] * shapes[0])),
+          correlated_(words.at("masking") == "correlated") {}
+    T operator()(const PairGeometry& g, T& base) const {
+        using std::exp;
+        const double rise = 1 + g.squaredSlope;
+        const T density = inverse_ * exp(inverse_ * -g.squaredSlope) * (rise * rise / pi);
+        return smithLobe(g, density, masked(g.cosI), masked(g.cosO), correlated_, base);
+    }
+
+private:
+    /// z Lambda(z)
+    T masked(double z) const {
+        using std::erfc;
+        using std::exp;
+        const T s = alpha_ * std::max(1e-12, std::sqrt((1 - z) * (1 + z)));
+        const T a = z / s;
+        return 0.5 * (exp(-a * a) * s * std::numbers::inv_sqrtpi - erfc(a) * z);
+    }
+    T alpha_, inverse_;
     bool correlated_;
 };
 
