@@ -17,14 +17,14 @@ struct Rival {
     std::string_view collection;
     std::string_view model;
     Loss::Kind loss;
-    bool minimised = true;  ///< the published fit is of this model and minimised this loss
     bool perChannel = false;
     int starts = 16;
 };
 
-/// Ngan et al. 2005 and E1 of Löw et al. 2012 minimised squares of f cos(theta_i), E2 of the latter
-/// those of ln(1 + f cos(theta_i)). Bagher et al. 2012 minimised neither. There are no published
-/// parameters of GGX for these materials: those of Cook and Torrance's model take their place.
+/// Ngan et al. 2005 and E1 of Löw et al. 2012 minimise squares of f cos(theta_i), E2 of the latter
+/// those of ln(1 + f cos(theta_i)). Bagher et al. 2012 are held to the former. There are no
+/// published parameters of GGX for these materials: those of Cook and Torrance's model take their
+/// place.
 inline constexpr std::array rivals{
     Rival{"ngan-ward", "ward:variant=1992", Loss::Kind::cosine},
     Rival{"ngan-ward-duer", "ward:variant=duer", Loss::Kind::cosine},
@@ -33,10 +33,9 @@ inline constexpr std::array rivals{
     Rival{"low-cook-torrance-e2", "cook-torrance", Loss::Kind::log},
     Rival{"low-abc-smooth-e2", "abc:variant=smooth", Loss::Kind::log},
     Rival{"low-abc-microfacet-e2", "abc:variant=microfacet", Loss::Kind::log},
-    Rival{"bagher-sgd", "sgd", Loss::Kind::cosine, false, true, 8},
-    Rival{"bagher-sgd", "sgd", Loss::Kind::log, false, true, 8},
-    Rival{"ngan-cook-torrance", "ggx", Loss::Kind::cosine, false},
-    Rival{"low-cook-torrance-e2", "ggx", Loss::Kind::log, false},
+    Rival{"bagher-sgd", "sgd", Loss::Kind::cosine, true, 8},
+    Rival{"ngan-cook-torrance", "ggx", Loss::Kind::cosine},
+    Rival{"low-cook-torrance-e2", "ggx", Loss::Kind::log},
 };
 
 /// What both sides are measured on: the cells of a slice with both directions within 80 degrees of
