@@ -52,7 +52,11 @@ Covariance covarianceOf(const Equations& equations, const std::vector<bool>& fix
     const double count = static_cast<double>(values);
     const double correction =
         count > static_cast<double>(n) ? count / (count - static_cast<double>(n)) : 1;
-    const Eigen::MatrixXd covariance = correction * inverted * spread * inverted;
+    // The cost, 1 for f = 0, is known to its rounding alone: parameters to the step that raises it
+    // by as much.
+    constexpr double rounding = 2.3e-16;
+    const Eigen::MatrixXd covariance =
+        correction * inverted * spread * inverted + 2 * rounding * inverted;
     for (Eigen::Index i = 0; i < n; ++i) {
         if (undetermined[i]) continue;
         result.variance[free[i]] = std::max(0.0, covariance(i, i)) / (scale(i) * scale(i));

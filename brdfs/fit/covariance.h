@@ -15,8 +15,9 @@ struct Covariance {
     std::vector<std::vector<std::size_t>> ambiguous;
 };
 
-/// hessian^-1 spread hessian^-1 values / (values - n). Directions in which the Gauss-Newton matrix,
-/// scaled to a diagonal of 1, is below 1e-9 are left out and reported.
+/// hessian^-1 spread hessian^-1 values / (values - n), and what rounding of the cost (which is 1/2
+/// where f = 0) leaves open: without noise all there is. Directions in which the Gauss-Newton
+/// matrix, scaled to a diagonal of 1, is below 1e-9 are left out and reported.
 Covariance covarianceOf(const Equations& equations, const std::vector<bool>& fixed,
                         std::size_t values);
 
