@@ -8,6 +8,7 @@
 #include <brdfs/measured/measured_brdf.h>
 #include <hshfit/error.h>
 #include <hshfit/output/atomic_file.h>
+#include <hshfit/output/comparison.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -74,6 +75,22 @@ std::string text(const brdfs::FitResult& result) {
     return lines;
 }
 
+/// Whether `-o` names a folder for a report, and not a preset.
+bool isFolder(const std::string& output) {
+    return !output.empty() && !output.ends_with(".json");
+}
+
+/// Data and fit side by side, as `compare` shows them, in the folder where the fit is.
+std::size_t writeReport(const FitArguments& arguments, const std::string& spec,
+                        const Globals& globals) {
+    const auto data = openSource(arguments.data, arguments.rgb);
+    const auto fitted = brdfs::open(spec);
+    Progress progress(globals, "report");
+    ComparisonOptions options;
+    options.progress = options.sphere.progress = progress.callback();
+    return writeComparison(*data, *fitted, options, arguments.output).size();
+}
+
 /// Fits one file. Throws NumericError if it did not converge and that is not accepted.
 Json fitOne(const FitArguments& arguments, const std::string& data, const std::string& output,
             const Globals& globals, std::string& answer) {
@@ -87,8 +104,15 @@ Json fitOne(const FitArguments& arguments, const std::string& data, const std::s
             fmt::format("{}: the fit of {} did not converge ({}); --accept takes it as it is", data,
                         arguments.model, result.message));
     Json preset = brdfs::fitPreset({data, &samples, options, result});
-    if (!output.empty()) writeFile(output, preset.dump(2) + "\n");
     answer = text(result);
+    if (isFolder(output)) {
+        const std::size_t files = writeReport(arguments, result.spec, globals);
+        writeFile(output + "/fit.json", preset.dump(2) + "\n");
+        answer += fmt::format("written to {}: fit.json, comparison.html and {} files beside it\n",
+                              output, files - 1);
+    } else if (!output.empty()) {
+        writeFile(output, preset.dump(2) + "\n");
+    }
     return preset;
 }
 
@@ -198,7 +222,8 @@ void addFit(CLI::App& app, Globals& globals) {
                        "MODEL[:key=value,...][+MODEL...]: what is given is not fitted");
     command.add_option("--compare-models", arguments->models,
                        "Fit each of these models and rank them by held-out directions");
-    command.add_option("-o,--output", arguments->output, "Where the fit goes, a preset (.json)");
+    command.add_option("-o,--output", arguments->output,
+                       "Where the fit goes: a preset (.json), or a folder for a report as well");
     command.add_option("--loss", arguments->loss, "l2, cosine, log, cube-root or log-relative")
         ->capture_default_str();
     command.add_option("--robust", arguments->robust, "none, huber or cauchy")

@@ -1,0 +1,56 @@
+// `hshfit fit` from the command line.
+
+#include <cli/program.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace {
+
+using hshfit::test::Answer;
+using hshfit::test::Cli;
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+TEST_F(Cli, FitIsAPresetThatOpens) {
+    const Answer answer =
+        run("fit ward:kd=.1,ks=.3,ax=.2,ay=.2 --model ward --json -o " + path("fit.json"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "fit"));
+    const std::string at = " --wi 30,10 --wo 40,170";
+    EXPECT_NEAR(std::stod(run("eval " + path("fit.json") + at).out.substr(5)),
+                std::stod(run("eval ward:kd=.1,ks=.3,ax=.2,ay=.2" + at).out.substr(5)), 1e-4);
+}
+
+TEST_F(Cli, FitWritesAReportIntoAFolder) {
+    const Answer answer = run("fit phong:ks=.5,exponent=12 --model phong -o " + path("report"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    for (const char* name : {"report/fit.json", "report/comparison.html", "report/spheres.png"})
+        EXPECT_TRUE(fs::exists(path(name))) << name;
+    EXPECT_EQ(run("info " + path("report/fit.json")).code, 0);
+}
+
+TEST_F(Cli, FitOfAFolderGoesOnAfterAFailure) {
+    fs::create_directory(path("data"));
+    write("data/broken.binary", "no table");
+    write("data/samples.json",
+          R"({"format":"hshfit-preset","version":1,"model":"phong","parameters":{"exponent":9}})");
+    const Answer answer = run("fit --all " + path("data") + " --model phong -o " + path("out"));
+    EXPECT_NE(answer.code, 0);
+    EXPECT_NE(answer.out.find("broken.binary"), std::string::npos) << answer.out;
+    EXPECT_EQ(std::distance(fs::directory_iterator(path("out")), {}), 1) << answer.out;
+    const Answer again = run("fit --all " + path("data") + " --model phong -o " + path("out"));
+    EXPECT_NE(again.out.find("0 fitted, 1 were there"), std::string::npos) << again.out;
+}
+
+TEST_F(Cli, FitNamesWhatIsWrong) {
+    expectError("fit lambert -o " + path("x.json"), 2, "--model", 0);
+    expectError("fit --model ward -o " + path("x.json"), 2, "DATA", 0);
+    expectError("fit lambert --model wrad -o " + path("x.json"), 2, "ward", 0);
+    expectError("fit lambert --model ward --loss l3 -o " + path("x.json"), 2, "cube-root", 0);
+    expectError("fit " + path("absent.binary") + " --model ward -o " + path("x.json"), 3,
+                "absent.binary", 0);
+}
+
+}  // namespace
