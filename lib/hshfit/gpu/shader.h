@@ -1,0 +1,40 @@
+#pragma once
+
+#include <hshfit/gpu/payload.h>
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace hshfit::gpu {
+
+enum class Language { glslEs, glsl, hlsl, wgsl, metal, osl };
+
+/// A row of the language table.
+struct LanguageEntry {
+    Language language;
+    std::string_view name;       ///< "glsl-es", "glsl", "hlsl", "wgsl", "metal", "osl"
+    std::string_view extension;  ///< of the file: "glsl", …
+    std::string_view summary;
+};
+std::span<const LanguageEntry> languages();
+
+struct ShaderOptions {
+    /// What every name in the snippet begins with, so that two can live in one program.
+    std::string prefix = "hsh";
+    /// Bands of the SH environment that `shade` takes; 0: no `shade`.
+    int environmentOrder = 5;
+};
+
+/// A snippet, to be pasted or included, unrolled for this payload:
+///     PREFIX_eval(wo, wi)     q(wo, wi) in the local frame, clamped at 0 once, after the sum
+///     PREFIX_evalRaw(wo, wi)  the same, not clamped
+///     PREFIX_shade(wo, env)   integral of f(wo, wi) L(wi) cos(theta_i) over the hemisphere, L
+///     given
+///                             by its SH coefficients in the local frame (orthonormal, slot
+///                             l(l+1)+m, the sign convention of the payload)
+/// Directions below the horizon give 0. Throws UsageError for a payload that the language cannot
+/// take, with the reason.
+std::string shaderSource(Language language, const Payload& payload, const ShaderOptions& options);
+
+}  // namespace hshfit::gpu

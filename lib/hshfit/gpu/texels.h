@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::gpu {
+
+/// How a number is kept in a texel; little-endian.
+enum class Number {
+    float16,  ///< IEEE binary16, nearest even; up to 65504
+    float32,
+    unorm16,  ///< integer / 65535, times a scale plus an offset per layer and lane
+    unorm8,   ///< integer / 255, likewise
+};
+std::string numberName(Number number);  ///< "float16", …, as in files
+std::size_t numberBytes(Number number);
+bool isNormalised(Number number);
+/// Throws UsageError with the four names.
+Number parseNumber(std::string_view name);
+
+/// value = stored * scale + offset.
+struct LaneScale {
+    double scale = 1, offset = 0;
+};
+
+/// An array of RGBA textures: number ((layer * height + y) * width + x) * 4 + lane, row 0 being
+/// v = 0 in memory, unused lanes 0.
+struct Texels {
+    int width = 1, height = 1;
+    std::size_t layers = 0;
+    Number number = Number::float16;
+    std::vector<std::byte> bytes;
+    std::vector<LaneScale> scales;  ///< [layer * 4 + lane]; empty unless normalised
+
+    std::size_t count() const {
+        return layers * static_cast<std::size_t>(height) * static_cast<std::size_t>(width) * 4;
+    }
+};
+
+/// Encodes values laid out as in `Texels`. Scales of normalised numbers span each lane's range.
+/// Throws NumericError where a value is not finite or beyond the number's range.
+Texels encode(std::span<const double> values, int width, int height, std::size_t layers,
+              Number number);
+/// The values that a GPU reads. Throws InputError where `bytes` or `scales` have another length
+/// than the sizes say.
+std::vector<double> decode(const Texels& texels);
+
+}  // namespace hshfit::gpu
