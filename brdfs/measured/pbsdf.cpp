@@ -1,7 +1,7 @@
 #include <brdfs/measured/pbsdf.h>
-#include <brdfs/measured/tensor_file.h>
 #include <hshfit/error.h>
 #include <hshfit/mapped_file.h>
+#include <hshfit/tensor_file.h>
 
 #include <fmt/core.h>
 

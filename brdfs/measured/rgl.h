@@ -9,9 +9,11 @@
 #include <span>
 #include <string>
 
-namespace hshfit::brdfs {
-
+namespace hshfit {
 class TensorFile;
+}
+
+namespace hshfit::brdfs {
 
 /// What an RGL file holds, checked.
 struct RglTables {

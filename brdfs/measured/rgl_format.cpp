@@ -1,5 +1,5 @@
 #include <brdfs/measured/rgl.h>
-#include <brdfs/measured/tensor_file.h>
+#include <hshfit/tensor_file.h>
 
 #include <algorithm>
 

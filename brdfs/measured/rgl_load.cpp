@@ -1,8 +1,8 @@
 // From the fields of a tensor file to checked RGL tables.
 
 #include <brdfs/measured/rgl.h>
-#include <brdfs/measured/tensor_file.h>
 #include <hshfit/error.h>
+#include <hshfit/tensor_file.h>
 
 #include <fmt/core.h>
 

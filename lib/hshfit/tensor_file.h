@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace hshfit::brdfs {
+namespace hshfit {
 
 /// The container of RGL `.bsdf` files (Dupuy & Jakob 2018): named arrays after a table of contents,
 /// little-endian. "tensor_file\0", u8 1, u8 0, u32 number of fields; then for each field u16 length
@@ -66,4 +66,4 @@ std::string_view typeName(TensorFile::Type type);
 /// "1 x 8 x 128".
 std::string shapeText(std::span<const std::uint64_t> shape);
 
-}  // namespace hshfit::brdfs
+}  // namespace hshfit

@@ -1,4 +1,4 @@
-#include <brdfs/measured/tensor_file_writer.h>
+#include <hshfit/output/tensor_file_writer.h>
 
 #include <cassert>
 #include <functional>
@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-namespace hshfit::brdfs {
+namespace hshfit {
 namespace {
 
 constexpr std::uint64_t alignment = 8;
@@ -25,6 +25,11 @@ void append(std::string& out, Value value) {
 }
 
 }  // namespace
+
+void TensorFileWriter::add(std::string name, TensorFile::Type type,
+                           std::vector<std::uint64_t> shape, std::span<const std::byte> bytes) {
+    fields_.push_back({std::move(name), type, std::move(shape), bytes});
+}
 
 void TensorFileWriter::add(std::string name, std::vector<std::uint64_t> shape,
                            std::span<const float> values) {
@@ -47,7 +52,7 @@ void TensorFileWriter::add(std::string name, std::string_view octets) {
                        std::as_bytes(std::span(octets.data(), octets.size()))});
 }
 
-void TensorFileWriter::write(const std::string& path, AtomicFile::Existing existing) const {
+void TensorFileWriter::write(AtomicFile& file) const {
     constexpr std::size_t headBytes = TensorFile::magic.size() + 2 + sizeof(std::uint32_t);
     std::uint64_t offset = headBytes;
     for (const Field& field : fields_) {
@@ -69,7 +74,6 @@ void TensorFileWriter::write(const std::string& path, AtomicFile::Existing exist
         offset += field.bytes.size();
     }
 
-    AtomicFile file(path, existing);
     file.write(head);
     std::uint64_t position = head.size();
     for (const Field& field : fields_) {
@@ -77,7 +81,12 @@ void TensorFileWriter::write(const std::string& path, AtomicFile::Existing exist
         file.write(field.bytes);
         position = aligned(position) + field.bytes.size();
     }
+}
+
+void TensorFileWriter::write(const std::string& path, AtomicFile::Existing existing) const {
+    AtomicFile file(path, existing);
+    write(file);
     file.commit();
 }
 
-}  // namespace hshfit::brdfs
+}  // namespace hshfit

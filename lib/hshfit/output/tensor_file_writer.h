@@ -1,7 +1,7 @@
 #pragma once
 
-#include <brdfs/measured/tensor_file.h>
 #include <hshfit/output/atomic_file.h>
+#include <hshfit/tensor_file.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -10,18 +10,21 @@
 #include <string_view>
 #include <vector>
 
-namespace hshfit::brdfs {
+namespace hshfit {
 
 /// Collects named arrays and writes them as a tensor file (tensor_file.h), every array at a
 /// multiple of 8 bytes. The arrays have to stay until `write`.
 class TensorFileWriter {
 public:
+    void add(std::string name, TensorFile::Type type, std::vector<std::uint64_t> shape,
+             std::span<const std::byte> bytes);
     void add(std::string name, std::vector<std::uint64_t> shape, std::span<const float> values);
     void add(std::string name, std::vector<std::uint64_t> shape,
              std::span<const std::uint32_t> values);
     /// Octets with one dimension.
     void add(std::string name, std::string_view octets);
 
+    void write(AtomicFile& file) const;
     /// Throws OutputError if the file cannot be written or stands and is not to be replaced.
     void write(const std::string& path, AtomicFile::Existing existing) const;
 
@@ -35,4 +38,4 @@ private:
     std::vector<Field> fields_;
 };
 
-}  // namespace hshfit::brdfs
+}  // namespace hshfit

@@ -1,5 +1,5 @@
-#include <brdfs/measured/tensor_file.h>
 #include <hshfit/error.h>
+#include <hshfit/tensor_file.h>
 
 #include <fmt/core.h>
 
@@ -12,7 +12,7 @@
 #include <unordered_set>
 #include <utility>
 
-namespace hshfit::brdfs {
+namespace hshfit {
 
 static_assert(std::endian::native == std::endian::little, "tensor files are little-endian");
 
@@ -225,4 +225,4 @@ void TensorFile::fail(const Field& field, const std::string& what) const {
         fmt::format("{}: field {} (offset {}): {}", source_, field.name, field.offset, what));
 }
 
-}  // namespace hshfit::brdfs
+}  // namespace hshfit
