@@ -134,7 +134,7 @@ void AtomicFile::write(std::span<const std::byte> bytes) {
     write(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
-void AtomicFile::commit() {
+void AtomicFile::finish() {
     if (!stream_) fail(EBADF);
     errno = 0;
     const bool failedBefore = std::ferror(stream_) != 0;
@@ -142,7 +142,18 @@ void AtomicFile::commit() {
     int error = flushed && !failedBefore ? 0 : (errno != 0 ? errno : EIO);
     if (std::fclose(stream_) != 0 && error == 0) error = errno;
     stream_ = nullptr;
-    if (error == 0 && temporary_ != target_) {
+    if (error != 0) {
+        discard();
+        fail(error);
+    }
+    finished_ = true;
+}
+
+void AtomicFile::commit() {
+    if (!finished_) finish();
+    finished_ = false;
+    int error = 0;
+    if (temporary_ != target_) {
         // link() refuses an existing name, rename() replaces it; both in one step.
         const bool moved = existing_ == Existing::refuse
                                ? ::link(temporary_.c_str(), target_.c_str()) == 0

@@ -33,7 +33,10 @@ public:
     /// What another program may write to before commit(); `path` itself for a device.
     const std::string& temporaryPath() const { return temporary_; }
 
-    /// Flushes, closes and renames, checking each step.
+    /// Flushes and closes: every byte is in the temporary, or this throws. Nothing after it but
+    /// commit().
+    void finish();
+    /// finish(), unless that was called, and the rename.
     void commit();
 
 private:
@@ -47,6 +50,7 @@ private:
     Existing existing_;
     std::FILE* stream_ = nullptr;
     int registration_ = -1;
+    bool finished_ = false;
 };
 
 /// Writes `text` to `path` through an AtomicFile.

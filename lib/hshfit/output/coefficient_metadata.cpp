@@ -1,6 +1,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/output/coefficient_formats.h>
+#include <hshfit/output/internal/json_fields.h>
 #include <hshfit/version.h>
 
 #include <algorithm>
@@ -75,74 +76,7 @@ const char* kindName(Channels::Kind kind) {
     return "spectral";
 }
 
-/// One JSON object of the file, with checked access and messages that name the field.
-class Fields {
-public:
-    Fields(const Json& object, std::string path, const std::string& file)
-        : object_(object), path_(std::move(path)), file_(file) {
-        if (!object_.is_object()) fail("has to be an object");
-    }
-
-    [[noreturn]] void fail(std::string_view what, std::string_view key = {}) const {
-        std::string name = path_;
-        if (!name.empty() && !key.empty()) name += '.';
-        name += key;
-        if (name.empty()) throw InputError(fmt::format("{}: the content {}", file_, what));
-        throw InputError(fmt::format("{}: '{}' {}", file_, name, printable(what)));
-    }
-    bool has(const char* key) const { return object_.contains(key); }
-    const Json& at(const char* key) const {
-        if (!has(key)) fail("is missing", key);
-        return object_.at(key);
-    }
-    Fields object(const char* key) const {
-        return {at(key), path_.empty() ? key : path_ + '.' + key, file_};
-    }
-    std::string word(const char* key) const {
-        if (!at(key).is_string()) fail("has to be a string", key);
-        return at(key).get<std::string>();
-    }
-    bool flag(const char* key) const {
-        if (!at(key).is_boolean()) fail("has to be true or false", key);
-        return at(key).get<bool>();
-    }
-    double number(const char* key) const {
-        if (!at(key).is_number()) fail("has to be a number", key);
-        return finite(at(key), key);
-    }
-    std::optional<double> numberOrNull(const char* key) const {
-        if (at(key).is_null()) return std::nullopt;
-        if (!at(key).is_number()) fail("has to be a number or null", key);
-        return finite(at(key), key);
-    }
-    int integer(const char* key, int min, int max) const {
-        const double value = number(key);
-        if (value != std::floor(value) || value < min || value > max) {
-            fail(fmt::format("is {}; it has to be an integer from {} to {}", value, min, max), key);
-        }
-        return static_cast<int>(value);
-    }
-    std::vector<double> numbers(const char* key) const {
-        if (!at(key).is_array()) fail("has to be an array of numbers", key);
-        std::vector<double> values;
-        for (const Json& value : at(key)) {
-            if (!value.is_number()) fail("has to be an array of numbers", key);
-            values.push_back(finite(value, key));
-        }
-        return values;
-    }
-
-private:
-    double finite(const Json& value, const char* key) const {
-        const double number = value.get<double>();
-        if (!std::isfinite(number)) fail("is not finite", key);
-        return number;
-    }
-
-    const Json& object_;
-    std::string path_;
-    const std::string& file_;
-};
+using Fields = JsonFields;
 
 void checkVersion(const Fields& root) {
     if (const std::string format = root.word("format"); format != formatName) {
@@ -315,13 +249,7 @@ CoefficientMetadata metadataOf(const Coefficients& c) {
 
 Coefficients coefficientsFromMetadata(std::string_view text, std::size_t outgoingCount,
                                       const std::string& file) {
-    const Json json = Json::parse(
-        text,
-        [&](int depth, Json::parse_event_t, Json&) {
-            if (depth > maxDepth) throw InputError(fmt::format("{}: is nested too deeply", file));
-            return true;
-        },
-        false);
+    const Json json = parseJson(text, file, maxDepth);
     const Fields root(json, "", file);
     checkVersion(root);
     Coefficients result;
