@@ -62,6 +62,15 @@ public:
         double slope, ratio, carry;
     };
 
+    const JacobiFamily& family() const { return family_; }
+    /// c_m = T_m^m / (F^m W).
+    double start(int m) const { return starts_[static_cast<std::size_t>(m)]; }
+    /// The steps of column m from the end t = 1 or, `fromMinusOne`, t = -1.
+    std::span<const Step> steps(int m, bool fromMinusOne) const {
+        return {steps_[fromMinusOne].data() + offsets_[static_cast<std::size_t>(m)],
+                static_cast<std::size_t>(functions(m) - 1)};
+    }
+
 private:
     /// Functions T_l^m, l < order, that the recurrence produces.
     int functions(int m) const { return (order() - m + family_.bandStep - 1) / family_.bandStep; }

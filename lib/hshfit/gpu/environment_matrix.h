@@ -1,0 +1,28 @@
+#pragma once
+
+#include <hshfit/bases/basis.h>
+#include <hshfit/coefficients.h>
+
+#include <vector>
+
+namespace hshfit::gpu {
+
+/// One element that is not 0 of the environment matrix
+///     M_{kj} = integral over the hemisphere of B_k Y_j d omega       (f cos(theta_i) was
+///     projected) M_{kj} = integral over the hemisphere of B_k Y_j cos(theta) d omega          (f
+///     was projected)
+/// with B_k the functions of a basis and Y_j the spherical harmonics, orthonormal over the sphere,
+/// both with the same Condon-Shortley sign.
+struct EnvironmentElement {
+    int slot = 0;         ///< of B_k
+    int environment = 0;  ///< slot of Y_j
+    double value = 0;
+};
+
+/// Ordered by slot, then by environment slot. M is block diagonal in m, and the blocks of m and -m
+/// are equal. From Gauss-Legendre quadrature in sqrt(z), where the integrands are polynomials times
+/// (1 + z)^{m/2}: exact to rounding. Elements below 1e-9 in magnitude count as 0.
+std::vector<EnvironmentElement> environmentMatrix(const Basis& basis, int environmentOrder,
+                                                  Quantity quantity);
+
+}  // namespace hshfit::gpu

@@ -1,0 +1,224 @@
+#include <hshfit/gpu/shader.h>
+
+#include <hshfit/bases/catalog.h>
+#include <hshfit/error.h>
+#include <hshfit/gpu/shader_data.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+namespace hshfit {
+
+namespace embedded {
+extern const std::string_view shader_basis, shader_clamp, shader_ends, shader_eval, shader_header,
+    shader_shade, shader_turn, shader_uv;
+extern const std::string_view shader_glsl_es, shader_glsl_functions;
+}  // namespace embedded
+
+namespace gpu {
+namespace {
+
+using kainjow::mustache::data;
+using kainjow::mustache::mustache;
+using kainjow::mustache::partial;
+
+constexpr std::array table{
+    LanguageEntry{Language::glslEs, "glsl-es", "glsl", "GLSL ES 3.00: WebGL2, OpenGL ES 3"},
+    LanguageEntry{Language::glsl, "glsl", "glsl", "GLSL 4.50: OpenGL, Vulkan"},
+    LanguageEntry{Language::hlsl, "hlsl", "hlsl", "HLSL, shader model 5 and 6: Direct3D, Vulkan"},
+    LanguageEntry{Language::wgsl, "wgsl", "wgsl", "WGSL: WebGPU"},
+    LanguageEntry{Language::metal, "metal", "metal", "Metal Shading Language 2"},
+    LanguageEntry{Language::osl, "osl", "osl", "Open Shading Language 1.10; experimental"},
+};
+
+constexpr int maxEnvironmentOrder = 16;
+
+/// How a language calls what the templates share.
+struct Words {
+    std::string let, let2, let3, let4, var;  ///< begin a declaration
+    std::string real, vec2, vec3, vec4;      ///< types, which also construct
+    bool macros;                             ///< texels are looked up by macros, not functions
+    std::string environment;                 ///< the array of environment coefficients
+    std::string_view text;                   ///< the template
+};
+
+const Words& wordsOf(Language language) {
+    static const Words glslEs{"float", "vec2", "vec3", "vec4", "float", "float",
+                              "vec2",  "vec3", "vec4", true,   "env",   embedded::shader_glsl_es};
+    (void)language;
+    return glslEs;
+}
+
+/// For a comment: printable ASCII on one line, so that nothing can end the comment.
+std::string commentText(std::string text) {
+    for (char& c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if (code < 32 || code > 126 || c == '\\') c = '?';
+    }
+    return text;
+}
+
+void checkOptions(const ShaderOptions& options) {
+    const auto isLetter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+    const std::string& prefix = options.prefix;
+    bool good = !prefix.empty() && isLetter(prefix[0]) && prefix.back() != '_' &&
+                prefix.find("__") == std::string::npos && prefix.substr(0, 3) != "gl_";
+    for (const char c : prefix) {
+        good = good && (isLetter(c) || (c >= '0' && c <= '9') || c == '_');
+    }
+    if (!good) {
+        throw UsageError(fmt::format(
+            "shader prefix '{}'; it has to be letters, digits and single underscores, begin with a "
+            "letter, not end with '_' and not begin with 'gl_'",
+            commentText(prefix)));
+    }
+    if (options.environmentOrder < 0 || options.environmentOrder > maxEnvironmentOrder) {
+        throw UsageError(fmt::format("environment of order {}; it has to be 0 (none) to {}",
+                                     options.environmentOrder, maxEnvironmentOrder));
+    }
+}
+
+void setMap(const OutgoingSet& set, data& page) {
+    page.set("single", set.map == OutgoingSet::Map::direction);
+    page.set("elevations", false);
+    page.set("parabolic", false);
+    if (set.map == OutgoingSet::Map::parabolic) {
+        data map;
+        map.set("scaleX", shaderNumber((set.width - 2) / (2.0 * set.width)));
+        map.set("scaleY", shaderNumber((set.height - 2) / (2.0 * set.height)));
+        page.set("parabolic", map);
+    } else if (set.map == OutgoingSet::Map::elevations) {
+        data map;
+        map.set("scale", shaderNumber((set.width - 0.5) / set.width));
+        map.set("bias", shaderNumber(0.5 / set.width));
+        page.set("elevations", map);
+    }
+}
+
+void setWords(const Words& words, const Payload& payload, const std::string& prefix, data& page) {
+    const bool grey = payload.channels.kind == Channels::Kind::grey;
+    const bool spectral = payload.channels.kind == Channels::Kind::spectral;
+    page.set("grey", grey);
+    page.set("colour", !grey && !spectral);
+    page.set("spectral", spectral);
+    page.set("coef4", payload.packing == Packing::coef4);
+    page.set("rgb", payload.packing == Packing::rgb);
+    const std::string values = prefix + "_Values", zero3 = words.vec3 + "(0.0, 0.0, 0.0)";
+    page.set("type", spectral ? values : grey ? words.real : words.vec3);
+    page.set("zero", grey ? "0.0" : zero3);
+    page.set("lightType", spectral ? values : words.vec3);
+    page.set("lightZero", zero3);
+    page.set("environmentType", spectral ? values : words.vec3);
+    page.set("letLight", spectral ? words.let : words.let3);
+    page.set("let", words.let);
+    page.set("let2", words.let2);
+    page.set("let4", words.let4);
+    page.set("var", words.var);
+    page.set("vec2", words.vec2);
+    page.set("vec3", words.vec3);
+    page.set("vec4", words.vec4);
+    page.set("env", words.environment);
+    std::string upper = prefix;
+    for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    page.set("prefix", prefix);
+    page.set("PREFIX", upper);
+    page.set("texel", words.macros ? upper + "_TEXEL" : prefix + "_texel");
+    page.set("basisTexel", words.macros ? upper + "_BASIS_TEXEL" : prefix + "_basisTexel");
+}
+
+void setHeader(const Payload& payload, int environmentOrder, data& page) {
+    page.set("generator", commentText(payload.generator));
+    page.set("source", commentText(payload.source));
+    page.set("basis", payload.basis);
+    page.set("order", std::to_string(payload.order));
+    page.set("functionCount", std::to_string(payload.slots.size()));
+    page.set("condonShortley", payload.condonShortley);
+    page.set("channelCount", std::to_string(payload.channels.count()));
+    page.set("channelNames", fmt::format("{}", fmt::join(payload.channels.names(), " ")));
+    page.set("packing", packingName(payload.packing));
+    page.set("layers", std::to_string(payload.coefficients.layers));
+    page.set("number", numberName(payload.coefficients.number));
+    page.set("cosine", payload.quantity == Quantity::brdfCosine);
+    page.set("environmentCount", std::to_string(environmentOrder * environmentOrder));
+}
+
+void setCost(const std::string& name, const ShaderCost& cost, data& page) {
+    page.set(name + "Fetches", std::to_string(cost.fetches));
+    page.set(name + "Products", std::to_string(cost.products));
+}
+
+void setPartials(data& page) {
+    const std::pair<const char*, std::string_view> parts[] = {
+        {"header", embedded::shader_header},
+        {"ends", embedded::shader_ends},
+        {"basisBody", embedded::shader_basis},
+        {"turnBody", embedded::shader_turn},
+        {"uvBody", embedded::shader_uv},
+        {"evalBody", embedded::shader_eval},
+        {"clampBody", embedded::shader_clamp},
+        {"shadeBody", embedded::shader_shade},
+        {"glslFunctions", embedded::shader_glsl_functions},
+    };
+    for (const auto& [name, text] : parts) {
+        // Lines of a template end in a newline each, and so does the line that names a partial.
+        std::string body(text);
+        if (body.ends_with('\n')) body.pop_back();
+        page.set(name, data(partial([body] { return body; })));
+    }
+}
+
+/// Sections that are left out leave their blank lines: keeps those before a line that begins at the
+/// margin, one each.
+std::string withoutGaps(const std::string& text) {
+    std::string result;
+    bool gap = false;
+    for (std::size_t first = 0; first < text.size();) {
+        const std::size_t end = std::min(text.find('\n', first), text.size());
+        const std::string line = text.substr(first, end - first);
+        first = end + 1;
+        if (line.find_first_not_of(' ') == std::string::npos) {
+            gap = true;
+            continue;
+        }
+        if (gap && line[0] != ' ' && line[0] != '}') result += '\n';
+        gap = false;
+        result += line + '\n';
+    }
+    return result;
+}
+
+}  // namespace
+
+std::span<const LanguageEntry> languages() {
+    return table;
+}
+
+std::string shaderSource(Language language, const Payload& payload, const ShaderOptions& options) {
+    checkOptions(options);
+    const Words& words = wordsOf(language);
+    const auto basis =
+        bases::make(payload.basis, payload.order, {.condonShortley = payload.condonShortley});
+    data page;
+    setWords(words, payload, options.prefix, page);
+    setHeader(payload, options.environmentOrder, page);
+    setMap(payload.outgoing, page);
+    ShaderCost eval, shade;
+    setBasis(payload, *basis, page, eval);
+    setEvaluation(payload, page, eval);
+    page.set("shade", options.environmentOrder > 0);
+    if (options.environmentOrder > 0)
+        setShading(payload, *basis, options.environmentOrder, page, shade);
+    setCost("eval", eval, page);
+    setCost("shade", shade, page);
+    setPartials(page);
+    mustache text{std::string(words.text)};
+    text.set_custom_escape([](const std::string& s) { return s; });
+    return withoutGaps(text.render(page));
+}
+
+}  // namespace gpu
+}  // namespace hshfit

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <hshfit/gpu/payload.h>
+#include <hshfit/gpu/shader.h>
+
+#include <kainjow/mustache.hpp>
+
+namespace hshfit::gpu {
+
+/// A number as every shading language writes it: the nearest single-precision value.
+std::string shaderNumber(double value);
+
+/// What a function costs, as emitted.
+struct ShaderCost {
+    std::size_t fetches = 0;   ///< of texels, filtered
+    std::size_t products = 0;  ///< multiplications, each with its addition
+};
+
+constexpr const char* laneNames[] = {"x", "y", "z", "w"};
+
+struct Band {
+    int l, m;
+};
+Band bandOf(int slot);
+
+// The parts of a snippet that do not depend on the language, as the templates name them.
+
+/// Constants of the basis: scale, powers, columns with their steps, functions.
+void setBasis(const Payload& payload, const Basis& basis, kainjow::mustache::data& data,
+              ShaderCost& cost);
+/// Lookups, sums and outputs of `eval`.
+void setEvaluation(const Payload& payload, kainjow::mustache::data& data, ShaderCost& cost);
+/// Environment, weights, lookups, sums and outputs of `shade`. For grey and RGB payloads one pass
+/// takes the three colours of the light; else there is a pass per channel.
+void setShading(const Payload& payload, const Basis& basis, int environmentOrder,
+                kainjow::mustache::data& data, ShaderCost& cost);
+
+/// A row of `Payload::toChannels`, without its zeros.
+kainjow::mustache::data outputTerms(const std::vector<double>& factors, ShaderCost& cost);
+/// Scale and offset of a layer's lanes, where numbers are normalised.
+void setAffine(const Texels& texels, std::size_t layer, kainjow::mustache::data& row,
+               ShaderCost& cost);
+
+}  // namespace hshfit::gpu
