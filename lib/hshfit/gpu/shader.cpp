@@ -16,7 +16,8 @@ namespace hshfit {
 namespace embedded {
 extern const std::string_view shader_basis, shader_clamp, shader_ends, shader_eval, shader_header,
     shader_shade, shader_turn, shader_uv;
-extern const std::string_view shader_glsl_es, shader_glsl_functions;
+extern const std::string_view shader_glsl, shader_glsl_es, shader_glsl_functions, shader_hlsl,
+    shader_metal, shader_osl, shader_wgsl;
 }  // namespace embedded
 
 namespace gpu {
@@ -41,16 +42,72 @@ constexpr int maxEnvironmentOrder = 16;
 struct Words {
     std::string let, let2, let3, let4, var;  ///< begin a declaration
     std::string real, vec2, vec3, vec4;      ///< types, which also construct
-    bool macros;                             ///< texels are looked up by macros, not functions
-    std::string environment;                 ///< the array of environment coefficients
-    std::string_view text;                   ///< the template
+    std::string dot = "dot";
+    std::string environment = "env";  ///< the array of environment coefficients
+    bool macros = true;               ///< texels are looked up by macros, not functions
+    std::string_view text = {};       ///< the template
 };
 
-const Words& wordsOf(Language language) {
-    static const Words glslEs{"float", "vec2", "vec3", "vec4", "float", "float",
-                              "vec2",  "vec3", "vec4", true,   "env",   embedded::shader_glsl_es};
-    (void)language;
-    return glslEs;
+Words wordsOf(Language language, const std::string& prefix) {
+    Words glsl{.let = "float",
+               .let2 = "vec2",
+               .let3 = "vec3",
+               .let4 = "vec4",
+               .var = "float",
+               .real = "float",
+               .vec2 = "vec2",
+               .vec3 = "vec3",
+               .vec4 = "vec4"};
+    Words hlsl{.let = "float",
+               .let2 = "float2",
+               .let3 = "float3",
+               .let4 = "float4",
+               .var = "float",
+               .real = "float",
+               .vec2 = "float2",
+               .vec3 = "float3",
+               .vec4 = "float4"};
+    switch (language) {
+        case Language::glslEs:
+            glsl.text = embedded::shader_glsl_es;
+            return glsl;
+        case Language::glsl:
+            glsl.text = embedded::shader_glsl;
+            return glsl;
+        case Language::hlsl:
+            hlsl.text = embedded::shader_hlsl;
+            return hlsl;
+        case Language::metal:
+            hlsl.text = embedded::shader_metal;
+            hlsl.environment = "env.sh";
+            return hlsl;
+        case Language::wgsl:
+            return {.let = "let",
+                    .let2 = "let",
+                    .let3 = "let",
+                    .let4 = "let",
+                    .var = "var",
+                    .real = "f32",
+                    .vec2 = "vec2<f32>",
+                    .vec3 = "vec3<f32>",
+                    .vec4 = "vec4<f32>",
+                    .macros = false,
+                    .text = embedded::shader_wgsl};
+        case Language::osl:
+            break;
+    }
+    const std::string two = prefix + "_Two", four = prefix + "_Four";
+    return {.let = "float",
+            .let2 = two,
+            .let3 = "vector",
+            .let4 = four,
+            .var = "float",
+            .real = "float",
+            .vec2 = two,
+            .vec3 = "vector",
+            .vec4 = four,
+            .dot = prefix + "_dot",
+            .text = embedded::shader_osl};
 }
 
 /// For a comment: printable ASCII on one line, so that nothing can end the comment.
@@ -79,6 +136,17 @@ void checkOptions(const ShaderOptions& options) {
     if (options.environmentOrder < 0 || options.environmentOrder > maxEnvironmentOrder) {
         throw UsageError(fmt::format("environment of order {}; it has to be 0 (none) to {}",
                                      options.environmentOrder, maxEnvironmentOrder));
+    }
+}
+
+void checkPayload(Language language, const Payload& payload) {
+    if (language != Language::osl) return;
+    if (payload.basisTexels) {
+        throw UsageError("OSL evaluates the basis itself: export without basis textures");
+    }
+    if (isNormalised(payload.coefficients.number)) {
+        throw UsageError(
+            "OSL reads EXR, which holds no normalised integers: use float16 or float32");
     }
 }
 
@@ -122,6 +190,7 @@ void setWords(const Words& words, const Payload& payload, const std::string& pre
     page.set("vec3", words.vec3);
     page.set("vec4", words.vec4);
     page.set("env", words.environment);
+    page.set("dot", words.dot);
     std::string upper = prefix;
     for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     page.set("prefix", prefix);
@@ -199,7 +268,8 @@ std::span<const LanguageEntry> languages() {
 
 std::string shaderSource(Language language, const Payload& payload, const ShaderOptions& options) {
     checkOptions(options);
-    const Words& words = wordsOf(language);
+    checkPayload(language, payload);
+    const Words words = wordsOf(language, options.prefix);
     const auto basis =
         bases::make(payload.basis, payload.order, {.condonShortley = payload.condonShortley});
     data page;
