@@ -1,0 +1,204 @@
+#include <hshfit/gpu/viewer.h>
+
+#include <hshfit/error.h>
+#include <hshfit/gpu/shader.h>
+#include <hshfit/output/atomic_file.h>
+#include <hshfit/output/page_figures.h>
+#include <hshfit/version.h>
+
+#include <fmt/format.h>
+#include <kainjow/mustache.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+namespace hshfit {
+
+namespace embedded {
+extern const std::string_view viewer_page, viewer_style;
+extern const std::string_view viewer_shapes, viewer_sky, viewer_renderer, viewer_controls,
+    viewer_panes, viewer_main;
+extern const std::string_view viewer_geometry_vert, viewer_geometry_frag, viewer_screen_vert,
+    viewer_environment_glsl, viewer_exact_glsl, viewer_fit_glsl, viewer_shade_frag,
+    viewer_composite_frag;
+}  // namespace embedded
+
+namespace gpu {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using kainjow::mustache::data;
+
+/// Directions a pixel and frame with which the exact pane integrates the environment.
+constexpr int exactSamples = 16;
+
+std::string paneName(const Payload& payload) {
+    std::string name = payload.basis;
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    return name;
+}
+
+std::string_view asText(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// float16, without basis textures: what the page uploads.
+Payload shownPayload(Payload payload) {
+    payload.basisTexels.reset();
+    if (payload.coefficients.number == Number::float16) return payload;
+    const Texels& from = payload.coefficients;
+    payload.coefficients =
+        encode(decode(from), from.width, from.height, from.layers, Number::float16);
+    return payload;
+}
+
+/// The band of every lane; one beyond all orders for lanes that hold nothing.
+std::vector<int> bandsOf(const Payload& payload) {
+    std::vector<int> bands(payload.coefficients.layers * 4, payload.order);
+    for (std::size_t c = 0; c < payload.stored.size(); ++c) {
+        for (std::size_t j = 0; j < payload.stored[c].slots; ++j) {
+            const auto [layer, lane] = payload.place(c, j);
+            bands[layer * 4 + lane] = static_cast<int>(std::sqrt(payload.slots[j] + 0.5));
+        }
+    }
+    return bands;
+}
+
+Json fitJson(const Payload& given, std::size_t index, int environmentOrder) {
+    const Payload payload = shownPayload(given);
+    const std::string prefix = fmt::format("fit{}", index + 1);
+    return {{"name", paneName(payload)},
+            {"order", payload.order},
+            {"width", payload.coefficients.width},
+            {"height", payload.coefficients.height},
+            {"layers", payload.coefficients.layers},
+            {"bands", bandsOf(payload)},
+            {"hasCosine", payload.quantity == Quantity::brdfCosine},
+            {"oddSign", payload.condonShortley ? -1 : 1},
+            {"prefix", prefix},
+            {"sampler", prefix + "_coefficients"},
+            {"shader", shaderSource(Language::glslEs, payload,
+                                    {.prefix = prefix, .environmentOrder = environmentOrder})},
+            {"texels", base64(asText(payload.coefficients.bytes))}};
+}
+
+Json exactJson(const ViewerInput& input) {
+    if (!input.reference) return {{"absent", input.noReference}};
+    const ReferenceTable& table = *input.reference;
+    return {{"isotropic", table.isotropic},
+            {"bilateral", table.bilateral},
+            {"reciprocal", table.reciprocal},
+            {"width", table.width},
+            {"height", table.height},
+            {"azimuths", table.azimuths},
+            {"rest", table.rest},
+            {"lastTheta", ReferenceTable::lastThetaDifference},
+            {"channels", table.channels},
+            {"roughness", table.roughness},
+            {"samples", exactSamples},
+            {"texels", base64(asText(std::as_bytes(std::span(table.cubeRoots))))}};
+}
+
+Json shadersJson() {
+    using namespace embedded;
+    return {{"geometryVertex", viewer_geometry_vert},
+            {"geometryFragment", viewer_geometry_frag},
+            {"screenVertex", viewer_screen_vert},
+            {"environment", viewer_environment_glsl},
+            {"exact", viewer_exact_glsl},
+            {"fit", viewer_fit_glsl},
+            {"shadeFragment", viewer_shade_frag},
+            {"compositeFragment", viewer_composite_frag}};
+}
+
+/// JSON that can stand within a script element.
+std::string embeddable(const Json& document) {
+    std::string text = document.dump();
+    for (std::size_t at = text.find('<'); at != text.npos; at = text.find('<', at)) {
+        text.replace(at, 1, "\\u003c");
+    }
+    return text;
+}
+
+data notesOf(const ViewerInput& input) {
+    data notes{data::type::list};
+    if (const auto& table = input.reference) {
+        notes.push_back(fmt::format(
+            "Exact: the source tabulated over {} x {} x {} half and difference directions, {:.1f} "
+            "MB; root mean square error of the table {:.2g} %. Under the environment it is a mean "
+            "over directions that grows with every frame.",
+            table->width, table->height, table->azimuths * table->rest,
+            static_cast<double>(table->cubeRoots.size()) * 2e-6, 100 * table->error));
+    }
+    const Payload& first = input.payloads.front();
+    notes.push_back(fmt::format(
+        "{} of {}, outgoing directions {}; half floats, and the shader as it is exported. No "
+        "shadows and no light from one part to another.",
+        first.quantity == Quantity::brdf ? "f" : "f cos θi",
+        first.source.empty() ? "an unnamed source" : first.source, first.outgoing.spec()));
+    return notes;
+}
+
+void check(const ViewerInput& input) {
+    if (input.payloads.empty() || input.payloads.size() > 2) {
+        throw UsageError(fmt::format("a viewer of {} sets of coefficients; it shows one or two",
+                                     input.payloads.size()));
+    }
+    for (const Payload& payload : input.payloads) {
+        if (payload.channels.kind != Channels::Kind::spectral) continue;
+        throw UsageError(
+            fmt::format("{}: the viewer shows grey or RGB; project the spectral BRDF with --rgb",
+                        payload.source));
+    }
+    if (input.environmentOrder < 2 || input.environmentOrder > 10) {
+        throw UsageError(fmt::format("an environment of {} bands; the viewer takes 2 to 10",
+                                     input.environmentOrder));
+    }
+}
+
+}  // namespace
+
+std::string viewerPage(const ViewerInput& input) {
+    check(input);
+    const Payload& first = input.payloads.front();
+    Json document = {{"order", first.order}, {"skyOrder", input.environmentOrder}};
+    std::string names;
+    for (std::size_t i = 0; i < input.payloads.size(); ++i) {
+        document["fits"].push_back(fitJson(input.payloads[i], i, input.environmentOrder));
+        names += (i > 0 ? " and " : "") + paneName(input.payloads[i]);
+        document["order"] = std::max(document["order"].get<int>(), input.payloads[i].order);
+    }
+    document["exact"] = exactJson(input);
+    document["shaders"] = shadersJson();
+    std::string script;
+    for (const std::string_view part :
+         {embedded::viewer_shapes, embedded::viewer_sky, embedded::viewer_renderer,
+          embedded::viewer_controls, embedded::viewer_panes, embedded::viewer_main}) {
+        script += part;
+    }
+    data page;
+    page.set("title", input.title);
+    page.set("names", names);
+    page.set("summary",
+             fmt::format("{} up to order {}, next to the material itself", names, first.order));
+    page.set("generator", std::string("hshfit ") + version);
+    page.set("order", std::to_string(document["order"].get<int>()));
+    page.set("style", std::string(embedded::viewer_style));
+    page.set("notes", notesOf(input));
+    page.set("data", embeddable(document));
+    page.set("script", script);
+    return kainjow::mustache::mustache(std::string(embedded::viewer_page)).render(page);
+}
+
+void writeViewer(const std::string& path, const ViewerInput& input, bool force) {
+    const std::string page = viewerPage(input);
+    AtomicFile file(path, force ? AtomicFile::Existing::replace : AtomicFile::Existing::refuse);
+    file.write(page);
+    file.commit();
+}
+
+}  // namespace gpu
+}  // namespace hshfit

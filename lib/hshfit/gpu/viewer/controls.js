@@ -1,0 +1,249 @@
+// The page: state, controls, camera, panes, numbers.
+
+const element = (id) => document.getElementById(id);
+const radio = (name) => document.querySelector(`input[name=${name}]:checked`).value;
+
+// What `#key=value&…` behind the address sets, so that a view can be kept or sent.
+function stateFromAddress(state) {
+  for (const [key, text] of new URLSearchParams(location.hash.slice(1))) {
+    if (!(key in state)) continue;
+    const old = state[key];
+    if (typeof old === 'number' && text !== '' && Number.isFinite(+text)) state[key] = +text;
+    else if (typeof old === 'boolean') state[key] = text === 'true' || text === '1';
+    else if (typeof old === 'string') state[key] = text;
+    if (key === 'exposure') state.exposureSet = true;
+    if (key === 'scale') state.scaleSet = true;
+  }
+  return state;
+}
+
+function significant(x, digits = 3) {
+  if (x === 0) return '0';
+  return Math.abs(x) >= 1e-3 && Math.abs(x) < 1e4 ? String(+x.toPrecision(digits))
+    : x.toExponential(digits - 1);
+}
+
+class Viewer {
+  constructor(data) {
+    this.data = data;
+    this.canvas = element('canvas');
+    this.renderer = new Renderer(this.canvas, data);
+    const [image] = this.renderer.images;
+    this.state = stateFromAddress({
+      order: data.order, shape: 'sphere', lighting: 'point', layout: 'panes', clamp: true,
+      intensity: 0, skyTurn: 0, exposure: 0, exposureSet: false, pair: 0, scale: -1, scaleSet: false,
+      azimuth: 15, elevation: 12, distance: 1, lightAzimuth: -30, lightElevation: 32,
+      dividers: '25,50,75', frames: 64,
+    });
+    this.pairs = this.makePairs();
+    this.state.order = Math.min(Math.max(Math.round(this.state.order), 1), data.order);
+    this.dividers = this.state.dividers.split(',').map((x) => +x / 100);
+    this.numbers = null;
+    this.scheduled = false;
+    this.last = image;
+    this.bind();
+    this.changed();
+  }
+
+  // The pairs whose difference can be shown: every fit against the exact picture, and one another.
+  makePairs() {
+    const images = this.renderer.images, exact = images.find((image) => image.exact);
+    const fits = images.filter((image) => image.fit);
+    const pairs = exact ? fits.map((fit) => [fit, exact]) : [];
+    if (fits.length > 1) pairs.push([fits[0], fits[1]]);
+    const select = element('pair');
+    pairs.forEach(([a, b], i) => select.add(new Option(`${a.name} − ${b.name}`, i)));
+    select.disabled = pairs.length === 0;
+    this.state.pair = Math.min(Math.max(this.state.pair | 0, 0), Math.max(pairs.length - 1, 0));
+    return pairs;
+  }
+
+  bind() {
+    const redraw = (key, id = key) => {
+      element(id).addEventListener('input', (event) => {
+        this.state[key] = event.target.type === 'checkbox' ? event.target.checked : +event.target.value;
+        if (key === 'exposure' || key === 'scale') this.state[`${key}Set`] = true;
+        if (['exposure', 'scale', 'pair'].includes(key)) this.shown(); else this.changed();
+      });
+    };
+    ['order', 'clamp', 'intensity', 'skyTurn', 'exposure', 'scale', 'pair'].forEach((key) => redraw(key));
+    for (const key of ['shape', 'lighting', 'layout']) {
+      document.querySelectorAll(`input[name=${key}]`).forEach((input) => {
+        input.checked = input.value === this.state[key];
+        input.addEventListener('change', () => { this.state[key] = radio(key); this.changed(); });
+      });
+    }
+    element('autoExposure').addEventListener('click', () => this.setExposure());
+    element('autoScale').addEventListener('click', () => { this.state.scaleSet = false; this.shown(); });
+    element('controls').addEventListener('submit', (event) => event.preventDefault());
+    new ResizeObserver(() => this.changed()).observe(element('stage'));
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.shown());
+    this.canvas.addEventListener('webglcontextlost', (event) => {
+      event.preventDefault();
+      showMessage('The graphics device was reset. Reload the page to go on.');
+    });
+    bindCamera(this);
+  }
+
+  // Something that every picture depends on.
+  changed() {
+    this.renderer.restart();
+    this.numbers = null;
+    this.schedule();
+  }
+
+  // Something that only their display depends on.
+  shown() { this.redraw = true; this.schedule(); }
+
+  schedule() {
+    if (this.scheduled) return;
+    this.scheduled = true;
+    requestAnimationFrame(() => { this.scheduled = false; this.update(); });
+  }
+
+  update() {
+    const { renderer, state } = this;
+    this.arrange();
+    if (!renderer.width) return;
+    if (renderer.frame < state.frames) renderer.step(this.scene());
+    if (!state.exposureSet) this.setExposure(false);
+    const done = renderer.frame >= state.frames;
+    if (done || renderer.frame === 1 || renderer.frame % 16 === 0) this.measure();
+    renderer.show(this.panes, this.look());
+    this.writeTexts(done);
+    if (!done) this.schedule();
+    this.settled = done;
+  }
+
+  scene() {
+    const { state, renderer } = this, rad = Math.PI / 180;
+    const around = (azimuth, elevation) => [
+      Math.cos(elevation * rad) * Math.sin(azimuth * rad), Math.sin(elevation * rad),
+      Math.cos(elevation * rad) * Math.cos(azimuth * rad)];
+    const radius = renderer.shapes[state.shape].radius, towards = around(state.azimuth, state.elevation);
+    const aspect = renderer.width / renderer.height;
+    // The shape fills 92 % of the pane's shorter side.
+    const half = 15 * rad, fit = 1 / 0.92 / Math.sin(Math.atan(Math.tan(half) * Math.min(1, aspect)));
+    const reach = radius * fit * state.distance;
+    const lightDistance = 3.2 * radius, strength = 2 ** state.intensity;
+    return {
+      shape: state.shape, order: state.order, clamp: state.clamp, skyTurn: state.skyTurn * rad,
+      eye: towards.map((x) => x * reach), camera: lookAt(towards, reach, half, aspect, radius),
+      light: around(state.lightAzimuth, state.lightElevation).map((x) => x * lightDistance),
+      lightDistance, pointStrength: state.lighting === 'sky' ? 0 : strength,
+      environmentStrength: state.lighting === 'point' ? 0 : strength,
+    };
+  }
+
+  look() {
+    const paper = getComputedStyle(element('stage')).backgroundColor.match(/[\d.]+/g).slice(0, 3);
+    return { paper: paper.map((x) => x / 255), exposure: 2 ** this.state.exposure,
+      scale: 10 ** this.state.scale, showNegative: !this.state.clamp };
+  }
+
+  // The exposure at which 95 % of the surface is at or below 0.8 of white.
+  setExposure(draw = true) {
+    const pixels = this.renderer.read(this.renderer.images[0]), found = [];
+    for (let k = 0; k < pixels.length; k += 4) {
+      if (pixels[k + 3] > .5) found.push(Math.max(pixels[k], pixels[k + 1], pixels[k + 2]));
+    }
+    found.sort((a, b) => a - b);
+    const high = found[Math.floor(.95 * (found.length - 1))];
+    const stops = high > 0 ? Math.log2(.8 / high) : 0;
+    this.state.exposure = Math.round(10 * Math.min(Math.max(stops, -10), 10)) / 10;
+    this.state.exposureSet = true;
+    if (draw) this.shown();
+  }
+
+  // Largest and mean difference of every pair over the pixels on the shape, and their share below 0.
+  measure() {
+    const pictures = new Map(this.renderer.images.map((image) => [image, this.renderer.read(image)]));
+    this.numbers = this.pairs.map(([a, b]) => compared(pictures.get(a), pictures.get(b)));
+    this.negative = new Map([...pictures].map(([image, pixels]) => [image, negativeShare(pixels)]));
+  }
+
+  writeTexts(done) {
+    const { state } = this;
+    const text = (id, value) => { if (element(id).textContent !== value) element(id).textContent = value; };
+    for (const key of ['order', 'intensity', 'skyTurn', 'exposure', 'scale', 'pair']) {
+      element(key).value = state[key];
+    }
+    element('clamp').checked = state.clamp;
+    element('negativeNote').hidden = state.clamp;
+    const signed = (x) => `${x < 0 ? '−' : '+'}${Math.abs(x).toFixed(1)}`;
+    text('orderText', `${state.order}, ${state.order ** 2} coefficients`);
+    text('intensityText', `× ${significant(2 ** state.intensity)}`);
+    text('skyTurnText', `${state.skyTurn}°`);
+    text('exposureText', `${signed(state.exposure)} stops`);
+    const factor = 2 ** state.exposure;
+    const row = this.numbers?.[state.pair];
+    if (row && !state.scaleSet) {
+      state.scale = Math.round(10 * Math.log10(Math.max(row.high * factor, 1e-4))) / 10;
+      element('scale').value = state.scale;
+      this.renderer.show(this.panes, this.look());
+    }
+    text('scaleText', significant(10 ** state.scale, 2));
+    document.querySelectorAll('.legend span').forEach((span) => {
+      const s = significant(10 ** state.scale, 2);
+      span.replaceChildren(...[`−${s}`, '0', `+${s}`].map((x) => {
+        const b = document.createElement('b'); b.style.fontWeight = 400; b.textContent = x; return b;
+      }));
+    });
+    text('progress', done ? '' : `averaging, ${this.renderer.frame} of ${state.frames}`);
+    if (this.numbers) writeNumbers(this, factor);
+  }
+}
+
+function compared(a, b) {
+  let largest = 0, sum = 0, squares = 0, reference = 0, count = 0;
+  const all = [];
+  for (let k = 0; k < a.length; k += 4) {
+    if (!(b[k + 3] > 0)) continue;
+    let most = 0;
+    for (let c = k; c < k + 3; ++c) {
+      const difference = Math.abs(a[c] - b[c]);
+      most = Math.max(most, difference);
+      sum += difference / 3;
+      squares += difference * difference;
+      reference += b[c] * b[c];
+    }
+    largest = Math.max(largest, most);
+    all.push(most);
+    ++count;
+  }
+  all.sort((x, y) => x - y);
+  return { largest, mean: count ? sum / count : 0, high: all[Math.floor(.995 * (count - 1))] ?? 0,
+    relative: reference > 0 ? Math.sqrt(squares / reference) : NaN };
+}
+
+function negativeShare(pixels) {
+  let below = 0, count = 0;
+  for (let k = 0; k < pixels.length; k += 4) {
+    if (!(pixels[k + 3] > 0)) continue;
+    ++count;
+    if (Math.min(pixels[k], pixels[k + 1], pixels[k + 2]) < 0) ++below;
+  }
+  return count ? below / count : 0;
+}
+
+function writeNumbers(viewer, factor) {
+  const cells = (tag, values) => {
+    const row = document.createElement('tr');
+    values.forEach((value, i) => {
+      const cell = document.createElement(i === 0 ? 'th' : tag);
+      cell.textContent = value;
+      if (i === 0) cell.scope = 'row';
+      row.append(cell);
+    });
+    return row;
+  };
+  const table = element('numbers');
+  const open = !viewer.state.clamp;
+  table.tHead.replaceChildren(cells('th', ['', 'max', 'mean', 'r.m.s.', ...(open ? ['below 0'] : [])]));
+  table.tBodies[0].replaceChildren(...viewer.pairs.map(([a, b], i) => {
+    const { largest, mean, relative } = viewer.numbers[i];
+    return cells('td', [`${a.name} − ${b.name}`, significant(largest * factor),
+      significant(mean * factor), Number.isFinite(relative) ? `${significant(100 * relative)} %` : '–',
+      ...(open ? [`${significant(100 * viewer.negative.get(a))} %`] : [])]);
+  }));
+}

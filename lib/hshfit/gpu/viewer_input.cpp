@@ -1,0 +1,43 @@
+#include <hshfit/bases/catalog.h>
+#include <hshfit/error.h>
+#include <hshfit/gpu/viewer.h>
+#include <hshfit/projection.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace hshfit::gpu {
+namespace {
+
+/// SH, or HSH where SH are given, as far as the basis goes.
+Payload inOtherBasis(const Payload& payload, const Brdf& source,
+                     std::function<void(std::size_t, std::size_t)> progress) {
+    const char* name = payload.basis == "sh" ? "hsh" : "sh";
+    const int order = std::min(payload.order, bases::find(name).maxOrder);
+    const auto basis = bases::make(name, order, {.condonShortley = payload.condonShortley});
+    const Basis* const one[] = {basis.get()};
+    const auto projections =
+        project(source, one, payload.outgoing,
+                {.quantity = payload.quantity, .progress = std::move(progress)});
+    return pack(projections[0].coefficients, {});
+}
+
+}  // namespace
+
+ViewerInput viewerInput(Payload payload, const Brdf* source,
+                        std::function<void(std::size_t, std::size_t)> progress) {
+    ViewerInput input;
+    input.title = payload.source.empty() ? "Coefficients" : payload.source;
+    input.payloads.push_back(std::move(payload));
+    if (!source) return input;
+    try {
+        input.payloads.push_back(inOtherBasis(input.payloads[0], *source, std::move(progress)));
+    } catch (const NumericError&) {
+        // The pane says that there is one basis only.
+    }
+    input.reference = tabulate(*source);
+    return input;
+}
+
+}  // namespace hshfit::gpu
