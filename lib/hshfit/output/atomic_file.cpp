@@ -135,6 +135,7 @@ void AtomicFile::write(std::span<const std::byte> bytes) {
 }
 
 void AtomicFile::finish() {
+    if (finished_) return;
     if (!stream_) fail(EBADF);
     errno = 0;
     const bool failedBefore = std::ferror(stream_) != 0;
@@ -150,7 +151,7 @@ void AtomicFile::finish() {
 }
 
 void AtomicFile::commit() {
-    if (!finished_) finish();
+    finish();
     finished_ = false;
     int error = 0;
     if (temporary_ != target_) {

@@ -71,6 +71,7 @@ public:
     }
 
     bool atEnd() const { return bytes_.empty(); }
+    bool startsWith(char c) const { return !bytes_.empty() && bytes_.front() == c; }
 
 private:
     std::string_view bytes_;
@@ -102,7 +103,34 @@ public:
     ExrHeader check() {
         Cursor cursor(bytes_);
         cursor.take(magic.size());
-        checkFlags(cursor);
+        checkFlags(cursor, false);
+        const ExrHeader header = checkHeader(cursor, false);
+        checkInflation(header, 1);
+        return header;
+    }
+
+    std::vector<ExrHeader> checkParts(std::size_t most) {
+        Cursor cursor(bytes_);
+        cursor.take(magic.size());
+        checkFlags(cursor, true);
+        std::vector<ExrHeader> headers;
+        while (!cursor.startsWith('\0')) {
+            if (headers.size() == most) fail(fmt::format("it has more than {} parts", most));
+            headers.push_back(checkHeader(cursor, true));
+            checkInflation(headers.back(), headers.size());
+        }
+        if (headers.empty()) fail("it has no parts");
+        return headers;
+    }
+
+private:
+    [[noreturn]] void fail(std::string_view what) const {
+        throw InputError(fmt::format("{}: invalid OpenEXR data: {}", file_, printable(what)));
+    }
+
+    ExrHeader checkHeader(Cursor& cursor, bool ofSeveral) {
+        header_ = {};
+        chunks_ = compression_ = 0;
         std::set<std::string_view> seen;
         for (;;) {
             const auto attribute = nextAttribute(cursor);
@@ -116,31 +144,49 @@ public:
             if (attribute->type == "chlist") countChannels(attribute->value);
             if (attribute->name == "dataWindow") measure(attribute->value);
             if (attribute->name == "compression") checkCompression(attribute->value);
+            if (attribute->name == "chunkCount") {
+                chunks_ = Cursor(attribute->value).integer<std::int32_t>().value_or(0);
+            }
+            if (ofSeveral && attribute->name == "type" && attribute->value != "scanlineimage") {
+                fail(fmt::format("a part is no scan-line image; {} have these", rules_.files));
+            }
         }
         if (header_.channels == 0) fail("the header names no channels");
         if (header_.width == 0) fail("the header has no data window");
-        const std::uint64_t inflated =
-            std::uint64_t{header_.width} * header_.height * header_.channels * sizeof(float);
-        if (inflated / maxInflation > bytes_.size()) {
-            fail(fmt::format("{} x {} pixels of {} channels cannot come out of {} bytes",
-                             header_.width, header_.height, header_.channels, bytes_.size()));
-        }
+        if (ofSeveral) checkChunks();
         return header_;
     }
 
-private:
-    [[noreturn]] void fail(std::string_view what) const {
-        throw InputError(fmt::format("{}: invalid OpenEXR data: {}", file_, printable(what)));
+    /// OpenEXR makes the table of a part as long as it is said to be.
+    void checkChunks() const {
+        constexpr std::size_t lines[] = {1, 1, 1, 16, 32};  // by method
+        const std::size_t perChunk = lines[compression_];
+        const std::size_t chunks = (header_.height + perChunk - 1) / perChunk;
+        if (chunks_ < 0 || static_cast<std::size_t>(chunks_) != chunks) {
+            fail(fmt::format("a part of {} lines states {} chunks; it has {}", header_.height,
+                             chunks_, chunks));
+        }
     }
 
-    void checkFlags(Cursor& cursor) const {
+    void checkInflation(const ExrHeader& header, std::size_t parts) const {
+        const std::uint64_t inflated =
+            std::uint64_t{header.width} * header.height * header.channels * sizeof(float) * parts;
+        if (inflated / maxInflation > bytes_.size()) {
+            fail(fmt::format("{} x {} pixels of {} channels cannot come out of {} bytes",
+                             header.width, header.height, header.channels, bytes_.size()));
+        }
+    }
+
+    void checkFlags(Cursor& cursor, bool severalParts) const {
         const auto version = cursor.integer<std::uint32_t>();
         if (!version) fail("the header breaks off");
-        if (*version & multiPart)
+        if (!severalParts && (*version & multiPart) != 0)
             fail(fmt::format("it has several parts; {} have one", rules_.files));
+        if (severalParts && (*version & multiPart) == 0) fail("it has one part only");
         if (*version & deep) fail(fmt::format("it is a deep image; {} are flat", rules_.files));
         if (*version & tiled) fail(fmt::format("it is tiled; {} have scan lines", rules_.files));
-        if ((*version & versionMask) != 2 || (*version & ~(versionMask | longNames)) != 0) {
+        if ((*version & versionMask) != 2 ||
+            (*version & ~(versionMask | longNames | multiPart)) != 0) {
             fail(fmt::format("unknown version field {:#x}", *version));
         }
     }
@@ -201,18 +247,21 @@ private:
         header_.height = static_cast<std::size_t>(*bottom) + 1;
     }
 
-    void checkCompression(std::string_view value) const {
+    void checkCompression(std::string_view value) {
         const auto method = Cursor(value).integer<std::uint8_t>();
         if (!method || *method > (rules_.picture ? pizCompression : zipCompression)) {
             fail(fmt::format("the compression has to be none, RLE, ZIPS{}",
                              rules_.picture ? ", ZIP or PIZ" : " or ZIP"));
         }
+        compression_ = *method;
     }
 
     std::string_view bytes_;
     const std::string& file_;
     const ExrRules& rules_;
-    ExrHeader header_;
+    ExrHeader header_;  ///< what was found of the header so far
+    std::int32_t chunks_ = 0;
+    int compression_ = 0;
 };
 
 }  // namespace
@@ -229,6 +278,20 @@ ExrHeader checkExrHeader(std::string_view bytes, const std::string& file, const 
                         file));
     }
     return Checker(bytes, file, rules).check();
+}
+
+std::vector<ExrHeader> checkExrParts(std::string_view bytes, const std::string& file,
+                                     const ExrRules& rules, std::size_t mostParts) {
+    if (!hasExrMagic(bytes)) {
+        throw InputError(fmt::format("{}: is not an OpenEXR file", file));
+    }
+    return Checker(bytes, file, rules).checkParts(mostParts);
+}
+
+bool exrHasParts(std::string_view bytes) {
+    Cursor cursor(bytes);
+    cursor.take(magic.size());
+    return hasExrMagic(bytes) && (cursor.integer<std::uint32_t>().value_or(0) & multiPart) != 0;
 }
 
 bool exrHasAttribute(std::string_view bytes, std::string_view name) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace hshfit {
 
@@ -26,6 +27,14 @@ struct ExrRules {
 /// `file`.
 ExrHeader checkExrHeader(std::string_view bytes, const std::string& file,
                          const ExrRules& rules = {});
+
+/// The same for a file of several scan-line parts, at most `mostParts`, whose tables of chunks are
+/// as long as their sizes make them.
+std::vector<ExrHeader> checkExrParts(std::string_view bytes, const std::string& file,
+                                     const ExrRules& rules, std::size_t mostParts);
+
+/// Whether the file states several parts.
+bool exrHasParts(std::string_view bytes);
 
 bool hasExrMagic(std::string_view bytes);
 

@@ -1,0 +1,217 @@
+// Khronos KTX File Format Specification 2.0, and its data format descriptor (KDF 1.3, basic block):
+// an array of 2-D textures, one level, uncompressed or with Zstandard.
+
+#include <hshfit/gpu/containers/byte_fields.h>
+#include <hshfit/gpu/containers/container_files.h>
+#include <hshfit/version.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <map>
+
+#include <zstd.h>
+
+namespace hshfit::gpu {
+namespace {
+
+constexpr std::string_view magic("\xabKTX 20\xbb\r\n\x1a\n", 12);
+constexpr std::string_view sidecarKey = "hshfit:sidecar";
+constexpr std::uint32_t zstdScheme = 2;
+constexpr int zstdLevel = 19;  // the highest that needs no large window
+/// What is shrunk further than this is stored as it is, and readers refuse it: a small file cannot
+/// make them allocate without bounds.
+constexpr std::uint64_t maxInflation = 1000;
+constexpr std::size_t headerBytes = 80, levelIndexBytes = 24;
+
+struct PixelFormat {
+    Number number;
+    std::uint32_t vulkan;  ///< VkFormat
+    bool floating;
+    std::uint32_t lower, upper;  ///< of the samples
+};
+constexpr std::array pixelFormats{
+    PixelFormat{Number::float16, 97, true, std::bit_cast<std::uint32_t>(-1.0F),
+                std::bit_cast<std::uint32_t>(1.0F)},
+    PixelFormat{Number::float32, 109, true, std::bit_cast<std::uint32_t>(-1.0F),
+                std::bit_cast<std::uint32_t>(1.0F)},
+    PixelFormat{Number::unorm16, 91, false, 0, 65535},
+    PixelFormat{Number::unorm8, 37, false, 0, 255},
+};
+const PixelFormat& formatOf(Number number) {
+    return *std::find_if(pixelFormats.begin(), pixelFormats.end(),
+                         [&](const PixelFormat& row) { return row.number == number; });
+}
+
+std::string dataFormatDescriptor(Number number) {
+    const PixelFormat& format = formatOf(number);
+    const auto bytes = static_cast<std::uint32_t>(numberBytes(number));
+    constexpr std::uint32_t blockBytes = 24 + 4 * 16;
+    std::string out;
+    put(out, std::uint32_t{4 + blockBytes});
+    put(out, std::uint32_t{0});  // Khronos, basic descriptor
+    put(out, std::uint16_t{2});  // KDF 1.3
+    put(out, static_cast<std::uint16_t>(blockBytes));
+    for (const int octet : {1, 0, 1, 0}) put(out, static_cast<std::uint8_t>(octet));
+    // model RGBSDA, primaries unspecified, transfer linear, alpha straight
+    put(out, std::uint32_t{0});                         // texel block 1 x 1 x 1 x 1
+    put(out, std::uint64_t{bytes * 4});                 // bytes of plane 0
+    constexpr std::uint8_t channels[] = {0, 1, 2, 15};  // R, G, B, A
+    for (std::uint32_t i = 0; i < 4; ++i) {
+        put(out, static_cast<std::uint16_t>(i * bytes * 8));
+        put(out, static_cast<std::uint8_t>(bytes * 8 - 1));
+        put(out, static_cast<std::uint8_t>(channels[i] | (format.floating ? 0xc0 : 0)));
+        put(out, std::uint32_t{0});
+        put(out, format.lower);
+        put(out, format.upper);
+    }
+    return out;
+}
+
+/// Ascending keys, every value ended by NUL, entries padded to 4 bytes.
+std::string keyValueData(const TexelFile& file) {
+    std::map<std::string, std::string> pairs = {{"KTXorientation", "rd"},
+                                                {"KTXwriter", std::string("hshfit ") + version}};
+    for (const auto& [key, value] : file.facts) pairs["hshfit:" + key] = value;
+    pairs[std::string(sidecarKey)] = file.sidecar;
+    std::string out;
+    for (const auto& [key, value] : pairs) {
+        put(out, static_cast<std::uint32_t>(key.size() + 1 + value.size() + 1));
+        out += key + '\0' + value + '\0';
+        out.resize((out.size() + 3) / 4 * 4, '\0');
+    }
+    return out;
+}
+
+std::string compressed(const Texels& texels) {
+    std::string out(ZSTD_compressBound(texels.bytes.size()), '\0');
+    const std::size_t size =
+        ZSTD_compress(out.data(), out.size(), texels.bytes.data(), texels.bytes.size(), zstdLevel);
+    if (ZSTD_isError(size)) {
+        throw OutputError(fmt::format("cannot compress texels: {}", ZSTD_getErrorName(size)));
+    }
+    out.resize(size);
+    return out;
+}
+
+void write(const TexelFile& file, AtomicFile& out) {
+    const Texels& texels = file.texels;
+    std::string data = file.zstd ? compressed(texels) : std::string();
+    const bool zstd = !data.empty() && texels.bytes.size() / data.size() < maxInflation;
+    const std::string descriptor = dataFormatDescriptor(texels.number);
+    const std::string pairs = keyValueData(file);
+    constexpr std::size_t descriptorOffset = headerBytes + levelIndexBytes;
+    const std::size_t pairsOffset = descriptorOffset + descriptor.size();
+    const std::size_t end = pairsOffset + pairs.size();
+    // the least common multiple of 4 and the bytes of a texel, which is a power of two
+    const std::size_t alignment =
+        zstd ? 1 : std::max<std::size_t>(4, numberBytes(texels.number) * 4);
+    const std::size_t dataOffset = (end + alignment - 1) / alignment * alignment;
+
+    std::string head(magic);
+    for (const std::size_t word :
+         {std::size_t{formatOf(texels.number).vulkan}, numberBytes(texels.number),
+          static_cast<std::size_t>(texels.width), static_cast<std::size_t>(texels.height),
+          std::size_t{0}, texels.layers, std::size_t{1}, std::size_t{1},
+          std::size_t{zstd ? zstdScheme : 0}, descriptorOffset, descriptor.size(), pairsOffset,
+          pairs.size()}) {
+        put(head, static_cast<std::uint32_t>(word));
+    }
+    for (const std::size_t word : {std::size_t{0}, std::size_t{0}, dataOffset,
+                                   zstd ? data.size() : texels.bytes.size(), texels.bytes.size()}) {
+        put(head, std::uint64_t{word});
+    }
+    head += descriptor + pairs;
+    head.resize(dataOffset, '\0');
+    out.write(head);
+    if (zstd) {
+        out.write(data);
+    } else {
+        out.write(texels.bytes);
+    }
+}
+
+std::string sidecar(std::string_view bytes, const std::string& file) {
+    const ByteFields fields(bytes, file);
+    const auto offset = fields.get<std::uint32_t>(56, "kvdByteOffset");
+    const auto length = fields.get<std::uint32_t>(60, "kvdByteLength");
+    std::string_view pairs = fields.part(offset, length, "the key/value data");
+    while (pairs.size() > 4) {
+        const std::uint64_t at = static_cast<std::uint64_t>(pairs.data() - bytes.data());
+        const auto size = fields.get<std::uint32_t>(at, "keyAndValueByteLength");
+        if (size > pairs.size() - 4) {
+            fields.fail("keyAndValueByteLength", at,
+                        fmt::format("is {}; {} bytes are left", size, pairs.size() - 4));
+        }
+        const std::string_view entry = pairs.substr(4, size);
+        const std::size_t split = entry.find('\0');
+        if (split == sidecarKey.size() && entry.starts_with(sidecarKey)) {
+            const std::string_view value = entry.substr(split + 1);
+            return std::string(value.substr(0, value.find('\0')));
+        }
+        pairs.remove_prefix(
+            std::min<std::size_t>(pairs.size(), 4 + (std::size_t{size} + 3) / 4 * 4));
+    }
+    fields.fail("the key/value data", offset, fmt::format("have no key '{}'", sidecarKey));
+}
+
+std::vector<std::byte> inflated(std::string_view data, std::size_t count, std::uint64_t offset,
+                                const ByteFields& fields) {
+    const auto stated = ZSTD_getFrameContentSize(data.data(), data.size());
+    if (stated != count || count / maxInflation > data.size()) {
+        fields.fail("the level", offset, fmt::format("is no Zstandard frame of {} bytes", count));
+    }
+    std::vector<std::byte> out(count);
+    const std::size_t size = ZSTD_decompress(out.data(), count, data.data(), data.size());
+    if (ZSTD_isError(size) || size != count) {
+        fields.fail("the level", offset, "is a damaged Zstandard frame");
+    }
+    return out;
+}
+
+std::vector<std::byte> texels(std::string_view bytes, Role, const Texels& expected,
+                              const std::string& file) {
+    const ByteFields fields(bytes, file);
+    fields.require(12, formatOf(expected.number).vulkan, "vkFormat");
+    fields.require(20, static_cast<std::uint32_t>(expected.width), "pixelWidth");
+    fields.require(24, static_cast<std::uint32_t>(expected.height), "pixelHeight");
+    fields.require(28, 0, "pixelDepth");
+    fields.require(32, static_cast<std::uint32_t>(expected.layers), "layerCount");
+    fields.require(36, 1, "faceCount");
+    fields.require(40, 1, "levelCount");
+    const auto scheme = fields.get<std::uint32_t>(44, "supercompressionScheme");
+    if (scheme != 0 && scheme != zstdScheme) {
+        fields.fail("supercompressionScheme", 44,
+                    fmt::format("is {}; it has to be 0 (none) or 2 (Zstandard)", scheme));
+    }
+    const auto offset = fields.get<std::uint64_t>(80, "the level's byteOffset");
+    const auto length = fields.get<std::uint64_t>(88, "the level's byteLength");
+    const std::string_view data = fields.part(offset, length, "the level");
+    const std::size_t count = byteCount(expected);
+    if (fields.get<std::uint64_t>(96, "uncompressedByteLength") != count) {
+        fields.fail("uncompressedByteLength", 96, fmt::format("has to be {}", count));
+    }
+    if (scheme == zstdScheme) return inflated(data, count, offset, fields);
+    if (data.size() != count) {
+        fields.fail("the level's byteLength", 88, fmt::format("has to be {}", count));
+    }
+    return bytesOf(data);
+}
+
+}  // namespace
+
+const Container& ktx2Container() {
+    static const Container row{
+        .name = "ktx2",
+        .suffix = ".ktx2",
+        .summary = "Khronos texture array, uncompressed or with Zstandard",
+        .numbers = {Number::float16, Number::float32, Number::unorm16, Number::unorm8},
+        .holdsSidecar = true,
+        .write = write,
+        .recognises = [](std::string_view bytes) { return bytes.starts_with(magic); },
+        .sidecar = sidecar,
+        .texels = texels};
+    return row;
+}
+
+}  // namespace hshfit::gpu

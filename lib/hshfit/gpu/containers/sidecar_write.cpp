@@ -1,0 +1,250 @@
+#include <hshfit/gpu/containers/sidecar.h>
+
+#include <hshfit/bases/catalog.h>
+#include <hshfit/gpu/containers/checksum.h>
+#include <hshfit/output/coefficient_formats.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+namespace hshfit::gpu {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string compact(const Json& value) {
+    return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// One key a line, and one element a line of arrays that hold arrays or objects.
+std::string readable(const Json& document) {
+    std::string text = "{";
+    for (const auto& [key, value] : document.items()) {
+        text += fmt::format("{}\n  {}: ", text.size() > 1 ? "," : "", compact(key));
+        if (!value.is_array() || value.empty() || !value[0].is_structured()) {
+            text += compact(value);
+            continue;
+        }
+        for (std::size_t i = 0; i < value.size(); ++i) {
+            text += fmt::format("{}\n    {}", i == 0 ? "[" : ",", compact(value[i]));
+        }
+        text += "\n  ]";
+    }
+    return text + "\n}\n";
+}
+
+Json basisJson(const Payload& payload) {
+    const bases::Entry& entry = bases::find(payload.basis);
+    const auto basis = entry.make(payload.order, {.condonShortley = payload.condonShortley});
+    std::vector<int> skipped;
+    for (int l = 0; l < payload.order; ++l) {
+        for (int m = -l; m <= l; ++m) {
+            if (!basis->has(l, m)) skipped.push_back(slotOf(l, m));
+        }
+    }
+    return {{"name", payload.basis},
+            {"order", payload.order},
+            {"condon_shortley", payload.condonShortley},
+            {"index", "l*(l+1)+m"},
+            {"definition", entry.help},
+            {"paper", entry.source},
+            {"form", "B_lm = T_l^|m|(theta) az_m(phi)"},
+            {"azimuth",
+             "1/sqrt(2 pi), cos(m phi)/sqrt(pi), sin(|m| phi)/sqrt(pi) for m = 0, > 0, "
+             "< 0; times (-1)^m with condon_shortley"},
+            {"domain", "0 <= theta <= 90 degrees"},
+            {"inner_product", basis->inner() == Basis::Inner::projectedSolidAngle
+                                  ? "cos(theta) d omega over the hemisphere"
+                                  : "d omega over the hemisphere"},
+            {"orthonormal", entry.orthonormal},
+            {"skipped_slots", skipped}};
+}
+
+/// How a direction becomes texture coordinates, as payload.h says.
+Json parabolicJson(int width, int height) {
+    const auto scale = [](int n) { return (n - 2) / (2.0 * n); };
+    return {{"type", "parabolic"},
+            {"formula", "p = (x, y)/(1 + z); uv = uv_bias + uv_scale * p"},
+            {"size", {width, height}},
+            {"uv_scale", {scale(width), scale(height)}},
+            {"uv_bias", {0.5, 0.5}},
+            {"inset_texels", 1},
+            {"fill", "radial clamp: texels outside of the disc hold the horizon of their azimuth"},
+            {"row0", "v = 0, lowest y"}};
+}
+
+Json mapJson(const Payload& payload) {
+    const OutgoingSet& set = payload.outgoing;
+    switch (set.map) {
+        case OutgoingSet::Map::parabolic: {
+            Json map = parabolicJson(set.width, set.height);
+            map["markers"] = nullptr;
+            if (payload.marked()) {
+                const int x = set.width - 1, y = set.height - 1;
+                map["markers"] = {{"layer", 0},
+                                  {"lane", 0},
+                                  {"texels", {{0, 0, 1}, {x, 0, 2}, {0, y, 3}, {x, y, 4}}}};
+            }
+            return map;
+        }
+        case OutgoingSet::Map::elevations:
+            return {{"type", "elevations"},
+                    {"formula", "r = sqrt(x^2 + y^2)/(1 + z); uv = uv_bias + uv_scale * (r, 0)"},
+                    {"size", {set.width, 1}},
+                    {"uv_scale", {(set.width - 0.5) / set.width, 0}},
+                    {"uv_bias", {0.5 / set.width, 0.5}},
+                    {"reduced_phi", "turn wo and wi about z until wo has azimuth 0"}};
+        case OutgoingSet::Map::direction:
+            break;
+    }
+    return {{"type", "direction"},
+            {"formula", "uv = uv_bias"},
+            {"size", {1, 1}},
+            {"uv_scale", {0, 0}},
+            {"uv_bias", {0.5, 0.5}}};
+}
+
+Json scalesJson(const Texels& texels) {
+    if (texels.scales.empty()) return nullptr;
+    Json rows = Json::array();
+    for (const LaneScale& lane : texels.scales) rows.push_back({lane.scale, lane.offset});
+    return rows;
+}
+
+Json texelsJson(const Texels& texels, const char* layout) {
+    const std::vector<double> values = decode(texels);
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return {{"layout", layout},
+            {"index", "((layer*height + y)*width + x)*4 + lane"},
+            {"width", texels.width},
+            {"height", texels.height},
+            {"layers", texels.layers},
+            {"type", numberName(texels.number)},
+            {"endian", "little"},
+            {"bytes", texels.bytes.size()},
+            {"sha256", sha256(texels.bytes)},
+            {"range", {*low, *high}},
+            {"scale", scalesJson(texels)}};
+}
+
+Json storedJson(const Payload& payload) {
+    Json rows = Json::array();
+    for (const StoredChannel& channel : payload.stored) {
+        rows.push_back({{"name", channel.name},
+                        {"slots", channel.slots},
+                        {"first_layer", channel.firstLayer}});
+    }
+    return rows;
+}
+
+Json filesJson(std::span<const ExportedFile> files) {
+    Json rows = Json::array();
+    for (const ExportedFile& file : files) {
+        rows.push_back({{"role", roleName(file.role)},
+                        {"container", file.container},
+                        {"path", file.path},
+                        {"bytes", file.bytes},
+                        {"sha256", file.sha256}});
+    }
+    return rows;
+}
+
+Json testsJson(std::span<const TestTriple> tests) {
+    Json rows = Json::array();
+    for (const TestTriple& test : tests) {
+        rows.push_back({{"wo", {test.wo.x, test.wo.y, test.wo.z}},
+                        {"wi", {test.wi.x, test.wi.y, test.wi.z}},
+                        {"value", test.value}});
+    }
+    return rows;
+}
+
+/// Keys that say what the numbers are, taken over from the coefficient file word for word.
+void addCoefficientKeys(const Payload& payload, Json& document) {
+    const Coefficients head{.basis = payload.basis,
+                            .order = payload.order,
+                            .condonShortley = payload.condonShortley,
+                            .quantity = payload.quantity,
+                            .channels = payload.channels,
+                            .outgoing = payload.outgoing,
+                            .isotropic = payload.isotropic,
+                            .bilateral = payload.bilateral,
+                            .reciprocal = payload.reciprocal,
+                            .values = {},
+                            .energy = payload.energy,
+                            .error = payload.error,
+                            .source = payload.source,
+                            .generator = payload.generator};
+    for (const auto& [key, text] : metadataOf(head)) {
+        if (key == "format" || key == "version" || key == "tolerance") continue;
+        document[key] = key == "basis" ? basisJson(payload) : Json::parse(text);
+    }
+}
+
+}  // namespace
+
+std::string sidecarText(const Payload& payload, std::span<const ExportedFile> files,
+                        std::optional<Role> holds, std::span<const TestTriple> tests,
+                        const std::string& fitError) {
+    Json document = {{"format", "hshfit-gpu"}, {"version", 1}};
+    if (holds) document["holds"] = roleName(*holds);
+    addCoefficientKeys(payload, document);
+    const bool rgb = payload.channels.kind == Channels::Kind::rgb;
+    document["colorspace"] = rgb ? Json("lin_rec709") : Json(nullptr);
+    document["cos_included"] = payload.quantity == Quantity::brdfCosine;
+    document["unit"] = "1/sr";
+    document["lobe"] = "wo looks up the coefficients, wi goes into the basis";
+    document["frame"] = {
+        {"handedness", "right"}, {"normal", "+z"},
+        {"tangent", "+x"},       {"bitangent", "+y"},
+        {"phi", "atan2(y, x)"},  {"directions", "both point away from the surface"}};
+    document["sum"] = "q_i = sum_c to_channels[i][c] sum_j C_cj(wo) B_slots[j](wi)";
+    document["slots"] = payload.slots;
+    document["stored"] = storedJson(payload);
+    document["to_channels"] = payload.toChannels;
+    document["map"] = mapJson(payload);
+    document["sampling"] = {{"filter", "linear"}, {"mip", "none"},   {"lod", 0},
+                            {"wrap", "clamp"},    {"anisotropy", 1}, {"srgb", false}};
+    document["clamp_negative"] = "once, after the sum and to_channels; never the texels";
+    document["data"] = texelsJson(payload.coefficients, packingName(payload.packing).c_str());
+    document["basis_textures"] = nullptr;
+    if (payload.basisTexels) {
+        const Texels& texels = *payload.basisTexels;
+        document["basis_textures"] = {{"map", parabolicJson(texels.width, texels.height)},
+                                      {"data", texelsJson(texels, "coef4-planar")}};
+    }
+    document["files"] = filesJson(files);
+    document["fit_error"] = fitError.empty() ? Json(nullptr) : Json::parse(fitError);
+    document["test_value"] = "the sum before it is clamped, in double precision, analytic basis";
+    document["tests"] = testsJson(tests);
+    return readable(document);
+}
+
+std::string testText(const Payload& payload, std::span<const TestTriple> tests) {
+    return readable({{"format", "hshfit-gpu-test"},
+                     {"version", 1},
+                     {"source", {{"brdf", payload.source}}},
+                     {"quantity", quantityName(payload.quantity)},
+                     {"channels", payload.channels.names()},
+                     {"value", "the sum before it is clamped, in double precision, analytic basis"},
+                     {"tests", testsJson(tests)}});
+}
+
+std::vector<std::pair<std::string, std::string>> payloadFacts(const Payload& payload) {
+    return {{"basis", payload.basis},
+            {"order", std::to_string(payload.order)},
+            {"coefficients", std::to_string(payload.slots.size())},
+            {"layout", packingName(payload.packing)},
+            {"layers", std::to_string(payload.coefficients.layers)},
+            {"map", mapJson(payload)["type"].get<std::string>()},
+            {"outgoing", payload.outgoing.spec()},
+            {"quantity", quantityName(payload.quantity)},
+            {"channels", fmt::format("{}", fmt::join(payload.channels.names(), " "))},
+            {"source", payload.source}};
+}
+
+}  // namespace hshfit::gpu
