@@ -1,0 +1,46 @@
+#pragma once
+
+#include "shader_job.h"
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace hshfit::shaders {
+
+/// A tool, library or device that is not here: the test skips with this reason.
+struct Missing : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// A shader that its compiler or validator refuses, with what that said.
+struct Refused : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// The inputs of a job as compute shaders take them: wo and wi of every pair (6 numbers), then the
+/// environment.
+std::vector<float> inputNumbers(const ShaderJob& job);
+
+/// Vulkan: texture arrays at bindings 0 (coefficients) and 2 (basis), combined with their sampler
+/// or not (then at 1), storage buffers at 3 (input) and 4 (output).
+std::vector<float> runVulkan(const ShaderJob& job, const std::vector<std::uint32_t>& spirv,
+                             bool combined);
+/// OpenGL 4.5 compute shader, through EGL without a surface.
+std::vector<float> runOpenGl(const ShaderJob& job, const std::string& source);
+/// OpenGL ES 3 fragment shader into float targets, likewise.
+std::vector<float> runOpenGlEs(const ShaderJob& job, const std::string& source);
+/// A C++ program, made from `source` and the stubs in tests/gpu/shaders/metal and osl.
+std::vector<float> runStub(const ShaderJob& job, const std::string& source);
+
+/// The snippet with a main around it that evaluates every pair (tests/gpu/shaders/wrappers).
+std::string wrapped(gpu::Language language, const ShaderJob& job, const std::string& snippet);
+
+/// SPIR-V by glslangValidator (GLSL, HLSL) or naga (WGSL), checked by spirv-val. Throws Refused.
+std::vector<std::uint32_t> toSpirv(gpu::Language language, const std::string& source);
+/// glslangValidator on a fragment shader. Throws Refused.
+void validateFragment(const std::string& source);
+
+}  // namespace hshfit::shaders

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <hshfit/directions.h>
+#include <hshfit/gpu/payload.h>
+#include <hshfit/gpu/shader.h>
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+/// The same directions through a snippet and through C++.
+namespace hshfit::shaders {
+
+/// 64 x 64 pairs of directions that single precision holds exactly; a few of them below the
+/// horizon.
+struct Pairs {
+    static constexpr int side = 64;
+    std::vector<Direction> wo, wi;
+};
+Pairs directionPairs();
+
+/// SH coefficients of a light, [slot][colour], that single precision holds exactly.
+struct Environment {
+    int order = 5;
+    std::size_t colours = 3;
+    std::vector<double> values;
+};
+Environment randomEnvironment(int order, std::size_t colours);
+
+/// What a snippet has to be run on.
+struct ShaderJob {
+    gpu::Payload payload;
+    Pairs pairs;
+    Environment environment;
+
+    std::size_t channels() const { return payload.channels.count(); }
+    std::size_t lights() const { return environment.colours; }
+    /// Per pair: evalRaw and eval for every channel, shade for every colour.
+    std::size_t outputs() const { return 2 * channels() + lights(); }
+};
+ShaderJob makeJob(gpu::Payload payload, int environmentOrder);
+
+/// [pair][output], in double precision: sums by `Reconstruction` (with basis textures, by a lookup
+/// of its own), shade as a quadrature of the reconstruction times the light, for every seventh
+/// pair; NaN for the others, which `compare` leaves out.
+std::vector<double> reference(const ShaderJob& job);
+
+/// Largest difference, of the largest magnitude, of eval and shade each.
+struct Difference {
+    double eval = 0, shade = 0;
+};
+Difference compare(const ShaderJob& job, std::span<const double> expected,
+                   std::span<const float> found);
+
+}  // namespace hshfit::shaders

@@ -1,0 +1,112 @@
+#include "runners.h"
+#include "variants.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <iostream>
+
+namespace hshfit::shaders {
+namespace {
+
+using gpu::Language;
+
+/// Of the largest value. On a GPU texels are blended with weights of 8 bits.
+/// A lookup in W texels is placed to W 2^-25 for u in [1/2, 1), W 2^-25 for u W and as much for
+/// u W - 1/2, per axis; neighbouring texels of noise differ by twice the largest value.
+double toleranceOf(const Variant& variant) {
+    if (std::getenv("HSHFIT_TEST_GPU") != nullptr) return 1e-3;
+    const gpu::Texels& texels = variant.payload.coefficients;
+    return variant.noise ? 2 * 3 * std::ldexp(texels.width + texels.height, -25) : 2e-6;
+}
+
+using Run = std::function<std::vector<float>(const ShaderJob&, const std::string&)>;
+
+std::string snippetOf(Language language, const ShaderJob& job) {
+    return gpu::shaderSource(language, job.payload, {.environmentOrder = job.environment.order});
+}
+
+void prove(Language language, const Run& run) {
+    Difference worst;
+    for (Variant& variant : variants()) {
+        if (language == Language::osl &&
+            (variant.payload.basisTexels || isNormalised(variant.payload.coefficients.number)))
+            continue;
+        const double tolerance = toleranceOf(variant);
+        const ShaderJob job = makeJob(std::move(variant.payload), variant.environmentOrder);
+        std::vector<float> found;
+        try {
+            found = run(job, wrapped(language, job, snippetOf(language, job)));
+        } catch (const Missing& reason) {
+            GTEST_SKIP() << reason.what();
+        } catch (const Refused& reason) {
+            FAIL() << variant.name << ": " << reason.what();
+        }
+        const Difference difference = compare(job, reference(job), found);
+        std::cout << fmt::format("{:<48} eval {:.1e}  shade {:.1e}\n", variant.name,
+                                 difference.eval, difference.shade);
+        EXPECT_LE(difference.eval, tolerance) << variant.name;
+        EXPECT_LE(difference.shade, tolerance) << variant.name;
+    }
+}
+
+std::vector<float> onVulkan(Language language, const ShaderJob& job, const std::string& source) {
+#ifdef HSHFIT_VULKAN
+    return runVulkan(job, toSpirv(language, source), language == Language::glsl);
+#else
+    (void)language, (void)job, (void)source;
+    throw Missing("built without Vulkan (libvulkan-dev)");
+#endif
+}
+
+std::vector<float> onOpenGl(const ShaderJob& job, const std::string& source, bool es) {
+#ifdef HSHFIT_EGL
+    return es ? runOpenGlEs(job, source) : runOpenGl(job, source);
+#else
+    (void)job, (void)source, (void)es;
+    throw Missing("built without EGL (libegl-dev, libgl-dev)");
+#endif
+}
+
+Run runOf(Language language) {
+    switch (language) {
+        case Language::glslEs:
+            return [](const auto& job, const auto& source) { return onOpenGl(job, source, true); };
+        case Language::metal:
+        case Language::osl:
+            return runStub;
+        default:
+            return [language](const auto& job, const auto& source) {
+                return onVulkan(language, job, source);
+            };
+    }
+}
+
+TEST(ShaderProof, GlslOnVulkan) {
+    prove(Language::glsl, runOf(Language::glsl));
+}
+TEST(ShaderProof, HlslOnVulkan) {
+    prove(Language::hlsl, runOf(Language::hlsl));
+}
+TEST(ShaderProof, WgslOnVulkan) {
+    prove(Language::wgsl, runOf(Language::wgsl));
+}
+TEST(ShaderProof, GlslOnOpenGl) {
+    prove(Language::glsl,
+          [](const auto& job, const auto& source) { return onOpenGl(job, source, false); });
+}
+TEST(ShaderProof, GlslEsOnOpenGlEs) {
+    prove(Language::glslEs, runOf(Language::glslEs));
+}
+TEST(ShaderProof, MetalAsCpp) {
+    prove(Language::metal, runStub);
+}
+TEST(ShaderProof, OslAsCpp) {
+    prove(Language::osl, runStub);
+}
+
+}  // namespace
+}  // namespace hshfit::shaders

@@ -1,0 +1,46 @@
+#pragma once
+
+// As much of OSL as the snippets use, in C++: the arithmetic runs, the grammar is C++'s.
+
+#include "stub.h"
+
+using string = const stub::Array*;
+
+struct vector {
+    float x, y, z;
+    vector() = default;
+    vector(float a, float b, float c) : x(a), y(b), z(c) {}
+    float& operator[](int i) { return i == 0 ? x : i == 1 ? y : z; }
+};
+using color = vector;
+
+inline vector operator*(float a, vector b) {
+    return {a * b.x, a * b.y, a * b.z};
+}
+inline vector operator+(vector a, vector b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline vector operator-(vector a, vector b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline float step(float edge, float x) {
+    return x < edge ? 0.0f : 1.0f;
+}
+inline float min(float a, float b) {
+    return b < a ? b : a;
+}
+inline float max(float a, float b) {
+    return a < b ? b : a;
+}
+inline vector max(vector a, vector b) {
+    return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)};
+}
+using std::sqrt;
+
+inline color texture(string map, float u, float v, float, float, float, float, const char*,
+                     int subimage, const char*, const char*, const char*, const char*, const char*,
+                     float& alpha) {
+    alpha = map->sample(u, v, subimage, 3);
+    return {map->sample(u, v, subimage, 0), map->sample(u, v, subimage, 1),
+            map->sample(u, v, subimage, 2)};
+}

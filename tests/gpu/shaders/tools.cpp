@@ -1,0 +1,222 @@
+#include "runners.h"
+
+#include <fmt/format.h>
+#include <kainjow/mustache.hpp>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace hshfit::shaders {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path here = fs::path(HSHFIT_SOURCE) / "tests/gpu/shaders";
+
+/// A folder that goes away with this object.
+struct Folder {
+    fs::path path;
+    Folder() {
+        std::string name = (fs::temp_directory_path() / "hshfit-shader-XXXXXX").string();
+        if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+        path = name;
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    ~Folder() {
+        std::error_code ignored;
+        fs::remove_all(path, ignored);
+    }
+    std::string file(const char* name) const { return (path / name).string(); }
+};
+
+struct Outcome {
+    int status;
+    std::string text;  ///< of both outputs
+};
+
+Outcome command(const std::string& line) {
+    std::FILE* pipe = popen((line + " 2>&1").c_str(), "r");
+    if (pipe == nullptr) throw std::runtime_error("no shell");
+    Outcome outcome{0, {}};
+    std::array<char, 4096> part{};
+    while (const std::size_t n = std::fread(part.data(), 1, part.size(), pipe))
+        outcome.text.append(part.data(), n);
+    const int status = pclose(pipe);
+    outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+    return outcome;
+}
+
+void need(const char* tool, const char* package) {
+    if (command(fmt::format("command -v {}", tool)).status != 0)
+        throw Missing(fmt::format("{} is not installed ({})", tool, package));
+}
+
+void accept(const std::string& line) {
+    const Outcome outcome = command(line);
+    if (outcome.status != 0) throw Refused(outcome.text);
+}
+
+std::string textOf(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw std::runtime_error("cannot read " + path.string());
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void save(const std::string& path, const std::string& text) {
+    std::ofstream file(path, std::ios::binary);
+    file << text;
+    if (!file.flush()) throw std::runtime_error("cannot write " + path);
+}
+
+template <class T>
+void append(std::string& bytes, const T* values, std::size_t count) {
+    bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+}
+
+/// What the GPU samples: decoded, but neither scaled nor offset.
+void appendArray(std::string& bytes, gpu::Texels texels) {
+    for (gpu::LaneScale& scale : texels.scales) scale = {};
+    const std::vector<double> values = gpu::decode(texels);
+    const std::vector<float> singles(values.begin(), values.end());
+    const int size[] = {texels.width, texels.height, static_cast<int>(texels.layers)};
+    append(bytes, size, 3);
+    append(bytes, singles.data(), singles.size());
+}
+
+const char* wrapperOf(gpu::Language language) {
+    switch (language) {
+        case gpu::Language::glslEs:
+            return "glsl_es.frag";
+        case gpu::Language::glsl:
+            return "glsl.comp";
+        case gpu::Language::hlsl:
+            return "hlsl.hlsl";
+        case gpu::Language::wgsl:
+            return "wgsl.wgsl";
+        case gpu::Language::metal:
+            return "metal.cpp";
+        case gpu::Language::osl:
+            break;
+    }
+    return "osl.cpp";
+}
+
+struct Types {
+    const char *real, *vector;
+};
+Types typesOf(gpu::Language language) {
+    switch (language) {
+        case gpu::Language::glslEs:
+        case gpu::Language::glsl:
+            return {"float", "vec3"};
+        case gpu::Language::hlsl:
+        case gpu::Language::metal:
+            return {"float", "float3"};
+        case gpu::Language::wgsl:
+            return {"f32", "vec3<f32>"};
+        case gpu::Language::osl:
+            break;
+    }
+    return {"float", "vector"};
+}
+
+}  // namespace
+
+std::vector<float> inputNumbers(const ShaderJob& job) {
+    std::vector<float> numbers;
+    for (std::size_t k = 0; k < job.pairs.wo.size(); ++k) {
+        for (const Direction& d : {job.pairs.wo[k], job.pairs.wi[k]})
+            for (const double v : {d.x, d.y, d.z}) numbers.push_back(static_cast<float>(v));
+    }
+    for (const double v : job.environment.values) numbers.push_back(static_cast<float>(v));
+    return numbers;
+}
+
+std::string wrapped(gpu::Language language, const ShaderJob& job, const std::string& snippet) {
+    using kainjow::mustache::data;
+    const bool grey = job.payload.channels.kind == Channels::Kind::grey;
+    const bool spectral = job.payload.channels.kind == Channels::Kind::spectral;
+    const Types types = typesOf(language);
+    data page;
+    page.set("snippet", snippet);
+    page.set("type", spectral ? "hsh_Values" : grey ? types.real : types.vector);
+    page.set("lightElement", spectral ? "hsh_Values" : types.vector);
+    page.set("v", spectral ? ".v" : "");
+    page.set("of", spectral ? ".v[i]" : grey ? "" : "[i]");
+    page.set("tabulated", job.payload.basisTexels.has_value());
+    const auto number = [&](const char* name, std::size_t value) {
+        page.set(name, std::to_string(value));
+    };
+    number("channels", job.channels());
+    number("lights", job.lights());
+    number("outputs", job.outputs());
+    number("environment", job.environment.values.size() / job.lights());
+    number("first", 6 * job.pairs.wo.size());
+    kainjow::mustache::mustache wrapper(textOf(here / "wrappers" / wrapperOf(language)));
+    wrapper.set_custom_escape([](const std::string& s) { return s; });
+    return wrapper.render(page);
+}
+
+std::vector<std::uint32_t> toSpirv(gpu::Language language, const std::string& source) {
+    need("spirv-val", "spirv-tools");
+    const Folder folder;
+    const std::string in = folder.file("shader.comp"), out = folder.file("shader.spv");
+    save(in, source);
+    if (language == gpu::Language::wgsl) {
+        need("node", "nodejs");
+        if (!fs::exists(here.parent_path() / "node_modules/naga-wasm"))
+            throw Missing("naga-wasm is not installed (npm ci in tests/gpu)");
+        accept(fmt::format("node '{}' '{}' '{}'", (here / "wgsl_to_spirv.mjs").string(), in, out));
+    } else {
+        need("glslangValidator", "glslang-tools");
+        accept(
+            fmt::format("glslangValidator {} --target-env vulkan1.1 -S comp -e main '{}' -o '{}'",
+                        language == gpu::Language::hlsl ? "-D -V" : "-V", in, out));
+    }
+    accept(fmt::format("spirv-val --target-env vulkan1.1 '{}'", out));
+    const std::string bytes = textOf(out);
+    std::vector<std::uint32_t> words(bytes.size() / 4);
+    std::copy_n(bytes.data(), words.size() * 4, reinterpret_cast<char*>(words.data()));
+    return words;
+}
+
+void validateFragment(const std::string& source) {
+    need("glslangValidator", "glslang-tools");
+    const Folder folder;
+    save(folder.file("shader.frag"), source);
+    accept(fmt::format("glslangValidator '{}'", folder.file("shader.frag")));
+}
+
+std::vector<float> runStub(const ShaderJob& job, const std::string& source) {
+    need("g++", "g++");
+    const Folder folder;
+    save(folder.file("stub.cpp"), source);
+    accept(fmt::format("g++ -std=c++20 -O1 -fsingle-precision-constant -I'{}' '{}' -o '{}'",
+                       (here / "stubs").string(), folder.file("stub.cpp"), folder.file("stub")));
+    std::string bytes;
+    appendArray(bytes, job.payload.coefficients);
+    appendArray(bytes, job.payload.basisTexels.value_or(gpu::Texels{}));
+    const std::vector<float> numbers = inputNumbers(job);
+    const int sizes[] = {static_cast<int>(job.pairs.wo.size()), static_cast<int>(numbers.size()),
+                         static_cast<int>(job.outputs())};
+    append(bytes, sizes, 3);
+    append(bytes, numbers.data(), numbers.size());
+    save(folder.file("job"), bytes);
+    const Outcome outcome = command(fmt::format("'{}' '{}' '{}'", folder.file("stub"),
+                                                folder.file("job"), folder.file("results")));
+    if (outcome.status != 0) throw std::runtime_error("the stub failed: " + outcome.text);
+    const std::string found = textOf(folder.file("results"));
+    std::vector<float> results(found.size() / 4);
+    std::copy_n(found.data(), results.size() * 4, reinterpret_cast<char*>(results.data()));
+    return results;
+}
+
+}  // namespace hshfit::shaders
