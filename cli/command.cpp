@@ -2,6 +2,7 @@
 
 #include <hshfit/colour.h>
 #include <hshfit/error.h>
+#include <hshfit/gpu/containers/containers.h>
 #include <hshfit/output/coefficient_file.h>
 #include <hshfit/reconstruction.h>
 
@@ -46,6 +47,10 @@ std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb) {
 }
 
 std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb) {
+    if (gpu::looksLikePayload(spec)) {
+        auto coefficients = gpu::unpack(gpu::readPayload(spec).payload);
+        return seenAsRgb(std::make_unique<Reconstruction>(std::move(coefficients)), rgb);
+    }
     if (!looksLikeCoefficients(spec)) return openBrdf(spec, rgb);
     return seenAsRgb(std::make_unique<Reconstruction>(readCoefficients(spec)), rgb);
 }

@@ -41,10 +41,11 @@ void addFit(CLI::App& app, Globals& globals);
 void addRender(CLI::App& app, Globals& globals);
 void addLtc(CLI::App& app, Globals& globals);
 void addGaussians(CLI::App& app, Globals& globals);
+void addImport(CLI::App& app, Globals& globals);
 
 /// A BRDF specification. With `rgb`, a spectral one as linear Rec. 709; others stay as they are.
 std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb);
-/// A BRDF specification or a coefficient file, as a BRDF; `rgb` likewise.
+/// A BRDF specification, a coefficient file or a file of an export, as a BRDF; `rgb` likewise.
 std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb);
 /// The option --rgb.
 void addRgb(CLI::App& command, bool& rgb);

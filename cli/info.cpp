@@ -2,6 +2,7 @@
 #include "documents.h"
 #include "health.h"
 
+#include <hshfit/gpu/containers/containers.h>
 #include <hshfit/quadrature.h>
 #include <hshfit/reconstruction.h>
 
@@ -74,6 +75,18 @@ void describeCoefficients(const Coefficients& c, Json& document) {
                          {"generator", c.generator}};
 }
 
+/// What the file around exported coefficients is; nothing for other files.
+void describeContainer(const std::string& path, Json& facts) {
+    if (!gpu::looksLikePayload(path)) return;
+    const gpu::ImportedPayload read = gpu::readPayload(path);
+    facts["container"] = read.container;
+    facts["texels"] = read.file;
+    facts["number"] = gpu::numberName(read.payload.coefficients.number);
+    facts["packing"] = gpu::packingName(read.payload.packing);
+    facts["layers"] = read.payload.coefficients.layers;
+    facts["functions_per_direction"] = read.payload.slots.size();
+}
+
 Json describe(const Brdf& brdf, const Globals& globals) {
     const auto* reconstruction = dynamic_cast<const Reconstruction*>(&brdf);
     Json document = {{"format", "hshfit-info"},
@@ -128,11 +141,13 @@ void addInfo(CLI::App& app, Globals& globals) {
                    "What a BRDF or a coefficient file is, and how healthy: channels, symmetry, "
                    "sampling, invalid values, coverage, reciprocity, albedo, repairs",
                    "hshfit info ggx:alpha=.2,F0=.9");
-    command.add_option("SPEC", options->spec, "BRDF or coefficient file")->required();
+    command.add_option("SPEC", options->spec, "BRDF, coefficient file or file of an export")
+        ->required();
     addRgb(command, options->rgb);
     command.callback([options, &globals] {
         const auto brdf = openSource(options->spec, options->rgb);
-        const Json document = describe(*brdf, globals);
+        Json document = describe(*brdf, globals);
+        describeContainer(options->spec, document["facts"]);
         if (const auto* measured = dynamic_cast<const brdfs::MeasuredBrdf*>(brdf.get())) {
             measured->checkReadable();  // what is no number has been counted
         } else {
