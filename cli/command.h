@@ -37,6 +37,7 @@ void addProject(CLI::App& app, Globals& globals);
 void addReport(CLI::App& app, Globals& globals);
 void addCompare(CLI::App& app, Globals& globals);
 void addConvert(CLI::App& app, Globals& globals);
+void addExport(CLI::App& app, Globals& globals);
 void addFit(CLI::App& app, Globals& globals);
 void addRender(CLI::App& app, Globals& globals);
 void addLtc(CLI::App& app, Globals& globals);

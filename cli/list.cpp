@@ -3,6 +3,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
+#include <hshfit/gpu/targets.h>
 #include <hshfit/metrics.h>
 
 #include <brdfs/catalog.h>
@@ -175,9 +176,15 @@ Json foundPresetsJson(const std::string& text) {
     throw UsageError(fmt::format("no preset matches '{}'; {}", text, hint));
 }
 
-/// Export targets: none in this version.
 Json targetsJson() {
-    return Json::array();
+    Json rows = Json::array();
+    for (const gpu::Target& target : gpu::targets()) {
+        rows.push_back({{"name", target.name},
+                        {"help", target.summary},
+                        {"kind", gpu::kindName(target.kind)}});
+        if (!target.parts.empty()) rows.back()["parts"] = target.parts;
+    }
+    return rows;
 }
 
 struct Section {
@@ -228,6 +235,9 @@ void printSection(const char* name, const Json& rows, std::string_view sums = {}
         if (const std::string source = row.value("source", ""); !source.empty()) {
             text += fmt::format("      {:<14} {}\n", "source", source);
         }
+        if (row.contains("parts"))
+            text += fmt::format("      {:<14} {}\n", "parts",
+                                fmt::join(row["parts"].get<std::vector<std::string>>(), ", "));
         for (const Json& parameter : row.value("parameters", Json::array())) {
             text += parameterText(parameter) + "\n";
         }

@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
     cli::addReport(app, globals);
     cli::addCompare(app, globals);
     cli::addConvert(app, globals);
+    cli::addExport(app, globals);
     cli::addFit(app, globals);
     cli::addRender(app, globals);
     cli::addLtc(app, globals);

@@ -25,9 +25,10 @@ const Renderer renderers[] = {
     {"unity", "Unity: data for a Texture2DArray", {"bin", "hlsl"}},
     {"unreal", "Unreal: a strip to slice, a custom node's code", {"exr", "hlsl"}},
     {"falcor", "Falcor: a texture array, a Slang snippet", {"dds", "hlsl"}},
-    {"blender", "Blender: a strip for an image node, an OSL script", {"exr", "osl"}},
+    {"blender",
+     "Blender: a strip for image nodes, parts for an OSL script",
+     {"exr", "exr-parts", "osl"}},
     {"mitsuba", "Mitsuba 3: a tensor file", {"tensor"}},
-    {"osl", "OSL renderers: one part per layer, a shader", {"exr-parts", "osl"}},
 };
 
 std::vector<Target> makeTargets() {

@@ -1,0 +1,135 @@
+#include "program.h"
+
+#include <nlohmann/json.hpp>
+
+#include <map>
+#include <set>
+
+namespace hshfit::test {
+namespace {
+
+using Json = nlohmann::json;
+
+class Export : public Cli {
+protected:
+    void SetUp() override {
+        Cli::SetUp();
+        ASSERT_EQ(run("project ward:ax=.3,ay=.5,kd=.1/.2/.3 --order 4 --outgoing 12x8 -o " +
+                      path("ward.json"))
+                      .code,
+                  0);
+    }
+
+    std::map<std::string, std::string> filesOf(const std::string& folder) const {
+        std::map<std::string, std::string> files;
+        for (const auto& entry : fs::directory_iterator(path(folder)))
+            files[entry.path().filename()] = read(entry.path());
+        return files;
+    }
+};
+
+TEST_F(Export, EveryTargetIsWrittenAndSaid) {
+    const Answer answer =
+        run("export " + path("ward.json") + " -o " + path("all") + " --target all --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "export"));
+    const Json document = Json::parse(answer.out);
+    const auto files = filesOf("all");
+    std::set<std::string> named, targets;
+    for (const Json& file : document["files"]) {
+        named.insert(file["path"].get<std::string>());
+        if (file.contains("target")) targets.insert(file["target"].get<std::string>());
+        ASSERT_TRUE(files.contains(file["path"])) << file;
+        EXPECT_FALSE(files.at(file["path"]).empty()) << file;
+        if (file.contains("bytes")) {
+            EXPECT_EQ(files.at(file["path"]).size(), file["bytes"]);
+        }
+    }
+    EXPECT_EQ(named.size(), files.size()) << "a file that is not listed, or twice";
+    for (const Json& row : Json::parse(run("list targets --json").out)["targets"])
+        if (row["kind"] != "renderer") {
+            EXPECT_TRUE(targets.contains(row["name"])) << row;
+        }
+    // 16 functions of 3 channels, 4 a layer, 12 x 8 texels of 4 halves.
+    EXPECT_EQ(document["layers"], 12);
+    EXPECT_EQ(document["texel_bytes"], 12 * 12 * 8 * 4 * 2);
+}
+
+TEST_F(Export, SameBytesFromRunToRunWhateverTheThreads) {
+    const std::string job = "export " + path("ward.json") +
+                            " --basis-textures 16 --target "
+                            "bin,exr,exr-parts,ktx2,dds,js,h,tensor,glsl-es,hlsl,wgsl,viewer ";
+    ASSERT_EQ(run(job + "--threads 1 -o " + path("a")).code, 0);
+    ASSERT_EQ(run(job + "--threads 2 -o " + path("b")).code, 0);
+    const auto a = filesOf("a"), b = filesOf("b");
+    ASSERT_EQ(a.size(), b.size());
+    for (const auto& [name, bytes] : a) EXPECT_TRUE(b.at(name) == bytes) << name;
+}
+
+TEST_F(Export, FilesThatStandAreKeptUnlessForced) {
+    const std::string job =
+        "export " + path("ward.json") + " --no-error --target bin,hlsl -o " + path("out");
+    ASSERT_EQ(run(job).code, 0);
+    write("out/ward_hsh.hlsl", "mine");
+    const auto before = filesOf("out");
+    const Answer refused = run(job + " --number float32");
+    EXPECT_EQ(refused.code, 5);
+    EXPECT_NE(refused.err.find("--force"), std::string::npos) << refused.err;
+    EXPECT_EQ(filesOf("out"), before);
+    EXPECT_EQ(run(job + " --force").code, 0);
+    EXPECT_NE(filesOf("out").at("ward_hsh.hlsl"), "mine");
+}
+
+TEST_F(Export, NothingIsHalfWritten) {
+    write("file", "");
+    expectError("export " + path("ward.json") + " -o " + path("file"), 5, "file", 2);
+    expectError("export " + path("ward.json") + " -o /dev/null/folder", 5, "/dev/null", 2);
+    // A limit of 8 blocks of 512 bytes stands for a full disk.
+    const std::string job = "ulimit -f 8; " + std::string(HSHFIT_PROGRAM) + " export " +
+                            path("ward.json") + " --no-error --target bin,exr,glsl -o " +
+                            path("full") + " 2>" + path("message");
+    EXPECT_EQ(WEXITSTATUS(std::system(job.c_str())), 5);
+    EXPECT_FALSE(fs::exists(path("full"))) << "the folder was made for these files alone";
+    const std::string message = read(path("message"));
+    EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 1) << message;
+}
+
+TEST_F(Export, WhatCannotBeExportedIsSaid) {
+    const std::string job = "export " + path("ward.json") + " -o " + path("out");
+    expectError(job + " --target vrml", 2, "known: all, bin", 1);
+    expectError(job + " --number float8", 2, "float16", 1);
+    expectError(job + " --chroma-order 9", 2, "1 to 4", 1);
+    expectError(job + " --no-error --target exr --number unorm8", 2, "exr", 1);
+    expectError(job + " --source absent.binary", 3, "absent.binary", 1);
+    expectError("export lambert -o " + path("out"), 3, "lambert", 1);
+    expectError("export " + path("absent.json") + " -o " + path("out"), 3, "absent.json", 1);
+}
+
+TEST_F(Export, ErrorsAreSplitAndFollowThePrecision) {
+    const auto errors = [&](const std::string& number) {
+        return Json::parse(run("export " + path("ward.json") + " --json --target bin --force -o " +
+                               path("out") + " --number " + number)
+                               .out)["fit_error"];
+    };
+    const Json half = errors("float16"), byte = errors("unorm8");
+    EXPECT_EQ(half["truncation"], byte["truncation"]);
+    EXPECT_EQ(half["interpolation"], byte["interpolation"]);
+    EXPECT_LT(half["quantisation"].get<double>(), std::ldexp(1, -10));
+    EXPECT_GT(byte["quantisation"].get<double>(), 5 * half["quantisation"].get<double>());
+}
+
+TEST_F(Export, ASourceThatIsGoneIsSaid) {
+    Json document = Json::parse(read(path("ward.json")));
+    document["source"]["brdf"] = "gone.binary";
+    write("gone.json", document.dump());
+    const Answer answer =
+        run("export " + path("gone.json") + " --json --target bin -o " + path("out"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "export"));
+    const std::string reason = Json::parse(answer.out)["fit_error"]["reason"];
+    EXPECT_NE(reason.find("gone.binary"), std::string::npos) << reason;
+    EXPECT_NE(reason.find("--source"), std::string::npos) << reason;
+}
+
+}  // namespace
+}  // namespace hshfit::test
