@@ -14,6 +14,17 @@
 
 namespace hshfit::brdfs {
 
+/// How a fit moves a parameter (docs/fit.md), within the bounds that the parameter has.
+struct FitRange {
+    enum class Data { any, isotropic, anisotropic };
+    double low = 0, high = 0;       ///< where starts are drawn; both the same: held there
+    bool logarithmic = false;       ///< moves on a logarithmic scale
+    Data data = Data::any;          ///< moves for such data only
+    std::string_view choice = {};   ///< moves with this choice only, "key=word"; empty: any
+    std::string_view unless = {};   ///< stays out where this parameter is stated in its place
+    std::string_view follows = {};  ///< has the value of this one where the data are isotropic
+};
+
 /// One parameter of an analytic model, as listed, parsed, checked and documented.
 struct Parameter {
     enum class Kind {
@@ -29,6 +40,8 @@ struct Parameter {
     std::optional<double> fallback = {};
     double min = 0, max = 0;
     std::vector<std::string_view> choices = {};  ///< the first is the default
+    /// The first that applies. None: fits leave it as stated, or at its default.
+    std::vector<FitRange> fit = {};
 };
 
 /// Checked parameter values, defaults filled in. Asking for an undeclared name is our bug.

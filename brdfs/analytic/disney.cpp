@@ -2,6 +2,7 @@
 
 #include <brdfs/analytic/fresnel.h>
 #include <brdfs/analytic/half_vector.h>
+#include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 
 #include <algorithm>
@@ -146,6 +147,11 @@ Parameter unitParameter(std::string_view name, std::string_view help, double fal
     return {.name = name, .help = help, .fallback = fallback, .min = 0, .max = 1};
 }
 
+Parameter unitParameter(std::string_view name, std::string_view help, double fallback,
+                        const FitRange& fit) {
+    return fitted(unitParameter(name, help, fallback), {fit});
+}
+
 }  // namespace
 
 const Model& disneyModel() {
@@ -154,28 +160,35 @@ const Model& disneyModel() {
         .help = "principled BRDF of base, specular, sheen and clearcoat lobes",
         .source =
             "Burley 2012, Physically-based shading at Disney, SIGGRAPH course notes, addenda 2014",
-        .parameters = {{.name = "baseColor",
-                        .help = "linear, not a monitor value",
-                        .kind = Parameter::Kind::colour,
-                        .fallback = 0.8,
-                        .min = 0,
-                        .max = 1},
-                       unitParameter("subsurface",
-                                     "from the retroreflecting to the flat diffuse shape", 0),
-                       unitParameter("metallic", "from a dielectric to a metal of baseColor", 0),
-                       unitParameter("specular", "reflectance at normal incidence over 0.08", 0.5),
-                       unitParameter("specularTint", "of the specular lobe towards baseColor's hue",
-                                     0),
-                       unitParameter("roughness", "square root of GGX's alpha", 0.5),
-                       unitParameter("anisotropic", "stretches the lobe along x, to 10:1 or so", 0),
-                       unitParameter("sheen", "added towards grazing angles", 0),
-                       unitParameter("sheenTint", "of the sheen towards baseColor's hue", 0.5),
-                       unitParameter("clearcoat", "strength of a second, white lobe", 0),
-                       unitParameter("clearcoatGloss", "from satin to gloss", 1),
-                       {.name = "masking",
-                        .help = "of the specular lobe, as revised or as first published",
-                        .kind = Parameter::Kind::choice,
-                        .choices = {"2014", "2012"}}},
+        .parameters =
+            {{.name = "baseColor",
+              .help = "linear, not a monitor value",
+              .kind = Parameter::Kind::colour,
+              .fallback = 0.8,
+              .min = 0,
+              .max = 1,
+              .fit = {{.low = 0.05, .high = 0.9}}},
+             unitParameter("subsurface", "from the retroreflecting to the flat diffuse shape", 0,
+                           {.low = 0.1, .high = 0.9}),
+             unitParameter("metallic", "from a dielectric to a metal of baseColor", 0,
+                           {.low = 0.1, .high = 0.9}),
+             unitParameter("specular", "reflectance at normal incidence over 0.08", 0.5,
+                           {.low = 0.1, .high = 0.9}),
+             unitParameter("specularTint", "of the specular lobe towards baseColor's hue", 0),
+             unitParameter("roughness", "square root of GGX's alpha", 0.5,
+                           {.low = 0.05, .high = 0.9}),
+             unitParameter("anisotropic", "stretches the lobe along x, to 10:1 or so", 0,
+                           {.low = 0.1, .high = 0.9, .data = FitRange::Data::anisotropic}),
+             unitParameter("sheen", "added towards grazing angles", 0, {.low = 0.1, .high = 0.9}),
+             // Held at 0, where f is linear in baseColor.
+             unitParameter("sheenTint", "of the sheen towards baseColor's hue", 0.5, FitRange{}),
+             unitParameter("clearcoat", "strength of a second, white lobe", 0,
+                           {.low = 0.1, .high = 0.9}),
+             unitParameter("clearcoatGloss", "from satin to gloss", 1, {.low = 0.1, .high = 0.9}),
+             {.name = "masking",
+              .help = "of the specular lobe, as revised or as first published",
+              .kind = Parameter::Kind::choice,
+              .choices = {"2014", "2012"}}},
         .laws = claims,
         .make = make};
     return model;

@@ -51,7 +51,7 @@ void checkKeys(const Model& model, const Parameters& p) {
 
 std::vector<Parameter> facetFresnelParameters() {
     constexpr double notGiven = -1;
-    return {f0Parameter(),
+    return {fitted(f0Parameter(), {{.low = 0.02, .high = 0.9, .choice = "fresnel=schlick"}}),
             {.name = "fresnel",
              .help = "Schlick's form of F0, or exact for ior, or for ior and k",
              .kind = Parameter::Kind::choice,
@@ -61,13 +61,16 @@ std::vector<Parameter> facetFresnelParameters() {
              .kind = Parameter::Kind::colour,
              .fallback = notGiven,
              .min = 0.01,
-             .max = 100},
+             .max = 100,
+             .fit = {{.low = 1.05, .high = 4, .logarithmic = true, .choice = "fresnel=dielectric"},
+                     {.low = 0.2, .high = 4, .logarithmic = true, .choice = "fresnel=conductor"}}},
             {.name = "k",
              .help = "extinction coefficient, for conductor",
              .kind = Parameter::Kind::colour,
              .fallback = notGiven,
              .min = 0,
-             .max = 100}};
+             .max = 100,
+             .fit = {{.low = 0.5, .high = 6, .choice = "fresnel=conductor"}}}};
 }
 
 FacetFresnel::FacetFresnel(const Model& model, const Parameters& p) {
@@ -84,6 +87,13 @@ FacetFresnel::FacetFresnel(const Model& model, const Parameters& p) {
         weights_.push_back(Colour(count, 0.0));
         weights_.back()[c] = 1;
     }
+}
+
+std::vector<Colour> FacetFresnel::weights(const Colour& scale) const {
+    std::vector<Colour> scaled;
+    for (const Colour& weight : weights_)
+        scaled.push_back(mapped(weight, scale, [](double w, double s) { return w * s; }));
+    return scaled;
 }
 
 void FacetFresnel::spread(double lobe, double cosine, double* out, std::size_t stride) const {

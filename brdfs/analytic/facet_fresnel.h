@@ -17,8 +17,8 @@ public:
     /// Throws UsageError for a key that the chosen form does not use, or that it lacks.
     FacetFresnel(const Model& model, const Parameters& parameters);
 
-    /// Of each term, at most three.
-    const std::vector<Colour>& weights() const { return weights_; }
+    /// Of each term, at most three; times a scale per channel.
+    std::vector<Colour> weights(const Colour& scale) const;
 
     /// out[t * stride] = lobe F_t(cosine). `lobe` is finite; so is the result.
     void spread(double lobe, double cosine, double* out, std::size_t stride) const;

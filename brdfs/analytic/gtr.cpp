@@ -116,13 +116,18 @@ std::unique_ptr<Brdf> make(const Parameters& p) {
 }
 
 std::vector<Parameter> parameters() {
-    std::vector<Parameter> all{kdParameter(0, 1)};
+    std::vector<Parameter> all{kdParameter(0, 1), facetScaleParameter()};
     for (const Parameter& parameter : facetFresnelParameters()) all.push_back(parameter);
-    all.push_back({.name = "alpha", .help = "roughness", .min = 1e-4, .max = 1});
+    all.push_back({.name = "alpha",
+                   .help = "roughness",
+                   .min = 1e-4,
+                   .max = 1,
+                   .fit = {{.low = 3e-3, .high = 0.7, .logarithmic = true}}});
     all.push_back({.name = "gamma",
                    .help = "fall of the tails; 2 is GGX, less has longer ones",
                    .min = 0.1,
-                   .max = 10});
+                   .max = 10,
+                   .fit = {{.low = 1, .high = 4, .logarithmic = true}}});
     all.push_back(maskingParameter());
     return all;
 }

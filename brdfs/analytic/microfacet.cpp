@@ -10,14 +10,20 @@ namespace hshfit::brdfs {
 
 std::vector<Parameter> microfacetParameters() {
     constexpr double notGiven = 0;
-    Parameter alpha = roughnessParameter("alpha", "roughness, the same along x and y");
-    Parameter ax = roughnessParameter("ax", "roughness along x, in place of alpha");
-    Parameter ay = roughnessParameter("ay", "roughness along y, in place of alpha");
+    constexpr FitRange both{.data = FitRange::Data::isotropic, .unless = "ax"};
+    constexpr FitRange single{.data = FitRange::Data::anisotropic, .unless = "alpha"};
+    Parameter alpha = roughnessParameter("alpha", "roughness, the same along x and y", both);
+    Parameter ax = roughnessParameter("ax", "roughness along x, in place of alpha", single);
+    Parameter ay = roughnessParameter("ay", "roughness along y, in place of alpha", single);
     for (Parameter* parameter : {&alpha, &ax, &ay}) parameter->fallback = notGiven;
-    std::vector<Parameter> parameters{kdParameter(0, 1)};
+    std::vector<Parameter> parameters{kdParameter(0, 1), facetScaleParameter()};
     for (const Parameter& parameter : facetFresnelParameters()) parameters.push_back(parameter);
     parameters.insert(parameters.end(), {alpha, ax, ay, maskingParameter()});
     return parameters;
+}
+
+Parameter facetScaleParameter() {
+    return ksParameter("scale of the lobe; 1 for facets that are as bright as F says");
 }
 
 Parameter maskingParameter() {
@@ -36,11 +42,11 @@ Roughness roughnessOf(const Model& model, const Parameters& p) {
         fmt::format("{}: give either alpha or both ax and ay; valid: {}", model.name, valid));
 }
 
-/// The facets reflect at most F <= 1 of the light; a diffuse term comes on top of that.
+/// The facets reflect at most ks F <= 1 of the light; a diffuse term comes on top of that.
 Laws microfacetLaws(const Parameters& p, const Roughness& roughness) {
     Laws laws = microfacetClaims;
     laws.isotropic = roughness.ax == roughness.ay;
-    laws.energyConserving = largest(p.colour("kd")) == 0;
+    laws.energyConserving = largest(p.colour("kd")) == 0 && largest(p.colour("ks")) <= 1;
     return laws;
 }
 

@@ -11,9 +11,10 @@ struct Roughness {
     double ax, ay;
 };
 
-/// kd, F0 | ior, k (facet_fresnel.h), alpha | ax, ay, and masking: what the microfacet models have
-/// in common.
+/// kd, ks, F0 | ior, k (facet_fresnel.h), alpha | ax, ay, and masking: what the microfacet models
+/// have in common.
 std::vector<Parameter> microfacetParameters();
+Parameter facetScaleParameter();
 Parameter maskingParameter();
 /// Throws UsageError unless either alpha or both ax and ay are given.
 Roughness roughnessOf(const Model& model, const Parameters& parameters);
@@ -21,7 +22,7 @@ Laws microfacetLaws(const Parameters& parameters, const Roughness& roughness);
 inline constexpr Laws microfacetClaims{
     .nonNegative = true, .reciprocal = true, .mirrorSymmetric = true};
 
-/// f = kd / pi + F D G / (4 cos_i cos_o), with F of the angle between wo and h (facet_fresnel.h)
+/// f = kd / pi + ks F D G / (4 cos_i cos_o), with F of the angle between wo and h (facet_fresnel.h)
 /// and Smith's masking in terms of Lambda (Heitz 2014, JCGT 3(2)):
 ///     correlated  G = 1 / (1 + Lambda_i + Lambda_o)   (heights of both directions correlated)
 ///     separable   G = 1 / ((1 + Lambda_i)(1 + Lambda_o))
@@ -56,7 +57,7 @@ protected:
 private:
     Microfacet(const Model& model, const Parameters& p, const Laws& laws,
                const Distribution& distribution, const FacetFresnel& fresnel)
-        : TermBrdf(model, p, laws, overPi(p.colour("kd")), fresnel.weights()),
+        : TermBrdf(model, p, laws, overPi(p.colour("kd")), fresnel.weights(p.colour("ks"))),
           distribution_(distribution),
           fresnel_(fresnel),
           correlated_(p.choice("masking") == "correlated") {}

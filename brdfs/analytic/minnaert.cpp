@@ -50,7 +50,8 @@ const Model& minnaertModel() {
                        {.name = "k",
                         .help = "limb darkening; 1 is Lambert, less brightens the limb",
                         .min = 0,
-                        .max = 100}},
+                        .max = 100,
+                        .fit = {{.low = 0.1, .high = 3}}}},
         .laws = claims,
         .make = make};
     return model;

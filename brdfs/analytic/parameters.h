@@ -2,10 +2,17 @@
 
 #include <brdfs/catalog.h>
 
+#include <utility>
+
 namespace hshfit::brdfs {
 
 // Parameters that many models have. `most` is 1 where the value is an albedo and a larger one has
 // no meaning, else 1e6: fits to data in other units are to stay representable.
+
+inline Parameter fitted(Parameter parameter, std::vector<FitRange> fit) {
+    parameter.fit = std::move(fit);
+    return parameter;
+}
 
 inline Parameter kdParameter(double fallback, double most) {
     return {.name = "kd",
@@ -13,7 +20,8 @@ inline Parameter kdParameter(double fallback, double most) {
             .kind = Parameter::Kind::colour,
             .fallback = fallback,
             .min = 0,
-            .max = most};
+            .max = most,
+            .fit = {{.low = 0, .high = 1}}};
 }
 
 inline Parameter ksParameter(std::string_view help, double most = 1e6) {
@@ -22,7 +30,8 @@ inline Parameter ksParameter(std::string_view help, double most = 1e6) {
             .kind = Parameter::Kind::colour,
             .fallback = 1,
             .min = 0,
-            .max = most};
+            .max = most,
+            .fit = {{.low = 0, .high = 1}}};
 }
 
 inline Parameter f0Parameter() {
@@ -34,13 +43,17 @@ inline Parameter f0Parameter() {
             .max = 1};
 }
 
-inline Parameter exponentParameter(std::string_view name, std::string_view help) {
-    return {.name = name, .help = help, .min = 0, .max = 1e7};
+inline Parameter exponentParameter(std::string_view name, std::string_view help, FitRange fit) {
+    fit.logarithmic = true;
+    return {.name = name, .help = help, .min = 0, .max = 1e7, .fit = {fit}};
 }
 
-/// RMS slope and the like; the lobe of the least one is 0.006 degrees wide.
-inline Parameter roughnessParameter(std::string_view name, std::string_view help) {
-    return {.name = name, .help = help, .min = 1e-4, .max = 10};
+/// RMS slope and the like; the lobe of the least one is 0.006 degrees wide. Fits start from the
+/// widths of the materials that Ngan et al. 2005 fitted, and of sharper ones.
+inline Parameter roughnessParameter(std::string_view name, std::string_view help,
+                                    FitRange fit = {}) {
+    fit.low = 3e-3, fit.high = 0.7, fit.logarithmic = true;
+    return {.name = name, .help = help, .min = 1e-4, .max = 10, .fit = {fit}};
 }
 
 inline Parameter switchParameter(std::string_view name, std::string_view help) {

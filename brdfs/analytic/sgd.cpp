@@ -127,13 +127,14 @@ std::unique_ptr<Brdf> make(const Parameters& p) {
 }
 
 Parameter shape(std::string_view name, std::string_view help, std::optional<double> fallback,
-                double min, double max) {
+                double min, double max, std::vector<FitRange> fit = {}) {
     return {.name = name,
             .help = help,
             .kind = Parameter::Kind::colour,
             .fallback = fallback,
             .min = min,
-            .max = max};
+            .max = max,
+            .fit = std::move(fit)};
 }
 
 }  // namespace
@@ -144,17 +145,23 @@ const Model& sgdModel() {
         .help = "facets of shifted gamma distribution, every parameter per channel",
         .source = "Bagher, Soler & Holzschuch 2012, 10.1111/j.1467-8659.2012.03147.x",
         .parameters = {kdParameter(0, 1e6), ksParameter("scale of the lobe"),
-                       shape("alpha", "width and shift of the distribution", {}, 1e-6, 100),
-                       shape("p", "steepness of the distribution's tail", 0, 0, 3),
+                       shape("alpha", "width and shift of the distribution", {}, 1e-6, 100,
+                             {{.low = 1e-4, .high = 0.5, .logarithmic = true}}),
+                       shape("p", "steepness of the distribution's tail", 0, 0, 3,
+                             {{.low = 0.05, .high = 1.5}}),
                        shape("K", "scale of the distribution; left out, it is normalised", -1, 0,
                              1e12),
-                       shape("Lambda", "masking: how deep", 0, 0, 1e12),
-                       shape("c", "masking: how fast", 0, 0, 1e200),
-                       shape("k", "masking: exponent", 1, 0, 1e5),
-                       shape("theta0", "masking: angle from which on, in radians", 0, -2, 2),
+                       shape("Lambda", "masking: how deep", 0, 0, 1e12, {{.low = 0.3, .high = 8}}),
+                       shape("c", "masking: how fast", 0, 0, 1e200,
+                             {{.low = 1e-7, .high = 1, .logarithmic = true}}),
+                       shape("k", "masking: exponent", 1, 0, 1e5,
+                             {{.low = 5, .high = 60, .logarithmic = true}}),
+                       shape("theta0", "masking: angle from which on, in radians", 0, -2, 2,
+                             {{.low = -0.4, .high = 0.6}}),
                        shape("F0", "Fresnel reflectance at normal incidence, before F1", 1, -1000,
-                             1000),
-                       shape("F1", "what is taken off it, times the cosine", 0, -1000, 1000)},
+                             1000, {{.low = 0.02, .high = 1}}),
+                       shape("F1", "what is taken off it, times the cosine", 0, -1000, 1000,
+                             {{.low = -0.2, .high = 0.2}})},
         .laws = claims,
         .make = make};
     return model;

@@ -92,7 +92,7 @@ const Model& wardModel() {
         .parameters = {kdParameter(0, 1e6),
                        ksParameter("scale of the lobe, its albedo near normal incidence"),
                        roughnessParameter("ax", "RMS slope times sqrt(2), along x"),
-                       roughnessParameter("ay", "the same along y"),
+                       roughnessParameter("ay", "the same along y", {.follows = "ax"}),
                        {.name = "variant",
                         .help = "normalisation of the lobe",
                         .kind = Parameter::Kind::choice,

@@ -32,21 +32,24 @@ void evalRuns(const FitSamples& samples, const Columns& columns, std::size_t beg
 
 ColumnBlocks::ColumnBlocks(const FitSamples& samples, const ParametricSum& sum,
                            std::span<const double> u, bool derivatives)
-    : samples_(samples), derivatives_(derivatives), count_(1 + sum.linears().size()) {
+    : samples_(samples), count_(1 + sum.linears().size()) {
     const std::vector<ShapeParameter>& shapes = sum.shapes();
     std::vector<double> values;
     for (std::size_t j = 0; j < shapes.size(); ++j) values.push_back(shapes[j].toValue(u[j]));
     std::size_t firstLinear = 1;
     for (std::size_t t = 0; t < sum.termCount(); ++t) {
         Term term;
-        term.formula = sum.formulaOfTerm(t);
+        std::vector<double> own;
+        for (const std::size_t j : sum.shapesOfTerm(t)) own.push_back(values[j]);
+        term.shapes = own.size();
+        if (const LobeFormula* formula = sum.formulaOfTerm(t))
+            term.formula = formula->at(own, derivatives);
         term.linears = sum.linearsOfTerm(t).size();
         term.firstLinear = firstLinear;
         term.firstSlope = count_;
         firstLinear += term.linears;
         if (!term.formula) term.columns = sum.columnsOf(t, values);
         for (const std::size_t j : sum.shapesOfTerm(t)) {
-            term.shapes.push_back(values[j]);
             if (!derivatives) continue;
             term.slopes.push_back(shapes[j].slope(values[j]));
             first_.push_back(count_);
@@ -80,8 +83,7 @@ void ColumnBlocks::fill(std::size_t begin, std::size_t size, double* out) const 
 void ColumnBlocks::fillByFormula(const Term& term, std::size_t begin, std::size_t size,
                                  double* out) const {
     double* slopes = out + term.firstSlope * size;
-    term.formula->fill(samples_, begin, size, term.shapes, out, out + term.firstLinear * size,
-                       derivatives_ && !term.shapes.empty() ? slopes : nullptr);
+    term.formula->fill(samples_, begin, size, out, out + term.firstLinear * size, slopes);
     const std::size_t rows = (1 + term.linears) * size;
     for (std::size_t j = 0; j < term.slopes.size(); ++j)
         for (std::size_t k = 0; k < rows; ++k) slopes[j * rows + k] *= term.slopes[j];

@@ -31,19 +31,17 @@ private:
         double inverse = 0;
     };
     struct Term {
-        const LobeFormula* formula = nullptr;
-        std::vector<double> shapes;  ///< values, for the formula
+        std::unique_ptr<LobeColumns> formula;
         std::vector<double> slopes;  ///< derivatives of these by u
         Columns columns;
         std::vector<Difference> differences;
-        std::size_t linears = 0, firstLinear = 0, firstSlope = 0;
+        std::size_t linears = 0, shapes = 0, firstLinear = 0, firstSlope = 0;
     };
     void fillByFormula(const Term& term, std::size_t begin, std::size_t size, double* out) const;
     void fillByDifferences(const Term& term, std::size_t begin, std::size_t size,
                            double* out) const;
 
     const FitSamples& samples_;
-    bool derivatives_;
     std::vector<Term> terms_;
     std::vector<std::size_t> first_;
     std::size_t count_;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t coarseCount = 4096;
 /// Where a second and third search on all samples would cost more than it finds.
-constexpr std::size_t manySamples = 200'000;
+constexpr std::size_t manySamples = 200'000, middleCount = 50'000;
 
 struct Bounds {
     std::vector<double> lower, upper;
@@ -205,7 +205,12 @@ Fitted search(FitProblem& problem, const FitOptions& options) {
     const MinimiseOptions last{.iterations = options.iterations};
     Fitted best;
     int iterations = 0, evaluations = 0;
-    for (const Minimum& start : distinct(minima, samples.size() > manySamples ? 1 : 3)) {
+    const bool many = samples.size() > manySamples;
+    const FitSamples middle = samples.drawn(many ? middleCount : 1, options.seed);
+    const FitProblem between(middle, problem.sum(), options.loss);
+    for (Minimum start : distinct(minima, many ? 1 : 3)) {
+        if (many)
+            start = refined(between, linear, start, {.costTolerance = 1e-9, .stepTolerance = 1e-8});
         Minimum minimum = refined(problem, linear, start, last);
         iterations += minimum.iterations, evaluations += minimum.evaluations;
         if (best.minimum.x.empty() || byCost(minimum, best.minimum))

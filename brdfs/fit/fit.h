@@ -59,11 +59,11 @@ struct FitResult {
 
 /// The parameters with the least loss, from several starts.
 ///
-/// Starts are a Halton sequence with a random shift in the box of free_parameters.cpp; the best of
-/// four times `starts` are searched from on at most 4096 of the samples, the best three minima on
-/// all. Linear parameters are eliminated where the loss is linear in f. Standard errors are those
-/// of the sandwich estimator (White 1980, 10.2307/1912934): they hold for weights and noise of any
-/// kind, but take the residuals of samples for independent, and the model for true.
+/// Starts are a Halton sequence with a random shift in the box of the FitRanges (catalog.h); the
+/// best of four times `starts` are searched from on at most 4096 of the samples, the best three
+/// minima on all. Linear parameters are eliminated where the loss is linear in f. Standard errors
+/// are those of the sandwich estimator (White 1980, 10.2307/1912934): they hold for weights and
+/// noise of any kind, but take the residuals of samples for independent, and the model for true.
 /// AIC and BIC are those of Gaussian residuals of g with the given weights.
 ///
 /// Throws UsageError for the model, NumericError if there are fewer values than parameters.

@@ -17,13 +17,14 @@ struct FreeParameter {
     bool colour = false;  ///< may have a value per channel
 };
 
-/// What of `model` is free to fit, given the parameters that were stated: those of the table in
-/// the source, for isotropic or anisotropic data, or for a model that has no row there every number
-/// and colour that may be left to a default or has none. A row leaves out what only another choice
-/// reads (an index of refraction where F0 is given) and what another parameter makes ambiguous.
-/// Stated parameters are not free. In a sum of models, kd with a default of 0 stays 0.
+/// What of `model` is free to fit, given the parameters that were stated: those whose table row has
+/// a FitRange that applies. Stated parameters are not free. In a sum of models, kd with a default
+/// of 0 stays 0.
 std::vector<FreeParameter> freeParameters(const Model& model, const Parameters& stated,
                                           bool isotropic, bool inSum);
+
+/// "key=value,…" of the parameters whose FitRange holds them, unless they are stated.
+std::string heldParameters(const Model& model, const Parameters& stated, bool isotropic);
 
 /// "key=value,…" parsed for what is stated only: keys and values are checked, absent ones are not
 /// missed. Throws UsageError.

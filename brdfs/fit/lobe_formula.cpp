@@ -1,109 +1,27 @@
 #include <brdfs/fit/lobe_formula.h>
 
-#include <brdfs/fit/lobes.h>
-
-#include <ceres/jet.h>
+#include <brdfs/fit/lobe_row.h>
 
 #include <algorithm>
-#include <optional>
 
 namespace hshfit::brdfs {
 namespace {
 
-/// Which linear parameters there are: kd, and that of the lobe.
-struct Places {
-    std::optional<std::size_t> diffuse, lobe;
-    std::size_t count = 0;
-};
-
-/// `Lobe<T>(const T* shapes, words)` and `T operator()(PairGeometry, T& base)`: what the linear
-/// parameter multiplies, and what stands without one.
-template <template <class> class Lobe, int n>
-class Formula final : public LobeFormula {
-public:
-    Formula(const Places& places, const LobeWords& words) : places_(places), words_(words) {}
-
-    void fill(const FitSamples& samples, std::size_t begin, std::size_t size,
-              std::span<const double> shapes, double* base, double* linear,
-              double* slopes) const override {
-        std::fill_n(linear, places_.count * size, 0.0);
-        if (places_.diffuse) std::fill_n(linear + *places_.diffuse * size, size, 1 / pi);
-        if (!slopes) {
-            const Lobe<double> lobe(shapes.data(), words_);
-            for (std::size_t k = 0; k < size; ++k) {
-                double own = 0;
-                const double value = lobe(geometry(samples, begin + k), own);
-                base[k] += own;
-                if (places_.lobe) linear[*places_.lobe * size + k] = value;
-            }
-            return;
-        }
-        using Jet = ceres::Jet<double, n>;
-        Jet values[n];
-        for (int j = 0; j < n; ++j) values[j] = Jet(shapes[static_cast<std::size_t>(j)], j);
-        const Lobe<Jet> lobe(values, words_);
-        const std::size_t columns = 1 + places_.count;
-        std::fill_n(slopes, n * columns * size, 0.0);
-        for (std::size_t k = 0; k < size; ++k) {
-            Jet own(0.0);
-            const Jet value = lobe(geometry(samples, begin + k), own);
-            base[k] += own.a;
-            if (places_.lobe) linear[*places_.lobe * size + k] = value.a;
-            for (int j = 0; j < n; ++j) {
-                double* to = slopes + static_cast<std::size_t>(j) * columns * size + k;
-                to[0] = own.v[j];
-                if (places_.lobe) to[(1 + *places_.lobe) * size] = value.v[j];
-            }
-        }
-    }
-
-private:
-    static PairGeometry geometry(const FitSamples& samples, std::size_t k) {
-        return {samples.wo[k], samples.wiX[k], samples.wiY[k], samples.wiZ[k]};
-    }
-
-    Places places_;
-    LobeWords words_;
-};
-
 /// A Lambert term alone.
 class Constant final : public LobeFormula {
 public:
-    void fill(const FitSamples&, std::size_t, std::size_t size, std::span<const double>, double*,
-              double* linear, double*) const override {
-        std::fill_n(linear, size, 1 / pi);
+    std::unique_ptr<LobeColumns> at(std::span<const double>, bool) const override {
+        return std::make_unique<Columns>();
     }
+
+private:
+    class Columns final : public LobeColumns {
+        void fill(const FitSamples&, std::size_t, std::size_t size, double*, double* linear,
+                  double*) const override {
+            std::fill_n(linear, size, 1 / pi);
+        }
+    };
 };
-
-template <template <class> class Lobe, int n>
-std::unique_ptr<LobeFormula> make(const Places& places, const LobeWords& words) {
-    return std::make_unique<Formula<Lobe, n>>(places, words);
-}
-
-/// A formula, the shapes it takes in order, its linear parameter, and the choices it knows.
-struct Row {
-    std::string_view model;
-    std::vector<std::string_view> shapes;
-    std::string_view linear;
-    std::string_view choice;  ///< "key=word" that has to stand; empty: any
-    std::unique_ptr<LobeFormula> (*make)(const Places&, const LobeWords&);
-};
-
-const std::vector<Row>& rows() {
-    static const std::vector<Row> table{
-        {"blinn-phong", {"exponent"}, "ks", "normalized=false", make<BlinnPhongLobe, 1>},
-        {"ward", {"ax"}, "ks", "", make<WardLobe, 1>},
-        {"ggx", {"alpha"}, "F0", "fresnel=schlick", make<GgxLobe, 1>},
-        {"beckmann", {"alpha"}, "F0", "fresnel=schlick", make<BeckmannLobe, 1>},
-        {"cook-torrance", {"F0", "m"}, "ks", "", make<CookTorranceLobe, 2>},
-        {"abc", {"B", "C", "ior"}, "A", "", make<AbcLobe, 3>},
-        {"sgd",
-         {"alpha", "p", "Lambda", "c", "k", "theta0", "F0", "F1"},
-         "ks",
-         "",
-         make<SgdLobe, 8>}};
-    return table;
-}
 
 LobeWords wordsOf(const Model& model, const Parameters& stated) {
     LobeWords words;
@@ -117,15 +35,75 @@ LobeWords wordsOf(const Model& model, const Parameters& stated) {
     return words;
 }
 
-bool matches(const Row& row, const std::vector<FreeParameter>& shapes, const LobeWords& words) {
-    if (shapes.size() != row.shapes.size()) return false;
-    for (std::size_t j = 0; j < shapes.size(); ++j)
-        if (shapes[j].keys.front() != row.shapes[j]) return false;
-    // Ward's ay goes with ax.
-    if (row.model == "ward" && shapes.front().keys.size() != 2) return false;
+/// The one value that a parameter has if it is not free: as stated, or by default.
+std::optional<double> fixedValue(const Parameter& parameter, const Parameters& stated) {
+    if (!stated.given(parameter.name)) {
+        const bool within = parameter.fallback && *parameter.fallback >= parameter.min &&
+                            *parameter.fallback <= parameter.max;
+        return within ? parameter.fallback : std::nullopt;
+    }
+    const std::vector<double>& values = stated.numbers.find(parameter.name)->second;
+    return values.size() == 1 ? std::optional(values.front()) : std::nullopt;
+}
+
+bool chosen(const LobeRow& row, const LobeWords& words) {
     if (row.choice.empty()) return true;
     const std::size_t equals = row.choice.find('=');
     return words.at(std::string(row.choice.substr(0, equals))) == row.choice.substr(equals + 1);
+}
+
+/// Whether every parameter that a formula takes for the same as this one is.
+bool takesFollowers(const Model& model, const FreeParameter& shape) {
+    return std::ranges::all_of(model.parameters, [&](const Parameter& parameter) {
+        const bool follows = std::ranges::any_of(parameter.fit, [&](const FitRange& range) {
+            return range.follows == shape.keys.front();
+        });
+        return !follows || std::ranges::find(shape.keys, parameter.name) != shape.keys.end();
+    });
+}
+
+std::optional<LobePlaces> placesIn(const LobeRow& row, const Model& model, const Parameters& stated,
+                                   const std::vector<FreeParameter>& shapes,
+                                   const std::vector<std::string>& linearKeys) {
+    LobePlaces places;
+    places.words = wordsOf(model, stated);
+    if (row.model != model.name || !chosen(row, places.words)) return {};
+    places.linears = linearKeys.size();
+    places.values.assign(row.parameters.size(), 0.0);
+    places.free.assign(shapes.size(), row.parameters.size());
+    for (const Parameter& parameter : model.parameters) {
+        if (parameter.kind == Parameter::Kind::choice) continue;
+        const auto in = std::ranges::find(row.parameters, parameter.name);
+        const auto shape = std::ranges::find(shapes, parameter.name,
+                                             [](const FreeParameter& s) { return s.keys.front(); });
+        const auto linear = std::ranges::find(linearKeys, parameter.name);
+        const auto at = static_cast<std::size_t>(in - row.parameters.begin());
+        if (shape != shapes.end()) {
+            if (in == row.parameters.end() || !takesFollowers(model, *shape)) return {};
+            places.free[static_cast<std::size_t>(shape - shapes.begin())] = at;
+        } else if (linear != linearKeys.end()) {
+            const auto column = static_cast<std::size_t>(linear - linearKeys.begin());
+            if (parameter.name == row.linear)
+                places.lobe = column;
+            else if (parameter.name == "kd")
+                places.diffuse = column;
+            else
+                return {};
+        } else {
+            const std::optional<double> value = fixedValue(parameter, stated);
+            if (in != row.parameters.end() || parameter.name == row.linear ||
+                parameter.name == "kd") {
+                if (!value) return {};
+                if (in != row.parameters.end())
+                    places.values[at] = *value;
+                else
+                    (parameter.name == "kd" ? places.diffuseValue : places.lobeValue) = *value;
+            } else if (stated.given(parameter.name)) {
+                return {};
+            }
+        }
+    }
+    return places;
 }
 
 }  // namespace
@@ -133,24 +111,11 @@ bool matches(const Row& row, const std::vector<FreeParameter>& shapes, const Lob
 std::unique_ptr<LobeFormula> makeLobeFormula(const Model& model, const Parameters& stated,
                                              const std::vector<FreeParameter>& shapes,
                                              const std::vector<std::string>& linearKeys) {
-    for (const Parameter& parameter : model.parameters)
-        if (parameter.kind != Parameter::Kind::choice && stated.given(parameter.name))
-            return nullptr;
     if (model.name == "lambert" && linearKeys.size() == 1) return std::make_unique<Constant>();
-    const LobeWords words = wordsOf(model, stated);
-    for (const Row& row : rows()) {
-        if (row.model != model.name || !matches(row, shapes, words)) continue;
-        Places places{.diffuse = {}, .lobe = {}, .count = linearKeys.size()};
-        for (std::size_t k = 0; k < linearKeys.size(); ++k) {
-            if (linearKeys[k] == "kd")
-                places.diffuse = k;
-            else if (linearKeys[k] == row.linear)
-                places.lobe = k;
-            else
-                return nullptr;
-        }
-        return places.lobe ? row.make(places, words) : nullptr;
-    }
+    for (const auto table : {cosineLobes(), facetLobes(), fittedLobes(), disneyLobes()})
+        for (const LobeRow& row : table)
+            if (auto places = placesIn(row, model, stated, shapes, linearKeys))
+                return row.make(std::move(*places));
     return nullptr;
 }
 

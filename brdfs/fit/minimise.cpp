@@ -16,8 +16,10 @@ using Function = std::function<Equations(std::span<const double>, bool)>;
 /// one more that makes up the cost, have the Jacobian L^(1/2) V^T: J^T J = H, J^T r = g.
 class CompressedResiduals final : public ceres::CostFunction {
 public:
-    CompressedResiduals(const Function& equations, std::size_t count)
-        : equations_(equations), count_(count) {
+    CompressedResiduals(const Function& equations, std::span<const double> lower,
+                        std::span<const double> upper)
+        : equations_(equations), count_(lower.size()), lower_(lower), upper_(upper) {
+        const std::size_t count = count_;
         set_num_residuals(static_cast<int>(count) + 1);
         mutable_parameter_block_sizes()->push_back(static_cast<int>(count));
     }
@@ -34,6 +36,14 @@ public:
         Matrix hessian = Eigen::Map<const Matrix>(equations.hessian.data(), n, n);
         Eigen::VectorXd gradient = Eigen::Map<const Eigen::VectorXd>(equations.gradient.data(), n);
         if (!hessian.allFinite() || !gradient.allFinite()) return false;
+        // What a bound holds back does not bend the steps of the others: Ceres would cut each step
+        // there, and search along it at the price of an evaluation each.
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const double x = parameters[0][i], pull = gradient(i);
+            if ((x > lower_[i] || pull < 0) && (x < upper_[i] || pull > 0)) continue;
+            hessian.row(i).setZero(), hessian.col(i).setZero();
+            gradient(i) = 0;
+        }
         Eigen::VectorXd scale = hessian.diagonal().cwiseMax(0).cwiseSqrt();
         for (Eigen::Index i = 0; i < n; ++i) scale(i) = scale(i) > 0 ? scale(i) : 1;
         hessian.array().colwise() /= scale.array();
@@ -68,6 +78,7 @@ private:
 
     const Function& equations_;
     std::size_t count_;
+    std::span<const double> lower_, upper_;
     mutable std::vector<double> last_;
     mutable Equations remembered_;
 };
@@ -89,7 +100,7 @@ Minimum minimise(const Function& equations, std::vector<double> start,
     for (std::size_t i = 0; i < result.x.size(); ++i)
         result.x[i] = std::clamp(result.x[i], lower[i], upper[i]);
     ceres::Problem problem;
-    problem.AddResidualBlock(new CompressedResiduals(equations, result.x.size()), nullptr,
+    problem.AddResidualBlock(new CompressedResiduals(equations, lower, upper), nullptr,
                              result.x.data());
     for (std::size_t i = 0; i < result.x.size(); ++i) {
         problem.SetParameterLowerBound(result.x.data(), static_cast<int>(i), lower[i]);

@@ -10,6 +10,7 @@
 #include <cassert>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 namespace hshfit::brdfs {
@@ -47,6 +48,17 @@ void append(std::string& text, const std::string& item) {
     text += item;
 }
 
+/// One function of the directions serves all channels, so that what is stated has to as well.
+void checkGrey(const Model& model, const Parameters& stated) {
+    for (const Parameter& parameter : model.parameters)
+        if (stated.given(parameter.name) && parameter.kind == Parameter::Kind::colour &&
+            stated.colour(parameter.name).size() > 1)
+            throw UsageError(
+                fmt::format("{}: {} is stated with three values; a fit keeps one for all "
+                            "channels, or finds one for each if it is left out",
+                            model.name, parameter.name));
+}
+
 double unitOf(double min, double max) {
     return std::min(max, std::max(1.0, 2 * min));
 }
@@ -66,10 +78,10 @@ struct ProbePairs {
             x[k] = d.x, y[k] = d.y, z[k] = d.z;
         }
     }
+    /// [channel * count + k]
     std::vector<double> eval(const Brdf& brdf) const {
         std::vector<double> out(brdf.channels().count() * count);
         brdf.eval(wo, {x, y, z, count}, out.data());
-        out.resize(count);
         return out;
     }
 };
@@ -119,7 +131,10 @@ ParametricSum::ParametricSum(std::string_view spec, bool isotropic) {
                   .shapes = {},
                   .linears = {},
                   .formula = {}};
-        const Parameters stated = statedParameters(model, term.stated);
+        Parameters stated = statedParameters(model, term.stated);
+        append(term.stated, heldParameters(model, stated, isotropic));
+        stated = statedParameters(model, term.stated);
+        checkGrey(model, stated);
         std::vector<FreeParameter> free =
             freeParameters(model, stated, isotropic, parts.size() > 1);
         const auto nameOf = [&](const std::string& key) {
@@ -188,7 +203,8 @@ std::unique_ptr<Brdf> ParametricSum::make(const Term& term, std::span<const doub
 }
 
 // f is linear in a set of parameters if it is in each, and none acts on the others: checked by
-// second differences at two shapes.
+// second differences at two shapes. A colour has to act on its own channel alone. Scales, whose
+// range is largest, come before reflectances, which multiply them.
 void ParametricSum::findLinear(Term& term, std::vector<FreeParameter>& free) {
     const ProbePairs pairs;
     std::vector<std::size_t> accepted;  // of `free`
@@ -205,6 +221,23 @@ void ParametricSum::findLinear(Term& term, std::vector<FreeParameter>& free) {
         for (const auto& [j, value] : set) values[shapesBefore[j]] = value;
         return pairs.eval(*make(term, values, ""));
     };
+    const auto apart = [&](std::size_t j, double unit) {
+        const double colour[] = {free[j].min, unit, free[j].min + 0.3 * (unit - free[j].min)};
+        at(0.4, {});  // the others
+        Term own = term;
+        std::erase(own.shapes, shapesBefore[j]);
+        const std::vector<double> whole = pairs.eval(*make(
+            own, values,
+            fmt::format("{}={}/{}/{}", free[j].keys.front(), colour[0], colour[1], colour[2])));
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::vector<double> grey = at(0.4, {{j, colour[c]}});
+            for (std::size_t k = 0; k < ProbePairs::count; ++k) {
+                const double value = whole[c * ProbePairs::count + k];
+                if (std::abs(value - grey[k]) > 1e-11 * std::abs(value)) return false;
+            }
+        }
+        return true;
+    };
     const auto small = [](const std::vector<double>& a, const std::vector<double>& b,
                           const std::vector<double>& c, const std::vector<double>& d) {
         for (std::size_t k = 0; k < a.size(); ++k) {
@@ -213,10 +246,13 @@ void ParametricSum::findLinear(Term& term, std::vector<FreeParameter>& free) {
         }
         return true;
     };
-    for (std::size_t j = 0; j < free.size(); ++j) {
+    std::vector<std::size_t> order(free.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::greater(), [&](std::size_t j) { return free[j].max; });
+    for (const std::size_t j : order) {
         if (!free[j].colour || free[j].keys.size() > 1 || free[j].min != 0) continue;
         const double low = free[j].min, unit = unitOf(low, free[j].max), half = (low + unit) / 2;
-        bool linear = true;
+        bool linear = apart(j, unit);
         for (const double share : {0.3, 0.7}) {
             const auto base = at(share, {{j, low}}), middle = at(share, {{j, half}}),
                        full = at(share, {{j, unit}});
@@ -229,6 +265,7 @@ void ParametricSum::findLinear(Term& term, std::vector<FreeParameter>& free) {
         }
         if (linear) accepted.push_back(j);
     }
+    std::ranges::sort(accepted);
     for (const double share : {0.3, 0.7})
         for (const double value : at(share, {})) scalable_ = scalable_ && value == 0;
     for (const std::size_t j : accepted) {

@@ -179,5 +179,25 @@ TEST(ModelGrid, HoldsEveryModel) {
     EXPECT_EQ(cases.size(), models().size());
 }
 
+// ks scales what is not diffuse, channel by channel.
+TEST(ModelLaws, TheLobeIsProportionalToItsScale) {
+    for (const char* model :
+         {"ggx:alpha=.3,F0=.2/.4/.6", "beckmann:alpha=.3,F0=.3", "gtr:alpha=.3,gamma=1.5,F0=.1",
+          "ggx:ax=.1,ay=.4,fresnel=conductor,ior=.2/.9/1.1,k=3.9/2.4/2.1",
+          "beckmann:alpha=.2,fresnel=dielectric,ior=1.5"}) {
+        SCOPED_TRACE(model);
+        const auto whole = open(model), scaled = open(std::string(model) + ",kd=.4,ks=.5/2/.25");
+        const double scales[] = {0.5, 2, 0.25};
+        for (const Pair& pair : ordinaryPairs(9)) {
+            const std::vector<double> one = evaluate(*whole, pair.wi, pair.wo),
+                                      other = evaluate(*scaled, pair.wi, pair.wo);
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double expected = 0.4 / pi + scales[c] * one[one.size() == 1 ? 0 : c];
+                EXPECT_NEAR(other[c], expected, 1e-13 * expected);
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace hshfit::brdfs
