@@ -35,6 +35,9 @@ std::vector<float> runOpenGlEs(const ShaderJob& job, const std::string& source);
 /// A C++ program, made from `source` and the stubs in tests/gpu/shaders/metal and osl.
 std::vector<float> runStub(const ShaderJob& job, const std::string& source);
 
+/// Each language on what runs it best: Vulkan; OpenGL ES for GLSL ES; as C++ for Metal and OSL.
+std::vector<float> run(gpu::Language language, const ShaderJob& job, const std::string& source);
+
 /// The snippet with a main around it that evaluates every pair (tests/gpu/shaders/wrappers).
 std::string wrapped(gpu::Language language, const ShaderJob& job, const std::string& snippet);
 

@@ -23,13 +23,18 @@ double toleranceOf(const Variant& variant) {
     return variant.noise ? 2 * 3 * std::ldexp(texels.width + texels.height, -25) : 2e-6;
 }
 
-using Run = std::function<std::vector<float>(const ShaderJob&, const std::string&)>;
-
 std::string snippetOf(Language language, const ShaderJob& job) {
     return gpu::shaderSource(language, job.payload, {.environmentOrder = job.environment.order});
 }
 
-void prove(Language language, const Run& run) {
+using Run = std::function<std::vector<float>(const ShaderJob&, const std::string&)>;
+
+void prove(Language language, Run runner = {}) {
+    if (!runner) {
+        runner = [language](const auto& job, const auto& source) {
+            return run(language, job, source);
+        };
+    }
     Difference worst;
     for (Variant& variant : variants()) {
         if (language == Language::osl &&
@@ -39,7 +44,7 @@ void prove(Language language, const Run& run) {
         const ShaderJob job = makeJob(std::move(variant.payload), variant.environmentOrder);
         std::vector<float> found;
         try {
-            found = run(job, wrapped(language, job, snippetOf(language, job)));
+            found = runner(job, wrapped(language, job, snippetOf(language, job)));
         } catch (const Missing& reason) {
             GTEST_SKIP() << reason.what();
         } catch (const Refused& reason) {
@@ -53,59 +58,26 @@ void prove(Language language, const Run& run) {
     }
 }
 
-std::vector<float> onVulkan(Language language, const ShaderJob& job, const std::string& source) {
-#ifdef HSHFIT_VULKAN
-    return runVulkan(job, toSpirv(language, source), language == Language::glsl);
-#else
-    (void)language, (void)job, (void)source;
-    throw Missing("built without Vulkan (libvulkan-dev)");
-#endif
-}
-
-std::vector<float> onOpenGl(const ShaderJob& job, const std::string& source, bool es) {
-#ifdef HSHFIT_EGL
-    return es ? runOpenGlEs(job, source) : runOpenGl(job, source);
-#else
-    (void)job, (void)source, (void)es;
-    throw Missing("built without EGL (libegl-dev, libgl-dev)");
-#endif
-}
-
-Run runOf(Language language) {
-    switch (language) {
-        case Language::glslEs:
-            return [](const auto& job, const auto& source) { return onOpenGl(job, source, true); };
-        case Language::metal:
-        case Language::osl:
-            return runStub;
-        default:
-            return [language](const auto& job, const auto& source) {
-                return onVulkan(language, job, source);
-            };
-    }
-}
-
 TEST(ShaderProof, GlslOnVulkan) {
-    prove(Language::glsl, runOf(Language::glsl));
+    prove(Language::glsl);
 }
 TEST(ShaderProof, HlslOnVulkan) {
-    prove(Language::hlsl, runOf(Language::hlsl));
+    prove(Language::hlsl);
 }
 TEST(ShaderProof, WgslOnVulkan) {
-    prove(Language::wgsl, runOf(Language::wgsl));
+    prove(Language::wgsl);
 }
 TEST(ShaderProof, GlslOnOpenGl) {
-    prove(Language::glsl,
-          [](const auto& job, const auto& source) { return onOpenGl(job, source, false); });
+    prove(Language::glsl, runOpenGl);
 }
 TEST(ShaderProof, GlslEsOnOpenGlEs) {
-    prove(Language::glslEs, runOf(Language::glslEs));
+    prove(Language::glslEs);
 }
 TEST(ShaderProof, MetalAsCpp) {
-    prove(Language::metal, runStub);
+    prove(Language::metal);
 }
 TEST(ShaderProof, OslAsCpp) {
-    prove(Language::osl, runStub);
+    prove(Language::osl);
 }
 
 }  // namespace

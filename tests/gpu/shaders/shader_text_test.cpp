@@ -20,10 +20,12 @@ using gpu::Payload;
 using gpu::shaderSource;
 using samples::asymmetric;
 
-const OutgoingSet map = OutgoingSet::parabolic(8, 12);
+Coefficients coefficients(const char* basis, int order) {
+    return asymmetric(basis, order, OutgoingSet::parabolic(8, 12), Channels::rgb(), 1);
+}
 
 Payload small(const char* basis = "hsh", int order = 3) {
-    return pack(asymmetric(basis, order, map, Channels::rgb(), 1), {});
+    return pack(coefficients(basis, order), {});
 }
 
 std::size_t countOf(const std::string& text, const std::string& pattern) {
@@ -117,7 +119,7 @@ TEST(ShaderText, NamesFromFilesCannotLeaveTheComment) {
 }
 
 TEST(ShaderText, WhatALanguageCannotTakeIsSaid) {
-    const Coefficients c = asymmetric("hsh", 3, map, Channels::rgb(), 1);
+    const Coefficients c = coefficients("hsh", 3);
     EXPECT_THROW(shaderSource(Language::osl, pack(c, {.number = Number::unorm8}), {}), UsageError);
     EXPECT_THROW(shaderSource(Language::osl, pack(c, {.basisSize = 16}), {}), UsageError);
     EXPECT_THROW(shaderSource(Language::glsl, small(), {.environmentOrder = 17}), UsageError);

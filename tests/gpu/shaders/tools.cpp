@@ -165,6 +165,18 @@ std::string wrapped(gpu::Language language, const ShaderJob& job, const std::str
     return wrapper.render(page);
 }
 
+std::vector<float> run(gpu::Language language, const ShaderJob& job, const std::string& source) {
+    switch (language) {
+        case gpu::Language::glslEs:
+            return runOpenGlEs(job, source);
+        case gpu::Language::metal:
+        case gpu::Language::osl:
+            return runStub(job, source);
+        default:
+            return runVulkan(job, toSpirv(language, source), language == gpu::Language::glsl);
+    }
+}
+
 std::vector<std::uint32_t> toSpirv(gpu::Language language, const std::string& source) {
     need("spirv-val", "spirv-tools");
     const Folder folder;

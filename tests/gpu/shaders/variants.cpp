@@ -12,11 +12,6 @@ using gpu::pack;
 using gpu::Packing;
 using samples::asymmetric;
 
-const OutgoingSet map = OutgoingSet::parabolic(32, 24), rings = OutgoingSet::elevations(16),
-                  one = OutgoingSet::direction(0.6, -1.1);
-const Channels rgb = Channels::rgb(), grey = Channels::grey(),
-               spectrum = Channels::spectral({420, 480, 550, 610, 690});
-
 /// Random in the slots and channels, but as smooth over the map as those of a BRDF are: single
 /// precision places a lookup 3e-6 of a texel off (shader_proof_test.cpp), which white noise would
 /// show.
@@ -55,6 +50,10 @@ Coefficients ofCosine(Coefficients c) {
 }  // namespace
 
 std::vector<Variant> variants() {
+    const OutgoingSet map = OutgoingSet::parabolic(32, 24), rings = OutgoingSet::elevations(16),
+                      one = OutgoingSet::direction(0.6, -1.1);
+    const Channels rgb = Channels::rgb(), grey = Channels::grey(),
+                   spectrum = Channels::spectral({420, 480, 550, 610, 690});
     const Coefficients hsh7 = smooth("hsh", 7, map, rgb, 1);
     return {
         {"hsh 3", pack(smooth("hsh", 3, map, rgb, 2), {})},

@@ -1,0 +1,13 @@
+#include "runners.h"
+
+namespace hshfit::shaders {
+
+std::vector<float> runOpenGl(const ShaderJob&, const std::string&) {
+    throw Missing("built without EGL (libegl-dev, libgl-dev)");
+}
+
+std::vector<float> runOpenGlEs(const ShaderJob&, const std::string&) {
+    throw Missing("built without EGL (libegl-dev, libgl-dev)");
+}
+
+}  // namespace hshfit::shaders
