@@ -1,0 +1,99 @@
+// viewer.mjs FOLDER: the viewer page, opened from disk, draws what it should.
+import { pathToFileURL } from 'node:url';
+import { join } from 'node:path';
+import { expect, finish, withBrowser } from './browser.mjs';
+
+const [folder] = process.argv.slice(2);
+const address = pathToFileURL(join(folder, 'viewer.html')).href;
+const viewport = { width: 900, height: 640 };
+
+const settled = (page) => page.waitForFunction(() => window.viewer?.settled, null, { timeout: 120000 });
+
+async function open(page, state) {
+  await page.goto('about:blank');
+  await page.goto(`${address}#frames=1&cycles=1&${state}`);
+  await settled(page);
+}
+
+// Numbers of the pairs, and the means of the pictures over the shape.
+const facts = (page) => page.evaluate(() => ({
+  numbers: window.viewer.numbers,
+  names: window.viewer.pairs.map(([a, b]) => `${a.name} − ${b.name}`),
+  means: window.viewer.renderer.images.map((image) => {
+    const pixels = window.viewer.renderer.read(image);
+    let sum = 0, count = 0;
+    for (let k = 0; k < pixels.length; k += 4) {
+      if (pixels[k + 3] > 0) { sum += pixels[k] + pixels[k + 1] + pixels[k + 2]; ++count; }
+    }
+    return sum / count / 3;
+  }),
+}));
+
+async function provePage(page, complaints) {
+  await open(page, 'order=8');
+  const high = await facts(page), pictures = [await page.screenshot()];
+  expect(high.means.length === 3 && high.means.every((mean) => mean > 1e-3), `means ${high.means}`);
+  await open(page, 'order=2');
+  const low = await facts(page);
+  high.names.slice(0, 2).forEach((name, i) => {
+    console.log(`${name}: r.m.s. ${low.numbers[i].relative} at order 2, ${high.numbers[i].relative} at 8`);
+    expect(high.numbers[i].relative < .5 * low.numbers[i].relative, `${name} does not converge`);
+  });
+
+  // The slider, by keyboard, and everything else that can be pressed.
+  await page.focus('#order');
+  pictures.push(await page.screenshot());
+  await page.keyboard.press('ArrowRight');
+  await page.waitForFunction(() => window.viewer.state.order === 3);
+  await settled(page);
+  const third = await facts(page);
+  expect(third.numbers[0].relative < low.numbers[0].relative, 'the slider changes no picture');
+  pictures.push(await page.screenshot());
+  const press = async (selector) => {
+    await page.click(selector);
+    await settled(page);
+    pictures.push(await page.screenshot());
+  };
+  await press('#clamp');
+  expect(await page.evaluate(() => window.viewer.negative.get(window.viewer.renderer.images[1])) > 0,
+    'order 3 of Phong has no negative values');
+  await press('label:has([value=teapot])');
+  await press('label:has([value=sky])');
+  await press('label:has([value=split])');
+  await page.focus('.divider');
+  await page.keyboard.press('ArrowLeft');
+  pictures.push(await page.screenshot());
+  const names = new Set(pictures.map((picture) => picture.toString('base64')));
+  expect(names.size === pictures.length, `only ${names.size} of ${pictures.length} pictures differ`);
+  expect(complaints.length === 0, `console: ${complaints.join('; ')}`);
+}
+
+// Under the environment `shade` has to agree with the quadrature of the exact pane.
+async function proveEnvironment(page) {
+  await open(page, 'order=8&lighting=sky&cycles=24');
+  const { numbers, names } = await facts(page);
+  console.log(`environment: ${names[0]}: r.m.s. ${numbers[0].relative}`);
+  expect(numbers[0].relative < .04, 'shade and quadrature disagree');
+}
+
+async function proveMessage(page) {
+  await page.addInitScript(() => {
+    const old = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+      return kind === 'webgl2' ? null : old.call(this, kind, ...rest);
+    };
+  });
+  await page.goto(address);
+  const text = await page.textContent('#message');
+  expect(/WebGL 2/.test(text) && await page.isVisible('#message'), `message: '${text}'`);
+}
+
+await finish(async () => {
+  for (const driver of ['swiftshader', 'llvmpipe']) {
+    await withBrowser(driver, async (page, complaints) => {
+      await provePage(page, complaints);
+      await proveEnvironment(page);
+    }, { viewport });
+  }
+  await withBrowser('swiftshader', proveMessage, { viewport });
+});

@@ -1,0 +1,106 @@
+// write_cases FOLDER: what the browser checks run. Per variant NAME.json (both shaders with a main
+// around them, texels, inputs and the expected outputs), the exported files of one of them in
+// three/, and viewer.html.
+
+#include "../shaders/runners.h"
+#include "../shaders/variants.h"
+
+#include <hshfit/bases/catalog.h>
+#include <hshfit/error.h>
+#include <hshfit/gpu/containers/containers.h>
+#include <hshfit/gpu/viewer.h>
+#include <hshfit/output/page_figures.h>
+#include <hshfit/projection.h>
+
+#include <brdfs/catalog.h>
+
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <span>
+
+namespace {
+
+using namespace hshfit;
+using Json = nlohmann::ordered_json;
+
+template <class Value>
+std::string encoded(const std::vector<Value>& values) {
+    const auto bytes = std::as_bytes(std::span(values));
+    return base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+Json texelsJson(const gpu::Texels& texels) {
+    return {{"width", texels.width},
+            {"height", texels.height},
+            {"layers", texels.layers},
+            {"number", gpu::numberName(texels.number)},
+            {"bytes", encoded(texels.bytes)}};
+}
+
+Json caseJson(const shaders::ShaderJob& job, const shaders::Variant& variant) {
+    const auto source = [&](gpu::Language language) {
+        const gpu::ShaderOptions options{.environmentOrder = job.environment.order};
+        return wrapped(language, job, gpu::shaderSource(language, job.payload, options));
+    };
+    // A lookup in W texels is placed to 3 W 2^-25; neighbouring texels of noise differ by as much
+    // as twice the largest value (shader_proof_test.cpp).
+    const gpu::Texels& texels = job.payload.coefficients;
+    const double noise = 6 * std::ldexp(texels.width + texels.height, -25);
+    Json document = {{"name", variant.name},
+                     {"tolerance", variant.noise ? noise : 2e-6},
+                     {"side", shaders::Pairs::side},
+                     {"channels", job.channels()},
+                     {"lights", job.lights()},
+                     {"slots", job.environment.values.size() / job.lights()},
+                     {"inputs", encoded(shaders::inputNumbers(job))},
+                     {"expected", encoded(shaders::reference(job))},
+                     {"glsl-es", source(gpu::Language::glslEs)},
+                     {"wgsl", source(gpu::Language::wgsl)},
+                     {"coefficients", texelsJson(texels)}};
+    if (job.payload.basisTexels) document["basis"] = texelsJson(*job.payload.basisTexels);
+    return document;
+}
+
+/// The files that three.js loads, of a map that is not square.
+void writeForThree(const gpu::Payload& payload, const std::string& folder) {
+    FileSet files(folder + "/three", true);
+    const std::array containers = {&gpu::findContainer("bin"), &gpu::findContainer("exr"),
+                                   &gpu::findContainer("js"), &gpu::findContainer("ktx2")};
+    gpu::writeContainers(payload, containers, "material", {}, files);
+    files.write("material_hsh.glsl", gpu::shaderSource(gpu::Language::glslEs, payload, {}));
+    files.commit();
+}
+
+void writePage(const std::string& path) {
+    const auto source = brdfs::open("phong:exponent=22");
+    const auto basis = bases::make("hsh", 8);
+    const Basis* const one[] = {basis.get()};
+    const auto projections = project(*source, one, OutgoingSet::elevations(16));
+    gpu::writeViewer(
+        path, gpu::viewerInput(gpu::pack(projections[0].coefficients, {}), source.get()), true);
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+    if (count != 2) {
+        std::cerr << "usage: write_cases FOLDER\n";
+        return 2;
+    }
+    const std::string folder = words[1];
+    Json names;
+    FileSet files(folder, true);
+    for (shaders::Variant& variant : shaders::variants()) {
+        const std::string file = "case" + std::to_string(names.size()) + ".json";
+        names.push_back(file);
+        const shaders::ShaderJob job = shaders::makeJob(variant.payload, variant.environmentOrder);
+        files.write(file, caseJson(job, variant).dump());
+        if (variant.name == "hsh 7") writeForThree(variant.payload, folder);
+    }
+    files.write("cases.json", names.dump());
+    files.commit();
+    writePage(folder + "/viewer.html");
+}
