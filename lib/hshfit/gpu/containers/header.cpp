@@ -54,10 +54,11 @@ void write(const TexelFile& file, AtomicFile& out) {
     const Texels& texels = file.texels;
     const std::string name = identifier(file);
     std::string comment = file.sidecar;
-    // "\/" is the same JSON, and the comment neither ends nor starts within.
-    for (const auto& [mark, slash] : {std::pair{"*/", 1}, std::pair{"/*", 0}}) {
-        for (std::size_t at = 0; (at = comment.find(mark, at)) != comment.npos; at += 3) {
-            comment.insert(at + static_cast<std::size_t>(slash), 1, '\\');
+    // The same JSON, in which the comment neither ends nor seems to start again.
+    for (const auto& [mark, harmless] :
+         {std::pair{std::string_view("*/"), "*\\/"}, {"/*", "/\\u002a"}}) {
+        for (std::size_t at = 0; (at = comment.find(mark, at)) != comment.npos;) {
+            comment.replace(at, mark.size(), harmless);
         }
     }
     std::string text = fmt::format("{}{}*/\n#ifndef {}_H\n#define {}_H\n\n#include <stdint.h>\n\n",

@@ -65,7 +65,7 @@ Json basisJson(const Payload& payload) {
 }
 
 /// How a direction becomes texture coordinates, as payload.h says.
-Json parabolicJson(int width, int height) {
+Json parabolicJson(int width, int height, const char* fill) {
     const auto scale = [](int n) { return (n - 2) / (2.0 * n); };
     return {{"type", "parabolic"},
             {"formula", "p = (x, y)/(1 + z); uv = uv_bias + uv_scale * p"},
@@ -73,7 +73,7 @@ Json parabolicJson(int width, int height) {
             {"uv_scale", {scale(width), scale(height)}},
             {"uv_bias", {0.5, 0.5}},
             {"inset_texels", 1},
-            {"fill", "radial clamp: texels outside of the disc hold the horizon of their azimuth"},
+            {"fill", fill},
             {"row0", "v = 0, lowest y"}};
 }
 
@@ -81,7 +81,9 @@ Json mapJson(const Payload& payload) {
     const OutgoingSet& set = payload.outgoing;
     switch (set.map) {
         case OutgoingSet::Map::parabolic: {
-            Json map = parabolicJson(set.width, set.height);
+            Json map = parabolicJson(
+                set.width, set.height,
+                "radial clamp: texels beyond 89 degrees hold 89 degrees of their azimuth");
             map["markers"] = nullptr;
             if (payload.marked()) {
                 const int x = set.width - 1, y = set.height - 1;
@@ -115,9 +117,23 @@ Json scalesJson(const Texels& texels) {
     return rows;
 }
 
-Json texelsJson(const Texels& texels, const char* layout) {
-    const std::vector<double> values = decode(texels);
+/// Smallest and largest value, marked corners left out.
+std::pair<double, double> rangeOf(const Texels& texels, bool marked) {
+    std::vector<double> values = decode(texels);
+    const auto width = static_cast<std::size_t>(texels.width);
+    const auto height = static_cast<std::size_t>(texels.height);
+    if (marked) {
+        for (const std::size_t texel :
+             {std::size_t{0}, width - 1, (height - 1) * width, height * width - 1}) {
+            values[texel * 4] = values[(width + 1) * 4];  // not read there: any value that is
+        }
+    }
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return {*low, *high};
+}
+
+Json texelsJson(const Texels& texels, const char* layout, bool marked) {
+    const auto [low, high] = rangeOf(texels, marked);
     return {{"layout", layout},
             {"index", "((layer*height + y)*width + x)*4 + lane"},
             {"width", texels.width},
@@ -127,7 +143,7 @@ Json texelsJson(const Texels& texels, const char* layout) {
             {"endian", "little"},
             {"bytes", texels.bytes.size()},
             {"sha256", sha256(texels.bytes)},
-            {"range", {*low, *high}},
+            {"range", {low, high}},
             {"scale", scalesJson(texels)}};
 }
 
@@ -210,12 +226,16 @@ std::string sidecarText(const Payload& payload, std::span<const ExportedFile> fi
     document["sampling"] = {{"filter", "linear"}, {"mip", "none"},   {"lod", 0},
                             {"wrap", "clamp"},    {"anisotropy", 1}, {"srgb", false}};
     document["clamp_negative"] = "once, after the sum and to_channels; never the texels";
-    document["data"] = texelsJson(payload.coefficients, packingName(payload.packing).c_str());
+    document["data"] =
+        texelsJson(payload.coefficients, packingName(payload.packing).c_str(), payload.marked());
     document["basis_textures"] = nullptr;
     if (payload.basisTexels) {
         const Texels& texels = *payload.basisTexels;
-        document["basis_textures"] = {{"map", parabolicJson(texels.width, texels.height)},
-                                      {"data", texelsJson(texels, "coef4-planar")}};
+        document["basis_textures"] = {
+            {"map", parabolicJson(texels.width, texels.height,
+                                  "radial clamp: texels outside of the disc hold the horizon "
+                                  "of their azimuth")},
+            {"data", texelsJson(texels, "coef4-planar", false)}};
     }
     document["files"] = filesJson(files);
     document["fit_error"] = fitError.empty() ? Json(nullptr) : Json::parse(fitError);
