@@ -44,7 +44,7 @@ function setLoaders() {
   };
   // EXRLoader turns rows round; in a strip that turns the layers round too.
   const strip = async (file, shape, unflip) => {
-    const { data, width, height } = await new EXRLoader().loadAsync(file);
+    const { data, width, height } = (await new EXRLoader().loadAsync(file)).image;
     const halves = new Uint16Array(data.length);
     for (let y = 0; y < height; ++y) {
       const from = unflip ? height - 1 - y : y;
@@ -112,7 +112,7 @@ await finish(() => withBrowser(driver, async (on, complaints) => {
   await on.waitForFunction(() => window.ready);
   await on.evaluate(setLoaders);
   const pathOf = (suffix) => {
-    const found = sidecar.data.files.map(({ path }) => path).find((path) => path.endsWith(suffix));
+    const found = sidecar.files.map(({ path }) => path).find((path) => path.endsWith(suffix));
     return `/files/${found}`;
   };
   const outputs = 2 * job.channels + job.lights;

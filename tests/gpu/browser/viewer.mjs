@@ -5,7 +5,7 @@ import { expect, finish, withBrowser } from './browser.mjs';
 
 const [folder] = process.argv.slice(2);
 const address = pathToFileURL(join(folder, 'viewer.html')).href;
-const viewport = { width: 900, height: 640 };
+const viewport = { width: 760, height: 560 };
 
 const settled = (page) => page.waitForFunction(() => window.viewer?.settled, null, { timeout: 120000 });
 
@@ -70,7 +70,7 @@ async function provePage(page, complaints) {
 
 // Under the environment `shade` has to agree with the quadrature of the exact pane.
 async function proveEnvironment(page) {
-  await open(page, 'order=8&lighting=sky&cycles=24');
+  await open(page, 'order=8&lighting=sky&cycles=12');
   const { numbers, names } = await facts(page);
   console.log(`environment: ${names[0]}: r.m.s. ${numbers[0].relative}`);
   expect(numbers[0].relative < .04, 'shade and quadrature disagree');
