@@ -36,6 +36,7 @@ export async function withBrowser(driver, use, { files = null, viewport = null, 
       return route.fulfill(found);
     });
     const page = await context.newPage();
+    page.setDefaultTimeout(240000);
     page.on('console', (message) => {
       if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
     });

@@ -1,6 +1,7 @@
 // write_cases FOLDER: what the browser checks run. Per variant NAME.json (both shaders with a main
 // around them, texels, inputs and the expected outputs), the exported files of one of them in
-// three/, and viewer.html.
+// three/, and pages of the viewer with
+// values of their reference tables.
 
 #include "../shaders/runners.h"
 #include "../shaders/variants.h"
@@ -9,6 +10,7 @@
 #include <hshfit/error.h>
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/viewer.h>
+#include <hshfit/output/atomic_file.h>
 #include <hshfit/output/page_figures.h>
 #include <hshfit/projection.h>
 
@@ -74,13 +76,31 @@ void writeForThree(const gpu::Payload& payload, const std::string& folder) {
     files.commit();
 }
 
-void writePage(const std::string& path) {
-    const auto source = brdfs::open("phong:exponent=22");
+/// A page, and f where its table is interpolated: wo, wi (6 numbers a pair), then f in C++.
+void writePage(const std::string& folder, const std::string& name, const std::string& spec,
+               const OutgoingSet& outgoing) {
+    const auto source = brdfs::open(spec);
     const auto basis = bases::make("hsh", 8);
     const Basis* const one[] = {basis.get()};
-    const auto projections = project(*source, one, OutgoingSet::elevations(16));
-    gpu::writeViewer(
-        path, gpu::viewerInput(gpu::pack(projections[0].coefficients, {}), source.get()), true);
+    const auto projections =
+        project(*source, one, outgoing, {.quantity = Quantity::brdfCosine, .tolerance = 1e-3});
+    const gpu::ViewerInput input =
+        gpu::viewerInput(gpu::pack(projections[0].coefficients, {}), source.get());
+    gpu::writeViewer(folder + "/" + name + ".html", input, true);
+
+    const shaders::Pairs pairs = shaders::directionPairs();
+    std::vector<float> inputs;
+    std::vector<double> expected;
+    for (std::size_t k = 0; k < pairs.wo.size(); ++k) {
+        const Direction &wo = pairs.wo[k], &wi = pairs.wi[k];
+        for (const double x : {wo.x, wo.y, wo.z, wi.x, wi.y, wi.z})
+            inputs.push_back(static_cast<float>(x));
+        double f = 0;
+        input.reference->eval(wi, wo, &f);
+        expected.push_back(f);
+    }
+    writeFile(folder + "/" + name + "_table.json",
+              Json{{"inputs", encoded(inputs)}, {"expected", encoded(expected)}}.dump());
 }
 
 }  // namespace
@@ -102,5 +122,6 @@ int main(int count, char** words) {
     }
     files.write("cases.json", names.dump());
     files.commit();
-    writePage(folder + "/viewer.html");
+    writePage(folder, "viewer", "phong:exponent=22", OutgoingSet::elevations(16));
+    writePage(folder, "viewer_ward", "ward:ax=0.2,ay=0.5", OutgoingSet::parabolic(16, 16));
 }

@@ -33,12 +33,15 @@ class Viewer {
       order: data.order, shape: 'sphere', lighting: 'point', layout: 'panes', clamp: true,
       intensity: 0, skyTurn: 0, exposure: 0, exposureSet: false, pair: 0, scale: -1, scaleSet: false,
       azimuth: 15, elevation: 12, distance: 1, lightAzimuth: -30, lightElevation: 32,
-      dividers: '25,50,75', frames: 64,
+      dividers: '25,50,75', frames: 32, cycles: 8,
     });
+    this.autoExposure = !this.state.exposureSet;
+    this.exposureWanted = this.autoExposure;
     this.pairs = this.makePairs();
     this.state.order = Math.min(Math.max(Math.round(this.state.order), 1), data.order);
     this.dividers = this.state.dividers.split(',').map((x) => +x / 100);
     this.numbers = null;
+    this.settled = false;
     this.scheduled = false;
     this.last = image;
     this.bind();
@@ -62,7 +65,8 @@ class Viewer {
     const redraw = (key, id = key) => {
       element(id).addEventListener('input', (event) => {
         this.state[key] = event.target.type === 'checkbox' ? event.target.checked : +event.target.value;
-        if (key === 'exposure' || key === 'scale') this.state[`${key}Set`] = true;
+        if (key === 'exposure') this.autoExposure = false;
+        if (key === 'scale') this.state.scaleSet = true;
         if (['exposure', 'scale', 'pair'].includes(key)) this.shown(); else this.changed();
       });
     };
@@ -70,10 +74,17 @@ class Viewer {
     for (const key of ['shape', 'lighting', 'layout']) {
       document.querySelectorAll(`input[name=${key}]`).forEach((input) => {
         input.checked = input.value === this.state[key];
-        input.addEventListener('change', () => { this.state[key] = radio(key); this.changed(); });
+        input.addEventListener('change', () => {
+          this.state[key] = radio(key);
+          if (key !== 'layout') this.exposureWanted = this.autoExposure;
+          this.changed();
+        });
       });
     }
-    element('autoExposure').addEventListener('click', () => this.setExposure());
+    element('autoExposure').addEventListener('click', () => {
+      this.autoExposure = this.exposureWanted = true;
+      this.shown();
+    });
     element('autoScale').addEventListener('click', () => { this.state.scaleSet = false; this.shown(); });
     element('controls').addEventListener('submit', (event) => event.preventDefault());
     new ResizeObserver(() => this.changed()).observe(element('stage'));
@@ -88,12 +99,14 @@ class Viewer {
   // Something that every picture depends on.
   changed() {
     this.renderer.restart();
-    this.numbers = null;
+    this.measured = -1;
+    this.lastChange = performance.now();
+    this.settled = false;
     this.schedule();
   }
 
   // Something that only their display depends on.
-  shown() { this.redraw = true; this.schedule(); }
+  shown() { this.schedule(); }
 
   schedule() {
     if (this.scheduled) return;
@@ -104,15 +117,32 @@ class Viewer {
   update() {
     const { renderer, state } = this;
     this.arrange();
-    if (!renderer.width) return;
-    if (renderer.frame < state.frames) renderer.step(this.scene());
-    if (!state.exposureSet) this.setExposure(false);
-    const done = renderer.frame >= state.frames;
-    if (done || renderer.frame === 1 || renderer.frame % 16 === 0) this.measure();
+    if (!this.panes) return;
+    this.chooseSize();
+    const scene = this.scene();
+    const frames = state.frames * (scene.environmentStrength > 0 ? Math.max(state.cycles, 1) : 1);
+    if (renderer.frame < frames) renderer.step(scene, state.frames);
+    if (this.exposureWanted) this.setExposure();
+    const done = renderer.frame >= frames;
+    const due = done || !this.numbers || renderer.frame % 16 === 0;
+    if (due && this.measured !== renderer.frame) this.measure();
     renderer.show(this.panes, this.look());
-    this.writeTexts(done);
-    if (!done) this.schedule();
-    this.settled = done;
+    this.writeTexts(done ? '' : `averaging, frame ${renderer.frame} of ${frames}`);
+    this.settled = done && !this.coarse;
+    if (!this.settled) this.schedule();
+  }
+
+  // Half the size while something moves, where whole frames take longer than 70 ms.
+  chooseSize() {
+    const now = performance.now(), [pane] = this.panes;
+    if (!this.coarse && !this.settled && this.renderer.frame > 1) {
+      this.slow = now - this.lastUpdate > 70;
+    }
+    this.lastUpdate = now;
+    this.coarse = Boolean(this.slow && this.numbers) && now - this.lastChange < 300;
+    const scale = this.coarse ? .5 : 1, { frame } = this.renderer;
+    this.renderer.resize(Math.round(pane.width * scale), Math.round(pane.height * scale));
+    if (this.renderer.frame !== frame) this.measured = -1;
   }
 
   scene() {
@@ -120,11 +150,11 @@ class Viewer {
     const around = (azimuth, elevation) => [
       Math.cos(elevation * rad) * Math.sin(azimuth * rad), Math.sin(elevation * rad),
       Math.cos(elevation * rad) * Math.cos(azimuth * rad)];
-    const radius = renderer.shapes[state.shape].radius, towards = around(state.azimuth, state.elevation);
-    const aspect = renderer.width / renderer.height;
-    // The shape fills 92 % of the pane's shorter side.
-    const half = 15 * rad, fit = 1 / 0.92 / Math.sin(Math.atan(Math.tan(half) * Math.min(1, aspect)));
-    const reach = radius * fit * state.distance;
+    const { radius, extent } = renderer.shapes[state.shape];
+    const towards = around(state.azimuth, state.elevation), aspect = renderer.width / renderer.height;
+    // The shape fills nine tenths of the pane, one way or the other.
+    const half = 15 * rad;
+    const reach = Math.max(extent[0] / aspect, extent[1]) / Math.tan(half) / .9 * state.distance;
     const lightDistance = 3.2 * radius, strength = 2 ** state.intensity;
     return {
       shape: state.shape, order: state.order, clamp: state.clamp, skyTurn: state.skyTurn * rad,
@@ -141,28 +171,28 @@ class Viewer {
       scale: 10 ** this.state.scale, showNegative: !this.state.clamp };
   }
 
-  // The exposure at which 95 % of the surface is at or below 0.8 of white.
-  setExposure(draw = true) {
+  // The exposure at which 99 % of the surface is at or below 0.8 of white.
+  setExposure() {
     const pixels = this.renderer.read(this.renderer.images[0]), found = [];
     for (let k = 0; k < pixels.length; k += 4) {
       if (pixels[k + 3] > .5) found.push(Math.max(pixels[k], pixels[k + 1], pixels[k + 2]));
     }
     found.sort((a, b) => a - b);
-    const high = found[Math.floor(.95 * (found.length - 1))];
+    const high = found[Math.floor(.99 * (found.length - 1))];
     const stops = high > 0 ? Math.log2(.8 / high) : 0;
     this.state.exposure = Math.round(10 * Math.min(Math.max(stops, -10), 10)) / 10;
-    this.state.exposureSet = true;
-    if (draw) this.shown();
+    this.exposureWanted = false;
   }
 
   // Largest and mean difference of every pair over the pixels on the shape, and their share below 0.
   measure() {
+    this.measured = this.renderer.frame;
     const pictures = new Map(this.renderer.images.map((image) => [image, this.renderer.read(image)]));
     this.numbers = this.pairs.map(([a, b]) => compared(pictures.get(a), pictures.get(b)));
     this.negative = new Map([...pictures].map(([image, pixels]) => [image, negativeShare(pixels)]));
   }
 
-  writeTexts(done) {
+  writeTexts(progress) {
     const { state } = this;
     const text = (id, value) => { if (element(id).textContent !== value) element(id).textContent = value; };
     for (const key of ['order', 'intensity', 'skyTurn', 'exposure', 'scale', 'pair']) {
@@ -189,7 +219,7 @@ class Viewer {
         const b = document.createElement('b'); b.style.fontWeight = 400; b.textContent = x; return b;
       }));
     });
-    text('progress', done ? '' : `averaging, ${this.renderer.frame} of ${state.frames}`);
+    text('progress', progress);
     if (this.numbers) writeNumbers(this, factor);
   }
 }
@@ -243,7 +273,7 @@ function writeNumbers(viewer, factor) {
   table.tBodies[0].replaceChildren(...viewer.pairs.map(([a, b], i) => {
     const { largest, mean, relative } = viewer.numbers[i];
     return cells('td', [`${a.name} − ${b.name}`, significant(largest * factor),
-      significant(mean * factor), Number.isFinite(relative) ? `${significant(100 * relative)} %` : '–',
+      significant(mean * factor, 2), Number.isFinite(relative) ? `${significant(100 * relative)} %` : '–',
       ...(open ? [`${significant(100 * viewer.negative.get(a))} %`] : [])]);
   }));
 }

@@ -22,10 +22,13 @@ function start() {
   window.viewer = new Viewer(data);
 }
 
-try {
-  start();
-} catch (error) {
-  showMessage(error instanceof Unsupported ? error.message
-    : `The pictures cannot be drawn here: ${error.message}`);
-  if (!(error instanceof Unsupported)) throw error;
-}
+// Shaders take a moment to compile: the page is there before.
+requestAnimationFrame(() => setTimeout(() => {
+  try {
+    start();
+  } catch (error) {
+    showMessage(error instanceof Unsupported ? error.message
+      : `The pictures cannot be drawn here: ${error.message}`);
+    if (!(error instanceof Unsupported)) throw error;
+  }
+}));

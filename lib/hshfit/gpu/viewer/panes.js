@@ -18,7 +18,6 @@ Object.assign(Viewer.prototype, {
     const gap = split ? 0 : Math.round(2 * ratio);
     const paneWidth = split ? width : Math.floor((width - gap) / 2);
     const paneHeight = split ? height : Math.floor((height - gap) / 2);
-    this.renderer.resize(paneWidth, paneHeight);
     this.panes = this.contents().map((content, i) => ({
       ...content,
       get first() { return content.first?.(); },

@@ -93,7 +93,8 @@ class Renderer {
       const e = data.exact;
       this.images.unshift({
         name: 'exact', exact: e,
-        shader: makeProgram(gl, file.screenVertex, this.exactSource(e, sky), 'exact'),
+        shader: makeProgram(gl, file.screenVertex, this.exactSource(e, sky) + file.shadeFragment,
+          'exact'),
         texture: halfArray(gl, e.width, e.height, e.azimuths * e.rest, e.halves),
       });
     }
@@ -121,7 +122,7 @@ class Renderer {
       `#define EXACT_AZIMUTHS ${e.azimuths}\n#define EXACT_REST ${e.rest}\n` +
       `#define EXACT_LAST_THETA ${e.lastTheta.toFixed(15)}\n${sky}` +
       `const float SKY_POWER[SKY_LIGHTS] = float[](${powers});\n` +
-      this.data.shaders.exact + this.data.shaders.shadeFragment;
+      this.data.shaders.exact;
   }
 
   head() {
@@ -141,7 +142,7 @@ class Renderer {
       gl.vertexAttribPointer(k, 3, gl.FLOAT, false, 24, 12 * k);
     }
     gl.bindVertexArray(null);
-    return { vao, count: shape.indices.length, radius: shape.radius };
+    return { vao, count: shape.indices.length, radius: shape.radius, extent: shape.extent };
   }
 
   target(width, height, textures, depth) {
@@ -229,14 +230,15 @@ class Renderer {
     }
   }
 
-  // One more frame of the average: `scene` as controls.js makes it.
-  step(scene) {
+  // One more frame of the average: `scene` as controls.js makes it. After `cycle` frames only the
+  // exact environment goes on, over the same sub-pixel shifts again.
+  step(scene, cycle) {
     const gl = this.gl;
     this.setOrder(scene.order);
     gl.viewport(0, 0, this.width, this.height);
     gl.disable(gl.SCISSOR_TEST);
     gl.disable(gl.BLEND);
-    this.drawSurface(scene);
+    this.drawSurface(scene, this.frame % cycle);
     gl.disable(gl.DEPTH_TEST);
     gl.bindVertexArray(this.empty);
     const lights = turnedSky(this.lights, scene.skyTurn);
@@ -252,6 +254,7 @@ class Renderer {
       skyZonal: { singles: lights.flatMap(({ power }) => zonal(power, order)) },
     };
     for (const image of this.images) {
+      if (image.fit && this.frame >= cycle) continue;
       const [from, to] = image.targets;
       gl.bindFramebuffer(gl.FRAMEBUFFER, to.framebuffer);
       const own = image.fit ? { [image.fit.sampler]: { array: image.texture } }
@@ -263,14 +266,14 @@ class Renderer {
     ++this.frame;
   }
 
-  drawSurface(scene) {
+  drawSurface(scene, frame) {
     const gl = this.gl, shape = this.shapes[scene.shape];
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.surface.framebuffer);
     gl.enable(gl.DEPTH_TEST);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     // The first frame through the middle of the pixel, the others spread by the R2 sequence.
-    const shift = (step, size) => (((this.frame * step + .5) % 1) - .5) * 2 / size;
+    const shift = (step, size) => (((frame * step + .5) % 1) - .5) * 2 / size;
     const camera = Float32Array.from(scene.camera);
     const dx = shift(0.7548776662466927, this.width), dy = shift(0.5698402909980532, this.height);
     for (let c = 0; c < 4; ++c) {
@@ -288,17 +291,16 @@ class Renderer {
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.disable(gl.DEPTH_TEST);
     gl.bindVertexArray(this.empty);
+    gl.disable(gl.SCISSOR_TEST);
+    gl.clearColor(...look.paper, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT);
     gl.enable(gl.SCISSOR_TEST);
     for (const pane of panes) {
       const [left, right] = pane.clip ?? [pane.x, pane.x + pane.width];
       if (right <= left) continue;
       gl.viewport(pane.x, pane.y, pane.width, pane.height);
       gl.scissor(left, pane.y, right - left, pane.height);
-      if (!pane.first) {
-        gl.clearColor(...look.paper, 1);
-        gl.clear(gl.COLOR_BUFFER_BIT);
-        continue;
-      }
+      if (!pane.first) continue;
       const first = pane.first.targets[0].textures[0];
       this.use(this.composite, {
         first, second: pane.second ? pane.second.targets[0].textures[0] : first,

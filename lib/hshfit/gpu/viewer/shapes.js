@@ -88,7 +88,7 @@ function sphereShape() {
   for (let k = 0; k < sphere.vertices.length; k += 6) {
     for (let c = 0; c < 3; ++c) sphere.vertices[k + 3 + c] = sphere.vertices[k + c];
   }
-  return { ...joined([sphere]), radius: 1 };
+  return { ...joined([sphere]), radius: 1, extent: [1.04, 1.04] };
 }
 
 // A pot of our own: a revolved body and lid, a tapered spout, a bow for a handle.
@@ -97,15 +97,15 @@ function teapotShape() {
     [1.04, .24], [.86, .46], [.62, .54]];
   const lid = [[.65, .53], [.67, .58], [.6, .585], [.56, .6], [.44, .7], [.22, .72], [.1, .77],
     [.05, .8], [.06, .83], [.1, .86], [.16, .91], [.12, 1], [0, 1]];
-  const spout = [[.8, -.36], [1.3, -.3], [1.2, .3], [1.66, .5]];
+  const spout = [[.6, -.3], [1.3, -.34], [1.2, .28], [1.68, .52]];
   const handle = [[-.72, .4], [-1.2, .72], [-1.72, .5], [-1.62, .06], [-1.55, -.25], [-1.25, -.42],
     [-.86, -.42]];
   const shape = joined([
     revolved(body, 128, 72), revolved(lid, 96, 72),
-    tube(spout, (v) => .27 * (1 - v) ** 1.4 + .1, 48, 48), tube(handle, () => .085, 40, 72),
+    tube(spout, (v) => .2 * (1 - v) ** 1.4 + .1, 48, 48), tube(handle, () => .085, 40, 72),
   ]);
   for (let k = 1; k < shape.vertices.length; k += 6) shape.vertices[k] -= .08;
-  return { ...shape, radius: 1.55 };
+  return { ...shape, radius: 1.6, extent: [1.82, 1.16] };
 }
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
