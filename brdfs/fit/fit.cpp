@@ -155,7 +155,8 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
     const Search search(problem, linear);
     for (std::size_t i = 0; i < candidates.size(); ++i) {
         candidates[i] = search.fromShapes(
-            candidates[i].x, {.iterations = 60, .costTolerance = 1e-8, .stepTolerance = 1e-7});
+            candidates[i].x,
+            {.iterations = 60, .costTolerance = 1e-8, .stepTolerance = 1e-7, .curvature = false});
         if (options.progress) options.progress(i + 1, candidates.size() + 1);
     }
     std::ranges::stable_sort(candidates, byCost);

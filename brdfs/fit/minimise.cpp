@@ -27,7 +27,7 @@ public:
     bool Evaluate(double const* const* parameters, double* residuals,
                   double** jacobians) const override {
         const bool derivatives = jacobians && jacobians[0];
-        const Equations& equations = at(parameters[0]);
+        const Equations& equations = at(parameters[0], derivatives);
         if (!std::isfinite(equations.cost)) return false;
         const auto n = static_cast<Eigen::Index>(count_);
         std::fill_n(residuals, count_ + 1, 0.0);
@@ -49,6 +49,8 @@ public:
         hessian.array().colwise() /= scale.array();
         hessian.array().rowwise() /= scale.transpose().array();
         gradient.array() /= scale.array();
+        pull_ =
+            equations.cost > 0 ? gradient.cwiseAbs().maxCoeff() / std::sqrt(2 * equations.cost) : 0;
         const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian);
         constexpr double least = 1e-15;
         const Eigen::VectorXd roots = eigen.eigenvalues().cwiseMax(least).cwiseSqrt();
@@ -65,13 +67,15 @@ public:
         return true;
     }
 
+    /// Of the last derivatives: the largest component of the gradient that no bound holds.
+    double pull() const { return pull_; }
+
 private:
-    /// Ceres asks for the cost of a trial, and for its derivatives if it is taken, as most are:
-    /// both at once, remembered.
-    const Equations& at(const double* x) const {
-        if (last_.size() != count_ || !std::equal(last_.begin(), last_.end(), x)) {
+    const Equations& at(const double* x, bool derivatives) const {
+        if (last_.size() != count_ || !std::equal(last_.begin(), last_.end(), x) ||
+            (derivatives && remembered_.hessian.empty())) {
             last_.assign(x, x + count_);
-            remembered_ = equations_({x, count_}, true);
+            remembered_ = equations_({x, count_}, derivatives);
         }
         return remembered_;
     }
@@ -79,9 +83,141 @@ private:
     const Function& equations_;
     std::size_t count_;
     std::span<const double> lower_, upper_;
+    mutable double pull_ = 0;
     mutable std::vector<double> last_;
     mutable Equations remembered_;
 };
+
+/// Ceres asks for the cost of a trial, and for its derivatives if it is taken, as most are: both at
+/// once.
+Function always(const Function& equations) {
+    return [&equations](std::span<const double> x, bool) { return equations(x, true); };
+}
+
+constexpr int gaussNewtonIterations = 10;
+/// Relative fall of the cost, and largest component of the gradient in units of the root of its
+/// curvature and of the cost, in which a search counts as settled.
+constexpr double settledTolerance = 1e-7, settledPull = 1e-3;
+
+/// Equations whose matrix is that of the second derivatives: differences of the gradient, where
+/// these are positive definite on what no bound holds, and else Gauss-Newton's.
+class Newton {
+public:
+    Newton(const Function& equations, std::span<const double> lower, std::span<const double> upper)
+        : equations_(equations), lower_(lower), upper_(upper) {}
+
+    Equations at(std::span<const double> x, bool derivatives) const {
+        Equations result = equations_(x, derivatives);
+        ++evaluations_;
+        if (!derivatives || !std::isfinite(result.cost)) return result;
+        const auto n = static_cast<Eigen::Index>(x.size());
+        Eigen::Map<Matrix> given(result.hessian.data(), n, n);
+        Matrix hessian = given;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const auto row = static_cast<Eigen::Index>(i);
+            const double curvature = given(row, row);
+            if (!(curvature > 0)) {
+                hessian.row(row).setZero();
+                continue;
+            }
+            const double step =
+                std::clamp(1e-3 * std::sqrt(2 * result.cost / curvature), 1e-7, 1e-2);
+            const auto gradientAt = [&](double moved) {
+                std::vector<double> point(x.begin(), x.end());
+                point[i] = moved;
+                ++evaluations_;
+                return equations_(point, true).gradient;
+            };
+            const double above = std::min(x[i] + step, upper_[i]),
+                         below = std::max(x[i] - step, lower_[i]);
+            const std::vector<double> high = gradientAt(above), low = gradientAt(below);
+            for (Eigen::Index j = 0; j < n; ++j) {
+                const auto k = static_cast<std::size_t>(j);
+                hessian(row, j) = (high[k] - low[k]) / (above - below);
+            }
+        }
+        for (Eigen::Index i = 0; i < n; ++i)
+            if (!(given(i, i) > 0)) hessian.col(i).setZero();
+        hessian = (0.5 * (hessian + hessian.transpose())).eval();
+        if (!hessian.allFinite()) return result;
+        given = positive(hessian, given);
+        return result;
+    }
+    int evaluations() const { return evaluations_; }
+
+private:
+    /// `hessian` with eigenvalues, on the scale of `model`, of their size and no less than 1e-9.
+    static Matrix positive(const Matrix& hessian, const Matrix& model) {
+        Eigen::VectorXd scale = model.diagonal().cwiseMax(0).cwiseSqrt();
+        for (double& s : scale) s = s > 0 ? s : 1;
+        Matrix scaled = hessian;
+        scaled.array().colwise() /= scale.array();
+        scaled.array().rowwise() /= scale.transpose().array();
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+        constexpr double least = 1e-9;
+        Matrix result = eigen.eigenvectors() *
+                        eigen.eigenvalues().cwiseAbs().cwiseMax(least).asDiagonal() *
+                        eigen.eigenvectors().transpose();
+        result.array().colwise() *= scale.array();
+        result.array().rowwise() *= scale.transpose().array();
+        return result;
+    }
+
+    const Function& equations_;
+    std::span<const double> lower_, upper_;
+    mutable int evaluations_ = 0;
+};
+
+/// Ends a search whose cost has fallen by less than `settledTolerance` of itself in `window`
+/// iterations, in a valley that is all but level: if the gradient is as small.
+class Settled final : public ceres::IterationCallback {
+public:
+    explicit Settled(std::function<double()> pull) : pull_(std::move(pull)) {}
+    ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+        constexpr std::size_t window = 10;
+        costs_.push_back(summary.cost);
+        if (costs_.size() <= window) return ceres::SOLVER_CONTINUE;
+        const double fallen = costs_[costs_.size() - 1 - window] - summary.cost;
+        if (fallen > settledTolerance * summary.cost || pull_() > settledPull)
+            return ceres::SOLVER_CONTINUE;
+        return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    }
+
+private:
+    std::function<double()> pull_;
+    std::vector<double> costs_;
+};
+
+/// Goes on from result.x.
+void solve(const Function& equations, std::span<const double> lower, std::span<const double> upper,
+           const MinimiseOptions& options, int iterations, Minimum& result) {
+    ceres::Problem problem;
+    auto* residuals = new CompressedResiduals(equations, lower, upper);
+    problem.AddResidualBlock(residuals, nullptr, result.x.data());
+    Settled settled([&] { return residuals->pull(); });
+    for (std::size_t i = 0; i < result.x.size(); ++i) {
+        problem.SetParameterLowerBound(result.x.data(), static_cast<int>(i), lower[i]);
+        problem.SetParameterUpperBound(result.x.data(), static_cast<int>(i), upper[i]);
+    }
+    ceres::Solver::Options ceresOptions;
+    ceresOptions.linear_solver_type = ceres::DENSE_QR;
+    ceresOptions.max_num_iterations = iterations;
+    ceresOptions.function_tolerance = options.costTolerance;
+    ceresOptions.parameter_tolerance = options.stepTolerance;
+    ceresOptions.gradient_tolerance = 1e-14;
+    ceresOptions.num_threads = 1;
+    ceresOptions.logging_type = ceres::SILENT;
+    ceresOptions.callbacks.push_back(&settled);
+    ceres::Solver::Summary summary;
+    ceres::Solve(ceresOptions, &problem, &summary);
+    result.cost = summary.final_cost;
+    const bool level = summary.termination_type == ceres::USER_SUCCESS;
+    result.converged = level || summary.termination_type == ceres::CONVERGENCE;
+    result.message =
+        level ? "The cost fell by less than 1e-7 of itself in 10 iterations." : summary.message;
+    result.iterations += static_cast<int>(summary.iterations.size()) - 1;
+    result.evaluations += summary.num_residual_evaluations + summary.num_jacobian_evaluations;
+}
 
 }  // namespace
 
@@ -99,28 +235,17 @@ Minimum minimise(const Function& equations, std::vector<double> start,
     }
     for (std::size_t i = 0; i < result.x.size(); ++i)
         result.x[i] = std::clamp(result.x[i], lower[i], upper[i]);
-    ceres::Problem problem;
-    problem.AddResidualBlock(new CompressedResiduals(equations, lower, upper), nullptr,
-                             result.x.data());
-    for (std::size_t i = 0; i < result.x.size(); ++i) {
-        problem.SetParameterLowerBound(result.x.data(), static_cast<int>(i), lower[i]);
-        problem.SetParameterUpperBound(result.x.data(), static_cast<int>(i), upper[i]);
-    }
-    ceres::Solver::Options ceresOptions;
-    ceresOptions.linear_solver_type = ceres::DENSE_QR;
-    ceresOptions.max_num_iterations = options.iterations;
-    ceresOptions.function_tolerance = options.costTolerance;
-    ceresOptions.parameter_tolerance = options.stepTolerance;
-    ceresOptions.gradient_tolerance = 1e-14;
-    ceresOptions.num_threads = 1;
-    ceresOptions.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(ceresOptions, &problem, &summary);
-    result.cost = summary.final_cost;
-    result.converged = summary.termination_type == ceres::CONVERGENCE;
-    result.message = summary.message;
-    result.iterations = static_cast<int>(summary.iterations.size()) - 1;
-    result.evaluations = summary.num_residual_evaluations + summary.num_jacobian_evaluations;
+    const int first = options.curvature ? std::min(options.iterations, gaussNewtonIterations)
+                                        : options.iterations;
+    solve(always(equations), lower, upper, options, first, result);
+    if (result.converged || first == options.iterations) return result;
+    // Large residuals: what Gauss-Newton leaves out of the matrix rules its (linear) convergence.
+    const Newton newton(equations, lower, upper);
+    const Function withCurvature = [&](std::span<const double> x, bool derivatives) {
+        return newton.at(x, derivatives);
+    };
+    solve(withCurvature, lower, upper, options, options.iterations - first, result);
+    result.evaluations += newton.evaluations();
     return result;
 }
 

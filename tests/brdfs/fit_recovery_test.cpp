@@ -4,6 +4,8 @@
 #include <brdfs/fit/fit.h>
 #include <hshfit/error.h>
 
+#include "measured_files.h"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -199,10 +201,42 @@ TEST(Degenerate, NothingLeftToFitIsAnError) {
 }
 
 TEST(Degenerate, ShapesPerChannelNeedAScale) {
-    FitSamples samples =
-        gatherSamples(*open("ggx:kd=.1/.2/.3,F0=.1/.2/.3,alpha=.2"), {}).drawn(900, 1);
-    samples.values[5] *= 1.5;
-    EXPECT_THROW(fit(samples, {.model = "ggx", .perChannel = true}), UsageError);
+    const FitSamples samples =
+        gatherSamples(
+            *open("lambert:kd=.1/.2/.3 + ggx:ks=.3/0/0,alpha=.1 + ggx:ks=0/.5/.7,alpha=.3"), {})
+            .drawn(900, 1);
+    EXPECT_THROW(
+        fit(samples, {.model = "disney:clearcoat=0,sheen=0", .perChannel = true, .starts = 2}),
+        UsageError);
+    const FitResult result = fit(samples, {.model = "ggx", .perChannel = true});
+    for (const FittedParameter& parameter : result.parameters)
+        if (parameter.name == "alpha") {
+            EXPECT_NEAR(parameter.value, parameter.channel == "R" ? 0.1 : 0.3, 1e-5)
+                << parameter.channel;
+        }
+}
+
+// Cells that are no numbers, or marked as invalid, within good data are left out and counted: at
+// theta_h = 0 every cell is above the horizon.
+TEST(Degenerate, NumbersThatAreNoneAreMaskedAndCounted) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const test::TemporaryFile file(test::merlFile([&](int c, int h, int d, int p) {
+                                       if (h == 0 && d >= 10 && d < 20 && p == 7)
+                                           return c == 1 ? nan : 2.0;
+                                       if (h == 0 && d >= 30 && d < 33 && p == 9)
+                                           return std::numeric_limits<double>::infinity();
+                                       return h == 0 && d == 40 && p < 5 ? -1.0 : 2;
+                                   }),
+                                   ".binary");
+    const FitSamples samples = gatherSamples(*open(file.path()), {});
+    EXPECT_EQ(samples.masked.notFinite, 13u);
+    EXPECT_EQ(samples.masked.invalid, 5u);
+    EXPECT_EQ(samples.size() + samples.masked.belowHorizon + 18, 90u * 90 * 180);
+    const FitResult result = fit(samples, {.model = "lambert"});
+    ASSERT_TRUE(result.converged);
+    const double scales[] = {1, 1.15, 1.66};  // Matusik et al. 2003: of R, G and B over 1500
+    for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(result.parameters[c].value, pi * 2 * scales[c] / 1500, 1e-9);
 }
 
 // Twice the same lobe: which of the two is which cannot be told.
