@@ -14,12 +14,15 @@ namespace {
 
 using gpu::Language;
 
-/// Of the largest value. On a GPU texels are blended with weights of 8 bits.
+/// Of the largest value. On a GPU texels are blended with weights of 8 bits, and llvmpipe blends
+/// bytes into bytes: a step of 1/255 in each of 49 lanes, which add up at random.
 /// A lookup in W texels is placed to W 2^-25 for u in [1/2, 1), W 2^-25 for u W and as much for
 /// u W - 1/2, per axis; neighbouring texels of noise differ by twice the largest value.
-double toleranceOf(const Variant& variant) {
+double toleranceOf(Language language, const Variant& variant) {
     if (std::getenv("HSHFIT_TEST_GPU") != nullptr) return 1e-3;
     const gpu::Texels& texels = variant.payload.coefficients;
+    const bool cpp = language == Language::metal || language == Language::osl;
+    if (texels.number == gpu::Number::unorm8 && texels.width > 1 && !cpp) return 1e-2;
     return variant.noise ? 2 * 3 * std::ldexp(texels.width + texels.height, -25) : 2e-6;
 }
 
@@ -35,12 +38,14 @@ void prove(Language language, Run runner = {}) {
             return run(language, job, source);
         };
     }
-    Difference worst;
-    for (Variant& variant : variants()) {
-        if (language == Language::osl &&
-            (variant.payload.basisTexels || isNormalised(variant.payload.coefficients.number)))
-            continue;
-        const double tolerance = toleranceOf(variant);
+    std::vector<Variant> all = variants();
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        Variant& variant = all[k];
+        // OSL takes neither; and a third of the rest has to do for what runs as C++ twice.
+        const bool forOsl = !variant.payload.basisTexels &&
+                            !isNormalised(variant.payload.coefficients.number) && k % 3 == 0;
+        if (language == Language::osl && !forOsl) continue;
+        const double tolerance = toleranceOf(language, variant);
         const ShaderJob job = makeJob(std::move(variant.payload), variant.environmentOrder);
         std::vector<float> found;
         try {
