@@ -57,7 +57,8 @@ TEST_F(Import, EveryFileGivesTheCoefficientsAgain) {
                              b = after["coefficients"][o][0][k];
                 const bool corner = k == 0 && (o == 0 || o == 7 || o == 56 || o == 63);
                 if (corner) ++marked;
-                if (!corner) EXPECT_NEAR(a, b, std::abs(a) / 2048 + 3e-8) << file;
+                if (corner) continue;
+                EXPECT_NEAR(a, b, std::abs(a) / 2048 + 3e-8) << file;
             }
         }
         EXPECT_EQ(marked, 4u);
