@@ -160,6 +160,7 @@ TEST_F(Cli, JsonAnswersKeepTheirSchemas) {
         {"eval", "eval lambert --wi 0,0 --wo 0,0 --json"},
         {"project", "project lambert --outgoing 4 --json -o " + path("x.json")},
         {"report", "report phong:exponent=5 --outgoing 20,0 --max-order 4 --json"},
+        {"stress", "stress lambert --max-order 8 --json"},
         {"compare", "compare lambert phong:exponent=2 --outgoing 4 --json"},
         {"convert", "convert lambert --json --repair all --report-loss " + path("x.binary")}};
     for (const auto& [name, arguments] : answers) {

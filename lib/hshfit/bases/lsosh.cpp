@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <mutex>
 
 #include <Eigen/Dense>
@@ -122,6 +123,23 @@ private:
 
 std::unique_ptr<Basis> makeLsosh(int order, BasisOptions options) {
     return std::make_unique<Lsosh>(order, options);
+}
+
+LsoshGram lsoshGram(int order) {
+    const std::vector<HalfRangeRecurrence> recurrences = halfRangeRecurrences(order);
+    LsoshGram gram;
+    for (int m = 0; m < order; ++m) {
+        const Eigen::BDCSVD<Eigen::MatrixXd> svd(
+            changeOfBasis(m, order - m, recurrences[static_cast<std::size_t>(m)]));
+        const Eigen::VectorXd& sigma = svd.singularValues();
+        const double condition = sigma(0) / sigma(sigma.size() - 1);
+        gram.condition =
+            std::max(gram.condition, condition < 1e15 ? condition * condition
+                                                      : std::numeric_limits<double>::infinity());
+        const auto kept = (sigma.array() >= smallestSingularValue * sigma(0)).count();
+        gram.kept += static_cast<int>(m == 0 ? kept : 2 * kept);
+    }
+    return gram;
 }
 
 }  // namespace hshfit::bases

@@ -18,4 +18,13 @@ namespace hshfit::bases {
 /// Order at most 100: a solve costs order^4 operations.
 std::unique_ptr<Basis> makeLsosh(int order, BasisOptions options);
 
+/// How well the systems of one order can be solved.
+struct LsoshGram {
+    /// Of G: the squared condition of R, the largest over m. Infinite beyond 1e30, where singular
+    /// values of R are rounding errors.
+    double condition = 1;
+    int kept = 0;          ///< directions that the solve keeps, of order^2
+};
+LsoshGram lsoshGram(int order);
+
 }  // namespace hshfit::bases

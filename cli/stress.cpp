@@ -1,0 +1,65 @@
+#include "command.h"
+
+#include <hshfit/error.h>
+#include <hshfit/stability/stress.h>
+
+#include <brdfs/catalog.h>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace hshfit::cli {
+namespace {
+
+struct StressArguments {
+    std::vector<std::string> lobes;
+    std::string bases = "all", output;
+    int maxOrder = stability::StressOptions{}.maxOrder;
+};
+
+/// From Lambert to a mirror, as exponents and as roughness.
+std::vector<std::string> defaultLobes() {
+    std::vector<std::string> specs = {"lambert"};
+    for (int e = 0; e <= 6; ++e) specs.push_back(fmt::format("phong:exponent=1e{}", e));
+    for (int e = 0; e <= 4; ++e) specs.push_back(fmt::format("ggx:alpha=1e-{},F0=1", e));
+    for (int e = 0; e <= 4; ++e) specs.push_back(fmt::format("ward:ax=1e-{0},ay=1e-{0}", e));
+    return specs;
+}
+
+void runStress(const StressArguments& arguments, const Globals& globals) {
+    std::vector<std::unique_ptr<Brdf>> opened;
+    std::vector<const Brdf*> lobes;
+    for (const std::string& spec : arguments.lobes.empty() ? defaultLobes() : arguments.lobes) {
+        opened.push_back(brdfs::open(spec));
+        lobes.push_back(opened.back().get());
+    }
+    Progress progress(globals, "stress");
+    const stability::StressReport report =
+        stability::stress(bases::select(arguments.bases), lobes,
+                          {.maxOrder = arguments.maxOrder, .progress = progress.callback()});
+    if (!arguments.output.empty()) stability::writeStress(report, arguments.output);
+    printText(globals.json ? stability::stressJson(report) : stability::stressMarkdown(report));
+}
+
+}  // namespace
+
+void addStress(CLI::App& app, Globals& globals) {
+    auto arguments = std::make_shared<StressArguments>();
+    CLI::App& command = addCommand(app, globals, "stress",
+                                   "Where the program's numbers stop being good: bases by degree, "
+                                   "lobes by width and elevation",
+                                   "hshfit stress --max-order 1000 -o out/stress");
+    command.add_option("SPEC", arguments->lobes,
+                       "Lobes to project (default: Lambert, and Phong, GGX and Ward to a mirror)");
+    command.add_option("--bases", arguments->bases, "all, or names from hshfit list bases")
+        ->capture_default_str();
+    command.add_option("--max-order", arguments->maxOrder, "Bands to look at")
+        ->check(CLI::Range(2, 1000))
+        ->capture_default_str();
+    command.add_option("-o,--output", arguments->output,
+                       "Folder for stress.json, stress.md and stress.csv, made if absent");
+    command.callback([arguments, &globals] { runStress(*arguments, globals); });
+}
+
+}  // namespace hshfit::cli

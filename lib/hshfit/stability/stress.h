@@ -1,0 +1,60 @@
+#pragma once
+
+#include <hshfit/bases/catalog.h>
+#include <hshfit/bases/lsosh.h>
+#include <hshfit/brdf.h>
+#include <hshfit/stability/basis_errors.h>
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hshfit::stability {
+
+/// The projection of one lobe for one outgoing direction onto HSH, order 7, f cos(theta_i).
+struct LobeProjection {
+    std::string brdf;
+    double thetaDegrees = 0;
+    bool converged = false;
+    double error = 0;     ///< estimated: relative difference of the last two quadrature levels
+    double captured = 0;  ///< share of the energy, Eq. 15
+    std::size_t evaluations = 0;
+    std::string reason = {};  ///< why it did not converge
+};
+
+struct GramPoint {
+    int order = 0;
+    bases::LsoshGram gram;
+};
+
+/// What `hshfit stress` measures: where each computation of the program stops being good.
+struct StressReport {
+    int maxOrder = 0;
+    std::vector<DegreeErrors> evaluation = {}, orthonormality = {};
+    std::vector<GramPoint> gram = {};  ///< of least-squares SH
+    std::vector<LobeProjection> projection = {};
+};
+
+struct StressOptions {
+    int maxOrder = 1000;
+    std::vector<double> thetaDegrees = {0, 30, 60, 80, 89, 89.9, 89.99};
+    std::function<void(std::size_t, std::size_t)> progress = {};
+};
+
+/// Evaluation and orthonormality of those of `bases` that have degrees, in float and double; the
+/// Gram systems of lsosh if it is among them; the projection of every lobe of `lobes`.
+/// Results do not depend on the number of threads.
+StressReport stress(std::span<const bases::Entry* const> bases, std::span<const Brdf* const> lobes,
+                    const StressOptions& options = {});
+
+std::string stressJson(const StressReport& report);
+/// Tables for people: docs/stability.md is made of them.
+std::string stressMarkdown(const StressReport& report);
+/// degree,basis,quantity,precision,error
+std::string stressCsv(const StressReport& report);
+
+/// stress.json, stress.md and stress.csv into a folder, made if absent. Throws OutputError.
+void writeStress(const StressReport& report, const std::string& folder);
+
+}  // namespace hshfit::stability

@@ -1,0 +1,178 @@
+#include <hshfit/output/file_set.h>
+#include <hshfit/stability/stress.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hshfit::stability {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double bounds[] = {1e-3, 1e-6, 1e-12};
+
+Json degreesJson(const std::vector<DegreeErrors>& rows) {
+    Json list = Json::array();
+    for (const DegreeErrors& row : rows) {
+        Json errors = Json::array();
+        for (double e : row.error) errors.push_back(std::isnan(e) ? Json(nullptr) : Json(e));
+        Json good = Json::object();
+        for (double bound : bounds) good[fmt::format("{:g}", bound)] = row.goodUntil(bound);
+        list.push_back({{"basis", row.basis},
+                        {"precision", precisionName(row.precision)},
+                        {"good_until_degree", good},
+                        {"errors", errors}});
+    }
+    return list;
+}
+
+/// Degrees that tables show: those asked for by the paper's uses, and the last.
+std::vector<std::size_t> shownDegrees(std::size_t count) {
+    std::vector<std::size_t> degrees;
+    for (std::size_t l : {6U, 64U, 300U})
+        if (l + 1 < count) degrees.push_back(l);
+    degrees.push_back(count - 1);
+    return degrees;
+}
+
+std::string degreesTable(const std::vector<DegreeErrors>& rows) {
+    if (rows.empty()) return {};
+    const std::vector<std::size_t> degrees = shownDegrees(rows[0].error.size());
+    std::string text = "| basis | precision |";
+    std::string rule = "|---|---|";
+    for (std::size_t l : degrees) text += fmt::format(" degree {} |", l), rule += "---|";
+    for (double bound : bounds) text += fmt::format(" {:g} until |", bound), rule += "---|";
+    text += "\n" + rule + "\n";
+    for (const DegreeErrors& row : rows) {
+        text += fmt::format("| {} | {} |", row.basis, precisionName(row.precision));
+        for (std::size_t l : degrees) {
+            // A basis that lacks functions of some degrees has none of it at a single one.
+            const double error = row.error[l];
+            text += std::isnan(error) ? " |" : fmt::format(" {:.1e} |", error);
+        }
+        for (double bound : bounds) {
+            const int good = row.goodUntil(bound);
+            text += good + 1 == static_cast<int>(row.error.size()) ? " all |"
+                    : good < 0                                     ? " none |"
+                                                                   : fmt::format(" {} |", good);
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+std::string gramTable(const std::vector<GramPoint>& points) {
+    std::string text = "| order | condition of G | kept | of |\n|---|---|---|---|\n";
+    for (const GramPoint& point : points) {
+        const double condition = point.gram.condition;
+        text += fmt::format("| {} | {} | {} | {} |\n", point.order,
+                            std::isinf(condition) ? "> 1e30" : fmt::format("{:.2g}", condition),
+                            point.gram.kept, point.order * point.order);
+    }
+    return text;
+}
+
+template <class Cell>
+std::string projectionTable(const std::vector<LobeProjection>& rows, const Cell& cell) {
+    std::string text = "| lobe |", rule = "|---|";
+    for (const LobeProjection& row : rows) {
+        if (row.brdf != rows[0].brdf) break;
+        text += fmt::format(" {:g}° |", row.thetaDegrees);
+        rule += "---|";
+    }
+    text += "\n" + rule;
+    const std::string* lobe = nullptr;
+    for (const LobeProjection& row : rows) {
+        if (!lobe || *lobe != row.brdf) text += fmt::format("\n| `{}` |", row.brdf);
+        lobe = &row.brdf;
+        text += row.converged ? fmt::format(" {} |", cell(row)) : " refused |";
+    }
+    return text + "\n";
+}
+
+}  // namespace
+
+std::string stressJson(const StressReport& report) {
+    Json gram = Json::array(), projection = Json::array();
+    for (const GramPoint& point : report.gram) {
+        gram.push_back(
+            {{"order", point.order},
+             {"condition",
+              std::isinf(point.gram.condition) ? Json(nullptr) : Json(point.gram.condition)},
+             {"kept", point.gram.kept},
+             {"functions", point.order * point.order}});
+    }
+    for (const LobeProjection& row : report.projection) {
+        Json line = {
+            {"brdf", row.brdf}, {"theta_o", row.thetaDegrees}, {"converged", row.converged}};
+        if (row.converged) {
+            line["error"] = row.error;
+            line["captured"] = row.captured;
+            line["evaluations"] = row.evaluations;
+        } else {
+            line["reason"] = row.reason;
+        }
+        projection.push_back(line);
+    }
+    const Json document = {{"format", "hshfit-stress"},
+                           {"version", 1},
+                           {"max_order", report.maxOrder},
+                           {"evaluation", degreesJson(report.evaluation)},
+                           {"orthonormality", degreesJson(report.orthonormality)},
+                           {"lsosh_gram", gram},
+                           {"projection", projection}};
+    return document.dump(2) + "\n";
+}
+
+std::string stressMarkdown(const StressReport& report) {
+    std::string text = fmt::format("# Numerical stability, orders to {}\n", report.maxOrder);
+    if (!report.evaluation.empty()) {
+        text += "\n## Evaluation\nLargest error of a function, relative to its largest value.\n\n" +
+                degreesTable(report.evaluation);
+        text += "\n## Orthonormality\nLargest deviation of the Gram matrix from the identity.\n\n" +
+                degreesTable(report.orthonormality);
+    }
+    if (!report.gram.empty())
+        text += "\n## Least-squares spherical harmonics\n\n" + gramTable(report.gram);
+    if (report.projection.empty()) return text;
+    text += "\n## Projection of lobes\nf cos(theta_i) onto HSH, order 7, one outgoing direction.\n";
+    text += "\nEstimated error:\n\n" + projectionTable(report.projection, [](const auto& row) {
+                return fmt::format("{:.0e}", row.error);
+            });
+    text += "\nEvaluations of the BRDF:\n\n" +
+            projectionTable(report.projection,
+                            [](const auto& row) { return std::to_string(row.evaluations); });
+    text += "\nShare of the energy that the 49 coefficients hold:\n\n" +
+            projectionTable(report.projection,
+                            [](const auto& row) { return fmt::format("{:.4f}", row.captured); });
+    return text;
+}
+
+std::string stressCsv(const StressReport& report) {
+    std::string text = "quantity,basis,precision,degree,error\n";
+    const auto add = [&](const char* quantity, const std::vector<DegreeErrors>& rows) {
+        for (const DegreeErrors& row : rows) {
+            for (std::size_t l = 0; l < row.error.size(); ++l) {
+                if (std::isnan(row.error[l])) continue;
+                text += fmt::format("{},{},{},{},{}\n", quantity, row.basis,
+                                    precisionName(row.precision), l, row.error[l]);
+            }
+        }
+    };
+    add("evaluation", report.evaluation);
+    add("orthonormality", report.orthonormality);
+    return text;
+}
+
+void writeStress(const StressReport& report, const std::string& folder) {
+    FileSet files(folder, true);
+    files.write("stress.json", stressJson(report));
+    files.write("stress.md", stressMarkdown(report));
+    files.write("stress.csv", stressCsv(report));
+    files.commit();
+}
+
+}  // namespace hshfit::stability
