@@ -76,6 +76,17 @@ async function proveEnvironment(page) {
   expect(numbers[0].relative < .04, 'shade and quadrature disagree');
 }
 
+// No NaN anywhere, whichever way the light and the shape lie.
+async function proveFinite(page) {
+  await page.goto('about:blank');
+  await page.goto(`${pathToFileURL(join(folder, 'viewer_ward.html')).href}` +
+    '#frames=4&cycles=2&lighting=both&shape=teapot');
+  await settled(page);
+  const { numbers, means } = await facts(page);
+  const values = numbers.flatMap(({ largest, mean, relative }) => [largest, mean, relative]);
+  expect([...values, ...means].every(Number.isFinite), `not finite: ${values}`);
+}
+
 // In the page: f of the exact pane's shader for pairs of directions.
 function lookUp(inputs) {
   const { renderer } = window.viewer, gl = renderer.gl, side = 64;
@@ -147,6 +158,7 @@ await finish(async () => {
   await withBrowser(driver, async (page, complaints) => {
     await provePage(page, complaints);
     await proveEnvironment(page);
+    await proveFinite(page);
     await proveTable(page, 'viewer');
     await proveTable(page, 'viewer_ward');
   }, { viewport });

@@ -152,9 +152,9 @@ class Viewer {
       Math.cos(elevation * rad) * Math.cos(azimuth * rad)];
     const { radius, extent } = renderer.shapes[state.shape];
     const towards = around(state.azimuth, state.elevation), aspect = renderer.width / renderer.height;
-    // The shape fills nine tenths of the pane, one way or the other.
+    // The shape fills 86 % of the pane, one way or the other.
     const half = 15 * rad;
-    const reach = Math.max(extent[0] / aspect, extent[1]) / Math.tan(half) / .9 * state.distance;
+    const reach = Math.max(extent[0] / aspect, extent[1]) / Math.tan(half) / .86 * state.distance;
     const lightDistance = 3.2 * radius, strength = 2 ** state.intensity;
     return {
       shape: state.shape, order: state.order, clamp: state.clamp, skyTurn: state.skyTurn * rad,

@@ -64,7 +64,9 @@ vec3 pointResponse(vec3 wo, vec3 wi) { return exactBrdf(wo, wi) * wi.z; }
 vec3 skyRadiance(vec3 direction) {
     vec3 sum = vec3(0.0);
     for (int k = 0; k < SKY_LIGHTS; ++k) {
-        sum += skyColour[k] * pow(0.5 + 0.5 * dot(direction, skyAxis[k]), SKY_POWER[k]);
+        // Rounding can leave a cosine below -1, of which pow makes NaN.
+        float share = max(0.5 + 0.5 * dot(direction, skyAxis[k]), 1e-6);
+        sum += skyColour[k] * pow(share, SKY_POWER[k]);
     }
     return sum;
 }
