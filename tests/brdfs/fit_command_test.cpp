@@ -106,6 +106,22 @@ TEST_F(Fit, ErrorsAreOneLine) {
     expectError("fit absent.binary --model lambert", 3, "absent.binary", 0);
 }
 
+// Coefficients ring, below zero too; what they stand for is found nevertheless: they hold 99.9 % of
+// its energy, so that values err by some 4 %.
+TEST_F(Fit, CoefficientFilesAreData) {
+    ASSERT_EQ(
+        run("project 'lambert:kd=.4 + ward:ks=.1,ax=.4,ay=.4' --cosine -o " + path("c.json")).code,
+        0);
+    const Answer answer = run("fit " + path("c.json") +
+                              " --model lambert+ward --grazing-cut 70 -o " + path("fit.json"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const Json preset = Json::parse(read(path("fit.json")));
+    for (const Json& parameter : preset["fit"]["parameters"]) {
+        const double truth = parameter["name"] == "ward.ks" ? 0.1 : 0.4;
+        EXPECT_NEAR(parameter["value"], truth, 0.04 * truth) << parameter["name"];
+    }
+}
+
 // A preset may hold a sum of models, and nothing else: no file, not even itself.
 TEST_F(Fit, PresetsHoldSumsOfModelsOnly) {
     const auto write = [&](const std::string& spec) {
