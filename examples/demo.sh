@@ -42,12 +42,20 @@ show convert out/ggx.binary out/ggx.bsdf --force --report-loss --outgoing 45,0
 show convert preset:ngan-ward/blue-acrylic out/blue-acrylic.xml --to bsdf-klems --force
 
 echo
-echo "4. Accuracy reports: the energy that each basis captures, by order (Eq. 15)."
+echo "4. For a renderer: textures, a shader, and a page that shows what they are worth."
+show export out/ward_cosine.json -o out/export --target three,viewer --force
+
+echo
+echo "5. Accuracy reports: the energy that each basis captures, by order (Eq. 15)."
 show report $phong -o out/report_phong
 show report $phong $ward out/ggx.binary --cosine -o out/report_cosine
 finding "f of the Ward BRDF grows as 1/sqrt(cos theta) towards the horizon, so that the
   integral of its square does not exist; f cos, above, is fine." \
     report $ward -o out/report_ward
+
+echo
+echo "5. A model fitted to the measured file, with errors and a page that compares the two."
+show fit out/ggx.binary --model lambert+beckmann --samples 20000 -o out/fit_beckmann
 
 echo
 echo "Captured energy of f cos with order 7 (49 slots) and the files it went to:"
@@ -65,4 +73,6 @@ for file in out/phong.json out/phong_cosine.json out/ward_cosine.json out/ggx_co
 done
 echo
 echo "Open out/report_cosine/report.html, and report_phong and report_ward beside it;"
+echo "the fit is out/fit_beckmann/fit.json, with comparison.html beside it;"
+echo "the viewer is out/export/ward_cosine_viewer.html;"
 echo "the coefficients are out/*.json and out/*.exr: build/hshfit info out/ward_cosine.json"
