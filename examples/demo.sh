@@ -54,7 +54,7 @@ finding "f of the Ward BRDF grows as 1/sqrt(cos theta) towards the horizon, so t
     report $ward -o out/report_ward
 
 echo
-echo "5. A model fitted to the measured file, with errors and a page that compares the two."
+echo "6. A model fitted to the measured file, with errors and a page that compares the two."
 show fit out/ggx.binary --model lambert+beckmann --samples 20000 -o out/fit_beckmann
 
 echo
