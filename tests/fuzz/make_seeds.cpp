@@ -6,6 +6,7 @@
 
 #include <brdfs/bsdf_xml_text.h>
 #include <brdfs/tensor_writer.h>
+#include <gpu/containers/container_samples.h>
 #include <lib/coefficient_samples.h>
 
 #include <algorithm>
@@ -118,6 +119,19 @@ void coefficientFiles(const std::filesystem::path& folder) {
     }
 }
 
+/// Every container of two payloads, and their sidecars.
+void gpuFiles(const std::filesystem::path& folder) {
+    using namespace hshfit;
+    const OutgoingSet maps[] = {OutgoingSet::parabolic(8, 8), OutgoingSet::elevations(3)};
+    for (const OutgoingSet& map : maps) {
+        const Coefficients c = samples::asymmetric("hsh", 2, map, Channels::rgb(), 1);
+        const std::string name = map.spec();
+        test::exportTo(folder, gpu::pack(c, {}), {}, {}, name);
+        test::exportTo(folder, gpu::pack(c, {}), {"ktx2"}, {.zstd = true}, name + "z");
+        test::exportTo(folder, gpu::pack(c, {.number = gpu::Number::unorm8}), {}, {}, name + "u");
+    }
+}
+
 void bsdfXmlFiles(const std::filesystem::path& folder) {
     using namespace hshfit::test;
     const std::vector<KlemsRing> two{{0, 45, 1}, {45, 90, 2}};
@@ -167,6 +181,35 @@ void scatteredFiles(const std::filesystem::path& folder) {
           "1, 1, 2, 0, 0, 0, 0, 0.5\n1, 1, 3, 1, 1, 1, 1, 0.5\n2, 2, 1, 1, -1, 1, 0, 3\n");
 }
 
+/// Presets, a collection of them, and mixtures of Gaussians of either kind.
+void presetFiles(const std::filesystem::path& folder) {
+    const std::string head = R"({"format": "hshfit-preset", "version": 1, )";
+    write(folder / "fuzz_presets" / "parameters",
+          head + R"("model": "ward", "parameters": {"kd": [0.1, 0.2, 0.3], "ax": 0.2, "ay": 0.5,)"
+                 R"( "variant": "duer"}, "source": "none"})");
+    write(folder / "fuzz_presets" / "sum",
+          head + R"("spec": "lambert:kd=.5 + 0.5 * ggx:alpha=.2,F0=.1,ks=.5"})");
+    write(folder / "fuzz_presets" / "collection",
+          R"({"format": "hshfit-presets", "version": 1, "model": "ggx", "help": "h",)"
+          R"( "parameters": {"fresnel": "schlick"}, "source": "none", "materials":)"
+          R"( {"a": {"alpha": 0.2, "F0": [0.1, 0.2, 0.3]}, "b": {"alpha": 1}}})");
+    for (const bool across : {false, true}) {
+        const std::string lobe = std::string(R"({"tilt": 1, "sharpness": 20, )") +
+                                 (across ? R"("across": 30, )" : "") +
+                                 R"("amplitude": [0.5, 0.25, 0.1]})";
+        std::string elevations;
+        for (const char* theta : {"0", "45"})
+            elevations += std::string(elevations.empty() ? "" : ", ") + R"({"theta": )" + theta +
+                          R"(, "lobes": [)" + lobe + ", " + lobe +
+                          R"(], "error": 0.1, "albedo": 0.5, "fitted_albedo": 0.5,)"
+                          R"( "converged": true})";
+        write(folder / "fuzz_gaussians" / (across ? "asg" : "sg"),
+              std::string(R"({"format": "hshfit-gaussians", "version": 1, "brdf": "ggx",)") +
+                  R"( "kind": ")" + (across ? "asg" : "sg") +
+                  R"(", "channels": "rgb", "elevations": [)" + elevations + "]}");
+    }
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -176,7 +219,9 @@ int main(int count, char** arguments) {
     }
     const std::filesystem::path folder = arguments[1];
     coefficientFiles(folder / "fuzz_coefficients");
+    gpuFiles(folder / "fuzz_gpu_containers");
     scatteredFiles(folder);
+    presetFiles(folder);
     bsdfXmlFiles(folder / "fuzz_bsdf_xml");
     int number = 0;
     for (const std::vector<float>& phi :
