@@ -94,19 +94,19 @@ void appendArray(std::string& bytes, gpu::Texels texels) {
 const char* wrapperOf(gpu::Language language) {
     switch (language) {
         case gpu::Language::glslEs:
-            return "glsl_es.frag";
+            return "glsl_es.mustache";
         case gpu::Language::glsl:
-            return "glsl.comp";
+            return "glsl.mustache";
         case gpu::Language::hlsl:
-            return "hlsl.hlsl";
+            return "hlsl.mustache";
         case gpu::Language::wgsl:
-            return "wgsl.wgsl";
+            return "wgsl.mustache";
         case gpu::Language::metal:
-            return "metal.cpp";
+            return "metal.mustache";
         case gpu::Language::osl:
             break;
     }
-    return "osl.cpp";
+    return "osl.mustache";
 }
 
 struct Types {

@@ -35,7 +35,9 @@ inline float max(float a, float b) {
 inline vector max(vector a, vector b) {
     return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)};
 }
-using std::sqrt;
+inline float sqrt(float a) {
+    return stub::root(a);
+}
 
 inline color texture(string map, float u, float v, float, float, float, float, const char*,
                      int subimage, const char*, const char*, const char*, const char*, const char*,
