@@ -36,7 +36,7 @@ const Container* recognised(std::string_view bytes) {
 bool isSidecar(std::string_view bytes) {
     const auto first = bytes.find_first_not_of(" \t\r\n");
     return first != bytes.npos && bytes[first] == '{' &&
-           bytes.substr(0, 4096).find("\"hshfit-gpu\"") != bytes.npos;
+           bytes.substr(0, 1 << 16).find("\"hshfit-gpu\"") != bytes.npos;
 }
 
 /// NAME.hsh.json for NAME.coef.…; empty for other names.
