@@ -85,5 +85,42 @@ TEST(ShaderProof, OslAsCpp) {
     prove(Language::osl);
 }
 
+/// kd / pi is one coefficient of HSH, kd / pi sqrt(2 pi); a constant light is one of SH, sqrt(4 pi)
+/// times its radiance. What comes back is kd times the radiance, in every direction.
+TEST(ShaderProof, LambertUnderAConstantLight) {
+    constexpr double kd[] = {0.75, 0.5, 0.25};
+    Coefficients c;
+    c.basis = "hsh";
+    c.order = 3;
+    c.channels = Channels::rgb();
+    c.outgoing = OutgoingSet::parabolic(8, 8);
+    c.values.assign(64 * 3 * 9, 0.0);
+    for (std::size_t p = 0; p < 64; ++p)
+        for (std::size_t i = 0; i < 3; ++i) c.at(p, i)[0] = kd[i] / pi * std::sqrt(2 * pi);
+    ShaderJob job = makeJob(gpu::pack(c, {.number = gpu::Number::float32}), 5);
+    constexpr double radiance[] = {1, 2, 4};
+    for (std::size_t k = 0; k < job.environment.values.size(); ++k)
+        job.environment.values[k] = k < 3 ? radiance[k] * std::sqrt(4 * pi) : 0;
+    for (const gpu::LanguageEntry& entry : gpu::languages()) {
+        std::vector<float> found;
+        try {
+            found = run(entry.language, job,
+                        wrapped(entry.language, job, snippetOf(entry.language, job)));
+        } catch (const Missing& reason) {
+            std::cout << entry.name << " not checked: " << reason.what() << '\n';
+            continue;
+        }
+        for (std::size_t k = 0; k < job.pairs.wo.size(); ++k) {
+            const bool above = job.pairs.wo[k].z > 0;
+            for (std::size_t i = 0; i < 3; ++i) {
+                const double f = above && job.pairs.wi[k].z > 0 ? kd[i] / pi : 0;
+                ASSERT_NEAR(found[9 * k + i], f, 1e-6) << entry.name;
+                ASSERT_NEAR(found[9 * k + 6 + i], above ? kd[i] * radiance[i] : 0, 2e-6)
+                    << entry.name;
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace hshfit::shaders
