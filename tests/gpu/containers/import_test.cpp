@@ -41,10 +41,12 @@ TEST_F(Import, EveryFileGivesTheCoefficientsAgain) {
     for (const std::string& file : exported()) {
         const Answer answer = run("import --json --force " + file + " -o " + path("again.json"));
         ASSERT_EQ(answer.code, 0) << file << answer.err;
-        if (count == 0) EXPECT_TRUE(keepsSchema(answer.out, "import"));
         EXPECT_EQ(Json::parse(answer.out)["tests"]["largest_difference"], 0);
         const Json after = Json::parse(read(path("again.json")));
-        if (count == 0) EXPECT_TRUE(keepsSchema(after.dump(), "coefficients"));
+        if (count == 0) {
+            EXPECT_TRUE(keepsSchema(answer.out, "import"));
+            EXPECT_TRUE(keepsSchema(after.dump(), "coefficients"));
+        }
         for (const char* key : {"source", "basis", "quantity", "channels", "outgoing", "symmetry",
                                 "energy", "energy_error", "error", "generator"}) {
             EXPECT_EQ(before[key], after[key]) << key;
