@@ -2,8 +2,8 @@
 
 #include <hshfit/bases/jacobi.h>
 #include <hshfit/bases/sh.h>
+#include <hshfit/error.h>
 
-#include <cassert>
 #include <cmath>
 
 namespace hshfit::gpu {
@@ -70,8 +70,9 @@ BasisSteps habelSteps(const Basis& basis) {
 BasisSteps basisSteps(const Basis& basis) {
     if (const auto* jacobi = dynamic_cast<const JacobiBasis*>(&basis)) return jacobiSteps(*jacobi);
     if (basis.name() == "h-basis") return habelSteps(basis);
+    if (basis.name() != "lsosh")
+        throw UsageError("shaders have no recurrence for the basis '" + basis.name() + "'");
     // Least-squares SH differ from SH in their coefficients only.
-    assert(basis.name() == "lsosh");
     const auto harmonics = bases::makeSh(basis.order(), {.condonShortley = basis.condonShortley()});
     return jacobiSteps(dynamic_cast<const JacobiBasis&>(*harmonics));
 }
