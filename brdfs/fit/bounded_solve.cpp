@@ -35,6 +35,7 @@ Eigen::VectorXd solveFree(const Matrix& a, const Eigen::VectorXd& b, const Eigen
 std::vector<double> solveBounded(std::span<const double> a, std::span<const double> b,
                                  std::span<const double> lower, std::span<const double> upper) {
     const auto n = static_cast<Eigen::Index>(b.size());
+    if (n == 0) return {};
     // Columns of norm 1.
     Matrix scaled = Eigen::Map<const Matrix>(a.data(), n, n);
     Eigen::VectorXd norm = scaled.diagonal().cwiseMax(0).cwiseSqrt();
