@@ -45,6 +45,7 @@ struct Words {
     std::string dot = "dot";
     std::string environment = "env";  ///< the array of environment coefficients
     bool macros = true;               ///< texels are looked up by macros, not functions
+    bool flat = false;                ///< a spectral environment is an array of numbers
     std::string_view text = {};       ///< the template
 };
 
@@ -107,6 +108,7 @@ Words wordsOf(Language language, const std::string& prefix) {
             .vec3 = "vector",
             .vec4 = four,
             .dot = prefix + "_dot",
+            .flat = true,
             .text = embedded::shader_osl};
 }
 
@@ -180,7 +182,7 @@ void setWords(const Words& words, const Payload& payload, const std::string& pre
     page.set("zero", grey ? "0.0" : zero3);
     page.set("lightType", spectral ? values : words.vec3);
     page.set("lightZero", zero3);
-    page.set("environmentType", spectral ? values : words.vec3);
+    page.set("environmentType", !spectral ? words.vec3 : words.flat ? words.real : values);
     page.set("letLight", spectral ? words.let : words.let3);
     page.set("let", words.let);
     page.set("let2", words.let2);
@@ -212,7 +214,9 @@ void setHeader(const Payload& payload, int environmentOrder, data& page) {
     page.set("layers", std::to_string(payload.coefficients.layers));
     page.set("number", numberName(payload.coefficients.number));
     page.set("cosine", payload.quantity == Quantity::brdfCosine);
-    page.set("environmentCount", std::to_string(environmentOrder * environmentOrder));
+    const auto slots = static_cast<std::size_t>(environmentOrder * environmentOrder);
+    page.set("environmentCount", std::to_string(slots));
+    page.set("environmentNumbers", std::to_string(slots * payload.channels.count()));
 }
 
 void setCost(const std::string& name, const ShaderCost& cost, data& page) {
@@ -281,7 +285,7 @@ std::string shaderSource(Language language, const Payload& payload, const Shader
     setEvaluation(payload, page, eval);
     page.set("shade", options.environmentOrder > 0);
     if (options.environmentOrder > 0)
-        setShading(payload, *basis, options.environmentOrder, page, shade);
+        setShading(payload, *basis, options.environmentOrder, words.flat, page, shade);
     setCost("eval", eval, page);
     setCost("shade", shade, page);
     setPartials(page);

@@ -31,8 +31,9 @@ void setBasis(const Payload& payload, const Basis& basis, kainjow::mustache::dat
 /// Lookups, sums and outputs of `eval`.
 void setEvaluation(const Payload& payload, kainjow::mustache::data& data, ShaderCost& cost);
 /// Environment, weights, lookups, sums and outputs of `shade`. For grey and RGB payloads one pass
-/// takes the three colours of the light; else there is a pass per channel.
-void setShading(const Payload& payload, const Basis& basis, int environmentOrder,
+/// takes the three colours of the light; else there is a pass per channel, and the environment is
+/// an array of structs or, if `flat`, of numbers, slot by slot.
+void setShading(const Payload& payload, const Basis& basis, int environmentOrder, bool flat,
                 kainjow::mustache::data& data, ShaderCost& cost);
 
 /// A row of `Payload::toChannels`, without its zeros.

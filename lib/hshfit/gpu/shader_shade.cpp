@@ -33,8 +33,9 @@ Weights weightsOf(const Payload& payload, const Basis& basis, int environmentOrd
 
 /// Environment coefficients that some function needs, turned to where wo has azimuth 0 if the map
 /// is `elevations`: cos(m phi) a_m + sin(m phi) a_-m and cos(m phi) a_-m - sin(m phi) a_m.
+/// Rows name the places of both in the array: `stride` apart, from `first`.
 data environmentData(const Payload& payload, const Weights& weights, std::size_t colours,
-                     ShaderCost& cost) {
+                     int stride, int first, ShaderCost& cost) {
     std::set<int> needed;
     for (const auto& [j, elements] : weights)
         for (const EnvironmentElement& element : elements) needed.insert(element.environment);
@@ -45,7 +46,8 @@ data environmentData(const Payload& payload, const Weights& weights, std::size_t
         const bool turned = elevations && m != 0;
         data row;
         row.set("slot", std::to_string(slot));
-        row.set("other", std::to_string(turned ? slot - 2 * m : slot));
+        row.set("place", std::to_string(slot * stride + first));
+        row.set("other", std::to_string((turned ? slot - 2 * m : slot) * stride + first));
         row.set("turned", turned);
         row.set("m", std::to_string(std::abs(m)));
         row.set("sign", m > 0 ? "+" : "-");
@@ -157,8 +159,8 @@ data rgbLookups(const Payload& payload, const Weights& weights, const Pass& pass
 
 }  // namespace
 
-void setShading(const Payload& payload, const Basis& basis, int environmentOrder, data& page,
-                ShaderCost& cost) {
+void setShading(const Payload& payload, const Basis& basis, int environmentOrder, bool flat,
+                data& page, ShaderCost& cost) {
     const Weights weights = weightsOf(payload, basis, environmentOrder);
     const bool colours = payload.channels.kind != Channels::Kind::spectral;
     const std::size_t lights = colours ? 3 : payload.channels.count();
@@ -167,8 +169,11 @@ void setShading(const Payload& payload, const Basis& basis, int environmentOrder
         Pass pass{{first}, colours};
         if (colours) pass.lights = {0, 1, 2};
         data row;
-        row.set("element", colours ? "" : fmt::format(".v[{}]", first));
-        row.set("environment", environmentData(payload, weights, pass.lights.size(), cost));
+        const bool apart = flat && !colours;
+        row.set("element", colours || flat ? "" : fmt::format(".v[{}]", first));
+        row.set("environment", environmentData(payload, weights, pass.lights.size(),
+                                               apart ? static_cast<int>(lights) : 1,
+                                               apart ? static_cast<int>(first) : 0, cost));
         row.set("weights", weightsData(weights, pass.lights.size(), cost));
         row.set("lookups", payload.packing == Packing::rgb
                                ? rgbLookups(payload, weights, pass, cost)

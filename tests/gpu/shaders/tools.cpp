@@ -149,6 +149,7 @@ std::string wrapped(gpu::Language language, const ShaderJob& job, const std::str
     page.set("snippet", snippet);
     page.set("type", spectral ? "hsh_Values" : grey ? types.real : types.vector);
     page.set("lightElement", spectral ? "hsh_Values" : types.vector);
+    page.set("spectral", spectral);
     page.set("v", spectral ? ".v" : "");
     page.set("of", spectral ? ".v[i]" : grey ? "" : "[i]");
     page.set("tabulated", job.payload.basisTexels.has_value());

@@ -39,9 +39,14 @@ inline float sqrt(float a) {
     return stub::root(a);
 }
 
-inline color texture(string map, float u, float v, float, float, float, float, const char*,
-                     int subimage, const char*, const char*, const char*, const char*, const char*,
-                     float& alpha) {
+/// Keys and modes are those of OSL (stdlib.md, "Texture"); OSL itself ignores an unknown mode.
+inline color texture(string map, float u, float v, float, float, float, float, const char* key,
+                     int subimage, const char* interp, const char* mode, const char* wrap,
+                     const char* wrapMode, const char* rest, float& alpha) {
+    const char* found[] = {key, interp, mode, wrap, wrapMode, rest};
+    const char* wanted[] = {"subimage", "interp", "linear", "wrap", "clamp", "alpha"};
+    for (int i = 0; i < 6; ++i)
+        if (__builtin_strcmp(found[i], wanted[i]) != 0) exit(4);
     alpha = map->sample(u, v, subimage, 3);
     return {map->sample(u, v, subimage, 0), map->sample(u, v, subimage, 1),
             map->sample(u, v, subimage, 2)};
