@@ -7,8 +7,14 @@ import { chromium } from 'playwright-core';
 
 export const here = dirname(fileURLToPath(import.meta.url));
 
-const quiet = ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking',
-  '--disable-component-update', '--disable-sync'];
+const quiet = [
+  '--no-sandbox',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+];
 const drivers = {
   swiftshader: ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
   llvmpipe: ['--use-gl=angle', '--use-angle=gl-egl', '--ignore-gpu-blocklist'],
@@ -17,11 +23,17 @@ const drivers = {
 
 // `use(page)` in a fresh browser with an empty profile; `files` answers http://localhost/ paths and
 // everything else that is asked for over a network fails.
-export async function withBrowser(driver, use, { files = null, viewport = null, dark = false } = {}) {
+export async function withBrowser(
+  driver,
+  use,
+  { files = null, viewport = null, dark = false } = {},
+) {
   const profile = mkdtempSync(join(tmpdir(), 'hshfit-browser-'));
   const context = await chromium.launchPersistentContext(profile, {
-    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', headless: true,
-    args: [...quiet, ...drivers[driver]], viewport: viewport ?? { width: 800, height: 600 },
+    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+    headless: true,
+    args: [...quiet, ...drivers[driver]],
+    viewport: viewport ?? { width: 800, height: 600 },
     colorScheme: dark ? 'dark' : 'light',
   });
   try {
@@ -58,7 +70,8 @@ export const readJson = (path) => JSON.parse(readFileSync(path, 'utf8'));
 // Largest differences of eval and shade, of the largest values; NaN in `expected` is not compared.
 export function differences(job, expected, found) {
   const outputs = 2 * job.channels + job.lights;
-  const worst = [0, 0], most = [0, 0];
+  const worst = [0, 0],
+    most = [0, 0];
   for (let i = 0; i < expected.length; ++i) {
     if (Number.isNaN(expected[i])) continue;
     const kind = i % outputs >= 2 * job.channels ? 1 : 0;
@@ -88,7 +101,7 @@ export async function finish(check) {
 }
 
 // Every case through `run(page, job)`, which gives outputs in the order of `expected`, or throws.
-export async function proveCases(folder, page, run) {
+export async function proveCases(folder, driver, page, run) {
   for (const file of readJson(join(folder, 'cases.json'))) {
     const job = readJson(join(folder, file));
     const found = await run(page, job);
@@ -96,10 +109,16 @@ export async function proveCases(folder, page, run) {
       console.log(`${job.name.padEnd(48)} left out: ${found.left}`);
       continue;
     }
-    const d = differences(job, decoded(job.expected, Float64Array), decoded(found.values, Float32Array));
-    console.log(`${job.name.padEnd(48)} eval ${d.eval.toExponential(1)}  shade ${d.shade.toExponential(1)}`);
-    expect(d.eval <= job.tolerance, `${job.name}: eval differs by ${d.eval}`);
-    expect(d.shade <= job.tolerance, `${job.name}: shade differs by ${d.shade}`);
+    const d = differences(
+      job,
+      decoded(job.expected, Float64Array),
+      decoded(found.values, Float32Array),
+    );
+    console.log(
+      `${job.name.padEnd(48)} eval ${d.eval.toExponential(1)}  shade ${d.shade.toExponential(1)}`,
+    );
+    expect(d.eval <= job.tolerance[driver], `${job.name}: eval differs by ${d.eval}`);
+    expect(d.shade <= job.tolerance[driver], `${job.name}: shade differs by ${d.shade}`);
   }
 }
 
@@ -107,16 +126,29 @@ export async function proveCases(folder, page, run) {
 // (rows from the bottom), and a wrong constant.
 export function brokenCases(folder, language) {
   const job = readJson(join(folder, 'case1.json'));
-  const undeclared = { ...job, [language]: job[language].replace(/hsh_uv\(wo\)/, 'hsh_uv(notDeclared)') };
+  const undeclared = {
+    ...job,
+    [language]: job[language].replace(/hsh_uv\(wo\)/, 'hsh_uv(notDeclared)'),
+  };
   const { width, height, layers } = job.coefficients;
   const bytes = Buffer.from(job.coefficients.bytes, 'base64');
-  const row = bytes.length / layers / height, flipped = Buffer.alloc(bytes.length);
+  const row = bytes.length / layers / height,
+    flipped = Buffer.alloc(bytes.length);
   for (let k = 0; k < layers * height; ++k) {
-    const layer = Math.floor(k / height), y = k % height;
+    const layer = Math.floor(k / height),
+      y = k % height;
     bytes.copy(flipped, (layer * height + height - 1 - y) * row, k * row, (k + 1) * row);
   }
-  const upsideDown = { ...job, coefficients: { width, height, layers, number: job.coefficients.number,
-    bytes: flipped.toString('base64') } };
+  const upsideDown = {
+    ...job,
+    coefficients: {
+      width,
+      height,
+      layers,
+      number: job.coefficients.number,
+      bytes: flipped.toString('base64'),
+    },
+  };
   return { job, undeclared, upsideDown };
 }
 
@@ -127,12 +159,19 @@ export async function proveBreaksShow(folder, page, language, run) {
   try {
     await run(page, undeclared);
   } catch (error) {
-    refused = String(error.message).split('\n').find((line) => /notDeclared/.test(line)) ?? '';
+    refused =
+      String(error.message)
+        .split('\n')
+        .find((line) => /notDeclared/.test(line)) ?? '';
   }
   expect(refused, 'an undeclared name is not refused');
   console.log(`undeclared name: ${refused.trim()}`);
   const found = await run(page, upsideDown);
-  const d = differences(job, decoded(job.expected, Float64Array), decoded(found.values, Float32Array));
+  const d = differences(
+    job,
+    decoded(job.expected, Float64Array),
+    decoded(found.values, Float32Array),
+  );
   expect(d.eval > 1e-2, 'texels upside down go unnoticed');
   console.log(`texels upside down: eval ${d.eval.toExponential(1)}`);
 }

@@ -1,6 +1,6 @@
 #!/bin/sh
-# check.sh SCRIPT [ARGUMENT…]: runs a check of this folder with node; 77 where something that it needs
-# is missing.
+# check.sh SCRIPT [ARGUMENT…]: runs a check of this folder with node; 77 where something that it
+# needs is missing.
 set -eu
 here=$(dirname "$0")
 skip() {

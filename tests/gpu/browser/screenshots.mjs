@@ -1,5 +1,5 @@
-// screenshots.mjs PROGRAM MEASURED FOLDER [NAME…]: the pictures of docs/viewer.md, by the program and
-// Chromium. MEASURED: an RGL file, whose folder the program runs in.
+// screenshots.mjs PROGRAM MEASURED FOLDER [NAME…]: the pictures of docs/viewer.md,
+// by the program and Chromium. MEASURED: an RGL file, whose folder the program runs in.
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -10,31 +10,51 @@ import { expect, finish, withBrowser } from './browser.mjs';
 const [program, measured, folder] = process.argv.slice(2, 5).map((path) => resolve(path));
 const wanted = process.argv.slice(5);
 const shots = [
-  { name: 'viewer-phong', spec: 'phong:exponent=22', outgoing: '32',
-    view: 'frames=16&order=5&clamp=false&lightElevation=24' },
-  { name: 'viewer-ward', spec: 'ward:kd=0.05,ks=0.3,ax=0.15,ay=0.5', outgoing: '32x32', dark: true,
-    view: 'frames=16&cycles=8&order=7&shape=teapot&lighting=both&azimuth=-8&elevation=18' },
-  { name: 'viewer-measured', spec: basename(measured), outgoing: '32',
-    view: 'frames=8&cycles=4&order=10&layout=split&dividers=38,52,66&lighting=both&azimuth=0&lightAzimuth=-12' },
+  {
+    name: 'viewer-phong',
+    spec: 'phong:exponent=22',
+    outgoing: '32',
+    view: 'frames=16&order=5&clamp=false&lightElevation=24',
+  },
+  {
+    name: 'viewer-ward',
+    spec: 'ward:kd=0.05,ks=0.3,ax=0.15,ay=0.5',
+    outgoing: '32x32',
+    dark: true,
+    view: 'frames=16&cycles=8&order=7&shape=teapot&lighting=both&azimuth=-8&elevation=18',
+  },
+  {
+    name: 'viewer-measured',
+    spec: basename(measured),
+    outgoing: '32',
+    view:
+      'frames=8&cycles=4&order=10&layout=split&dividers=36,52,68&lighting=both' +
+      '&azimuth=0&lightAzimuth=-52&lightElevation=36',
+  },
 ];
 
 await finish(async () => {
   const work = mkdtempSync(join(tmpdir(), 'hshfit-screenshots-'));
-  const run = (...words) => execFileSync(program, [...words, '--quiet'], { cwd: dirname(measured) });
+  const run = (...words) =>
+    execFileSync(program, [...words, '--quiet'], { cwd: dirname(measured) });
   try {
     for (const { name, spec, outgoing, view, dark } of shots) {
       if (wanted.length > 0 && !wanted.includes(name)) continue;
       const coefficients = join(work, `${name}.json`);
       run('project', spec, '-o', coefficients, '--cosine', '--order', '10', '--outgoing', outgoing);
       run('export', coefficients, '-o', work, '--target', 'viewer');
-      await withBrowser('llvmpipe', async (page, complaints) => {
-        page.setDefaultTimeout(900000);
-        await page.goto(`${pathToFileURL(join(work, `${name}_viewer.html`)).href}#${view}`);
-        await page.waitForFunction(() => window.viewer?.settled);
-        await page.screenshot({ path: join(folder, `${name}.png`) });
-        console.log(name, await page.innerText('#numbers'));
-        expect(complaints.length === 0, complaints.join('; '));
-      }, { viewport: { width: 1240, height: 860 }, dark });
+      await withBrowser(
+        'llvmpipe',
+        async (page, complaints) => {
+          page.setDefaultTimeout(900000);
+          await page.goto(`${pathToFileURL(join(work, `${name}_viewer.html`)).href}#${view}`);
+          await page.waitForFunction(() => window.viewer?.settled);
+          await page.screenshot({ path: join(folder, `${name}.png`) });
+          console.log(name, await page.innerText('#numbers'));
+          expect(complaints.length === 0, complaints.join('; '));
+        },
+        { viewport: { width: 1240, height: 860 }, dark },
+      );
     }
   } finally {
     rmSync(work, { recursive: true, force: true });

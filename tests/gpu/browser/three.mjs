@@ -9,7 +9,10 @@ const types = { html: 'text/html', js: 'text/javascript', json: 'application/jso
 // http://localhost/three/… is the package, /files/… the export.
 function files(path) {
   if (path === '/') return { contentType: 'text/html', body: page };
-  const roots = { '/three/': join(here, '../node_modules/three'), '/files/': join(folder, 'three') };
+  const roots = {
+    '/three/': join(here, '../node_modules/three'),
+    '/files/': join(folder, 'three'),
+  };
   for (const [start, root] of Object.entries(roots)) {
     if (!path.startsWith(start) || path.includes('..')) continue;
     try {
@@ -53,7 +56,8 @@ function setLoaders() {
     return arrayOf(halves, shape);
   };
   window.loaders = {
-    bin: async (file, shape) => arrayOf(new Uint16Array(await (await fetch(file)).arrayBuffer()), shape),
+    bin: async (file, shape) =>
+      arrayOf(new Uint16Array(await (await fetch(file)).arrayBuffer()), shape),
     js: async (file, shape) => {
       const module = await import(file);
       if (module.metadata.format !== 'hshfit-gpu') throw new Error('no metadata');
@@ -70,15 +74,21 @@ async function draw({ loader, file, shape, snippet, inputs, side }) {
   const texture = await window.loaders[loader](file, shape);
   const values = new Float32Array(Uint8Array.from(atob(inputs), (c) => c.charCodeAt(0)).buffer);
   const vectors = (first) => {
-    const data = Float32Array.from({ length: 4 * side * side },
-      (_, i) => (i % 4 === 3 ? 0 : values[6 * (i >> 2) + first + i % 4]));
+    const data = Float32Array.from({ length: 4 * side * side }, (_, i) =>
+      i % 4 === 3 ? 0 : values[6 * (i >> 2) + first + (i % 4)],
+    );
     const made = new THREE.DataTexture(data, side, side, THREE.RGBAFormat, THREE.FloatType);
     made.needsUpdate = true;
     return made;
   };
   const material = new THREE.RawShaderMaterial({
-    glslVersion: THREE.GLSL3, depthTest: false,
-    uniforms: { hsh_coefficients: { value: texture }, wos: { value: vectors(0) }, wis: { value: vectors(3) } },
+    glslVersion: THREE.GLSL3,
+    depthTest: false,
+    uniforms: {
+      hsh_coefficients: { value: texture },
+      wos: { value: vectors(0) },
+      wis: { value: vectors(3) },
+    },
     vertexShader: 'in vec3 position; void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }',
     fragmentShader: `${snippet}
       uniform highp sampler2D wos, wis;
@@ -101,51 +111,72 @@ async function draw({ loader, file, shape, snippet, inputs, side }) {
   return [...pixels];
 }
 
-await finish(() => withBrowser(driver, async (on, complaints) => {
-  const sidecar = readJson(join(folder, 'three/material.hsh.json'));
-  const job = readJson(join(folder, 'case1.json'));
-  const expected = decoded(job.expected, Float64Array);
-  const { width, height, layers } = job.coefficients;
-  // The snippet without the main that the other checks put around it.
-  const snippet = readFileSync(join(folder, 'three/material_hsh.glsl'), 'utf8');
-  await on.goto('http://localhost/');
-  await on.waitForFunction(() => window.ready);
-  await on.evaluate(setLoaders);
-  const pathOf = (suffix) => {
-    const found = sidecar.files.map(({ path }) => path).find((path) => path.endsWith(suffix));
-    return `/files/${found}`;
-  };
-  const outputs = 2 * job.channels + job.lights;
-  const differenceOf = async (loader, suffix) => {
-    const pixels = await on.evaluate(draw, { loader, file: pathOf(suffix), snippet, inputs: job.inputs,
-      shape: { width, height, layers }, side: job.side });
-    const found = new Float32Array(expected.length), known = expected.slice();
-    for (let k = 0; k < pixels.length / 4; ++k) {
-      for (let c = 0; c < job.channels; ++c) found[k * outputs + c] = pixels[4 * k + c];
-      known.fill(NaN, k * outputs + job.channels, (k + 1) * outputs);
-    }
-    return differences(job, known, found).eval;
-  };
-  expect(sidecar.map.size[0] === width && width !== height, 'the map is square');
-  for (const [loader, suffix] of [['bin', '.bin'], ['js', '.js'], ['exr', '.exr']]) {
-    const d = await differenceOf(loader, suffix);
-    console.log(`${loader.padEnd(16)} ${d.toExponential(1)}`);
-    expect(d <= 2e-6, `${loader}: differs by ${d}`);
-  }
-  const d = await differenceOf('exr as loaded', '.exr');
-  console.log(`${'exr as loaded'.padEnd(16)} ${d.toExponential(1)}, as it has to be: rows are turned round`);
-  expect(d > 1e-2, 'rows turned round go unnoticed');
-  const kind = await on.evaluate(async (path) => {
-    const renderer = new THREE.WebGLRenderer();
-    const loader = new KTX2Loader();
-    loader.detectSupport(renderer);
-    try {
-      const texture = await loader.loadAsync(path);
-      return texture.isDataArrayTexture ? 'an array' : `a ${texture.constructor.name}`;
-    } catch (error) {
-      return `refused: ${error.message ?? error}`;
-    }
-  }, pathOf('.ktx2'));
-  console.log(`KTX2Loader makes of the array: ${kind}`);
-  complaints.filter((text) => !/GPU stall|Context Lost/i.test(text)).forEach((text) => console.log(text));
-}, { files }));
+await finish(() =>
+  withBrowser(
+    driver,
+    async (on, complaints) => {
+      const sidecar = readJson(join(folder, 'three/material.hsh.json'));
+      const job = readJson(join(folder, 'case1.json'));
+      const expected = decoded(job.expected, Float64Array);
+      const { width, height, layers } = job.coefficients;
+      // The snippet without the main that the other checks put around it.
+      const snippet = readFileSync(join(folder, 'three/material_hsh.glsl'), 'utf8');
+      await on.goto('http://localhost/');
+      await on.waitForFunction(() => window.ready);
+      await on.evaluate(setLoaders);
+      const pathOf = (suffix) => {
+        const found = sidecar.files.map(({ path }) => path).find((path) => path.endsWith(suffix));
+        return `/files/${found}`;
+      };
+      const outputs = 2 * job.channels + job.lights;
+      const differenceOf = async (loader, suffix) => {
+        const pixels = await on.evaluate(draw, {
+          loader,
+          file: pathOf(suffix),
+          snippet,
+          inputs: job.inputs,
+          shape: { width, height, layers },
+          side: job.side,
+        });
+        const found = new Float32Array(expected.length),
+          known = expected.slice();
+        for (let k = 0; k < pixels.length / 4; ++k) {
+          for (let c = 0; c < job.channels; ++c) found[k * outputs + c] = pixels[4 * k + c];
+          known.fill(NaN, k * outputs + job.channels, (k + 1) * outputs);
+        }
+        return differences(job, known, found).eval;
+      };
+      expect(sidecar.map.size[0] === width && width !== height, 'the map is square');
+      for (const [loader, suffix] of [
+        ['bin', '.bin'],
+        ['js', '.js'],
+        ['exr', '.exr'],
+      ]) {
+        const d = await differenceOf(loader, suffix);
+        console.log(`${loader.padEnd(16)} ${d.toExponential(1)}`);
+        expect(d <= 2e-6, `${loader}: differs by ${d}`);
+      }
+      const d = await differenceOf('exr as loaded', '.exr');
+      console.log(
+        `${'exr as loaded'.padEnd(16)} ${d.toExponential(1)}, as it has to be`,
+      );
+      expect(d > 1e-2, 'rows turned round go unnoticed');
+      const kind = await on.evaluate(async (path) => {
+        const renderer = new THREE.WebGLRenderer();
+        const loader = new KTX2Loader();
+        loader.detectSupport(renderer);
+        try {
+          const texture = await loader.loadAsync(path);
+          return texture.isDataArrayTexture ? 'an array' : `a ${texture.constructor.name}`;
+        } catch (error) {
+          return `refused: ${error.message ?? error}`;
+        }
+      }, pathOf('.ktx2'));
+      console.log(`KTX2Loader makes of the array: ${kind}`);
+      complaints
+        .filter((text) => !/GPU stall|Context Lost/i.test(text))
+        .forEach((text) => console.log(text));
+    },
+    { files },
+  ),
+);

@@ -16,28 +16,36 @@ async function open(page, state) {
 }
 
 // Numbers of the pairs, and the means of the pictures over the shape.
-const facts = (page) => page.evaluate(() => ({
-  numbers: window.viewer.numbers,
-  names: window.viewer.pairs.map(([a, b]) => `${a.name} − ${b.name}`),
-  means: window.viewer.renderer.images.map((image) => {
-    const pixels = window.viewer.renderer.read(image);
-    let sum = 0, count = 0;
-    for (let k = 0; k < pixels.length; k += 4) {
-      if (pixels[k + 3] > 0) { sum += pixels[k] + pixels[k + 1] + pixels[k + 2]; ++count; }
-    }
-    return sum / count / 3;
-  }),
-}));
+const facts = (page) =>
+  page.evaluate(() => ({
+    numbers: window.viewer.numbers,
+    names: window.viewer.pairs.map(([a, b]) => `${a.name} − ${b.name}`),
+    means: window.viewer.renderer.images.map((image) => {
+      const pixels = window.viewer.renderer.read(image);
+      let sum = 0,
+        count = 0;
+      for (let k = 0; k < pixels.length; k += 4) {
+        if (pixels[k + 3] > 0) {
+          sum += pixels[k] + pixels[k + 1] + pixels[k + 2];
+          ++count;
+        }
+      }
+      return sum / count / 3;
+    }),
+  }));
 
 async function provePage(page, complaints) {
   await open(page, 'order=8');
-  const high = await facts(page), pictures = [await page.screenshot()];
+  const high = await facts(page),
+    pictures = [await page.screenshot()];
   expect(high.means.length === 3 && high.means.every((mean) => mean > 1e-3), `means ${high.means}`);
   await open(page, 'order=2');
   const low = await facts(page);
   high.names.slice(0, 2).forEach((name, i) => {
-    console.log(`${name}: r.m.s. ${low.numbers[i].relative} at order 2, ${high.numbers[i].relative} at 8`);
-    expect(high.numbers[i].relative < .5 * low.numbers[i].relative, `${name} does not converge`);
+    console.log(
+      `${name}: r.m.s. ${low.numbers[i].relative} at order 2, ${high.numbers[i].relative} at 8`,
+    );
+    expect(high.numbers[i].relative < 0.5 * low.numbers[i].relative, `${name} does not converge`);
   });
 
   // The slider, by keyboard, and everything else that can be pressed.
@@ -55,8 +63,10 @@ async function provePage(page, complaints) {
     pictures.push(await page.screenshot());
   };
   await press('#clamp');
-  expect(await page.evaluate(() => window.viewer.negative.get(window.viewer.renderer.images[1])) > 0,
-    'order 3 of Phong has no negative values');
+  expect(
+    (await page.evaluate(() => window.viewer.negative.get(window.viewer.renderer.images[1]))) > 0,
+    'order 3 of Phong has no negative values',
+  );
   await press('label:has([value=teapot])');
   await press('label:has([value=sky])');
   await press('label:has([value=split])');
@@ -64,7 +74,10 @@ async function provePage(page, complaints) {
   await page.keyboard.press('ArrowLeft');
   pictures.push(await page.screenshot());
   const names = new Set(pictures.map((picture) => picture.toString('base64')));
-  expect(names.size === pictures.length, `only ${names.size} of ${pictures.length} pictures differ`);
+  expect(
+    names.size === pictures.length,
+    `only ${names.size} of ${pictures.length} pictures differ`,
+  );
   expect(complaints.length === 0, `console: ${complaints.join('; ')}`);
 }
 
@@ -73,14 +86,16 @@ async function proveEnvironment(page) {
   await open(page, 'order=8&lighting=sky&cycles=12');
   const { numbers, names } = await facts(page);
   console.log(`environment: ${names[0]}: r.m.s. ${numbers[0].relative}`);
-  expect(numbers[0].relative < .04, 'shade and quadrature disagree');
+  expect(numbers[0].relative < 0.04, 'shade and quadrature disagree');
 }
 
 // No NaN anywhere, whichever way the light and the shape lie.
 async function proveFinite(page) {
   await page.goto('about:blank');
-  await page.goto(`${pathToFileURL(join(folder, 'viewer_ward.html')).href}` +
-    '#frames=4&cycles=2&lighting=both&shape=teapot');
+  await page.goto(
+    `${pathToFileURL(join(folder, 'viewer_ward.html')).href}` +
+      '#frames=4&cycles=2&lighting=both&shape=teapot',
+  );
   await settled(page);
   const { numbers, means } = await facts(page);
   const values = numbers.flatMap(({ largest, mean, relative }) => [largest, mean, relative]);
@@ -89,28 +104,47 @@ async function proveFinite(page) {
 
 // In the page: f of the exact pane's shader for pairs of directions.
 function lookUp(inputs) {
-  const { renderer } = window.viewer, gl = renderer.gl, side = 64;
-  const image = renderer.images.find(({ exact }) => exact), { exact } = image;
+  const { renderer } = window.viewer,
+    gl = renderer.gl,
+    side = 64;
+  const image = renderer.images.find(({ exact }) => exact),
+    { exact } = image;
   const sky = renderer.data.shaders.environment.replace('{{lights}}', renderer.lights.length);
-  const program = makeProgram(gl, renderer.data.shaders.screenVertex,
+  const program = makeProgram(
+    gl,
+    renderer.data.shaders.screenVertex,
     `${renderer.exactSource(exact, sky)}
     uniform sampler2D wos, wis;
     out vec4 result;
     void main() {
       ivec2 at = ivec2(gl_FragCoord.xy);
       result = vec4(exactBrdf(texelFetch(wos, at, 0).xyz, texelFetch(wis, at, 0).xyz), 1.0);
-    }`, 'look-up');
+    }`,
+    'look-up',
+  );
   const vectors = (first) => {
     const texture = gl.createTexture();
     gl.bindTexture(gl.TEXTURE_2D, texture);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, side, side, 0, gl.RGBA, gl.FLOAT,
-      Float32Array.from({ length: 4 * side * side },
-        (_, i) => (i % 4 === 3 ? 0 : inputs[6 * (i >> 2) + first + i % 4])));
+    gl.texImage2D(
+      gl.TEXTURE_2D,
+      0,
+      gl.RGBA32F,
+      side,
+      side,
+      0,
+      gl.RGBA,
+      gl.FLOAT,
+      Float32Array.from({ length: 4 * side * side }, (_, i) =>
+        i % 4 === 3 ? 0 : inputs[6 * (i >> 2) + first + (i % 4)],
+      ),
+    );
     return texture;
   };
-  const wos = vectors(0), wis = vectors(3), target = renderer.target(side, side, 1);
+  const wos = vectors(0),
+    wis = vectors(3),
+    target = renderer.target(side, side, 1);
   gl.disable(gl.SCISSOR_TEST);
   gl.viewport(0, 0, side, side);
   renderer.use(program, { exactTable: { array: image.texture }, wos, wis });
@@ -127,12 +161,14 @@ async function proveTable(page, name) {
   await page.goto(`${pathToFileURL(join(folder, `${name}.html`)).href}#frames=1`);
   await settled(page);
   const job = readJson(join(folder, `${name}_table.json`));
-  const inputs = [...decoded(job.inputs, Float32Array)], expected = decoded(job.expected, Float64Array);
+  const inputs = [...decoded(job.inputs, Float32Array)],
+    expected = decoded(job.expected, Float64Array);
   const found = await page.evaluate(lookUp, inputs);
-  let wrong = 0, all = 0;
+  let wrong = 0,
+    all = 0;
   expected.forEach((f, k) => {
     const [cosO, cosI] = [inputs[6 * k + 2], inputs[6 * k + 5]];
-    if (Math.min(cosO, cosI) > 0 && Math.min(cosO, cosI) < .087) return;
+    if (Math.min(cosO, cosI) > 0 && Math.min(cosO, cosI) < 0.087) return;
     wrong += (found[k] - f) ** 2;
     all += f * f;
   });
@@ -151,16 +187,20 @@ async function proveMessage(page) {
   await page.goto(address);
   await page.waitForSelector('#message:not([hidden])');
   const text = await page.textContent('#message');
-  expect(/WebGL 2/.test(text) && await page.isVisible('#message'), `message: '${text}'`);
+  expect(/WebGL 2/.test(text) && (await page.isVisible('#message')), `message: '${text}'`);
 }
 
 await finish(async () => {
-  await withBrowser(driver, async (page, complaints) => {
-    await provePage(page, complaints);
-    await proveEnvironment(page);
-    await proveFinite(page);
-    await proveTable(page, 'viewer');
-    await proveTable(page, 'viewer_ward');
-  }, { viewport });
+  await withBrowser(
+    driver,
+    async (page, complaints) => {
+      await provePage(page, complaints);
+      await proveEnvironment(page);
+      await proveFinite(page);
+      await proveTable(page, 'viewer');
+      await proveTable(page, 'viewer_ward');
+    },
+    { viewport },
+  );
   await withBrowser(driver, proveMessage, { viewport });
 });

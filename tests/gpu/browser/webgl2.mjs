@@ -9,23 +9,31 @@ async function draw(job) {
   gl.getExtension('OES_texture_float_linear');
   const norm16 = gl.getExtension('EXT_texture_norm16');
   const formats = {
-    float16: [gl.RGBA16F, gl.HALF_FLOAT, Uint16Array], float32: [gl.RGBA32F, gl.FLOAT, Float32Array],
+    float16: [gl.RGBA16F, gl.HALF_FLOAT, Uint16Array],
+    float32: [gl.RGBA32F, gl.FLOAT, Float32Array],
     unorm8: [gl.RGBA8, gl.UNSIGNED_BYTE, Uint8Array],
     unorm16: [norm16?.RGBA16_EXT, gl.UNSIGNED_SHORT, Uint16Array],
   };
   if (!formats[job.coefficients.number][0]) return { left: 'no EXT_texture_norm16 here' };
   const program = gl.createProgram();
   const vertex = `#version 300 es
-    void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1); }`;
-  for (const [type, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, job['glsl-es']]]) {
+    void main() {
+      gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1);
+    }`;
+  for (const [type, source] of [
+    [gl.VERTEX_SHADER, vertex],
+    [gl.FRAGMENT_SHADER, job['glsl-es']],
+  ]) {
     const shader = gl.createShader(type);
     gl.shaderSource(shader, source);
     gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS))
+      throw new Error(gl.getShaderInfoLog(shader));
     gl.attachShader(program, shader);
   }
   gl.linkProgram(program);
-  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS))
+    throw new Error(gl.getProgramInfoLog(program));
   gl.useProgram(program);
   let unit = 0;
   const texture = (name, target, filter) => {
@@ -42,21 +50,43 @@ async function draw(job) {
     const { width, height, layers, number, bytes } = job[name];
     const [internal, type, Type] = formats[number];
     texture(`hsh_${name}`, gl.TEXTURE_2D_ARRAY, gl.LINEAR);
-    gl.texImage3D(gl.TEXTURE_2D_ARRAY, 0, internal, width, height, layers, 0, gl.RGBA, type,
-      new Type(bytesOf(bytes).buffer));
+    gl.texImage3D(
+      gl.TEXTURE_2D_ARRAY,
+      0,
+      internal,
+      width,
+      height,
+      layers,
+      0,
+      gl.RGBA,
+      type,
+      new Type(bytesOf(bytes).buffer),
+    );
   }
-  const inputs = new Float32Array(bytesOf(job.inputs).buffer), side = job.side, pairs = side * side;
+  const inputs = new Float32Array(bytesOf(job.inputs).buffer),
+    side = job.side,
+    pairs = side * side;
   const numbers = (name, width, height, values) => {
     texture(name, gl.TEXTURE_2D, gl.NEAREST);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, values);
   };
-  const vectors = (first) => Float32Array.from({ length: 4 * pairs },
-    (_, i) => (i % 4 === 3 ? 0 : inputs[6 * (i >> 2) + first + i % 4]));
+  const vectors = (first) =>
+    Float32Array.from({ length: 4 * pairs }, (_, i) =>
+      i % 4 === 3 ? 0 : inputs[6 * (i >> 2) + first + (i % 4)],
+    );
   numbers('wos', side, side, vectors(0));
   numbers('wis', side, side, vectors(3));
   // Texel (slot, colour).
-  numbers('lights', job.slots, job.lights, Float32Array.from({ length: 4 * job.slots * job.lights },
-    (_, i) => inputs[6 * pairs + (i >> 2) % job.slots * job.lights + Math.floor((i >> 2) / job.slots)]));
+  numbers(
+    'lights',
+    job.slots,
+    job.lights,
+    Float32Array.from(
+      { length: 4 * job.slots * job.lights },
+      (_, i) =>
+        inputs[6 * pairs + ((i >> 2) % job.slots) * job.lights + Math.floor((i >> 2) / job.slots)],
+    ),
+  );
   gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
   for (let i = 0; i < 4; ++i) {
     const target = gl.createTexture();
@@ -68,13 +98,15 @@ async function draw(job) {
   gl.drawBuffers([0, 1, 2, 3].map((i) => gl.COLOR_ATTACHMENT0 + i));
   gl.viewport(0, 0, side, side);
   gl.drawArrays(gl.TRIANGLES, 0, 3);
-  const outputs = 2 * job.channels + job.lights, values = new Float32Array(outputs * pairs);
+  const outputs = 2 * job.channels + job.lights,
+    values = new Float32Array(outputs * pairs);
   for (let i = 0; 4 * i < outputs; ++i) {
     const part = new Float32Array(4 * pairs);
     gl.readBuffer(gl.COLOR_ATTACHMENT0 + i);
     gl.readPixels(0, 0, side, side, gl.RGBA, gl.FLOAT, part);
     for (let k = 0; k < pairs; ++k) {
-      for (let c = 0; c < 4 && 4 * i + c < outputs; ++c) values[k * outputs + 4 * i + c] = part[4 * k + c];
+      for (let c = 0; c < 4 && 4 * i + c < outputs; ++c)
+        values[k * outputs + 4 * i + c] = part[4 * k + c];
     }
   }
   if (gl.getError() !== gl.NO_ERROR) throw new Error('WebGL error');
@@ -83,20 +115,23 @@ async function draw(job) {
   gl.getExtension('WEBGL_lose_context').loseContext();
   const bytes = new Uint8Array(values.buffer);
   let text = '';
-  for (let i = 0; i < bytes.length; i += 8192) text += String.fromCharCode(...bytes.subarray(i, i + 8192));
+  for (let i = 0; i < bytes.length; i += 8192)
+    text += String.fromCharCode(...bytes.subarray(i, i + 8192));
   return { values: btoa(text), name };
 }
 
 const [driver, folder] = process.argv.slice(2);
-await finish(() => withBrowser(driver, async (page) => {
-  let name = '';
-  const run = async (on, job) => {
-    const found = await on.evaluate(draw, job);
-    name = found.name ?? name;
-    return found;
-  };
-  await proveCases(folder, page, run);
-  await proveBreaksShow(folder, page, 'glsl-es', run);
-  console.log(name);
-  expect(name.toLowerCase().includes(driver), `ran on ${name}`);
-}));
+await finish(() =>
+  withBrowser(driver, async (page) => {
+    let name = '';
+    const run = async (on, job) => {
+      const found = await on.evaluate(draw, job);
+      name = found.name ?? name;
+      return found;
+    };
+    await proveCases(folder, driver, page, run);
+    await proveBreaksShow(folder, page, 'glsl-es', run);
+    console.log(name);
+    expect(name.toLowerCase().includes(driver), `ran on ${name}`);
+  }),
+);

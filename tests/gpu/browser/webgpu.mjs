@@ -7,23 +7,38 @@ async function compute(job) {
   const adapter = await navigator.gpu?.requestAdapter();
   if (!adapter) throw new Error('no WebGPU adapter');
   const wanted = job.coefficients.number;
-  const formats = { float16: ['rgba16float', 8], float32: ['rgba32float', 16], unorm8: ['rgba8unorm', 4],
-    unorm16: ['rgba16unorm', 8] };
+  const formats = {
+    float16: ['rgba16float', 8],
+    float32: ['rgba32float', 16],
+    unorm8: ['rgba8unorm', 4],
+    unorm16: ['rgba16unorm', 8],
+  };
   if (wanted === 'unorm16') return { left: 'rgba16unorm is no core format' };
   const features = wanted === 'float32' ? ['float32-filterable'] : [];
   const device = await adapter.requestDevice({ requiredFeatures: features });
   device.pushErrorScope('validation');
   const module = device.createShaderModule({ code: job.wgsl });
-  const messages = (await module.getCompilationInfo()).messages.filter(({ type }) => type === 'error');
+  const messages = (await module.getCompilationInfo()).messages.filter(
+    ({ type }) => type === 'error',
+  );
   if (messages.length) throw new Error(messages.map(({ message }) => message).join('\n'));
-  const pipeline = await device.createComputePipelineAsync({ layout: 'auto',
-    compute: { module, entryPoint: 'main' } });
+  const pipeline = await device.createComputePipelineAsync({
+    layout: 'auto',
+    compute: { module, entryPoint: 'main' },
+  });
   const textureOf = ({ width, height, layers, number, bytes }) => {
     const [format, size] = formats[number];
-    const texture = device.createTexture({ size: [width, height, layers], format,
-      usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST });
-    device.queue.writeTexture({ texture }, bytesOf(bytes), { bytesPerRow: width * size,
-      rowsPerImage: height }, [width, height, layers]);
+    const texture = device.createTexture({
+      size: [width, height, layers],
+      format,
+      usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST,
+    });
+    device.queue.writeTexture(
+      { texture },
+      bytesOf(bytes),
+      { bytesPerRow: width * size, rowsPerImage: height },
+      [width, height, layers],
+    );
     return texture.createView({ dimension: '2d-array' });
   };
   const bufferOf = (size, usage, data) => {
@@ -31,19 +46,24 @@ async function compute(job) {
     if (data) device.queue.writeBuffer(buffer, 0, data);
     return buffer;
   };
-  const inputs = bytesOf(job.inputs), pairs = job.side * job.side;
+  const inputs = bytesOf(job.inputs),
+    pairs = job.side * job.side;
   const size = 4 * pairs * (2 * job.channels + job.lights);
   const storage = GPUBufferUsage.STORAGE;
   const results = bufferOf(size, storage | GPUBufferUsage.COPY_SRC);
   const entries = [
     { binding: 0, resource: textureOf(job.coefficients) },
     { binding: 1, resource: device.createSampler({ minFilter: 'linear', magFilter: 'linear' }) },
-    { binding: 3, resource: { buffer: bufferOf(inputs.length, storage | GPUBufferUsage.COPY_DST, inputs) } },
+    {
+      binding: 3,
+      resource: { buffer: bufferOf(inputs.length, storage | GPUBufferUsage.COPY_DST, inputs) },
+    },
     { binding: 4, resource: { buffer: results } },
   ];
   if (job.basis) entries.push({ binding: 2, resource: textureOf(job.basis) });
   const readable = bufferOf(size, GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST);
-  const encoder = device.createCommandEncoder(), pass = encoder.beginComputePass();
+  const encoder = device.createCommandEncoder(),
+    pass = encoder.beginComputePass();
   pass.setPipeline(pipeline);
   pass.setBindGroup(0, device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries }));
   pass.dispatchWorkgroups(pairs / 64);
@@ -55,7 +75,8 @@ async function compute(job) {
   await readable.mapAsync(GPUMapMode.READ);
   const bytes = new Uint8Array(readable.getMappedRange());
   let text = '';
-  for (let i = 0; i < bytes.length; i += 8192) text += String.fromCharCode(...bytes.subarray(i, i + 8192));
+  for (let i = 0; i < bytes.length; i += 8192)
+    text += String.fromCharCode(...bytes.subarray(i, i + 8192));
   const { vendor, architecture } = adapter.info;
   device.destroy();
   return { values: btoa(text), name: `${vendor} ${architecture}` };
@@ -63,17 +84,24 @@ async function compute(job) {
 
 const [folder] = process.argv.slice(2);
 // WebGPU is there for secure origins only, of which localhost is one.
-const files = (path) => (path === '/' ? { contentType: 'text/html', body: '<title>check</title>' } : null);
-await finish(() => withBrowser('webgpu', async (page) => {
-  await page.goto('http://localhost/');
-  let name = '';
-  const run = async (on, job) => {
-    const found = await on.evaluate(compute, job);
-    name = found.name ?? name;
-    return found;
-  };
-  await proveCases(folder, page, run);
-  await proveBreaksShow(folder, page, 'wgsl', run);
-  console.log(name);
-  expect(name.includes('swiftshader'), `ran on ${name}`);
-}, { files }));
+const files = (path) =>
+  path === '/' ? { contentType: 'text/html', body: '<title>check</title>' } : null;
+await finish(() =>
+  withBrowser(
+    'webgpu',
+    async (page) => {
+      await page.goto('http://localhost/');
+      let name = '';
+      const run = async (on, job) => {
+        const found = await on.evaluate(compute, job);
+        name = found.name ?? name;
+        return found;
+      };
+      await proveCases(folder, 'swiftshader', page, run);
+      await proveBreaksShow(folder, page, 'wgsl', run);
+      console.log(name);
+      expect(name.includes('swiftshader'), `ran on ${name}`);
+    },
+    { files },
+  ),
+);

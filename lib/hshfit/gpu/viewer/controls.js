@@ -19,7 +19,8 @@ function stateFromAddress(state) {
 
 function significant(x, digits = 3) {
   if (x === 0) return '0';
-  return Math.abs(x) >= 1e-3 && Math.abs(x) < 1e4 ? String(+x.toPrecision(digits))
+  return Math.abs(x) >= 1e-3 && Math.abs(x) < 1e4
+    ? String(+x.toPrecision(digits))
     : x.toExponential(digits - 1);
 }
 
@@ -30,10 +31,26 @@ class Viewer {
     this.renderer = new Renderer(this.canvas, data);
     const [image] = this.renderer.images;
     this.state = stateFromAddress({
-      order: data.order, shape: 'sphere', lighting: 'point', layout: 'panes', clamp: true,
-      intensity: 0, skyTurn: 0, exposure: 0, exposureSet: false, pair: 0, scale: -1, scaleSet: false,
-      azimuth: 15, elevation: 12, distance: 1, lightAzimuth: -30, lightElevation: 32,
-      dividers: '25,50,75', frames: 32, cycles: 8,
+      order: data.order,
+      shape: 'sphere',
+      lighting: 'point',
+      layout: 'panes',
+      clamp: true,
+      intensity: 0,
+      skyTurn: 0,
+      exposure: 0,
+      exposureSet: false,
+      pair: 0,
+      scale: -1,
+      scaleSet: false,
+      azimuth: 15,
+      elevation: 12,
+      distance: 1,
+      lightAzimuth: -30,
+      lightElevation: 32,
+      dividers: '25,50,75',
+      frames: 32,
+      cycles: 8,
     });
     this.autoExposure = !this.state.exposureSet;
     this.exposureWanted = this.autoExposure;
@@ -50,7 +67,8 @@ class Viewer {
 
   // The pairs whose difference can be shown: every fit against the exact picture, and one another.
   makePairs() {
-    const images = this.renderer.images, exact = images.find((image) => image.exact);
+    const images = this.renderer.images,
+      exact = images.find((image) => image.exact);
     const fits = images.filter((image) => image.fit);
     const pairs = exact ? fits.map((fit) => [fit, exact]) : [];
     if (fits.length > 1) pairs.push([fits[0], fits[1]]);
@@ -64,13 +82,17 @@ class Viewer {
   bind() {
     const redraw = (key, id = key) => {
       element(id).addEventListener('input', (event) => {
-        this.state[key] = event.target.type === 'checkbox' ? event.target.checked : +event.target.value;
+        this.state[key] =
+          event.target.type === 'checkbox' ? event.target.checked : +event.target.value;
         if (key === 'exposure') this.autoExposure = false;
         if (key === 'scale') this.state.scaleSet = true;
-        if (['exposure', 'scale', 'pair'].includes(key)) this.shown(); else this.changed();
+        if (['exposure', 'scale', 'pair'].includes(key)) this.shown();
+        else this.changed();
       });
     };
-    ['order', 'clamp', 'intensity', 'skyTurn', 'exposure', 'scale', 'pair'].forEach((key) => redraw(key));
+    ['order', 'clamp', 'intensity', 'skyTurn', 'exposure', 'scale', 'pair'].forEach((key) =>
+      redraw(key),
+    );
     for (const key of ['shape', 'lighting', 'layout']) {
       document.querySelectorAll(`input[name=${key}]`).forEach((input) => {
         input.checked = input.value === this.state[key];
@@ -85,7 +107,10 @@ class Viewer {
       this.autoExposure = this.exposureWanted = true;
       this.shown();
     });
-    element('autoScale').addEventListener('click', () => { this.state.scaleSet = false; this.shown(); });
+    element('autoScale').addEventListener('click', () => {
+      this.state.scaleSet = false;
+      this.shown();
+    });
     element('controls').addEventListener('submit', (event) => event.preventDefault());
     new ResizeObserver(() => this.changed()).observe(element('stage'));
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.shown());
@@ -106,12 +131,17 @@ class Viewer {
   }
 
   // Something that only their display depends on.
-  shown() { this.schedule(); }
+  shown() {
+    this.schedule();
+  }
 
   schedule() {
     if (this.scheduled) return;
     this.scheduled = true;
-    requestAnimationFrame(() => { this.scheduled = false; this.update(); });
+    requestAnimationFrame(() => {
+      this.scheduled = false;
+      this.update();
+    });
   }
 
   update() {
@@ -134,67 +164,91 @@ class Viewer {
 
   // Half the size while something moves, where whole frames take longer than 70 ms.
   chooseSize() {
-    const now = performance.now(), [pane] = this.panes;
+    const now = performance.now(),
+      [pane] = this.panes;
     if (!this.coarse && !this.settled && this.renderer.frame > 1) {
       this.slow = now - this.lastUpdate > 70;
     }
     this.lastUpdate = now;
     this.coarse = Boolean(this.slow && this.numbers) && now - this.lastChange < 300;
-    const scale = this.coarse ? .5 : 1, { frame } = this.renderer;
+    const scale = this.coarse ? 0.5 : 1,
+      { frame } = this.renderer;
     this.renderer.resize(Math.round(pane.width * scale), Math.round(pane.height * scale));
     if (this.renderer.frame !== frame) this.measured = -1;
   }
 
   scene() {
-    const { state, renderer } = this, rad = Math.PI / 180;
+    const { state, renderer } = this,
+      rad = Math.PI / 180;
     const around = (azimuth, elevation) => [
-      Math.cos(elevation * rad) * Math.sin(azimuth * rad), Math.sin(elevation * rad),
-      Math.cos(elevation * rad) * Math.cos(azimuth * rad)];
+      Math.cos(elevation * rad) * Math.sin(azimuth * rad),
+      Math.sin(elevation * rad),
+      Math.cos(elevation * rad) * Math.cos(azimuth * rad),
+    ];
     const { radius, extent } = renderer.shapes[state.shape];
-    const towards = around(state.azimuth, state.elevation), aspect = renderer.width / renderer.height;
+    const towards = around(state.azimuth, state.elevation),
+      aspect = renderer.width / renderer.height;
     // The shape fills 86 % of the pane, one way or the other.
     const half = 15 * rad;
-    const reach = Math.max(extent[0] / aspect, extent[1]) / Math.tan(half) / .86 * state.distance;
-    const lightDistance = 3.2 * radius, strength = 2 ** state.intensity;
+    const reach =
+      (Math.max(extent[0] / aspect, extent[1]) / Math.tan(half) / 0.86) * state.distance;
+    const lightDistance = 3.2 * radius,
+      strength = 2 ** state.intensity;
     return {
-      shape: state.shape, order: state.order, clamp: state.clamp, skyTurn: state.skyTurn * rad,
-      eye: towards.map((x) => x * reach), camera: lookAt(towards, reach, half, aspect, radius),
+      shape: state.shape,
+      order: state.order,
+      clamp: state.clamp,
+      skyTurn: state.skyTurn * rad,
+      eye: towards.map((x) => x * reach),
+      camera: lookAt(towards, reach, half, aspect, radius),
       light: around(state.lightAzimuth, state.lightElevation).map((x) => x * lightDistance),
-      lightDistance, pointStrength: state.lighting === 'sky' ? 0 : strength,
+      lightDistance,
+      pointStrength: state.lighting === 'sky' ? 0 : strength,
       environmentStrength: state.lighting === 'point' ? 0 : strength,
     };
   }
 
   look() {
-    const paper = getComputedStyle(element('stage')).backgroundColor.match(/[\d.]+/g).slice(0, 3);
-    return { paper: paper.map((x) => x / 255), exposure: 2 ** this.state.exposure,
-      scale: 10 ** this.state.scale, showNegative: !this.state.clamp };
+    const paper = getComputedStyle(element('stage'))
+      .backgroundColor.match(/[\d.]+/g)
+      .slice(0, 3);
+    return {
+      paper: paper.map((x) => x / 255),
+      exposure: 2 ** this.state.exposure,
+      scale: 10 ** this.state.scale,
+      showNegative: !this.state.clamp,
+    };
   }
 
   // The exposure at which 99 % of the surface is at or below 0.8 of white.
   setExposure() {
-    const pixels = this.renderer.read(this.renderer.images[0]), found = [];
+    const pixels = this.renderer.read(this.renderer.images[0]),
+      found = [];
     for (let k = 0; k < pixels.length; k += 4) {
-      if (pixels[k + 3] > .5) found.push(Math.max(pixels[k], pixels[k + 1], pixels[k + 2]));
+      if (pixels[k + 3] > 0.5) found.push(Math.max(pixels[k], pixels[k + 1], pixels[k + 2]));
     }
     found.sort((a, b) => a - b);
-    const high = found[Math.floor(.99 * (found.length - 1))];
-    const stops = high > 0 ? Math.log2(.8 / high) : 0;
+    const high = found[Math.floor(0.99 * (found.length - 1))];
+    const stops = high > 0 ? Math.log2(0.8 / high) : 0;
     this.state.exposure = Math.round(10 * Math.min(Math.max(stops, -10), 10)) / 10;
     this.exposureWanted = false;
   }
 
-  // Largest and mean difference of every pair over the pixels on the shape, and their share below 0.
+  // Largest and mean difference of every pair over the pixels on the shape; their share below 0.
   measure() {
     this.measured = this.renderer.frame;
-    const pictures = new Map(this.renderer.images.map((image) => [image, this.renderer.read(image)]));
+    const pictures = new Map(
+      this.renderer.images.map((image) => [image, this.renderer.read(image)]),
+    );
     this.numbers = this.pairs.map(([a, b]) => compared(pictures.get(a), pictures.get(b)));
     this.negative = new Map([...pictures].map(([image, pixels]) => [image, negativeShare(pixels)]));
   }
 
   writeTexts(progress) {
     const { state } = this;
-    const text = (id, value) => { if (element(id).textContent !== value) element(id).textContent = value; };
+    const text = (id, value) => {
+      if (element(id).textContent !== value) element(id).textContent = value;
+    };
     for (const key of ['order', 'intensity', 'skyTurn', 'exposure', 'scale', 'pair']) {
       element(key).value = state[key];
     }
@@ -215,9 +269,14 @@ class Viewer {
     text('scaleText', significant(10 ** state.scale, 2));
     document.querySelectorAll('.legend span').forEach((span) => {
       const s = significant(10 ** state.scale, 2);
-      span.replaceChildren(...[`−${s}`, '0', `+${s}`].map((x) => {
-        const b = document.createElement('b'); b.style.fontWeight = 400; b.textContent = x; return b;
-      }));
+      span.replaceChildren(
+        ...[`−${s}`, '0', `+${s}`].map((x) => {
+          const b = document.createElement('b');
+          b.style.fontWeight = 400;
+          b.textContent = x;
+          return b;
+        }),
+      );
     });
     text('progress', progress);
     if (this.numbers) writeNumbers(this, factor);
@@ -225,7 +284,11 @@ class Viewer {
 }
 
 function compared(a, b) {
-  let largest = 0, sum = 0, squares = 0, reference = 0, count = 0;
+  let largest = 0,
+    sum = 0,
+    squares = 0,
+    reference = 0,
+    count = 0;
   const all = [];
   for (let k = 0; k < a.length; k += 4) {
     if (!(b[k + 3] > 0)) continue;
@@ -242,12 +305,17 @@ function compared(a, b) {
     ++count;
   }
   all.sort((x, y) => x - y);
-  return { largest, mean: count ? sum / count : 0, high: all[Math.floor(.995 * (count - 1))] ?? 0,
-    relative: reference > 0 ? Math.sqrt(squares / reference) : NaN };
+  return {
+    largest,
+    mean: count ? sum / count : 0,
+    high: all[Math.floor(0.995 * (count - 1))] ?? 0,
+    relative: reference > 0 ? Math.sqrt(squares / reference) : NaN,
+  };
 }
 
 function negativeShare(pixels) {
-  let below = 0, count = 0;
+  let below = 0,
+    count = 0;
   for (let k = 0; k < pixels.length; k += 4) {
     if (!(pixels[k + 3] > 0)) continue;
     ++count;
@@ -269,11 +337,19 @@ function writeNumbers(viewer, factor) {
   };
   const table = element('numbers');
   const open = !viewer.state.clamp;
-  table.tHead.replaceChildren(cells('th', ['', 'max', 'mean', 'r.m.s.', ...(open ? ['below 0'] : [])]));
-  table.tBodies[0].replaceChildren(...viewer.pairs.map(([a, b], i) => {
-    const { largest, mean, relative } = viewer.numbers[i];
-    return cells('td', [`${a.name} − ${b.name}`, significant(largest * factor),
-      significant(mean * factor, 2), Number.isFinite(relative) ? `${significant(100 * relative)} %` : '–',
-      ...(open ? [`${significant(100 * viewer.negative.get(a))} %`] : [])]);
-  }));
+  table.tHead.replaceChildren(
+    cells('th', ['', 'max', 'mean', 'r.m.s.', ...(open ? ['below 0'] : [])]),
+  );
+  table.tBodies[0].replaceChildren(
+    ...viewer.pairs.map(([a, b], i) => {
+      const { largest, mean, relative } = viewer.numbers[i];
+      return cells('td', [
+        `${a.name} − ${b.name}`,
+        significant(largest * factor),
+        significant(mean * factor, 2),
+        Number.isFinite(relative) ? `${significant(100 * relative)} %` : '–',
+        ...(open ? [`${significant(100 * viewer.negative.get(a))} %`] : []),
+      ]);
+    }),
+  );
 }

@@ -5,8 +5,10 @@ const exactName = 'Exact';
 Object.assign(Viewer.prototype, {
   // Sizes the canvas and places panes and labels: four panes, or one picture cut by dividers.
   arrange() {
-    const stage = element('stage'), ratio = Math.min(devicePixelRatio || 1, 2);
-    const width = Math.round(stage.clientWidth * ratio), height = Math.round(stage.clientHeight * ratio);
+    const stage = element('stage'),
+      ratio = Math.min(devicePixelRatio || 1, 2);
+    const width = Math.round(stage.clientWidth * ratio),
+      height = Math.round(stage.clientHeight * ratio);
     const key = [width, height, this.state.layout].join();
     if (key === this.arranged || width < 8 || height < 8) return;
     this.arranged = key;
@@ -20,11 +22,17 @@ Object.assign(Viewer.prototype, {
     const paneHeight = split ? height : Math.floor((height - gap) / 2);
     this.panes = this.contents().map((content, i) => ({
       ...content,
-      get first() { return content.first?.(); },
-      get second() { return content.second?.(); },
+      get first() {
+        return content.first?.();
+      },
+      get second() {
+        return content.second?.();
+      },
       x: split || i % 2 === 0 ? 0 : width - paneWidth,
       y: split || i >= 2 ? 0 : height - paneHeight,
-      width: paneWidth, height: paneHeight, clip: null,
+      width: paneWidth,
+      height: paneHeight,
+      clip: null,
     }));
     this.pixelRatio = ratio;
     this.makeLabels();
@@ -35,15 +43,21 @@ Object.assign(Viewer.prototype, {
   // Exact, first fit, second fit, difference, whether or not there is one.
   contents() {
     const images = this.renderer.images;
-    const exact = images.find((image) => image.exact), fits = images.filter((image) => image.fit);
+    const exact = images.find((image) => image.exact),
+      fits = images.filter((image) => image.fit);
     const pair = () => this.pairs[this.state.pair];
     return [
       { name: exactName, first: () => exact, why: this.data.exact.absent },
       { name: fits[0].name, first: () => fits[0] },
-      fits[1] ? { name: fits[1].name, first: () => fits[1] }
+      fits[1]
+        ? { name: fits[1].name, first: () => fits[1] }
         : { name: 'Second basis', why: 'This page has one basis only.' },
-      { name: 'Difference', first: () => pair()?.[0], second: () => pair()?.[1],
-        why: 'There is nothing to compare with.' },
+      {
+        name: 'Difference',
+        first: () => pair()?.[0],
+        second: () => pair()?.[1],
+        why: 'There is nothing to compare with.',
+      },
     ];
   },
 
@@ -61,75 +75,110 @@ Object.assign(Viewer.prototype, {
     this.legend.hidden = !this.panes[3].first;
     this.handles = this.split ? this.dividers.map((_, i) => makeDivider(this, i)) : [];
     const rules = this.split ? [] : [make('rule'), make('rule')];
-    const [first] = this.panes, ratio = this.pixelRatio;
+    const [first] = this.panes,
+      ratio = this.pixelRatio;
     if (rules.length) {
-      Object.assign(rules[0].style, { left: 0, width: '100%', top: `${first.height / ratio}px`,
-        height: '2px' });
-      Object.assign(rules[1].style, { top: 0, height: '100%', left: `${first.width / ratio}px`,
-        width: '2px' });
+      Object.assign(rules[0].style, {
+        left: 0,
+        width: '100%',
+        top: `${first.height / ratio}px`,
+        height: '2px',
+      });
+      Object.assign(rules[1].style, {
+        top: 0,
+        height: '100%',
+        left: `${first.width / ratio}px`,
+        width: '2px',
+      });
     }
     this.sun ??= makeSun(this);
-    element('overlay').replaceChildren(...rules, ...this.absences, ...this.tags, this.legend,
-      ...this.handles, this.sun);
+    element('overlay').replaceChildren(
+      ...rules,
+      ...this.absences,
+      ...this.tags,
+      this.legend,
+      ...this.handles,
+      this.sun,
+    );
   },
 
   // Cuts the split picture at the dividers, and puts labels where the panes are.
   cut() {
-    const { width, height } = this.canvas, ratio = this.pixelRatio;
+    const { width, height } = this.canvas,
+      ratio = this.pixelRatio;
     const cuts = [0, ...this.dividers.map((x) => Math.round(x * width)), width];
     this.panes.forEach((pane, i) => {
       if (this.split) pane.clip = [cuts[i], cuts[i + 1]];
       const [left, right] = (pane.clip ?? [pane.x, pane.x + pane.width]).map((x) => x / ratio);
       const top = (height - pane.y - pane.height) / ratio;
       const place = (box, style) => Object.assign(box.style, style);
-      place(this.tags[i], { left: `${left + 10}px`, top: `${top + 10}px`,
-        maxWidth: `${Math.max(right - left - 18, 0)}px` });
+      place(this.tags[i], {
+        left: `${left + 10}px`,
+        top: `${top + 10}px`,
+        maxWidth: `${Math.max(right - left - 18, 0)}px`,
+      });
       this.tags[i].hidden = right - left < 30;
-      place(this.absences[i], { left: `${left}px`, top: `${top}px`, width: `${right - left}px`,
-        height: `${pane.height / ratio}px` });
+      place(this.absences[i], {
+        left: `${left}px`,
+        top: `${top}px`,
+        width: `${right - left}px`,
+        height: `${pane.height / ratio}px`,
+      });
       this.absences[i].hidden = Boolean(pane.first) || right - left < 30;
       if (i === 3) {
-        place(this.legend, { left: `${left + 10}px`, top: `${(height - pane.y) / ratio - 50}px`,
-          maxWidth: `${Math.max(right - left - 18, 0)}px` });
+        place(this.legend, {
+          left: `${left + 10}px`,
+          top: `${(height - pane.y) / ratio - 50}px`,
+          maxWidth: `${Math.max(right - left - 18, 0)}px`,
+        });
       }
     });
     this.handles.forEach((handle, i) => {
-      handle.style.left = `${this.dividers[i] * width / ratio}px`;
+      handle.style.left = `${(this.dividers[i] * width) / ratio}px`;
       handle.setAttribute('aria-valuenow', Math.round(100 * this.dividers[i]));
     });
   },
 
   // The light as a disc over the first pane: its direction seen along the line of sight.
   placeSun() {
-    const pane = this.panes[0], ratio = this.pixelRatio;
-    const d = this.lightInView(), reach = .44 * Math.min(pane.width, pane.height) / ratio;
+    const pane = this.panes[0],
+      ratio = this.pixelRatio;
+    const d = this.lightInView(),
+      reach = (0.44 * Math.min(pane.width, pane.height)) / ratio;
     this.sun.style.left = `${(pane.x + pane.width / 2) / ratio + reach * d[0]}px`;
-    this.sun.style.top = `${(this.canvas.height - pane.y - pane.height / 2) / ratio - reach * d[1]}px`;
+    const middle = (this.canvas.height - pane.y - pane.height / 2) / ratio;
+    this.sun.style.top = `${middle - reach * d[1]}px`;
     this.sun.classList.toggle('behind', d[2] < 0);
     this.sun.hidden = this.state.lighting === 'sky';
     this.sunReach = reach;
   },
 
   viewFrame() {
-    const rad = Math.PI / 180, a = this.state.azimuth * rad, e = this.state.elevation * rad;
+    const rad = Math.PI / 180,
+      a = this.state.azimuth * rad,
+      e = this.state.elevation * rad;
     const z = [Math.cos(e) * Math.sin(a), Math.sin(e), Math.cos(e) * Math.cos(a)];
     const x = [Math.cos(a), 0, -Math.sin(a)];
     return [x, cross(z, x), z];
   },
 
   lightInView() {
-    const rad = Math.PI / 180, a = this.state.lightAzimuth * rad, e = this.state.lightElevation * rad;
+    const rad = Math.PI / 180,
+      a = this.state.lightAzimuth * rad,
+      e = this.state.lightElevation * rad;
     const d = [Math.cos(e) * Math.sin(a), Math.sin(e), Math.cos(e) * Math.cos(a)];
     return this.viewFrame().map((axis) => dot(axis, d));
   },
 
   setLightInView(x, y, front) {
-    const radius = Math.hypot(x, y), s = radius > 1 ? 1 / radius : 1;
+    const radius = Math.hypot(x, y),
+      s = radius > 1 ? 1 / radius : 1;
     const z = Math.sqrt(Math.max(0, 1 - Math.min(radius, 1) ** 2)) * (front ? 1 : -1);
-    const frame = this.viewFrame(), at = [x * s, y * s, z];
+    const frame = this.viewFrame(),
+      at = [x * s, y * s, z];
     const d = [0, 1, 2].map((c) => frame.reduce((sum, axis, i) => sum + axis[c] * at[i], 0));
-    this.state.lightAzimuth = Math.atan2(d[0], d[2]) * 180 / Math.PI;
-    this.state.lightElevation = Math.asin(Math.min(Math.max(d[1], -1), 1)) * 180 / Math.PI;
+    this.state.lightAzimuth = (Math.atan2(d[0], d[2]) * 180) / Math.PI;
+    this.state.lightElevation = (Math.asin(Math.min(Math.max(d[1], -1), 1)) * 180) / Math.PI;
     this.placeSun();
     this.changed();
   },
@@ -142,17 +191,21 @@ Object.assign(Viewer.prototype, {
   },
 
   zoom(factor) {
-    this.state.distance = Math.min(Math.max(this.state.distance * factor, .4), 3);
+    this.state.distance = Math.min(Math.max(this.state.distance * factor, 0.4), 3);
     this.changed();
   },
 });
 
 // A perspective of `half` angle above and below the axis, from `reach` along `towards`.
 function lookAt(towards, reach, half, aspect, radius) {
-  const x = unit(cross([0, 1, 0], towards)), y = cross(towards, x);
-  const near = Math.max(reach - 2 * radius, .05), far = reach + 2 * radius;
-  const scale = 1 / Math.tan(half), a = (near + far) / (near - far), b = 2 * near * far / (near - far);
-  const rows = [x.map((v) => v * scale / aspect), y.map((v) => v * scale), towards];
+  const x = unit(cross([0, 1, 0], towards)),
+    y = cross(towards, x);
+  const near = Math.max(reach - 2 * radius, 0.05),
+    far = reach + 2 * radius;
+  const scale = 1 / Math.tan(half),
+    a = (near + far) / (near - far),
+    b = (2 * near * far) / (near - far);
+  const rows = [x.map((v) => (v * scale) / aspect), y.map((v) => v * scale), towards];
   const columns = [];
   for (let c = 0; c < 3; ++c) columns.push(rows[0][c], rows[1][c], a * rows[2][c], -rows[2][c]);
   return [...columns, 0, 0, -a * reach + b, reach];
@@ -161,7 +214,8 @@ function lookAt(towards, reach, half, aspect, radius) {
 const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 function bindCamera(viewer) {
-  const canvas = viewer.canvas, pointers = new Map();
+  const canvas = viewer.canvas,
+    pointers = new Map();
   const spread = () => {
     const [a, b] = [...pointers.values()];
     return Math.hypot(a.x - b.x, a.y - b.y);
@@ -176,20 +230,24 @@ function bindCamera(viewer) {
     const before = pointers.size === 2 ? spread() : 0;
     pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
     if (pointers.size === 2) viewer.zoom(before / Math.max(spread(), 1));
-    else viewer.turn(-.4 * (event.clientX - old.x), .4 * (event.clientY - old.y));
+    else viewer.turn(-0.4 * (event.clientX - old.x), 0.4 * (event.clientY - old.y));
   });
   for (const kind of ['pointerup', 'pointercancel']) {
     canvas.addEventListener(kind, (event) => pointers.delete(event.pointerId));
   }
-  canvas.addEventListener('wheel', (event) => {
-    event.preventDefault();
-    viewer.zoom(Math.exp(.0012 * event.deltaY));
-  }, { passive: false });
+  canvas.addEventListener(
+    'wheel',
+    (event) => {
+      event.preventDefault();
+      viewer.zoom(Math.exp(0.0012 * event.deltaY));
+    },
+    { passive: false },
+  );
   canvas.addEventListener('keydown', (event) => {
     const arrow = arrows[event.key];
     if (arrow) viewer.turn(5 * arrow[0], 5 * arrow[1]);
-    else if (event.key === '+' || event.key === '=') viewer.zoom(.9);
-    else if (event.key === '-') viewer.zoom(1 / .9);
+    else if (event.key === '+' || event.key === '=') viewer.zoom(0.9);
+    else if (event.key === '-') viewer.zoom(1 / 0.9);
     else return;
     event.preventDefault();
   });
@@ -212,16 +270,23 @@ function makeSun(viewer) {
   sun.type = 'button';
   sun.className = 'sun';
   sun.title = 'The point light. Double-click: to the other side.';
-  sun.setAttribute('aria-label', 'Point light: arrow keys move it, Enter sends it to the other side');
+  sun.setAttribute(
+    'aria-label',
+    'Point light: arrow keys move it, Enter sends it to the other side',
+  );
   const rays = [0, 45, 90, 135, 180, 225, 270, 315]
-    .map((a) => `<path d="M0-8.5V-12.5" transform="rotate(${a})" stroke-width="2.4"/>`).join('');
+    .map((a) => `<path d="M0-8.5V-12.5" transform="rotate(${a})" stroke-width="2.4"/>`)
+    .join('');
   sun.innerHTML = `<svg viewBox="-15 -15 30 30" aria-hidden="true"><circle r="6.5"/>${rays}</svg>`;
   onDrag(sun, (x, y) => {
-    const box = viewer.canvas.getBoundingClientRect(), pane = viewer.panes[0];
+    const box = viewer.canvas.getBoundingClientRect(),
+      pane = viewer.panes[0];
     const ratio = viewer.canvas.width / box.width;
-    viewer.setLightInView((x - box.left - (pane.x + pane.width / 2) / ratio) / viewer.sunReach,
+    viewer.setLightInView(
+      (x - box.left - (pane.x + pane.width / 2) / ratio) / viewer.sunReach,
       ((viewer.canvas.height - pane.y - pane.height / 2) / ratio - (y - box.top)) / viewer.sunReach,
-      viewer.lightInView()[2] >= 0);
+      viewer.lightInView()[2] >= 0,
+    );
   });
   const other = () => {
     const d = viewer.lightInView();
@@ -229,8 +294,9 @@ function makeSun(viewer) {
   };
   sun.addEventListener('dblclick', other);
   sun.addEventListener('keydown', (event) => {
-    const arrow = arrows[event.key], d = viewer.lightInView();
-    if (arrow) viewer.setLightInView(d[0] + .05 * arrow[0], d[1] + .05 * arrow[1], d[2] >= 0);
+    const arrow = arrows[event.key],
+      d = viewer.lightInView();
+    if (arrow) viewer.setLightInView(d[0] + 0.05 * arrow[0], d[1] + 0.05 * arrow[1], d[2] >= 0);
     else if (event.key === 'Enter') other();
     else return;
     event.preventDefault();
@@ -258,7 +324,7 @@ function makeDivider(viewer, index) {
   divider.addEventListener('keydown', (event) => {
     const arrow = arrows[event.key];
     if (!arrow || !arrow[0]) return;
-    move(viewer.dividers[index] + .01 * arrow[0]);
+    move(viewer.dividers[index] + 0.01 * arrow[0]);
     event.preventDefault();
   });
   return divider;

@@ -4,22 +4,34 @@
 class Unsupported extends Error {}
 
 function openContext(canvas) {
-  const gl = canvas.getContext('webgl2', { antialias: false, depth: false, alpha: false,
-    preserveDrawingBuffer: true, powerPreference: 'high-performance' });
+  const gl = canvas.getContext('webgl2', {
+    antialias: false,
+    depth: false,
+    alpha: false,
+    preserveDrawingBuffer: true,
+    powerPreference: 'high-performance',
+  });
   if (!gl) {
-    throw new Unsupported('This page needs WebGL 2, which this browser does not offer here. ' +
-      'Switch on hardware acceleration in its settings, or open the page in another browser.');
+    throw new Unsupported(
+      'This page needs WebGL 2, which this browser does not offer here. ' +
+        'Switch on hardware acceleration in its settings, or open the page in another browser.',
+    );
   }
   if (!gl.getExtension('EXT_color_buffer_float')) {
-    throw new Unsupported('This page draws into floating-point textures (EXT_color_buffer_float), ' +
-      'which this device does not offer. Most desktop computers do.');
+    throw new Unsupported(
+      'This page draws into floating-point textures (EXT_color_buffer_float), ' +
+        'which this device does not offer. Most desktop computers do.',
+    );
   }
   return gl;
 }
 
 function makeProgram(gl, vertex, fragment, name) {
   const program = gl.createProgram();
-  for (const [type, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+  for (const [type, source] of [
+    [gl.VERTEX_SHADER, vertex],
+    [gl.FRAGMENT_SHADER, fragment],
+  ]) {
     const shader = gl.createShader(type);
     gl.shaderSource(shader, source);
     gl.compileShader(shader);
@@ -45,8 +57,12 @@ function halfArray(gl, width, height, layers, halves) {
   const texture = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture);
   gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, gl.RGBA16F, width, height, layers);
-  for (const [key, value] of [[gl.TEXTURE_MIN_FILTER, gl.LINEAR], [gl.TEXTURE_MAG_FILTER, gl.LINEAR],
-    [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE], [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE]]) {
+  for (const [key, value] of [
+    [gl.TEXTURE_MIN_FILTER, gl.LINEAR],
+    [gl.TEXTURE_MAG_FILTER, gl.LINEAR],
+    [gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE],
+    [gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE],
+  ]) {
     gl.texParameteri(gl.TEXTURE_2D_ARRAY, key, value);
   }
   fillArray(gl, texture, width, height, layers, halves);
@@ -58,8 +74,19 @@ function fillArray(gl, texture, width, height, layers, halves) {
   gl.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, false);
   gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
   gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture);
-  gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, 0, width, height, layers, gl.RGBA, gl.HALF_FLOAT,
-    halves);
+  gl.texSubImage3D(
+    gl.TEXTURE_2D_ARRAY,
+    0,
+    0,
+    0,
+    0,
+    width,
+    height,
+    layers,
+    gl.RGBA,
+    gl.HALF_FLOAT,
+    halves,
+  );
 }
 
 // The coefficients with all bands from `order` on set to 0: what a lower order would have stored.
@@ -76,7 +103,7 @@ function truncated(fit, order) {
 
 class Renderer {
   constructor(canvas, data) {
-    const gl = this.gl = openContext(canvas);
+    const gl = (this.gl = openContext(canvas));
     this.canvas = canvas;
     this.lights = studio(data.skyOrder);
     this.data = data;
@@ -85,16 +112,23 @@ class Renderer {
     this.geometry = makeProgram(gl, file.geometryVertex, file.geometryFragment, 'geometry');
     this.composite = makeProgram(gl, file.screenVertex, file.compositeFragment, 'panes');
     this.images = data.fits.map((fit) => ({
-      name: fit.name, fit, order: 0,
+      name: fit.name,
+      fit,
+      order: 0,
       shader: makeProgram(gl, file.screenVertex, this.fitSource(fit, sky), fit.name),
       texture: halfArray(gl, fit.width, fit.height, fit.layers, fit.halves),
     }));
     if (data.exact.halves) {
       const e = data.exact;
       this.images.unshift({
-        name: 'exact', exact: e,
-        shader: makeProgram(gl, file.screenVertex, this.exactSource(e, sky) + file.shadeFragment,
-          'exact'),
+        name: 'exact',
+        exact: e,
+        shader: makeProgram(
+          gl,
+          file.screenVertex,
+          this.exactSource(e, sky) + file.shadeFragment,
+          'exact',
+        ),
         texture: halfArray(gl, e.width, e.height, e.azimuths * e.rest, e.halves),
       });
     }
@@ -105,33 +139,40 @@ class Renderer {
 
   fitSource(fit, sky) {
     const order = this.data.skyOrder;
-    return `${this.head()}${fit.shader}\n#define SKY_ORDER ${order}\n` +
+    return (
+      `${this.head()}${fit.shader}\n#define SKY_ORDER ${order}\n` +
       `#define FIT_EVAL ${fit.prefix}_eval\n#define FIT_RAW ${fit.prefix}_evalRaw\n` +
       `#define FIT_SHADE ${fit.prefix}_shade\n#define FIT_HAS_COSINE ${fit.hasCosine}\n` +
       `${sky}${this.data.shaders.fit.replace('{{addLight}}', skySource(order, fit.oddSign))}` +
-      this.data.shaders.shadeFragment;
+      this.data.shaders.shadeFragment
+    );
   }
 
   exactSource(e, sky) {
     const powers = this.lights.map(({ power }) => power.toFixed(1)).join(', ');
     const mirrored = e.isotropic && e.bilateral;
-    const range = Math.PI * (e.reciprocal ? 1 : 2) / (mirrored ? 2 : 1);
-    return `${this.head()}#define EXACT_SAMPLES ${e.samples}\n` +
+    const range = (Math.PI * (e.reciprocal ? 1 : 2)) / (mirrored ? 2 : 1);
+    return (
+      `${this.head()}#define EXACT_SAMPLES ${e.samples}\n` +
       `#define EXACT_ISOTROPIC ${e.isotropic}\n#define EXACT_BILATERAL ${e.bilateral}\n` +
       `#define EXACT_MIRRORED ${mirrored}\n#define EXACT_RANGE ${range.toFixed(15)}\n` +
       `#define EXACT_AZIMUTHS ${e.azimuths}\n#define EXACT_REST ${e.rest}\n` +
       `#define EXACT_LAST_THETA ${e.lastTheta.toFixed(15)}\n${sky}` +
       `const float SKY_POWER[SKY_LIGHTS] = float[](${powers});\n` +
-      this.data.shaders.exact;
+      this.data.shaders.exact
+    );
   }
 
   head() {
-    return '#version 300 es\nprecision highp float;\nprecision highp int;\n' +
-      'precision highp sampler2D;\nprecision highp sampler2DArray;\n';
+    return (
+      '#version 300 es\nprecision highp float;\nprecision highp int;\n' +
+      'precision highp sampler2D;\nprecision highp sampler2DArray;\n'
+    );
   }
 
   upload(shape) {
-    const gl = this.gl, vao = gl.createVertexArray();
+    const gl = this.gl,
+      vao = gl.createVertexArray();
     gl.bindVertexArray(vao);
     gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
     gl.bufferData(gl.ARRAY_BUFFER, shape.vertices, gl.STATIC_DRAW);
@@ -146,7 +187,8 @@ class Renderer {
   }
 
   target(width, height, textures, depth) {
-    const gl = this.gl, framebuffer = gl.createFramebuffer();
+    const gl = this.gl,
+      framebuffer = gl.createFramebuffer();
     gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
     const made = [];
     for (let i = 0; i < textures; ++i) {
@@ -194,14 +236,22 @@ class Renderer {
     this.frame = 0;
   }
 
-  restart() { this.frame = 0; }
+  restart() {
+    this.frame = 0;
+  }
 
   setOrder(order) {
     for (const image of this.images) {
       if (!image.fit || image.order === order) continue;
       image.order = order;
-      fillArray(this.gl, image.texture, image.fit.width, image.fit.height, image.fit.layers,
-        truncated(image.fit, order));
+      fillArray(
+        this.gl,
+        image.texture,
+        image.fit.width,
+        image.fit.height,
+        image.fit.layers,
+        truncated(image.fit, order),
+      );
     }
   }
 
@@ -244,11 +294,16 @@ class Renderer {
     const lights = turnedSky(this.lights, scene.skyTurn);
     const order = this.data.skyOrder;
     const shared = {
-      positions: this.surface.textures[0], normals: this.surface.textures[1],
-      eye: scene.eye, light: scene.light, lightDistance: scene.lightDistance,
+      positions: this.surface.textures[0],
+      normals: this.surface.textures[1],
+      eye: scene.eye,
+      light: scene.light,
+      lightDistance: scene.lightDistance,
       pointStrength: Array(3).fill(scene.pointStrength),
-      environmentStrength: scene.environmentStrength, frameShare: 1 / (this.frame + 1),
-      frameIndex: { integer: this.frame }, clampNegative: scene.clamp,
+      environmentStrength: scene.environmentStrength,
+      frameShare: 1 / (this.frame + 1),
+      frameIndex: { integer: this.frame },
+      clampNegative: scene.clamp,
       skyAxis: { triples: lights.flatMap(({ axis }) => axis) },
       skyColour: { triples: lights.flatMap(({ colour }) => colour) },
       skyZonal: { singles: lights.flatMap(({ power }) => zonal(power, order)) },
@@ -257,7 +312,8 @@ class Renderer {
       if (image.fit && this.frame >= cycle) continue;
       const [from, to] = image.targets;
       gl.bindFramebuffer(gl.FRAMEBUFFER, to.framebuffer);
-      const own = image.fit ? { [image.fit.sampler]: { array: image.texture } }
+      const own = image.fit
+        ? { [image.fit.sampler]: { array: image.texture } }
         : { exactTable: { array: image.texture }, exactRoughness: image.exact.roughness };
       this.use(image.shader, { ...shared, ...own, before: from.textures[0] });
       gl.drawArrays(gl.TRIANGLES, 0, 3);
@@ -267,15 +323,17 @@ class Renderer {
   }
 
   drawSurface(scene, frame) {
-    const gl = this.gl, shape = this.shapes[scene.shape];
+    const gl = this.gl,
+      shape = this.shapes[scene.shape];
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.surface.framebuffer);
     gl.enable(gl.DEPTH_TEST);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     // The first frame through the middle of the pixel, the others spread by the R2 sequence.
-    const shift = (step, size) => (((frame * step + .5) % 1) - .5) * 2 / size;
+    const shift = (step, size) => ((((frame * step + 0.5) % 1) - 0.5) * 2) / size;
     const camera = Float32Array.from(scene.camera);
-    const dx = shift(0.7548776662466927, this.width), dy = shift(0.5698402909980532, this.height);
+    const dx = shift(0.7548776662466927, this.width),
+      dy = shift(0.5698402909980532, this.height);
     for (let c = 0; c < 4; ++c) {
       camera[4 * c] += dx * camera[4 * c + 3];
       camera[4 * c + 1] += dy * camera[4 * c + 3];
@@ -303,9 +361,13 @@ class Renderer {
       if (!pane.first) continue;
       const first = pane.first.targets[0].textures[0];
       this.use(this.composite, {
-        first, second: pane.second ? pane.second.targets[0].textures[0] : first,
-        isDifference: Boolean(pane.second), showNegative: look.showNegative,
-        exposure: look.exposure, differenceScale: look.scale, paper: look.paper,
+        first,
+        second: pane.second ? pane.second.targets[0].textures[0] : first,
+        isDifference: Boolean(pane.second),
+        showNegative: look.showNegative,
+        exposure: look.exposure,
+        differenceScale: look.scale,
+        paper: look.paper,
       });
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     }

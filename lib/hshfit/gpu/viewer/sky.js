@@ -4,28 +4,30 @@
 function studio(order) {
   const narrow = order - 1;
   return [
-    [[0, 1, 0], [.05, .05, .06], 0],           // from everywhere
-    [[0, 1, 0], [.28, .33, .42], 1],           // sky
-    [[-.62, .55, .56], [3.2, 3.0, 2.7], narrow],   // key
-    [[.9, .25, .35], [.9, 1.05, 1.3], narrow],     // cool rim
-    [[.1, .35, -.93], [1.6, 1.45, 1.2], narrow],   // behind
-    [[.25, -.8, .55], [.22, .18, .14], Math.min(2, narrow)],  // floor
+    [[0, 1, 0], [0.05, 0.05, 0.06], 0], // from everywhere
+    [[0, 1, 0], [0.28, 0.33, 0.42], 1], // sky
+    [[-0.62, 0.55, 0.56], [3.2, 3.0, 2.7], narrow], // key
+    [[0.9, 0.25, 0.35], [0.9, 1.05, 1.3], narrow], // cool rim
+    [[0.1, 0.35, -0.93], [1.6, 1.45, 1.2], narrow], // behind
+    [[0.25, -0.8, 0.55], [0.22, 0.18, 0.14], Math.min(2, narrow)], // floor
   ].map(([axis, colour, power]) => ({ axis: unit(axis), colour, power }));
 }
 
 // 2 pi times the integral of ((1 + t)/2)^power P_l(t), l < order (Funk-Hecke), by the ratio
 // a_{l+1}/a_l = (power - l)/(power + l + 2).
 function zonal(power, order) {
-  const a = [4 * Math.PI / (power + 1)];
-  for (let l = 0; l + 1 < order; ++l) a.push(a[l] * (power - l) / (power + l + 2));
+  const a = [(4 * Math.PI) / (power + 1)];
+  for (let l = 0; l + 1 < order; ++l) a.push((a[l] * (power - l)) / (power + l + 2));
   return a;
 }
 
 // GLSL: adds a light's SH coefficients, unrolled. Slot l (l + 1) + m, orthonormal over the sphere;
 // odd m take `sign`.
 function skySource(order, sign) {
-  const lines = [`void addLight(vec3 d, vec3 colour, int first, inout vec3 sky[${order * order}]) {`,
-    '    float p, q, r, c = 1.0, s = 0.0;'];
+  const lines = [
+    `void addLight(vec3 d, vec3 colour, int first, inout vec3 sky[${order * order}]) {`,
+    '    float p, q, r, c = 1.0, s = 0.0;',
+  ];
   const number = (x) => x.toExponential(12).replace('e+', 'e');
   const factor = (l, m) => Math.sqrt((4 * l * l - 1) / (l * l - m * m));
   let start = Math.sqrt(1 / (4 * Math.PI));
@@ -51,8 +53,11 @@ function skySource(order, sign) {
 
 // `lights` turned about the vertical axis.
 function turnedSky(lights, angle) {
-  const c = Math.cos(angle), s = Math.sin(angle);
+  const c = Math.cos(angle),
+    s = Math.sin(angle);
   return lights.map(({ axis, colour, power }) => ({
-    axis: [c * axis[0] + s * axis[2], axis[1], c * axis[2] - s * axis[0]], colour, power,
+    axis: [c * axis[0] + s * axis[2], axis[1], c * axis[2] - s * axis[0]],
+    colour,
+    power,
   }));
 }
