@@ -1,5 +1,5 @@
-// node read_js.mjs FILE…: imports exported modules, writes the array of each to FILE.raw, and prints
-// the array's type and the metadata, JSON on a line.
+// node read_js.mjs FILE…: imports exported modules, writes the array of each to FILE.raw, and
+// prints the array's type and the metadata, JSON on a line.
 import { readFileSync, writeFileSync } from 'node:fs';
 
 for (const file of process.argv.slice(2)) {

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """read_sums.py NAME.hsh.json…: evaluates the tests of each sidecar from the .bin beside it, with
 numpy and what the sidecar says and nothing of hshfit, and prints the largest difference relative to
-the largest value. For the basis hsh: B_lm = sqrt((2l+1)/(2 pi) (l-|m|)!/(l+|m|)!) P_l^|m|(2z-1) times
-1, sqrt(2) cos(m phi), sqrt(2) sin(|m| phi) for m = 0, > 0, < 0 (Gautron et al. 2004).
+the largest value. For the basis hsh (Gautron et al. 2004):
+B_lm = sqrt((2l+1)/(2 pi) (l-|m|)!/(l+|m|)!) P_l^|m|(2z-1) times 1, sqrt(2) cos(m phi),
+sqrt(2) sin(|m| phi) for m = 0, > 0, < 0.
 """
 import hashlib
 import json

@@ -1,5 +1,5 @@
-#include <hshfit/gpu/containers/byte_fields.h>
-#include <hshfit/gpu/containers/container_files.h>
+#include <hshfit/gpu/containers/internal/byte_fields.h>
+#include <hshfit/gpu/containers/internal/container_files.h>
 
 namespace hshfit::gpu {
 namespace {

@@ -1,7 +1,7 @@
 #include <hshfit/gpu/containers/containers.h>
 
 #include <hshfit/error.h>
-#include <hshfit/gpu/containers/container_files.h>
+#include <hshfit/gpu/containers/internal/container_files.h>
 
 #include <algorithm>
 #include <vector>

@@ -1,8 +1,8 @@
 // Microsoft's DDS with the DX10 header ("DDS_HEADER_DXT10 structure", Microsoft Learn), an array of
 // 2-D textures without mip levels.
 
-#include <hshfit/gpu/containers/byte_fields.h>
-#include <hshfit/gpu/containers/container_files.h>
+#include <hshfit/gpu/containers/internal/byte_fields.h>
+#include <hshfit/gpu/containers/internal/container_files.h>
 
 #include <array>
 

@@ -1,6 +1,6 @@
-#include <hshfit/gpu/containers/byte_fields.h>
-#include <hshfit/gpu/containers/container_files.h>
-#include <hshfit/gpu/containers/exr_texels.h>
+#include <hshfit/gpu/containers/internal/byte_fields.h>
+#include <hshfit/gpu/containers/internal/container_files.h>
+#include <hshfit/gpu/containers/internal/exr_texels.h>
 #include <hshfit/output/exr_header.h>
 #include <hshfit/output/internal/exr_stream.h>
 

@@ -1,4 +1,4 @@
-#include <hshfit/gpu/containers/exr_texels.h>
+#include <hshfit/gpu/containers/internal/exr_texels.h>
 
 #include <hshfit/error.h>
 

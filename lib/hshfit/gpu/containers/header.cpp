@@ -1,7 +1,7 @@
 // A header for C and C++: the sidecar in a comment, constants, and one array.
 
-#include <hshfit/gpu/containers/byte_fields.h>
-#include <hshfit/gpu/containers/container_files.h>
+#include <hshfit/gpu/containers/internal/byte_fields.h>
+#include <hshfit/gpu/containers/internal/container_files.h>
 
 #include <algorithm>
 #include <cctype>

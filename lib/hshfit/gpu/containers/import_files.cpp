@@ -1,6 +1,6 @@
-#include <hshfit/gpu/containers/byte_fields.h>
 #include <hshfit/gpu/containers/checksum.h>
 #include <hshfit/gpu/containers/containers.h>
+#include <hshfit/gpu/containers/internal/byte_fields.h>
 #include <hshfit/gpu/containers/sidecar.h>
 #include <hshfit/mapped_file.h>
 

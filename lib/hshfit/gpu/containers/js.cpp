@@ -1,9 +1,9 @@
 // An ECMAScript module: metadata as an object literal (the sidecar word for word), the numbers as a
 // typed array out of base64.
 
-#include <hshfit/gpu/containers/byte_fields.h>
 #include <hshfit/gpu/containers/checksum.h>
-#include <hshfit/gpu/containers/container_files.h>
+#include <hshfit/gpu/containers/internal/byte_fields.h>
+#include <hshfit/gpu/containers/internal/container_files.h>
 
 namespace hshfit::gpu {
 namespace {

@@ -1,8 +1,8 @@
 // Khronos KTX File Format Specification 2.0, and its data format descriptor (KDF 1.3, basic block):
 // an array of 2-D textures, one level, uncompressed or with Zstandard.
 
-#include <hshfit/gpu/containers/byte_fields.h>
-#include <hshfit/gpu/containers/container_files.h>
+#include <hshfit/gpu/containers/internal/byte_fields.h>
+#include <hshfit/gpu/containers/internal/container_files.h>
 #include <hshfit/version.h>
 
 #include <algorithm>
