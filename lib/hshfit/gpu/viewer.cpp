@@ -32,7 +32,7 @@ using Json = nlohmann::ordered_json;
 using kainjow::mustache::data;
 
 /// Directions a pixel and frame with which the exact pane integrates the environment.
-constexpr int exactSamples = 16;
+constexpr int exactSamples = 32;
 
 std::string paneName(const Payload& payload) {
     std::string name = payload.basis;
