@@ -18,14 +18,17 @@ namespace {
 /// Lowest elevation kept: 1 degree above the horizon. Texels beyond stand for what bilinear lookups
 /// blend in from outside the disc; models with 1/cos(theta_o) would make them dominate their
 /// neighbours further down (docs/accuracy.md measures it).
-const double horizonRing = radians(89);
-const double horizonRadius = std::tan(horizonRing / 2);
+constexpr double horizonRing = 89 * (pi / 180);
+/// A function, so that sets made before main() find it ready.
+double horizonRadius() {
+    return std::tan(horizonRing / 2);
+}
 constexpr int maxSize = 16384;
 
 /// Inverse of p = (x, y)/(1 + z), with radii beyond the horizon ring clamped to it.
 Direction fromParabolic(double px, double py) {
     const double r2 = px * px + py * py;
-    if (r2 > horizonRadius * horizonRadius) {
+    if (r2 > horizonRadius() * horizonRadius()) {
         const double scale = std::sin(horizonRing) / std::sqrt(r2);
         return {px * scale, py * scale, std::cos(horizonRing)};
     }
