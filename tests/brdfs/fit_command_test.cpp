@@ -106,6 +106,52 @@ TEST_F(Fit, ErrorsAreOneLine) {
     expectError("fit absent.binary --model lambert", 3, "absent.binary", 0);
 }
 
+// Numbers that are none, among rows that would do without them: refused with the line that holds
+// them, in every text format of scattered samples.
+TEST_F(Fit, ScatteredValuesThatAreNoNumbersAreRefused) {
+    // "%t" is the polar angle of the row in radians, "%d" in degrees, "%v" the value.
+    struct Text {
+        const char *name, *head, *row;
+    };
+    const char* const nist =
+        "0.45,-30,0,%d,0,%v,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n"
+        "0.55,-30,0,%d,0,.25,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n"
+        "0.65,-30,0,%d,0,.25,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n";
+    const Text texts[] = {
+        {"s.alta", "#DIM 4 1\n#PARAM_IN SPHERICAL_TL_PL_TV_PV\n", "0.5 0 %t 0 %v\n"},
+        {"s.astm", "VARS theta_i,phi_i,theta_s,phi_s,a\n", "0.5,0,%t,0,%v\n"},
+        {"s.brdf", "3\n450 550 650\n", "0.5 0 %t 0 .25 %v .25\n"},
+        {"s.csv", "lambda,thetai,phi,thetar,phir\n", nist},
+    };
+    for (const Text& text : texts) {
+        const auto put = [&](const std::string& odd) {
+            std::string content = text.head;
+            for (int row = 0; row < 20; ++row)
+                for (const char* at = text.row; *at; ++at) {
+                    if (*at != '%')
+                        content += *at;
+                    else if (*++at == 'v')
+                        content += row == 7 ? odd : "0.25";
+                    else
+                        content += std::to_string(*at == 't' ? 0.05 * row : 3 * row);
+                }
+            write(text.name, content);
+        };
+        const std::string line =
+            "fit " + path(text.name) + " --rgb --model lambert -o " + path("fit.json");
+        put("0.25");
+        const Answer good = run(line);
+        EXPECT_EQ(good.code, 0) << text.name << " " << good.err;
+        fs::remove(path("fit.json"));
+        for (const char* odd : {"nan", "inf", "-inf"}) {
+            put(odd);
+            expectError(line, 3, odd, 1);
+            expectError(line, 3, "line", 1);
+        }
+        fs::remove(path(text.name));
+    }
+}
+
 // Coefficients ring, below zero too; what they stand for is found nevertheless: they hold 99.9 % of
 // its energy, so that values err by some 4 %.
 TEST_F(Fit, CoefficientFilesAreData) {
