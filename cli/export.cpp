@@ -79,7 +79,7 @@ std::string shaderFile(const std::string& name, const gpu::LanguageEntry& langua
 
 /// Shaders and the viewer; the names of the files.
 Json writeOthers(const std::vector<const Target*>& chosen, const gpu::Payload& payload,
-                 const Source& source, const std::string& name, const ExportArguments& arguments,
+                 const Source& material, const std::string& name, const ExportArguments& arguments,
                  const Globals& globals, FileSet& files) {
     Json written = Json::array();
     for (const gpu::LanguageEntry& language : gpu::languages()) {
@@ -87,10 +87,18 @@ Json writeOthers(const std::vector<const Target*>& chosen, const gpu::Payload& p
             return target->kind == Target::Kind::shader && target->name == language.name;
         });
         if (!wanted) continue;
+        std::string source;
+        try {
+            source = gpu::shaderSource(
+                language.language, payload,
+                {.prefix = arguments.prefix, .environmentOrder = arguments.environmentOrder});
+        } catch (const UsageError& error) {
+            if (arguments.targets != "all") throw;
+            note(globals, fmt::format("left out: {}", error.what()));
+            continue;
+        }
         const std::string file = shaderFile(name, language, arguments.prefix);
-        files.write(file, gpu::shaderSource(language.language, payload,
-                                            {.prefix = arguments.prefix,
-                                             .environmentOrder = arguments.environmentOrder}));
+        files.write(file, source);
         written.push_back({{"role", "shader"}, {"target", language.name}, {"path", file}});
     }
     const bool viewer = std::ranges::any_of(
@@ -99,7 +107,7 @@ Json writeOthers(const std::vector<const Target*>& chosen, const gpu::Payload& p
         Progress progress(globals, "viewer");
         const std::string file = name + "_viewer.html";
         files.write(file, gpu::viewerPage(
-                              gpu::viewerInput(payload, source.brdf.get(), progress.callback())));
+                              gpu::viewerInput(payload, material.brdf.get(), progress.callback())));
         written.push_back({{"role", "viewer"}, {"target", "viewer"}, {"path", file}});
     }
     return written;
@@ -193,9 +201,16 @@ void runExport(const ExportArguments& arguments, const Globals& globals) {
     const Source source = openSourceOf(arguments, coefficients);
     const Json errors = errorsOf(source, coefficients, payload, arguments, globals);
     std::vector<const gpu::Container*> containers;
-    for (const Target* target : chosen)
-        if (target->kind == Target::Kind::container)
-            containers.push_back(&gpu::findContainer(target->name));
+    for (const Target* target : chosen) {
+        if (target->kind != Target::Kind::container) continue;
+        const gpu::Container& container = gpu::findContainer(target->name);
+        if (arguments.targets == "all" && !container.holds(options.number)) {
+            note(globals,
+                 fmt::format("left out: {} cannot hold {}", container.name, arguments.number));
+        } else {
+            containers.push_back(&container);
+        }
+    }
 
     Json document = {
         {"format", "hshfit-export"}, {"version", 1}, {"folder", arguments.output}, {"name", name}};
@@ -237,8 +252,10 @@ void addExport(CLI::App& app, Globals& globals) {
         ->required();
     command.add_option("-o,--output", arguments->output, "Folder, made if absent")->required();
     command
-        .add_option("--target", arguments->targets,
-                    "all, or containers, languages, renderers and viewer from hshfit list targets")
+        .add_option(
+            "--target", arguments->targets,
+            "all that is possible, or containers, languages, renderers and viewer from hshfit "
+            "list targets")
         ->capture_default_str();
     command.add_option("--name", arguments->name,
                        "What the files' names begin with (default: that of COEFFS)");

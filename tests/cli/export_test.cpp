@@ -105,6 +105,18 @@ TEST_F(Export, WhatCannotBeExportedIsSaid) {
     expectError("export " + path("absent.json") + " -o " + path("out"), 3, "absent.json", 1);
 }
 
+TEST_F(Export, AllLeavesOutWhatIsImpossibleAndSaysSo) {
+    const Answer answer = run("export " + path("ward.json") + " --no-error --target all --json " +
+                              "--number unorm8 --basis-textures 8 -o " + path("out"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    for (const char* left : {"exr cannot hold unorm8", "exr-parts", "OSL"})
+        EXPECT_NE(answer.err.find(left), std::string::npos) << answer.err;
+    const auto files = filesOf("out");
+    EXPECT_TRUE(files.contains("ward.coef.ktx2"));
+    EXPECT_FALSE(files.contains("ward.coef.strip.exr"));
+    EXPECT_EQ(Json::parse(answer.out)["files"].size(), files.size());
+}
+
 TEST_F(Export, ErrorsAreSplitAndFollowThePrecision) {
     const auto errors = [&](const std::string& number) {
         return Json::parse(run("export " + path("ward.json") + " --json --target bin --force -o " +
