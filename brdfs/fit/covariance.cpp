@@ -5,65 +5,89 @@
 #include <cmath>
 
 namespace hshfit::brdfs {
+namespace {
 
-Covariance covarianceOf(const Equations& equations, const std::vector<bool>& fixed,
-                        std::size_t values) {
+constexpr double least = 1e-9;
+
+/// The matrix of the parameters that are not fixed and matter, scaled to a diagonal of 1.
+struct Scaled {
+    std::vector<std::size_t> free, without;  ///< indices; of those that do not matter
+    Eigen::VectorXd scale;
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
+
+    Scaled(const Equations& equations, const std::vector<bool>& fixed) {
+        const std::size_t all = fixed.size();
+        for (std::size_t i = 0; i < all; ++i)
+            if (!fixed[i]) (equations.hessian[i * all + i] > 0 ? free : without).push_back(i);
+        scale.resize(count());
+        for (Eigen::Index i = 0; i < count(); ++i)
+            scale(i) = std::sqrt(equations.hessian[free[i] * all + free[i]]);
+        if (count() > 0) eigen.compute(of(equations.hessian, all));
+    }
+    Eigen::Index count() const { return static_cast<Eigen::Index>(free.size()); }
+    Eigen::MatrixXd of(const std::vector<double>& matrix, std::size_t all) const {
+        Eigen::MatrixXd result(count(), count());
+        for (Eigen::Index i = 0; i < count(); ++i)
+            for (Eigen::Index j = 0; j < count(); ++j)
+                result(i, j) = matrix[free[i] * all + free[j]] / (scale(i) * scale(j));
+        return result;
+    }
+    Eigen::MatrixXd inverse() const {
+        Eigen::VectorXd values = eigen.eigenvalues();
+        for (double& value : values) value = value > least ? 1 / value : 0;
+        return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+    }
+};
+
+}  // namespace
+
+std::vector<double> inverseOf(const Equations& equations, const std::vector<bool>& fixed) {
+    const Scaled scaled(equations, fixed);
+    std::vector<double> result(fixed.size() * fixed.size(), 0);
+    if (scaled.count() == 0) return result;
+    const Eigen::MatrixXd inverse = scaled.inverse();
+    for (Eigen::Index i = 0; i < scaled.count(); ++i)
+        for (Eigen::Index j = 0; j < scaled.count(); ++j)
+            result[scaled.free[i] * fixed.size() + scaled.free[j]] =
+                inverse(i, j) / (scaled.scale(i) * scaled.scale(j));
+    return result;
+}
+
+Covariance covarianceOf(const Equations& equations, const std::vector<bool>& fixed) {
     const std::size_t all = fixed.size();
     Covariance result;
     result.variance.assign(all, -1);
     result.correlations.assign(all * all, 0);
-    std::vector<std::size_t> free;
-    for (std::size_t i = 0; i < all; ++i) {
-        if (fixed[i]) continue;
-        if (equations.hessian[i * all + i] > 0)
-            free.push_back(i);
-        else
-            result.ambiguous.push_back({i});
-    }
-    const auto n = static_cast<Eigen::Index>(free.size());
+    const Scaled scaled(equations, fixed);
+    for (const std::size_t i : scaled.without) result.ambiguous.push_back({i});
+    const Eigen::Index n = scaled.count();
     if (n == 0) return result;
-    Eigen::MatrixXd hessian(n, n), spread(n, n);
-    Eigen::VectorXd scale(n);
-    for (Eigen::Index i = 0; i < n; ++i)
-        scale(i) = std::sqrt(equations.hessian[free[i] * all + free[i]]);
-    for (Eigen::Index i = 0; i < n; ++i)
-        for (Eigen::Index j = 0; j < n; ++j) {
-            const std::size_t at = free[i] * all + free[j];
-            hessian(i, j) = equations.hessian[at] / (scale(i) * scale(j));
-            spread(i, j) = equations.spread[at] / (scale(i) * scale(j));
-        }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian);
-    constexpr double least = 1e-9, share = 0.1;
-    std::vector<bool> undetermined(free.size(), false);
-    Eigen::VectorXd inverse(n);
+    constexpr double share = 0.1;
+    std::vector<bool> undetermined(scaled.free.size(), false);
     for (Eigen::Index e = 0; e < n; ++e) {
-        const double value = eigen.eigenvalues()(e);
-        inverse(e) = value > least ? 1 / value : 0;
-        if (value > least) continue;
+        if (scaled.eigen.eigenvalues()(e) > least) continue;
         result.ambiguous.emplace_back();
         for (Eigen::Index i = 0; i < n; ++i)
-            if (std::abs(eigen.eigenvectors()(i, e)) > share) {
-                result.ambiguous.back().push_back(free[i]);
+            if (std::abs(scaled.eigen.eigenvectors()(i, e)) > share) {
+                result.ambiguous.back().push_back(scaled.free[i]);
                 undetermined[i] = true;
             }
     }
-    const Eigen::MatrixXd inverted =
-        eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
-    const double count = static_cast<double>(values);
-    const double correction =
-        count > static_cast<double>(n) ? count / (count - static_cast<double>(n)) : 1;
     // The cost, 1 for f = 0, is known to its rounding alone: parameters to the step that raises it
     // by as much.
     constexpr double rounding = 2.3e-16;
+    const Eigen::MatrixXd inverse = scaled.inverse();
     const Eigen::MatrixXd covariance =
-        correction * inverted * spread * inverted + 2 * rounding * inverted;
+        inverse * scaled.of(equations.spread, all) * inverse + 2 * rounding * inverse;
     for (Eigen::Index i = 0; i < n; ++i) {
         if (undetermined[i]) continue;
-        result.variance[free[i]] = std::max(0.0, covariance(i, i)) / (scale(i) * scale(i));
+        const std::size_t row = scaled.free[i];
+        result.variance[row] =
+            std::max(0.0, covariance(i, i)) / (scaled.scale(i) * scaled.scale(i));
         for (Eigen::Index j = 0; j < n; ++j) {
             const double size = std::sqrt(covariance(i, i) * covariance(j, j));
             if (!undetermined[j] && size > 0)
-                result.correlations[free[i] * all + free[j]] = covariance(i, j) / size;
+                result.correlations[row * all + scaled.free[j]] = covariance(i, j) / size;
         }
     }
     return result;

@@ -15,10 +15,12 @@ struct Covariance {
     std::vector<std::vector<std::size_t>> ambiguous;
 };
 
-/// hessian^-1 spread hessian^-1 values / (values - n), and what rounding of the cost (which is 1/2
-/// where f = 0) leaves open: without noise all there is. Directions in which the Gauss-Newton
-/// matrix, scaled to a diagonal of 1, is below 1e-9 are left out and reported.
-Covariance covarianceOf(const Equations& equations, const std::vector<bool>& fixed,
-                        std::size_t values);
+/// hessian^-1 [n * n] over what is not fixed, 0 elsewhere. Directions in which the matrix, scaled
+/// to a diagonal of 1, is below 1e-9 are left out.
+std::vector<double> inverseOf(const Equations& equations, const std::vector<bool>& fixed);
+
+/// hessian^-1 spread hessian^-1, and what rounding of the cost (which is 1/2 where f = 0) leaves
+/// open: without noise all there is. Directions that inverseOf leaves out are reported.
+Covariance covarianceOf(const Equations& equations, const std::vector<bool>& fixed);
 
 }  // namespace hshfit::brdfs

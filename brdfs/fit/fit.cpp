@@ -240,11 +240,49 @@ struct Part {
     double squares = 0, weights = 0;
 };
 
+/// Shapes of what a linear parameter scales are not determined where that is not told from 0, and
+/// errors by derivatives mean nothing there, its own included (Davies 1977,
+/// 10.1093/biomet/64.2.247).
+void reportUnseenLobes(const FitProblem& problem, const std::vector<double>& x,
+                       const Equations& equations, const std::vector<bool>& fixed,
+                       Covariance& covariance) {
+    const std::size_t shapes = problem.shapeCount(), channels = problem.channels(), n = x.size();
+    for (std::size_t first = shapes; first < n; first += channels) {
+        std::vector<std::size_t> concerned;
+        std::vector<double> without = x;
+        bool seen = false;
+        for (std::size_t i = first; i < first + channels; ++i) {
+            without[i] = 0;
+            if (fixed[i]) {
+                seen = seen || x[i] > 0;
+                continue;
+            }
+            seen =
+                seen || covariance.variance[i] < 0 || x[i] > 2 * std::sqrt(covariance.variance[i]);
+            concerned.push_back(i);
+        }
+        if (seen || shapes == 0) continue;
+        const Equations rest = problem.joint(without, true);
+        const std::size_t linears = concerned.size();
+        for (std::size_t j = 0; j < shapes; ++j)
+            if (!fixed[j] && covariance.variance[j] >= 0 &&
+                rest.hessian[j * n + j] <= 1e-12 * equations.hessian[j * n + j])
+                concerned.push_back(j);
+        if (concerned.size() == linears) continue;
+        for (const std::size_t i : concerned) {
+            covariance.variance[i] = -1;
+            for (std::size_t j = 0; j < n; ++j)
+                covariance.correlations[i * n + j] = covariance.correlations[j * n + i] = 0;
+        }
+        covariance.ambiguous.push_back(std::move(concerned));
+    }
+}
+
 void describe(const FitProblem& problem, const std::vector<double>& x, Part& part) {
     const ParametricSum& sum = problem.sum();
     const std::size_t shapes = problem.shapeCount(), channels = problem.channels();
     const Bounds bounds = jointBounds(sum, channels);
-    const Equations equations = problem.joint(x, true, true);
+    Equations equations = problem.joint(x, true);
     std::vector<bool> fixed;
     std::vector<double> slope;  // of the value by x
     std::vector<FittedParameter>& parameters = part.result.parameters;
@@ -281,8 +319,9 @@ void describe(const FitProblem& problem, const std::vector<double>& x, Part& par
                 std::max(part.result.projectedGradient, std::abs(pull) / scale);
         parameters.push_back(std::move(parameter));
     }
-    const std::size_t values = problem.samples().size() * channels;
-    const Covariance covariance = covarianceOf(equations, fixed, values);
+    equations.spread = problem.joint(x, true, inverseOf(equations, fixed)).spread;
+    Covariance covariance = covarianceOf(equations, fixed);
+    reportUnseenLobes(problem, x, equations, fixed, covariance);
     for (std::size_t i = 0; i < x.size(); ++i)
         if (covariance.variance[i] >= 0)
             parameters[i].standardError = std::sqrt(covariance.variance[i]) * slope[i];

@@ -195,7 +195,9 @@ Equations FitProblem::eliminated(std::span<const double> u, bool derivatives,
     return result;
 }
 
-Equations FitProblem::joint(std::span<const double> x, bool derivatives, bool spread) const {
+Equations FitProblem::joint(std::span<const double> x, bool derivatives,
+                            std::span<const double> inverse) const {
+    const bool spread = !inverse.empty();
     const std::size_t shapes = shapeCount(), terms = sum_.linears().size();
     const ColumnBlocks columns(samples_, sum_, x.first(shapes), derivatives);
     const auto n = static_cast<Eigen::Index>(shapes + terms);
@@ -203,6 +205,15 @@ Equations FitProblem::joint(std::span<const double> x, bool derivatives, bool sp
     none.gram = Matrix::Zero(derivatives ? n + 1 : 1, derivatives ? n + 1 : 1);
     if (spread) none.spread = Matrix::Zero(n, n);
     const JointSums zero{std::vector<ChannelSums>(channels(), none)};
+    // Where the parameters of each channel stand among all.
+    const auto total = static_cast<Eigen::Index>(x.size());
+    const auto placesOf = [&](std::size_t c) {
+        std::vector<Eigen::Index> at;
+        for (std::size_t i = 0; i < shapes + terms; ++i)
+            at.push_back(
+                static_cast<Eigen::Index>(i < shapes ? i : shapes + (i - shapes) * channels() + c));
+        return at;
+    };
 
     const auto addChannel = [&](const Block& block, const Matrix& z, std::size_t c,
                                 ChannelSums& sums) {
@@ -212,7 +223,7 @@ Equations FitProblem::joint(std::span<const double> x, bool derivatives, bool sp
         for (std::size_t k = 0; k < terms; ++k)
             f += linear[k] * z.col(static_cast<Eigen::Index>(1 + k));
         Matrix rows = derivatives ? jacobianOf(sum_, columns, z, linear) : Matrix(z.rows(), 1);
-        Vector root(z.rows()), own(z.rows());
+        Vector root(z.rows()), slope(z.rows());
         for (Eigen::Index k = 0; k < z.rows(); ++k) {
             const std::size_t at = block.begin + static_cast<std::size_t>(k);
             const double cosine = samples_.wiZ[at], weight = samples_.weights[at];
@@ -221,14 +232,20 @@ Equations FitProblem::joint(std::span<const double> x, bool derivatives, bool sp
             const Kernel kernel = applyKernel(robust_, scale_, r * r);
             sums.cost += 0.5 * weight * kernel.value;
             root(k) = std::sqrt(weight * kernel.slope);
-            own(k) = root(k) * mapped.slope;
+            slope(k) = root(k) * mapped.slope;
             rows(k, rows.cols() - 1) = root(k) * r;
         }
-        if (derivatives) rows.leftCols(n).array().colwise() *= own.array();
+        if (derivatives) rows.leftCols(n).array().colwise() *= slope.array();
         sums.gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
         if (!spread) return;
         Matrix pulled = rows.leftCols(n);
-        pulled.array().colwise() *= rows.col(n).array();
+        const std::vector<Eigen::Index> at = placesOf(c);
+        const Matrix own =
+            Eigen::Map<const Matrix>(inverse.data(), total, total)(at, at) / normalisation_;
+        // Rounding leaves some of 1 - leverage where a sample alone decides.
+        constexpr double least = 1e-6;
+        const Vector leverage = (pulled * own).cwiseProduct(pulled).rowwise().sum();
+        pulled.array().colwise() *= rows.col(n).array() / (1 - leverage.array()).max(least);
         sums.spread.selfadjointView<Eigen::Lower>().rankUpdate(pulled.transpose());
     };
     JointSums sums = sumOverBlocks(samples_.size(), zero, [&](const Block& block) {
@@ -239,8 +256,6 @@ Equations FitProblem::joint(std::span<const double> x, bool derivatives, bool sp
         return result;
     });
 
-    // Where the parameters of each channel stand among all.
-    const auto total = static_cast<Eigen::Index>(x.size());
     Matrix hessian = Matrix::Zero(total, total), meat = Matrix::Zero(total, total);
     Vector gradient = Vector::Zero(total);
     Equations result;
@@ -250,10 +265,7 @@ Equations FitProblem::joint(std::span<const double> x, bool derivatives, bool sp
         if (!derivatives) continue;
         own.gram.triangularView<Eigen::StrictlyUpper>() = own.gram.transpose();
         if (spread) own.spread.triangularView<Eigen::StrictlyUpper>() = own.spread.transpose();
-        std::vector<Eigen::Index> at;
-        for (std::size_t i = 0; i < shapes + terms; ++i)
-            at.push_back(
-                static_cast<Eigen::Index>(i < shapes ? i : shapes + (i - shapes) * channels() + c));
+        const std::vector<Eigen::Index> at = placesOf(c);
         for (Eigen::Index i = 0; i < n; ++i) {
             gradient(at[i]) += own.gram(i, n) / normalisation_;
             for (Eigen::Index j = 0; j < n; ++j) {

@@ -16,7 +16,9 @@ struct Equations {
     double cost = 0;
     std::vector<double> gradient;  ///< [n]
     std::vector<double> hessian;   ///< [n * n]
-    std::vector<double> spread;    ///< [n * n], only if asked for: sum of squared gradient terms
+    /// [n * n], only if asked for: sum of squared gradient terms, each as it would be if its
+    /// sample had not been fitted.
+    std::vector<double> spread;
 };
 
 /// The least-squares problem of one fit. Samples are streamed in blocks of a fixed size whose sums
@@ -46,8 +48,11 @@ public:
     Equations eliminated(std::span<const double> u, bool derivatives,
                          std::vector<double>& linear) const;
 
-    /// By x = shapes' u, then linear[k * channels + c]; any loss and kernel.
-    Equations joint(std::span<const double> x, bool derivatives, bool spread = false) const;
+    /// By x = shapes' u, then linear[k * channels + c]; any loss and kernel. With the inverse [n *
+    /// n] of the matrix at x, 0 for what is held, `spread` too: residuals over 1 - leverage
+    /// (MacKinnon & White 1985, 10.1016/0304-4076(85)90158-7: HC3).
+    Equations joint(std::span<const double> x, bool derivatives,
+                    std::span<const double> inverse = {}) const;
 
     /// g(f) - g(measured) at x: [channel * samples + k].
     std::vector<double> residuals(std::span<const double> x) const;
