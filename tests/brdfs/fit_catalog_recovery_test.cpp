@@ -1,0 +1,213 @@
+// Every model of the catalog, with every choice that frees other parameters, isotropic and not:
+// parameters drawn over the whole ranges of its own table row come back within the errors that the
+// fit states, or the fit says what it cannot tell. HSHFIT_DRAWS sets how many of each,
+// HSHFIT_VERBOSE prints them (docs/fit.md).
+#include <brdfs/catalog.h>
+#include <brdfs/fit/fit.h>
+#include <brdfs/fit/free_parameters.h>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <random>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace hshfit::brdfs {
+namespace {
+
+struct Case {
+    const Model* model;
+    std::string choice;  ///< "fresnel=conductor"; empty: as by default
+    bool isotropic;
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) {
+    return out << c.model->name << (c.choice.empty() ? "" : ":") << c.choice
+               << (c.isotropic ? "" : ", anisotropic");
+}
+
+/// From the tables alone.
+std::vector<Case> casesOf() {
+    std::vector<Case> cases;
+    for (const Model& model : models()) {
+        std::set<std::string> choices{""};
+        bool anisotropic = false;
+        for (const Parameter& parameter : model.parameters)
+            for (const FitRange& range : parameter.fit) {
+                // The default's own are those of the empty choice.
+                if (!range.choice.empty()) choices.emplace(range.choice);
+                anisotropic = anisotropic || range.data == FitRange::Data::anisotropic ||
+                              !range.follows.empty();
+            }
+        for (const Parameter& parameter : model.parameters)
+            if (!parameter.choices.empty())
+                choices.erase(fmt::format("{}={}", parameter.name, parameter.choices.front()));
+        for (const std::string& choice : choices) {
+            cases.push_back({&model, choice, true});
+            if (anisotropic) cases.push_back({&model, choice, false});
+        }
+    }
+    return cases;
+}
+
+struct Truth {
+    std::string spec;
+    std::vector<FreeParameter> free;
+    std::vector<double> values;
+};
+
+Truth draw(const Case& c, std::mt19937_64& random) {
+    const Parameters stated = statedParameters(*c.model, c.choice);
+    Truth truth{
+        std::string(c.model->name), freeParameters(*c.model, stated, c.isotropic, false), {}};
+    char separator = ':';
+    const auto add = [&](const std::string& text) {
+        if (text.empty()) return;
+        truth.spec += separator + text;
+        separator = ',';
+    };
+    add(c.choice);
+    add(heldParameters(*c.model, stated, c.isotropic));
+    for (const FreeParameter& p : truth.free) {
+        const double share = static_cast<double>(random() >> 11) * 0x1p-53;
+        const double value = p.logarithmic ? p.startLow * std::pow(p.startHigh / p.startLow, share)
+                                           : p.startLow + share * (p.startHigh - p.startLow);
+        for (const std::string& key : p.keys) add(fmt::format("{}={}", key, value));
+        truth.values.push_back(value);
+    }
+    return truth;
+}
+
+constexpr double most = 5;  // in standard errors
+
+/// `reported`: not converged, or parameters that the fit calls ambiguous, at a bound, or correlated
+/// by more than 0.95, with a loss that is as low as that of the truth.
+enum class Outcome { recovered, reported, wrong };
+
+struct Judged {
+    Outcome outcome = Outcome::recovered;
+    std::string why;
+    double squares = 0;  ///< of deviations in units of the stated errors, where all are stated
+    int counted = 0;
+};
+
+/// `truth` against what a fit claims.
+Judged judge(const Truth& truth, const FitSamples& samples, const FitResult& result) {
+    const FitSamples dark = [&] {
+        FitSamples copy = samples;
+        std::ranges::fill(copy.values, 0.0);
+        return copy;
+    }();
+    const auto brdf = open(truth.spec);
+    const double own = lossOf(*brdf, samples, Loss::Kind::cosine),
+                 size = lossOf(*brdf, dark, Loss::Kind::cosine);
+    Judged judged;
+    const bool doubtful = !result.converged || !result.ambiguous.empty();
+    double worst = 0;
+    // Whether all that is away is said to be traded against another parameter.
+    bool traded = true;
+    const auto correlated = [&](std::size_t at) {
+        const std::size_t n = result.parameters.size();
+        for (std::size_t j = 0; j < n; ++j)
+            if (j != at && std::abs(result.correlations[at * n + j]) > 0.95) return true;
+        return false;
+    };
+    for (std::size_t i = 0; i < truth.values.size(); ++i) {
+        const FreeParameter& p = truth.free[i];
+        const auto found = std::ranges::find_if(
+            result.parameters, [&](const FittedParameter& f) { return f.name == p.keys.front(); });
+        if (found == result.parameters.end()) throw std::logic_error(p.keys.front());
+        const double error = found->standardError.value_or(0);
+        // Errors are of first order: on the scale on which the fit moves the parameter.
+        const double off = p.logarithmic
+                               ? std::abs(std::log(found->value / truth.values[i])) * found->value
+                               : std::abs(found->value - truth.values[i]);
+        judged.why += fmt::format("{} {:.4g}: {:.6g} +- {:.2g}{}; ", p.keys.front(),
+                                  truth.values[i], found->value, error,
+                                  found->standardError   ? ""
+                                  : found->bound.empty() ? " open"
+                                                         : " bound");
+        if (!found->standardError) continue;
+        const double z = off / std::max(error, 1e-300);
+        worst = std::max(worst, z);
+        if (z > most)
+            traded =
+                traded && correlated(static_cast<std::size_t>(found - result.parameters.begin()));
+        judged.squares += z * z;
+        ++judged.counted;
+    }
+    judged.why +=
+        fmt::format("loss {:.4g}, the truth's {:.4g} of {:.4g}, worst z {:.3g}, {}{}", result.loss,
+                    own, size, worst, result.converged ? "converged" : "not converged",
+                    result.ambiguous.empty() ? "" : ", ambiguous");
+    const bool higher = result.loss > own * (1 + 1e-6) + 1e-6 * size;
+    const bool away = worst > most;
+    const bool bound = std::ranges::any_of(
+        result.parameters, [](const FittedParameter& p) { return !p.bound.empty(); });
+    if (!result.converged || (doubtful && !higher))
+        judged.outcome = Outcome::reported;
+    else if (higher || (away && !bound && !traded))
+        judged.outcome = Outcome::wrong;
+    else if (away)
+        judged.outcome = Outcome::reported;
+    return judged;
+}
+
+class CatalogRecovery : public testing::TestWithParam<Case> {
+protected:
+    static int draws(int usual) {
+        const char* text = std::getenv("HSHFIT_DRAWS");
+        return text ? std::atoi(text) : usual;
+    }
+    static void check(double noise, int count) {
+        // A sum of dozens of terms for each value.
+        const bool slow = GetParam().model->name == "he";
+        const std::size_t size = slow ? 300 : 1500;
+        const int starts = slow ? 4 : 16;
+        std::mt19937_64 random(11);
+        std::normal_distribution<double> normal;
+        int outcomes[3] = {};
+        double squares = 0;
+        int counted = 0;
+        for (int trial = 0; trial < count; ++trial) {
+            const Truth truth = draw(GetParam(), random);
+            FitSamples samples = gatherSamples(*open(truth.spec), {}).drawn(size, random());
+            for (double& value : samples.values) value *= 1 + noise * normal(random);
+            const std::string model =
+                fmt::format("{}{}{}", GetParam().model->name, GetParam().choice.empty() ? "" : ":",
+                            GetParam().choice);
+            const Judged judged =
+                judge(truth, samples, fit(samples, {.model = model, .starts = starts}));
+            ++outcomes[static_cast<int>(judged.outcome)];
+            EXPECT_NE(judged.outcome, Outcome::wrong) << truth.spec << "\n  " << judged.why;
+            if (std::getenv("HSHFIT_VERBOSE"))
+                fmt::print("{} {}\n   {}\n", static_cast<int>(judged.outcome), truth.spec,
+                           judged.why);
+            if (judged.outcome != Outcome::recovered) continue;
+            squares += judged.squares;
+            counted += judged.counted;
+        }
+        fmt::print("{}: {} draws, {} recovered, {} reported, {} wrong; mean z^2 {:.3f} of {}\n",
+                   testing::PrintToString(GetParam()), count, outcomes[0], outcomes[1], outcomes[2],
+                   counted ? squares / counted : 0, counted);
+    }
+};
+
+TEST_P(CatalogRecovery, WithoutNoise) {
+    check(0, draws(1));
+}
+
+TEST_P(CatalogRecovery, WithNoise) {
+    check(0.05, draws(1));
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, CatalogRecovery, testing::ValuesIn(casesOf()));
+
+}  // namespace
+}  // namespace hshfit::brdfs
