@@ -23,7 +23,7 @@ struct LsoshGram {
     /// Of G: the squared condition of R, the largest over m. Infinite beyond 1e30, where singular
     /// values of R are rounding errors.
     double condition = 1;
-    int kept = 0;          ///< directions that the solve keeps, of order^2
+    int kept = 0;  ///< directions that the solve keeps, of order^2
 };
 LsoshGram lsoshGram(int order);
 

@@ -8,11 +8,10 @@
 namespace hshfit::gpu {
 
 /// One element that is not 0 of the environment matrix
-///     M_{kj} = integral over the hemisphere of B_k Y_j d omega       (f cos(theta_i) was
-///     projected) M_{kj} = integral over the hemisphere of B_k Y_j cos(theta) d omega          (f
-///     was projected)
-/// with B_k the functions of a basis and Y_j the spherical harmonics, orthonormal over the sphere,
-/// both with the same Condon-Shortley sign.
+///     M_{kj} = integral over the hemisphere of B_k Y_j c d omega,
+/// c = cos(theta) where f was projected and 1 where f cos(theta_i) was, B_k the functions of a
+/// basis and Y_j the spherical harmonics, orthonormal over the sphere, both with the same
+/// Condon-Shortley sign.
 struct EnvironmentElement {
     int slot = 0;         ///< of B_k
     int environment = 0;  ///< slot of Y_j
