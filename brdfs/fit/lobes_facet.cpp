@@ -4,6 +4,7 @@
 #include <brdfs/fit/lobe_row.h>
 
 #include <numbers>
+#include <type_traits>
 
 namespace hshfit::brdfs {
 namespace {
@@ -55,15 +56,31 @@ public:
         const double rise = 1 + g.squaredSlope;
         return inverse_ * exp(inverse_ * -g.squaredSlope) * (rise * rise / pi);
     }
+    /// M = (s exp(-a^2) / sqrt(pi) - z erfc(a)) / 2 with s = alpha sin, a = z / s, so that
+    /// dM/ds = exp(-a^2) / (2 sqrt(pi)).
     T masked(double z) const {
-        using std::erfc;
-        using std::exp;
-        const T s = alpha_ * std::max(1e-12, std::sqrt((1 - z) * (1 + z)));
-        const T a = z / s;
-        return 0.5 * (exp(-a * a) * s * std::numbers::inv_sqrtpi - erfc(a) * z);
+        const double sine = std::max(1e-12, std::sqrt((1 - z) * (1 + z)));
+        const double s = valueOf(alpha_) * sine, a = z / s;
+        if (a > 6) return T(0.0);  // less than rounding of z, to which it is added
+        const double bell = 0.5 * std::numbers::inv_sqrtpi * std::exp(-a * a);
+        return chained(s * bell - 0.5 * z * std::erfc(a), sine * bell);
     }
 
 private:
+    static double valueOf(const T& x) {
+        if constexpr (std::is_same_v<T, double>)
+            return x;
+        else
+            return x.a;
+    }
+    /// A function of alpha from its value and slope.
+    T chained(double value, double slope) const {
+        if constexpr (std::is_same_v<T, double>)
+            return value;
+        else
+            return T(value, slope * alpha_.v);
+    }
+
     T alpha_, inverse_;
 };
 

@@ -1,7 +1,7 @@
 // Every model of the catalog, with every choice that frees other parameters, isotropic and not:
 // parameters drawn over the whole ranges of its own table row come back within the errors that the
 // fit states, or the fit says what it cannot tell. HSHFIT_DRAWS sets how many of each,
-// HSHFIT_VERBOSE prints them (docs/fit.md).
+// HSHFIT_VERBOSE prints them; without, one on fewer samples (docs/fit.md).
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit.h>
 #include <brdfs/fit/free_parameters.h>
@@ -166,10 +166,14 @@ protected:
         return text ? std::atoi(text) : usual;
     }
     static void check(double noise, int count) {
-        // A sum of dozens of terms for each value.
-        const bool slow = GetParam().model->name == "he";
-        const std::size_t size = slow ? 300 : 1500;
-        const int starts = slow ? 4 : 16;
+        if (GetParam().model->name == "gtr" && !GetParam().choice.empty() &&
+            !std::getenv("HSHFIT_DRAWS"))
+            GTEST_SKIP() << "a minute: its masking is an integral, by differences; HSHFIT_DRAWS=1";
+        // A sum of dozens of terms for each value, or an integral; by differences.
+        const std::string_view name = GetParam().model->name;
+        const bool slow = name == "he" || (name == "gtr" && !GetParam().choice.empty());
+        const std::size_t size = slow ? 150 : std::getenv("HSHFIT_DRAWS") ? 1500 : 500;
+        const int starts = slow ? 3 : size < 1500 ? 8 : 16;
         std::mt19937_64 random(11);
         std::normal_distribution<double> normal;
         int outcomes[3] = {};
