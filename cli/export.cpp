@@ -154,10 +154,9 @@ std::string text(const Json& document) {
         const auto percent = [&](const char* key) { return 100 * error[key].get<double>(); };
         out += fmt::format(
             "error against {}: {:.3g} % = truncation {:.3g} %, interpolation {:.3g} %, "
-            "{} {:.3g} %; mean log {:.3g}\n",
+            "storage {:.3g} %; mean log {:.3g}\n",
             document["brdf"].get<std::string>(), percent("total"), percent("truncation"),
-            percent("interpolation"), document["number"].get<std::string>(),
-            percent("quantisation"), error["mean_log"].get<double>());
+            percent("interpolation"), percent("quantisation"), error["mean_log"].get<double>());
     }
     if (document.contains("basis_textures")) {
         const Json& basis = document["basis_textures"];

@@ -14,7 +14,7 @@ namespace hshfit::gpu {
 /// evenly over the hemisphere (not the map's own) and channels, each relative to |f|:
 ///     truncation     |f - A|   A: f projected at each of these directions themselves
 ///     interpolation  |A - B|   B: coefficients interpolated in the map, before rounding
-///     quantisation   |B - C|   C: the same as stored
+///     quantisation   |B - C|   C: the same as stored: rounded, and without chroma bands left out
 ///     total          |f - C|
 /// The causes add in squares where they are independent; the total is measured, not summed.
 struct ErrorSplit {
