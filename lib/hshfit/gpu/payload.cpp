@@ -209,21 +209,25 @@ Payload pack(const Coefficients& c, const PackOptions& options) {
     return payload;
 }
 
+Coefficients headOf(const Payload& payload) {
+    return {.basis = payload.basis,
+            .order = payload.order,
+            .condonShortley = payload.condonShortley,
+            .quantity = payload.quantity,
+            .channels = payload.channels,
+            .outgoing = payload.outgoing,
+            .isotropic = payload.isotropic,
+            .bilateral = payload.bilateral,
+            .reciprocal = payload.reciprocal,
+            .values = {},
+            .energy = payload.energy,
+            .error = payload.error,
+            .source = payload.source,
+            .generator = payload.generator};
+}
+
 Coefficients unpack(const Payload& payload) {
-    Coefficients c{.basis = payload.basis,
-                   .order = payload.order,
-                   .condonShortley = payload.condonShortley,
-                   .quantity = payload.quantity,
-                   .channels = payload.channels,
-                   .outgoing = payload.outgoing,
-                   .isotropic = payload.isotropic,
-                   .bilateral = payload.bilateral,
-                   .reciprocal = payload.reciprocal,
-                   .values = {},
-                   .energy = payload.energy,
-                   .error = payload.error,
-                   .source = payload.source,
-                   .generator = payload.generator};
+    Coefficients c = headOf(payload);
     std::vector<double> texels = decode(payload.coefficients);
     const std::size_t pixels = c.outgoing.size(),
                       width = static_cast<std::size_t>(c.outgoing.width);

@@ -85,6 +85,9 @@ constexpr std::size_t maxLayers = 256;
 /// is not finite or beyond the range of the number type.
 Payload pack(const Coefficients& coefficients, const PackOptions& options);
 
+/// What the payload says of its coefficients, without their values.
+Coefficients headOf(const Payload& payload);
+
 /// The coefficients as a GPU reads them (after rounding), in all slots and in the original
 /// channels. Marked corner texels take the value of the texel diagonally inside.
 Coefficients unpack(const Payload& payload);

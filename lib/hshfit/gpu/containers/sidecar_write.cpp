@@ -181,21 +181,7 @@ Json testsJson(std::span<const TestTriple> tests) {
 
 /// Keys that say what the numbers are, taken over from the coefficient file word for word.
 void addCoefficientKeys(const Payload& payload, Json& document) {
-    const Coefficients head{.basis = payload.basis,
-                            .order = payload.order,
-                            .condonShortley = payload.condonShortley,
-                            .quantity = payload.quantity,
-                            .channels = payload.channels,
-                            .outgoing = payload.outgoing,
-                            .isotropic = payload.isotropic,
-                            .bilateral = payload.bilateral,
-                            .reciprocal = payload.reciprocal,
-                            .values = {},
-                            .energy = payload.energy,
-                            .error = payload.error,
-                            .source = payload.source,
-                            .generator = payload.generator};
-    for (const auto& [key, text] : metadataOf(head)) {
+    for (const auto& [key, text] : metadataOf(headOf(payload))) {
         if (key == "format" || key == "version" || key == "tolerance") continue;
         document[key] = key == "basis" ? basisJson(payload) : Json::parse(text);
     }
