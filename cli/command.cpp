@@ -111,8 +111,8 @@ struct Progress::State {
         visible = true;
         const double seconds = std::chrono::duration<double>(now - start).count();
         const double share = static_cast<double>(done) / static_cast<double>(total);
-        fmt::print(stderr, "\r\x1b[K{}  {}/{}  {:.0f} s left", what, done, total,
-                   seconds * (1 - share) / share);
+        fmt::print(stderr, "\r\x1b[K{}  {}/{}  {:.3g}/s  {:.0f} s left", what, done, total,
+                   static_cast<double>(done) / seconds, seconds * (1 - share) / share);
         std::fflush(stderr);
     }
 };

@@ -64,7 +64,7 @@ void printJson(const nlohmann::ordered_json& document);
 void printText(std::string_view text);
 
 /// A progress line on standard error, only on a terminal and unless --quiet: what is done, how much
-/// of it, and the time left. Empty where nothing would be shown.
+/// of it, how fast, and the time left. Empty where nothing would be shown.
 class Progress {
 public:
     Progress(const Globals& globals, std::string what);

@@ -1,4 +1,5 @@
 #include "command.h"
+#include "inputs.h"
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
@@ -13,13 +14,17 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
+#include <system_error>
+
 namespace hshfit::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 struct ProjectOptions {
-    std::string spec, output, basis = "hsh", outgoing = "32x32";
+    std::vector<std::string> specs;
+    std::string output, basis = "hsh", outgoing = "32x32", form = "json";
     int order = 7;
     bool cosine = false, condonShortley = false, rgb = false;
     double tolerance = 0;
@@ -63,8 +68,7 @@ Json answer(const Projection& projection, const std::string& output) {
 
 /// Scattered samples straight to coefficients, without interpolating between them.
 Projection projectSamples(const Brdf& brdf, const Basis& basis, const OutgoingSet& outgoing,
-                          const ProjectOptions& options,
-                          std::function<void(std::size_t, std::size_t)> progress) {
+                          const ProjectOptions& options, ProgressCall progress) {
     const auto* scattered = dynamic_cast<const brdfs::Scattered*>(&brdf);
     if (!scattered) {
         throw UsageError(fmt::format(
@@ -80,48 +84,111 @@ Projection projectSamples(const Brdf& brdf, const Basis& basis, const OutgoingSe
     return {.coefficients = std::move(fit.coefficients), .captured = {}, .evaluations = 0};
 }
 
-void runProject(const ProjectOptions& options, const Globals& globals) {
-    const auto basis =
-        bases::make(options.basis, options.order, {.condonShortley = options.condonShortley});
-    const OutgoingSet outgoing = OutgoingSet::parse(options.outgoing);
-    const auto brdf = openBrdf(options.spec, options.rgb);
+/// What all inputs of a command share.
+struct Job {
+    const ProjectOptions& options;
+    std::unique_ptr<Basis> basis;
+    OutgoingSet outgoing;
 
-    Progress progress(globals, "project");
-    const Basis* const one[] = {basis.get()};
-    const Projection projection =
-        options.leastSquares
-            ? projectSamples(*brdf, *basis, outgoing, options, progress.callback())
-            : project(*brdf, one, outgoing,
-                      {.quantity = options.cosine ? Quantity::brdfCosine : Quantity::brdf,
-                       .tolerance = options.tolerance,
-                       .maxEvaluations = static_cast<std::size_t>(options.maxEvaluations),
-                       .progress = progress.callback()})[0];
-    const Coefficients& coefficients = projection.coefficients;
-    writeCoefficients(coefficients, options.output);
+    Projection run(const std::string& spec, const std::string& output,
+                   const ProgressCall& progress) const {
+        const auto brdf = openBrdf(spec, options.rgb);
+        const Basis* const one[] = {basis.get()};
+        Projection projection =
+            options.leastSquares
+                ? projectSamples(*brdf, *basis, outgoing, options, progress)
+                : std::move(
+                      project(*brdf, one, outgoing,
+                              {.quantity = options.cosine ? Quantity::brdfCosine : Quantity::brdf,
+                               .tolerance = options.tolerance,
+                               .maxEvaluations = static_cast<std::size_t>(options.maxEvaluations),
+                               .progress = progress})[0]);
+        writeCoefficients(projection.coefficients, output);
+        return projection;
+    }
+};
 
-    if (!coefficients.energy.finite) {
-        note(globals, "the energy does not exist: " + coefficients.energy.reason);
-    }
-    const Json document = answer(projection, options.output);
-    if (globals.json) {
-        printJson(document);
-        return;
-    }
-    if (const auto& fit = coefficients.leastSquares) {
-        printText(fmt::format(
+void noteEnergy(const Projection& projection, const std::string& prefix, const Globals& globals) {
+    const Energy& energy = projection.coefficients.energy;
+    if (!energy.finite) note(globals, prefix + "the energy does not exist: " + energy.reason);
+}
+
+std::string line(const Projection& projection, const Json& document, const std::string& output) {
+    const Coefficients& c = projection.coefficients;
+    if (const auto& fit = c.leastSquares) {
+        return fmt::format(
             "{}: {} order {}, {} directions, least squares over {} samples, condition {:.2g}, "
             "residual {:.3g}\n",
-            options.output, coefficients.basis, coefficients.order, coefficients.outgoing.size(),
-            fit->samples, fit->condition, fit->residual));
-        return;
+            output, c.basis, c.order, c.outgoing.size(), fit->samples, fit->condition,
+            fit->residual);
     }
     const std::string accuracy =
         document["accuracy"].is_null()
             ? "no captured energy"
             : fmt::format("{:.6f} of the energy captured", document["accuracy"].get<double>());
-    printText(fmt::format("{}: {} order {}, {} directions, {}, quadrature error {:.1e}\n",
-                          options.output, coefficients.basis, coefficients.order,
-                          coefficients.outgoing.size(), accuracy, coefficients.error));
+    return fmt::format("{}: {} order {}, {} directions, {}, quadrature error {:.1e}\n", output,
+                       c.basis, c.order, c.outgoing.size(), accuracy, c.error);
+}
+
+void projectOne(const Job& job, const Globals& globals) {
+    const std::string& output = job.options.output;
+    Progress progress(globals, "project");
+    const Projection projection = job.run(job.options.specs[0], output, progress.callback());
+    noteEnergy(projection, "", globals);
+    const Json document = answer(projection, output);
+    if (globals.json)
+        printJson(document);
+    else
+        printText(line(projection, document, output));
+}
+
+/// Every input to a file of its own in the folder `-o`.
+void projectMany(const Job& job, Globals& globals) {
+    const ProjectOptions& options = job.options;
+    const std::vector<std::string> specs = expandInputs(options.specs);
+    const std::vector<std::string> outputs = outputPaths(specs, options.output, "." + options.form);
+    std::error_code error;
+    std::filesystem::create_directories(options.output, error);
+    if (error) {
+        throw OutputError(fmt::format("{}: {}; -o of several inputs is a folder", options.output,
+                                      error.message()));
+    }
+    std::vector<Projection> results(specs.size());
+    const std::vector<InputFailure> failures =
+        forEachInput(specs, globals, "project", [&](std::size_t i, const ProgressCall& progress) {
+            Projection result = job.run(specs[i], outputs[i], progress);
+            result.coefficients.values = {};  // they are in the file
+            results[i] = std::move(result);
+        });
+    Json documents = Json::array(), failed = Json::array();
+    std::string text;
+    for (std::size_t i = 0; i < specs.size(); ++i) {
+        if (results[i].coefficients.order == 0) continue;
+        noteEnergy(results[i], results[i].coefficients.source + ": ", globals);
+        documents.push_back(answer(results[i], outputs[i]));
+        text += line(results[i], documents.back(), outputs[i]);
+    }
+    for (const InputFailure& failure : failures)
+        failed.push_back({{"spec", failure.spec}, {"reason", failure.reason}});
+    if (globals.json)
+        printJson({{"format", "hshfit-projects"},
+                   {"version", 1},
+                   {"projections", documents},
+                   {"failures", failed}});
+    else
+        printText(text);
+    reportFailures(failures, specs.size(), globals);
+}
+
+void runProject(const ProjectOptions& options, Globals& globals) {
+    const Job job{
+        options,
+        bases::make(options.basis, options.order, {.condonShortley = options.condonShortley}),
+        OutgoingSet::parse(options.outgoing)};
+    if (areMany(options.specs))
+        projectMany(job, globals);
+    else
+        projectOne(job, globals);
 }
 
 }  // namespace
@@ -131,9 +198,17 @@ void addProject(CLI::App& app, Globals& globals) {
     CLI::App& command = addCommand(
         app, globals, "project", "Coefficients of a BRDF, per outgoing direction, to a file",
         "hshfit project ward:ax=.2,ay=.5 -o ward.json --basis hsh --order 7 --cosine");
-    command.add_option("SPEC", options->spec, "BRDF")->required();
-    command.add_option("-o,--output", options->output, "Coefficient file, .json or .exr")
+    command
+        .add_option("SPEC", options->specs,
+                    "One or more BRDFs; of a folder, the measured files in it")
         ->required();
+    command
+        .add_option("-o,--output", options->output,
+                    "Coefficient file, .json or .exr; for many BRDFs, the folder for their files")
+        ->required();
+    command.add_option("--form", options->form, "With many BRDFs: json or exr")
+        ->check(CLI::IsMember({"json", "exr"}))
+        ->capture_default_str();
     command.add_option("--basis", options->basis, "See hshfit list bases")->capture_default_str();
     command.add_option("--order", options->order, "Number of bands: l = 0 .. order-1")
         ->capture_default_str();

@@ -1,4 +1,5 @@
 #include "command.h"
+#include "inputs.h"
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
@@ -12,6 +13,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 
 namespace hshfit::cli {
 namespace {
@@ -56,17 +58,16 @@ std::vector<Projection> withoutNumbers(const Brdf& brdf, std::span<const Basis* 
 }
 
 std::vector<Projection> projectFor(const std::string& spec, std::span<const Basis* const> bases,
-                                   const ReportOptions& options, const Globals& globals) {
+                                   const ReportOptions& options, const ProgressCall& progress) {
     const auto brdf = openBrdf(spec, options.rgb);
     const OutgoingSet outgoing = outgoingOrDefault(options.outgoing, *brdf);
     const Quantity quantity = options.cosine ? Quantity::brdfCosine : Quantity::brdf;
-    Progress progress(globals, brdf->name());
     try {
         return project(*brdf, bases, outgoing,
                        {.quantity = quantity,
                         .tolerance = options.tolerance,
                         .maxEvaluations = static_cast<std::size_t>(options.maxEvaluations),
-                        .progress = progress.callback()});
+                        .progress = progress});
     } catch (const NumericError& error) {
         return withoutNumbers(*brdf, bases, outgoing, quantity, error.what());
     }
@@ -94,6 +95,27 @@ std::string summary(const ReportEntry& entry) {
     return text;
 }
 
+/// The entries of all inputs, in their order. Of a single one, an error ends the command.
+Report gather(const std::vector<std::string>& specs, std::span<const Basis* const> bases,
+              const ReportOptions& options, const Globals& globals,
+              std::vector<InputFailure>& failures) {
+    Report report;
+    if (!areMany(options.specs)) {
+        Progress progress(globals, specs[0]);
+        report.reports.push_back(
+            reportEntry(projectFor(specs[0], bases, options, progress.callback())));
+        return report;
+    }
+    std::vector<std::optional<ReportEntry>> entries(specs.size());
+    failures =
+        forEachInput(specs, globals, "report", [&](std::size_t i, const ProgressCall& progress) {
+            entries[i] = reportEntry(projectFor(specs[i], bases, options, progress));
+        });
+    for (auto& entry : entries)
+        if (entry) report.reports.push_back(std::move(*entry));
+    return report;
+}
+
 void runReport(const ReportOptions& options, Globals& globals) {
     if (options.output.empty() && !globals.json) {
         throw UsageError("report: give -o DIR for the report's files, or --json");
@@ -102,24 +124,27 @@ void runReport(const ReportOptions& options, Globals& globals) {
     std::vector<const Basis*> pointers;
     for (const auto& basis : bases) pointers.push_back(basis.get());
 
-    Report report;
-    for (const std::string& spec : options.specs) {
-        report.reports.push_back(reportEntry(projectFor(spec, pointers, options, globals)));
-        const Energy& energy = report.reports.back().energy;
-        if (energy.finite) continue;
+    std::vector<InputFailure> failures;
+    const std::vector<std::string> specs = expandInputs(options.specs);
+    const Report report = gather(specs, pointers, options, globals, failures);
+    for (const ReportEntry& entry : report.reports) {
+        if (entry.energy.finite) continue;
         globals.exitCode = static_cast<int>(ExitCode::numeric);
-        note(globals, fmt::format("{}: {}", report.reports.back().brdf, energy.reason));
+        note(globals, fmt::format("{}: {}", entry.brdf, entry.energy.reason));
     }
-    if (!options.output.empty()) writeReport(report, options.output);
-    if (globals.json) {
+    const bool any = !report.reports.empty();
+    if (any && !options.output.empty()) writeReport(report, options.output);
+    if (any && globals.json) {
         printText(reportJson(report));
-        return;
+    } else if (any) {
+        std::string text;
+        for (const ReportEntry& entry : report.reports) text += summary(entry);
+        printText(text +
+                  fmt::format("written to {}: report.html, curves.svg, curves.pdf, curves.csv, "
+                              "curves.gp, report.json\n",
+                              options.output));
     }
-    std::string text;
-    for (const ReportEntry& entry : report.reports) text += summary(entry);
-    printText(text + fmt::format("written to {}: report.html, curves.svg, curves.pdf, curves.csv, "
-                                 "curves.gp, report.json\n",
-                                 options.output));
+    reportFailures(failures, specs.size(), globals);
 }
 
 }  // namespace
@@ -129,7 +154,10 @@ void addReport(CLI::App& app, Globals& globals) {
     CLI::App& command = addCommand(
         app, globals, "report", "Accuracy against number of coefficients, for every basis",
         "hshfit report phong:exponent=22 ward:ax=.2,ay=.5 -o report --cosine");
-    command.add_option("SPEC", options->specs, "One or more BRDFs")->required();
+    command
+        .add_option("SPEC", options->specs,
+                    "One or more BRDFs; of a folder, the measured files in it")
+        ->required();
     command.add_option("-o,--output", options->output, "Folder to write, made if absent");
     command.add_option("--bases", options->bases, "all, or names from hshfit list bases")
         ->capture_default_str();

@@ -1,0 +1,199 @@
+#include "inputs.h"
+
+#include <hshfit/output/coefficient_file.h>
+
+#include <brdfs/catalog.h>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <new>
+#include <optional>
+
+namespace hshfit::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool isFolder(const std::string& spec) {
+    std::error_code ignored;
+    return fs::is_directory(spec, ignored);
+}
+
+bool isMeasured(const fs::path& path) {
+    constexpr std::size_t headSize = 4096;
+    std::array<unsigned char, headSize> head{};
+    std::ifstream file(path, std::ios::binary);
+    file.read(reinterpret_cast<char*>(head.data()), headSize);
+    std::error_code error;
+    const std::uintmax_t size = fs::file_size(path, error);
+    if (error) return false;
+    const std::span<const unsigned char> bytes(head.data(),
+                                               static_cast<std::size_t>(file.gcount()));
+    const std::string extension = path.extension().string();
+    const bool known = std::ranges::any_of(brdfs::formats(), [&](const brdfs::Format& format) {
+        return format.extension == extension || format.recognises(bytes, size);
+    });
+    return known && !looksLikeCoefficients(path.string());
+}
+
+std::vector<std::string> measuredFiles(const std::string& folder) {
+    std::error_code error;
+    std::vector<std::string> files;
+    fs::directory_iterator entries(folder, error);
+    if (error) throw InputError(fmt::format("{}: {}", folder, error.message()));
+    for (const fs::directory_entry& entry : entries)
+        if (entry.is_regular_file(error) && isMeasured(entry.path()))
+            files.push_back(entry.path().string());
+    if (files.empty())
+        throw InputError(fmt::format(
+            "{}: no measured BRDF in this folder; hshfit list formats shows what is read", folder));
+    std::ranges::sort(files);
+    return files;
+}
+
+/// The path of a file specification: without its options; none for anything but a file.
+std::optional<fs::path> pathOf(const std::string& spec) {
+    std::error_code ignored;
+    if (fs::exists(spec, ignored)) return fs::path(spec);
+    const std::string path = spec.substr(0, spec.rfind(':'));
+    if (fs::exists(path, ignored)) return fs::path(path);
+    return std::nullopt;
+}
+
+std::string nameFor(const std::string& spec) {
+    if (const auto path = pathOf(spec)) return path->stem().string();
+    std::string name = spec;
+    for (char& c : name) {
+        const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+        const bool plain = letter || (c >= '0' && c <= '9') ||
+                           std::string_view("._=,+-").find(c) != std::string_view::npos;
+        if (!plain) c = '_';
+    }
+    return name;
+}
+
+/// Outgoing directions done, over all inputs. How many an input has is known once it has been
+/// opened; the others are taken to have as many on average.
+class TotalProgress {
+public:
+    TotalProgress(std::size_t inputs, ProgressCall show) : parts_(inputs), show_(std::move(show)) {}
+
+    void update(std::size_t input, std::size_t done, std::size_t total) {
+        if (!show_) return;
+        const std::lock_guard lock(mutex_);
+        Part& part = parts_[input];
+        if (part.total == 0) ++known_;
+        done_ += std::max(done, part.done) - part.done;
+        total_ += total - part.total;
+        part = {std::max(done, part.done), total};
+        show_(done_, total_ * parts_.size() / known_);
+    }
+    /// An input that failed has nothing left to do.
+    void finish(std::size_t input) {
+        const std::size_t total = parts_[input].total;
+        if (total > 0) update(input, total, total);
+    }
+
+private:
+    struct Part {
+        std::size_t done = 0, total = 0;
+    };
+    std::mutex mutex_;
+    std::vector<Part> parts_;
+    std::size_t known_ = 0, done_ = 0, total_ = 0;
+    ProgressCall show_;
+};
+
+}  // namespace
+
+std::vector<std::string> expandInputs(const std::vector<std::string>& specs) {
+    std::vector<std::string> inputs;
+    for (const std::string& spec : specs) {
+        if (isFolder(spec)) {
+            for (std::string& file : measuredFiles(spec)) inputs.push_back(std::move(file));
+        } else {
+            inputs.push_back(spec);
+        }
+    }
+    return inputs;
+}
+
+bool areMany(const std::vector<std::string>& specs) {
+    return specs.size() > 1 || std::ranges::any_of(specs, isFolder);
+}
+
+std::vector<std::string> outputPaths(const std::vector<std::string>& specs,
+                                     const std::string& folder, const std::string& extension) {
+    std::vector<std::string> paths;
+    std::map<std::string, std::string> taken;
+    for (const std::string& spec : specs) {
+        const std::string name = nameFor(spec) + extension;
+        const auto [other, isNew] = taken.try_emplace(name, spec);
+        if (!isNew) {
+            throw UsageError(fmt::format(
+                "'{}' and '{}' would both be written to {}; give them different folders",
+                other->second, spec, (fs::path(folder) / name).string()));
+        }
+        paths.push_back((fs::path(folder) / name).string());
+    }
+    return paths;
+}
+
+std::vector<InputFailure> forEachInput(const std::vector<std::string>& specs,
+                                       const Globals& globals, const std::string& what,
+                                       const std::function<void(std::size_t, ProgressCall)>& work) {
+    Progress line(globals, what);
+    TotalProgress progress(specs.size(), line.callback());
+    std::vector<std::optional<InputFailure>> failed(specs.size());
+    const auto one = [&](std::size_t i) {
+        try {
+            work(i, [&progress, i](std::size_t done, std::size_t total) {
+                progress.update(i, done, total);
+            });
+        } catch (const OutputError&) {
+            throw;
+        } catch (const Error& error) {
+            failed[i] = {specs[i], error.what(), error.code()};
+        } catch (const std::bad_alloc&) {
+            failed[i] = {specs[i], "not enough memory", ExitCode::numeric};
+        }
+        progress.finish(i);
+    };
+    // Isolated: a thread that waits within one input must not begin another, or all of them would
+    // be open at once.
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, specs.size(), 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i)
+                tbb::this_task_arena::isolate([&] { one(i); });
+        },
+        tbb::simple_partitioner());
+    std::vector<InputFailure> failures;
+    for (auto& failure : failed)
+        if (failure) failures.push_back(std::move(*failure));
+    return failures;
+}
+
+void reportFailures(const std::vector<InputFailure>& failures, std::size_t inputs,
+                    Globals& globals) {
+    if (failures.empty()) return;
+    fmt::print(stderr, "hshfit: {} of {} inputs failed:\n", failures.size(), inputs);
+    bool numeric = true;
+    for (const InputFailure& failure : failures) {
+        numeric = numeric && failure.code == ExitCode::numeric;
+        const bool named = failure.reason.find(failure.spec) != std::string::npos;
+        fmt::print(stderr, "  {}\n", named ? failure.reason : failure.spec + ": " + failure.reason);
+    }
+    globals.exitCode = static_cast<int>(numeric ? ExitCode::numeric : ExitCode::input);
+}
+
+}  // namespace hshfit::cli
