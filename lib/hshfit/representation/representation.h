@@ -1,0 +1,77 @@
+#pragma once
+
+#include <hshfit/brdf.h>
+#include <hshfit/coefficients.h>
+#include <hshfit/representation/stored_array.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit {
+
+/// What was done to coefficients and what it cost: the relative change, in L2 over both
+/// hemispheres, of the projected quantity between before and after.
+struct RepresentationStep {
+    std::string what;  ///< "window lanczos", "rank 4", "keep 120", "unorm8", …
+    double change = 0;
+};
+
+/// Number of functions along each axis of the halfway form; see halfway.h.
+struct HalfwayOrders {
+    int half = 12, difference = 6, azimuth = 3;
+};
+
+/// One way to keep a BRDF, as a coefficient file holds it.
+///
+/// outgoing  q(wi, wo) = sum_i c_i(wo) B_i(wi), c kept per outgoing direction and interpolated.
+///           "coefficients" [outgoing][channel][slot of `slots`], or, factored,
+///           "left" [outgoing * channels + channel][rank] times "right" [rank][slot of `slots`]
+/// basis     q(wi, wo) = sum_t c_t P_t(wi, wo): both directions in one basis (the "two successive
+///           transformations" of Gautron et al. 2004); terms as in basis_matrix.h.
+///           "matrix" [channel][term], or, factored, "left M" and "right M" for each block
+/// halfway   ln(1 + f) expanded over the half and the difference vector; see halfway.h.
+///           "halfway" [channel][term]
+///
+/// The BRDF of the specification `added`, if any, is added to f exactly.
+struct Representation {
+    enum class Kind { outgoing, basis, halfway };
+
+    Kind kind = Kind::outgoing;
+    /// Everything but `values`. `outgoing` is empty unless the kind is `outgoing`; `quantity` is
+    /// brdf for halfway.
+    Coefficients head;
+    std::vector<int> slots;  ///< the stored slots, ascending (kind outgoing)
+    HalfwayOrders halfway = {};
+    std::string added;
+    std::vector<StoredArray> arrays;
+    std::vector<RepresentationStep> steps = {};
+
+    /// Throws std::out_of_range if there is none of that name.
+    const StoredArray& array(std::string_view name) const;
+    bool has(std::string_view name) const;
+
+    /// Length of all arrays as packed, plus four bytes for each number in `added`. Names, shapes
+    /// and provenance are not counted, as in the sizes that others publish.
+    std::size_t bytes() const;
+    /// The same after Zstandard.
+    std::size_t entropyBytes() const;
+    /// How many numbers are stored.
+    std::size_t numbers() const;
+};
+
+std::string_view kindName(Representation::Kind kind);  ///< "outgoing", "basis", "halfway"
+
+/// Opens a BRDF specification; the library itself knows no models.
+using BrdfOpener = std::function<std::unique_ptr<Brdf>(const std::string& spec)>;
+
+/// Coefficients, unchanged, in the form outgoing. Slots that are 0 everywhere are left out.
+Representation fromCoefficients(const Coefficients& coefficients);
+
+/// The coefficients that kind outgoing decodes to (without `added`). Products of factors are
+/// multiplied out. UsageError for another kind: `expand` (represented_brdf.h) projects those.
+Coefficients decoded(const Representation& representation);
+
+}  // namespace hshfit
