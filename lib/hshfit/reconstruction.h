@@ -5,6 +5,7 @@
 #include <hshfit/coefficients.h>
 
 #include <memory>
+#include <span>
 
 namespace hshfit {
 
@@ -35,5 +36,12 @@ private:
     std::unique_ptr<Basis> basis_;
     Laws laws_;
 };
+
+/// out[channel * wi.count + k] = sum over slots of c[channel * slots + slot] B_slot(wi_k), 0 below
+/// the horizon; any number of channels.
+void synthesise(const Basis& basis, std::span<const double> c, DirectionBatch wi, double* out);
+
+/// f from f cos(theta_i), laid out as for `Brdf::eval`.
+void divideByCosine(DirectionBatch wi, std::size_t channels, double* values);
 
 }  // namespace hshfit

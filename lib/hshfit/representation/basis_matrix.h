@@ -8,16 +8,19 @@
 namespace hshfit {
 
 /// One orthonormal product function of both directions, with B the basis functions:
-///     P = s [ A(wi) B(wo) ± … ] over the symmetries that hold, s making its norm 1 over both
-/// hemispheres in the basis' inner product. In full, (l, m) belongs to wi and (k, p) to wo:
+/// of norm 1 over both hemispheres in the basis' inner product, (l, m) for wi and (k, p) for wo:
 ///     anisotropic   B_{l,m}(wi) B_{k,p}(wo)
 ///     isotropic     p = m >= 0: [B_{l,m} B_{k,m} + B_{l,-m} B_{k,-m}] / sqrt 2 (m > 0), or with
 ///                   `sine`: [B_{l,m} B_{k,-m} - B_{l,-m} B_{k,m}] / sqrt 2
-///     reciprocal    the above plus (sine: minus) itself with wi and wo exchanged, over sqrt 2
-///                   unless they are the same; one of each such pair of terms is listed
+///     reciprocal    the above plus itself with wi and wo exchanged, over sqrt 2 (over 2 where both
+///                   are the same); one of each pair of terms is listed, and none that would be 0
+/// Bilateral leaves out `sine` where isotropic; otherwise it asks that m and p be both cosines or
+/// both sines, and m + p even.
 struct ProductTerm {
     int l = 0, m = 0, k = 0, p = 0;
     bool sine = false;
+
+    friend bool operator==(const ProductTerm&, const ProductTerm&) = default;
 };
 
 /// The symmetries that leave terms out.
@@ -36,17 +39,32 @@ std::vector<ProductTerm> productTerms(const Basis& basis, const ProductSymmetry&
 void evaluateProducts(const std::vector<ProductTerm>& terms, const ProductSymmetry& symmetry,
                       const double* atWi, const double* atWo, double* out);
 
+/// Adds to out[slot] the coefficients over wi that `values`, one per term, have at one wo.
+void contractWithOutgoing(const std::vector<ProductTerm>& terms, const ProductSymmetry& symmetry,
+                          const double* values, const double* atWo, double* out);
+
+/// [channel][term], multiplied out where factored.
+std::vector<double> matrixValues(const Representation& matrix);
+
 /// Projects q over both hemispheres:
 ///     c_t = integral integral q(wi, wo) P_t(wi, wo) d omega_i d omega_o
 /// (cos-weighted on both sides for a basis of Inner::projectedSolidAngle). Over wi by `project`;
 /// over wo by Gauss-Legendre nodes in sqrt(cos theta_o) times equispaced azimuths, refined until
-/// the coefficients agree to the tolerance. `reciprocal` asks for the symmetric half only and, if q
-/// itself is not symmetric, projects the mean of q(wi, wo) and q(wo, wi); quantity brdf only
-/// (UsageError). Head's energy is that of q over both hemispheres.
+/// the coefficients agree to the tolerance (default: the larger of 1e-5 and the BRDF's own).
+/// `reciprocal` asks for the symmetric half only: that is the projection of the mean of q(wi, wo)
+/// and q(wo, wi); quantity brdf only. Head's energy is that of q over both hemispheres, head's
+/// `reciprocal` says whether the terms are the symmetric ones.
+///
+/// Throws UsageError for a basis that is not orthonormal, or f cos(theta_i) with `reciprocal`;
+/// NumericError where the coefficients do not exist or do not converge.
 Representation projectBoth(const Brdf& brdf, const Basis& basis, bool reciprocal,
                            const ProjectionOptions& options = {});
 
-/// Coefficients of `order` bands from those of more.
+/// The symmetries whose terms a matrix has.
+ProductSymmetry symmetryOf(const Representation& matrix);
+
+/// The prefix of the coefficients that `order` bands have. Throws UsageError for a basis whose
+/// functions depend on the order, or a factored matrix.
 Representation truncated(const Representation& matrix, int order);
 
 }  // namespace hshfit

@@ -2,7 +2,10 @@
 
 #include <hshfit/brdf.h>
 #include <hshfit/projection.h>
+#include <hshfit/representation/pair_evaluator.h>
 #include <hshfit/representation/representation.h>
+
+#include <memory>
 
 namespace hshfit {
 
@@ -12,5 +15,17 @@ namespace hshfit {
 struct HalfwayTerm {
     int i = 0, j = 0, k = 0;
 };
+
+/// f of the expansion for one wo, laid out as for `Brdf::eval`, without `added`. Called by
+/// `reconstruct`; throws InputError (from a check made once) if array and orders do not agree.
+void evaluateHalfway(const Representation& representation, const Direction& wo, DirectionBatch wi,
+                     double* out);
+
+/// For `pairEvaluator`, without `added`.
+std::unique_ptr<PairEvaluator> halfwayPairEvaluator(const Representation& representation);
+
+/// Fits the expansion to `brdf`.
+Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
+                              const ProjectionOptions& options = {});
 
 }  // namespace hshfit

@@ -1,0 +1,277 @@
+#include <hshfit/representation/basis_matrix.h>
+
+#include <hshfit/bases/catalog.h>
+#include <hshfit/error.h>
+#include <hshfit/quadrature.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+namespace hshfit {
+namespace {
+
+constexpr double halfRoot = 1 / std::numbers::sqrt2;
+
+void addIsotropic(const Basis& basis, const ProductSymmetry& symmetry,
+                  std::vector<ProductTerm>& terms) {
+    const int order = basis.order();
+    for (int m = 0; m < order; ++m) {
+        for (int l = m; l < order; ++l) {
+            for (int k = symmetry.reciprocal ? l : m; k < order; ++k) {
+                if (!basis.has(l, m) || !basis.has(k, m)) continue;
+                terms.push_back({l, m, k, m, false});
+                const bool vanishes = m == 0 || (symmetry.reciprocal && l == k);
+                if (!symmetry.bilateral && !vanishes) terms.push_back({l, m, k, m, true});
+            }
+        }
+    }
+}
+
+void addAnisotropic(const Basis& basis, const ProductSymmetry& symmetry,
+                    std::vector<ProductTerm>& terms) {
+    const int slots = basis.slots();
+    std::vector<std::pair<int, int>> functions;
+    for (int l = 0; l * l < slots; ++l) {
+        for (int m = -l; m <= l; ++m) {
+            if (basis.has(l, m)) functions.emplace_back(l, m);
+        }
+    }
+    for (std::size_t a = 0; a < functions.size(); ++a) {
+        for (std::size_t b = symmetry.reciprocal ? a : 0; b < functions.size(); ++b) {
+            const auto [l, m] = functions[a];
+            const auto [k, p] = functions[b];
+            const bool mirrored = (m < 0) == (p < 0) && (m + p) % 2 == 0;
+            if (!symmetry.bilateral || mirrored) terms.push_back({l, m, k, p, false});
+        }
+    }
+}
+
+/// The product function before it is made reciprocal.
+double onesided(const ProductTerm& t, bool isotropic, const double* wi, const double* wo) {
+    if (!isotropic || t.m == 0) return wi[slotOf(t.l, t.m)] * wo[slotOf(t.k, t.p)];
+    const double* a = wi + slotOf(t.l, 0);
+    const double* b = wo + slotOf(t.k, 0);
+    return halfRoot *
+           (t.sine ? a[t.m] * b[-t.m] - a[-t.m] * b[t.m] : a[t.m] * b[t.m] + a[-t.m] * b[-t.m]);
+}
+
+/// Adds value times the one-sided function, as coefficients over wi.
+void addOnesided(const ProductTerm& t, bool isotropic, double value, const double* wo,
+                 double* out) {
+    if (!isotropic || t.m == 0) {
+        out[slotOf(t.l, t.m)] += value * wo[slotOf(t.k, t.p)];
+        return;
+    }
+    double* a = out + slotOf(t.l, 0);
+    const double* b = wo + slotOf(t.k, 0);
+    a[t.m] += halfRoot * value * (t.sine ? b[-t.m] : b[t.m]);
+    a[-t.m] += halfRoot * value * (t.sine ? -b[t.m] : b[-t.m]);
+}
+
+/// The same function with wi and wo exchanged. A sine term changes its sign with its places:
+/// B_{l,m}(wo) B_{k,-m}(wi) - B_{l,-m}(wo) B_{k,m}(wi) is minus the term of (k, l).
+void addExchanged(const ProductTerm& t, bool isotropic, double value, const double* wo,
+                  double* out) {
+    const double sign = isotropic && t.sine ? -1 : 1;
+    addOnesided({t.k, t.p, t.l, t.m, t.sine}, isotropic, sign * value, wo, out);
+}
+
+/// Outgoing directions and weights of one level of the outer quadrature.
+OutgoingSet outerNodes(const Basis& basis, bool isotropic, int level) {
+    const double growth = std::pow(1.5, level);
+    const int rings = static_cast<int>(std::ceil((basis.order() + 6) * growth));
+    const int quarter =
+        isotropic ? 1 : static_cast<int>(std::ceil((basis.order() + 4) / 2.0 * growth));
+    const GaussRule& rule = gaussLegendre(rings);
+    OutgoingSet set;
+    set.map = OutgoingSet::Map::parabolic;  // any but elevations; only directions and weights count
+    const auto add = [&](double x, double y, double mu, double weight) {
+        set.directions.push_back({x, y, mu});
+        set.solidAngles.push_back(weight);
+    };
+    for (int r = 0; r < rings; ++r) {
+        const double u = (1 + rule.nodes[r]) / 2, mu = u * u;
+        double weight = rule.weights[r] / 2 * 2 * u * 2 * pi;
+        if (basis.inner() == Basis::Inner::projectedSolidAngle) weight *= mu;
+        const double s = std::sqrt((1 - mu) * (1 + mu));
+        if (isotropic) {
+            add(s, 0, mu, weight);
+            continue;
+        }
+        // Mirrored copies of one quadrant, so that symmetric directions agree to the last bit.
+        for (int j = 0; j < quarter; ++j) {
+            const double phi = (j + 0.5) * (pi / 2) / quarter;
+            const double x = s * std::cos(phi), y = s * std::sin(phi), w = weight / (4 * quarter);
+            for (double sx : {1.0, -1.0}) {
+                for (double sy : {1.0, -1.0}) add(sx * x, sy * y, mu, w);
+            }
+        }
+    }
+    set.width = static_cast<int>(set.size());
+    set.height = 1;
+    return set;
+}
+
+/// Coefficients [channel][term] from those per outgoing direction: a product function is linear in
+/// what it takes of wi, so that coefficients over wi can stand for the basis values there.
+std::vector<double> gather(const Coefficients& c, const Basis& basis,
+                           const std::vector<ProductTerm>& terms, const ProductSymmetry& symmetry) {
+    const std::size_t channels = c.channels.count();
+    std::vector<double> sums(channels * terms.size(), 0.0), products(terms.size());
+    std::vector<double> atWo(basis.slots());
+    for (std::size_t o = 0; o < c.outgoing.size(); ++o) {
+        basis.evaluate(c.outgoing.directions[o], atWo.data());
+        for (std::size_t channel = 0; channel < channels; ++channel) {
+            evaluateProducts(terms, symmetry, c.at(o, channel), atWo.data(), products.data());
+            double* out = sums.data() + channel * terms.size();
+            for (std::size_t t = 0; t < terms.size(); ++t) {
+                out[t] += c.outgoing.solidAngles[o] * products[t];
+            }
+        }
+    }
+    return sums;
+}
+
+double relativeChange(const std::vector<double>& now, const std::vector<double>& before) {
+    double change = 0, norm = 0;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        change += (now[i] - before[i]) * (now[i] - before[i]);
+        norm += now[i] * now[i];
+    }
+    return norm > 0 ? std::sqrt(change / norm) : std::sqrt(change);
+}
+
+bool isOrthonormal(const Basis& basis) {
+    return bases::find(basis.name()).orthonormal;
+}
+
+}  // namespace
+
+std::vector<ProductTerm> productTerms(const Basis& basis, const ProductSymmetry& symmetry) {
+    std::vector<ProductTerm> terms;
+    if (symmetry.isotropic) {
+        addIsotropic(basis, symmetry, terms);
+    } else {
+        addAnisotropic(basis, symmetry, terms);
+    }
+    const auto key = [](const ProductTerm& t) {
+        return std::tuple(std::max(t.l, t.k), t.k, t.l, t.m, t.p, t.sine);
+    };
+    std::sort(terms.begin(), terms.end(),
+              [&](const ProductTerm& a, const ProductTerm& b) { return key(a) < key(b); });
+    return terms;
+}
+
+void evaluateProducts(const std::vector<ProductTerm>& terms, const ProductSymmetry& symmetry,
+                      const double* atWi, const double* atWo, double* out) {
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+        const ProductTerm& t = terms[i];
+        out[i] = onesided(t, symmetry.isotropic, atWi, atWo);
+        if (!symmetry.reciprocal) continue;
+        const bool same = t.l == t.k && t.m == t.p;
+        if (!same) out[i] = halfRoot * (out[i] + onesided(t, symmetry.isotropic, atWo, atWi));
+    }
+}
+
+void contractWithOutgoing(const std::vector<ProductTerm>& terms, const ProductSymmetry& symmetry,
+                          const double* values, const double* atWo, double* out) {
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+        const ProductTerm& t = terms[i];
+        const bool doubled = symmetry.reciprocal && !(t.l == t.k && t.m == t.p);
+        const double value = doubled ? halfRoot * values[i] : values[i];
+        addOnesided(t, symmetry.isotropic, value, atWo, out);
+        if (doubled) addExchanged(t, symmetry.isotropic, value, atWo, out);
+    }
+}
+
+Representation projectBoth(const Brdf& brdf, const Basis& basis, bool reciprocal,
+                           const ProjectionOptions& options) {
+    if (!isOrthonormal(basis)) {
+        throw UsageError(fmt::format(
+            "{} is not orthonormal: both directions in one basis need one that is, such as hsh",
+            basis.name()));
+    }
+    if (reciprocal && options.quantity == Quantity::brdfCosine) {
+        throw UsageError(
+            "f cos(theta_i) is not symmetric in its directions: leave out --cosine or "
+            "--reciprocal");
+    }
+    constexpr int lastLevel = 7;
+    const double tolerance =
+        options.tolerance > 0 ? options.tolerance : std::max(1e-5, brdf.defaultTolerance());
+    const ProductSymmetry symmetry{brdf.laws().isotropic, brdf.laws().mirrorSymmetric, reciprocal};
+    const std::vector<ProductTerm> terms = productTerms(basis, symmetry);
+    const Basis* const one[] = {&basis};
+    ProjectionOptions inner = options;
+    inner.tolerance = tolerance / 4;
+
+    Representation result;
+    result.kind = Representation::Kind::basis;
+    StoredArray matrix{
+        .name = "matrix", .shape = {brdf.channels().count(), terms.size()}, .values = {}};
+    double change = 0;
+    for (int level = 0; level <= lastLevel; ++level) {
+        const OutgoingSet nodes = outerNodes(basis, symmetry.isotropic, level);
+        const Projection projection = std::move(project(brdf, one, nodes, inner)[0]);
+        std::vector<double> values = gather(projection.coefficients, basis, terms, symmetry);
+        change = level > 0 ? relativeChange(values, matrix.values) : 1;
+        matrix.values = std::move(values);
+        if (level == 0 || change > tolerance) continue;
+        result.head = projection.coefficients;
+        result.head.values.clear();
+        result.head.outgoing = {};
+        result.head.outgoing.directions.clear();
+        result.head.reciprocal = reciprocal;
+        result.head.tolerance = tolerance;
+        result.head.error = std::max(result.head.error, change);
+        result.arrays.push_back(std::move(matrix));
+        return result;
+    }
+    throw NumericError(fmt::format(
+        "{}: both directions in {} of order {} did not converge over the outgoing directions: the "
+        "last change is {:.1e}, {:.1e} was asked for (--tolerance)",
+        brdf.name(), basis.name(), basis.order(), change, tolerance));
+}
+
+std::vector<double> matrixValues(const Representation& matrix) {
+    return matrix.array("matrix").values;
+}
+
+ProductSymmetry symmetryOf(const Representation& matrix) {
+    return {matrix.head.isotropic, matrix.head.bilateral, matrix.head.reciprocal};
+}
+
+Representation truncated(const Representation& matrix, int order) {
+    const auto basis = bases::make(matrix.head.basis, matrix.head.order);
+    if (matrix.head.basis == "slepian" || !isOrthonormal(*basis)) {
+        throw UsageError(fmt::format("the functions of {} depend on the order: project anew",
+                                     matrix.head.basis));
+    }
+    if (!matrix.has("matrix") || order > matrix.head.order) {
+        throw UsageError(
+            fmt::format("a matrix of order {}, not factored, has no prefix of order {}",
+                        matrix.head.order, order));
+    }
+    const std::vector<ProductTerm> terms = productTerms(*basis, symmetryOf(matrix));
+    const auto kept = static_cast<std::size_t>(
+        std::count_if(terms.begin(), terms.end(),
+                      [&](const ProductTerm& t) { return std::max(t.l, t.k) < order; }));
+    Representation result = matrix;
+    result.head.order = order;
+    StoredArray& array = result.arrays[0];
+    const std::size_t rows = array.rows();
+    std::vector<double> values;
+    for (std::size_t row = 0; row < rows; ++row) {
+        const auto from = array.values.begin() + static_cast<std::ptrdiff_t>(row * terms.size());
+        values.insert(values.end(), from, from + static_cast<std::ptrdiff_t>(kept));
+    }
+    array.shape.back() = kept;
+    array.values = std::move(values);
+    return result;
+}
+
+}  // namespace hshfit
