@@ -14,6 +14,9 @@ enum class Window { none, hann, lanczos, bending };
 std::string_view windowName(Window window);
 /// Throws UsageError with the names.
 Window parseWindow(std::string_view name);
+/// "outgoing", "basis" or "halfway"; "H,D,A" for the orders. Both throw UsageError.
+Representation::Kind parseKind(std::string_view name);
+HalfwayOrders parseHalfway(std::string_view text);
 
 /// Everything that may be asked of a representation: the options of `project`, one for one.
 /// Applied in the order of the members, from `split` on.
@@ -58,7 +61,13 @@ std::unique_ptr<ProjectionSource> projecting(const Brdf& brdf, const ProjectionO
 /// Throws UsageError where options contradict each other or the BRDF.
 Representation represent(const Brdf& brdf, const Form& form, const BrdfOpener& open,
                          const ProjectionOptions& options = {});
-/// From projections that are at hand; `split` has been taken out by the caller.
-Representation represent(ProjectionSource& source, const Form& form, const BrdfOpener& open);
+/// From projections that are at hand. What `split` took out of the BRDF stands in `added`.
+Representation represent(ProjectionSource& source, const Form& form, const std::string& added = {});
+
+/// 16 elevations for an isotropic BRDF, a 16x16 map for others, unless the form names a set.
+OutgoingSet outgoingOf(const Form& form, const Brdf& brdf);
+
+/// Throws UsageError for options that contradict each other or the BRDF's laws.
+void requireConsistent(const Form& form, const Laws& laws);
 
 }  // namespace hshfit
