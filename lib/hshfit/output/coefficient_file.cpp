@@ -3,6 +3,7 @@
 #include <hshfit/output/coefficient_file.h>
 #include <hshfit/output/coefficient_formats.h>
 #include <hshfit/output/exr_header.h>
+#include <hshfit/output/representation_file.h>
 
 #include <algorithm>
 #include <cassert>
@@ -102,6 +103,29 @@ Coefficients readCoefficients(const std::string& path) {
     }
     throw InputError(
         fmt::format("{}: is not a coefficient file, neither hshfit JSON nor OpenEXR", path));
+}
+
+void writeRepresentation(const Representation& representation, const std::string& path) {
+    const bool plain = representation.kind == Representation::Kind::outgoing &&
+                       representation.added.empty() && representation.steps.empty() &&
+                       representation.has("coefficients") &&
+                       representation.array("coefficients").precision == Precision::float64;
+    if (plain) return writeCoefficients(decoded(representation), path);
+    if (formByExtension(path) != Form::json) {
+        throw UsageError(
+            fmt::format("'{}': forms other than plain coefficients are kept in .json files", path));
+    }
+    AtomicFile file(path);
+    file.write(representationToJson(representation));
+    file.commit();
+}
+
+Representation readRepresentation(const std::string& path) {
+    const std::string bytes = readBytes(path, std::numeric_limits<std::size_t>::max());
+    if (formByContent(bytes) == Form::json && hasRepresentation(bytes)) {
+        return representationFromJson(bytes, path);
+    }
+    return fromCoefficients(readCoefficients(path));
 }
 
 bool looksLikeCoefficients(const std::string& path) {

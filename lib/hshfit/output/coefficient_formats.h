@@ -3,6 +3,7 @@
 // The two forms of a coefficient file, apart from where their bytes come from.
 
 #include <hshfit/coefficients.h>
+#include <hshfit/representation/representation.h>
 
 #include <string>
 #include <string_view>
@@ -32,6 +33,12 @@ std::string printable(std::string_view text);
 
 std::string coefficientsToJson(const Coefficients& coefficients);
 Coefficients coefficientsFromJson(std::string_view text, const std::string& file);
+
+/// The form with a member "representation".
+std::string representationToJson(const Representation& representation);
+Representation representationFromJson(std::string_view text, const std::string& file);
+/// Whether a text that begins a JSON file has that member at its top level, by a look at the keys.
+bool hasRepresentation(std::string_view text);
 
 void coefficientsToExr(const Coefficients& coefficients, AtomicFile& file);
 Coefficients coefficientsFromExr(std::string_view bytes, const std::string& file);

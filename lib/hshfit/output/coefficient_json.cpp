@@ -66,6 +66,8 @@ public:
         }
     }
 
+    [[noreturn]] void refuseMissing() const { fail("'coefficients' is missing or empty"); }
+
     std::vector<double> values;
     std::size_t outgoing() const { return outgoing_; }
 
@@ -119,6 +121,16 @@ private:
     std::size_t outgoing_ = 0, rows_ = 0, countInRow_ = 0, channels_ = 0, slots_ = 0;
 };
 
+/// Coefficients of a file in another form, where it holds those and nothing else.
+Coefficients decodedOrRefused(std::string_view text, const std::string& file) {
+    const Representation r = representationFromJson(text, file);
+    if (r.kind == Representation::Kind::outgoing && r.added.empty()) return decoded(r);
+    throw InputError(fmt::format(
+        "{}: holds the form '{}'{}, not coefficients per outgoing direction alone; project it to a "
+        "file of its own first",
+        file, kindName(r.kind), r.added.empty() ? "" : fmt::format(" with {} added", r.added)));
+}
+
 /// "[json.exception.parse_error.101] parse error at line 1, …" without the bracket and in bounds.
 std::string reasonOf(const Json::exception& error) {
     std::string reason = error.what();
@@ -166,7 +178,9 @@ Coefficients coefficientsFromJson(std::string_view text, const std::string& file
         throw InputError(fmt::format("{}: not valid JSON: {}", file, printable(reasonOf(error))));
     }
     const std::string metadata = tree.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (tree.contains("representation")) return decodedOrRefused(text, file);
     Coefficients result = coefficientsFromMetadata(metadata, collector.outgoing(), file);
+    if (collector.outgoing() == 0) collector.refuseMissing();
     collector.requireShape(result);
     result.values = std::move(collector.values);
     return result;

@@ -42,6 +42,7 @@ double tidyDegrees(double angle) {
 }
 
 Ordered describe(const OutgoingSet& set) {
+    if (set.directions.empty()) return {{"map", "none"}};
     switch (set.map) {
         case OutgoingSet::Map::parabolic:
             return {{"map", "parabolic"},
@@ -189,6 +190,7 @@ OutgoingSet readOutgoing(const Fields& fields, std::size_t present) {
     } catch (const UsageError& error) {  // a size that the set itself refuses
         fields.fail(fmt::format("is invalid: {}", error.what()));
     }
+    if (map == "none" && present == 0) return {.directions = {}, .solidAngles = {}};
     if (map != "direction") {
         fields.fail("has to be 'parabolic', 'elevations' or 'direction'", "map");
     }
@@ -218,10 +220,12 @@ CoefficientMetadata metadataOf(const Coefficients& c) {
     add("version", formatVersion);
     add("generator", c.generator.empty() ? std::string("hshfit ") + version : c.generator);
     add("source", {{"brdf", c.source}});
-    add("basis", {{"name", c.basis},
-                  {"order", c.order},
-                  {"condon_shortley", c.condonShortley},
-                  {"index", slotRule}});
+    if (!c.basis.empty()) {
+        add("basis", {{"name", c.basis},
+                      {"order", c.order},
+                      {"condon_shortley", c.condonShortley},
+                      {"index", slotRule}});
+    }
     add("quantity", quantityName(c.quantity));
     add("channels", c.channels.names());
     add("channel_kind", kindName(c.channels.kind));
@@ -256,7 +260,8 @@ Coefficients coefficientsFromMetadata(std::string_view text, std::size_t outgoin
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     result.generator = root.word("generator");
     result.source = root.object("source").word("brdf");
-    readBasis(root.object("basis"), result);
+    // Without coefficients per outgoing direction there may be no basis.
+    if (outgoingCount > 0 || root.has("basis")) readBasis(root.object("basis"), result);
     const std::string quantity = root.word("quantity");
     result.quantity =
         quantity == quantityName(Quantity::brdfCosine) ? Quantity::brdfCosine : Quantity::brdf;
