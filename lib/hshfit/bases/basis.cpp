@@ -39,9 +39,12 @@ void azimuthRow(Real c, Real s, int order, bool condonShortley, std::size_t stri
 
 /// Block by block: theta parts of all points for one m, times their azimuth parts.
 template <class Real>
-void evaluateBatch(const Basis& basis, DirectionBatch directions, Real* out) {
+void tabulateByTheta(const Basis& basis, DirectionBatch directions, Basis::Layout layout,
+                     Real* out) {
     const int order = basis.order();
-    const auto slots = static_cast<std::size_t>(basis.slots());
+    const bool bySlot = layout == Basis::Layout::bySlot;
+    const std::size_t slotStep = bySlot ? directions.count : 1;
+    const std::size_t step = bySlot ? 1 : static_cast<std::size_t>(basis.slots());
     std::vector<Elevation<Real>> points(std::min(blockSize, directions.count));
     std::vector<Real> azimuths(static_cast<std::size_t>(2 * order - 1) * points.size());
     std::vector<Real> parts(static_cast<std::size_t>(order) * points.size());
@@ -63,10 +66,13 @@ void evaluateBatch(const Basis& basis, DirectionBatch directions, Real* out) {
             const Real* minus = azimuths.data() + static_cast<std::size_t>(order - 1 - m) * n;
             for (int l = m; l < order; ++l) {
                 const Real* row = parts.data() + static_cast<std::size_t>(l - m) * n;
+                Real* upper =
+                    out + first * step + static_cast<std::size_t>(slotOf(l, m)) * slotStep;
+                Real* lower =
+                    out + first * step + static_cast<std::size_t>(slotOf(l, -m)) * slotStep;
                 for (std::size_t k = 0; k < n; ++k) {
-                    Real* values = out + (first + k) * slots;
-                    values[slotOf(l, m)] = row[k] * plus[k];
-                    values[slotOf(l, -m)] = row[k] * minus[k];
+                    upper[k * step] = row[k] * plus[k];
+                    lower[k * step] = row[k] * minus[k];
                 }
             }
         }
@@ -117,16 +123,12 @@ double Basis::capturedEnergy(const double* moments, int order) const {
     return sum;
 }
 
-void Basis::evaluate(const Direction& d, double* out) const {
-    evaluate(DirectionBatch{&d.x, &d.y, &d.z, 1}, out);
+void Basis::tabulate(DirectionBatch directions, Layout layout, double* out) const {
+    tabulateByTheta(*this, directions, layout, out);
 }
 
-void Basis::evaluate(DirectionBatch directions, double* out) const {
-    evaluateBatch(*this, directions, out);
-}
-
-void Basis::evaluate(DirectionBatch directions, float* out) const {
-    evaluateBatch(*this, directions, out);
+void Basis::tabulate(DirectionBatch directions, Layout layout, float* out) const {
+    tabulateByTheta(*this, directions, layout, out);
 }
 
 }  // namespace hshfit

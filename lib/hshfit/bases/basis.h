@@ -74,12 +74,34 @@ public:
     /// moments, less what a truncated Gram solve cannot hold.
     virtual double capturedEnergy(const double* moments, int order) const;
 
+    /// Where a batch puts slot i at direction k.
+    enum class Layout {
+        byDirection,  ///< out[k * slots() + i]
+        bySlot,       ///< out[i * directions.count + k]
+    };
+    /// All functions at many directions. What a direction gets depends neither on its place in the
+    /// batch nor on the batch's size. Float: single precision throughout.
+    virtual void tabulate(DirectionBatch directions, Layout layout, double* out) const;
+    virtual void tabulate(DirectionBatch directions, Layout layout, float* out) const;
+
     /// All functions at one direction: out[slotOf(l, m)], `slots()` values.
-    void evaluate(const Direction& d, double* out) const;
+    void evaluate(const Direction& d, double* out) const {
+        tabulate({&d.x, &d.y, &d.z, 1}, Layout::byDirection, out);
+    }
     /// All functions at many directions: out[k * slots() + slotOf(l, m)].
-    void evaluate(DirectionBatch directions, double* out) const;
-    /// The same in single precision throughout (directions are rounded after 1 - z is formed).
-    void evaluate(DirectionBatch directions, float* out) const;
+    void evaluate(DirectionBatch directions, double* out) const {
+        tabulate(directions, Layout::byDirection, out);
+    }
+    void evaluate(DirectionBatch directions, float* out) const {
+        tabulate(directions, Layout::byDirection, out);
+    }
+    /// Function by function: out[slotOf(l, m) * directions.count + k].
+    void evaluateColumns(DirectionBatch directions, double* out) const {
+        tabulate(directions, Layout::bySlot, out);
+    }
+    void evaluateColumns(DirectionBatch directions, float* out) const {
+        tabulate(directions, Layout::bySlot, out);
+    }
 
 protected:
     Basis(int order, BasisOptions options) : order_(order), options_(options) {}
