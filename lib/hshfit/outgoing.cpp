@@ -184,6 +184,7 @@ std::string OutgoingSet::spec() const {
         case Map::direction:
             break;
     }
+    if (directions.empty()) return "none";
     // Ten digits: what degrees keep of a direction that came from them.
     return fmt::format("{:.10g},{:.10g}", degrees(polarAngle(directions[0])),
                        degrees(azimuth(directions[0])));
