@@ -31,8 +31,7 @@ public:
     Coefficients outgoing(const Form& form) override {
         const auto basis = basisOf(form);
         const Basis* const one[] = {basis.get()};
-        return std::move(
-            project(brdf_, one, outgoingOf(form, brdf_), optionsFor(form))[0].coefficients);
+        return std::move(project(brdf_, one, outgoingOf(form), optionsFor(form))[0].coefficients);
     }
     Representation both(const Form& form) override {
         return projectBoth(brdf_, *basisOf(form), form.reciprocal, optionsFor(form));
@@ -133,7 +132,6 @@ HalfwayOrders parseHalfway(std::string_view text) {
 }
 
 std::string optionsOf(const Form& form) {
-    const Form standard;
     std::string out;
     const auto add = [&](bool given, const std::string& text) {
         if (given) out += (out.empty() ? "" : " ") + text;
@@ -155,14 +153,13 @@ std::string optionsOf(const Form& form) {
     add(form.rankError > 0, fmt::format("--rank-error {}", form.rankError));
     add(form.nonNegativeFactors, "--non-negative-factors");
     add(form.keep > 0, fmt::format("--keep {}", form.keep));
-    add(form.precision != standard.precision,
-        fmt::format("--precision {}", precisionName(form.precision)));
+    add(true, fmt::format("--precision {}", precisionName(form.precision)));
     return out;
 }
 
-OutgoingSet outgoingOf(const Form& form, const Brdf& brdf) {
+OutgoingSet outgoingOf(const Form& form) {
     if (!form.outgoing.empty()) return OutgoingSet::parse(form.outgoing);
-    return OutgoingSet::parse(brdf.laws().isotropic ? "16" : "16x16");
+    return OutgoingSet::parse("32x32");
 }
 
 void requireConsistent(const Form& form, const Laws& laws) {

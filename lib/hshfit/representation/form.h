@@ -26,7 +26,7 @@ struct Form {
     int order = 7;
     Quantity quantity = Quantity::brdf;  ///< --cosine
     bool condonShortley = false;
-    std::string outgoing;          ///< empty: 16 elevations if isotropic, else 16x16
+    std::string outgoing;          ///< --outgoing; empty: 32x32
     HalfwayOrders halfway = {};    ///< --halfway H,D,A
     bool reciprocal = false;       ///< --reciprocal
     std::string split;             ///< --split: "", "diffuse", or a BRDF specification
@@ -39,7 +39,7 @@ struct Form {
     Precision precision = Precision::float32;
 };
 
-/// As options of `project`, defaults left out: "--basis zernike --order 6 --outgoing 16 --rank 3".
+/// As options of `project`: "--basis zernike --order 6 --outgoing 16 --rank 3 --precision half".
 std::string optionsOf(const Form& form);
 
 /// Where the projections that a form starts from come from. The default projects; a caller that
@@ -64,8 +64,8 @@ Representation represent(const Brdf& brdf, const Form& form, const BrdfOpener& o
 /// From projections that are at hand. What `split` took out of the BRDF stands in `added`.
 Representation represent(ProjectionSource& source, const Form& form, const std::string& added = {});
 
-/// 16 elevations for an isotropic BRDF, a 16x16 map for others, unless the form names a set.
-OutgoingSet outgoingOf(const Form& form, const Brdf& brdf);
+/// The set that the form names; 32x32, as in `project`, where it names none.
+OutgoingSet outgoingOf(const Form& form);
 
 /// Throws UsageError for options that contradict each other or the BRDF's laws.
 void requireConsistent(const Form& form, const Laws& laws);
