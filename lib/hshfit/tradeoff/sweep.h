@@ -1,0 +1,43 @@
+#pragma once
+
+#include <hshfit/brdf.h>
+#include <hshfit/representation/form.h>
+
+#include <string>
+#include <vector>
+
+namespace hshfit::tradeoff {
+
+/// What is asked of the coefficients besides being close (constraints.h).
+enum class Constraint { none, nonNegative, energyPreserving, both };
+/// "none", "non-negative", "energy-preserving" or "both". Throws UsageError with the four.
+Constraint parseConstraint(std::string_view name);
+
+/// The combinations to try. The defaults make about a thousand forms of an isotropic BRDF.
+struct Sweep {
+    std::vector<Representation::Kind> kinds = {
+        Representation::Kind::outgoing, Representation::Kind::basis, Representation::Kind::halfway};
+    std::vector<std::string> bases = {"hsh", "zernike", "makhotkin"};
+    std::vector<int> orders = {3, 5, 7, 10};
+    /// Of kind outgoing. Empty: 8, 16 and 32 elevations if isotropic, else 8x8 and 16x16.
+    std::vector<std::string> outgoing = {};
+    /// Of kind halfway; the numbers of functions that `project --halfway` takes.
+    std::vector<HalfwayOrders> halfway = {{6, 3, 1},  {8, 4, 2},   {10, 5, 2}, {12, 6, 3},
+                                          {16, 8, 3}, {20, 10, 4}, {28, 12, 4}};
+    std::vector<int> ranks = {0, 1, 2, 4};  ///< 0: not factored
+    std::vector<Precision> precisions = {Precision::float32, Precision::half, Precision::unorm8};
+    std::vector<std::size_t> keep = {0};  ///< 0: all numbers
+    std::vector<std::string> splits = {"", "diffuse"};
+    std::vector<Window> windows = {Window::none};
+    std::vector<Constraint> constraints = {Constraint::none};
+    Quantity quantity = Quantity::brdf;
+    /// Try the reciprocal half of kind basis as well as the whole, where the BRDF is reciprocal.
+    bool reciprocal = true;
+};
+
+/// Every combination that `requireConsistent` accepts, none twice: what a kind does not have does
+/// not multiply it. Ranks that cannot make less of a form, and the reciprocal half of f
+/// cos(theta_i), are left out. The order is that of the lists.
+std::vector<Form> formsOf(const Sweep& sweep, const Brdf& brdf);
+
+}  // namespace hshfit::tradeoff

@@ -1,0 +1,295 @@
+#include <hshfit/tradeoff/tradeoff.h>
+
+#include <hshfit/representation/pair_evaluator.h>
+#include <hshfit/representation/represented_brdf.h>
+#include <hshfit/representation/split.h>
+#include <hshfit/tradeoff/front.h>
+#include <hshfit/tradeoff/projection_cache.h>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <memory>
+
+namespace hshfit::tradeoff {
+namespace {
+
+/// Evaluators that are timed against each other in one go: as many as keep memory small.
+constexpr std::size_t timedTogether = 64;
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Steps done, from any thread.
+class Steps {
+public:
+    Steps(const TradeoffOptions& options, std::size_t total)
+        : show_(options.progress), total_(total) {}
+    void done() {
+        const std::size_t now = ++done_;
+        if (show_) show_(std::min(now, total_), total_);
+    }
+
+private:
+    const std::function<void(std::size_t, std::size_t)>& show_;
+    std::size_t total_;
+    std::atomic<std::size_t> done_ = 0;
+};
+
+/// What is left of the BRDF after one split, and its projections.
+struct Part {
+    Split split;
+    std::unique_ptr<ProjectionCache> cache;
+    std::string failure;  ///< why there is no such split
+};
+
+/// Makes representations of one BRDF in any form of a sweep.
+class Maker {
+public:
+    Maker(const Brdf& brdf, const TradeoffOptions& options, const BrdfOpener& open)
+        : brdf_(brdf), options_(options), open_(open) {}
+
+    void prepare(const std::vector<Form>& forms, Steps& steps) {
+        for (const auto& [name, list] : bySplit(forms)) {
+            Part& part = parts_[name];
+            try {
+                prepareOne(name, part);
+            } catch (const Error& error) {
+                part.failure = error.what();
+                continue;
+            }
+            part.cache->prepare(list, [&] { steps.done(); });
+        }
+    }
+    static std::size_t projectionsFor(const std::vector<Form>& forms) {
+        std::size_t sum = 0;
+        for (const auto& [name, list] : bySplit(forms))
+            sum += ProjectionCache::projectionsFor(list);
+        return sum;
+    }
+
+    Representation make(const Form& form) const {
+        const Part& part = partOf(form);
+        Representation result = represent(*part.cache, form, part.split.added);
+        result.head.source = brdf_.name();
+        return result;
+    }
+    double projectionSeconds(const Form& form) const { return partOf(form).cache->seconds(form); }
+
+private:
+    static std::map<std::string, std::vector<Form>> bySplit(const std::vector<Form>& forms) {
+        std::map<std::string, std::vector<Form>> lists;
+        for (const Form& form : forms) lists[form.split].push_back(form);
+        return lists;
+    }
+    void prepareOne(const std::string& name, Part& part) const {
+        if (name.empty()) {
+            part.cache = std::make_unique<ProjectionCache>(brdf_, options_.projection);
+            return;
+        }
+        part.split = takeOut(brdf_, name, open_);
+        ProjectionOptions projection = options_.projection;
+        if (projection.tolerance == 0) projection.tolerance = brdf_.defaultTolerance();
+        part.cache = std::make_unique<ProjectionCache>(*part.split.remainder, projection);
+    }
+    const Part& partOf(const Form& form) const {
+        const Part& part = parts_.at(form.split);
+        if (!part.failure.empty()) throw NumericError(part.failure);
+        return part;
+    }
+
+    const Brdf& brdf_;
+    const TradeoffOptions& options_;
+    const BrdfOpener& open_;
+    std::map<std::string, Part> parts_;
+};
+
+std::size_t metricIndex(const std::string& name) {
+    return static_cast<std::size_t>(selectMetrics(name).front() - metricCatalog().data());
+}
+
+double weighed(const PairErrors& errors, const std::string& metric) {
+    if (errors.values.empty()) return std::nan("");
+    const double value = errors.values[metricIndex(metric)].value_or(std::nan(""));
+    return metric == "captured-energy" ? 1 - value : value;
+}
+
+/// What came of one form.
+struct Outcome {
+    Measured measured;
+    double derivationSeconds = 0;
+    bool beyondBytes = false;
+    std::string failure;
+};
+
+Outcome measureOne(const Form& form, const Maker& maker, const PairReference& reference,
+                   const TradeoffOptions& options, const BrdfOpener& open) {
+    Outcome outcome;
+    Measured& measured = outcome.measured;
+    measured.form = form;
+    measured.options = optionsOf(form);
+    try {
+        const auto start = std::chrono::steady_clock::now();
+        Representation representation = maker.make(form);
+        outcome.derivationSeconds = secondsSince(start);
+        measured.bytes = representation.bytes();
+        outcome.beyondBytes = measured.bytes > options.maxBytes;
+        if (outcome.beyondBytes) return outcome;
+        measured.entropyBytes = representation.entropyBytes();
+        measured.numbers = representation.numbers();
+        measured.steps = representation.steps;
+        auto errors = reference.errorsOf(*reconstruct(std::move(representation), open));
+        measured.errors = std::move(errors.all);
+        measured.bands = std::move(errors.bands);
+    } catch (const Error& error) {
+        outcome.failure = error.what();
+    }
+    return outcome;
+}
+
+void leaveOut(Tradeoff& trade, const std::string& reason, const std::string& form) {
+    for (LeftOut& line : trade.leftOut) {
+        if (line.reason != reason) continue;
+        ++line.forms;
+        return;
+    }
+    trade.leftOut.push_back({reason, 1, form});
+}
+
+/// Rounding alters what an evaluator holds, not what it does: forms that differ in it alone have
+/// the same time.
+std::string timedAs(Form form) {
+    form.precision = Precision::float32;
+    return optionsOf(form);
+}
+
+void timeForms(Tradeoff& trade, const Maker& maker, const BrdfOpener& open, Steps& steps) {
+    std::map<std::string, FormTime> found;
+    std::vector<std::string> keys;
+    std::vector<std::unique_ptr<PairEvaluator>> evaluators;
+    const auto timeThese = [&] {
+        std::vector<const PairEvaluator*> pointers;
+        for (const auto& evaluator : evaluators) pointers.push_back(evaluator.get());
+        const auto times =
+            timePairs(pointers, trade.channels.count(), {.done = [&] { steps.done(); }});
+        for (std::size_t k = 0; k < keys.size(); ++k) found[keys[k]] = times[k];
+        keys.clear();
+        evaluators.clear();
+    };
+    for (const Measured& measured : trade.forms) {
+        const std::string key = timedAs(measured.form);
+        if (!found.try_emplace(key).second) continue;
+        keys.push_back(key);
+        evaluators.push_back(pairEvaluator(maker.make(measured.form), open));
+        if (keys.size() == timedTogether) timeThese();
+    }
+    timeThese();
+    for (std::size_t k = 0; k < trade.forms.size(); ++k) {
+        trade.times[k].evaluation = found.at(timedAs(trade.forms[k].form));
+    }
+}
+
+std::size_t timedCount(const std::vector<Form>& forms) {
+    std::map<std::string, int> keys;
+    for (const Form& form : forms) keys[timedAs(form)] = 1;
+    return keys.size();
+}
+
+void findFronts(Tradeoff& trade, const TradeoffOptions& options) {
+    std::vector<double> bytes, nanoseconds, errors;
+    for (std::size_t k = 0; k < trade.forms.size(); ++k) {
+        bytes.push_back(static_cast<double>(trade.forms[k].bytes));
+        errors.push_back(trade.errorOf(k));
+        if (!options.timing) continue;
+        const double ns = trade.times[k].evaluation.batch.median;
+        nanoseconds.push_back(ns <= options.maxNanoseconds ? ns : std::nan(""));
+    }
+    trade.byteFront = paretoFront(bytes, errors);
+    trade.byteKnee = kneeOf(trade.byteFront, bytes, errors);
+    if (!options.timing) return;
+    trade.timeFront = paretoFront(nanoseconds, errors);
+    trade.timeKnee = kneeOf(trade.timeFront, nanoseconds, errors);
+}
+
+std::vector<Form> formsFor(const Brdf& brdf, const TradeoffOptions& options) {
+    if (!options.timing && options.byTime) {
+        throw UsageError("--by-time needs the times that --no-timing leaves out");
+    }
+    if (!options.byTime && std::isfinite(options.maxNanoseconds)) {
+        throw UsageError("--max-ns lets times decide: add --by-time");
+    }
+    const auto chosen = selectMetrics(options.metric);
+    if (chosen.size() != 1) throw UsageError("--metric takes one name: hshfit list metrics");
+    std::vector<Form> forms = formsOf(options.sweep, brdf);
+    if (forms.empty()) {
+        throw UsageError(
+            fmt::format("{}: no combination of these options makes a form of it", brdf.name()));
+    }
+    return forms;
+}
+
+}  // namespace
+
+double Tradeoff::errorOf(std::size_t form) const {
+    return weighed(forms[form].errors, metric);
+}
+
+double Tradeoff::bandErrorOf(std::size_t form, std::size_t band) const {
+    return weighed(forms[form].bands[band], metric);
+}
+
+std::optional<double> Tradeoff::uncertaintyOf(std::size_t form) const {
+    return forms[form].errors.uncertainty[metricIndex(metric)];
+}
+
+Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& options,
+                 const BrdfOpener& open) {
+    const std::vector<Form> forms = formsFor(brdf, options);
+    Steps steps(options, Maker::projectionsFor(forms) + forms.size() +
+                             (options.timing ? timedCount(forms) : 0));
+    const PairReference reference(brdf, std::move(pairs));
+    Tradeoff trade{.brdf = brdf.name(),
+                   .channels = brdf.channels(),
+                   .laws = brdf.laws(),
+                   .metric = options.metric,
+                   .pairs = reference.pairs().size(),
+                   .noSquares = reference.noSquares()};
+    Maker maker(brdf, options, open);
+    maker.prepare(forms, steps);
+
+    std::vector<Outcome> outcomes(forms.size());
+    tbb::parallel_for(std::size_t{0}, forms.size(), [&](std::size_t k) {
+        outcomes[k] = measureOne(forms[k], maker, reference, options, open);
+        steps.done();
+    });
+    for (Outcome& outcome : outcomes) {
+        if (!outcome.failure.empty()) {
+            leaveOut(trade, outcome.failure, outcome.measured.options);
+        } else if (outcome.beyondBytes) {
+            ++trade.beyondBytes;
+        } else {
+            trade.forms.push_back(std::move(outcome.measured));
+            if (!options.timing) continue;
+            trade.times.push_back(
+                {maker.projectionSeconds(trade.forms.back().form), outcome.derivationSeconds, {}});
+        }
+    }
+    if (trade.forms.empty()) {
+        throw NumericError(fmt::format(
+            "{}: no form is left: {}", brdf.name(),
+            trade.leftOut.empty() ? "all take more than --max-bytes" : trade.leftOut[0].reason));
+    }
+    if (options.timing) timeForms(trade, maker, open, steps);
+    findFronts(trade, options);
+    brdf.checkIntact();
+    return trade;
+}
+
+}  // namespace hshfit::tradeoff

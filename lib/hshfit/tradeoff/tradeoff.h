@@ -1,0 +1,88 @@
+#pragma once
+
+#include <hshfit/error.h>
+#include <hshfit/tradeoff/pair_errors.h>
+#include <hshfit/tradeoff/sweep.h>
+#include <hshfit/tradeoff/timing.h>
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hshfit::tradeoff {
+
+struct TradeoffOptions {
+    Sweep sweep = {};
+    /// A name from metricCatalog: what the fronts weigh. Of captured-energy, 1 minus it.
+    std::string metric = "nbrdf";
+    std::size_t maxBytes = std::numeric_limits<std::size_t>::max();  ///< larger forms are left out
+    /// Slower forms are left out of the front over time; takes `byTime`.
+    double maxNanoseconds = std::numeric_limits<double>::infinity();
+    bool timing = true;
+    bool byTime = false;  ///< the choice is the knee over time instead of that over bytes
+    ProjectionOptions projection = {.maxEvaluations = std::size_t{1} << 23};
+    /// Called with steps done and in all, from any thread.
+    std::function<void(std::size_t, std::size_t)> progress = {};
+};
+
+/// One form of one BRDF.
+struct Measured {
+    Form form;
+    std::string options;  ///< of `hshfit project`
+    std::size_t bytes = 0, entropyBytes = 0, numbers = 0;
+    std::vector<RepresentationStep> steps;
+    PairErrors errors;
+    std::vector<PairErrors> bands;  ///< by elevation of wo, see bandEdges
+};
+
+/// What a form took; wall-clock times of this machine.
+struct MeasuredTime {
+    /// The projection that the form derives from: at the highest order tried, on all threads.
+    double projectionSeconds = 0;
+    double derivationSeconds = 0;  ///< everything after it, on one thread
+    FormTime evaluation;
+};
+
+/// Forms that could not be had, and why: one line for each reason.
+struct LeftOut {
+    std::string reason;
+    std::size_t forms = 0;
+    std::string example;  ///< options of the first
+};
+
+/// The trade of one BRDF. All but `times`, `timeFront` and what follows them is the same whenever
+/// it is measured.
+struct Tradeoff {
+    std::string brdf;
+    Channels channels;
+    Laws laws;
+    std::string metric;
+    std::size_t pairs = 0;
+    std::string noSquares;  ///< why metrics of squares without a cosine have no value
+    std::vector<Measured> forms = {};
+    std::vector<LeftOut> leftOut = {};
+    std::size_t beyondBytes = 0;              ///< forms larger than maxBytes
+    std::vector<std::size_t> byteFront = {};  ///< into `forms`, by rising bytes
+    std::optional<std::size_t> byteKnee = {};
+
+    std::vector<MeasuredTime> times = {};     ///< like `forms`; empty without timing
+    std::vector<std::size_t> timeFront = {};  ///< by rising nanoseconds a pair, batch of 4096
+    std::optional<std::size_t> timeKnee = {};
+
+    /// The error that the fronts weigh; NaN where it does not exist.
+    double errorOf(std::size_t form) const;
+    /// Of one band; NaN likewise.
+    double bandErrorOf(std::size_t form, std::size_t band) const;
+    std::optional<double> uncertaintyOf(std::size_t form) const;
+};
+
+/// Measures every form of the sweep against `brdf` at the pairs. Errors on all threads, times
+/// afterwards on one. A form that fails is left out with its reason.
+/// Throws UsageError for an unknown metric and for an empty sweep; NumericError where no form is
+/// left.
+Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& options,
+                 const BrdfOpener& open);
+
+}  // namespace hshfit::tradeoff
