@@ -2,6 +2,7 @@
 
 #include <hshfit/brdf.h>
 #include <hshfit/projection.h>
+#include <hshfit/representation/halfway_terms.h>
 #include <hshfit/representation/pair_evaluator.h>
 #include <hshfit/representation/representation.h>
 
@@ -9,23 +10,48 @@
 
 namespace hshfit {
 
-/// One product function of the halfway form: with (theta_h, theta_d, phi_d) Rusinkiewicz' angles,
-///     P = p_i(u) p_j(v) sin(theta_d)^(2k) cos(2 k phi_d),
-/// p orthonormal Legendre on [-1, 1], u = 2 sqrt(2 theta_h / pi) - 1, v = 4 theta_d / pi - 1.
-struct HalfwayTerm {
-    int i = 0, j = 0, k = 0;
+/// The halfway form in double precision: f = max(0, exp(sum over t of c_t P_t) - 1), without
+/// `added`. Immutable; safe to use from many threads.
+class HalfwayExpansion {
+public:
+    /// Throws InputError if the array "halfway", the orders and the channels do not agree.
+    explicit HalfwayExpansion(const Representation& representation);
+
+    const HalfwayTerms& terms() const { return terms_; }
+
+    /// Laid out as for `Brdf::eval`: out[channel * wi.count + k], 1/sr, 0 below the horizon.
+    void evaluate(const Direction& wo, DirectionBatch wi, double* out) const;
+
+private:
+    HalfwayTerms terms_;
+    std::size_t channels_;
+    std::vector<double> values_;  ///< [term][channel]
 };
 
-/// f of the expansion for one wo, laid out as for `Brdf::eval`, without `added`. Called by
-/// `reconstruct`; throws InputError (from a check made once) if array and orders do not agree.
-void evaluateHalfway(const Representation& representation, const Direction& wo, DirectionBatch wi,
-                     double* out);
-
-/// For `pairEvaluator`, without `added`.
+/// For `pairEvaluator`, without `added`. Throws InputError as HalfwayExpansion does.
 std::unique_ptr<PairEvaluator> halfwayPairEvaluator(const Representation& representation);
 
-/// Fits the expansion to `brdf`.
+/// Fits the expansion to `brdf`: the least mean of |ln(1 + f c) - ln(1 + g c)|, c = cos(theta_i),
+/// over pairs of directions uniform on both hemispheres (weight 0.9) and pairs spread evenly over
+/// the axes u, v and phi of the expansion, so that narrow lobes count (weight 0.1). f < 0 counts as
+/// 0. The pairs come from a low-discrepancy sequence; their number doubles until the error over
+/// pairs that took no part changes by less than 2 %. `head.error` is that change; the last step has
+/// the error itself. The solver reweights least squares. Results do not depend on threads.
+/// The terms keep the symmetries of `brdf.laws()`; `reciprocal` asks for the symmetric half.
+/// Only `progress` (pairs done and in all) and `maxEvaluations` (of f in all) are used of
+/// `options`. Throws NumericError where f is not finite, UsageError as HalfwayTerms does.
 Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
-                              const ProjectionOptions& options = {});
+                              const ProjectionOptions& options = {}, bool reciprocal = false);
+
+/// The orders whose expansion, stored in `precision`, takes at most `bytes` and has the least error
+/// over pairs that take no part in the fit, of all with 4 to 16, 2 to 8 and 1 to 7 functions. They
+/// are ranked by the residual of one weighted least-squares system; the best three are then fitted
+/// and quantised. Throws UsageError if not even the smallest fits, and as projectHalfway does.
+HalfwayOrders chooseHalfwayOrders(const Brdf& brdf, std::size_t bytes, Precision precision,
+                                  const ProjectionOptions& options = {}, bool reciprocal = false);
+
+/// Mean of |ln(1 + f c) - ln(1 + g c)| over pairs uniform on both hemispheres and over channels;
+/// the pairs are not among those that projectHalfway fits.
+double halfwayError(const Brdf& brdf, const Representation& representation);
 
 }  // namespace hshfit

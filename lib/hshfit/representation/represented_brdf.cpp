@@ -125,12 +125,15 @@ private:
 
 class OverHalfway final : public Represented {
 public:
-    using Represented::Represented;
+    OverHalfway(Representation representation, const BrdfOpener& open)
+        : Represented(std::move(representation), open), expansion_(representation_) {}
 
 private:
     void sum(const Direction& wo, DirectionBatch wi, double* out) const override {
-        evaluateHalfway(representation_, wo, wi, out);
+        expansion_.evaluate(wo, wi, out);
     }
+
+    HalfwayExpansion expansion_;
 };
 
 OutgoingSet defaultSet(const Representation& representation) {
