@@ -14,12 +14,13 @@ std::vector<double> directionalAlbedo(const Brdf& brdf, const Direction& wo, dou
     const std::vector<Lobe> lobes = brdf.lobes(wo);
     std::vector<double> previous;
     std::size_t evaluations = 0;
+    const AzimuthTables azimuths(1);
+    RingSpectrum spectrum;
     for (int level = 0;; ++level) {
         const HemisphereGrid grid = gridFor(lobes, wo, {.order = 1, .level = level});
         evaluations += grid.points();
         if (evaluations > maxEvaluations) break;
-        const RingSpectrum spectrum =
-            sampleRings(brdf, wo, grid, Quantity::brdfCosine, 1, /*even=*/false);
+        sampleRings(brdf, wo, grid, Quantity::brdfCosine, azimuths, /*even=*/false, spectrum);
         std::vector<double> albedo(spectrum.channels, 0.0);
         double change = 0;
         for (std::size_t c = 0; c < spectrum.channels; ++c) {

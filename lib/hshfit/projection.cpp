@@ -1,5 +1,6 @@
 #include <hshfit/projection.h>
 
+#include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/horizon.h>
 #include <hshfit/refinement.h>
@@ -91,10 +92,11 @@ std::vector<RefinedMoments> projectGroups(const Brdf& brdf, std::span<const Basi
     std::vector<RefinedMoments> results(groups.size());
     std::vector<std::exception_ptr> failures(groups.size());
     std::atomic<std::size_t> firstFailure = groups.size(), done = 0;
+    const ProjectionTables tables(bases);
     tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
         if (g > firstFailure) return;
         try {
-            results[g] = refineMoments(brdf, bases, groups[g].wo,
+            results[g] = refineMoments(brdf, tables, groups[g].wo,
                                        {.quantity = options.quantity,
                                         .even = groups[g].even,
                                         .tolerance = tolerance,
@@ -131,6 +133,17 @@ Coefficients describe(const Brdf& brdf, const Basis& basis, const OutgoingSet& o
     return c;
 }
 
+/// Of an orthonormal basis every band adds its own squares; others are asked for every order.
+void addCaptured(const Basis& basis, const double* moments, double solidAngle,
+                 std::vector<double>& captured) {
+    const bool orthonormal = bases::find(basis.name()).orthonormal;
+    double sum = 0;
+    for (int n = 1; n <= basis.order(); ++n) {
+        for (int k = (n - 1) * (n - 1); k < n * n; ++k) sum += moments[k] * moments[k];
+        captured[n - 1] += solidAngle * (orthonormal ? sum : basis.capturedEnergy(moments, n));
+    }
+}
+
 void addGroup(const Basis& basis, std::size_t basisIndex, const Group& group,
               const RefinedMoments& result, Projection& projection) {
     Coefficients& out = projection.coefficients;
@@ -146,9 +159,7 @@ void addGroup(const Basis& basis, std::size_t basisIndex, const Group& group,
     std::vector<double> solved(basis.slots());
     for (std::size_t c = 0; c < out.channels.count(); ++c) {
         const double* moments = result.moments[basisIndex].data() + c * basis.slots();
-        for (int n = 1; n <= basis.order(); ++n) {
-            projection.captured[n - 1] += group.solidAngle * basis.capturedEnergy(moments, n);
-        }
+        addCaptured(basis, moments, group.solidAngle, projection.captured);
         basis.coefficientsFromMoments(moments, basis.order(), solved.data());
         for (const Member& member : group.members) {
             applySymmetry(member, basis.order(), solved.data(), out.at(member.index, c));

@@ -182,6 +182,13 @@ std::size_t HemisphereGrid::points() const {
     return total;
 }
 
+void HemisphereGrid::clear() {
+    elevations.clear();
+    sines.clear();
+    weights.clear();
+    panels.clear();
+}
+
 std::vector<double> panelBreaks(const std::vector<Lobe>& lobes, const Direction& wo,
                                 const std::vector<double>& kinks) {
     std::vector<double> ends = {0.0};

@@ -32,6 +32,7 @@ struct HemisphereGrid {
     std::vector<Panel> panels;
 
     std::size_t points() const;
+    void clear();  ///< keeps the room
 };
 
 struct GridOptions {

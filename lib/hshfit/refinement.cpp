@@ -1,10 +1,9 @@
 #include <hshfit/refinement.h>
 
 #include <hshfit/error.h>
-#include <hshfit/rings.h>
 
 #include <fmt/format.h>
-#include <Eigen/Core>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +13,6 @@ namespace hshfit {
 namespace {
 
 using Inner = Basis::Inner;
-using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr int maxLevel = 16;
 
@@ -22,55 +20,22 @@ constexpr int maxLevel = 16;
 struct Panel {
     double a, b;  ///< ends in u
     int level = -1;
-    std::vector<std::vector<double>> moments = {};  ///< per basis: [channel][slot]
+    std::vector<double> moments = {};  ///< [basis][channel][slot]
     PerInner energy{};
     std::vector<double> change = {};  ///< per basis: norm of the last change of the moments
     PerInner energyChange{};
 };
 
-/// Moments of one basis for every panel of a grid: the theta functions are evaluated once for all
-/// rings, and each panel's block of rings is a matrix product.
-std::vector<std::vector<double>> momentsOf(const Basis& basis, const RingSpectrum& spectrum,
-                                           const HemisphereGrid& grid) {
-    const std::size_t rings = spectrum.rings, channels = spectrum.channels;
-    const int order = basis.order();
-    Eigen::ArrayXd weights = Eigen::Map<const Eigen::ArrayXd>(grid.weights.data(), rings);
-    if (basis.inner() == Inner::projectedSolidAngle) {
-        for (std::size_t r = 0; r < rings; ++r) weights[r] *= grid.elevations[r].mu;
-    }
-    std::vector<std::vector<double>> moments(grid.panels.size());
-    for (auto& m : moments) m.assign(channels * basis.slots(), 0.0);
-
-    RowMatrix theta;
-    Eigen::MatrixXd parts(rings, 2 * channels), products;
-    for (int m = 0; m < order; ++m) {
-        theta.resize(order - m, rings);
-        basis.analysisTheta(m, grid.elevations, theta.data());
-        for (std::size_t c = 0; c < channels; ++c) {
-            using Column = Eigen::Map<const Eigen::ArrayXd>;
-            parts.col(c) = Column(spectrum.part(m, c), rings) * weights;
-            parts.col(channels + c) = Column(spectrum.part(-m, c), rings) * weights;
-        }
-        const double sign = azimuthSign(m, basis.condonShortley());
-        for (std::size_t p = 0; p < grid.panels.size(); ++p) {
-            const auto& panel = grid.panels[p];
-            products.noalias() = theta.middleCols(panel.firstRing, panel.rings) *
-                                 parts.middleRows(panel.firstRing, panel.rings);
-            for (std::size_t c = 0; c < channels; ++c) {
-                double* out = moments[p].data() + c * basis.slots();
-                for (int l = m; l < order; ++l) {
-                    out[slotOf(l, m)] = sign * products(l - m, c);
-                    if (m > 0) out[slotOf(l, -m)] = sign * products(l - m, channels + c);
-                }
-            }
-        }
-    }
-    return moments;
+double distance(std::span<const double> a, std::span<const double> b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return std::sqrt(sum);
 }
 
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-    using Column = Eigen::Map<const Eigen::VectorXd>;
-    return (Column(a.data(), a.size()) - Column(b.data(), b.size())).norm();
+double norm(std::span<const double> a) {
+    double sum = 0;
+    for (const double value : a) sum += value * value;
+    return std::sqrt(sum);
 }
 
 double relative(double difference, double reference) {
@@ -81,10 +46,17 @@ double relative(double difference, double reference) {
 /// One outgoing direction on its way to convergence.
 class Refinement {
 public:
-    Refinement(const Brdf& brdf, std::span<const Basis* const> bases, const Direction& wo,
+    Refinement(const Brdf& brdf, const ProjectionTables& tables, const Direction& wo,
                const RefinementOptions& options)
-        : brdf_(brdf), bases_(bases), wo_(wo), options_(options), lobes_(brdf.lobes(wo)) {
-        for (const Basis* basis : bases) order_ = std::max(order_, basis->order());
+        : brdf_(brdf),
+          tables_(tables),
+          bases_(tables.theta.bases()),
+          wo_(wo),
+          options_(options),
+          lobes_(brdf.lobes(wo)) {
+        offsets_ = {0};
+        for (std::size_t b = 0; b < bases_.size(); ++b)
+            offsets_.push_back(offsets_[b] + tables.theta.size(b, brdf.channels().count()));
         const std::vector<double> breaks = panelBreaks(lobes_, wo, brdf.kinks(wo));
         for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
             panels_.push_back({.a = breaks[k], .b = breaks[k + 1]});
@@ -105,58 +77,70 @@ public:
             addUp();
             active = unconverged();
         }
+        for (std::size_t b = 0; b < bases_.size(); ++b) {
+            const auto moments = ofBasis(totals_, b);
+            result_.moments.emplace_back(moments.begin(), moments.end());
+        }
         return std::move(result_);
     }
 
 private:
     /// Takes the given panels one level further.
     void refine(const std::vector<std::size_t>& active) {
-        HemisphereGrid grid;
+        grid_.clear();
         for (std::size_t p : active) {
             Panel& panel = panels_[p];
             ++panel.level;
-            appendPanel(grid, panel.a, panel.b, lobes_, wo_,
-                        {.order = order_, .level = panel.level});
+            appendPanel(grid_, panel.a, panel.b, lobes_, wo_,
+                        {.order = tables_.azimuths.order(), .level = panel.level});
         }
-        const std::size_t cost = grid.points() / (options_.even ? 2 : 1);
+        const std::size_t cost = grid_.points() / (options_.even ? 2 : 1);
         const bool tooDeep = std::any_of(active.begin(), active.end(), [&](std::size_t p) {
             return panels_[p].level > maxLevel;
         });
         if (tooDeep || result_.evaluations + cost > options_.maxEvaluations) giveUp();
         result_.evaluations += cost;
 
-        const RingSpectrum spectrum =
-            sampleRings(brdf_, wo_, grid, options_.quantity, order_, options_.even);
-        std::vector<std::vector<std::vector<double>>> moments;  // [basis][active panel]
-        for (const Basis* basis : bases_) moments.push_back(momentsOf(*basis, spectrum, grid));
-        for (std::size_t k = 0; k < active.size(); ++k) {
-            std::vector<std::vector<double>> ofPanel;
-            for (auto& ofBasis : moments) ofPanel.push_back(std::move(ofBasis[k]));
-            update(panels_[active[k]], std::move(ofPanel), energyOf(spectrum, grid, k));
+        sampleRings(brdf_, wo_, grid_, options_.quantity, tables_.azimuths, options_.even,
+                    spectrum_);
+        const auto takePanel = [&](std::size_t k) {
+            Panel& panel = panels_[active[k]];
+            std::vector<double> moments(offsets_.back());
+            tables_.theta.moments(grid_, k, panel.a, panel.b, spectrum_, options_.even,
+                                  moments.data());
+            update(panel, std::move(moments), energyOf(k));
+        };
+        // Worth sharing where the functions are many.
+        if (offsets_.back() * spectrum_.rings > std::size_t{1} << 20) {
+            tbb::parallel_for(std::size_t{0}, active.size(), takePanel);
+        } else {
+            for (std::size_t k = 0; k < active.size(); ++k) takePanel(k);
         }
     }
 
-    static PerInner energyOf(const RingSpectrum& spectrum, const HemisphereGrid& grid,
-                             std::size_t p) {
+    PerInner energyOf(std::size_t p) const {
         PerInner energy{};
-        const auto& panel = grid.panels[p];
+        const auto& panel = grid_.panels[p];
         for (std::size_t r = panel.firstRing; r < panel.firstRing + panel.rings; ++r) {
-            const double part = grid.weights[r] * spectrum.squares[r];
+            const double part = grid_.weights[r] * spectrum_.squares[r];
             energy[static_cast<int>(Inner::solidAngle)] += part;
-            energy[static_cast<int>(Inner::projectedSolidAngle)] += part * grid.elevations[r].mu;
+            energy[static_cast<int>(Inner::projectedSolidAngle)] += part * grid_.elevations[r].mu;
         }
         return energy;
     }
 
-    static void update(Panel& panel, std::vector<std::vector<double>> moments,
-                       const PerInner& energy) {
-        panel.change.assign(moments.size(), std::numeric_limits<double>::infinity());
+    std::span<const double> ofBasis(const std::vector<double>& moments, std::size_t b) const {
+        return std::span(moments).subspan(offsets_[b], offsets_[b + 1] - offsets_[b]);
+    }
+
+    void update(Panel& panel, std::vector<double> moments, const PerInner& energy) const {
+        panel.change.assign(bases_.size(), std::numeric_limits<double>::infinity());
         for (std::size_t e = 0; e < energy.size(); ++e) {
             panel.energyChange[e] = panel.level == 0 ? std::numeric_limits<double>::infinity()
                                                      : std::abs(energy[e] - panel.energy[e]);
         }
-        for (std::size_t b = 0; b < moments.size() && panel.level > 0; ++b) {
-            panel.change[b] = distance(moments[b], panel.moments[b]);
+        for (std::size_t b = 0; b < bases_.size() && panel.level > 0; ++b) {
+            panel.change[b] = distance(ofBasis(moments, b), ofBasis(panel.moments, b));
         }
         panel.moments = std::move(moments);
         panel.energy = energy;
@@ -164,21 +148,17 @@ private:
 
     /// Totals over the panels, in their order.
     void addUp() {
-        result_.moments.assign(bases_.size(), {});
+        totals_.assign(offsets_.back(), 0.0);
         result_.energy = result_.energyError = {};
-        for (std::size_t b = 0; b < bases_.size(); ++b) {
-            auto& total = result_.moments[b];
-            total.assign(panels_[0].moments[b].size(), 0.0);
-            for (const Panel& panel : panels_) {
-                for (std::size_t i = 0; i < total.size(); ++i) total[i] += panel.moments[b][i];
-            }
-        }
         for (const Panel& panel : panels_) {
+            for (std::size_t i = 0; i < totals_.size(); ++i) totals_[i] += panel.moments[i];
             for (std::size_t e = 0; e < result_.energy.size(); ++e) {
                 result_.energy[e] += panel.energy[e];
                 result_.energyError[e] += panel.energyChange[e];
             }
         }
+        norms_.clear();
+        for (std::size_t b = 0; b < bases_.size(); ++b) norms_.push_back(norm(ofBasis(totals_, b)));
         result_.error = 0;
         for (const Panel& panel : panels_) result_.error += changeOf(panel);
     }
@@ -187,10 +167,7 @@ private:
     double changeOf(const Panel& panel) const {
         double change = 0;
         for (std::size_t b = 0; b < bases_.size(); ++b) {
-            const auto& total = result_.moments[b];
-            const double norm =
-                Eigen::Map<const Eigen::VectorXd>(total.data(), total.size()).norm();
-            change = std::max(change, relative(panel.change[b], norm));
+            change = std::max(change, relative(panel.change[b], norms_[b]));
             const Inner inner = bases_[b]->inner();
             if (!result_.horizon.energyExists(inner)) continue;
             const int e = static_cast<int>(inner);
@@ -219,20 +196,27 @@ private:
     }
 
     const Brdf& brdf_;
+    const ProjectionTables& tables_;
     std::span<const Basis* const> bases_;
     Direction wo_;
     RefinementOptions options_;
     std::vector<Lobe> lobes_;
-    int order_ = 1;
+    std::vector<std::size_t> offsets_;  ///< of each basis among the moments
     std::vector<Panel> panels_;
+    HemisphereGrid grid_;    ///< of the panels that are being refined
+    RingSpectrum spectrum_;  ///< on it
+    std::vector<double> totals_, norms_;
     RefinedMoments result_;
 };
 
 }  // namespace
 
-RefinedMoments refineMoments(const Brdf& brdf, std::span<const Basis* const> bases,
-                             const Direction& wo, const RefinementOptions& options) {
-    return Refinement(brdf, bases, wo, options).run();
+ProjectionTables::ProjectionTables(std::span<const Basis* const> bases)
+    : azimuths((*std::ranges::max_element(bases, {}, &Basis::order))->order()), theta(bases) {}
+
+RefinedMoments refineMoments(const Brdf& brdf, const ProjectionTables& tables, const Direction& wo,
+                             const RefinementOptions& options) {
+    return Refinement(brdf, tables, wo, options).run();
 }
 
 }  // namespace hshfit

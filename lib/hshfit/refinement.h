@@ -4,6 +4,7 @@
 #include <hshfit/brdf.h>
 #include <hshfit/coefficients.h>
 #include <hshfit/horizon.h>
+#include <hshfit/theta_products.h>
 
 #include <array>
 #include <cstddef>
@@ -32,6 +33,13 @@ struct RefinementOptions {
     std::size_t maxEvaluations = std::size_t{1} << 26;
 };
 
+/// What all outgoing directions of a projection share. At least one basis.
+struct ProjectionTables {
+    explicit ProjectionTables(std::span<const Basis* const> bases);
+    AzimuthTables azimuths;
+    ThetaProducts theta;
+};
+
 /// Integrates q against the analysis functions of every basis. Each elevation panel is refined on
 /// its own until the changes of all panels add up to no more than the tolerance, relative to the
 /// norm of each basis' moments and to each energy that exists: panels that hold next to nothing
@@ -40,7 +48,7 @@ struct RefinementOptions {
 ///
 /// Throws NumericError where the moments do not exist, do not converge within the evaluations
 /// allowed, or q is not finite.
-RefinedMoments refineMoments(const Brdf& brdf, std::span<const Basis* const> bases,
-                             const Direction& wo, const RefinementOptions& options);
+RefinedMoments refineMoments(const Brdf& brdf, const ProjectionTables& tables, const Direction& wo,
+                             const RefinementOptions& options);
 
 }  // namespace hshfit

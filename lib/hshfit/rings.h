@@ -1,5 +1,6 @@
 #pragma once
 
+#include <hshfit/azimuth_tables.h>
 #include <hshfit/brdf.h>
 #include <hshfit/coefficients.h>
 #include <hshfit/quadrature.h>
@@ -15,22 +16,27 @@ struct RingSpectrum {
     int order = 0;
     std::size_t channels = 0, rings = 0;
     std::size_t evaluations = 0;  ///< BRDF evaluations made
-    std::vector<double> parts;    ///< [order - 1 + m][channel][ring]
+    std::vector<double> parts;    ///< [m][cosine, sine][channel][ring]: 2 channels rows for each m
     std::vector<double> squares;  ///< per ring: integral over phi of q^2, summed over channels
 
     const double* part(int m, std::size_t channel) const {
-        return parts.data() + ((order - 1 + m) * channels + channel) * rings;
+        return parts.data() + indexOf(m, channel);
     }
-    double* part(int m, std::size_t channel) {
-        return parts.data() + ((order - 1 + m) * channels + channel) * rings;
+    double* part(int m, std::size_t channel) { return parts.data() + indexOf(m, channel); }
+
+private:
+    std::size_t indexOf(int m, std::size_t channel) const {
+        const std::size_t row = m < 0 ? -2 * m + 1 : 2 * m;
+        return (row * channels + channel) * rings;
     }
 };
 
-/// Samples q on the grid and transforms it for |m| < order. With `even`, q is taken to be even in
-/// phi, and only half of each ring is evaluated. Parallel over groups of rings; the result does
-/// not depend on the number of threads.
-/// Throws NumericError with the directions where q is not finite.
-RingSpectrum sampleRings(const Brdf& brdf, const Direction& wo, const HemisphereGrid& grid,
-                         Quantity quantity, int order, bool even);
+/// Samples q on the grid and transforms it for |m| < tables.order(), block by block of points that
+/// fit into the nearest caches; only `result` is stored, in the room that it has. With `even`, q is
+/// taken to be even in phi, and only half of each ring is evaluated. Parallel over blocks; the
+/// result does not depend on the number of threads. Throws NumericError with the directions where q
+/// is not finite.
+void sampleRings(const Brdf& brdf, const Direction& wo, const HemisphereGrid& grid,
+                 Quantity quantity, const AzimuthTables& tables, bool even, RingSpectrum& result);
 
 }  // namespace hshfit

@@ -1,0 +1,150 @@
+// Compiled once for each instruction set and chosen from at run time. SSSE3 has too few users to
+// compile for; the vectors of SVE and RVV cannot be kept in arrays.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "hshfit/ring_kernels.cpp"
+#ifndef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#endif
+#include <hwy/foreach_target.h>
+
+#include <hshfit/ring_kernels.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace hshfit {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Tag = hn::ScalableTag<double>;
+using Vec = hn::Vec<Tag>;
+
+/// I x J products at once: 4 x 3 keep 12 sums, and what is multiplied, in 16 registers.
+template <std::size_t I, std::size_t J>
+HWY_INLINE void tile(const double* HWY_RESTRICT a, std::size_t aStride,
+                     const double* HWY_RESTRICT b, std::size_t bStride, std::size_t depth,
+                     double* HWY_RESTRICT out, std::size_t outStride) {
+    const Tag d;
+    const std::size_t lanes = hn::Lanes(d);
+    Vec sums[I][J];
+    for (auto& row : sums)
+        for (Vec& sum : row) sum = hn::Zero(d);
+    std::size_t k = 0;
+    for (; k + lanes <= depth; k += lanes) {
+        Vec right[J];
+        for (std::size_t j = 0; j < J; ++j) right[j] = hn::LoadU(d, b + j * bStride + k);
+        for (std::size_t i = 0; i < I; ++i) {
+            const Vec left = hn::LoadU(d, a + i * aStride + k);
+            for (std::size_t j = 0; j < J; ++j) sums[i][j] = hn::MulAdd(left, right[j], sums[i][j]);
+        }
+    }
+    if (k < depth) {
+        const auto mask = hn::FirstN(d, depth - k);
+        Vec right[J];
+        for (std::size_t j = 0; j < J; ++j) right[j] = hn::MaskedLoad(mask, d, b + j * bStride + k);
+        for (std::size_t i = 0; i < I; ++i) {
+            const Vec left = hn::MaskedLoad(mask, d, a + i * aStride + k);
+            for (std::size_t j = 0; j < J; ++j) sums[i][j] = hn::MulAdd(left, right[j], sums[i][j]);
+        }
+    }
+    for (std::size_t i = 0; i < I; ++i)
+        for (std::size_t j = 0; j < J; ++j)
+            out[i * outStride + j] += hn::GetLane(hn::SumOfLanes(d, sums[i][j]));
+}
+
+template <std::size_t I>
+void rowsOf(const double* a, std::size_t aStride, const RowBlock& b, std::size_t depth, double* out,
+            std::size_t outStride) {
+    std::size_t j = 0;
+    for (; j + 3 <= b.rows; j += 3)
+        tile<I, 3>(a, aStride, b.data + j * b.stride, b.stride, depth, out + j, outStride);
+    if (b.rows - j == 2)
+        tile<I, 2>(a, aStride, b.data + j * b.stride, b.stride, depth, out + j, outStride);
+    if (b.rows - j == 1)
+        tile<I, 1>(a, aStride, b.data + j * b.stride, b.stride, depth, out + j, outStride);
+}
+
+void rowProducts(const RowBlock& a, const RowBlock& b, std::size_t depth, double* out,
+                 std::size_t outStride) {
+    std::size_t i = 0;
+    for (; i + 4 <= a.rows; i += 4)
+        rowsOf<4>(a.data + i * a.stride, a.stride, b, depth, out + i * outStride, outStride);
+    for (; i + 2 <= a.rows; i += 2)
+        rowsOf<2>(a.data + i * a.stride, a.stride, b, depth, out + i * outStride, outStride);
+    if (i < a.rows)
+        rowsOf<1>(a.data + i * a.stride, a.stride, b, depth, out + i * outStride, outStride);
+}
+
+/// `load` and `store` take what is left at the end of the quadrant with a mask.
+template <bool Half, class Load, class Store>
+HWY_INLINE Vec foldOnce(const double* values, std::size_t count, std::size_t k,
+                        const QuadrantFold& out, Vec squares, Load load, Store store) {
+    const Vec first = load(values + k), second = load(values + count + k);
+    squares = hn::MulAdd(first, first, hn::MulAdd(second, second, squares));
+    if constexpr (Half) {
+        store(hn::Add(first, second), out.c0 + k);
+        store(hn::Sub(first, second), out.c1 + k);
+    } else {
+        const Vec third = load(values + 2 * count + k), fourth = load(values + 3 * count + k);
+        squares = hn::MulAdd(third, third, hn::MulAdd(fourth, fourth, squares));
+        const Vec even = hn::Add(first, third), odd = hn::Sub(first, third);
+        const Vec evenBehind = hn::Add(second, fourth), oddBehind = hn::Sub(second, fourth);
+        store(hn::Add(even, evenBehind), out.c0 + k);
+        store(hn::Sub(even, evenBehind), out.c1 + k);
+        store(hn::Add(odd, oddBehind), out.s1 + k);
+        store(hn::Sub(odd, oddBehind), out.s0 + k);
+    }
+    return squares;
+}
+
+template <bool Half>
+double fold(const double* values, std::size_t count, const QuadrantFold& out) {
+    const Tag d;
+    const std::size_t lanes = hn::Lanes(d);
+    Vec squares = hn::Zero(d);
+    std::size_t k = 0;
+    for (; k + lanes <= count; k += lanes)
+        squares = foldOnce<Half>(
+            values, count, k, out, squares, [&](const double* from) { return hn::LoadU(d, from); },
+            [&](Vec v, double* to) { hn::StoreU(v, d, to); });
+    if (k < count) {
+        const auto mask = hn::FirstN(d, count - k);
+        squares = foldOnce<Half>(
+            values, count, k, out, squares,
+            [&](const double* from) { return hn::MaskedLoad(mask, d, from); },
+            [&](Vec v, double* to) { hn::BlendedStore(v, mask, d, to); });
+    }
+    return hn::GetLane(hn::SumOfLanes(d, squares));
+}
+
+double foldWhole(const double* values, std::size_t count, const QuadrantFold& out) {
+    return fold<false>(values, count, out);
+}
+double foldHalf(const double* values, std::size_t count, const QuadrantFold& out) {
+    return fold<true>(values, count, out);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace hshfit
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace hshfit {
+
+HWY_EXPORT(rowProducts);
+HWY_EXPORT(foldWhole);
+HWY_EXPORT(foldHalf);
+
+void addRowProducts(RowBlock a, RowBlock b, std::size_t depth, double* out, std::size_t outStride) {
+    HWY_DYNAMIC_DISPATCH(rowProducts)(a, b, depth, out, outStride);
+}
+
+double foldRing(const double* values, std::size_t count, const QuadrantFold& out) {
+    return HWY_DYNAMIC_DISPATCH(foldWhole)(values, count, out);
+}
+
+double foldHalfRing(const double* values, std::size_t count, const QuadrantFold& out) {
+    return HWY_DYNAMIC_DISPATCH(foldHalf)(values, count, out);
+}
+
+}  // namespace hshfit
+#endif  // HWY_ONCE

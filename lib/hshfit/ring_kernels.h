@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+
+namespace hshfit {
+
+/// Rows of `depth` values each, `stride` apart.
+struct RowBlock {
+    const double* data = nullptr;
+    std::size_t rows = 0, stride = 0;
+};
+
+/// out[i * outStride + j] += sum over k < depth of a[i][k] b[j][k], by the vector instructions that
+/// this processor has (Google Highway). The order of each sum depends on `depth` alone.
+void addRowProducts(RowBlock a, RowBlock b, std::size_t depth, double* out, std::size_t outStride);
+
+/// Values at phi, pi - phi, -phi and pi + phi for `count` azimuths phi of the first quadrant,
+/// folded into what is even (c) or odd (s) in phi, and keeps (0) or changes (1) its sign with pi -
+/// phi, as cos(m phi) and sin(m phi) do for even and odd m: sums over a whole ring become four sums
+/// over a quadrant. `c1` pairs with odd m, and so does `s1`.
+struct QuadrantFold {
+    double *c0, *c1, *s1, *s0;
+};
+
+/// Folds the four quadrants, each `count` values, one after the other from `values`, and returns
+/// the sum of their squares.
+double foldRing(const double* values, std::size_t count, const QuadrantFold& out);
+/// The same for a ring that is even in phi, of which only phi and pi - phi are there; `s1` and `s0`
+/// are left alone, and the sum of squares is that of the half ring.
+double foldHalfRing(const double* values, std::size_t count, const QuadrantFold& out);
+
+}  // namespace hshfit
