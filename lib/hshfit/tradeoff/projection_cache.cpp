@@ -26,6 +26,7 @@ Form rootOf(const Form& form) {
     root.condonShortley = form.condonShortley;
     if (form.kind == Kind::halfway) {
         root.halfway = form.halfway;
+        root.reciprocal = form.reciprocal;
         return root;
     }
     root.basis = form.basis;

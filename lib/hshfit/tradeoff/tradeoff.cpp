@@ -1,5 +1,6 @@
 #include <hshfit/tradeoff/tradeoff.h>
 
+#include <hshfit/representation/factoring.h>
 #include <hshfit/representation/pair_evaluator.h>
 #include <hshfit/representation/represented_brdf.h>
 #include <hshfit/representation/split.h>
@@ -154,6 +155,23 @@ Outcome measureOne(const Form& form, const Maker& maker, const PairReference& re
     return outcome;
 }
 
+/// What no factored form of any basis can beat.
+void boundByRank(Tradeoff& trade, const Brdf& brdf, Quantity quantity) {
+    constexpr std::size_t ranks = 8;
+    trade.sliceOutgoing = brdf.laws().isotropic ? "16" : "8x8";
+    if (!trade.noSquares.empty() && quantity == Quantity::brdf) return;
+    try {
+        const SliceSpectrum spectrum =
+            sliceSpectrum(brdf, OutgoingSet::parse(trade.sliceOutgoing), quantity);
+        if (!spectrum.converged) return;
+        for (std::size_t r = 1; r <= ranks; ++r) {
+            trade.sliceErrors.push_back(spectrum.relativeError(r));
+        }
+    } catch (const NumericError&) {
+        return;
+    }
+}
+
 void leaveOut(Tradeoff& trade, const std::string& reason, const std::string& form) {
     for (LeftOut& line : trade.leftOut) {
         if (line.reason != reason) continue;
@@ -261,6 +279,7 @@ Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& opti
                    .metric = options.metric,
                    .pairs = reference.pairs().size(),
                    .noSquares = reference.noSquares()};
+    boundByRank(trade, brdf, options.sweep.quantity);
     Maker maker(brdf, options, open);
     maker.prepare(forms, steps);
 

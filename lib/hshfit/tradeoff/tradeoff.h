@@ -66,6 +66,11 @@ struct Tradeoff {
     std::size_t beyondBytes = 0;              ///< forms larger than maxBytes
     std::vector<std::size_t> byteFront = {};  ///< into `forms`, by rising bytes
     std::optional<std::size_t> byteKnee = {};
+    /// [r - 1]: the least relative L2 error that any r functions of wi can leave, for f at the
+    /// outgoing directions of `sliceOutgoing` (sliceSpectrum, factoring.h). Empty where it does not
+    /// exist or its grid did not converge.
+    std::vector<double> sliceErrors = {};
+    std::string sliceOutgoing = {};
 
     std::vector<MeasuredTime> times = {};     ///< like `forms`; empty without timing
     std::vector<std::size_t> timeFront = {};  ///< by rising nanoseconds a pair, batch of 4096

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <hshfit/tradeoff/tradeoff.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hshfit::tradeoff {
+
+/// Writes to `folder`, made if absent, the files of a trade:
+///     tradeoff.json, forms.csv, front.csv, tradeoff.gp, front.svg, tradeoff.html
+/// which are the same bytes whenever the same trade is measured, and, if it was timed, those that
+/// hold times:
+///     timing.json, timing.csv, timing_front.csv, timing.svg, timing.html
+/// Throws OutputError where a file cannot be written, and where gnuplot is missing or fails; then
+/// everything but the figures has been written.
+void writeTradeoffs(std::span<const Tradeoff> trades, const std::string& folder);
+
+/// The document of tradeoff.json (docs/schemas/tradeoff.schema.json), with a line feed at the end.
+/// With `timing`, that of timing.json is its member "timing", as `tradeoff --json` prints it.
+std::string tradeoffJson(std::span<const Tradeoff> trades, bool timing = false);
+std::string timingJson(std::span<const Tradeoff> trades);
+
+/// Every form: brdf (from 1), series (as in the figures), bytes, error, uncertainty, one column per
+/// band, entropy_bytes, numbers, one column per metric, front (1 or 0), options.
+std::string formsCsv(std::span<const Tradeoff> trades);
+/// The points of the front by rising bytes: brdf, bytes, error, knee (1 or 0), command.
+std::string frontCsv(std::span<const Tradeoff> trades);
+/// Every form: brdf, series, batch_ns, error, quartiles, the same of single pairs, seconds of
+/// projection and derivation, bytes, front, options.
+std::string timingCsv(std::span<const Tradeoff> trades);
+/// As frontCsv, by rising nanoseconds.
+std::string timingFrontCsv(std::span<const Tradeoff> trades);
+
+/// Draws front.svg from forms.csv and front.csv, and timing.svg where there is a timing.csv.
+std::string tradeoffScript(std::span<const Tradeoff> trades);
+
+/// tradeoff.html and timing.html. `figures` holds an SVG document for each BRDF, or nothing.
+std::string tradeoffPage(std::span<const Tradeoff> trades, const std::vector<std::string>& figures);
+std::string timingPage(std::span<const Tradeoff> trades, const std::vector<std::string>& figures);
+
+/// What the program prints: the front of one BRDF, its knee and what was left out.
+std::string tradeoffText(const Tradeoff& trade, bool byTime);
+
+/// "hshfit project SPEC … -o OUT.json", quoted for a shell.
+std::string commandOf(const Tradeoff& trade, std::size_t form);
+
+/// The groups in which figures show forms, from 1: "outgoing", "outgoing, factored", "basis",
+/// "basis, factored", "halfway".
+std::span<const char* const> seriesNames();
+std::size_t seriesOf(const Form& form);
+
+/// The least error of the forms of one kind within a budget; none if no form of the kind is.
+std::optional<std::size_t> bestWithin(const Tradeoff& trade, Representation::Kind kind,
+                                      std::size_t bytes);
+
+/// What the fronts weigh, in words: "mean |ln(1 + f c) - ln(1 + g c)| (nbrdf)".
+std::string metricText(const std::string& metric);
+
+}  // namespace hshfit::tradeoff

@@ -1,0 +1,136 @@
+#include <hshfit/tradeoff/tradeoff_files.h>
+#include <hshfit/version.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace hshfit::tradeoff {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json numberOrNull(std::optional<double> value) {
+    return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+Json metricsJson(const PairErrors& errors) {
+    Json json = Json::object();
+    for (std::size_t m = 0; m < errors.values.size(); ++m) {
+        json[std::string(metricCatalog()[m].name)] = numberOrNull(errors.values[m]);
+    }
+    return json;
+}
+
+Json formJson(const Tradeoff& trade, std::size_t k) {
+    const Measured& form = trade.forms[k];
+    Json bands = Json::array(), steps = Json::array();
+    for (std::size_t b = 0; b < bandCount; ++b)
+        bands.push_back(numberOrNull(trade.bandErrorOf(k, b)));
+    for (const RepresentationStep& step : form.steps) {
+        steps.push_back({{"what", step.what}, {"change", numberOrNull(step.change)}});
+    }
+    return {{"options", form.options},
+            {"kind", kindName(form.form.kind)},
+            {"bytes", form.bytes},
+            {"entropy_bytes", form.entropyBytes},
+            {"numbers", form.numbers},
+            {"error", numberOrNull(trade.errorOf(k))},
+            {"uncertainty", numberOrNull(trade.uncertaintyOf(k))},
+            {"band_errors", bands},
+            {"metrics", metricsJson(form.errors)},
+            {"steps", steps}};
+}
+
+Json frontJson(const Tradeoff& trade) {
+    Json front = Json::array();
+    for (const std::size_t k : trade.byteFront) {
+        Json bands = Json::array();
+        for (const PairErrors& band : trade.forms[k].bands) bands.push_back(metricsJson(band));
+        front.push_back({{"form", k}, {"command", commandOf(trade, k)}, {"bands", bands}});
+    }
+    return front;
+}
+
+Json leftOutJson(const Tradeoff& trade) {
+    Json list = Json::array();
+    for (const LeftOut& line : trade.leftOut) {
+        list.push_back({{"reason", line.reason}, {"forms", line.forms}, {"example", line.example}});
+    }
+    return list;
+}
+
+Json tradeJson(const Tradeoff& trade) {
+    Json forms = Json::array();
+    for (std::size_t k = 0; k < trade.forms.size(); ++k) forms.push_back(formJson(trade, k));
+    return {{"brdf", trade.brdf},
+            {"channels", trade.channels.names()},
+            {"isotropic", trade.laws.isotropic},
+            {"pairs", trade.pairs},
+            {"no_squares", trade.noSquares.empty() ? Json(nullptr) : Json(trade.noSquares)},
+            {"slice_bound",
+             {{"outgoing", trade.sliceOutgoing}, {"relative_l2_by_rank", trade.sliceErrors}}},
+            {"front", frontJson(trade)},
+            {"knee", trade.byteKnee ? Json(*trade.byteKnee) : Json(nullptr)},
+            {"forms", forms},
+            {"left_out", leftOutJson(trade)},
+            {"beyond_max_bytes", trade.beyondBytes}};
+}
+
+Json pairTimeJson(const PairTime& time) {
+    return {{"median", time.median}, {"low", time.low}, {"high", time.high}};
+}
+
+Json tradeTimingJson(const Tradeoff& trade) {
+    Json forms = Json::array(), front = Json::array();
+    for (std::size_t k = 0; k < trade.times.size(); ++k) {
+        const MeasuredTime& time = trade.times[k];
+        forms.push_back({{"options", trade.forms[k].options},
+                         {"batch_ns", pairTimeJson(time.evaluation.batch)},
+                         {"single_ns", pairTimeJson(time.evaluation.single)},
+                         {"projection_s", time.projectionSeconds},
+                         {"derivation_s", time.derivationSeconds}});
+    }
+    for (const std::size_t k : trade.timeFront) {
+        front.push_back({{"form", k}, {"command", commandOf(trade, k)}});
+    }
+    return {{"brdf", trade.brdf},
+            {"front", front},
+            {"knee", trade.timeKnee ? Json(*trade.timeKnee) : Json(nullptr)},
+            {"forms", forms}};
+}
+
+Json timingDocument(std::span<const Tradeoff> trades) {
+    Json list = Json::array();
+    for (const Tradeoff& trade : trades) list.push_back(tradeTimingJson(trade));
+    return {{"format", "hshfit-tradeoff-timing"},
+            {"version", 1},
+            {"generator", std::string("hshfit ") + version},
+            {"tradeoffs", list}};
+}
+
+bool isTimed(std::span<const Tradeoff> trades) {
+    return !trades.empty() && !trades[0].times.empty();
+}
+
+}  // namespace
+
+std::string tradeoffJson(std::span<const Tradeoff> trades, bool timing) {
+    Json list = Json::array();
+    for (const Tradeoff& trade : trades) list.push_back(tradeJson(trade));
+    Json document = {{"format", "hshfit-tradeoff"},
+                     {"version", 1},
+                     {"generator", std::string("hshfit ") + version},
+                     {"metric", trades.empty() ? "" : trades[0].metric},
+                     {"band_edges", bandEdges},
+                     {"tradeoffs", list}};
+    if (timing && isTimed(trades)) document["timing"] = timingDocument(trades);
+    return document.dump(2) + "\n";
+}
+
+std::string timingJson(std::span<const Tradeoff> trades) {
+    return timingDocument(trades).dump(2) + "\n";
+}
+
+}  // namespace hshfit::tradeoff

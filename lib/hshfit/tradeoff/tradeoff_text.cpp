@@ -1,0 +1,199 @@
+#include <hshfit/tradeoff/tradeoff_files.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace hshfit::tradeoff {
+namespace {
+
+using Kind = Representation::Kind;
+
+constexpr std::array<const char*, 5> series{"outgoing", "outgoing, factored", "basis",
+                                            "basis, factored", "halfway"};
+
+/// A field of a table: text in quotes, quotes doubled (RFC 4180).
+std::string quoted(const std::string& text) {
+    std::string out = "\"";
+    for (const char c : text) {
+        out += c;
+        if (c == '"') out += c;
+    }
+    return out + "\"";
+}
+
+std::string cell(std::optional<double> value) {
+    return value && std::isfinite(*value) ? fmt::format("{}", *value) : std::string();
+}
+
+std::string forShell(const std::string& text) {
+    const auto plain = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+               std::string_view("._-/:=,+@%").find(c) != std::string_view::npos;
+    };
+    if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
+    std::string out = "'";
+    for (const char c : text) {
+        if (c == '\'') {
+            out += "'\\''";
+        } else {
+            out += c;
+        }
+    }
+    return out + "'";
+}
+
+std::vector<bool> marked(const std::vector<std::size_t>& front, std::size_t count) {
+    std::vector<bool> marks(count);
+    for (const std::size_t k : front) marks[k] = true;
+    return marks;
+}
+
+std::string frontRows(std::span<const Tradeoff> trades, const char* heading,
+                      std::vector<std::size_t> Tradeoff::*front,
+                      std::optional<std::size_t> Tradeoff::*knee,
+                      double (*cost)(const Tradeoff&, std::size_t)) {
+    std::string csv = heading;
+    for (std::size_t t = 0; t < trades.size(); ++t) {
+        const Tradeoff& trade = trades[t];
+        for (const std::size_t k : trade.*front) {
+            csv += fmt::format("{},{},{},{:d},{}\n", t + 1, cost(trade, k), cell(trade.errorOf(k)),
+                               trade.*knee == k, quoted(commandOf(trade, k)));
+        }
+    }
+    return csv;
+}
+
+std::string frontTable(const Tradeoff& trade, const std::vector<std::size_t>& front) {
+    const bool timed = !trade.times.empty();
+    std::string text =
+        fmt::format("  {:>9} {:>11} {:>9}  options\n", "bytes", "error", timed ? "ns" : "");
+    for (const std::size_t k : front) {
+        const std::string ns =
+            timed ? fmt::format("{:.1f}", trade.times[k].evaluation.batch.median) : "";
+        text += fmt::format("  {:>9} {:>11.4g} {:>9}  {}\n", trade.forms[k].bytes, trade.errorOf(k),
+                            ns, trade.forms[k].options);
+    }
+    return text;
+}
+
+}  // namespace
+
+std::span<const char* const> seriesNames() {
+    return series;
+}
+
+std::size_t seriesOf(const Form& form) {
+    const bool factored = form.rank > 0 || form.rankError > 0;
+    switch (form.kind) {
+        case Kind::outgoing:
+            return factored ? 2 : 1;
+        case Kind::basis:
+            return factored ? 4 : 3;
+        case Kind::halfway:
+            break;
+    }
+    return 5;
+}
+
+std::string commandOf(const Tradeoff& trade, std::size_t form) {
+    return fmt::format("hshfit project {} -o OUT.json {}", forShell(trade.brdf),
+                       trade.forms[form].options);
+}
+
+std::optional<std::size_t> bestWithin(const Tradeoff& trade, Kind kind, std::size_t bytes) {
+    std::optional<std::size_t> best;
+    for (std::size_t k = 0; k < trade.forms.size(); ++k) {
+        const Measured& form = trade.forms[k];
+        if (form.form.kind != kind || form.bytes > bytes) continue;
+        if (!best || trade.errorOf(k) < trade.errorOf(*best)) best = k;
+    }
+    return best;
+}
+
+std::string metricText(const std::string& metric) {
+    const Metric& row = *selectMetrics(metric).front();
+    return metric == "captured-energy"
+               ? "energy that is not captured, relative-l2 squared (captured-energy)"
+               : fmt::format("{} ({})", row.help, row.name);
+}
+
+std::string formsCsv(std::span<const Tradeoff> trades) {
+    std::string csv = "brdf,series,bytes,error,uncertainty";
+    for (std::size_t b = 0; b < bandCount; ++b)
+        csv += fmt::format(",error_{}_{}", bandEdges[b], bandEdges[b + 1]);
+    csv += ",entropy_bytes,numbers";
+    for (const Metric& metric : metricCatalog()) csv += fmt::format(",{}", metric.name);
+    csv += ",front,options\n";
+    for (std::size_t t = 0; t < trades.size(); ++t) {
+        const Tradeoff& trade = trades[t];
+        const std::vector<bool> front = marked(trade.byteFront, trade.forms.size());
+        for (std::size_t k = 0; k < trade.forms.size(); ++k) {
+            const Measured& form = trade.forms[k];
+            csv += fmt::format("{},{},{},{},{}", t + 1, seriesOf(form.form), form.bytes,
+                               cell(trade.errorOf(k)), cell(trade.uncertaintyOf(k)));
+            for (std::size_t b = 0; b < bandCount; ++b)
+                csv += fmt::format(",{}", cell(trade.bandErrorOf(k, b)));
+            csv += fmt::format(",{},{}", form.entropyBytes, form.numbers);
+            for (const auto& value : form.errors.values) csv += fmt::format(",{}", cell(value));
+            csv += fmt::format(",{:d},{}\n", bool(front[k]), quoted(form.options));
+        }
+    }
+    return csv;
+}
+
+std::string frontCsv(std::span<const Tradeoff> trades) {
+    return frontRows(trades, "brdf,bytes,error,knee,command\n", &Tradeoff::byteFront,
+                     &Tradeoff::byteKnee, [](const Tradeoff& trade, std::size_t k) {
+                         return static_cast<double>(trade.forms[k].bytes);
+                     });
+}
+
+std::string timingCsv(std::span<const Tradeoff> trades) {
+    std::string csv =
+        "brdf,series,batch_ns,error,batch_low,batch_high,single_ns,single_low,single_high,"
+        "projection_s,derivation_s,bytes,front,options\n";
+    for (std::size_t t = 0; t < trades.size(); ++t) {
+        const Tradeoff& trade = trades[t];
+        const std::vector<bool> front = marked(trade.timeFront, trade.forms.size());
+        for (std::size_t k = 0; k < trade.times.size(); ++k) {
+            const MeasuredTime& time = trade.times[k];
+            const PairTime &batch = time.evaluation.batch, &single = time.evaluation.single;
+            csv += fmt::format("{},{},{:.2f},{},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.6f},{:.6f}",
+                               t + 1, seriesOf(trade.forms[k].form), batch.median,
+                               cell(trade.errorOf(k)), batch.low, batch.high, single.median,
+                               single.low, single.high, time.projectionSeconds,
+                               time.derivationSeconds);
+            csv += fmt::format(",{},{:d},{}\n", trade.forms[k].bytes, bool(front[k]),
+                               quoted(trade.forms[k].options));
+        }
+    }
+    return csv;
+}
+
+std::string timingFrontCsv(std::span<const Tradeoff> trades) {
+    return frontRows(trades, "brdf,batch_ns,error,knee,command\n", &Tradeoff::timeFront,
+                     &Tradeoff::timeKnee, [](const Tradeoff& trade, std::size_t k) {
+                         return trade.times[k].evaluation.batch.median;
+                     });
+}
+
+std::string tradeoffText(const Tradeoff& trade, bool byTime) {
+    std::string text = fmt::format("{}: {} forms, {} pairs, error: {}\n", trade.brdf,
+                                   trade.forms.size(), trade.pairs, metricText(trade.metric));
+    text += frontTable(trade, byTime ? trade.timeFront : trade.byteFront);
+    for (const LeftOut& line : trade.leftOut) {
+        text += fmt::format("  left out: {} ({}): {}\n", line.forms, line.example, line.reason);
+    }
+    if (trade.beyondBytes > 0) {
+        text += fmt::format("  left out: {} forms larger than --max-bytes\n", trade.beyondBytes);
+    }
+    if (const auto knee = byTime ? trade.timeKnee : trade.byteKnee) {
+        text += fmt::format("  the front bends at: {}\n", commandOf(trade, *knee));
+    }
+    return text;
+}
+
+}  // namespace hshfit::tradeoff
