@@ -3,6 +3,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/quadrature.h>
+#include <hshfit/representation/factoring_blocks.h>
 
 #include <fmt/format.h>
 
@@ -238,7 +239,10 @@ Representation projectBoth(const Brdf& brdf, const Basis& basis, bool reciprocal
 }
 
 std::vector<double> matrixValues(const Representation& matrix) {
-    return matrix.array("matrix").values;
+    if (matrix.has("matrix")) return matrix.array("matrix").values;
+    const Coefficients& head = matrix.head;
+    const auto basis = bases::make(head.basis, head.order, {.condonShortley = head.condonShortley});
+    return multipliedOut(matrix, productTerms(*basis, symmetryOf(matrix)));
 }
 
 ProductSymmetry symmetryOf(const Representation& matrix) {

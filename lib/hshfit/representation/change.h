@@ -6,12 +6,11 @@ namespace hshfit {
 
 /// Relative change of the projected quantity in L2 over both hemispheres, |after - before| over
 /// |before|, from coefficients: with the solid angles of the outgoing set, or over all terms.
-/// Exact where the basis is orthonormal; for others (LSOSH) the change of the coefficients
-/// themselves, for halfway that of the expansion of ln(1 + f). Both have the same kind and sizes.
+/// Exact for every basis (hemisphere_gram.h), in its inner product; for halfway that of the
+/// expansion of ln(1 + f). Both have the same kind and sizes.
 double relativeChange(const Representation& before, const Representation& after);
 
-/// The numbers behind `relativeChange`: what a change of each costs, in the same norm. One weight
-/// for each value of decoded(…).values, matrixValues(…) or the array "halfway".
+/// What a change of each number costs by itself, in the norm of the coefficients. One weight for each value of decoded(…).values, matrixValues(…) or the array "halfway".
 std::vector<double> changeWeights(const Representation& representation);
 
 /// Appends the step with its cost.

@@ -216,7 +216,7 @@ Representation represent(ProjectionSource& source, const Form& form, const std::
     Representation result = projected(source, form);
     result.added = added;
     if (form.window != Window::none) result = windowed(std::move(result), form.window);
-    if (form.nonNegative) result = madeNonNegative(std::move(result));
+    if (form.nonNegative) result = madeNonNegative(std::move(result), addedTo(source.remainder()));
     if (form.energyPreserving) {
         result = madeEnergyPreserving(std::move(result), source.remainder());
     }

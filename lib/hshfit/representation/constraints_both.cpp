@@ -1,0 +1,229 @@
+#include <hshfit/representation/constraints_both.h>
+
+#include <hshfit/bases/catalog.h>
+#include <hshfit/representation/basis_matrix.h>
+#include <hshfit/representation/constraints_albedo.h>
+#include <hshfit/representation/constraints_cone.h>
+#include <hshfit/representation/constraints_least_change.h>
+#include <hshfit/representation/constraints_scan.h>
+#include <hshfit/representation/descend.h>
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace hshfit {
+namespace {
+
+constexpr int mostRounds = 60;
+constexpr std::size_t mostPerRound = 200;       // of the lowest minima
+constexpr double lowestRing = 89 * (pi / 180);  // as far down as outgoing directions are kept
+
+/// theta_i, phi_i, theta_o, phi_o.
+using Pair = std::vector<double>;
+
+/// Everything that the channels of one matrix share.
+class PairScan {
+public:
+    explicit PairScan(const Representation& matrix)
+        : quantity_(matrix.head.quantity),
+          basis_(bases::make(matrix.head.basis, matrix.head.order,
+                             {.condonShortley = matrix.head.condonShortley})),
+          symmetry_(symmetryOf(matrix)),
+          terms_(productTerms(*basis_, symmetry_)),
+          even_(symmetry_.isotropic && symmetry_.bilateral),
+          scan_(*basis_, even_),
+          moments_(albedoMoments(*basis_, quantity_)) {
+        const int order = basis_->order(), polar = 4 * order + 9;
+        polarStep_ = HemisphereScan::horizon() / (polar - 1);
+        for (int i = 0; i < polar; ++i) polar_.push_back(i * polarStep_);
+        azimuthStep_ = 2 * pi / (8 * order + 8);
+        // Mirrored copies of a quarter, where both mirrors hold.
+        int around = symmetry_.isotropic ? 1 : symmetry_.bilateral ? 2 * order + 3 : 8 * order + 8;
+        for (int j = 0; j < around; ++j) azimuths_.push_back(j * azimuthStep_);
+    }
+
+    std::size_t terms() const { return terms_.size(); }
+
+    std::vector<double> row(const Pair& x) const {
+        std::vector<double> atWi(slots()), atWo(slots()), out(terms());
+        basis_->evaluate(directionFromAngles(x[0], x[1]), atWi.data());
+        basis_->evaluate(directionFromAngles(x[2], x[3]), atWo.data());
+        evaluateProducts(terms_, symmetry_, atWi.data(), atWo.data(), out.data());
+        return out;
+    }
+    /// The directional albedo as a functional of the terms.
+    std::vector<double> albedoRow(const Direction& wo) const {
+        std::vector<double> atWo(slots()), out(terms());
+        basis_->evaluate(wo, atWo.data());
+        evaluateProducts(terms_, symmetry_, moments_.data(), atWo.data(), out.data());
+        return out;
+    }
+    double addedAt(const Brdf* added, std::size_t channel, const Pair& x) const {
+        if (!added) return 0;
+        const Direction wi = directionFromAngles(x[0], x[1]);
+        const std::vector<double> f = evaluate(*added, wi, directionFromAngles(x[2], x[3]));
+        return f[f.size() == 1 ? 0 : channel] * (quantity_ == Quantity::brdf ? 1 : wi.z);
+    }
+
+    struct Minimum {
+        Pair pair;
+        double value;
+    };
+    /// Local minima over all four angles with a value below the threshold, refined.
+    std::vector<Minimum> minima(const std::vector<double>& values, const Brdf* added,
+                                std::size_t channel, double threshold) const {
+        std::vector<std::vector<double>> sums(polar_.size() * azimuths_.size());
+        for (std::size_t o = 0; o < sums.size(); ++o) sums[o] = sumsAt(values, added, channel, o);
+        std::vector<Minimum> found;
+        for (std::size_t o = 0; o < sums.size(); ++o) {
+            for (const std::size_t node : scan_.minima(sums[o].data(), threshold)) {
+                if (leastOfNeighbours(sums, o, node)) {
+                    found.push_back({pairAt(o, node), sums[o][node]});
+                }
+            }
+        }
+        std::ranges::sort(found, {}, &Minimum::value);
+        if (found.size() > mostPerRound) found.resize(mostPerRound);
+        constexpr double any = std::numeric_limits<double>::infinity();
+        const double turn = symmetry_.isotropic ? 0 : azimuthStep_;
+        const std::vector<SearchAxis> axes{{scan_.polarStep(), 0, HemisphereScan::horizon()},
+                                           {scan_.azimuthStep(), -any, any},
+                                           {polarStep_, 0, HemisphereScan::horizon()},
+                                           {turn, -any, any}};
+        const auto value = [&](const Pair& x) {
+            const std::vector<double> products = row(x);
+            return std::inner_product(products.begin(), products.end(), values.begin(), 0.0) +
+                   addedAt(added, channel, x);
+        };
+        tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t k) {
+            found[k].value = descend(value, found[k].pair, axes, 5);
+        });
+        return found;
+    }
+
+    /// Where the albedo is held: all polar angles down to the horizon ring.
+    std::vector<Direction> albedoNodes() const {
+        std::vector<Direction> nodes;
+        const int polar = (symmetry_.isotropic ? 16 : 4) * basis_->order() + 9;
+        for (int i = 0; i < polar; ++i) {
+            for (const double phi : azimuths_) {
+                nodes.push_back(directionFromAngles(i * lowestRing / (polar - 1), phi));
+            }
+        }
+        return nodes;
+    }
+
+private:
+    std::size_t slots() const { return static_cast<std::size_t>(basis_->slots()); }
+    Pair pairAt(std::size_t o, std::size_t node) const {
+        return {scan_.polar(node), scan_.azimuth(node), polar_[o / azimuths_.size()],
+                azimuths_[o % azimuths_.size()]};
+    }
+    std::vector<double> sumsAt(const std::vector<double>& values, const Brdf* added,
+                               std::size_t channel, std::size_t o) const {
+        std::vector<double> atWo(slots()), c(slots(), 0.0), sums(scan_.size());
+        const Pair at = pairAt(o, 0);
+        basis_->evaluate(directionFromAngles(at[2], at[3]), atWo.data());
+        contractWithOutgoing(terms_, symmetry_, values.data(), atWo.data(), c.data());
+        scan_.synthesise(c.data(), sums.data());
+        for (std::size_t k = 0; added && k < sums.size(); ++k) {
+            sums[k] += addedAt(added, channel, pairAt(o, k));
+        }
+        return sums;
+    }
+    bool leastOfNeighbours(const std::vector<std::vector<double>>& sums, std::size_t o,
+                           std::size_t node) const {
+        const std::size_t around = azimuths_.size();
+        const double value = sums[o][node];
+        const std::size_t j = o % around;
+        return (o < around || value <= sums[o - around][node]) &&
+               (o + around >= sums.size() || value <= sums[o + around][node]) &&
+               (j == 0 || value <= sums[o - 1][node]) &&
+               (j + 1 == around || value <= sums[o + 1][node]);
+    }
+
+    Quantity quantity_;
+    std::unique_ptr<Basis> basis_;
+    ProductSymmetry symmetry_;
+    std::vector<ProductTerm> terms_;
+    bool even_;
+    HemisphereScan scan_;
+    std::vector<double> moments_;
+    double polarStep_ = 0, azimuthStep_ = 0;
+    std::vector<double> polar_, azimuths_;  ///< of wo
+};
+
+double product(const std::vector<double>& a, const std::vector<double>& b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+/// The program of one channel.
+std::vector<double> nearestMatrix(const PairScan& scan, std::vector<double> values,
+                                  const BothConstraints& constraints, std::size_t channel,
+                                  const std::vector<std::vector<double>>& albedoRows,
+                                  const std::vector<double>& albedos) {
+    const double norm = std::sqrt(product(values, values)), scale = norm / (2 * pi);
+    if (norm == 0) return values;
+    LeastChange program(values);
+    for (std::size_t k = 0; k < albedoRows.size(); ++k) {
+        std::vector<double> row = albedoRows[k];
+        for (double& each : row) each = -each;
+        program.add(row, -albedos[k]);
+    }
+    program.solve(1e-12 * norm);
+    values = program.x();
+    double lift = 0;
+    for (int round = 0; constraints.nonNegative; ++round) {
+        bool negative = false;
+        lift = 0;
+        for (const auto& each : scan.minima(values, constraints.added, channel, 0.1 * scale)) {
+            if (each.value >= 0) continue;
+            const std::vector<double> row = scan.row(each.pair);
+            lift = std::max(lift, -each.value / row[0]);
+            if (each.value > -0.1 * nonNegativeTolerance * scale) continue;
+            negative = true;
+            program.add(
+                row, constraints.added ? -scan.addedAt(constraints.added, channel, each.pair) : 0);
+        }
+        if (!negative || round == mostRounds) break;
+        program.solve(1e-12 * norm);
+        values = program.x();
+    }
+    values[0] += lift;
+    double share = 1;
+    for (std::size_t k = 0; k < albedoRows.size(); ++k) {
+        const double albedo = product(albedoRows[k], values);
+        if (lift > 0 && albedo > albedos[k]) share = std::min(share, albedos[k] / albedo);
+    }
+    for (double& each : values) each *= std::max(share, 0.0);
+    return values;
+}
+
+}  // namespace
+
+void constrainBoth(Representation& matrix, const BothConstraints& constraints) {
+    const PairScan scan(matrix);
+    const std::size_t channels = matrix.head.channels.count();
+    std::vector<std::vector<double>> rows;
+    std::vector<double> bounds;
+    if (constraints.albedoSource) {
+        const std::vector<Direction> nodes = scan.albedoNodes();
+        bounds = albedoBounds(*constraints.albedoSource, nodes);
+        for (const Direction& wo : nodes) rows.push_back(scan.albedoRow(wo));
+    }
+    StoredArray& array = matrix.arrays[0];
+    tbb::parallel_for(std::size_t{0}, channels, [&](std::size_t c) {
+        double* from = array.values.data() + c * scan.terms();
+        std::vector<double> albedos;
+        for (std::size_t k = 0; k < rows.size(); ++k) albedos.push_back(bounds[k * channels + c]);
+        const std::vector<double> nearest = nearestMatrix(
+            scan, std::vector<double>(from, from + scan.terms()), constraints, c, rows, albedos);
+        std::ranges::copy(nearest, from);
+    });
+}
+
+}  // namespace hshfit

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <hshfit/bases/basis.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace hshfit {
+
+/// A grid over the hemisphere on which sums over a basis are searched for local minima: polar
+/// angles from the pole to the horizon, both included, times azimuths, at least 8 nodes
+/// per wavelength of the highest band in both directions. `even`: sums are even in phi, and half
+/// the azimuths do.
+class HemisphereScan {
+public:
+    HemisphereScan(const Basis& basis, bool even);
+
+    std::size_t size() const { return polar_.size() * azimuths_.size(); }
+    double polar(std::size_t node) const { return polar_[node / azimuths_.size()]; }
+    double azimuth(std::size_t node) const { return azimuths_[node % azimuths_.size()]; }
+    double polarStep() const { return polarStep_; }
+    double azimuthStep() const { return azimuthStep_; }
+    /// The last polar angle: so near the horizon that nothing changes on the way.
+    static double horizon();
+
+    /// values[node] = sum over slots of c B.
+    void synthesise(const double* c, double* values) const;
+    /// Nodes with a value below `threshold` that no neighbour undercuts.
+    std::vector<std::size_t> minima(const double* values, double threshold) const;
+
+private:
+    int order_;
+    bool even_;
+    double polarStep_, azimuthStep_;
+    std::vector<double> polar_, azimuths_;
+    std::vector<std::vector<double>> theta_;  ///< per m >= 0: [l - m][polar]
+    std::vector<double> azimuthParts_;        ///< [azimuth][order - 1 + m]
+};
+
+}  // namespace hshfit
