@@ -44,6 +44,7 @@
 #include <brdfs/sum.h>
 #include <hshfit/colour.h>
 #include <hshfit/error.h>
+#include <hshfit/one_channel.h>
 
 #include <fmt/format.h>
 
@@ -216,6 +217,8 @@ std::unique_ptr<Brdf> open(std::string_view spec) {
                         joined(namesOf(models()))));
     constexpr std::string_view rgbPrefix = "rgb:";
     if (spec.starts_with(rgbPrefix)) return asRgb(open(spec.substr(rgbPrefix.size())));
+    if (const std::string_view grey = greyPrefix(spec); !grey.empty())
+        return asGrey(open(spec.substr(grey.size())), greyWeights(grey));
     const std::vector<WeightedSpec> specs = splitSum(spec, isFile);
     if (specs.size() == 1 && specs.front().weight == 1) return openTerm(specs.front().spec);
     std::vector<Sum::Term> terms;

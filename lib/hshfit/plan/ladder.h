@@ -1,0 +1,45 @@
+#pragma once
+
+#include <hshfit/brdf.h>
+#include <hshfit/plan/scene.h>
+#include <hshfit/representation/form.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hshfit::plan {
+
+/// A way to keep a material, before it has been tried.
+struct Rung {
+    Form form;
+    std::size_t source = 0;  ///< which of the material's versions (all channels, one channel)
+    std::size_t bytes = 0;   ///< what the numbers will take
+};
+
+/// One version of a material and what may be taken out of it first.
+struct LadderSource {
+    const Brdf* brdf = nullptr;
+    /// Specifications for Form::split, "" for none, and the numbers that each adds to a file.
+    std::vector<std::pair<std::string, std::size_t>> splits = {{"", 0}};
+};
+
+struct LadderOptions {
+    std::vector<std::string> bases = {"hsh", "zernike", "makhotkin"};
+    int maxOrder = 12;
+    std::size_t maxBytes = 0;
+    ViewRange views;
+};
+
+/// Every form worth trying, from few bytes to many, in an order that depends on nothing else.
+///     outgoing   f and f cos(theta_i); elevations, a parabolic map or the one direction there is;
+///                every order; ranks 2 to 16 from order 5 on
+///     basis      f (its symmetric half where reciprocal) and f cos(theta_i); every order
+///     halfway    six sizes; isotropic only
+/// each in float32, half, unorm16 and unorm8.
+std::vector<Rung> ladder(std::span<const LadderSource> sources, const LadderOptions& options);
+
+/// The same form but for its precision: what is projected once.
+bool sameNumbers(const Form& a, const Form& b);
+
+}  // namespace hshfit::plan

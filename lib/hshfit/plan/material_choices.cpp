@@ -1,0 +1,201 @@
+#include <hshfit/plan/material_search.h>
+
+#include <hshfit/bases/catalog.h>
+#include <hshfit/error.h>
+#include <hshfit/plan/timing.h>
+#include <hshfit/representation/represented_brdf.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hshfit::plan {
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+/// Interpolation rarely mends what truncation breaks: beyond this share of the budget it is not
+/// tried.
+constexpr double floorSlack = 1.25;
+constexpr std::size_t shownCheaper = 3;
+/// How far up a choice with half the error is looked for.
+constexpr std::size_t farthestDearer = 4;
+/// Forms that are timed where times decide.
+constexpr std::size_t mostTimed = 12;
+
+std::vector<Radiance> withAdded(std::vector<Radiance> radiance,
+                                const std::vector<Radiance>& added) {
+    for (std::size_t o = 0; o < added.size(); ++o) {
+        for (std::size_t v = 0; v < added[o].size(); ++v) {
+            for (std::size_t c = 0; c < 3; ++c) radiance[o][v][c] += added[o][v][c];
+        }
+    }
+    return radiance;
+}
+
+}  // namespace
+
+double MaterialSearch::floorOf(const Rung& rung) {
+    if (rung.form.kind == Representation::Kind::halfway) return 0;
+    const auto& floors = partOf(rung).floor;
+    const auto found = floors.find(rung.form.basis + " " + quantityName(rung.form.quantity));
+    return found == floors.end() ? 0 : found->second[static_cast<std::size_t>(rung.form.order) - 1];
+}
+
+std::vector<Radiance> MaterialSearch::radianceOf(const Representation& representation,
+                                                 const Part& part) {
+    if (representation.kind == Representation::Kind::halfway) {
+        return light_->radianceOf(*reconstruct(representation, open_));
+    }
+    // One table of the light serves all orders: they are its prefixes.
+    const std::string& basis = representation.head.basis;
+    const int order = std::min(options_.maxOrder, bases::find(basis).maxOrder);
+    const std::vector<BasisLight>& light = light_->in(basis, order, representation.head.quantity);
+    std::vector<Radiance> radiance;
+    for (const BasisLight& each : light) {
+        radiance.push_back(linearRadiance(representation, each, light_->views()));
+    }
+    return withAdded(std::move(radiance), part.addedRadiance);
+}
+
+std::optional<double> MaterialSearch::errorOf(const Rung& rung) {
+    const std::string key =
+        fmt::format("{} {} {}", rung.source, optionsOf(rung.form), rung.form.split);
+    if (const auto found = errors_.find(key); found != errors_.end()) return found->second;
+    std::optional<double> error;
+    try {
+        Part& part = partOf(rung);
+        error = light_->errorOf(radianceOf(represent(*part.kept, rung.form, part.added), part));
+    } catch (const NumericError& failure) {
+        lastFailure_ = failure.what();
+    } catch (const UsageError& failure) {
+        lastFailure_ = failure.what();
+    }
+    ++plan_.tried;
+    return errors_[key] = error;
+}
+
+std::optional<double> MaterialSearch::unroundedError(const Rung& rung) {
+    Rung unrounded = rung;
+    unrounded.form.precision = Precision::float64;
+    return errorOf(unrounded);
+}
+
+Choice MaterialSearch::choiceOf(const Rung& rung, double error) const {
+    return {.spec = versions_[rung.source].spec,
+            .form = rung.form,
+            .bytes = rung.bytes,
+            .error = error};
+}
+
+std::optional<Accepted> MaterialSearch::accept(const Rung& rung) {
+    const Version& version = versions_[rung.source];
+    Accepted result{.choice = choiceOf(rung, 0), .representation = {}};
+    try {
+        result.representation = represent(*version.brdf, rung.form, open_);
+    } catch (const NumericError& failure) {
+        lastFailure_ = failure.what();
+        return {};
+    }
+    result.choice.bytes = result.representation.bytes();
+    result.choice.error = light_->errorOf(radianceOf(result.representation, partOf(rung)));
+    const Verification check = verify(scene_, plan_.material, *versions_.front().brdf,
+                                      *reconstruct(result.representation, open_));
+    result.verified = check.error;
+    result.thetas = check.thetas;
+    result.errors = check.byElevation;
+    const double budget = plan_.material.budget.error;
+    const bool holds = result.choice.error <= budget && result.verified <= budget &&
+                       result.choice.bytes <= scene_.limits.bytes;
+    return holds ? std::optional(std::move(result)) : std::nullopt;
+}
+
+std::optional<std::size_t> MaterialSearch::firstWithin(std::size_t from) {
+    const double budget = plan_.material.budget.error;
+    for (std::size_t i = from; i < rungs_.size(); ++i) {
+        if (floorOf(rungs_[i]) > floorSlack * budget) continue;
+        if (unroundedError(rungs_[i]).value_or(never) > budget) continue;
+        if (errorOf(rungs_[i]).value_or(never) <= budget) return i;
+    }
+    return {};
+}
+
+void MaterialSearch::takeCheapest() {
+    std::size_t raised = 0;
+    for (auto found = firstWithin(0); found; found = firstWithin(*found + 1), ++raised) {
+        if (auto accepted = accept(rungs_[*found])) {
+            plan_.accepted = std::move(accepted);
+            plan_.accepted->raised = raised;
+            findNeighbours(*found);
+            return;
+        }
+    }
+}
+
+void MaterialSearch::takeFastest() {
+    struct Timed {
+        std::size_t rung;
+        double nanoseconds;
+    };
+    std::vector<Timed> timed;
+    std::vector<Form> forms;
+    for (auto found = firstWithin(0); found && forms.size() < mostTimed;
+         found = firstWithin(*found + 1)) {
+        const Rung& rung = rungs_[*found];
+        const bool known = std::any_of(forms.begin(), forms.end(), [&](const Form& form) {
+            return sameNumbers(form, rung.form);
+        });
+        if (known) continue;
+        forms.push_back(rung.form);
+        Part& part = partOf(rung);
+        const double time = nanosecondsPerPair(represent(*part.kept, rung.form, part.added), open_);
+        if (time <= scene_.limits.nanoseconds.value_or(never)) timed.push_back({*found, time});
+    }
+    std::stable_sort(timed.begin(), timed.end(),
+                     [](const Timed& a, const Timed& b) { return a.nanoseconds < b.nanoseconds; });
+    for (const Timed& each : timed) {
+        if (auto accepted = accept(rungs_[each.rung])) {
+            plan_.accepted = std::move(accepted);
+            plan_.accepted->choice.nanoseconds = each.nanoseconds;
+            findNeighbours(each.rung);
+            return;
+        }
+    }
+    if (!forms.empty() && timed.empty()) {
+        plan_.refused = fmt::format("{} forms keep to the budget, none within {:g} ns a pair",
+                                    forms.size(), scene_.limits.nanoseconds.value_or(never));
+    }
+}
+
+/// The front of error over bytes below the chosen rung, as far as errors are known or bounded from
+/// below by truncation; then measured. And the first above it with at most half the error.
+void MaterialSearch::findNeighbours(std::size_t chosen) {
+    std::vector<std::size_t> front;
+    double least = never;
+    for (std::size_t i = 0; i < rungs_.size(); ++i) {
+        if (plan_.accepted && rungs_[i].bytes >= rungs_[chosen].bytes) break;
+        const double floor = floorOf(rungs_[i]);
+        if (!(floor < least)) continue;
+        const double error = errorOf(rungs_[i]).value_or(never);
+        if (!(error < least)) continue;
+        least = error;
+        front.push_back(i);
+    }
+    const std::size_t first = front.size() - std::min(front.size(), shownCheaper);
+    for (std::size_t k = first; k < front.size(); ++k) {
+        plan_.cheaper.push_back(choiceOf(rungs_[front[k]], *errorOf(rungs_[front[k]])));
+    }
+    if (!plan_.accepted) return;
+    const double wanted = plan_.accepted->choice.error / 2;
+    for (std::size_t i = chosen + 1; i < rungs_.size(); ++i) {
+        if (rungs_[i].bytes > farthestDearer * rungs_[chosen].bytes) return;
+        if (floorOf(rungs_[i]) > wanted) continue;
+        const double error = errorOf(rungs_[i]).value_or(never);
+        if (error > wanted) continue;
+        plan_.dearer = choiceOf(rungs_[i], error);
+        return;
+    }
+}
+
+}  // namespace hshfit::plan

@@ -1,0 +1,109 @@
+#include <hshfit/plan/material_light.h>
+
+#include <hshfit/bases/catalog.h>
+
+#include <fmt/format.h>
+
+namespace hshfit::plan {
+namespace {
+
+constexpr int lastLevel = 9;
+constexpr std::size_t mostSamples = 250000;
+/// Degrees between views of the search and of the check, and how far the latter are turned.
+constexpr double searchStep = 7, checkStep = 11, checkShift = 0.37;
+/// Lattice points of the check, over all lights of one orientation.
+constexpr std::size_t checkPoints = 32768;
+constexpr int turns = 8;
+
+std::vector<Radiance> radianceIn(const std::vector<LightSamples>& light, const Brdf& brdf,
+                                 const Views& views) {
+    std::vector<Radiance> result;
+    for (const LightSamples& each : light) result.push_back(outgoingRadiance(brdf, each, views));
+    return result;
+}
+
+std::size_t countOf(const std::vector<LightSamples>& light) {
+    std::size_t count = 0;
+    for (const LightSamples& each : light) count += each.count();
+    return count;
+}
+
+}  // namespace
+
+std::vector<Frame> framesOf(const Scene& scene, const Material& material, const Brdf& brdf) {
+    const bool allAround = scene.views.phiMax - scene.views.phiMin > 2 * pi - 1e-9;
+    const bool turnsMatter = scene.views.anyTangent && !(brdf.laws().isotropic && allAround);
+    std::vector<Frame> frames;
+    for (Orientation orientation : material.orientations) {
+        const double first = orientation.turn;
+        for (int k = 0; k < (turnsMatter ? turns : 1); ++k) {
+            orientation.turn = first + 2 * pi * k / turns;
+            frames.emplace_back(orientation);
+        }
+    }
+    return frames;
+}
+
+MaterialLight::MaterialLight(const Scene& scene, const Material& material, const Brdf& brdf)
+    : budget_(material.budget),
+      views_(viewsOf(scene.views, searchStep, 0)),
+      frames_(framesOf(scene, material, brdf)) {
+    for (int level = 0; level <= lastLevel; ++level) {
+        std::vector<LightSamples> light;
+        for (const Frame& frame : frames_) {
+            light.push_back(sampleLights(scene.lights, frame, level));
+        }
+        if (level > 0 && countOf(light) > mostSamples) return;
+        std::vector<Radiance> truth = radianceIn(light, brdf, views_);
+        if (level > 0) change_ = plan::errorOf(budget_, views_, truth, truth_);
+        light_ = std::move(light);
+        truth_ = std::move(truth);
+        if (level > 0 && converged()) return;
+    }
+}
+
+std::size_t MaterialLight::samples() const {
+    return countOf(light_);
+}
+
+Rgb MaterialLight::flux() const {
+    Rgb sum{};
+    for (const LightSamples& each : light_) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            for (std::size_t k = 0; k < each.count(); ++k) sum[c] += each.flux[c][k] * each.z[k];
+        }
+    }
+    return sum;
+}
+
+const std::vector<BasisLight>& MaterialLight::in(const std::string& basis, int order,
+                                                 Quantity quantity) {
+    const std::string key = fmt::format("{} {} {}", basis, order, quantityName(quantity));
+    auto& kept = in_[key];
+    if (kept.empty()) {
+        const auto made = bases::make(basis, order);
+        for (const LightSamples& each : light_) kept.emplace_back(*made, quantity, each);
+    }
+    return kept;
+}
+
+std::vector<Radiance> MaterialLight::radianceOf(const Brdf& brdf) const {
+    return radianceIn(light_, brdf, views_);
+}
+
+Verification verify(const Scene& scene, const Material& material, const Brdf& truth,
+                    const Brdf& approximation) {
+    const Views views = viewsOf(scene.views, checkStep, checkShift);
+    const std::size_t points = checkPoints / scene.lights.size() + 1;
+    std::vector<LightSamples> light;
+    for (const Frame& frame : framesOf(scene, material, truth)) {
+        light.push_back(latticeSamples(scene.lights, frame, points));
+    }
+    const std::vector<Radiance> expected = radianceIn(light, truth, views);
+    const std::vector<Radiance> actual = radianceIn(light, approximation, views);
+    return {.error = errorOf(material.budget, views, expected, actual),
+            .thetas = views.thetas,
+            .byElevation = errorsByElevation(material.budget, views, expected, actual)};
+}
+
+}  // namespace hshfit::plan

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <hshfit/plan/light_samples.h>
+#include <hshfit/plan/radiance.h>
+#include <hshfit/plan/views.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace hshfit::plan {
+
+/// The light on one material, in all of its orientations, sampled so finely that outgoing radiance
+/// does not change any more, and what follows from it.
+class MaterialLight {
+public:
+    /// Refines until two levels agree to a twentieth of the budget or a quarter of a million
+    /// samples are reached: `converged` says which.
+    MaterialLight(const Scene& scene, const Material& material, const Brdf& brdf);
+
+    const Budget& budget() const { return budget_; }
+    const Views& views() const { return views_; }
+    const std::vector<Radiance>& truth() const { return truth_; }
+    bool converged() const { return change_ <= budget_.error / tolerated; }
+    double change() const { return change_; }
+    /// All light samples over all orientations.
+    std::size_t samples() const;
+    std::size_t orientations() const { return frames_.size(); }
+    const std::vector<Frame>& frames() const { return frames_; }
+    /// Flux across a surface, per R, G, B, over all orientations.
+    Rgb flux() const;
+
+    /// For each orientation; kept once made.
+    const std::vector<BasisLight>& in(const std::string& basis, int order, Quantity quantity);
+    /// Outgoing radiance of any BRDF, for each orientation.
+    std::vector<Radiance> radianceOf(const Brdf& brdf) const;
+
+    double errorOf(const std::vector<Radiance>& radiance) const {
+        return plan::errorOf(budget_, views_, truth_, radiance);
+    }
+
+private:
+    static constexpr double tolerated = 20;
+    Budget budget_;
+    Views views_;
+    std::vector<Frame> frames_;
+    std::vector<LightSamples> light_;
+    std::vector<Radiance> truth_;
+    double change_ = 1;
+    std::map<std::string, std::vector<BasisLight>> in_;
+};
+
+/// The orientations to try: those stated, each in 8 turns if the tangent may be any and turning
+/// makes a difference.
+std::vector<Frame> framesOf(const Scene& scene, const Material& material, const Brdf& brdf);
+
+/// The error of `approximation` against `truth` by lattice points, at views that lie between those
+/// of MaterialLight.
+struct Verification {
+    double error = 0;
+    std::vector<double> thetas, byElevation;
+};
+Verification verify(const Scene& scene, const Material& material, const Brdf& truth,
+                    const Brdf& approximation);
+
+}  // namespace hshfit::plan

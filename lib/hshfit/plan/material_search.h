@@ -1,0 +1,83 @@
+#pragma once
+
+#include <hshfit/plan/material_light.h>
+#include <hshfit/plan/plan.h>
+#include <hshfit/plan/projections.h>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hshfit::plan {
+
+/// All that is tried for one material.
+class MaterialSearch {
+public:
+    MaterialSearch(const Scene& scene, const Material& material, const BrdfOpener& open,
+                   const PlanOptions& options);
+    ~MaterialSearch();
+
+    MaterialPlan run();
+
+private:
+    /// The material with one part taken out of it, or none.
+    struct Part {
+        std::string added;                ///< as in Representation
+        std::unique_ptr<Brdf> remainder;  ///< none: the version itself
+        std::unique_ptr<KeptProjections> kept;
+        std::vector<Radiance> addedRadiance;  ///< for each orientation; empty: none
+        std::map<std::string, std::vector<double>> floor = {};  ///< [order - 1] by basis, quantity
+    };
+    /// The material as it is, or as one channel.
+    struct Version {
+        std::string spec;
+        std::unique_ptr<Brdf> brdf;
+        std::map<std::string, Part> parts;  ///< by Form::split
+    };
+
+    void addVersion(std::string spec, std::unique_ptr<Brdf> brdf);
+    void addPart(Version& version, const std::string& split);
+    void considerOneChannel();
+    void describeLight();
+    /// The least order from which on the light's bands change L by less than a quarter of the
+    /// budget, by Cauchy and Schwarz with the energy of f over `views`; the highest if none does.
+    int usefulOrder(double energy, const Views& views, const std::vector<Radiance>& truth) const;
+    void measureFloors(Part& part);
+    void measureFloor(Part& part, Quantity quantity);
+
+    Part& partOf(const Rung& rung) { return versions_[rung.source].parts.at(rung.form.split); }
+    /// For each orientation.
+    std::vector<Radiance> radianceOf(const Representation& representation, const Part& part);
+    /// The error of the rung as tried; none where it cannot be made.
+    std::optional<double> errorOf(const Rung& rung);
+    /// What its truncation alone costs, from a few directions; 0 if not known.
+    double floorOf(const Rung& rung);
+    /// The error that its numbers have before they are rounded.
+    std::optional<double> unroundedError(const Rung& rung);
+    Choice choiceOf(const Rung& rung, double error) const;
+    /// Projects as the command does and checks by lattice points; none if it does not hold.
+    std::optional<Accepted> accept(const Rung& rung);
+
+    std::optional<std::size_t> firstWithin(std::size_t from);
+    void takeCheapest();
+    void takeFastest();
+    void findNeighbours(std::size_t chosen);
+    void refuse();
+
+    const Scene& scene_;
+    const BrdfOpener& open_;
+    const PlanOptions& options_;
+    MaterialPlan plan_;
+    std::vector<Version> versions_;
+    std::unique_ptr<MaterialLight> light_;
+    LadderOptions ladderOptions_;
+    std::vector<Rung> rungs_;
+    std::map<std::string, std::optional<double>> errors_;  ///< by source and form
+    std::vector<double> lightBands_;                       ///< [l]: power of f's light in HSH
+    int usefulOrder_ = 0;
+    std::string lastFailure_;
+};
+
+}  // namespace hshfit::plan

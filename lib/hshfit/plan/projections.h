@@ -1,0 +1,46 @@
+#pragma once
+
+#include <hshfit/plan/ladder.h>
+#include <hshfit/representation/form.h>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace hshfit::plan {
+
+/// Projections of one BRDF that are made once, at the highest order, and cut to what is asked for.
+/// To be used for choosing: cut coefficients agree with those of `project` at that order within the
+/// tolerance, not to the last bit.
+class KeptProjections : public ProjectionSource {
+public:
+    /// `brdf` has to outlive this.
+    KeptProjections(const Brdf& brdf, const LadderOptions& ladder, double tolerance);
+    ~KeptProjections() override;
+
+    Coefficients outgoing(const Form& form) override;
+    Representation both(const Form& form) override;
+    Representation halfway(const Form& form) override;
+    const Brdf& remainder() const override { return brdf_; }
+
+    /// In every basis of the ladder at its highest order, for any set of directions; not kept.
+    std::vector<Coefficients> allBases(const OutgoingSet& set, Quantity quantity);
+
+private:
+    ProjectionOptions optionsFor(Quantity quantity) const;
+    int highestOrder(const std::string& basis) const;
+
+    /// Calls `make` unless it failed before under this key: then throws the same again.
+    void once(const std::string& key, const std::function<void()>& make);
+
+    const Brdf& brdf_;
+    LadderOptions ladder_;
+    double tolerance_;
+    std::map<std::string, std::map<std::string, Coefficients>> outgoing_;  ///< by set, by basis
+    std::map<std::string, Representation> both_, halfway_;
+    std::map<std::string, std::string> failed_;
+};
+
+}  // namespace hshfit::plan
