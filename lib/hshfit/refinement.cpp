@@ -15,6 +15,31 @@ namespace {
 using Inner = Basis::Inner;
 
 constexpr int maxLevel = 16;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// How a quantity has moved from level to level, and what that says of the error that is left.
+struct Change {
+    double last = infinity, before = infinity, earlier = infinity;
+
+    void add(double change) {
+        earlier = before;
+        before = last;
+        last = change;
+    }
+
+    /// Levels grow by half, and what converges exponentially gains more with every one: then the
+    /// next change, and with it the error, is at most last (last / before). Kinks gain a factor of
+    /// 2 to 4 a level, with accidents: without two steps that were faster than that (or one that
+    /// was far faster), the last change itself is what is known.
+    double error() const {
+        constexpr double fast = 0.2, fastBefore = 0.35, fastAtOnce = 0.1, safety = 3;
+        if (last == 0 || before == infinity) return last;
+        const double ratio = last / before;
+        const bool smooth = earlier == infinity ? ratio < fastAtOnce
+                                                : ratio < fast && before < fastBefore * earlier;
+        return smooth ? last * std::min(1.0, safety * ratio) : last;
+    }
+};
 
 /// What one elevation panel holds at its present level.
 struct Panel {
@@ -22,8 +47,8 @@ struct Panel {
     int level = -1;
     std::vector<double> moments = {};  ///< [basis][channel][slot]
     PerInner energy{};
-    std::vector<double> change = {};  ///< per basis: norm of the last change of the moments
-    PerInner energyChange{};
+    std::vector<Change> change = {};  ///< per basis: of the moments, by norm
+    std::array<Change, 2> energyChange = {};
 };
 
 double distance(std::span<const double> a, std::span<const double> b) {
@@ -40,7 +65,7 @@ double norm(std::span<const double> a) {
 
 double relative(double difference, double reference) {
     if (difference == 0) return 0;
-    return reference > 0 ? difference / reference : std::numeric_limits<double>::infinity();
+    return reference > 0 ? difference / reference : infinity;
 }
 
 /// One outgoing direction on its way to convergence.
@@ -134,13 +159,12 @@ private:
     }
 
     void update(Panel& panel, std::vector<double> moments, const PerInner& energy) const {
-        panel.change.assign(bases_.size(), std::numeric_limits<double>::infinity());
-        for (std::size_t e = 0; e < energy.size(); ++e) {
-            panel.energyChange[e] = panel.level == 0 ? std::numeric_limits<double>::infinity()
-                                                     : std::abs(energy[e] - panel.energy[e]);
+        panel.change.resize(bases_.size());
+        for (std::size_t e = 0; e < energy.size() && panel.level > 0; ++e) {
+            panel.energyChange[e].add(std::abs(energy[e] - panel.energy[e]));
         }
         for (std::size_t b = 0; b < bases_.size() && panel.level > 0; ++b) {
-            panel.change[b] = distance(ofBasis(moments, b), ofBasis(panel.moments, b));
+            panel.change[b].add(distance(ofBasis(moments, b), ofBasis(panel.moments, b)));
         }
         panel.moments = std::move(moments);
         panel.energy = energy;
@@ -154,35 +178,35 @@ private:
             for (std::size_t i = 0; i < totals_.size(); ++i) totals_[i] += panel.moments[i];
             for (std::size_t e = 0; e < result_.energy.size(); ++e) {
                 result_.energy[e] += panel.energy[e];
-                result_.energyError[e] += panel.energyChange[e];
+                result_.energyError[e] += panel.energyChange[e].error();
             }
         }
         norms_.clear();
         for (std::size_t b = 0; b < bases_.size(); ++b) norms_.push_back(norm(ofBasis(totals_, b)));
         result_.error = 0;
-        for (const Panel& panel : panels_) result_.error += changeOf(panel);
+        for (const Panel& panel : panels_) result_.error += errorOf(panel);
     }
 
-    /// A panel's last change, relative to the totals: the largest over bases and their energies.
-    double changeOf(const Panel& panel) const {
-        double change = 0;
+    /// A panel's error, relative to the totals: the largest over bases and their energies.
+    double errorOf(const Panel& panel) const {
+        double error = 0;
         for (std::size_t b = 0; b < bases_.size(); ++b) {
-            change = std::max(change, relative(panel.change[b], norms_[b]));
+            error = std::max(error, relative(panel.change[b].error(), norms_[b]));
             const Inner inner = bases_[b]->inner();
             if (!result_.horizon.energyExists(inner)) continue;
             const int e = static_cast<int>(inner);
-            change = std::max(change, relative(panel.energyChange[e], result_.energy[e]));
+            error = std::max(error, relative(panel.energyChange[e].error(), result_.energy[e]));
         }
-        return change;
+        return error;
     }
 
-    /// The panels to refine next: none once the changes add up to the tolerance.
+    /// The panels to refine next: none once the errors add up to the tolerance.
     std::vector<std::size_t> unconverged() const {
         std::vector<std::size_t> active;
         if (result_.error <= options_.tolerance) return active;
         const double share = 0.5 * options_.tolerance / static_cast<double>(panels_.size());
         for (std::size_t p = 0; p < panels_.size(); ++p) {
-            if (changeOf(panels_[p]) > share) active.push_back(p);
+            if (errorOf(panels_[p]) > share) active.push_back(p);
         }
         return active;
     }

@@ -41,10 +41,11 @@ struct ProjectionTables {
 };
 
 /// Integrates q against the analysis functions of every basis. Each elevation panel is refined on
-/// its own until the changes of all panels add up to no more than the tolerance, relative to the
+/// its own until the errors of all panels add up to no more than the tolerance, relative to the
 /// norm of each basis' moments and to each energy that exists: panels that hold next to nothing
-/// stay coarse. The error is the sum of every panel's last change: orders above the true one for a
-/// smooth f, and within a factor of 3 of it where f has kinks that no panel ends at.
+/// stay coarse. A panel's error is its last change, or, where its changes shrink as fast as those
+/// of a smooth f, what the next change would be. The sum is above the true error for a smooth f,
+/// and within a factor of 3 of it where f has kinks that no panel ends at.
 ///
 /// Throws NumericError where the moments do not exist, do not converge within the evaluations
 /// allowed, or q is not finite.
