@@ -37,7 +37,7 @@ public:
         return projectBoth(brdf_, *basisOf(form), form.reciprocal, optionsFor(form));
     }
     Representation halfway(const Form& form) override {
-        return projectHalfway(brdf_, form.halfway, optionsFor(form));
+        return projectHalfway(brdf_, form.halfway, optionsFor(form), form.reciprocal);
     }
     const Brdf& remainder() const override { return brdf_; }
 

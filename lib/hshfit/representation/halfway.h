@@ -32,14 +32,14 @@ private:
 std::unique_ptr<PairEvaluator> halfwayPairEvaluator(const Representation& representation);
 
 /// Fits the expansion to `brdf`: the least mean of |ln(1 + f c) - ln(1 + g c)|, c = cos(theta_i),
-/// over pairs of directions uniform on both hemispheres (weight 0.9) and pairs spread evenly over
-/// the axes u, v and phi of the expansion, so that narrow lobes count (weight 0.1). f < 0 counts as
-/// 0. The pairs come from a low-discrepancy sequence; their number doubles until the error over
-/// pairs that took no part changes by less than 2 %. `head.error` is that change; the last step has
-/// the error itself. The solver reweights least squares. Results do not depend on threads.
-/// The terms keep the symmetries of `brdf.laws()`; `reciprocal` asks for the symmetric half.
-/// Only `progress` (pairs done and in all) and `maxEvaluations` (of f in all) are used of
-/// `options`. Throws NumericError where f is not finite, UsageError as HalfwayTerms does.
+/// over pairs uniform on both hemispheres (weight 0.98) and pairs spread over the axes of the
+/// expansion, so that narrow lobes count (0.02), by reweighted least squares. f < 0 counts as 0.
+/// The number of pairs doubles until the error over pairs that took no part changes by less than
+/// 2 %: `head.error` is that change, the last step has the error. Results do not depend on threads.
+/// Terms keep the symmetries of `brdf.laws()`; `reciprocal` asks for those only that are symmetric
+/// in wi and wo, and for an isotropic BRDF mirror symmetric: few surfaces have a hand. Of `options`
+/// only `progress` (pairs done and in all) and `maxEvaluations` (of f in all) are used.
+/// Throws NumericError where f is not finite, UsageError for more than 1500 terms a channel.
 Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
                               const ProjectionOptions& options = {}, bool reciprocal = false);
 

@@ -2,28 +2,32 @@
 
 #include <hshfit/error.h>
 
+#include <hshfit/representation/halfway_gram.h>
 #include <tbb/parallel_for.h>
 #include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hshfit {
 namespace {
 
 /// Samples are summed in this many parts whatever the number of threads, so that it does not show.
 constexpr std::size_t parts = 8;
-/// Samples whose terms are held at once.
-constexpr std::size_t chunk = 256;
+/// Samples whose terms are held at once: with a few hundred terms they stay in the cache.
+constexpr std::size_t chunk = 64;
 /// Share of the loss that the pairs spread over the axes have.
-constexpr double lobeShare = 0.1;
-/// Errors below this count as squares: a hundredth of what fits of measured BRDFs leave.
+constexpr double lobeShare = 0.02;
+/// Regularisation, of the mean of the diagonal, and the share of the loss that is left where a
+/// thousandth of it is worth its larger coefficients.
+constexpr double firstRegularisation = 1e-6, worthIt = 0.9;
+/// Errors below this count as squares: a fiftieth of what fits of measured BRDFs leave.
 constexpr double smallest = 1e-4;
-/// Of the mean of the diagonal.
-constexpr double regularisation = 1e-9;
 
 /// The loss ln(1 + f c) as a function of y = ln(1 + f), f not below 0.
 double metricOf(double y, double c) {
+    if (y > 30) return y + std::log(c);
     return y > 0 ? std::log1p(std::expm1(y) * c) : 0;
 }
 
@@ -50,77 +54,150 @@ private:
     double uniform_, lobe_;
 };
 
-/// The terms at samples first .. first + count - 1, one sample per column.
+/// The terms at samples first .. first + count - 1, one sample per column; rows are padded.
 void fillTerms(const HalfwayTerms& terms, const HalfwaySamples& samples, std::size_t first,
                std::size_t count, Eigen::MatrixXd& out) {
-    out.resize(static_cast<Eigen::Index>(terms.size()), static_cast<Eigen::Index>(count));
+    const std::size_t rows = (terms.size() + gramPadding - 1) / gramPadding * gramPadding;
+    out.setZero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(count));
     for (std::size_t k = 0; k < count; ++k) {
         terms.evaluate(samples.points[first + k], out.col(static_cast<Eigen::Index>(k)).data());
     }
 }
 
-/// Adds samples first .. first + count - 1 to the systems.
+/// Adds samples to the systems.
 class Accumulator {
 public:
     Accumulator(const HalfwayTerms& terms, const HalfwaySamples& samples,
-                const HalfwayValues& values, const Weights& weights, HalfwayPass& pass)
-        : terms_(terms), samples_(samples), values_(values), weights_(weights), pass_(pass) {
-        const std::size_t channels = samples.values.size() / samples.size();
-        const auto n = static_cast<Eigen::Index>(terms.size());
-        pass_.systems.assign(channels,
-                             {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0.0});
+                const HalfwayValues& values, HalfwayPass& pass)
+        : terms_(terms),
+          samples_(samples),
+          values_(values),
+          weights_(samples),
+          pass_(pass),
+          size_(static_cast<Eigen::Index>(terms.size())) {
+        fillTerms(terms, samples, 0, 1, products_);
+        const Eigen::Index n = products_.rows();
+        pass_.systems.assign(samples.channels(),
+                             {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(size_), 0.0});
     }
 
+    /// Samples first .. first + count - 1.
     void add(std::size_t first, std::size_t count) {
         const std::size_t channels = pass_.systems.size();
         fillTerms(terms_, samples_, first, count, products_);
-        if (values_.size() > 0) now_.noalias() = products_.transpose() * values_;
+        scaled_.resize(products_.rows(), products_.cols());
+        weight_.resize(static_cast<Eigen::Index>(count));
+        right_.resize(static_cast<Eigen::Index>(count));
+        if (values_.size() > 0) now_.noalias() = products_.topRows(size_).transpose() * values_;
         for (std::size_t c = 0; c < channels; ++c) {
             HalfwaySystem& system = pass_.systems[c];
-            scaled_ = products_;
-            right_.resize(static_cast<Eigen::Index>(count));
             for (std::size_t k = 0; k < count; ++k) {
-                const auto column = static_cast<Eigen::Index>(k);
+                const auto row = static_cast<Eigen::Index>(k);
                 const double y = std::log1p(samples_.values[(first + k) * channels + c]);
-                const double root = rootOfWeight(first + k, y, column, c);
-                scaled_.col(column) *= root;
-                right_[column] = root * y;
+                weight_[row] = weightOf(first + k, y, row, static_cast<Eigen::Index>(c));
+                right_[row] = weight_[row] * y;
+                system.squares += right_[row] * y;
             }
-            system.gram.selfadjointView<Eigen::Lower>().rankUpdate(scaled_);
-            system.right.noalias() += scaled_ * right_;
-            system.squares += right_.squaredNorm();
+            // Row-major for the one is column-major for the other: its lower triangle is our upper.
+            addWeightedGram(products_.data(), weight_.data(), count,
+                            static_cast<std::size_t>(products_.rows()), scaled_.data(),
+                            system.gram.data());
+            system.right.noalias() += products_.topRows(size_) * right_;
         }
     }
 
 private:
-    double rootOfWeight(std::size_t sample, double y, Eigen::Index column, std::size_t channel) {
+    double weightOf(std::size_t sample, double y, Eigen::Index row, Eigen::Index channel) {
         const double c = samples_.cosines[sample];
         const double weight = weights_.at(samples_.lobe[sample] != 0);
-        if (values_.size() == 0) return std::sqrt(weight) * slopeBetween(y, y, c, 0);
-        const double now = now_(column, static_cast<Eigen::Index>(channel));
+        if (values_.size() == 0) {
+            const double slope = slopeBetween(y, y, c, 0);
+            return weight * slope * slope;
+        }
+        const double now = now_(row, channel);
         const double difference = metricOf(now, c) - metricOf(y, c);
         pass_.loss += weight * std::abs(difference);
         const double slope = slopeBetween(y, now, c, difference);
-        return slope * std::sqrt(weight / std::max(std::abs(difference), smallest));
+        return weight * slope * slope / std::max(std::abs(difference), smallest);
     }
 
     const HalfwayTerms& terms_;
     const HalfwaySamples& samples_;
     const HalfwayValues& values_;
-    const Weights& weights_;
+    Weights weights_;
     HalfwayPass& pass_;
+    Eigen::Index size_;
     Eigen::MatrixXd products_, scaled_, now_;
-    Eigen::VectorXd right_;
+    Eigen::VectorXd right_, weight_;
+};
+
+/// The mean of `lossOf` at each sample and channel, summed in `parts`.
+template <typename LossOf>
+double meanLoss(const HalfwayTerms& terms, const HalfwaySamples& samples,
+                const HalfwayValues& values, const LossOf& lossOf) {
+    const std::size_t channels = samples.channels();
+    std::vector<double> sums(parts, 0.0);
+    tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
+        Eigen::MatrixXd products, now;
+        const std::size_t end = samples.size() * (part + 1) / parts;
+        for (std::size_t first = samples.size() * part / parts; first < end; first += chunk) {
+            const std::size_t count = std::min(chunk, end - first);
+            fillTerms(terms, samples, first, count, products);
+            now.noalias() = products.topRows(values.rows()).transpose() * values;
+            for (std::size_t k = 0; k < count * channels; ++k) {
+                const std::size_t sample = first + k / channels;
+                const double c = samples.cosines[sample], f = samples.values[first * channels + k];
+                const double g = now(static_cast<Eigen::Index>(k / channels),
+                                     static_cast<Eigen::Index>(k % channels));
+                sums[part] += lossOf(sample) * std::abs(std::log1p(f * c) - metricOf(g, c));
+            }
+        }
+    });
+    double total = 0;
+    for (const double sum : sums) total += sum;
+    return total / static_cast<double>(channels);
+}
+
+double weightedLoss(const HalfwayTerms& terms, const HalfwaySamples& samples,
+                    const HalfwayValues& values) {
+    const Weights weights(samples);
+    return meanLoss(terms, samples, values,
+                    [&](std::size_t k) { return weights.at(samples.lobe[k] != 0); });
+}
+
+/// Reweighted least squares from `values`, or from none, down to the least loss.
+struct Descent {
+    const HalfwayTerms& terms;
+    const HalfwaySamples& samples;
+    HalfwayValues values;
+    double loss = std::numeric_limits<double>::infinity();
+    std::vector<HalfwaySystem> systems = {};  ///< at `values`
+
+    void run(double regularisation) {
+        constexpr int maxSteps = 12;
+        constexpr double settled = 1.0 / 300;
+        HalfwayValues next = values;
+        for (int step = 0; step <= maxSteps; ++step) {
+            HalfwayPass pass = halfwayPass(terms, samples, next);
+            const bool done = next.size() > 0 && pass.loss > loss * (1 - settled);
+            if (next.size() > 0 && pass.loss < loss) {
+                loss = pass.loss;
+                values = next;
+                systems = pass.systems;
+            }
+            if (done) break;
+            next = solveHalfway(pass.systems, regularisation);
+        }
+    }
 };
 
 }  // namespace
 
 HalfwayPass halfwayPass(const HalfwayTerms& terms, const HalfwaySamples& samples,
                         const HalfwayValues& values) {
-    const Weights weights(samples);
     std::vector<HalfwayPass> passes(parts);
     tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
-        Accumulator sums(terms, samples, values, weights, passes[part]);
+        Accumulator sums(terms, samples, values, passes[part]);
         const std::size_t end = samples.size() * (part + 1) / parts;
         for (std::size_t k = samples.size() * part / parts; k < end; k += chunk) {
             sums.add(k, std::min(chunk, end - k));
@@ -135,17 +212,23 @@ HalfwayPass halfwayPass(const HalfwayTerms& terms, const HalfwaySamples& samples
             total.systems[c].squares += passes[part].systems[c].squares;
         }
     }
+    const auto n = static_cast<Eigen::Index>(terms.size());
+    for (HalfwaySystem& system : total.systems) {
+        const Eigen::MatrixXd whole =
+            system.gram.topLeftCorner(n, n).selfadjointView<Eigen::Upper>();
+        system.gram = whole;
+    }
     total.loss /= static_cast<double>(total.systems.size());
     return total;
 }
 
-HalfwayValues solveHalfway(const std::vector<HalfwaySystem>& systems) {
+HalfwayValues solveHalfway(const std::vector<HalfwaySystem>& systems, double regularisation) {
     const Eigen::Index terms = systems[0].right.size();
     HalfwayValues values(terms, static_cast<Eigen::Index>(systems.size()));
     for (std::size_t c = 0; c < systems.size(); ++c) {
         Eigen::MatrixXd gram = systems[c].gram;
         gram.diagonal().array() += regularisation * gram.diagonal().mean() + 1e-300;
-        const Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> factor(gram);
+        const Eigen::LDLT<Eigen::MatrixXd> factor(gram);
         values.col(static_cast<Eigen::Index>(c)) = factor.solve(systems[c].right);
     }
     if (!values.allFinite()) throw NumericError("the halfway form has no solution: f is too large");
@@ -154,50 +237,24 @@ HalfwayValues solveHalfway(const std::vector<HalfwaySystem>& systems) {
 
 HalfwayValues fitHalfway(const HalfwayTerms& terms, const HalfwaySamples& samples,
                          HalfwayValues values) {
-    constexpr int maxSteps = 12;
-    constexpr double settled = 1.0 / 300;
-    double before = std::numeric_limits<double>::infinity(), best = before;
-    HalfwayValues result = values;
-    for (int step = 0; step < maxSteps; ++step) {
-        const bool first = values.size() == 0;
-        const HalfwayPass pass = halfwayPass(terms, samples, values);
-        if (!first && pass.loss < best) {
-            best = pass.loss;
-            result = values;
-        }
-        if (!first && pass.loss > before * (1 - settled)) break;
-        if (!first) before = pass.loss;
-        values = solveHalfway(pass.systems);
-        if (step + 1 == maxSteps) result = values;
+    Descent descent{terms, samples, std::move(values)};
+    double regularisation = firstRegularisation;
+    descent.run(regularisation);
+    // Small coefficients survive coarse storage: larger ones have to be worth it.
+    for (int lower = 0; lower < 2 && descent.loss > 0; ++lower) {
+        const HalfwayValues freer = solveHalfway(descent.systems, regularisation * 1e-3);
+        if (weightedLoss(terms, samples, freer) > worthIt * descent.loss) break;
+        regularisation *= 1e-3;
+        descent.values = freer;
+        descent.run(regularisation);
     }
-    return result;
+    return descent.values;
 }
 
 double halfwayLoss(const HalfwayTerms& terms, const HalfwaySamples& samples,
                    const HalfwayValues& values) {
-    const std::size_t channels = samples.values.size() / samples.size();
-    std::vector<double> sums(parts, 0.0);
-    tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
-        Eigen::MatrixXd products, now;
-        const std::size_t end = samples.size() * (part + 1) / parts;
-        for (std::size_t first = samples.size() * part / parts; first < end; first += chunk) {
-            const std::size_t count = std::min(chunk, end - first);
-            fillTerms(terms, samples, first, count, products);
-            now.noalias() = products.transpose() * values;
-            for (std::size_t k = 0; k < count; ++k) {
-                const double c = samples.cosines[first + k];
-                for (std::size_t channel = 0; channel < channels; ++channel) {
-                    const double f = samples.values[(first + k) * channels + channel];
-                    const double g =
-                        now(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(channel));
-                    sums[part] += std::abs(std::log1p(f * c) - metricOf(g, c));
-                }
-            }
-        }
-    });
-    double total = 0;
-    for (const double sum : sums) total += sum;
-    return total / static_cast<double>(samples.values.size());
+    const double weight = 1 / static_cast<double>(samples.size());
+    return meanLoss(terms, samples, values, [&](std::size_t) { return weight; });
 }
 
 }  // namespace hshfit

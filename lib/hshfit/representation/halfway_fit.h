@@ -11,7 +11,7 @@ namespace hshfit {
 
 /// The weighted normal equations of one channel: gram c = right, |y|^2 = squares.
 struct HalfwaySystem {
-    Eigen::MatrixXd gram;  ///< lower triangle
+    Eigen::MatrixXd gram;
     Eigen::VectorXd right;
     double squares = 0;
 };
@@ -28,10 +28,12 @@ struct HalfwayPass {
 HalfwayPass halfwayPass(const HalfwayTerms& terms, const HalfwaySamples& samples,
                         const HalfwayValues& values);
 
-/// The coefficients that solve the systems, slightly regularised.
-HalfwayValues solveHalfway(const std::vector<HalfwaySystem>& systems);
+/// The coefficients that solve the systems, with `regularisation` times the mean of the diagonal
+/// added to it.
+HalfwayValues solveHalfway(const std::vector<HalfwaySystem>& systems, double regularisation);
 
-/// Steps until the loss changes by less than a part in 300, from `values` if there are any.
+/// Steps until the loss changes by less than a part in 300, from `values` if there are any, with
+/// as much regularisation as does not cost a tenth of the loss.
 HalfwayValues fitHalfway(const HalfwayTerms& terms, const HalfwaySamples& samples,
                          HalfwayValues values);
 

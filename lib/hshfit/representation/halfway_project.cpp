@@ -18,12 +18,14 @@ constexpr std::size_t fewestPairs = 1 << 14, mostPairs = 1 << 18, heldOutPairs =
 constexpr std::size_t mostTerms = 1500;
 /// Change of the error of the pairs that are held out at which their number is enough.
 constexpr double settled = 0.02;
+/// Of the mean of the diagonal, where orders are ranked.
+constexpr double rankRegularisation = 1e-6;
 
 Coefficients headFor(const Brdf& brdf, bool reciprocal) {
     Coefficients head;
     head.channels = brdf.channels();
     head.isotropic = brdf.laws().isotropic;
-    head.bilateral = brdf.laws().mirrorSymmetric;
+    head.bilateral = brdf.laws().mirrorSymmetric || (reciprocal && brdf.laws().isotropic);
     head.reciprocal = reciprocal || brdf.laws().reciprocal;
     head.source = brdf.name();
     head.generator = std::string("hshfit ") + version;
@@ -76,10 +78,9 @@ double residual(const HalfwayTerms& all, const HalfwayTerms& part,
     }
     std::vector<HalfwaySystem> smaller;
     for (const HalfwaySystem& system : systems) {
-        const Eigen::MatrixXd whole = system.gram.selfadjointView<Eigen::Lower>();
-        smaller.push_back({whole(kept, kept), system.right(kept), system.squares});
+        smaller.push_back({system.gram(kept, kept), system.right(kept), system.squares});
     }
-    const HalfwayValues values = solveHalfway(smaller);
+    const HalfwayValues values = solveHalfway(smaller, rankRegularisation);
     double total = 0;
     for (std::size_t c = 0; c < smaller.size(); ++c) {
         total +=
@@ -166,7 +167,7 @@ HalfwayOrders chooseHalfwayOrders(const Brdf& brdf, std::size_t bytes, Precision
     HalfwaySamples samples;
     appendSamples(brdf, HalfwayPart::fitted, 0, std::max(fewestPairs, 16 * all.size()), samples);
     HalfwayPass pass = halfwayPass(all, samples, {});
-    pass = halfwayPass(all, samples, solveHalfway(pass.systems));
+    pass = halfwayPass(all, samples, solveHalfway(pass.systems, rankRegularisation));
 
     std::vector<std::pair<double, HalfwayOrders>> ranked;
     for (const HalfwayOrders& o : known) {

@@ -46,7 +46,8 @@ DirectionPair pairAt(const Sequence& sequence, std::size_t n, bool isotropic, bo
     const double a = sequence.at(n, 0), b = sequence.at(n, 1), c = sequence.at(n, 2);
     const double d = isotropic ? 0 : sequence.at(n, 3);
     if (!lobe) return {onHemisphere(a, c), onHemisphere(b, d)};
-    const double u = a, thetaHalf = 2 * std::asin(std::min(1.0, u * u / std::sqrt(2.0)));
+    const double u = 1 - std::cos(pi / 2 * a);
+    const double thetaHalf = 2 * std::asin(std::min(1.0, u * u / std::sqrt(2.0)));
     return fromHalfDifference(thetaHalf, 2 * pi * d, std::acos(b), 2 * pi * c);
 }
 

@@ -16,10 +16,11 @@ struct HalfwaySamples {
     std::vector<double> values;       ///< f, [sample][channel]; negative values are 0
 
     std::size_t size() const { return cosines.size(); }
+    std::size_t channels() const { return size() == 0 ? 0 : values.size() / size(); }
 };
 
-/// Which pairs: every fourth that is fitted is spread over the axes (u, v, azimuths), the others
-/// and all that are held out are uniform on both hemispheres.
+/// Which pairs: every fourth that is fitted is spread over the axes (uniform in arccos(1 - u), v
+/// and the azimuths), the others and all that are held out are uniform on both hemispheres.
 enum class HalfwayPart { fitted, heldOut };
 
 /// Appends pairs number `first` .. `last` - 1 of the sequence of a part, those below the horizon
