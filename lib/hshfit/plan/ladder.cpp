@@ -2,6 +2,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/representation/basis_matrix.h>
+#include <hshfit/representation/halfway_terms.h>
 
 #include <fmt/format.h>
 
@@ -60,15 +61,15 @@ public:
                 }
             }
         }
-        if (!laws_.isotropic) return;
         for (const HalfwayOrders& orders : halfwaySizes) {
-            const auto terms =
-                static_cast<std::size_t>(orders.half) * orders.difference * orders.azimuth;
             Form form;
             form.kind = Kind::halfway;
             form.halfway = orders;
+            form.reciprocal = laws_.reciprocal;
             form.split = split_;
-            add(form, {{channels_, terms}});
+            const HalfwayTerms terms(orders,
+                                     {laws_.isotropic, laws_.mirrorSymmetric, form.reciprocal});
+            add(form, {{channels_, terms.size()}});
         }
     }
 

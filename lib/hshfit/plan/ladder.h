@@ -35,7 +35,7 @@ struct LadderOptions {
 ///     outgoing   f and f cos(theta_i); elevations, a parabolic map or the one direction there is;
 ///                every order; ranks 2 to 16 from order 5 on
 ///     basis      f (its symmetric half where reciprocal) and f cos(theta_i); every order
-///     halfway    six sizes; isotropic only
+///     halfway    six sizes, of what is symmetric only where reciprocal
 /// each in float32, half, unorm16 and unorm8.
 std::vector<Rung> ladder(std::span<const LadderSource> sources, const LadderOptions& options);
 

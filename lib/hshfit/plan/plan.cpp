@@ -21,9 +21,13 @@ void requireUsable(const std::vector<std::string>& names) {
 
 /// Quoted for a shell.
 std::string quoted(const std::string& text) {
-    std::string out = "'";
-    for (char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return out + "'";
+    std::string out(1, '\'');
+    for (char c : text) {
+        if (c == '\'') out += "'\\'";
+        out += c;
+    }
+    out += '\'';
+    return out;
 }
 
 }  // namespace

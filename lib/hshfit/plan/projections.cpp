@@ -107,15 +107,13 @@ Representation KeptProjections::both(const Form& form) {
 }
 
 Representation KeptProjections::halfway(const Form& form) {
-    const std::string key =
-        fmt::format("{} {} {}", form.halfway.half, form.halfway.difference, form.halfway.azimuth);
+    const std::string key = fmt::format("{} {} {} {}", form.halfway.half, form.halfway.difference,
+                                        form.halfway.azimuth, form.reciprocal);
     auto found = halfway_.find(key);
     if (found == halfway_.end()) {
         once("halfway " + key, [&] {
-            found =
-                halfway_
-                    .emplace(key, projectHalfway(brdf_, form.halfway, optionsFor(Quantity::brdf)))
-                    .first;
+            found = halfway_.emplace(key, projectHalfway(brdf_, form.halfway, {}, form.reciprocal))
+                        .first;
         });
     }
     return found->second;

@@ -1,0 +1,95 @@
+#include <hshfit/plan/plan_files.h>
+#include <hshfit/version.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace hshfit::plan {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json numberOrNull(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json rangeJson(double from, double to) {
+    return {degrees(from), degrees(to)};
+}
+
+Json choiceJson(const Choice& choice, const std::string& file) {
+    Json json = {{"brdf", choice.spec},
+                 {"options", optionsOf(choice.form)},
+                 {"command", commandOf(choice, file)},
+                 {"bytes", choice.bytes},
+                 {"error", numberOrNull(choice.error)}};
+    if (choice.nanoseconds) json["nanoseconds"] = *choice.nanoseconds;
+    return json;
+}
+
+Json acceptedJson(const Accepted& accepted, const std::string& file) {
+    Json json = choiceJson(accepted.choice, file);
+    json["file"] = file;
+    json["entropy_bytes"] = accepted.representation.entropyBytes();
+    json["times_smaller"] =
+        static_cast<double>(baselineBytes) / static_cast<double>(accepted.choice.bytes);
+    json["verified_error"] = accepted.verified;
+    json["raised"] = accepted.raised;
+    Json rows = Json::array();
+    for (std::size_t k = 0; k < accepted.thetas.size(); ++k) {
+        rows.push_back(
+            {{"theta", degrees(accepted.thetas[k])}, {"error", numberOrNull(accepted.errors[k])}});
+    }
+    json["error_by_elevation"] = rows;
+    return json;
+}
+
+Json materialJson(const MaterialPlan& plan) {
+    const Material& material = plan.material;
+    const std::string file = material.name + ".json";
+    Json json = {
+        {"name", material.name},
+        {"brdf", material.brdf},
+        {"budget",
+         {{"metric", metricName(material.budget.metric)}, {"error", material.budget.error}}},
+        {"orientations", material.orientations.size()},
+        {"planned", plan.accepted.has_value()}};
+    if (plan.accepted) json["choice"] = acceptedJson(*plan.accepted, file);
+    json["cheaper"] = Json::array();
+    for (const Choice& each : plan.cheaper) json["cheaper"].push_back(choiceJson(each, file));
+    if (plan.dearer) json["dearer"] = choiceJson(*plan.dearer, file);
+    if (!plan.accepted) {
+        json["refused"] = plan.refused;
+        json["instead"] = plan.instead;
+    }
+    json["rules"] = plan.rules;
+    json["light"] = {{"band_power", plan.lightPower},
+                     {"samples", plan.lightSamples},
+                     {"sampling_error", numberOrNull(plan.referenceError)}};
+    json["views"] = plan.views;
+    json["forms"] = {{"listed", plan.rungs}, {"tried", plan.tried}};
+    return json;
+}
+
+}  // namespace
+
+std::string planJson(const Plan& plan) {
+    const Scene& scene = plan.scene;
+    Json json = {{"format", "hshfit-plan"},
+                 {"version", 1},
+                 {"generator", std::string("hshfit ") + version},
+                 {"scene", scene.file},
+                 {"views",
+                  {{"theta", rangeJson(scene.views.thetaMin, scene.views.thetaMax)},
+                   {"phi", rangeJson(scene.views.phiMin, scene.views.phiMax)},
+                   {"tangent", scene.views.anyTangent ? "any" : "fixed"}}},
+                 {"limits", {{"bytes", scene.limits.bytes}}},
+                 {"baseline_bytes", baselineBytes}};
+    if (scene.limits.nanoseconds) json["limits"]["nanoseconds"] = *scene.limits.nanoseconds;
+    json["materials"] = Json::array();
+    for (const MaterialPlan& each : plan.materials) json["materials"].push_back(materialJson(each));
+    return json.dump(2) + '\n';
+}
+
+}  // namespace hshfit::plan

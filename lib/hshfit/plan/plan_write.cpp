@@ -1,0 +1,90 @@
+#include <hshfit/output/atomic_file.h>
+#include <hshfit/output/page_figures.h>
+#include <hshfit/output/representation_file.h>
+#include <hshfit/plan/plan_files.h>
+
+#include <fmt/format.h>
+
+namespace hshfit::plan {
+namespace {
+
+/// A field of a CSV file, in quotes.
+std::string field(const std::string& text) {
+    std::string out(1, '"');
+    for (char c : text) out.append(c == '"' ? 2 : 1, c);
+    out += '"';
+    return out;
+}
+
+std::string pairOf(const Choice* choice) {
+    return choice ? fmt::format("{},{:.6g}", choice->bytes, choice->error) : ",";
+}
+
+}  // namespace
+
+std::string planCsv(const Plan& plan) {
+    std::string out =
+        "material,brdf,bytes,error,verified,budget,metric,cheaper_bytes,cheaper_error,"
+        "dearer_bytes,dearer_error,command,refused\n";
+    for (const MaterialPlan& each : plan.materials) {
+        const Material& material = each.material;
+        const Accepted* accepted = each.accepted ? &*each.accepted : nullptr;
+        out += fmt::format("{},{},", material.name, field(material.brdf));
+        out += accepted ? fmt::format("{},{:.6g},{:.6g},", accepted->choice.bytes,
+                                      accepted->choice.error, accepted->verified)
+                        : std::string(",,,");
+        out +=
+            fmt::format("{:g},{},{},{},", material.budget.error, metricName(material.budget.metric),
+                        pairOf(each.cheaper.empty() ? nullptr : &each.cheaper.back()),
+                        pairOf(each.dearer ? &*each.dearer : nullptr));
+        const std::string file = material.name + ".json";
+        if (accepted) out += field(commandOf(accepted->choice, file));
+        out += ',';
+        if (!accepted) out += field(each.refused);
+        out += '\n';
+    }
+    return out;
+}
+
+std::string planText(const Plan& plan) {
+    std::string out;
+    for (const MaterialPlan& each : plan.materials) {
+        const Material& material = each.material;
+        if (!each.accepted) {
+            out += fmt::format("{}: no plan: {}\n", material.name, each.refused);
+            for (const std::string& text : each.instead) {
+                out += fmt::format("  instead: {}\n", text);
+            }
+            continue;
+        }
+        const Accepted& accepted = *each.accepted;
+        out += fmt::format(
+            "{}: {} bytes ({:.0f} x fewer), error {:.3g} of {:g}{}\n  {}\n", material.name,
+            accepted.choice.bytes,
+            static_cast<double>(baselineBytes) / static_cast<double>(accepted.choice.bytes),
+            accepted.verified, material.budget.error,
+            accepted.choice.nanoseconds
+                ? fmt::format(", {:.3g} ns a pair", *accepted.choice.nanoseconds)
+                : "",
+            commandOf(accepted.choice, material.name + ".json"));
+        if (!each.cheaper.empty()) {
+            out += fmt::format("  next cheaper: {} bytes, error {:.3g}\n",
+                               each.cheaper.back().bytes, each.cheaper.back().error);
+        }
+    }
+    return out;
+}
+
+void writePlan(const Plan& plan, const std::string& folder) {
+    makeFolder(folder);
+    for (const MaterialPlan& each : plan.materials) {
+        if (!each.accepted) continue;
+        writeRepresentation(each.accepted->representation,
+                            fmt::format("{}/{}.json", folder, each.material.name));
+    }
+    writeFile(folder + "/plan.json", planJson(plan));
+    writeFile(folder + "/plan.csv", planCsv(plan));
+    writeFile(folder + "/plan.html", planPage(plan));
+}
+
+}  // namespace hshfit::plan
