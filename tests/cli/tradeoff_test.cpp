@@ -1,0 +1,117 @@
+// `hshfit tradeoff` as a user runs it.
+
+#include "program.h"
+
+#include <nlohmann/json.hpp>
+
+#include <set>
+
+namespace hshfit::test {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* smallSweep =
+    "--bases hsh,zernike --orders 3,5 --outgoing 8 --halfway 6,3,1 --ranks 0,1 --split none "
+    "--precisions float32,unorm8 --pair-count 2048";
+
+class TradeoffCommand : public Cli {
+protected:
+    Answer trade(const std::string& more) const {
+        return run(std::string("tradeoff ggx:alpha=.4 ") + smallSweep + " " + more);
+    }
+    std::set<std::string> filesIn(const std::string& folder) const {
+        std::set<std::string> names;
+        for (const auto& entry : fs::directory_iterator(path(folder))) {
+            names.insert(entry.path().filename());
+        }
+        return names;
+    }
+};
+
+TEST_F(TradeoffCommand, WritesTheSameFilesTwiceBesidesTimes) {
+    ASSERT_EQ(trade("-o " + path("a")).code, 0);
+    ASSERT_EQ(trade("-o " + path("b") + " --threads 1").code, 0);
+    const std::set<std::string> stable{"tradeoff.json", "forms.csv", "front.csv",
+                                       "tradeoff.gp",   "front.svg", "tradeoff.html"};
+    const std::set<std::string> timed{"timing.json", "timing.csv", "timing_front.csv", "timing.svg",
+                                      "timing.html"};
+    std::set<std::string> all = stable;
+    all.insert(timed.begin(), timed.end());
+    EXPECT_EQ(filesIn("a"), all);
+    for (const std::string& name : stable) {
+        EXPECT_EQ(read(path("a/" + name)), read(path("b/" + name))) << name;
+    }
+    EXPECT_TRUE(keepsSchema(read(path("a/tradeoff.json")), "tradeoff"));
+}
+
+TEST_F(TradeoffCommand, AnswersWithJsonThatKeepsItsSchema) {
+    const Answer answer = trade("--json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "tradeoff"));
+    const json document = json::parse(answer.out);
+    EXPECT_EQ(document["timing"]["tradeoffs"][0]["forms"].size(),
+              document["tradeoffs"][0]["forms"].size());
+    const json untimed = json::parse(trade("--json --no-timing").out);
+    EXPECT_FALSE(untimed.contains("timing"));
+    EXPECT_EQ(untimed["tradeoffs"], document["tradeoffs"]);
+}
+
+/// The commands that name the points of the front make files of the size and error that it states.
+TEST_F(TradeoffCommand, NamesCommandsThatMakeItsForms) {
+    const json trade = json::parse(
+        this->trade("--json --no-timing --write-pairs " + path("pairs.csv")).out)["tradeoffs"][0];
+    for (const json& point : trade["front"]) {
+        std::string command = point["command"];
+        ASSERT_EQ(command.rfind("hshfit ", 0), 0u);
+        command.replace(command.find("OUT.json"), 8, path("form.json"));
+        const Answer made = run(command.substr(7));
+        ASSERT_EQ(made.code, 0) << command << "\n" << made.err;
+        const Answer evaluated = run("eval " + path("form.json") + " --pairs " + path("pairs.csv"));
+        ASSERT_EQ(evaluated.code, 0) << evaluated.err;
+        std::istringstream source(read(path("pairs.csv"))), mine(evaluated.out);
+        std::string a, b;
+        std::getline(source, a);
+        std::getline(mine, b);
+        double error = 0;
+        while (std::getline(source, a) && std::getline(mine, b)) {
+            double wi[6], weight = 0, f = 0, g = 0;
+            ASSERT_EQ(std::sscanf(a.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &wi[0], &wi[1],
+                                  &wi[2], &wi[3], &wi[4], &wi[5], &weight, &f),
+                      8);
+            ASSERT_EQ(std::sscanf(b.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf,%lf", &wi[0], &wi[1], &wi[2],
+                                  &wi[3], &wi[4], &wi[5], &g),
+                      7);
+            error +=
+                weight * std::abs(std::log1p(f * wi[2]) - std::log1p(std::max(g, 0.0) * wi[2]));
+        }
+        const double stated = trade["forms"][point["form"].get<std::size_t>()]["error"];
+        EXPECT_NEAR(error, stated, 1e-3 * stated + 1e-6) << command;
+    }
+}
+
+TEST_F(TradeoffCommand, MeasuresOnGivenPairs) {
+    write("pairs.csv", "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,0,0,1\n0.6,0,0.8,0,0,1\n");
+    const Answer answer = trade("--json --no-timing --pairs " + path("pairs.csv"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const json document = json::parse(answer.out);
+    EXPECT_EQ(document["tradeoffs"][0]["pairs"], 2);
+    EXPECT_TRUE(document["tradeoffs"][0]["forms"][0]["metrics"]["albedo"].is_null());
+}
+
+TEST_F(TradeoffCommand, RefusesWhatItCannotDo) {
+    write("angles.csv", "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n30,0,0,0,0,1\n");
+    write("short.csv", "wi_x,wi_y,wi_z,wo_x,wo_y\n0,0,1,0,0\n");
+    expectError("tradeoff lambert", 2, "-o DIR", 2);
+    expectError("tradeoff lambert --json --metric nice", 2, "unknown metric", 2);
+    expectError("tradeoff lambert --json --forms neural", 2, "outgoing, basis, halfway", 2);
+    expectError("tradeoff lambert --json --no-timing --by-time", 2, "--by-time", 2);
+    expectError("tradeoff lambert --json --max-ns 5", 2, "--by-time", 2);
+    expectError("tradeoff lambert --json --constraints kind", 2, "non-negative", 2);
+    expectError("tradeoff lambert --json --pairs " + path("angles.csv"), 3, "length", 2);
+    expectError("tradeoff lambert --json --pairs " + path("short.csv"), 3, "wo_z", 2);
+    expectError("tradeoff lambert --json --pairs " + path("absent.csv"), 3, "absent.csv", 2);
+}
+
+}  // namespace
+}  // namespace hshfit::test
