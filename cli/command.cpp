@@ -1,10 +1,13 @@
 #include "command.h"
+#include "form_options.h"
 
 #include <hshfit/colour.h>
 #include <hshfit/error.h>
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/output/coefficient_file.h>
+#include <hshfit/output/representation_file.h>
 #include <hshfit/reconstruction.h>
+#include <hshfit/representation/represented_brdf.h>
 
 #include <brdfs/catalog.h>
 
@@ -52,7 +55,13 @@ std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb) {
         return seenAsRgb(std::make_unique<Reconstruction>(std::move(coefficients)), rgb);
     }
     if (!looksLikeCoefficients(spec)) return openBrdf(spec, rgb);
-    return seenAsRgb(std::make_unique<Reconstruction>(readCoefficients(spec)), rgb);
+    Representation representation = readRepresentation(spec);
+    const bool plain = representation.steps.empty() && representation.added.empty() &&
+                       representation.has("coefficients");
+    if (plain) {
+        return seenAsRgb(std::make_unique<Reconstruction>(decoded(representation)), rgb);
+    }
+    return seenAsRgb(reconstruct(std::move(representation), formOpener()), rgb);
 }
 
 void addRgb(CLI::App& command, bool& rgb) {

@@ -1,10 +1,12 @@
 #include "command.h"
+#include "form_options.h"
 #include "inputs.h"
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/least_squares.h>
 #include <hshfit/output/coefficient_file.h>
+#include <hshfit/output/representation_file.h>
 #include <hshfit/projection.h>
 
 #include <brdfs/catalog.h>
@@ -15,6 +17,7 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <system_error>
 
 namespace hshfit::cli {
@@ -22,9 +25,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* defaultMap = "32x32";
+
 struct ProjectOptions {
     std::vector<std::string> specs;
-    std::string output, basis = "hsh", outgoing = "32x32", form = "json";
+    std::string output, basis = "hsh", outgoing, files = "json";
+    FormOptions form;
     int order = 7;
     bool cosine = false, condonShortley = false, rgb = false;
     double tolerance = 0;
@@ -33,7 +39,14 @@ struct ProjectOptions {
     double maxEvaluations = static_cast<double>(ProjectionOptions{}.maxEvaluations);
 };
 
-Json answer(const Projection& projection, const std::string& output) {
+/// A projection and, where a form was asked for, what the file keeps of it.
+struct Result {
+    Projection projection;
+    std::optional<Representation> kept = {};
+};
+
+Json answer(const Result& result, const std::string& output) {
+    const Projection& projection = result.projection;
     const Coefficients& c = projection.coefficients;
     Json energy = {{"value", c.energy.finite ? Json(c.energy.value) : Json(nullptr)},
                    {"error", c.energy.finite ? Json(c.energy.error) : Json(nullptr)},
@@ -63,6 +76,7 @@ Json answer(const Projection& projection, const std::string& output) {
                                      {"residual", c.leastSquares->residual},
                                      {"samples", c.leastSquares->samples}};
     }
+    if (result.kept) document["representation"] = describeForm(*result.kept);
     return document;
 }
 
@@ -89,22 +103,29 @@ struct Job {
     const ProjectOptions& options;
     std::unique_ptr<Basis> basis;
     OutgoingSet outgoing;
+    std::optional<Form> form;
 
-    Projection run(const std::string& spec, const std::string& output,
-                   const ProgressCall& progress) const {
+    Result run(const std::string& spec, const std::string& output,
+               const ProgressCall& progress) const {
         const auto brdf = openBrdf(spec, options.rgb);
+        const ProjectionOptions how = {
+            .quantity = options.cosine ? Quantity::brdfCosine : Quantity::brdf,
+            .tolerance = options.tolerance,
+            .maxEvaluations = static_cast<std::size_t>(options.maxEvaluations),
+            .progress = progress};
+        Result result;
+        if (form) {
+            result.kept = represent(*brdf, *form, formOpener(), how);
+            writeRepresentation(*result.kept, output);
+            result.projection.coefficients = result.kept->head;
+            return result;
+        }
         const Basis* const one[] = {basis.get()};
-        Projection projection =
-            options.leastSquares
-                ? projectSamples(*brdf, *basis, outgoing, options, progress)
-                : std::move(
-                      project(*brdf, one, outgoing,
-                              {.quantity = options.cosine ? Quantity::brdfCosine : Quantity::brdf,
-                               .tolerance = options.tolerance,
-                               .maxEvaluations = static_cast<std::size_t>(options.maxEvaluations),
-                               .progress = progress})[0]);
-        writeCoefficients(projection.coefficients, output);
-        return projection;
+        result.projection = options.leastSquares
+                                ? projectSamples(*brdf, *basis, outgoing, options, progress)
+                                : std::move(project(*brdf, one, outgoing, how)[0]);
+        writeCoefficients(result.projection.coefficients, output);
+        return result;
     }
 };
 
@@ -113,8 +134,13 @@ void noteEnergy(const Projection& projection, const std::string& prefix, const G
     if (!energy.finite) note(globals, prefix + "the energy does not exist: " + energy.reason);
 }
 
-std::string line(const Projection& projection, const Json& document, const std::string& output) {
-    const Coefficients& c = projection.coefficients;
+std::string line(const Result& result, const Json& document, const std::string& output) {
+    const Coefficients& c = result.projection.coefficients;
+    if (result.kept) {
+        const std::string what =
+            c.basis.empty() ? "" : fmt::format("{} order {}, ", c.basis, c.order);
+        return fmt::format("{}: {}error {:.1e}\n{}", output, what, c.error, formLine(*result.kept));
+    }
     if (const auto& fit = c.leastSquares) {
         return fmt::format(
             "{}: {} order {}, {} directions, least squares over {} samples, condition {:.2g}, "
@@ -133,40 +159,42 @@ std::string line(const Projection& projection, const Json& document, const std::
 void projectOne(const Job& job, const Globals& globals) {
     const std::string& output = job.options.output;
     Progress progress(globals, "project");
-    const Projection projection = job.run(job.options.specs[0], output, progress.callback());
-    noteEnergy(projection, "", globals);
-    const Json document = answer(projection, output);
+    const Result result = job.run(job.options.specs[0], output, progress.callback());
+    noteEnergy(result.projection, "", globals);
+    const Json document = answer(result, output);
     if (globals.json)
         printJson(document);
     else
-        printText(line(projection, document, output));
+        printText(line(result, document, output));
 }
 
 /// Every input to a file of its own in the folder `-o`.
 void projectMany(const Job& job, Globals& globals) {
     const ProjectOptions& options = job.options;
     const std::vector<std::string> specs = expandInputs(options.specs);
-    const std::vector<std::string> outputs = outputPaths(specs, options.output, "." + options.form);
+    const std::vector<std::string> outputs =
+        outputPaths(specs, options.output, "." + options.files);
     std::error_code error;
     std::filesystem::create_directories(options.output, error);
     if (error) {
         throw OutputError(fmt::format("{}: {}; -o of several inputs is a folder", options.output,
                                       error.message()));
     }
-    std::vector<Projection> results(specs.size());
+    std::vector<std::optional<Result>> results(specs.size());
     const std::vector<InputFailure> failures =
         forEachInput(specs, globals, "project", [&](std::size_t i, const ProgressCall& progress) {
-            Projection result = job.run(specs[i], outputs[i], progress);
-            result.coefficients.values = {};  // they are in the file
+            Result result = job.run(specs[i], outputs[i], progress);
+            result.projection.coefficients.values = {};  // they are in the file
             results[i] = std::move(result);
         });
     Json documents = Json::array(), failed = Json::array();
     std::string text;
     for (std::size_t i = 0; i < specs.size(); ++i) {
-        if (results[i].coefficients.order == 0) continue;
-        noteEnergy(results[i], results[i].coefficients.source + ": ", globals);
-        documents.push_back(answer(results[i], outputs[i]));
-        text += line(results[i], documents.back(), outputs[i]);
+        if (!results[i]) continue;
+        const Projection& projection = results[i]->projection;
+        noteEnergy(projection, projection.coefficients.source + ": ", globals);
+        documents.push_back(answer(*results[i], outputs[i]));
+        text += line(*results[i], documents.back(), outputs[i]);
     }
     for (const InputFailure& failure : failures)
         failed.push_back({{"spec", failure.spec}, {"reason", failure.reason}});
@@ -180,11 +208,27 @@ void projectMany(const Job& job, Globals& globals) {
     reportFailures(failures, specs.size(), globals);
 }
 
+/// The form asked for; the default map is left to it where it needs none.
+std::optional<Form> formOf(const ProjectOptions& options) {
+    Form base;
+    base.basis = options.basis;
+    base.order = options.order;
+    base.condonShortley = options.condonShortley;
+    base.quantity = options.cosine ? Quantity::brdfCosine : Quantity::brdf;
+    base.outgoing = options.outgoing;
+    const auto form = options.form.build(std::move(base));
+    if (form && options.leastSquares) {
+        throw UsageError("--least-squares writes plain coefficients: leave out the form");
+    }
+    return form;
+}
+
 void runProject(const ProjectOptions& options, Globals& globals) {
     const Job job{
         options,
         bases::make(options.basis, options.order, {.condonShortley = options.condonShortley}),
-        OutgoingSet::parse(options.outgoing)};
+        OutgoingSet::parse(options.outgoing.empty() ? defaultMap : options.outgoing),
+        formOf(options)};
     if (areMany(options.specs))
         projectMany(job, globals);
     else
@@ -206,7 +250,7 @@ void addProject(CLI::App& app, Globals& globals) {
         .add_option("-o,--output", options->output,
                     "Coefficient file, .json or .exr; for many BRDFs, the folder for their files")
         ->required();
-    command.add_option("--form", options->form, "With many BRDFs: json or exr")
+    command.add_option("--files", options->files, "With many BRDFs: json or exr")
         ->check(CLI::IsMember({"json", "exr"}))
         ->capture_default_str();
     command.add_option("--basis", options->basis, "See hshfit list bases")->capture_default_str();
@@ -215,7 +259,7 @@ void addProject(CLI::App& app, Globals& globals) {
     command
         .add_option("--outgoing", options->outgoing,
                     "WxH (parabolic map), N (elevations, isotropic) or THETA,PHI in degrees")
-        ->capture_default_str();
+        ->default_str(defaultMap);
     addRgb(command, options->rgb);
     command.add_flag("--cosine", options->cosine, "Project f cos(theta_i) instead of f");
     command.add_flag("--condon-shortley", options->condonShortley,
@@ -241,6 +285,7 @@ void addProject(CLI::App& app, Globals& globals) {
                     "With --least-squares: degrees about an outgoing direction that count at most")
         ->check(CLI::Range(0.1, 180.0))
         ->capture_default_str();
+    options->form.addTo(command);
     command.callback([options, &globals] { runProject(*options, globals); });
 }
 

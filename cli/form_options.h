@@ -1,0 +1,42 @@
+#pragma once
+
+#include <hshfit/representation/form.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <optional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace hshfit::cli {
+
+/// The options of `project` that say in which form coefficients are kept.
+class FormOptions {
+public:
+    void addTo(CLI::App& command);
+
+    /// The form asked for, with basis, order, quantity and outgoing set from `base`; none where no
+    /// option was given: plain coefficients. Throws UsageError.
+    std::optional<Form> build(Form base) const;
+
+private:
+    std::string form_, halfway_, window_, precision_, split_;
+    bool reciprocal_ = false, nonNegative_ = false, energyPreserving_ = false;
+    bool nonNegativeFactors_ = false;
+    int rank_ = 0;
+    double rankError_ = 0;
+    std::size_t keep_ = 0;
+};
+
+/// A BRDF specification, coefficient files included, for what representations add.
+BrdfOpener formOpener();
+
+/// Kind, bytes and steps, for JSON answers.
+nlohmann::ordered_json describeForm(const Representation& representation);
+/// The same in one line.
+std::string formLine(const Representation& representation);
+
+}  // namespace hshfit::cli
