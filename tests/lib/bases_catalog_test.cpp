@@ -141,7 +141,7 @@ TEST(BasisCatalog, ThetaTimesAzimuthIsTheFunction) {
             basis->theta(std::abs(m), {&e, 1}, parts.data());
             for (int l = std::abs(m); l < order; ++l)
                 EXPECT_NEAR(values[slotOf(l, m)], parts[l - std::abs(m)] * azimuths[order - 1 + m],
-                            1e-15);
+                            1e-14);
         }
     }
 }

@@ -10,9 +10,7 @@ namespace hshfit::bases {
 
 namespace {
 
-using Step = JacobiBasis::Step;
-
-constexpr std::size_t blockSize = 64;
+using Step = kernels::Step<double>;
 
 /// Off-diagonal b_k, k >= 1, of the Jacobi matrix for (1-t)^alpha (1+t)^beta:
 /// t p_k = b_{k+1} p_{k+1} + a_k p_k + b_k p_{k-1} (Szego 1939, 4.5.1, made orthonormal).
@@ -21,6 +19,12 @@ double offDiagonal(int k, int alpha, int beta) {
     // (n + s) cancels (d - 1) at n = 1, where both may vanish.
     const double last = k == 1 ? 1 : (n + s) / (d - 1);
     return 2 / d * std::sqrt(n * (n + a) * (n + b) / (d + 1) * last);
+}
+
+/// a_k of the same.
+double diagonal(int k, int alpha, int beta) {
+    const double a = alpha, b = beta, d = 2.0 * k + a + b;
+    return k == 0 ? (b - a) / (d + 2) : (b - a) * (b + a) / (d * (d + 2));
 }
 
 /// p_{k+1} / p_k at t = 1.
@@ -43,155 +47,57 @@ void appendSteps(int count, int alpha, int beta, int end, std::vector<Step>& ste
     }
 }
 
-/// What a point brings into the recurrence.
-struct Place {
-    double base;    ///< F^2
-    double weight;  ///< W
-    double y;       ///< t minus the nearer end
-    int side;       ///< 0: the end is 1; 1: it is -1
+/// s p_k = up p_{k+1} + level p_k + down p_{k-1} for the functions that a basis has: s = t or, for
+/// the even ones alone, t^2.
+struct Relation {
+    double up, level, down;
 };
 
-Place placeOf(const JacobiFamily& family, double mu, double oneMinusMu) {
-    Place place{0, 1, 0, 0};
-    if (family.argument == JacobiFamily::Argument::cosine) {
-        place.side = mu < 0;
-        place.y = mu < 0 ? 1 + mu : -oneMinusMu;
-    } else {
-        if (mu < 0) return {0, 0, 0, 0};
-        const bool nearPole = oneMinusMu <= 0.5;
-        const bool down = family.argument == JacobiFamily::Argument::shiftedDown;
-        place.side = nearPole == down;
-        place.y = 2 * (nearPole ? oneMinusMu : mu) * (place.side == 0 ? -1 : 1);
-    }
-    switch (family.factor) {
-        case JacobiFamily::Factor::sine:
-            place.base = oneMinusMu * (1 + mu);
-            break;
-        case JacobiFamily::Factor::hump:
-            place.base = 4 * mu * oneMinusMu;
-            break;
-        case JacobiFamily::Factor::chord:
-            place.base = oneMinusMu;
-            break;
-    }
-    if (family.timesRootCosine) place.weight = std::sqrt(mu);
-    return place;
+Relation relationOf(const JacobiFamily& family, int k, int m) {
+    const int alpha = family.alpha.at(m), beta = family.beta.at(m);
+    const auto b = [=](int i) { return i > 0 ? offDiagonal(i, alpha, beta) : 0; };
+    if (!family.evenOnly) return {b(k + 1), diagonal(k, alpha, beta), b(k)};
+    const int i = 2 * k;
+    const double level = b(i + 1) * b(i + 1) + b(i) * b(i);
+    return {b(i + 1) * b(i + 2), level, k > 0 ? b(i) * b(i - 1) : 0};
 }
 
-/// x = mantissa 2^exponent, beyond the range of double.
-struct Scaled {
-    double mantissa;
-    long exponent;
-
-    void multiply(const Scaled& other) {
-        int shift = 0;
-        mantissa = std::frexp(mantissa * other.mantissa, &shift);
-        exponent += other.exponent + shift;
-    }
-};
-
-Scaled scaled(double x) {
-    int exponent = 0;
-    const double mantissa = std::frexp(x, &exponent);
-    return {mantissa, exponent};
+kernels::Front frontOf(const JacobiFamily& family) {
+    using kernels::Front;
+    if (family.argument == JacobiFamily::Argument::cosine)
+        return family.evenOnly ? Front::sphereSquared : Front::sphere;
+    if (family.factor == JacobiFamily::Factor::chord) return Front::chord;
+    return family.timesRootCosine ? Front::rootHump : Front::hump;
 }
 
-/// start base^{m/2}, for base > 0.
-Scaled scaledStart(double start, double base, int m) {
-    Scaled result = scaled(start), square = scaled(base);
-    if (m % 2 == 1) result.multiply(scaled(std::sqrt(base)));
-    for (int n = m / 2; n > 0; n /= 2) {
-        if (n % 2 == 1) result.multiply(square);
-        square.multiply(square);
-    }
-    return result;
-}
-
-/// start[j] *= base[j]^{m/2}.
-void multiplyPowers(std::size_t n, double* base, int m, double* start) {
-    if (m % 2 == 1)
-        for (std::size_t j = 0; j < n; ++j) start[j] *= std::sqrt(base[j]);
-    for (int power = m / 2; power > 0; power /= 2) {
-        if (power % 2 == 1)
-            for (std::size_t j = 0; j < n; ++j) start[j] *= base[j];
-        for (std::size_t j = 0; j < n; ++j) base[j] *= base[j];
-    }
-}
-
-/// Where the values of a recurrence go: row k of column p is out[k * rowStep + p].
-template <class Real>
-struct Rows {
-    Real* out;
-    std::size_t rowStep;
-    int count;
-};
-
-/// The points of a block that share a side, packed.
-template <class Real>
-struct Lanes {
-    std::size_t n = 0;
-    std::array<std::size_t, blockSize> index;
-    std::array<Real, blockSize> y, p, d;
-
-    void add(std::size_t point, Real distance, Real start) {
-        index[n] = point;
-        y[n] = distance;
-        p[n] = start;
-        d[n] = 0;
-        ++n;
-    }
-};
-
-template <class Real>
-void run(Lanes<Real>& lanes, const Step* steps, const Rows<Real>& rows) {
-    const std::size_t n = lanes.n;
-    if (n == 0) return;
-    const bool contiguous = lanes.index[n - 1] - lanes.index[0] == n - 1;
-    for (int k = 0; k < rows.count; ++k) {
-        Real* row = rows.out + static_cast<std::size_t>(k) * rows.rowStep;
-        if (contiguous)
-            std::copy_n(lanes.p.begin(), n, row + lanes.index[0]);
-        else
-            for (std::size_t j = 0; j < n; ++j) row[lanes.index[j]] = lanes.p[j];
-        if (k + 1 == rows.count) break;
-        const auto slope = static_cast<Real>(steps[k].slope);
-        const auto ratio = static_cast<Real>(steps[k].ratio);
-        const auto carry = static_cast<Real>(steps[k].carry);
-        for (std::size_t j = 0; j < n; ++j) {
-            lanes.d[j] = slope * lanes.y[j] * lanes.p[j] + carry * lanes.d[j];
-            lanes.p[j] = ratio * lanes.p[j] + lanes.d[j];
+/// `starts`: c_m. The azimuth's normalisation and sign go into the first function of a column.
+kernels::ShortTable<double> shortTable(const JacobiFamily& family, int step, bool condonShortley,
+                                       const std::vector<double>& starts) {
+    kernels::ShortTable<double> table;
+    const int rows = std::min(kernels::shortOrders, static_cast<int>(starts.size()));
+    for (int m = 0; m < rows; ++m) {
+        const auto column = static_cast<std::size_t>(m);
+        const double first =
+            starts[column] * azimuthSign(m, condonShortley) / std::sqrt(m == 0 ? 2 * pi : pi);
+        table.first[column] = first;
+        for (int k = 0; m + (k + 1) * step < rows; ++k) {
+            const Relation r = relationOf(family, k, m);
+            const int l = m + (k + 1) * step;
+            const double scale = k == 0 ? first : 1, last = k == 1 ? first : 1;
+            table.step[static_cast<std::size_t>(l * (l + 1) / 2 + m)] = {
+                scale / r.up, -scale * r.level / r.up, -last * r.down / r.up};
         }
     }
+    return table;
 }
 
-template <class Real>
-Real flushed(Real p, long exponent) {
-    const auto clamped = static_cast<int>(std::max(exponent, -100000L));
-    const Real value = std::ldexp(p, clamped);
-    return std::abs(value) < std::numeric_limits<Real>::min() ? Real{0} : value;
-}
-
-/// One point whose start lies near or below the smallest number: p and d share an exponent.
-template <class Real>
-void runScaled(std::size_t point, const Scaled& start, Real y, const Step* steps,
-               const Rows<Real>& rows) {
-    constexpr int shift = std::numeric_limits<Real>::max_exponent / 2;
-    const Real big = std::ldexp(Real{1}, shift);
-    Real p = static_cast<Real>(start.mantissa), d = 0;
-    long exponent = start.exponent;
-    for (int k = 0; k < rows.count; ++k) {
-        rows.out[static_cast<std::size_t>(k) * rows.rowStep + point] =
-            exponent == 0 ? p : flushed(p, exponent);
-        if (k + 1 == rows.count) break;
-        d = static_cast<Real>(steps[k].slope) * y * p + static_cast<Real>(steps[k].carry) * d;
-        p = static_cast<Real>(steps[k].ratio) * p + d;
-        if (exponent == 0 || std::max(std::abs(p), std::abs(d)) < big) continue;
-        exponent += shift;
-        const int fold = exponent > -shift ? static_cast<int>(exponent) : 0;
-        p = std::ldexp(p, fold - shift);
-        d = std::ldexp(d, fold - shift);
-        exponent -= fold;
-    }
+kernels::ShortTable<float> rounded(const kernels::ShortTable<double>& table) {
+    kernels::ShortTable<float> result;
+    const auto toFloat = [](double x) { return static_cast<float>(x); };
+    std::transform(table.first.begin(), table.first.end(), result.first.begin(), toFloat);
+    for (std::size_t i = 0; i < table.step.size(); ++i)
+        std::transform(table.step[i].begin(), table.step[i].end(), result.step[i].begin(), toFloat);
+    return result;
 }
 
 }  // namespace
@@ -211,58 +117,75 @@ JacobiBasis::JacobiBasis(const JacobiFamily& family, int order, BasisOptions opt
             appendSteps(functions(m) - 1, family.alpha.at(m), family.beta.at(m), end,
                         steps_[end < 0]);
     }
+    if (order <= kernels::shortOrders) {
+        short_ = shortTable(family, shortStep(), options.condonShortley, starts_);
+        shortFloat_ = rounded(short_);
+    }
 }
 
 bool JacobiBasis::has(int l, int m) const {
-    if (!Basis::has(l, m)) return false;
-    return (l - std::abs(m)) % (family_.evenOnly ? 2 : family_.bandStep) == 0;
+    return Basis::has(l, m) && (l - std::abs(m)) % shortStep() == 0;
 }
 
 template <class Real>
-void JacobiBasis::fill(int m, std::span<const Elevation<Real>> points, Real* out) const {
-    assert(m >= 0 && m < order());
-    constexpr Real tiny = std::numeric_limits<Real>::min() / std::numeric_limits<Real>::epsilon();
-    const std::size_t count = points.size(), step = static_cast<std::size_t>(family_.bandStep);
-    const double c = starts_[static_cast<std::size_t>(m)];
-    const std::size_t offset = offsets_[static_cast<std::size_t>(m)];
-    const Rows<Real> rows{out, count * step, functions(m)};
-    for (std::size_t first = 0; first < count; first += blockSize) {
-        const std::size_t n = std::min(blockSize, count - first);
-        std::array<Place, blockSize> places;
-        std::array<double, blockSize> base, start;
-        for (std::size_t j = 0; j < n; ++j) {
-            const Elevation<Real>& e = points[first + j];
-            places[j] = placeOf(family_, double{e.mu}, double{e.oneMinusMu});
-            base[j] = places[j].base;
-            start[j] = c * places[j].weight;
-        }
-        multiplyPowers(n, base.data(), m, start.data());
-        std::array<Lanes<Real>, 2> lanes;
-        for (std::size_t j = 0; j < n; ++j) {
-            const Place& place = places[j];
-            const auto y = static_cast<Real>(place.y);
-            const auto side = static_cast<std::size_t>(place.side);
-            const bool vanishes = place.weight == 0 || (m > 0 && place.base == 0);
-            if (start[j] >= double{tiny} || vanishes)
-                lanes[side].add(first + j, y, static_cast<Real>(start[j]));
-            else
-                runScaled(first + j, scaledStart(c * place.weight, place.base, m), y,
-                          steps_[side].data() + offset, rows);
-        }
+kernels::Recurrences<Real> JacobiBasis::recurrences(
+    const std::array<std::vector<kernels::Step<Real>>, 2>& steps) const {
+    const bool sphere = family_.argument == JacobiFamily::Argument::cosine;
+    const bool chord = family_.factor == JacobiFamily::Factor::chord;
+    return {
+        .domain = sphere  ? kernels::Domain::sphere
+                  : chord ? kernels::Domain::chord
+                          : kernels::Domain::hump,
+        .symmetric = family_.alpha.slope == family_.beta.slope &&
+                     family_.alpha.offset == family_.beta.offset,
+        .timesRootCosine = family_.timesRootCosine,
+        .bandStep = family_.bandStep,
+        .evenOnly = family_.evenOnly,
+        .condonShortley = condonShortley(),
+        .order = order(),
+        .starts = starts_.data(),
+        .offsets = offsets_.data(),
+        .steps = {steps[0].data(), steps[1].data()},
+    };
+}
+
+const std::array<std::vector<kernels::Step<float>>, 2>& JacobiBasis::floatSteps() const {
+    std::call_once(floatStepsOnce_, [this] {
         for (const std::size_t side : {0u, 1u})
-            run(lanes[side], steps_[side].data() + offset, rows);
-    }
-    const std::size_t period = family_.evenOnly ? 2 : step;
-    for (std::size_t row = 0; row < static_cast<std::size_t>(order() - m); ++row)
-        if (row % period != 0) std::fill_n(out + row * count, count, Real{0});
+            for (const Step& step : steps_[side])
+                floatSteps_[side].push_back({static_cast<float>(step.slope),
+                                             static_cast<float>(step.ratio),
+                                             static_cast<float>(step.carry)});
+    });
+    return floatSteps_;
+}
+
+void JacobiBasis::tabulate(DirectionBatch directions, Layout layout, double* out) const {
+    const bool bySlot = layout == Layout::bySlot;
+    if (order() <= kernels::shortOrders)
+        kernels::tabulateShort(
+            {frontOf(family_), shortStep(), order(), &short_, directions, bySlot, out});
+    else
+        kernels::tabulateLong(recurrences(steps_), directions, bySlot, out);
+}
+
+void JacobiBasis::tabulate(DirectionBatch directions, Layout layout, float* out) const {
+    const bool bySlot = layout == Layout::bySlot;
+    if (order() <= kernels::shortOrders)
+        kernels::tabulateShort(
+            {frontOf(family_), shortStep(), order(), &shortFloat_, directions, bySlot, out});
+    else
+        kernels::tabulateLong(recurrences(floatSteps()), directions, bySlot, out);
 }
 
 void JacobiBasis::theta(int m, std::span<const Elevation<double>> points, double* out) const {
-    fill(m, points, out);
+    assert(m >= 0 && m < order());
+    kernels::theta(recurrences(steps_), m, points, out);
 }
 
 void JacobiBasis::theta(int m, std::span<const Elevation<float>> points, float* out) const {
-    fill(m, points, out);
+    assert(m >= 0 && m < order());
+    kernels::theta(recurrences(floatSteps()), m, points, out);
 }
 
 }  // namespace hshfit::bases

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <hshfit/bases/basis.h>
+#include <hshfit/bases/kernels/long_orders.h>
+#include <hshfit/bases/kernels/short_orders.h>
 
 #include <array>
+#include <memory>
+#include <mutex>
 #include <string_view>
 #include <vector>
 
@@ -42,6 +46,9 @@ struct JacobiFamily {
 
 /// HSH, SH, ESH, Zernike and Makhotkin, by one three-term recurrence in k at fixed m.
 ///
+/// Vector kernels (kernels/) do the work: up to order 10 the plain recurrence for a few directions
+/// at once in registers, beyond it what follows.
+///
 /// The recurrence runs in differences from the nearer end of [-1, 1] (Reinsch's form; Gentleman
 /// 1969) and takes 1 - mu or mu itself as the distance to that end, so that its rounding errors do
 /// not pile up there as k^{3/2}. F^m below the range of the number type is carried with an exponent
@@ -56,11 +63,15 @@ public:
     bool has(int l, int m) const override;
     void theta(int m, std::span<const Elevation<double>> points, double* out) const override;
     void theta(int m, std::span<const Elevation<float>> points, float* out) const override;
+    void tabulate(DirectionBatch directions, Layout layout, double* out) const override;
+    void tabulate(DirectionBatch directions, Layout layout, float* out) const override;
 
-    /// d_k = slope y p_k + carry d_{k-1},  p_{k+1} = ratio p_k + d_k,  y = t - 1 or t + 1.
-    struct Step {
-        double slope, ratio, carry;
-    };
+    /// `theta` one value at a time, without vector instructions: what the kernels are tested
+    /// against.
+    void thetaScalar(int m, std::span<const Elevation<double>> points, double* out) const;
+    void thetaScalar(int m, std::span<const Elevation<float>> points, float* out) const;
+
+    using Step = kernels::Step<double>;
 
     const JacobiFamily& family() const { return family_; }
     /// c_m = T_m^m / (F^m W).
@@ -74,13 +85,26 @@ public:
 private:
     /// Functions T_l^m, l < order, that the recurrence produces.
     int functions(int m) const { return (order() - m + family_.bandStep - 1) / family_.bandStep; }
+    int shortStep() const { return family_.evenOnly ? 2 : family_.bandStep; }
     template <class Real>
-    void fill(int m, std::span<const Elevation<Real>> points, Real* out) const;
+    void fillScalar(int m, std::span<const Elevation<Real>> points, Real* out) const;
+    template <class Real>
+    kernels::Recurrences<Real> recurrences(
+        const std::array<std::vector<kernels::Step<Real>>, 2>& steps) const;
+    const std::array<std::vector<kernels::Step<float>>, 2>& floatSteps() const;
 
     JacobiFamily family_;
     std::vector<double> starts_;              ///< c_m
     std::vector<std::size_t> offsets_;        ///< where the steps of each m begin
     std::array<std::vector<Step>, 2> steps_;  ///< from t = 1 and from t = -1
+    kernels::ShortTable<double> short_;       ///< for orders up to kernels::shortOrders
+    kernels::ShortTable<float> shortFloat_;
+    /// Steps in single precision, made when they are first asked for.
+    mutable std::once_flag floatStepsOnce_;
+    mutable std::array<std::vector<kernels::Step<float>>, 2> floatSteps_;
 };
+
+/// The same functions by `thetaScalar`; `basis` has to outlive it.
+std::unique_ptr<Basis> scalarReference(const JacobiBasis& basis);
 
 }  // namespace hshfit::bases
