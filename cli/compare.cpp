@@ -4,6 +4,7 @@
 #include <hshfit/metrics.h>
 #include <hshfit/output/comparison.h>
 #include <hshfit/reconstruction.h>
+#include <hshfit/representation/represented_brdf.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -25,6 +26,10 @@ OutgoingSet outgoingOf(const CompareArguments& arguments, const Brdf& a, const B
         for (const Brdf* brdf : {&b, &a}) {
             if (const auto* r = dynamic_cast<const Reconstruction*>(brdf)) {
                 return r->coefficients().outgoing;
+            }
+            const auto* r = dynamic_cast<const RepresentedBrdf*>(brdf);
+            if (r && r->representation().kind == Representation::Kind::outgoing) {
+                return r->representation().head.outgoing;
             }
         }
     }

@@ -1,4 +1,5 @@
 #include "command.h"
+#include "form_options.h"
 
 #include <hshfit/error.h>
 #include <hshfit/gpu/containers/containers.h>
@@ -6,8 +7,9 @@
 #include <hshfit/gpu/shader.h>
 #include <hshfit/gpu/targets.h>
 #include <hshfit/gpu/viewer.h>
-#include <hshfit/output/coefficient_file.h>
 #include <hshfit/output/file_set.h>
+#include <hshfit/output/representation_file.h>
+#include <hshfit/representation/represented_brdf.h>
 
 #include <brdfs/catalog.h>
 
@@ -17,6 +19,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 namespace hshfit::cli {
 namespace {
@@ -26,7 +29,8 @@ using gpu::Target;
 
 struct ExportArguments {
     std::string coefficients, output, name, source, number = "float16", packing = "coef4";
-    std::string targets = "bin,glsl-es";
+    std::string targets = "bin,glsl-es", outgoing, basis = ExpandOptions{}.basis;
+    int order = ExpandOptions{}.order;
     int basisTextures = 0, environmentOrder = gpu::ShaderOptions{}.environmentOrder;
     int chromaOrder = 0;
     std::string prefix = gpu::ShaderOptions{}.prefix;
@@ -47,6 +51,24 @@ Source openSourceOf(const ExportArguments& arguments, const Coefficients& coeffi
         return {nullptr,
                 fmt::format("the source does not open ({}); name it with --source", error.what())};
     }
+}
+
+/// Coefficients per outgoing direction. Other forms, and files with a BRDF added, are projected
+/// anew, and what that costs is part of the error that the export states.
+Coefficients coefficientsOf(const ExportArguments& arguments, const Globals& globals) {
+    const Representation stored = readRepresentation(arguments.coefficients);
+    ExpandOptions options{.basis = arguments.basis, .order = arguments.order};
+    std::optional<OutgoingSet> outgoing;
+    if (!arguments.outgoing.empty()) outgoing = OutgoingSet::parse(arguments.outgoing);
+    if (outgoing) options.outgoing = &*outgoing;
+    Progress progress(globals, "project");
+    options.projection.progress = progress.callback();
+    if (stored.kind != Representation::Kind::outgoing || !stored.added.empty() || outgoing) {
+        note(globals, fmt::format("{}: form {}{}; exported as coefficients per outgoing direction",
+                                  arguments.coefficients, kindName(stored.kind),
+                                  stored.added.empty() ? "" : " with " + stored.added));
+    }
+    return expand(stored, formOpener(), options);
 }
 
 /// The errors, or why there are none. A source that was named has to do.
@@ -189,7 +211,7 @@ void refuseToReplace(const ExportArguments& arguments, const std::string& name) 
 void runExport(const ExportArguments& arguments, const Globals& globals) {
     const std::vector<const Target*> chosen = gpu::selectTargets(arguments.targets);
     const gpu::PackOptions options = packOptions(arguments);
-    const Coefficients coefficients = readCoefficients(arguments.coefficients);
+    const Coefficients coefficients = coefficientsOf(arguments, globals);
     const gpu::Payload payload = gpu::pack(coefficients, options);
     const std::string name = arguments.name.empty()
                                  ? std::filesystem::path(arguments.coefficients).stem().string()
@@ -256,6 +278,13 @@ void addExport(CLI::App& app, Globals& globals) {
             "all that is possible, or containers, languages, renderers and viewer from hshfit "
             "list targets")
         ->capture_default_str();
+    command.add_option("--outgoing", arguments->outgoing,
+                       "Outgoing set of the textures, WxH or N; other than COEFFS' own: projected "
+                       "anew (default: its own; 16 or 16x16 for forms that have none)");
+    command
+        .add_option("--basis", arguments->basis, "For the form halfway: what it is projected to")
+        ->capture_default_str();
+    command.add_option("--order", arguments->order, "With --basis")->capture_default_str();
     command.add_option("--name", arguments->name,
                        "What the files' names begin with (default: that of COEFFS)");
     command.add_option("--number", arguments->number, "float16, float32, unorm16 or unorm8")

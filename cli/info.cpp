@@ -1,10 +1,12 @@
 #include "command.h"
 #include "documents.h"
+#include "form_options.h"
 #include "health.h"
 
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/quadrature.h>
 #include <hshfit/reconstruction.h>
+#include <hshfit/representation/represented_brdf.h>
 
 #include <brdfs/measured/measured_brdf.h>
 
@@ -89,13 +91,18 @@ void describeContainer(const std::string& path, Json& facts) {
 
 Json describe(const Brdf& brdf, const Globals& globals) {
     const auto* reconstruction = dynamic_cast<const Reconstruction*>(&brdf);
+    const auto* represented = dynamic_cast<const RepresentedBrdf*>(&brdf);
+    const bool coefficients = reconstruction || represented;
     Json document = {{"format", "hshfit-info"},
                      {"version", 1},
-                     {"kind", reconstruction ? "coefficients" : "brdf"},
+                     {"kind", coefficients ? "coefficients" : "brdf"},
                      {"name", brdf.name()},
                      {"channels", brdf.channels().names()}};
     if (reconstruction) {
         describeCoefficients(reconstruction->coefficients(), document);
+    } else if (represented) {
+        describeCoefficients(represented->representation().head, document);
+        document["representation"] = describeForm(represented->representation());
     } else {
         document["laws"] = lawsJson(brdf.laws());
         document["facts"] = factsJson(brdf.facts());
@@ -117,7 +124,7 @@ std::string text(const Json& document) {
     if (names.size() > 8)
         names = {fmt::format("{} from {} to {}", names.size(), names.front(), names.back())};
     out += factLine("channels", fmt::format("{}", fmt::join(names, " ")));
-    for (const char* section : {"laws", "symmetry", "facts"}) {
+    for (const char* section : {"laws", "symmetry", "facts", "representation"}) {
         if (!document.contains(section)) continue;
         for (const auto& [key, value] : document[section].items())
             out += factLine(key, scalarText(value));
