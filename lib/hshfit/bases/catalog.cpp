@@ -17,21 +17,25 @@ namespace hshfit::bases {
 
 namespace {
 
+/// Degree 2800: as far as values were compared with 100 digits (bases_kernels_test). The tables of
+/// the recurrence grow as the square and take 190 MB there.
+constexpr int jacobiOrders = 2801;
+
 constexpr std::array table{
     Entry{"hsh", "hemispherical harmonics: Legendre functions of 2 cos(theta) - 1",
-          "Gautron et al. 2004", 1000, true, makeHsh},
+          "Gautron et al. 2004", jacobiOrders, true, makeHsh},
     Entry{"sh", "spherical harmonics, the function being 0 below the horizon",
-          "Laplace 1782; Schönefeld 2005", 1000, true, makeSh},
+          "Laplace 1782; Schönefeld 2005", jacobiOrders, true, makeSh},
     Entry{"esh", "even spherical harmonics, the function being mirrored at the horizon",
-          "compared in Gautron et al. 2004", 1000, true, makeEsh},
+          "compared in Gautron et al. 2004", jacobiOrders, true, makeEsh},
     Entry{"lsosh", "spherical harmonics fitted by least squares on the hemisphere only",
           "Sloan et al. 2003", 100, false, makeLsosh},
     Entry{"zernike", "Zernike polynomials on the disc of radius sqrt(2) sin(theta/2)",
-          "Koenderink et al. 1996", 1000, true, makeZernike},
+          "Koenderink et al. 1996", jacobiOrders, true, makeZernike},
     Entry{"makhotkin", "associated Jacobi polynomials times sqrt(cos(theta)); reconstructed",
-          "after Makhotkin 1996, not consulted", 1000, true, makeMakhotkin},
+          "after Makhotkin 1996, not consulted", jacobiOrders, true, makeMakhotkin},
     Entry{"makhotkin-flux", "the same for the weight cos(theta): one function carries all flux",
-          "after Makhotkin 1996, not consulted", 1000, true, makeMakhotkinFlux},
+          "after Makhotkin 1996, not consulted", jacobiOrders, true, makeMakhotkinFlux},
     Entry{"h-basis", "six functions for irradiance; orders 1 to 3", "Habel & Wimmer 2010", 3, true,
           makeHBasis},
 };
