@@ -1,9 +1,11 @@
-// The bytes are a coefficient file: EXR if they start with its magic number, else JSON. What reads
-// is also written and read again, and has to be the same.
+// The bytes are a coefficient file: EXR if they start with its magic number, else JSON, in plain
+// coefficients or another form. What reads is also written and read again, and has to be the same;
+// forms are evaluated besides.
 
 #include <hshfit/error.h>
 #include <hshfit/output/coefficient_formats.h>
 #include <hshfit/output/exr_header.h>
+#include <hshfit/representation/represented_brdf.h>
 
 #include <cstdint>
 #include <cstdlib>
@@ -21,12 +23,29 @@ void check(const hshfit::Coefficients& c) {
     }
 }
 
+void check(const hshfit::Representation& r) {
+    const auto again = hshfit::representationFromJson(hshfit::representationToJson(r), "again");
+    if (again.arrays.size() != r.arrays.size() || again.bytes() != r.bytes()) std::abort();
+    for (std::size_t i = 0; i < r.arrays.size(); ++i) {
+        if (again.arrays[i].values != r.arrays[i].values) std::abort();
+    }
+    const auto brdf = hshfit::reconstruct(r, [](const std::string& spec) {
+        throw hshfit::InputError("no models here: " + hshfit::printable(spec));
+        return std::unique_ptr<hshfit::Brdf>();
+    });
+    hshfit::evaluate(*brdf, {0.6, 0, 0.8}, {0, 0.6, 0.8});
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
     hshfit::exrSaysCoefficients(bytes);
     try {
+        if (hshfit::hasRepresentation(bytes)) {
+            check(hshfit::representationFromJson(bytes, "input"));
+            return 0;
+        }
         check(hshfit::hasExrMagic(bytes) ? hshfit::coefficientsFromExr(bytes, "input")
                                          : hshfit::coefficientsFromJson(bytes, "input"));
     } catch (const hshfit::InputError& error) {

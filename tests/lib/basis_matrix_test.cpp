@@ -28,6 +28,16 @@ TEST(ProductTerms, NumberAsThePublishedZernikeForm) {
     }
 }
 
+TEST(ProductTerms, AreCountedWithoutListing) {
+    for (const auto& entry : bases::catalog()) {
+        const auto basis = bases::make(entry.name, std::min(6, entry.maxOrder));
+        for (const ProductSymmetry& symmetry : symmetries) {
+            EXPECT_EQ(productTermCount(*basis, symmetry), productTerms(*basis, symmetry).size())
+                << entry.name;
+        }
+    }
+}
+
 TEST(ProductTerms, OfALowerOrderAreAPrefix) {
     for (const auto& entry : bases::catalog()) {
         if (!entry.orthonormal || entry.maxOrder < 5 || entry.name == "slepian") continue;

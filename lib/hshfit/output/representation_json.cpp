@@ -98,6 +98,22 @@ public:
         require("left", {rows, rank});
         require("right", {rank, columns});
     }
+    /// One value for each term and channel; the order alone says how many that are.
+    void basis() const {
+        constexpr std::size_t most = std::size_t{1} << 26;
+        const auto functions = bases::make(r_.head.basis, r_.head.order);
+        const std::size_t terms = productTermCount(*functions, symmetryOf(r_));
+        const std::size_t channels = r_.head.channels.count();
+        if (r_.has("matrix")) {
+            require("matrix", {channels, terms});
+        } else if (r_.arrays.empty()) {
+            fields_.fail("has no array 'matrix' and no factors", "arrays");
+        } else if (terms > most / channels) {
+            fields_.fail(fmt::format("are factors of a matrix of {} terms; at most {} are read",
+                                     terms, most / channels),
+                         "arrays");
+        }
+    }
     void slots() const {
         const auto all = static_cast<int>(r_.head.slots());
         const bool ascending =
@@ -199,6 +215,7 @@ Representation representationFromJson(std::string_view text, const std::string& 
                      .azimuth = orders.integer("azimuth", 1, 256)};
     }
     if (r.kind != Kind::halfway && r.head.basis.empty()) fields.fail("is missing", "basis");
+    if (r.kind == Kind::basis) ShapeCheck(r, part).basis();
     return r;
 }
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <tuple>
 
@@ -165,6 +166,26 @@ std::vector<ProductTerm> productTerms(const Basis& basis, const ProductSymmetry&
     std::sort(terms.begin(), terms.end(),
               [&](const ProductTerm& a, const ProductTerm& b) { return key(a) < key(b); });
     return terms;
+}
+
+std::size_t productTermCount(const Basis& basis, const ProductSymmetry& symmetry) {
+    // Functions that may be paired with each other: those of one m, or, for an anisotropic and
+    // bilateral BRDF, of one parity of m and one of cosine and sine.
+    std::map<int, std::size_t> classes;
+    for (int l = 0; l < basis.order(); ++l) {
+        for (int m = symmetry.isotropic ? 0 : -l; m <= l; ++m) {
+            if (!basis.has(l, m)) continue;
+            const int parity = symmetry.bilateral ? 2 * (m < 0) + std::abs(m) % 2 : 0;
+            ++classes[symmetry.isotropic ? m : parity];
+        }
+    }
+    std::size_t count = 0;
+    for (const auto& [key, n] : classes) {
+        count += symmetry.reciprocal ? n * (n + 1) / 2 : n * n;
+        const bool sines = symmetry.isotropic && !symmetry.bilateral && key > 0;
+        if (sines) count += symmetry.reciprocal ? n * (n - 1) / 2 : n * n;
+    }
+    return count;
 }
 
 void evaluateProducts(const std::vector<ProductTerm>& terms, const ProductSymmetry& symmetry,
