@@ -1,8 +1,11 @@
 // make_seeds FOLDER: FOLDER/fuzz_NAME with small synthetic inputs for each target to start from.
 
+#include <hshfit/bases/catalog.h>
 #include <hshfit/output/atomic_file.h>
 #include <hshfit/output/coefficient_file.h>
 #include <hshfit/output/exr_picture.h>
+#include <hshfit/output/representation_file.h>
+#include <hshfit/representation/basis_matrix.h>
 
 #include <brdfs/bsdf_xml_text.h>
 #include <brdfs/tensor_writer.h>
@@ -119,6 +122,33 @@ void coefficientFiles(const std::filesystem::path& folder) {
     }
 }
 
+/// Coefficient files in forms other than plain coefficients.
+void formFiles(const std::filesystem::path& folder) {
+    using namespace hshfit;
+    const auto c = samples::make(OutgoingSet::elevations(3), Channels::rgb(), Quantity::brdf, 2, 1);
+    Representation both;
+    both.kind = Representation::Kind::basis;
+    both.head = c;
+    both.head.values.clear();
+    both.head.outgoing = {};
+    both.head.isotropic = both.head.reciprocal = true;
+    const auto terms = productTermCount(*bases::make("hsh", 2), symmetryOf(both));
+    both.arrays.push_back({.name = "matrix", .shape = {3, terms}, .values = {}});
+    for (std::size_t i = 0; i < 3 * terms; ++i) both.arrays[0].values.push_back(c.values[i]);
+    int number = 0;
+    for (const Representation& form : {fromCoefficients(c), both}) {
+        for (Precision precision : {Precision::float32, Precision::unorm16, Precision::unorm8}) {
+            for (bool masked : {false, true}) {
+                Representation r = form;
+                if (masked) keepLargest(r.arrays[0], 5);
+                quantise(r.arrays[0], precision);
+                r.steps.push_back({"rounded", 0.5});
+                writeRepresentation(r, folder / ("form" + std::to_string(number++) + ".json"));
+            }
+        }
+    }
+}
+
 /// Every container of two payloads, and their sidecars.
 void gpuFiles(const std::filesystem::path& folder) {
     using namespace hshfit;
@@ -219,6 +249,7 @@ int main(int count, char** arguments) {
     }
     const std::filesystem::path folder = arguments[1];
     coefficientFiles(folder / "fuzz_coefficients");
+    formFiles(folder / "fuzz_coefficients");
     gpuFiles(folder / "fuzz_gpu_containers");
     scatteredFiles(folder);
     presetFiles(folder);
