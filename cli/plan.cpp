@@ -1,0 +1,64 @@
+#include "command.h"
+
+#include <hshfit/error.h>
+#include <hshfit/plan/plan.h>
+#include <hshfit/plan/plan_files.h>
+
+#include <brdfs/catalog.h>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace hshfit::cli {
+namespace {
+
+struct PlanArguments {
+    std::string scene, output;
+    plan::PlanOptions options;
+};
+
+void runPlan(const PlanArguments& arguments, Globals& globals) {
+    const plan::Scene scene = plan::readScene(arguments.scene);
+    Progress progress(globals, "plan");
+    plan::PlanOptions options = arguments.options;
+    options.progress = progress.callback();
+    if (scene.limits.nanoseconds && !options.byTime) {
+        note(globals, "the limit in nanoseconds counts with --by-time only: no times were taken");
+    }
+    const plan::Plan result = plan::planScene(
+        scene, [](const std::string& spec) { return brdfs::open(spec); }, options);
+    plan::writePlan(result, arguments.output);
+    printText(globals.json ? plan::planJson(result) : plan::planText(result));
+    for (const plan::MaterialPlan& each : result.materials) {
+        if (!each.accepted) globals.exitCode = static_cast<int>(ExitCode::numeric);
+    }
+}
+
+}  // namespace
+
+void addPlan(CLI::App& app, Globals& globals) {
+    auto arguments = std::make_shared<PlanArguments>();
+    CLI::App& command = addCommand(app, globals, "plan",
+                                   "The least that a scene needs: the cheapest coefficient file "
+                                   "for each material, checked in the scene's own light",
+                                   "hshfit plan examples/scenes/matte_room.json -o out/plan");
+    command.add_option("SCENE", arguments->scene, "Materials, lights, views and budget, as JSON")
+        ->required();
+    command
+        .add_option("-o,--output", arguments->output,
+                    "Folder for the coefficient files, plan.json, plan.csv and plan.html")
+        ->required();
+    command.add_option("--bases", arguments->options.bases, "Bases to try, orthonormal ones")
+        ->delimiter(',')
+        ->capture_default_str();
+    command.add_option("--max-order", arguments->options.maxOrder, "Bands to try")
+        ->check(CLI::Range(1, 32))
+        ->capture_default_str();
+    command.add_flag("--by-time", arguments->options.byTime,
+                     "Of the forms within the budget, the fastest instead of the smallest; what is "
+                     "measured may differ between runs");
+    command.callback([arguments, &globals] { runPlan(*arguments, globals); });
+}
+
+}  // namespace hshfit::cli
