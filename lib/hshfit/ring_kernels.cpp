@@ -74,6 +74,111 @@ void rowProducts(const RowBlock& a, const RowBlock& b, std::size_t depth, double
         rowsOf<1>(a.data + i * a.stride, a.stride, b, depth, out + i * outStride, outStride);
 }
 
+/// I rows by J vectors of functions.
+template <std::size_t I, std::size_t J>
+HWY_INLINE void columnTile(const double* HWY_RESTRICT a, std::size_t aStride,
+                           const double* HWY_RESTRICT b, std::size_t depth,
+                           double* HWY_RESTRICT out, std::size_t outStride) {
+    const Tag d;
+    const std::size_t lanes = hn::Lanes(d);
+    Vec sums[I][J];
+    for (std::size_t i = 0; i < I; ++i)
+        for (std::size_t j = 0; j < J; ++j)
+            sums[i][j] = hn::LoadU(d, out + i * outStride + j * lanes);
+    for (std::size_t k = 0; k < depth; ++k, b += lanesOfFunctions) {
+        Vec right[J];
+        for (std::size_t j = 0; j < J; ++j) right[j] = hn::LoadU(d, b + j * lanes);
+        for (std::size_t i = 0; i < I; ++i) {
+            const Vec left = hn::Set(d, a[i * aStride + k]);
+            for (std::size_t j = 0; j < J; ++j) sums[i][j] = hn::MulAdd(left, right[j], sums[i][j]);
+        }
+    }
+    for (std::size_t i = 0; i < I; ++i)
+        for (std::size_t j = 0; j < J; ++j)
+            hn::StoreU(sums[i][j], d, out + i * outStride + j * lanes);
+}
+
+void columnProducts(const RowBlock& a, const double* b, std::size_t depth, double* out,
+                    std::size_t outStride) {
+    constexpr std::size_t vectors = 3;
+    const std::size_t step = vectors * hn::Lanes(Tag());
+    for (std::size_t f = 0; f < lanesOfFunctions; f += step) {
+        std::size_t i = 0;
+        for (; i + 4 <= a.rows; i += 4)
+            columnTile<4, vectors>(a.data + i * a.stride, a.stride, b + f, depth,
+                                   out + i * outStride + f, outStride);
+        for (; i < a.rows; ++i)
+            columnTile<1, vectors>(a.data + i * a.stride, a.stride, b + f, depth,
+                                   out + i * outStride + f, outStride);
+    }
+}
+
+/// Two by two, a full cache line of every row at a time.
+void interleave(const double* rows, std::size_t functions, std::size_t stride, std::size_t count,
+                double* out) {
+    constexpr std::size_t line = 8;
+    for (std::size_t p = 0; p < count; p += line) {
+        const std::size_t end = p + line < count ? p + line : count;
+        for (std::size_t f = 0; f < lanesOfFunctions; f += 2) {
+            const double *first = rows + f * stride, *second = first + stride;
+            double* to = out + f;
+            std::size_t q = p;
+#if HWY_TARGET != HWY_SCALAR
+            const hn::FixedTag<double, 2> d;
+            if (f + 1 < functions) {
+                for (; q + 2 <= end; q += 2) {
+                    const auto a = hn::LoadU(d, first + q), b = hn::LoadU(d, second + q);
+                    hn::StoreU(hn::InterleaveLower(d, a, b), d, to + q * lanesOfFunctions);
+                    hn::StoreU(hn::InterleaveUpper(d, a, b), d, to + (q + 1) * lanesOfFunctions);
+                }
+            }
+#endif
+            for (; q < end; ++q) {
+                to[q * lanesOfFunctions] = f < functions ? first[q] : 0.0;
+                to[q * lanesOfFunctions + 1] = f + 1 < functions ? second[q] : 0.0;
+            }
+        }
+    }
+}
+
+struct Folded {
+    Vec kinds[4];
+};
+
+HWY_INLINE Folded foldAt(const double* ring, std::size_t azimuths, std::size_t j, std::size_t f) {
+    const Tag d;
+    const auto at = [&](std::size_t k) { return hn::LoadU(d, ring + k * lanesOfFunctions + f); };
+    const std::size_t middle = azimuths / 2;
+    const Vec first = at(j), second = at(middle - 1 - j), third = at(azimuths - 1 - j),
+              fourth = at(middle + j);
+    const Vec even = hn::Add(first, third), odd = hn::Sub(first, third);
+    const Vec evenBehind = hn::Add(second, fourth), oddBehind = hn::Sub(second, fourth);
+    return {{hn::Add(even, evenBehind), hn::Sub(even, evenBehind), hn::Add(odd, oddBehind),
+             hn::Sub(odd, oddBehind)}};
+}
+
+void foldMany(const double* ring, const double* mirror, std::size_t azimuths, double* sum,
+              double* difference) {
+    const Tag d;
+    const std::size_t part = azimuths / 4 * lanesOfFunctions;
+    for (std::size_t j = 0; j < azimuths / 4; ++j) {
+        for (std::size_t f = 0; f < lanesOfFunctions; f += hn::Lanes(d)) {
+            const std::size_t at = j * lanesOfFunctions + f;
+            const Folded here = foldAt(ring, azimuths, j, f);
+            if (!mirror) {
+                for (std::size_t k = 0; k < 4; ++k)
+                    hn::StoreU(here.kinds[k], d, sum + k * part + at);
+                continue;
+            }
+            const Folded there = foldAt(mirror, azimuths, j, f);
+            for (std::size_t k = 0; k < 4; ++k) {
+                hn::StoreU(hn::Add(here.kinds[k], there.kinds[k]), d, sum + k * part + at);
+                hn::StoreU(hn::Sub(here.kinds[k], there.kinds[k]), d, difference + k * part + at);
+            }
+        }
+    }
+}
+
 /// `load` and `store` take what is left at the end of the quadrant with a mask.
 template <bool Half, class Load, class Store>
 HWY_INLINE Vec foldOnce(const double* values, std::size_t count, std::size_t k,
@@ -131,11 +236,29 @@ HWY_AFTER_NAMESPACE();
 namespace hshfit {
 
 HWY_EXPORT(rowProducts);
+HWY_EXPORT(columnProducts);
+HWY_EXPORT(interleave);
+HWY_EXPORT(foldMany);
 HWY_EXPORT(foldWhole);
 HWY_EXPORT(foldHalf);
 
 void addRowProducts(RowBlock a, RowBlock b, std::size_t depth, double* out, std::size_t outStride) {
     HWY_DYNAMIC_DISPATCH(rowProducts)(a, b, depth, out, outStride);
+}
+
+void addColumnProducts(RowBlock a, const double* b, std::size_t depth, double* out,
+                       std::size_t outStride) {
+    HWY_DYNAMIC_DISPATCH(columnProducts)(a, b, depth, out, outStride);
+}
+
+void interleaveFunctions(const double* rows, std::size_t functions, std::size_t stride,
+                         std::size_t count, double* out) {
+    HWY_DYNAMIC_DISPATCH(interleave)(rows, functions, stride, count, out);
+}
+
+void foldFunctions(const double* ring, const double* mirror, std::size_t azimuths, double* sum,
+                   double* difference) {
+    HWY_DYNAMIC_DISPATCH(foldMany)(ring, mirror, azimuths, sum, difference);
 }
 
 double foldRing(const double* values, std::size_t count, const QuadrantFold& out) {

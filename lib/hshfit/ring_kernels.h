@@ -29,4 +29,22 @@ double foldRing(const double* values, std::size_t count, const QuadrantFold& out
 /// are left alone, and the sum of squares is that of the half ring.
 double foldHalfRing(const double* values, std::size_t count, const QuadrantFold& out);
 
+/// Functions side by side, innermost in memory: as many as full vectors of every size take.
+constexpr std::size_t lanesOfFunctions = 24;
+
+/// out[i][f] += sum over k < depth of a[i][k] b[k][f] for f < lanesOfFunctions; rows of `out` are
+/// outStride apart, rows of b follow each other.
+void addColumnProducts(RowBlock a, const double* b, std::size_t depth, double* out,
+                       std::size_t outStride);
+
+/// `count` values of `functions` <= lanesOfFunctions rows, `stride` apart, to out[value][function];
+/// 0 for functions that are missing.
+void interleaveFunctions(const double* rows, std::size_t functions, std::size_t stride,
+                         std::size_t count, double* out);
+/// A whole ring, [azimuth][function], into the four sums of QuadrantFold, one after the other,
+/// [kind][azimuth of the quadrant][function]. With a second ring, to `sum` what the two have in
+/// common (ring + mirror), and to `difference` what changes sign.
+void foldFunctions(const double* ring, const double* mirror, std::size_t azimuths, double* sum,
+                   double* difference);
+
 }  // namespace hshfit
