@@ -3,6 +3,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/plan/timing.h>
+#include <hshfit/representation/pair_evaluator.h>
 #include <hshfit/representation/represented_brdf.h>
 
 #include <fmt/format.h>
@@ -46,7 +47,8 @@ double MaterialSearch::floorOf(const Rung& rung) {
 std::vector<Radiance> MaterialSearch::radianceOf(const Representation& representation,
                                                  const Part& part) {
     if (representation.kind == Representation::Kind::halfway) {
-        return light_->radianceOf(*reconstruct(representation, open_));
+        return light_->radianceOf(*pairEvaluator(representation, open_),
+                                  representation.head.channels.count());
     }
     // One table of the light serves all orders: they are its prefixes.
     const std::string& basis = representation.head.basis;

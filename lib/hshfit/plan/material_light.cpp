@@ -91,6 +91,15 @@ std::vector<Radiance> MaterialLight::radianceOf(const Brdf& brdf) const {
     return radianceIn(light_, brdf, views_);
 }
 
+std::vector<Radiance> MaterialLight::radianceOf(const PairEvaluator& evaluator,
+                                                std::size_t channels) const {
+    std::vector<Radiance> result;
+    for (const LightSamples& each : light_) {
+        result.push_back(outgoingRadiance(evaluator, channels, each, views_));
+    }
+    return result;
+}
+
 Verification verify(const Scene& scene, const Material& material, const Brdf& truth,
                     const Brdf& approximation) {
     const Views views = viewsOf(scene.views, checkStep, checkShift);

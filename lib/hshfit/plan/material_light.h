@@ -34,6 +34,7 @@ public:
     const std::vector<BasisLight>& in(const std::string& basis, int order, Quantity quantity);
     /// Outgoing radiance of any BRDF, for each orientation.
     std::vector<Radiance> radianceOf(const Brdf& brdf) const;
+    std::vector<Radiance> radianceOf(const PairEvaluator& evaluator, std::size_t channels) const;
 
     double errorOf(const std::vector<Radiance>& radiance) const {
         return plan::errorOf(budget_, views_, truth_, radiance);

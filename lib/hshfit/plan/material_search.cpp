@@ -15,8 +15,9 @@
 namespace hshfit::plan {
 namespace {
 
-/// Bands in which the light is described.
-constexpr int lightOrder = 24;
+/// Bands in which the light is described, and the level of light sampling that resolves them: 41
+/// Gauss nodes are exact to degree 81.
+constexpr int lightOrder = 24, lightLevel = 4;
 /// Directions for which truncation is measured where the BRDF is not isotropic.
 constexpr std::size_t mostFloorViews = 48;
 /// Projections for choosing agree this much better than the budget asks.
@@ -121,8 +122,10 @@ void MaterialSearch::considerOneChannel() {
 
 void MaterialSearch::describeLight() {
     lightBands_.assign(lightOrder, 0.0);
-    for (const BasisLight& each : light_->in("hsh", lightOrder, Quantity::brdf)) {
-        const std::vector<double> power = each.bandPower();
+    const auto basis = bases::make("hsh", lightOrder);
+    for (const Frame& frame : light_->frames()) {
+        const LightSamples samples = sampleLights(scene_.lights, frame, lightLevel);
+        const std::vector<double> power = BasisLight(*basis, Quantity::brdf, samples).bandPower();
         for (std::size_t l = 0; l < power.size(); ++l) lightBands_[l] += power[l];
     }
     const double sum = sumOf(lightBands_);

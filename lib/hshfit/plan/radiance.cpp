@@ -14,6 +14,18 @@ namespace {
 /// Light samples evaluated at a time: a batch and its values stay in the cache.
 constexpr std::size_t batchSize = 1024;
 
+/// Adds what one batch of f, [channel][k], gives under the light samples from `first` on.
+template <class Real>
+void addBatch(const LightSamples& light, std::size_t first, std::size_t count, const Real* f,
+              std::size_t channels, Rgb& sum) {
+    for (std::size_t c = 0; c < 3; ++c) {
+        const Real* values = f + (channels == 1 ? 0 : c) * count;
+        for (std::size_t k = 0; k < count; ++k) {
+            sum[c] += light.flux[c][first + k] * light.z[first + k] * values[k];
+        }
+    }
+}
+
 Rgb radianceAt(const Brdf& brdf, const LightSamples& light, const Direction& wo) {
     const std::size_t channels = brdf.channels().count();
     std::vector<double> f(channels * batchSize);
@@ -21,12 +33,21 @@ Rgb radianceAt(const Brdf& brdf, const LightSamples& light, const Direction& wo)
     for (std::size_t first = 0; first < light.count(); first += batchSize) {
         const std::size_t count = std::min(batchSize, light.count() - first);
         brdf.eval(wo, {&light.x[first], &light.y[first], &light.z[first], count}, f.data());
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double* values = f.data() + (channels == 1 ? 0 : c) * count;
-            for (std::size_t k = 0; k < count; ++k) {
-                sum[c] += light.flux[c][first + k] * light.z[first + k] * values[k];
-            }
-        }
+        addBatch(light, first, count, f.data(), channels, sum);
+    }
+    return sum;
+}
+
+Rgb radianceAt(const PairEvaluator& evaluator, std::size_t channels, const LightSamples& light,
+               const Direction& wo) {
+    std::vector<float> f(channels * batchSize);
+    const std::vector<double> x(batchSize, wo.x), y(batchSize, wo.y), z(batchSize, wo.z);
+    Rgb sum{};
+    for (std::size_t first = 0; first < light.count(); first += batchSize) {
+        const std::size_t count = std::min(batchSize, light.count() - first);
+        evaluator.evaluate({&light.x[first], &light.y[first], &light.z[first], count},
+                           {x.data(), y.data(), z.data(), count}, f.data());
+        addBatch(light, first, count, f.data(), channels, sum);
     }
     return sum;
 }
@@ -73,6 +94,12 @@ Radiance fromMatrix(const Representation& matrix, const BasisLight& light, const
 
 Radiance outgoingRadiance(const Brdf& brdf, const LightSamples& light, const Views& views) {
     return forEachView(views, [&](const Direction& wo) { return radianceAt(brdf, light, wo); });
+}
+
+Radiance outgoingRadiance(const PairEvaluator& evaluator, std::size_t channels,
+                          const LightSamples& light, const Views& views) {
+    return forEachView(
+        views, [&](const Direction& wo) { return radianceAt(evaluator, channels, light, wo); });
 }
 
 BasisLight::BasisLight(const Basis& basis, Quantity quantity, const LightSamples& light)
