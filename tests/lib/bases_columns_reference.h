@@ -76,6 +76,7 @@ inline std::vector<Real> values(std::string_view name, int degree, int m, const 
                             : flux  ? Real(4)
                             : chord ? 2 * pow(Real(2), m)
                                     : Real(2);
+        if (name == "esh" && n % 2 == 1) continue;
         result[static_cast<std::size_t>(n * step)] =
             sqrt(weight / h) * factor * azimuth * p[static_cast<std::size_t>(n)];
     }
