@@ -1,0 +1,246 @@
+// Where the time of a projection goes and how it grows, on one thread unless said. CPU time of the
+// process. "floor" is the bare BRDF, timed within the projection by a wrapper that passes every
+// call on, plus the product alone: what has to be added to turn values into coefficients, as fast
+// as this library's own matrix product does it.
+
+#include <benchmark/benchmark.h>
+#include <brdfs/catalog.h>
+#include <hshfit/azimuth_tables.h>
+#include <hshfit/bases/catalog.h>
+#include <hshfit/projection.h>
+#include <hshfit/ring_kernels.h>
+#include <tbb/global_control.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace {
+
+using namespace hshfit;
+using Clock = std::chrono::steady_clock;
+
+double cpuSeconds() {
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+double threadSeconds() {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// Counts the time that a BRDF takes. For one thread.
+class Timed : public Brdf {
+public:
+    explicit Timed(const std::string& spec) : brdf_(brdfs::open(spec)) {}
+    std::string name() const override { return brdf_->name(); }
+    const Channels& channels() const override { return brdf_->channels(); }
+    const Laws& laws() const override { return brdf_->laws(); }
+    std::vector<Lobe> lobes(const Direction& wo) const override { return brdf_->lobes(wo); }
+    std::vector<double> kinks(const Direction& wo) const override { return brdf_->kinks(wo); }
+    double defaultTolerance() const override { return brdf_->defaultTolerance(); }
+    void eval(const Direction& wo, DirectionBatch wi, double* out) const override {
+        const double start = threadSeconds();
+        brdf_->eval(wo, wi, out);
+        seconds += threadSeconds() - start;
+        ++calls;
+    }
+    mutable double seconds = 0;
+    mutable std::size_t calls = 0;
+
+private:
+    std::unique_ptr<Brdf> brdf_;
+};
+
+/// What asking the clock twice takes, to be left out.
+double clockSeconds() {
+    constexpr int many = 2000;
+    const double start = threadSeconds();
+    for (int i = 0; i < many; ++i) benchmark::DoNotOptimize(threadSeconds());
+    return (threadSeconds() - start) / many;
+}
+
+std::vector<std::unique_ptr<Basis>> makeBases(const std::string& names, int order) {
+    std::vector<std::unique_ptr<Basis>> made;
+    for (const bases::Entry* entry : bases::select(names))
+        made.push_back(bases::make(entry->name, std::min(order, entry->maxOrder)));
+    return made;
+}
+
+struct Job {
+    std::string spec, bases = "hsh", outgoing = "32x32";
+    int order = 7;
+    Quantity quantity = Quantity::brdfCosine;
+    double tolerance = 0;
+};
+
+/// Seconds for each value that the product alone takes: 16 rings of 128 azimuths, times azimuth
+/// functions of the order.
+double productSeconds(int order) {
+    constexpr std::size_t rings = 16, quadrant = 32, rounds = 2000;
+    AzimuthTable table;
+    table.fill(order, 4 * quadrant, 0, quadrant);
+    const AzimuthColumns columns(order);
+    const std::vector<double> values(rings * 4 * quadrant, 0.5);
+    std::vector<double> out(rings * columns.all());
+    const double start = threadSeconds();
+    for (std::size_t i = 0; i < rounds; ++i) {
+        const double* rows = table.rows.data();
+        double* to = out.data();
+        std::size_t quarter = 0;
+        for (const std::size_t kind : {columns.c0, columns.c1, columns.s1, columns.s0}) {
+            addRowProducts({values.data() + quarter++ * rings * quadrant, rings, quadrant},
+                           {rows, kind, quadrant}, quadrant, to, columns.all());
+            rows += kind * quadrant;
+            to += kind;
+        }
+        benchmark::DoNotOptimize(out.data());
+        benchmark::ClobberMemory();
+    }
+    return (threadSeconds() - start) / static_cast<double>(rounds * values.size());
+}
+
+std::vector<Projection> run(const Brdf& brdf, const Job& job) {
+    const auto owned = makeBases(job.bases, job.order);
+    std::vector<const Basis*> bases;
+    for (const auto& basis : owned) bases.push_back(basis.get());
+    ProjectionOptions options;
+    options.quantity = job.quantity;
+    options.tolerance = job.tolerance;
+    options.maxEvaluations = std::size_t{1} << 32;
+    return project(brdf, bases, OutgoingSet::parse(job.outgoing), options);
+}
+
+void measure(benchmark::State& state, const Job& job) {
+    const tbb::global_control oneThread(tbb::global_control::max_allowed_parallelism, 1);
+    const auto brdf = brdfs::open(job.spec);
+    std::size_t evaluations = 0;
+    double error = 0;
+    for (auto _ : state) {
+        const double start = cpuSeconds();
+        const std::vector<Projection> result = run(*brdf, job);
+        state.SetIterationTime(cpuSeconds() - start);
+        evaluations = result[0].evaluations;
+        error = result[0].coefficients.error;
+    }
+    state.counters["evaluations"] = static_cast<double>(evaluations);
+    state.counters["error"] = error;
+}
+
+/// What each evaluation costs, in the BRDF, in the product alone, and in all but the BRDF.
+void floorShare(benchmark::State& state, const Job& job) {
+    const tbb::global_control oneThread(tbb::global_control::max_allowed_parallelism, 1);
+    const Timed brdf(job.spec);
+    const double product = productSeconds(job.order);
+    const double clock = clockSeconds();
+    double all = 0, bare = 0;
+    std::size_t evaluations = 0;
+    for (auto _ : state) {
+        brdf.seconds = 0;
+        brdf.calls = 0;
+        const double start = cpuSeconds();
+        evaluations = run(brdf, job)[0].evaluations;
+        const double lost = clock * static_cast<double>(brdf.calls);
+        const double taken = cpuSeconds() - start - 2 * lost;
+        state.SetIterationTime(taken);
+        all += taken;
+        bare += brdf.seconds - lost;
+    }
+    const double rounds = static_cast<double>(state.iterations());
+    const double n = static_cast<double>(evaluations);
+    state.counters["evaluations"] = n;
+    state.counters["brdf_share"] = bare / all;
+    state.counters["brdf_ns"] = bare / rounds / n * 1e9;
+    state.counters["product_ns"] = product * 1e9;
+    state.counters["rest_ns"] = (all - bare) / rounds / n * 1e9;
+    state.counters["over_floor"] = all / (bare + rounds * n * product);
+}
+
+constexpr const char* ward = "ward:kd=0,ks=1,ax=0.2,ay=0.5";
+
+void byOrder(benchmark::State& state) {
+    // One outgoing direction, the grid that the order needs: a tolerance that the second level
+    // meets.
+    measure(state, {.spec = ward,
+                    .outgoing = "45,20",
+                    .order = static_cast<int>(state.range(0)),
+                    .tolerance = 1e-2});
+}
+BENCHMARK(byOrder)->RangeMultiplier(2)->Range(4, 256)->UseManualTime()->Unit(
+    benchmark::kMillisecond);
+
+void byDirections(benchmark::State& state) {
+    const std::string side = std::to_string(state.range(0));
+    measure(state, {.spec = ward, .outgoing = side + "x" + side});
+}
+BENCHMARK(byDirections)
+    ->RangeMultiplier(2)
+    ->Range(4, 64)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+
+void byChannels(benchmark::State& state) {
+    const bool rgb = state.range(0) == 3;
+    measure(state, {.spec = rgb ? "ggx:alpha=0.3,F0=0.9/0.6/0.3" : "ggx:alpha=0.3,F0=0.6"});
+}
+BENCHMARK(byChannels)->Arg(1)->Arg(3)->UseManualTime()->Unit(benchmark::kMillisecond);
+
+void byTolerance(benchmark::State& state) {
+    measure(state,
+            {.spec = ward, .tolerance = std::pow(10.0, -static_cast<double>(state.range(0)))});
+}
+BENCHMARK(byTolerance)->DenseRange(1, 9, 2)->UseManualTime()->Unit(benchmark::kMillisecond);
+
+/// Order 12 on 16x16 directions, as `report` does by default: HSH alone, then with the others.
+void byBases(benchmark::State& state) {
+    const std::vector<std::string> names = {"hsh", "hsh,zernike", "hsh,zernike,sh",
+                                            "hsh,zernike,sh,esh"};
+    measure(state, {.spec = ward,
+                    .bases = names[static_cast<std::size_t>(state.range(0)) - 1],
+                    .outgoing = "16x16",
+                    .order = 12});
+}
+BENCHMARK(byBases)->DenseRange(1, 4)->UseManualTime()->Unit(benchmark::kMillisecond);
+
+BENCHMARK_CAPTURE(floorShare, ward, Job{.spec = ward})
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(floorShare, ggx, Job{.spec = "ggx:alpha=0.3"})
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(floorShare, lambert, Job{.spec = "lambert", .tolerance = 1e-6})
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+
+/// Wall time, with as many threads as the argument says.
+void byThreads(benchmark::State& state) {
+    const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                      static_cast<std::size_t>(state.range(0)));
+    const auto brdf = brdfs::open(ward);
+    for (auto _ : state) {
+        const auto start = Clock::now();
+        benchmark::DoNotOptimize(run(*brdf, {.spec = ward}));
+        state.SetIterationTime(std::chrono::duration<double>(Clock::now() - start).count());
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    for (unsigned n = 1; n <= std::max(2u, std::thread::hardware_concurrency()); n *= 2)
+        benchmark::RegisterBenchmark("byThreads", byThreads)
+            ->Arg(n)
+            ->UseManualTime()
+            ->Unit(benchmark::kMillisecond);
+    benchmark::Initialize(&argc, argv);
+    benchmark::RunSpecifiedBenchmarks();
+    benchmark::Shutdown();
+}
