@@ -1,15 +1,26 @@
 #include <brdfs/analytic/abc.h>
 
-#include <brdfs/analytic/fresnel.h>
-#include <brdfs/analytic/half_vector.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
-#include <brdfs/analytic/v_groove.h>
 
 #include <cmath>
 
 namespace hshfit::brdfs {
+
+struct AbcShape {
+    double b, c, ior;
+    bool smooth;
+};
+
+}  // namespace hshfit::brdfs
+
+#define HWY_TARGET_INCLUDE "brdfs/analytic/abc_terms.h"
+#include <brdfs/lanes/each_target.h>
+
+namespace hshfit::brdfs {
 namespace {
+
+HWY_EXPORT(evalAbc);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
@@ -24,53 +35,33 @@ Laws lawsOf(const Parameters& p) {
     return result;
 }
 
-/// 1 - cos(theta_h) from the squared slope, with all digits for small slopes.
-double versine(double squaredSlope) {
-    const double secant = std::sqrt(1 + squaredSlope);
-    return squaredSlope / (secant * (1 + secant));
-}
-
 class Abc final : public TermBrdf {
 public:
     explicit Abc(const Parameters& p)
         : TermBrdf(abcModel(), p, lawsOf(p), overPi(p.colour("kd")), {p.colour("A")}),
-          b_(p.number("B")),
-          c_(p.number("C")),
-          ior_(p.number("ior")),
-          smooth_(p.choice("variant") == "smooth") {}
+          shape_{p.number("B"), p.number("C"), p.number("ior"), p.choice("variant") == "smooth"} {}
 
     /// Near the mirror direction |D| is the slope times 2 cos(theta_o) and 1 - h.z half its square;
     /// the powers are singular where these reach -1 / B.
     std::vector<Lobe> lobes(const Direction& wo) const override {
-        const double width =
-            smooth_ ? 1 / (2 * std::max(wo.z, 1e-3) * std::sqrt(b_)) : std::sqrt(2 / b_);
+        const double width = shape_.smooth ? 1 / (2 * std::max(wo.z, 1e-3) * std::sqrt(shape_.b))
+                                           : std::sqrt(2 / shape_.b);
         return {{Lobe::About::halfway, std::min(1.0, width), {}}};
     }
 
     /// The V-cavity term's kinks lie along curves at which no panel can end.
-    double defaultTolerance() const override { return smooth_ ? 1e-6 : 1e-5; }
+    double defaultTolerance() const override { return shape_.smooth ? 1e-6 : 1e-5; }
 
 protected:
-    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
-        for (std::size_t k = 0; k < wi.count; ++k) {
-            const HalfVector h(wo, wi.x[k], wi.y[k], wi.z[k]);
-            const double reflectance = dielectricReflectance(h.dotOutgoing(), ior_);
-            if (smooth_) {
-                const double squared = h.scale * h.scale * (h.x * h.x + h.y * h.y);
-                out[k] = reflectance * tail(squared);
-            } else {
-                const double visible = vGrooveVisibility(h, wi.z[k], wo.z);
-                out[k] = reflectance * bounded(tail(versine(h.squaredSlope())) * visible / pi);
-            }
-        }
+    void evalBatch(const TermBatch& batch) const override {
+        HWY_DYNAMIC_DISPATCH(evalAbc)(shape_, batch);
+    }
+    void evalBatchScalar(const TermBatch& batch) const override {
+        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::AbcTerms>(shape_, batch);
     }
 
 private:
-    /// (1 + B x)^-C
-    double tail(double x) const { return std::exp(-c_ * std::log1p(b_ * x)); }
-
-    double b_, c_, ior_;
-    bool smooth_;
+    AbcShape shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

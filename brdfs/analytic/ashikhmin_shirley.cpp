@@ -1,7 +1,6 @@
 #include <brdfs/analytic/ashikhmin_shirley.h>
 
 #include <brdfs/analytic/fresnel.h>
-#include <brdfs/analytic/half_vector.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 #include <hshfit/error.h>
@@ -10,7 +9,21 @@
 #include <functional>
 
 namespace hshfit::brdfs {
+
+struct AshikhminShirleyShape {
+    double nu, nv;
+    double ior;  ///< 0: Schlick's approximation from Rs
+};
+
+}  // namespace hshfit::brdfs
+
+#define HWY_TARGET_INCLUDE "brdfs/analytic/ashikhmin_shirley_terms.h"
+#include <brdfs/lanes/each_target.h>
+
+namespace hshfit::brdfs {
 namespace {
+
+HWY_EXPORT(evalAshikhminShirley);
 
 constexpr Laws claims{.nonNegative = true, .reciprocal = true, .mirrorSymmetric = true};
 
@@ -39,50 +52,33 @@ std::vector<Colour> weightsOf(const Parameters& p) {
     return {first, ks, diffuse};
 }
 
-/// 1 - (1 - c/2)^5.
-double diffuseFalloff(double cosine) {
-    return 1 - schlickWeight(cosine / 2);
-}
-
 class AshikhminShirley final : public TermBrdf {
 public:
     explicit AshikhminShirley(const Parameters& p)
         : TermBrdf(ashikhminShirleyModel(), p, lawsOf(p), overPi(p.colour("kd")), weightsOf(p)),
-          nu_(p.number("nu")),
-          nv_(p.number("nv")),
-          ior_(p.number("ior")) {}
+          shape_{p.number("nu"), p.number("nv"), p.number("ior")} {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
         const auto width = [](double n) { return std::min(1.0, 2.5 / std::sqrt(n + 1)); };
-        return {{Lobe::About::halfway, width(std::max(nu_, nv_)), {}, width(std::min(nu_, nv_))}};
+        return {{Lobe::About::halfway,
+                 width(std::max(shape_.nu, shape_.nv)),
+                 {},
+                 width(std::min(shape_.nu, shape_.nv))}};
     }
 
     /// max(cos theta_i, cos theta_o).
     std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
 
 protected:
-    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
-        const double peak = std::sqrt((nu_ + 1) * (nv_ + 1)) / (8 * pi);
-        const double outgoingFalloff = diffuseFalloff(wo.z);
-        for (std::size_t k = 0; k < wi.count; ++k) {
-            const HalfVector h(wo, wi.x[k], wi.y[k], wi.z[k]);
-            const double squaredSlope = h.squaredSlope();
-            // log((h.z)^-2) per squared slope: log1p(t^2) / t^2.
-            const double perSlope = squaredSlope > 0 ? std::log1p(squaredSlope) / squaredSlope : 1;
-            const double tx = h.slopeX(), ty = h.slopeY();
-            const double power = std::exp(-0.5 * (nu_ * tx * tx + nv_ * ty * ty) * perSlope);
-            const double cosine = h.dotOutgoing();
-            const double lobe = bounded(peak * power / cosine / std::max(wi.z[k], wo.z));
-            const double weight = ior_ == 0 ? schlickWeight(cosine) : 0;
-            out[k] = lobe * (ior_ == 0 ? 1 - weight : dielectricReflectance(cosine, ior_));
-            out[wi.count + k] = lobe * weight;
-            out[2 * wi.count + k] = diffuseFalloff(wi.z[k]) * outgoingFalloff;
-        }
+    void evalBatch(const TermBatch& batch) const override {
+        HWY_DYNAMIC_DISPATCH(evalAshikhminShirley)(shape_, batch);
+    }
+    void evalBatchScalar(const TermBatch& batch) const override {
+        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::AshikhminShirleyTerms>(shape_, batch);
     }
 
 private:
-    double nu_, nv_;
-    double ior_;  ///< 0: Schlick's approximation from Rs
+    AshikhminShirleyShape shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

@@ -7,36 +7,42 @@
 #include <numbers>
 
 namespace hshfit::brdfs {
-namespace {
 
-class Beckmann {
-public:
-    explicit Beckmann(const Roughness& r) : r_(r) {}
-
-    double density(const HalfVector& h) const {
-        const double tx = h.slopeX() / r_.ax, ty = h.slopeY() / r_.ay;
-        const double rise = 1 + h.squaredSlope();
-        return std::exp(-(tx * tx + ty * ty)) * rise * rise / (pi * r_.ax * r_.ay);
-    }
-
-    double scaledLambda(double x, double y, double z) const {
-        const double s = std::sqrt(r_.ax * r_.ax * x * x + r_.ay * r_.ay * y * y);
-        const double a = z / s;
-        return 0.5 * (std::exp(-a * a) * s * std::numbers::inv_sqrtpi - std::erfc(a) * z);
-    }
+struct BeckmannShape {
+    Roughness r;
 
     /// exp(-(t / alpha)^2) has a standard deviation of alpha / sqrt(2).
-    double width() const { return 2.5 / std::numbers::sqrt2 * std::min(r_.ax, r_.ay); }
-    double spread() const { return 2.5 / std::numbers::sqrt2 * std::max(r_.ax, r_.ay); }
+    double width() const { return 2.5 / std::numbers::sqrt2 * std::min(r.ax, r.ay); }
+    double spread() const { return 2.5 / std::numbers::sqrt2 * std::max(r.ax, r.ay); }
+};
 
-private:
-    Roughness r_;
+}  // namespace hshfit::brdfs
+
+#define HWY_TARGET_INCLUDE "brdfs/analytic/beckmann_terms.h"
+#include <brdfs/lanes/each_target.h>
+
+namespace hshfit::brdfs {
+namespace {
+
+HWY_EXPORT(evalBeckmann);
+
+class Beckmann final : public Microfacet<BeckmannShape> {
+public:
+    using Microfacet::Microfacet;
+
+protected:
+    void evalBatch(const TermBatch& batch) const override {
+        HWY_DYNAMIC_DISPATCH(evalBeckmann)(shape(), batch);
+    }
+    void evalBatchScalar(const TermBatch& batch) const override {
+        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::BeckmannTerms>(shape(), batch);
+    }
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     const Roughness roughness = roughnessOf(beckmannModel(), p);
-    return std::make_unique<Microfacet<Beckmann>>(beckmannModel(), p, microfacetLaws(p, roughness),
-                                                  Beckmann(roughness));
+    return std::make_unique<Beckmann>(beckmannModel(), p, microfacetLaws(p, roughness),
+                                      BeckmannShape{roughness});
 }
 
 }  // namespace

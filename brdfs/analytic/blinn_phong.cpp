@@ -1,13 +1,25 @@
 #include <brdfs/analytic/blinn_phong.h>
 
-#include <brdfs/analytic/half_vector.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 
 #include <cmath>
 
 namespace hshfit::brdfs {
+
+struct BlinnPhongShape {
+    double exponent;
+};
+
+}  // namespace hshfit::brdfs
+
+#define HWY_TARGET_INCLUDE "brdfs/analytic/blinn_phong_terms.h"
+#include <brdfs/lanes/each_target.h>
+
+namespace hshfit::brdfs {
 namespace {
+
+HWY_EXPORT(evalBlinnPhong);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
@@ -38,23 +50,23 @@ public:
     explicit BlinnPhong(const Parameters& p)
         : TermBrdf(blinnPhongModel(), p, lawsOf(p), overPi(p.colour("kd")),
                    {mapped(p.colour("ks"), [&](double ks) { return ks * normalisation(p); })}),
-          exponent_(p.number("exponent")) {}
+          shape_{p.number("exponent")} {}
 
     /// In the slope t the lobe is (1 + t^2)^(-n/2): nearly Gaussian, and singular at t = i.
     std::vector<Lobe> lobes(const Direction&) const override {
-        return {{Lobe::About::halfway, std::min(1.0, 2.5 / std::sqrt(exponent_ + 1)), {}}};
+        return {{Lobe::About::halfway, std::min(1.0, 2.5 / std::sqrt(shape_.exponent + 1)), {}}};
     }
 
 protected:
-    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
-        for (std::size_t k = 0; k < wi.count; ++k) {
-            const HalfVector h(wo, wi.x[k], wi.y[k], wi.z[k]);
-            out[k] = std::exp(-0.5 * exponent_ * std::log1p(h.squaredSlope()));
-        }
+    void evalBatch(const TermBatch& batch) const override {
+        HWY_DYNAMIC_DISPATCH(evalBlinnPhong)(shape_, batch);
+    }
+    void evalBatchScalar(const TermBatch& batch) const override {
+        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::BlinnPhongTerms>(shape_, batch);
     }
 
 private:
-    double exponent_;
+    BlinnPhongShape shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

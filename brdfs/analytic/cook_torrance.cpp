@@ -1,10 +1,8 @@
 #include <brdfs/analytic/cook_torrance.h>
 
 #include <brdfs/analytic/fresnel.h>
-#include <brdfs/analytic/half_vector.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
-#include <brdfs/analytic/v_groove.h>
 #include <hshfit/error.h>
 
 #include <algorithm>
@@ -12,7 +10,27 @@
 #include <numbers>
 
 namespace hshfit::brdfs {
+
+struct CookTorranceShape {
+    /// What one channel reflects by: F0, or the index given instead.
+    struct Surface {
+        double f0, inverse;  ///< 1 / eta
+        double ior = 0, k = 0;
+    };
+    double m, peak;
+    std::vector<Surface> surfaces;
+    bool schlick;
+};
+
+}  // namespace hshfit::brdfs
+
+#define HWY_TARGET_INCLUDE "brdfs/analytic/cook_torrance_terms.h"
+#include <brdfs/lanes/each_target.h>
+
+namespace hshfit::brdfs {
 namespace {
+
+HWY_EXPORT(evalCookTorrance);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
@@ -33,11 +51,7 @@ void checkFresnelKeys(const Parameters& p) {
         throw UsageError("cook-torrance: k is for fresnel=conductor alone");
 }
 
-/// What one channel reflects by: F0, or the index given instead.
-struct Surface {
-    double f0, inverse;  ///< 1 / eta
-    double ior = 0, k = 0;
-};
+using Surface = CookTorranceShape::Surface;
 
 std::vector<Surface> surfacesOf(const Parameters& p) {
     checkFresnelKeys(p);
@@ -64,30 +78,16 @@ Laws lawsOf(const Parameters& p) {
     return result;
 }
 
-/// Fresnel's reflectance for unpolarised light; `inverse` is 1 / eta, so that a perfect mirror
-/// (eta = infinity) is nothing special. Cook & Torrance's formula, times inverse throughout.
-double fresnel(double inverse, double cosine) {
-    // Below 1e-150 its square underflows; F has long been 1 (or 0 for eta = 1).
-    const double c = std::max(cosine, 1e-150);
-    const double ec = inverse * c;
-    const double g = std::sqrt((1 - inverse) * (1 + inverse) + ec * ec);
-    const double a = (g - ec) / (g + ec);
-    const double b = (c * (g + ec) - inverse) / (c * (g - ec) + inverse);
-    return 0.5 * a * a * (1 + b * b);
-}
-
 class CookTorrance final : public TermBrdf {
 public:
     explicit CookTorrance(const Parameters& p)
         : TermBrdf(cookTorranceModel(), p, lawsOf(p), overPi(p.colour("kd")),
                    eachInItsChannel(p.colour("ks"), surfacesOf(p).size())),
-          m_(p.number("m")),
-          peak_(1 / (normOf(p) * m_ * m_)),
-          surfaces_(surfacesOf(p)),
-          schlick_(p.choice("fresnel") == "schlick") {}
+          shape_{p.number("m"), 1 / (normOf(p) * p.number("m") * p.number("m")), surfacesOf(p),
+                 p.choice("fresnel") == "schlick"} {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
-        return {{Lobe::About::halfway, 2.5 / std::numbers::sqrt2 * m_, {}}};
+        return {{Lobe::About::halfway, 2.5 / std::numbers::sqrt2 * shape_.m, {}}};
     }
 
     /// The V-cavity term's minimum has kinks along curves that no panel can end at; 1e-6 would cost
@@ -95,29 +95,15 @@ public:
     double defaultTolerance() const override { return 1e-5; }
 
 protected:
-    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
-        for (std::size_t k = 0; k < wi.count; ++k) {
-            const HalfVector h(wo, wi.x[k], wi.y[k], wi.z[k]);
-            const double squaredSlope = h.squaredSlope();
-            const double rise = 1 + squaredSlope;
-            const double density = peak_ * std::exp(-squaredSlope / (m_ * m_)) * rise * rise;
-            const double cosine = h.dotOutgoing();
-            const double lobe = bounded(density * bounded(vGrooveVisibility(h, wi.z[k], wo.z)));
-            for (std::size_t c = 0; c < surfaces_.size(); ++c)
-                out[c * wi.count + k] = lobe * reflectance(surfaces_[c], cosine);
-        }
+    void evalBatch(const TermBatch& batch) const override {
+        HWY_DYNAMIC_DISPATCH(evalCookTorrance)(shape_, batch);
+    }
+    void evalBatchScalar(const TermBatch& batch) const override {
+        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::CookTorranceTerms>(shape_, batch);
     }
 
 private:
-    double reflectance(const Surface& surface, double cosine) const {
-        if (schlick_) return schlickReflectance(cosine, surface.f0);
-        if (surface.ior > 0) return conductorReflectance(cosine, surface.ior, surface.k);
-        return fresnel(surface.inverse, cosine);
-    }
-
-    double m_, peak_;
-    std::vector<Surface> surfaces_;
-    bool schlick_;
+    CookTorranceShape shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

@@ -1,7 +1,5 @@
 #include <brdfs/analytic/disney.h>
 
-#include <brdfs/analytic/fresnel.h>
-#include <brdfs/analytic/half_vector.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 
@@ -9,7 +7,24 @@
 #include <cmath>
 
 namespace hshfit::brdfs {
+
+struct DisneyShape {
+    struct Axes {
+        double ax, ay;
+    };
+    double roughness, subsurface, clearcoat, gloss;
+    Axes axes, masking;
+};
+
+}  // namespace hshfit::brdfs
+
+#define HWY_TARGET_INCLUDE "brdfs/analytic/disney_terms.h"
+#include <brdfs/lanes/each_target.h>
+
+namespace hshfit::brdfs {
 namespace {
+
+HWY_EXPORT(evalDisney);
 
 constexpr Laws claims{.nonNegative = true, .reciprocal = true, .mirrorSymmetric = true};
 
@@ -17,21 +32,16 @@ double mix(double a, double b, double share) {
     return a + (b - a) * share;
 }
 
-struct SpecularAxes {
-    double ax, ay;
-
-    explicit SpecularAxes(const Parameters& p) {
-        const double aspect = std::sqrt(1 - 0.9 * p.number("anisotropic"));
-        const double alpha = p.number("roughness") * p.number("roughness");
-        ax = std::max(0.001, alpha / aspect);
-        ay = std::max(0.001, alpha * aspect);
-    }
-};
+DisneyShape::Axes axesOf(const Parameters& p) {
+    const double aspect = std::sqrt(1 - 0.9 * p.number("anisotropic"));
+    const double alpha = p.number("roughness") * p.number("roughness");
+    return {std::max(0.001, alpha / aspect), std::max(0.001, alpha * aspect)};
+}
 
 /// Only the metallic lobe alone keeps the energy for certain: F <= 1 and masking that fits Ds.
 Laws lawsOf(const Parameters& p) {
     Laws laws = claims;
-    laws.isotropic = SpecularAxes(p).ax == SpecularAxes(p).ay;
+    laws.isotropic = axesOf(p).ax == axesOf(p).ay;
     laws.energyConserving =
         p.number("metallic") == 1 && p.number("clearcoat") == 0 && p.choice("masking") == "2014";
     return laws;
@@ -62,81 +72,42 @@ std::vector<Colour> weightsOf(const Parameters& p) {
             {1.0}};
 }
 
-/// Smith's 2 G1/(2 cos) of GGX: 1/(z + sqrt(z^2 + (ax x)^2 + (ay y)^2)).
-struct SmithGgx {
-    double ax, ay;
-
-    double visible(double x, double y, double z) const {
-        return bounded(1 / (z + std::sqrt(z * z + ax * ax * x * x + ay * ay * y * y)));
-    }
-};
+DisneyShape shapeOf(const Parameters& p) {
+    const double roughness = p.number("roughness");
+    const double old = (0.5 + roughness / 2) * (0.5 + roughness / 2);
+    const bool revised = p.choice("masking") == "2014";
+    return {.roughness = roughness,
+            .subsurface = p.number("subsurface"),
+            .clearcoat = 0.25 * p.number("clearcoat"),
+            .gloss = mix(0.1, 0.001, p.number("clearcoatGloss")),
+            .axes = axesOf(p),
+            .masking = revised ? axesOf(p) : DisneyShape::Axes{old, old}};
+}
 
 class Disney final : public TermBrdf {
 public:
     explicit Disney(const Parameters& p)
-        : TermBrdf(disneyModel(), p, lawsOf(p), {0.0}, weightsOf(p)),
-          roughness_(p.number("roughness")),
-          subsurface_(p.number("subsurface")),
-          clearcoat_(0.25 * p.number("clearcoat")),
-          gloss_(mix(0.1, 0.001, p.number("clearcoatGloss"))),
-          axes_(p) {
-        const double old = (0.5 + roughness_ / 2) * (0.5 + roughness_ / 2);
-        masking_ =
-            p.choice("masking") == "2014" ? SmithGgx{axes_.ax, axes_.ay} : SmithGgx{old, old};
-    }
+        : TermBrdf(disneyModel(), p, lawsOf(p), {0.0}, weightsOf(p)), shape_(shapeOf(p)) {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
-        std::vector<Lobe> lobes{
-            {Lobe::About::halfway, std::min(axes_.ax, axes_.ay), {}, std::max(axes_.ax, axes_.ay)}};
-        if (clearcoat_ > 0) lobes.push_back({Lobe::About::halfway, gloss_, {}});
+        std::vector<Lobe> lobes{{Lobe::About::halfway,
+                                 std::min(shape_.axes.ax, shape_.axes.ay),
+                                 {},
+                                 std::max(shape_.axes.ax, shape_.axes.ay)}};
+        if (shape_.clearcoat > 0) lobes.push_back({Lobe::About::halfway, shape_.gloss, {}});
         return lobes;
     }
 
 protected:
-    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
-        constexpr SmithGgx coat{0.25, 0.25};
-        const double masked = masking_.visible(wo.x, wo.y, wo.z);
-        const double coatMasked = coat.visible(wo.x, wo.y, wo.z);
-        for (std::size_t k = 0; k < wi.count; ++k) {
-            const double x = wi.x[k], y = wi.y[k], z = wi.z[k];
-            const HalfVector h(wo, x, y, z);
-            const double cosine = h.dotOutgoing(), rise = schlickWeight(cosine);
-            const double lobe = bounded(density(h) * bounded(masking_.visible(x, y, z) * masked));
-            out[k] = diffuse(z, wo.z, cosine);
-            out[wi.count + k] = rise;
-            out[2 * wi.count + k] = lobe * (1 - rise);
-            out[3 * wi.count + k] = lobe * rise;
-            if (clearcoat_ > 0)
-                out[3 * wi.count + k] += clearcoat_ * schlickReflectance(cosine, 0.04) *
-                                         coatDensity(h) *
-                                         bounded(coat.visible(x, y, z) * coatMasked);
-        }
+    void evalBatch(const TermBatch& batch) const override {
+        HWY_DYNAMIC_DISPATCH(evalDisney)(shape_, batch);
+    }
+    void evalBatchScalar(const TermBatch& batch) const override {
+        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::DisneyTerms>(shape_, batch);
     }
 
 private:
-    double diffuse(double incoming, double outgoing, double cosine) const {
-        const double retro = roughness_ * cosine * cosine;
-        const auto both = [&](double edge) {
-            return mix(1, edge, schlickWeight(incoming)) * mix(1, edge, schlickWeight(outgoing));
-        };
-        const double flat = 1.25 * (both(retro) * bounded(1 / (incoming + outgoing) - 0.5) + 0.5);
-        return mix(both(0.5 + 2 * retro), bounded(flat), subsurface_);
-    }
-
-    double density(const HalfVector& h) const {
-        const double x = h.x / axes_.ax, y = h.y / axes_.ay;
-        const double ratio = h.squaredLength() / (h.z * h.z + x * x + y * y);
-        return ratio * ratio / (pi * axes_.ax * axes_.ay);
-    }
-
-    double coatDensity(const HalfVector& h) const {
-        const double squared = gloss_ * gloss_, slope = h.squaredSlope();
-        return (squared - 1) / (pi * std::log(squared)) * (1 + slope) / (squared + slope);
-    }
-
-    double roughness_, subsurface_, clearcoat_, gloss_;
-    SpecularAxes axes_;
-    SmithGgx masking_;
+    DisneyShape shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

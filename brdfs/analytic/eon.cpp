@@ -7,7 +7,22 @@
 #include <cmath>
 
 namespace hshfit::brdfs {
+
+struct EonShape {
+    double roughness;
+    bool exact;
+    double single, scale;
+};
+
+}  // namespace hshfit::brdfs
+
+#define HWY_TARGET_INCLUDE "brdfs/analytic/eon_terms.h"
+#include <brdfs/lanes/each_target.h>
+
+namespace hshfit::brdfs {
 namespace {
+
+HWY_EXPORT(evalEon);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
@@ -38,48 +53,25 @@ public:
     Eon(const Model& model, const Parameters& p, const Colour& kd, const Settings& settings)
         : TermBrdf(model, p, lawsOf(kd, settings), {0.0},
                    {overPi(kd), multiple(kd, settings.mean())}),
-          settings_(settings),
-          single_(settings.single()),
-          scale_(settings.roughness > 0 ? 1 / (1 - settings.mean()) : 0) {}
+          shape_{settings.roughness, settings.exact, settings.single(),
+                 settings.roughness > 0 ? 1 / (1 - settings.mean()) : 0} {}
 
     /// The larger height changes sides.
     std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
 
     /// The kink where s changes sign runs along a curve that no panel can end at.
-    double defaultTolerance() const override { return settings_.roughness > 0 ? 1e-5 : 1e-6; }
+    double defaultTolerance() const override { return shape_.roughness > 0 ? 1e-5 : 1e-6; }
 
 protected:
-    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
-        const double outgoing = scale_ * missing(wo.x, wo.y, wo.z);
-        for (std::size_t k = 0; k < wi.count; ++k) {
-            const double across = wi.x[k] * wo.x + wi.y[k] * wo.y;
-            const double height = across > 0 ? std::max(wi.z[k], wo.z) : 1;
-            out[k] = single_ * (1 + settings_.roughness * bounded(across / height));
-            out[wi.count + k] = outgoing * missing(wi.x[k], wi.y[k], wi.z[k]);
-        }
+    void evalBatch(const TermBatch& batch) const override {
+        HWY_DYNAMIC_DISPATCH(evalEon)(shape_, batch);
+    }
+    void evalBatchScalar(const TermBatch& batch) const override {
+        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::EonTerms>(shape_, batch);
     }
 
 private:
-    /// 1 - E: what leaves no facet at once.
-    double missing(double x, double y, double z) const {
-        const double g = settings_.exact ? exactG(std::hypot(x, y), z) : approximateG(z);
-        return std::max(0.0, 1 - single_ * (1 + settings_.roughness * g / pi));
-    }
-
-    /// (1 - S^3)/c = c (1 + S + S^2)/(1 + S), which is 0 at the horizon.
-    static double exactG(double sine, double cosine) {
-        const double rest = cosine * (1 + sine + sine * sine) / (1 + sine);
-        return sine * (std::atan2(sine, cosine) - sine * cosine) + 2. / 3 * sine * (rest - 1);
-    }
-
-    /// Listing 1 of the paper: G / pi as a polynomial in 1 - cos.
-    static double approximateG(double cosine) {
-        const double d = 1 - cosine;
-        return pi * d * (0.0571085289 + d * (0.491881867 + d * (-0.332181442 + d * 0.0714429953)));
-    }
-
-    Settings settings_;
-    double single_, scale_;
+    EonShape shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

@@ -1,6 +1,5 @@
 #include <brdfs/analytic/facet_fresnel.h>
 
-#include <brdfs/analytic/fresnel.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/spec.h>
 #include <hshfit/error.h>
@@ -94,17 +93,6 @@ std::vector<Colour> FacetFresnel::weights(const Colour& scale) const {
     for (const Colour& weight : weights_)
         scaled.push_back(mapped(weight, scale, [](double w, double s) { return w * s; }));
     return scaled;
-}
-
-void FacetFresnel::spread(double lobe, double cosine, double* out, std::size_t stride) const {
-    if (indices_.empty()) {
-        const double weight = schlickWeight(cosine);
-        out[0] = lobe * (1 - weight);
-        out[stride] = lobe * weight;
-        return;
-    }
-    for (std::size_t t = 0; t < indices_.size(); ++t)
-        out[t * stride] = lobe * conductorReflectance(cosine, indices_[t].ior, indices_[t].k);
 }
 
 }  // namespace hshfit::brdfs

@@ -2,6 +2,8 @@
 
 #include <brdfs/analytic/term_brdf.h>
 
+#include <span>
+
 namespace hshfit::brdfs {
 
 /// F0, fresnel, ior and k: how the facets of a microfacet model reflect.
@@ -20,14 +22,14 @@ public:
     /// Of each term, at most three; times a scale per channel.
     std::vector<Colour> weights(const Colour& scale) const;
 
-    /// out[t * stride] = lobe F_t(cosine). `lobe` is finite; so is the result.
-    void spread(double lobe, double cosine, double* out, std::size_t stride) const;
-
-private:
+    /// What of it varies with the angle: facet_terms.h.
     struct Index {
         double ior, k;
     };
-    std::vector<Index> indices_;  ///< empty for Schlick's form
+    std::span<const Index> indices() const { return indices_; }  ///< empty for Schlick's form
+
+private:
+    std::vector<Index> indices_;
     std::vector<Colour> weights_;
 };
 

@@ -6,36 +6,41 @@
 #include <cmath>
 
 namespace hshfit::brdfs {
-namespace {
 
-class Ggx {
-public:
-    explicit Ggx(const Roughness& r) : r_(r) {}
-
-    /// |h|^4 / (pi ax ay (z^2 + (x/ax)^2 + (y/ay)^2)^2).
-    double density(const HalfVector& h) const {
-        const double x = h.x / r_.ax, y = h.y / r_.ay;
-        const double ratio = h.squaredLength() / (h.z * h.z + x * x + y * y);
-        return ratio * ratio / (pi * r_.ax * r_.ay);
-    }
-
-    double scaledLambda(double x, double y, double z) const {
-        const double s = r_.ax * r_.ax * x * x + r_.ay * r_.ay * y * y;
-        return 0.5 * s / (z + std::sqrt(z * z + s));
-    }
+struct GgxShape {
+    Roughness r;
 
     /// D has a pole at the slope i alpha.
-    double width() const { return std::min(r_.ax, r_.ay); }
-    double spread() const { return std::max(r_.ax, r_.ay); }
+    double width() const { return std::min(r.ax, r.ay); }
+    double spread() const { return std::max(r.ax, r.ay); }
+};
 
-private:
-    Roughness r_;
+}  // namespace hshfit::brdfs
+
+#define HWY_TARGET_INCLUDE "brdfs/analytic/ggx_terms.h"
+#include <brdfs/lanes/each_target.h>
+
+namespace hshfit::brdfs {
+namespace {
+
+HWY_EXPORT(evalGgx);
+
+class Ggx final : public Microfacet<GgxShape> {
+public:
+    using Microfacet::Microfacet;
+
+protected:
+    void evalBatch(const TermBatch& batch) const override {
+        HWY_DYNAMIC_DISPATCH(evalGgx)(shape(), batch);
+    }
+    void evalBatchScalar(const TermBatch& batch) const override {
+        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::GgxTerms>(shape(), batch);
+    }
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     const Roughness roughness = roughnessOf(ggxModel(), p);
-    return std::make_unique<Microfacet<Ggx>>(ggxModel(), p, microfacetLaws(p, roughness),
-                                             Ggx(roughness));
+    return std::make_unique<Ggx>(ggxModel(), p, microfacetLaws(p, roughness), GgxShape{roughness});
 }
 
 }  // namespace

@@ -8,7 +8,32 @@
 #include <memory>
 
 namespace hshfit::brdfs {
+
+/// Lambda over that of GGX, whose logarithm is tabulated over the logarithm of the cotangent: it is
+/// smooth there, and constant beyond both ends.
+struct LambdaTable {
+    static constexpr double step = 0.04, high = 12;
+    double low;
+    std::vector<double> values;  ///< at low + k step
+};
+
+struct GtrShape {
+    double alpha, gamma, peak;
+    std::shared_ptr<const LambdaTable> table;
+
+    double width() const { return std::min(1.0, alpha); }
+    double spread() const { return width(); }
+};
+
+}  // namespace hshfit::brdfs
+
+#define HWY_TARGET_INCLUDE "brdfs/analytic/gtr_terms.h"
+#include <brdfs/lanes/each_target.h>
+
+namespace hshfit::brdfs {
 namespace {
+
+HWY_EXPORT(evalGtr);
 
 /// (exp(x) - 1)/x.
 double growth(double x) {
@@ -45,74 +70,42 @@ double scaledLambda(double alpha, double gamma, double peak, double sine, double
     return 2 * peak * sum * step;
 }
 
-/// Lambda over that of GGX, whose logarithm is tabulated over the logarithm of the cotangent: it is
-/// smooth there, and constant beyond both ends.
-class LambdaTable {
+std::shared_ptr<const LambdaTable> lambdaTable(double alpha, double gamma, double peak) {
+    auto table = std::make_shared<LambdaTable>();
+    table->low = std::log(alpha) - 16;
+    const auto count = std::size_t((LambdaTable::high - table->low) / LambdaTable::step) + 2;
+    for (std::size_t k = 0; k < count; ++k) {
+        const double cotangent = std::exp(table->low + static_cast<double>(k) * LambdaTable::step);
+        const double sine = 1 / std::hypot(1, cotangent), cosine = cotangent * sine;
+        const double s = alpha * alpha * sine * sine;
+        const double ggx = 0.5 * s / (cosine + std::sqrt(cosine * cosine + s));
+        table->values.push_back(std::log(scaledLambda(alpha, gamma, peak, sine, cosine) / ggx));
+    }
+    return table;
+}
+
+GtrShape shapeOf(double alpha, double gamma) {
+    const double peak = peakOf(alpha, gamma);
+    return {alpha, gamma, peak, lambdaTable(alpha, gamma, peak)};
+}
+
+class Gtr final : public Microfacet<GtrShape> {
 public:
-    LambdaTable(double alpha, double gamma, double peak)
-        : low_(std::log(alpha) - 16), count_(std::size_t((high - low_) / step) + 2) {
-        for (std::size_t k = 0; k < count_; ++k) {
-            const double cotangent = std::exp(low_ + static_cast<double>(k) * step);
-            const double sine = 1 / std::hypot(1, cotangent), cosine = cotangent * sine;
-            const double s = alpha * alpha * sine * sine;
-            const double ggx = 0.5 * s / (cosine + std::sqrt(cosine * cosine + s));
-            values_.push_back(
-                std::log(brdfs::scaledLambda(alpha, gamma, peak, sine, cosine) / ggx));
-        }
+    using Microfacet::Microfacet;
+
+protected:
+    void evalBatch(const TermBatch& batch) const override {
+        HWY_DYNAMIC_DISPATCH(evalGtr)(shape(), batch);
     }
-
-    /// Cubic through the four nearest nodes.
-    double ratio(double logCotangent) const {
-        const double last = static_cast<double>(count_ - 1);
-        const double at = std::clamp((logCotangent - low_) / step, 0.0, last);
-        const std::size_t left = std::clamp<std::size_t>(std::size_t(at), 1, count_ - 3);
-        const double* v = values_.data() + left - 1;
-        const double u = at - static_cast<double>(left);
-        const double a = u + 1, b = u - 1, c = u - 2;
-        return std::exp(-u * b * c / 6 * v[0] + a * b * c / 2 * v[1] - a * u * c / 2 * v[2] +
-                        a * u * b / 6 * v[3]);
+    void evalBatchScalar(const TermBatch& batch) const override {
+        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::GtrTerms>(shape(), batch);
     }
-
-private:
-    static constexpr double step = 0.04, high = 12;
-    double low_;
-    std::size_t count_;
-    std::vector<double> values_;
-};
-
-class Gtr {
-public:
-    Gtr(double alpha, double gamma)
-        : alpha_(alpha),
-          gamma_(gamma),
-          peak_(peakOf(alpha, gamma)),
-          table_(std::make_shared<LambdaTable>(alpha, gamma, peak_)) {}
-
-    double density(const HalfVector& h) const {
-        const double slope = h.squaredSlope();
-        return peak_ *
-               std::exp(gamma_ * (std::log1p(slope) - std::log1p(slope / (alpha_ * alpha_))));
-    }
-
-    double scaledLambda(double x, double y, double z) const {
-        const double sine = std::hypot(x, y), s = alpha_ * alpha_ * sine * sine;
-        if (s == 0) return 0;
-        const double ggx = 0.5 * s / (z + std::sqrt(z * z + s));
-        return ggx * table_->ratio(std::log(z / sine));
-    }
-
-    double width() const { return std::min(1.0, alpha_); }
-    double spread() const { return width(); }
-
-private:
-    double alpha_, gamma_, peak_;
-    std::shared_ptr<const LambdaTable> table_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     Laws laws = microfacetLaws(p, {1, 1});
-    return std::make_unique<Microfacet<Gtr>>(gtrModel(), p, laws,
-                                             Gtr(p.number("alpha"), p.number("gamma")));
+    return std::make_unique<Gtr>(gtrModel(), p, laws,
+                                 shapeOf(p.number("alpha"), p.number("gamma")));
 }
 
 std::vector<Parameter> parameters() {

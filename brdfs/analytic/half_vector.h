@@ -1,37 +1,69 @@
-#pragma once
+// Compiled once for each instruction set; T is double or Lanes (lanes.h).
 
-#include <hshfit/directions.h>
+#if defined(BRDFS_ANALYTIC_HALF_VECTOR_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BRDFS_ANALYTIC_HALF_VECTOR_H
+#undef BRDFS_ANALYTIC_HALF_VECTOR_H
+#else
+#define BRDFS_ANALYTIC_HALF_VECTOR_H
+#endif
 
-#include <algorithm>
-#include <cmath>
+#include <brdfs/analytic/term_batch.h>
 
-namespace hshfit::brdfs {
+HWY_BEFORE_NAMESPACE();
+namespace hshfit::brdfs::HWY_NAMESPACE {
 
 /// The half vector wi + wo, not normalised and never formed from angles: its x and y, the
 /// differences that carry a sharp lobe, keep all their digits. If it is very short (both directions
 /// at the horizon, opposite) it is divided by its largest component, so that no square underflows.
+template <class T>
 struct HalfVector {
-    double x, y, z;    ///< z at least `leastZ`
-    double scale = 1;  ///< wi + wo = scale (x, y, z)
+    T x, y, z;  ///< z at least `leastZ`
+    T scale;    ///< wi + wo = scale (x, y, z)
 
     /// Slopes are cut at 2e70, where every lobe has long vanished, so that powers of them that
     /// meet exp(-slope^2) stay finite.
     static constexpr double leastZ = 1e-70;
 
-    HalfVector(const Direction& wo, double wiX, double wiY, double wiZ) {
-        x = wiX + wo.x, y = wiY + wo.y, z = wiZ + wo.z;
-        const double largest = std::max({std::abs(x), std::abs(y), z});
-        if (largest < 1e-30) scale = largest, x /= scale, y /= scale, z /= scale;
-        z = std::max(z, leastZ);
+    HWY_INLINE HalfVector(const Direction& wo, const Incoming<T>& wi)
+        : x(wi.x + T(wo.x)), y(wi.y + T(wo.y)), z(wi.z + T(wo.z)), scale(1.0) {
+        const T largest = max(max(abs(x), abs(y)), z);
+        const auto isShort = largest < T(1e-30);
+        if (anyOf(isShort)) {
+            scale = select(isShort, largest, T(1.0));
+            x = x / scale, y = y / scale, z = z / scale;
+        }
+        z = max(z, T(leastZ));
     }
 
-    double squaredLength() const { return x * x + y * y + z * z; }
-    double slopeX() const { return x / z; }
-    double slopeY() const { return y / z; }
+    HWY_INLINE T squaredLength() const { return x * x + y * y + z * z; }
     /// tan^2 of the angle to the normal.
-    double squaredSlope() const { return (x * x + y * y) / (z * z); }
+    HWY_INLINE T squaredSlope() const { return (x * x + y * y) / (z * z); }
     /// Cosine of the angle to either direction: half the length of wi + wo. At most 1.
-    double dotOutgoing() const { return std::min(1.0, 0.5 * scale * std::sqrt(squaredLength())); }
+    HWY_INLINE T dotOutgoing() const { return min(T(1.0), 0.5 * scale * sqrt(squaredLength())); }
+    HWY_INLINE T overSquaredScale(T value) const {
+        return anyOf(scale < T(1.0)) ? value / scale / scale : value;
+    }
 };
 
-}  // namespace hshfit::brdfs
+/// 1 - cos(theta_h) from the squared slope, with all digits for small slopes.
+template <class T>
+HWY_INLINE T slopeVersine(T squaredSlope) {
+    const T secant = sqrt(1.0 + squaredSlope);
+    return squaredSlope / (secant * (1.0 + secant));
+}
+
+/// G / (cos_i cos_o) with the masking of V-shaped grooves,
+///     G = min(1, 2 h.z cos_o / (h.wo), 2 h.z cos_i / (h.wo)),   h normalised,
+/// the cosines divided out term by term. May be infinite where both directions graze. Torrance &
+/// Sparrow 1967, 10.1364/JOSA.57.001105. Has kinks where the minimum changes sides.
+template <class T>
+HWY_INLINE T vGrooveVisibility(const HalfVector<T>& h, T cosI, T cosO) {
+    const T open = 1.0 / (cosI * cosO);
+    const T blocked = 2.0 * h.z / (sqrt(h.squaredLength()) * h.dotOutgoing() * max(cosI, cosO));
+    return min(open, blocked);
+}
+
+}  // namespace hshfit::brdfs::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

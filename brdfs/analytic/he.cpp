@@ -3,7 +3,7 @@
 #include <brdfs/analytic/fresnel.h>
 #include <brdfs/analytic/half_vector.h>
 #include <brdfs/analytic/parameters.h>
-#include <brdfs/analytic/term_brdf.h>
+#include <brdfs/analytic/term_batch.h>
 
 #include <algorithm>
 #include <cmath>
@@ -50,43 +50,38 @@ double largestTerm(double g, double b) {
     return m;
 }
 
-class He final : public TermBrdf {
+struct HeShape {
+    double ior, height, length, slope;
+};
+
+/// Of one direction at a time: the number of terms of the series depends on it.
+template <class T>
+class HeTerms {
 public:
-    explicit He(const Parameters& p)
-        : TermBrdf(heModel(), p, lawsOf(p), overPi(p.colour("kd")), {p.colour("ks")}),
-          ior_(p.number("ior")),
-          height_(p.number("sigma") / p.number("wavelength")),
-          length_(p.number("tau") / p.number("wavelength")),
-          slope_(2 * height_ / length_) {}
+    static constexpr std::size_t count = 1;
 
-    /// exp(-(pi tau |h.xy|)^2 / m) with m near 1 + g: Gaussian in the slope.
-    std::vector<Lobe> lobes(const Direction& wo) const override {
-        const double z = 2 * std::max(wo.z, 1e-3), phase = 2 * pi * height_ * z;
-        const double deviation = std::sqrt(0.5 * (1 + phase * phase)) / (pi * length_ * z);
-        return {{Lobe::About::halfway, std::min(1.0, 2.5 * deviation), {}}};
-    }
+    HeTerms(const HeShape& shape, const Direction& wo)
+        : shape_(shape), wo_(wo), outgoing_(wo.z, shape.slope) {}
 
-protected:
-    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
-        const Roughened outgoing(wo.z, slope_);
-        for (std::size_t k = 0; k < wi.count; ++k) {
-            if (!(wi.z[k] > 0)) continue;
-            const HalfVector h(wo, wi.x[k], wi.y[k], wi.z[k]);
-            const Roughened incoming(wi.z[k], slope_);
-            const double shading = (incoming.hidden + outgoing.hidden) / std::sqrt(8 * pi);
-            // sigma / sigma0, twice: g = height^2 h.z^2 / (1 + W)
-            const double shrunk = 1 / (1 + lambertW(std::min(shading * shading, 1e300)));
-            const double heights = 2 * pi * height_ * (wi.z[k] + wo.z);
-            const double across = pi * length_ * h.scale;
-            const double series =
-                heSeries(heights * heights * shrunk, across * across * (h.x * h.x + h.y * h.y));
-            // (pi tau)^2 / 4 (2 pi sigma)^2 / pi: the g that the series lacks, over h.z^2.
-            const double scale = std::pow(pi * length_ * height_, 2) * pi * shrunk;
-            const double length = h.squaredLength() * h.scale * h.scale;
-            const double visible = bounded(incoming.visibility * outgoing.visibility);
-            out[k] = dielectricReflectance(h.dotOutgoing(), ior_) * length * length *
-                     bounded(scale * series * visible);
-        }
+    void operator()(const HWY_NAMESPACE::Incoming<T>& wi, T* term) const {
+        term[0] = 0;
+        if (!(wi.z > 0)) return;
+        const auto& [ior, height, correlation, slope] = shape_;
+        const HWY_NAMESPACE::HalfVector<T> h(wo_, wi);
+        const Roughened incoming(wi.z, slope);
+        const double shading = (incoming.hidden + outgoing_.hidden) / std::sqrt(8 * pi);
+        // sigma / sigma0, twice: g = height^2 h.z^2 / (1 + W)
+        const double shrunk = 1 / (1 + lambertW(std::min(shading * shading, 1e300)));
+        const double heights = 2 * pi * height * (wi.z + wo_.z);
+        const double across = pi * correlation * h.scale;
+        const double series =
+            heSeries(heights * heights * shrunk, across * across * (h.x * h.x + h.y * h.y));
+        // (pi tau)^2 / 4 (2 pi sigma)^2 / pi: the g that the series lacks, over h.z^2.
+        const double scale = std::pow(pi * correlation * height, 2) * pi * shrunk;
+        const double length = h.squaredLength() * h.scale * h.scale;
+        const double visible = atMostLargest(incoming.visibility * outgoing_.visibility);
+        term[0] = dielectricReflectance(h.dotOutgoing(), ior) * length * length *
+                  atMostLargest(scale * series * visible);
     }
 
 private:
@@ -105,7 +100,35 @@ private:
         }
     };
 
-    double ior_, height_, length_, slope_;
+    HeShape shape_;
+    Direction wo_;
+    Roughened outgoing_;
+};
+
+class He final : public TermBrdf {
+public:
+    explicit He(const Parameters& p)
+        : TermBrdf(heModel(), p, lawsOf(p), overPi(p.colour("kd")), {p.colour("ks")}) {
+        const double height = p.number("sigma") / p.number("wavelength");
+        const double length = p.number("tau") / p.number("wavelength");
+        shape_ = {p.number("ior"), height, length, 2 * height / length};
+    }
+
+    /// exp(-(pi tau |h.xy|)^2 / m) with m near 1 + g: Gaussian in the slope.
+    std::vector<Lobe> lobes(const Direction& wo) const override {
+        const double z = 2 * std::max(wo.z, 1e-3), phase = 2 * pi * shape_.height * z;
+        const double deviation = std::sqrt(0.5 * (1 + phase * phase)) / (pi * shape_.length * z);
+        return {{Lobe::About::halfway, std::min(1.0, 2.5 * deviation), {}}};
+    }
+
+protected:
+    void evalBatch(const TermBatch& batch) const override { evalBatchScalar(batch); }
+    void evalBatchScalar(const TermBatch& batch) const override {
+        HWY_NAMESPACE::evalAll<double, HeTerms>(shape_, batch);
+    }
+
+private:
+    HeShape shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

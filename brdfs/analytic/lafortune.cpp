@@ -7,7 +7,21 @@
 #include <cmath>
 
 namespace hshfit::brdfs {
+
+struct LafortuneShape {
+    Direction c;  ///< the diagonal of C
+    double exponent;
+};
+
+}  // namespace hshfit::brdfs
+
+#define HWY_TARGET_INCLUDE "brdfs/analytic/lafortune_terms.h"
+#include <brdfs/lanes/each_target.h>
+
+namespace hshfit::brdfs {
 namespace {
+
+HWY_EXPORT(evalLafortune);
 
 constexpr Laws claims{.nonNegative = true, .reciprocal = true, .mirrorSymmetric = true};
 
@@ -36,7 +50,7 @@ Laws lawsOf(const Parameters& p) {
     const double exponent = p.number("exponent");
     const Direction c = diagonal(p);
     const double reach = std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)});
-    const double lobe = bounded(std::pow(reach, exponent)) * 2 * pi / (exponent + 2);
+    const double lobe = atMostLargest(std::pow(reach, exponent)) * 2 * pi / (exponent + 2);
     const Colour albedo = mapped(p.colour("kd"), weightOf(p),
                                  [&](double kd, double weight) { return kd + weight * lobe; });
     result.energyConserving = largest(albedo) <= 1;
@@ -47,38 +61,27 @@ class Lafortune final : public TermBrdf {
 public:
     explicit Lafortune(const Parameters& p)
         : TermBrdf(lafortuneModel(), p, lawsOf(p), overPi(p.colour("kd")), {weightOf(p)}),
-          c_(diagonal(p)),
-          exponent_(p.number("exponent")) {}
+          shape_{diagonal(p), p.number("exponent")} {}
 
     std::vector<Lobe> lobes(const Direction& wo) const override {
-        const Direction a{c_.x * wo.x, c_.y * wo.y, c_.z * wo.z};
+        const Direction a{shape_.c.x * wo.x, shape_.c.y * wo.y, shape_.c.z * wo.z};
         const double length = std::sqrt(dot(a, a));
         if (!(length > 0)) return {};
         return {{Lobe::About::axis,
-                 2.5 / std::sqrt(exponent_ + 1),
+                 2.5 / std::sqrt(shape_.exponent + 1),
                  {a.x / length, a.y / length, a.z / length}}};
     }
 
 protected:
-    /// Half of a^2 + b^2 - 2 c a b, without cancellation where |c| = 1 and b is near c a.
-    static double halfSquare(double c, double a, double b) {
-        const double sign = c < 0 ? -1 : 1;
-        const double difference = a - sign * b;
-        return 0.5 * difference * difference - (c - sign) * (a * b);
+    void evalBatch(const TermBatch& batch) const override {
+        HWY_DYNAMIC_DISPATCH(evalLafortune)(shape_, batch);
     }
-
-    /// wi C wo = 1 - (|wi|^2 + |wo|^2) / 2 + wi C wo for unit vectors, so that log1p applies.
-    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
-        for (std::size_t k = 0; k < wi.count; ++k) {
-            const double less = halfSquare(c_.x, wi.x[k], wo.x) + halfSquare(c_.y, wi.y[k], wo.y) +
-                                halfSquare(c_.z, wi.z[k], wo.z);
-            out[k] = less < 1 ? std::exp(exponent_ * std::log1p(-less)) : 0;
-        }
+    void evalBatchScalar(const TermBatch& batch) const override {
+        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::LafortuneTerms>(shape_, batch);
     }
 
 private:
-    Direction c_;  ///< the diagonal of C
-    double exponent_;
+    LafortuneShape shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

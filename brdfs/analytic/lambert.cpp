@@ -4,7 +4,18 @@
 #include <brdfs/analytic/term_brdf.h>
 
 namespace hshfit::brdfs {
+
+struct LambertShape {};
+
+}  // namespace hshfit::brdfs
+
+#define HWY_TARGET_INCLUDE "brdfs/analytic/lambert_terms.h"
+#include <brdfs/lanes/each_target.h>
+
+namespace hshfit::brdfs {
 namespace {
+
+HWY_EXPORT(evalLambert);
 
 constexpr Laws claims{.nonNegative = true,
                       .reciprocal = true,
@@ -18,7 +29,15 @@ public:
         : TermBrdf(lambertModel(), p, claims, overPi(p.colour("kd")), {}) {}
 
 protected:
-    void terms(const Direction&, DirectionBatch, double*) const override {}
+    void evalBatch(const TermBatch& batch) const override {
+        HWY_DYNAMIC_DISPATCH(evalLambert)(shape_, batch);
+    }
+    void evalBatchScalar(const TermBatch& batch) const override {
+        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::LambertTerms>(shape_, batch);
+    }
+
+private:
+    LambertShape shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

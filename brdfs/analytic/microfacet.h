@@ -1,8 +1,9 @@
 #pragma once
 
 #include <brdfs/analytic/facet_fresnel.h>
-#include <brdfs/analytic/half_vector.h>
 #include <brdfs/analytic/term_brdf.h>
+
+#include <utility>
 
 namespace hshfit::brdfs {
 
@@ -22,49 +23,43 @@ Laws microfacetLaws(const Parameters& parameters, const Roughness& roughness);
 inline constexpr Laws microfacetClaims{
     .nonNegative = true, .reciprocal = true, .mirrorSymmetric = true};
 
+/// What the terms of a microfacet model are computed from (facet_terms.h).
+template <class Shape>
+struct FacetShape {
+    Shape distribution;
+    FacetFresnel fresnel;
+    bool correlated;
+};
+
 /// f = kd / pi + ks F D G / (4 cos_i cos_o), with F of the angle between wo and h (facet_fresnel.h)
 /// and Smith's masking in terms of Lambda (Heitz 2014, JCGT 3(2)):
 ///     correlated  G = 1 / (1 + Lambda_i + Lambda_o)   (heights of both directions correlated)
 ///     separable   G = 1 / ((1 + Lambda_i)(1 + Lambda_o))
 ///
-/// `Distribution` gives D of a half vector, z Lambda(w) of a direction w with height z (finite at
-/// the horizon, where Lambda is not), and the width of its peak in units of slope.
-template <class Distribution>
-class Microfacet final : public TermBrdf {
+/// `Shape` is what D is computed from, and says how wide its peak is in units of slope: `width` and
+/// `spread`, along the narrower and the wider axis.
+template <class Shape>
+class Microfacet : public TermBrdf {
 public:
-    Microfacet(const Model& model, const Parameters& p, const Laws& laws,
-               const Distribution& distribution)
-        : Microfacet(model, p, laws, distribution, FacetFresnel(model, p)) {}
+    Microfacet(const Model& model, const Parameters& p, const Laws& laws, const Shape& distribution)
+        : Microfacet(model, p, laws,
+                     FacetShape<Shape>{distribution, FacetFresnel(model, p),
+                                       p.choice("masking") == "correlated"}) {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
-        return {{Lobe::About::halfway, distribution_.width(), {}, distribution_.spread()}};
+        return {
+            {Lobe::About::halfway, shape_.distribution.width(), {}, shape_.distribution.spread()}};
     }
 
 protected:
-    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
-        const double outgoing = distribution_.scaledLambda(wo.x, wo.y, wo.z);
-        for (std::size_t k = 0; k < wi.count; ++k) {
-            const double z = std::max(wi.z[k], 0.0);
-            const HalfVector h(wo, wi.x[k], wi.y[k], z);
-            const double incoming = distribution_.scaledLambda(wi.x[k], wi.y[k], z);
-            const double visible = correlated_ ? z * wo.z + wo.z * incoming + z * outgoing
-                                               : (z + incoming) * (wo.z + outgoing);
-            const double lobe = bounded(distribution_.density(h) * bounded(0.25 / visible));
-            fresnel_.spread(lobe, h.dotOutgoing(), out + k, wi.count);
-        }
-    }
+    const FacetShape<Shape>& shape() const { return shape_; }
 
 private:
-    Microfacet(const Model& model, const Parameters& p, const Laws& laws,
-               const Distribution& distribution, const FacetFresnel& fresnel)
-        : TermBrdf(model, p, laws, overPi(p.colour("kd")), fresnel.weights(p.colour("ks"))),
-          distribution_(distribution),
-          fresnel_(fresnel),
-          correlated_(p.choice("masking") == "correlated") {}
+    Microfacet(const Model& model, const Parameters& p, const Laws& laws, FacetShape<Shape> shape)
+        : TermBrdf(model, p, laws, overPi(p.colour("kd")), shape.fresnel.weights(p.colour("ks"))),
+          shape_(std::move(shape)) {}
 
-    Distribution distribution_;
-    FacetFresnel fresnel_;
-    bool correlated_;
+    FacetShape<Shape> shape_;
 };
 
 }  // namespace hshfit::brdfs

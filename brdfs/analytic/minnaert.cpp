@@ -6,7 +6,20 @@
 #include <cmath>
 
 namespace hshfit::brdfs {
+
+struct MinnaertShape {
+    double k;
+};
+
+}  // namespace hshfit::brdfs
+
+#define HWY_TARGET_INCLUDE "brdfs/analytic/minnaert_terms.h"
+#include <brdfs/lanes/each_target.h>
+
+namespace hshfit::brdfs {
 namespace {
+
+HWY_EXPORT(evalMinnaert);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
@@ -21,18 +34,18 @@ class Minnaert final : public TermBrdf {
 public:
     explicit Minnaert(const Parameters& p)
         : TermBrdf(minnaertModel(), p, lawsOf(p), {0.0}, {overPi(p.colour("kd"))}),
-          exponent_(p.number("k") - 1),
-          scale_((p.number("k") + 1) / 2) {}
+          shape_{p.number("k")} {}
 
 protected:
-    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
-        const double outgoing = bounded(scale_ * std::pow(wo.z, exponent_));
-        for (std::size_t k = 0; k < wi.count; ++k)
-            out[k] = outgoing * bounded(std::pow(wi.z[k], exponent_));
+    void evalBatch(const TermBatch& batch) const override {
+        HWY_DYNAMIC_DISPATCH(evalMinnaert)(shape_, batch);
+    }
+    void evalBatchScalar(const TermBatch& batch) const override {
+        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::MinnaertTerms>(shape_, batch);
     }
 
 private:
-    double exponent_, scale_;
+    MinnaertShape shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

@@ -6,7 +6,20 @@
 #include <cmath>
 
 namespace hshfit::brdfs {
+
+struct PhongShape {
+    double exponent;
+};
+
+}  // namespace hshfit::brdfs
+
+#define HWY_TARGET_INCLUDE "brdfs/analytic/phong_terms.h"
+#include <brdfs/lanes/each_target.h>
+
+namespace hshfit::brdfs {
 namespace {
+
+HWY_EXPORT(evalPhong);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
@@ -30,24 +43,22 @@ public:
     explicit Phong(const Parameters& p)
         : TermBrdf(phongModel(), p, lawsOf(p), overPi(p.colour("kd")),
                    {mapped(p.colour("ks"), [&](double ks) { return ks * normalisation(p); })}),
-          exponent_(p.number("exponent")) {}
+          shape_{p.number("exponent")} {}
 
     std::vector<Lobe> lobes(const Direction& wo) const override {
-        return {{Lobe::About::axis, 2.5 / std::sqrt(exponent_ + 1), mirrored(wo)}};
+        return {{Lobe::About::axis, 2.5 / std::sqrt(shape_.exponent + 1), mirrored(wo)}};
     }
 
 protected:
-    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
-        const Direction mirror = mirrored(wo);
-        for (std::size_t k = 0; k < wi.count; ++k) {
-            const double dx = wi.x[k] - mirror.x, dy = wi.y[k] - mirror.y, dz = wi.z[k] - mirror.z;
-            const double versine = (dx * dx + dy * dy + dz * dz) / 2;
-            out[k] = versine < 1 ? std::exp(exponent_ * std::log1p(-versine)) : 0;
-        }
+    void evalBatch(const TermBatch& batch) const override {
+        HWY_DYNAMIC_DISPATCH(evalPhong)(shape_, batch);
+    }
+    void evalBatchScalar(const TermBatch& batch) const override {
+        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::PhongTerms>(shape_, batch);
     }
 
 private:
-    double exponent_;
+    PhongShape shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

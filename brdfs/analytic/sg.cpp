@@ -1,13 +1,26 @@
 #include <brdfs/analytic/sg.h>
 
-#include <brdfs/analytic/half_vector.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 
 #include <cmath>
 
 namespace hshfit::brdfs {
+
+struct SphericalGaussianShape {
+    double sharpness;
+    bool aboutNormal;
+};
+
+}  // namespace hshfit::brdfs
+
+#define HWY_TARGET_INCLUDE "brdfs/analytic/sg_terms.h"
+#include <brdfs/lanes/each_target.h>
+
+namespace hshfit::brdfs {
 namespace {
+
+HWY_EXPORT(evalSphericalGaussian);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
@@ -41,41 +54,25 @@ public:
     explicit SphericalGaussian(const Parameters& p)
         : TermBrdf(sgModel(), p, lawsOf(p), overPi(p.colour("kd")),
                    {mapped(p.colour("ks"), [&](double ks) { return ks * scaleOf(p); })}),
-          sharpness_(p.number("sharpness")),
-          aboutNormal_(aboutNormal(p)) {}
+          shape_{p.number("sharpness"), aboutNormal(p)} {}
 
     /// Standard deviation 1 / sqrt(lambda), of the angle or of the slope.
     std::vector<Lobe> lobes(const Direction& wo) const override {
-        const double width = std::min(1.0, 2.5 / std::sqrt(sharpness_ + 1));
-        if (aboutNormal_) return {{Lobe::About::halfway, width, {}}};
+        const double width = std::min(1.0, 2.5 / std::sqrt(shape_.sharpness + 1));
+        if (shape_.aboutNormal) return {{Lobe::About::halfway, width, {}}};
         return {{Lobe::About::axis, width, mirrored(wo)}};
     }
 
 protected:
-    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
-        for (std::size_t k = 0; k < wi.count; ++k) {
-            const double versine = aboutNormal_
-                                       ? tiltVersine(HalfVector(wo, wi.x[k], wi.y[k], wi.z[k]))
-                                       : mirrorVersine(wo, wi.x[k], wi.y[k], wi.z[k]);
-            out[k] = std::exp(-sharpness_ * versine);
-        }
+    void evalBatch(const TermBatch& batch) const override {
+        HWY_DYNAMIC_DISPATCH(evalSphericalGaussian)(shape_, batch);
+    }
+    void evalBatchScalar(const TermBatch& batch) const override {
+        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::SphericalGaussianTerms>(shape_, batch);
     }
 
 private:
-    /// 1 - cos of the angle to the mirror direction, from the distance to it.
-    static double mirrorVersine(const Direction& wo, double x, double y, double z) {
-        const double dx = x + wo.x, dy = y + wo.y, dz = z - wo.z;
-        return (dx * dx + dy * dy + dz * dz) / 2;
-    }
-
-    /// 1 - cos theta_h, from the slope.
-    static double tiltVersine(const HalfVector& h) {
-        const double secant = std::sqrt(1 + h.squaredSlope());
-        return h.squaredSlope() / (secant * (1 + secant));
-    }
-
-    double sharpness_;
-    bool aboutNormal_;
+    SphericalGaussianShape shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

@@ -1,7 +1,5 @@
 #include <brdfs/analytic/sgd.h>
 
-#include <brdfs/analytic/fresnel.h>
-#include <brdfs/analytic/half_vector.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 
@@ -10,7 +8,26 @@
 #include <cmath>
 
 namespace hshfit::brdfs {
+
+/// The lobe of one channel.
+struct ShiftedGamma {
+    double alpha, p, lambda, c, k, theta0, f0, f1;
+    double peak;  ///< K / pi^2
+};
+
+struct SgdShape {
+    std::vector<ShiftedGamma> lobes;
+};
+
+}  // namespace hshfit::brdfs
+
+#define HWY_TARGET_INCLUDE "brdfs/analytic/sgd_terms.h"
+#include <brdfs/lanes/each_target.h>
+
+namespace hshfit::brdfs {
 namespace {
+
+HWY_EXPORT(evalSgd);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
@@ -44,82 +61,50 @@ double upperGamma(double p, double alpha) {
     return sum * step / 3;
 }
 
-/// The lobe of one channel.
-class ShiftedGamma {
-public:
-    ShiftedGamma(const Parameters& p, std::size_t channel) {
-        const auto value = [&](const char* name) {
-            const Colour colour = p.colour(name);
-            return colour[colour.size() == 1 ? 0 : channel];
-        };
-        alpha_ = value("alpha"), p_ = value("p");
-        lambda_ = value("Lambda"), c_ = value("c"), k_ = value("k"), theta0_ = value("theta0");
-        f0_ = value("F0"), f1_ = value("F1");
-        const double given = value("K");
-        const double scale = given < 0 ? 1 / (alpha_ * upperGamma(p_, alpha_)) : given;
-        peak_ = scale / (pi * pi);
-    }
-
-    double alpha() const { return alpha_; }
-
-    /// D / pi
-    double density(double squaredSlope) const {
-        const double u = alpha_ + squaredSlope / alpha_;
-        const double rise = 1 + squaredSlope;
-        return bounded(peak_ * std::exp(-u - p_ * std::log(u)) * rise * rise);
-    }
-
-    double fresnel(double cosine) const {
-        return std::max(0.0, schlickReflectance(cosine, f0_) - f1_ * cosine);
-    }
-
-    /// G1 / cos(theta) of a direction of height z and angle theta.
-    double visibility(double z, double theta) const {
-        const double beyond = std::max(0.0, theta - theta0_);
-        const double fall = std::expm1(std::min(700.0, bounded(c_ * std::pow(beyond, k_))));
-        return std::clamp(1 - lambda_ * fall, 0.0, 1.0) / z;
-    }
-
-private:
-    double alpha_, p_, lambda_, c_, k_, theta0_, f0_, f1_, peak_;
-};
+ShiftedGamma lobeOf(const Parameters& p, std::size_t channel) {
+    const auto value = [&](const char* name) {
+        const Colour colour = p.colour(name);
+        return colour[colour.size() == 1 ? 0 : channel];
+    };
+    ShiftedGamma lobe{.alpha = value("alpha"),
+                      .p = value("p"),
+                      .lambda = value("Lambda"),
+                      .c = value("c"),
+                      .k = value("k"),
+                      .theta0 = value("theta0"),
+                      .f0 = value("F0"),
+                      .f1 = value("F1"),
+                      .peak = value("K")};
+    if (lobe.peak < 0) lobe.peak = 1 / (lobe.alpha * upperGamma(lobe.p, lobe.alpha));
+    lobe.peak /= pi * pi;
+    return lobe;
+}
 
 class Sgd final : public TermBrdf {
 public:
     explicit Sgd(const Parameters& p)
         : TermBrdf(sgdModel(), p, lawsOf(p), overPi(p.colour("kd")),
                    eachInItsChannel(p.colour("ks"), lobeCount(p))) {
-        for (std::size_t c = 0; c < lobeCount(p); ++c) lobes_.emplace_back(p, c);
+        for (std::size_t c = 0; c < lobeCount(p); ++c) shape_.lobes.push_back(lobeOf(p, c));
     }
 
     /// u^-p is singular at t = i alpha, exp(-u) has a standard deviation of sqrt(alpha / 2).
     std::vector<Lobe> lobes(const Direction&) const override {
         double width = 1;
-        for (const ShiftedGamma& lobe : lobes_) width = std::min(width, lobe.alpha());
+        for (const ShiftedGamma& lobe : shape_.lobes) width = std::min(width, lobe.alpha);
         return {{Lobe::About::halfway, width, {}}};
     }
 
 protected:
-    void terms(const Direction& wo, DirectionBatch wi, double* out) const override {
-        const double thetaO = polarAngle(wo);
-        for (std::size_t k = 0; k < wi.count; ++k) {
-            const Direction incoming{wi.x[k], wi.y[k], wi.z[k]};
-            if (!(incoming.z > 0)) continue;
-            const HalfVector h(wo, incoming.x, incoming.y, incoming.z);
-            const double squaredSlope = h.squaredSlope(), cosine = h.dotOutgoing();
-            const double thetaI = polarAngle(incoming);
-            for (std::size_t c = 0; c < lobes_.size(); ++c) {
-                const ShiftedGamma& lobe = lobes_[c];
-                const double visible =
-                    bounded(lobe.visibility(incoming.z, thetaI) * lobe.visibility(wo.z, thetaO));
-                out[c * wi.count + k] =
-                    lobe.fresnel(cosine) * bounded(lobe.density(squaredSlope) * visible);
-            }
-        }
+    void evalBatch(const TermBatch& batch) const override {
+        HWY_DYNAMIC_DISPATCH(evalSgd)(shape_, batch);
+    }
+    void evalBatchScalar(const TermBatch& batch) const override {
+        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::SgdTerms>(shape_, batch);
     }
 
 private:
-    std::vector<ShiftedGamma> lobes_;
+    SgdShape shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

@@ -1,7 +1,6 @@
 #include <brdfs/analytic/term_brdf.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <limits>
 
@@ -52,7 +51,7 @@ TermBrdf::TermBrdf(const Model& model, const Parameters& parameters, Laws laws,
       source_(model.source),
       laws_(laws),
       termCount_(weights.size()) {
-    assert(weights.size() <= maxTerms);
+    assert(weights.size() <= TermBatch::maxTerms);
     const std::string values = parameters.canonical();
     if (!values.empty()) name_ += ":" + values;
 
@@ -65,38 +64,29 @@ TermBrdf::TermBrdf(const Model& model, const Parameters& parameters, Laws laws,
     }
 }
 
+TermBatch TermBrdf::batch(const Direction& wo, const DirectionBatch& wi, double* out) const {
+    return {wo, wi, out, constant_.size(), termCount_, constant_.data(), weights_.data()};
+}
+
 void TermBrdf::eval(const Direction& wo, DirectionBatch wi, double* out) const {
-    const std::size_t channels = constant_.size();
-    if (!(wo.z > 0)) {
-        std::fill(out, out + channels * wi.count, 0.0);
-        return;
-    }
-    constexpr double most = std::numeric_limits<double>::max();
-    std::array<double, maxTerms * blockSize> buffer;
-    for (std::size_t start = 0; start < wi.count; start += blockSize) {
-        const DirectionBatch part{wi.x + start, wi.y + start, wi.z + start,
-                                  std::min(blockSize, wi.count - start)};
-        if (termCount_ > 0) terms(wo, part, buffer.data());
-        for (std::size_t i = 0; i < termCount_ * part.count; ++i)
-            buffer[i] = buffer[i] > most ? most : buffer[i];
-        for (std::size_t c = 0; c < channels; ++c) {
-            const double* weights = weights_.data() + c * termCount_;
-            double* values = out + c * wi.count + start;
-            std::fill(values, values + part.count, constant_[c]);
-            for (std::size_t t = 0; t < termCount_; ++t)
-                for (std::size_t k = 0; k < part.count; ++k)
-                    values[k] += weights[t] * buffer[t * part.count + k];
-            for (std::size_t k = 0; k < part.count; ++k)
-                values[k] = part.z[k] > 0 ? std::clamp(values[k], 0.0, most) : 0.0;
-        }
-    }
+    if (wo.z > 0)
+        evalBatch(batch(wo, wi, out));
+    else
+        std::fill_n(out, constant_.size() * wi.count, 0.0);
+}
+
+void TermBrdf::evalScalar(const Direction& wo, DirectionBatch wi, double* out) const {
+    if (wo.z > 0)
+        evalBatchScalar(batch(wo, wi, out));
+    else
+        std::fill_n(out, constant_.size() * wi.count, 0.0);
 }
 
 std::vector<Fact> TermBrdf::facts() const {
     return {{"model", model_}, {"source", source_}};
 }
 
-double bounded(double value) {
+double atMostLargest(double value) {
     return std::min(value, std::numeric_limits<double>::max());
 }
 

@@ -19,30 +19,52 @@ Colour overPi(const Colour& a);
 /// `colour` itself.
 std::vector<Colour> eachInItsChannel(const Colour& colour, std::size_t count);
 
+/// +inf becomes the largest double.
+double atMostLargest(double value);
+
+/// One call of TermBrdf::eval, for wo.z > 0: `constant` [channel], `weights` [channel][term].
+struct TermBatch {
+    static constexpr std::size_t maxTerms = 4, maxChannels = 3;
+
+    const Direction& wo;
+    DirectionBatch wi;
+    double* out;
+    std::size_t channels, terms;
+    const double* constant;
+    const double* weights;
+};
+
 /// What the analytic models share: a constant plus terms that all channels have in common,
 ///     f_c(wi, wo) = constant_c + sum_t weight_{t,c} T_t(wi, wo).
 /// Grey if every colour has one value, else rgb. Values beyond the largest double are cut to it,
 /// and to 0 from below, so that f is finite and non-negative for every pair of unit directions.
+///
+/// A model states its terms as a formula in any number T (term_batch.h). `eval` takes them in
+/// vectors, with the widest instructions of the machine, a single direction as well: f of a
+/// direction has the same bits wherever it stands in a batch.
 class TermBrdf : public Brdf {
 public:
     std::string name() const override { return name_; }
     const Channels& channels() const override { return channels_; }
     const Laws& laws() const override { return laws_; }
     void eval(const Direction& wo, DirectionBatch wi, double* out) const final;
+    /// The same with double and the C++ library's functions: what vectors are held against.
+    void evalScalar(const Direction& wo, DirectionBatch wi, double* out) const;
     std::vector<Fact> facts() const override;
 
 protected:
-    /// `laws` of this instance: those of the table line, or more. At most `maxTerms` weights.
+    /// `laws` of this instance: those of the table line, or more. At most TermBatch::maxTerms
+    /// weights.
     TermBrdf(const Model& model, const Parameters& parameters, Laws laws, const Colour& constant,
              const std::vector<Colour>& weights);
 
-    /// out[t * wi.count + k] = T_t(wi_k, wo), for wo.z > 0 and at most `blockSize` directions. What
-    /// is written where wi.z <= 0 is ignored; +inf is cut to the largest double; never NaN above.
-    virtual void terms(const Direction& wo, DirectionBatch wi, double* out) const = 0;
-
-    static constexpr std::size_t blockSize = 256, maxTerms = 4;
+    /// Fill `batch.out`: by vectors, and by double.
+    virtual void evalBatch(const TermBatch& batch) const = 0;
+    virtual void evalBatchScalar(const TermBatch& batch) const = 0;
 
 private:
+    TermBatch batch(const Direction& wo, const DirectionBatch& wi, double* out) const;
+
     std::string name_, model_, source_;
     Channels channels_;
     Laws laws_;
@@ -50,8 +72,5 @@ private:
     std::vector<double> weights_;   ///< [channel][term]
     std::size_t termCount_;
 };
-
-/// +inf becomes the largest double, so that a factor 0 met later gives 0 and not NaN.
-double bounded(double value);
 
 }  // namespace hshfit::brdfs
