@@ -179,6 +179,31 @@ void foldMany(const double* ring, const double* mirror, std::size_t azimuths, do
     }
 }
 
+void ringDirections(const RingDirections& ring, double sinTheta, double cosTheta,
+                    double* HWY_RESTRICT x, double* HWY_RESTRICT y, double* HWY_RESTRICT z) {
+    const Tag d;
+    const std::size_t lanes = hn::Lanes(d);
+    const Vec height = hn::Set(d, cosTheta);
+    for (std::size_t quadrant = 0; quadrant < ring.quadrants; ++quadrant) {
+        const double sx = quadrant % 2 == 0 ? sinTheta : -sinTheta;
+        const double sy = quadrant < 2 ? sinTheta : -sinTheta;
+        std::size_t j = 0;
+        for (; j + lanes <= ring.count; j += lanes) {
+            hn::StoreU(hn::Mul(hn::Set(d, sx), hn::LoadU(d, ring.cosine + j)), d, x + j);
+            hn::StoreU(hn::Mul(hn::Set(d, sy), hn::LoadU(d, ring.sine + j)), d, y + j);
+            hn::StoreU(height, d, z + j);
+        }
+        for (; j < ring.count; ++j) {
+            x[j] = sx * ring.cosine[j];
+            y[j] = sy * ring.sine[j];
+            z[j] = cosTheta;
+        }
+        x += ring.count;
+        y += ring.count;
+        z += ring.count;
+    }
+}
+
 /// `load` and `store` take what is left at the end of the quadrant with a mask.
 template <bool Half, class Load, class Store>
 HWY_INLINE Vec foldOnce(const double* values, std::size_t count, std::size_t k,
@@ -237,6 +262,7 @@ namespace hshfit {
 
 HWY_EXPORT(rowProducts);
 HWY_EXPORT(columnProducts);
+HWY_EXPORT(ringDirections);
 HWY_EXPORT(interleave);
 HWY_EXPORT(foldMany);
 HWY_EXPORT(foldWhole);
@@ -249,6 +275,11 @@ void addRowProducts(RowBlock a, RowBlock b, std::size_t depth, double* out, std:
 void addColumnProducts(RowBlock a, const double* b, std::size_t depth, double* out,
                        std::size_t outStride) {
     HWY_DYNAMIC_DISPATCH(columnProducts)(a, b, depth, out, outStride);
+}
+
+void fillRing(const RingDirections& ring, double sinTheta, double cosTheta, double* x, double* y,
+              double* z) {
+    HWY_DYNAMIC_DISPATCH(ringDirections)(ring, sinTheta, cosTheta, x, y, z);
 }
 
 void interleaveFunctions(const double* rows, std::size_t functions, std::size_t stride,

@@ -29,6 +29,15 @@ double foldRing(const double* values, std::size_t count, const QuadrantFold& out
 /// are left alone, and the sum of squares is that of the half ring.
 double foldHalfRing(const double* values, std::size_t count, const QuadrantFold& out);
 
+/// Directions of one ring, quadrant after quadrant in the order of QuadrantFold: `quadrants` is 4,
+/// or 2 for half a ring. `cosine` and `sine` are those of the first quadrant's azimuths.
+struct RingDirections {
+    const double *cosine, *sine;
+    std::size_t count, quadrants;
+};
+void fillRing(const RingDirections& ring, double sinTheta, double cosTheta, double* x, double* y,
+              double* z);
+
 /// Functions side by side, innermost in memory: as many as full vectors of every size take.
 constexpr std::size_t lanesOfFunctions = 24;
 

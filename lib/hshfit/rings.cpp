@@ -136,15 +136,11 @@ private:
         growTo(w.x, offset + points);
         growTo(w.y, offset + points);
         growTo(w.z, offset + points);
-        double *x = w.x.data() + offset, *y = w.y.data() + offset, *z = w.z.data() + offset;
+        const RingDirections ring{table.cosine.data(), table.sine.data(), count, quadrants()};
         for (std::size_t r = run.firstRing; r < run.firstRing + run.rings; ++r) {
-            const double s = grid_.sines[r];
-            for (std::size_t k = 0; k < quadrants(); ++k, x += count, y += count, z += count) {
-                const double sx = k % 2 == 0 ? s : -s, sy = k < 2 ? s : -s;
-                for (std::size_t j = 0; j < count; ++j) x[j] = sx * table.cosine[j];
-                for (std::size_t j = 0; j < count; ++j) y[j] = sy * table.sine[j];
-                std::fill_n(z, count, grid_.elevations[r].mu);
-            }
+            fillRing(ring, grid_.sines[r], grid_.elevations[r].mu, w.x.data() + offset,
+                     w.y.data() + offset, w.z.data() + offset);
+            offset += count * quadrants();
         }
     }
 
