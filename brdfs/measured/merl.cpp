@@ -1,4 +1,3 @@
-#include <brdfs/measured/angles.h>
 #include <brdfs/measured/merl.h>
 #include <hshfit/error.h>
 
@@ -16,7 +15,7 @@ static_assert(std::endian::native == std::endian::little, "MERL files are little
 
 namespace {
 
-constexpr std::size_t blockSize = 64;
+constexpr std::size_t blockSize = MerlIndices::size;
 /// Evaluations between asking for cells and using them; 4 to 8 are equally good (measured_eval in
 /// bench/), without it an evaluation takes half as long again.
 constexpr std::size_t prefetchDistance = 6;
@@ -56,64 +55,6 @@ bool isValue(double v) {
 
 }  // namespace
 
-/// Fractional indices of a block of direction pairs.
-struct MerlBrdf::Indices {
-    double h[blockSize], d[blockSize], p[blockSize];
-
-    void set(const Direction& wo, const DirectionBatch& wi, std::size_t begin, std::size_t count,
-             bool reciprocal);
-    /// To the nearest nodes.
-    void round(std::size_t count, std::size_t azimuths);
-};
-
-// With u = wi + wo and v = wi - wo (so that h = u/|u|, and v is at right angles to it):
-//     theta_h = atan2(|u_xy|, u_z),    theta_d = atan2(|v|, |u|),
-//     phi_d = atan2((u x v)_z, -|u| v_z)      and (u x v)_z = 2 (wo x wi)_z.
-// One short loop per angle, over arrays that cannot overlap: the compiler vectorises these.
-void MerlBrdf::Indices::set(const Direction& wo, const DirectionBatch& wi, std::size_t begin,
-                            std::size_t count, bool reciprocal) {
-    double x[blockSize], y[blockSize], z[blockSize];
-    std::copy_n(wi.x + begin, count, x);
-    std::copy_n(wi.y + begin, count, y);
-    std::copy_n(wi.z + begin, count, z);
-    double ux[blockSize], uz[blockSize], u[blockSize], v[blockSize];
-    double sine[blockSize], cosine[blockSize];
-    for (std::size_t k = 0; k < count; ++k) {
-        const double sx = x[k] + wo.x, sy = y[k] + wo.y, sz = z[k] + wo.z;
-        const double dx = x[k] - wo.x, dy = y[k] - wo.y, dz = z[k] - wo.z;
-        const double across2 = sx * sx + sy * sy;
-        ux[k] = std::sqrt(across2);
-        uz[k] = std::max(sz, 0.0);
-        u[k] = std::sqrt(across2 + sz * sz);
-        v[k] = std::sqrt(dx * dx + dy * dy + dz * dz);
-        // Both are 0 but for rounding where h is the normal or wi = wo: any phi_d is right
-        // there, but it has to be the same one when the pair turns about the normal.
-        const double defined = across2 > 1e-28 ? 1.0 : 0.0;
-        sine[k] = 2 * (wo.x * y[k] - x[k] * wo.y) * defined;
-        cosine[k] = -dz * u[k] * defined;
-    }
-    for (std::size_t k = 0; k < count; ++k) {
-        h[k] = std::sqrt(16200 / pi * quadrantAngle(ux[k], uz[k]));
-    }
-    for (std::size_t k = 0; k < count; ++k) d[k] = 180 / pi * quadrantAngle(v[k], u[k]);
-    if (reciprocal) {
-        for (std::size_t k = 0; k < count; ++k) p[k] = 180 / pi * lineAngle(sine[k], cosine[k]);
-        return;
-    }
-    for (std::size_t k = 0; k < count; ++k) {
-        const double angle = 180 / pi * rayAngle(sine[k], cosine[k]);
-        p[k] = angle < 0 ? angle + 360 : angle;
-    }
-}
-
-void MerlBrdf::Indices::round(std::size_t count, std::size_t azimuths) {
-    for (std::size_t k = 0; k < count; ++k) {
-        h[k] = std::min(std::floor(h[k] + 0.5), 89.0);
-        d[k] = std::min(std::floor(d[k] + 0.5), 89.0);
-        p[k] = static_cast<double>(static_cast<std::size_t>(p[k] + 0.5) % azimuths);
-    }
-}
-
 MerlBrdf::MerlBrdf(const std::string& path, MerlInterpolation interpolation)
     : file_(path), interpolation_(interpolation), layout_(checkedLayout(file_)) {
     laws_.nonNegative = true;
@@ -145,38 +86,7 @@ void MerlBrdf::remember(std::size_t channel, std::size_t cell) const {
                        std::memory_order_relaxed);
 }
 
-/// The eight cells around each of a block of positions: four rows in phi_d (h and d, each at both
-/// ends), two cells of each row, and the fractions between them.
-struct MerlBrdf::Corners {
-    std::uint32_t row[4][blockSize];
-    std::uint32_t p0[blockSize], p1[blockSize];
-    double th[blockSize], td[blockSize], tp[blockSize];
-
-    void set(const Indices& at, std::size_t count, const MerlLayout& layout) {
-        const auto azimuths = static_cast<std::int32_t>(layout.azimuthCount);
-        const std::int32_t hStep =
-            azimuths * static_cast<std::int32_t>(MerlLayout::differenceCount);
-        for (std::size_t k = 0; k < count; ++k) {
-            // Beyond node 89 both ends are that node; a whole turn is node 0 again.
-            const std::int32_t h = std::min(static_cast<std::int32_t>(at.h[k]), 89);
-            const std::int32_t d = std::min(static_cast<std::int32_t>(at.d[k]), 89);
-            const std::int32_t p = static_cast<std::int32_t>(at.p[k]);
-            const std::int32_t low = h * hStep + d * azimuths;
-            const std::int32_t dStep = d < 89 ? azimuths : 0, up = h < 89 ? hStep : 0;
-            th[k] = at.h[k] - h;
-            td[k] = at.d[k] - d;
-            tp[k] = at.p[k] - p;
-            row[0][k] = static_cast<std::uint32_t>(low);
-            row[1][k] = static_cast<std::uint32_t>(low + dStep);
-            row[2][k] = static_cast<std::uint32_t>(low + up);
-            row[3][k] = static_cast<std::uint32_t>(low + up + dStep);
-            p0[k] = static_cast<std::uint32_t>(p < azimuths ? p : 0);
-            p1[k] = static_cast<std::uint32_t>(p < azimuths - 1 ? p + 1 : p - (azimuths - 1));
-        }
-    }
-};
-
-inline void MerlBrdf::prefetch(const Corners& at, std::size_t k) const {
+inline void MerlBrdf::prefetch(const MerlCorners& at, std::size_t k) const {
     for (std::size_t c = 0; c < 3; ++c) {
         const std::size_t first = c * layout_.cells() + at.p0[k];
         for (const auto& row : at.row) {
@@ -186,7 +96,7 @@ inline void MerlBrdf::prefetch(const Corners& at, std::size_t k) const {
     }
 }
 
-double MerlBrdf::averageOfValid(const Corners& at, std::size_t k, const double (&across)[4],
+double MerlBrdf::averageOfValid(const MerlCorners& at, std::size_t k, const double (&across)[4],
                                 std::size_t channel) const {
     double sum = 0, weight = 0;
     for (int i = 0; i < 8; ++i) {
@@ -204,7 +114,7 @@ double MerlBrdf::averageOfValid(const Corners& at, std::size_t k, const double (
     return weight > 0 ? sum / weight : 0;
 }
 
-inline MerlBrdf::Pair MerlBrdf::rawPair(std::size_t channel, const Corners& at, int row,
+inline MerlBrdf::Pair MerlBrdf::rawPair(std::size_t channel, const MerlCorners& at, int row,
                                         std::size_t k) const {
     const std::size_t first = at.row[row][k] + at.p0[k];
     if (at.p1[k] == 0) [[unlikely]] {
@@ -218,7 +128,7 @@ inline MerlBrdf::Pair MerlBrdf::rawPair(std::size_t channel, const Corners& at, 
     return pair;
 }
 
-inline void MerlBrdf::interpolateLinear(const Corners& at, std::size_t k, double* out,
+inline void MerlBrdf::interpolateLinear(const MerlCorners& at, std::size_t k, double* out,
                                         std::size_t stride) const {
     const double th = at.th[k], td = at.td[k], tp = at.tp[k];
     const double across[4] = {(1 - th) * (1 - td), (1 - th) * td, th * (1 - td), th * td};
@@ -239,7 +149,7 @@ inline void MerlBrdf::interpolateLinear(const Corners& at, std::size_t k, double
     }
 }
 
-inline void MerlBrdf::lookUpNearest(const Indices& at, std::size_t k, double* out,
+inline void MerlBrdf::lookUpNearest(const MerlIndices& at, std::size_t k, double* out,
                                     std::size_t stride) const {
     const std::size_t cell =
         layout_.cell(static_cast<unsigned>(at.h[k]), static_cast<unsigned>(at.d[k]),
@@ -256,12 +166,12 @@ void MerlBrdf::eval(const Direction& wo, DirectionBatch wi, double* out) const {
         std::fill_n(out, 3 * wi.count, 0.0);
         return;
     }
-    Indices at;
-    Corners corners;
+    MerlIndices at;
+    MerlCorners corners;
     const bool linear = interpolation_ == MerlInterpolation::linear;
     for (std::size_t begin = 0; begin < wi.count; begin += blockSize) {
         const std::size_t count = std::min(blockSize, wi.count - begin);
-        at.set(wo, wi, begin, count, layout_.azimuthCount == 180);
+        at.set(wo, {wi.x + begin, wi.y + begin, wi.z + begin, count}, layout_);
         if (linear) {
             corners.set(at, count, layout_);
         } else {
@@ -283,7 +193,7 @@ void MerlBrdf::eval(const Direction& wo, DirectionBatch wi, double* out) const {
     }
 }
 
-bool MerlBrdf::rests(const Corners& at, std::size_t k) const {
+bool MerlBrdf::rests(const MerlCorners& at, std::size_t k) const {
     int valid = 0;
     for (std::size_t c = 0; c < 3; ++c) {
         bool any = false;
@@ -299,11 +209,11 @@ bool MerlBrdf::rests(const Corners& at, std::size_t k) const {
 }
 
 void MerlBrdf::coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const {
-    Indices at;
-    Corners corners;
+    MerlIndices at;
+    MerlCorners corners;
     for (std::size_t begin = 0; begin < wi.count; begin += blockSize) {
         const std::size_t count = std::min(blockSize, wi.count - begin);
-        at.set(wo, wi, begin, count, layout_.azimuthCount == 180);
+        at.set(wo, {wi.x + begin, wi.y + begin, wi.z + begin, count}, layout_);
         if (interpolation_ == MerlInterpolation::nearest) at.round(count, layout_.azimuthCount);
         corners.set(at, count, layout_);
         for (std::size_t k = 0; k < count; ++k) {

@@ -3,6 +3,7 @@
 #include <brdfs/catalog.h>
 #include <brdfs/measured/measured_brdf.h>
 #include <brdfs/measured/merl_layout.h>
+#include <brdfs/measured/merl_positions.h>
 #include <hshfit/mapped_file.h>
 
 #include <atomic>
@@ -54,18 +55,17 @@ public:
     double stored(std::size_t channel, std::size_t cell) const;
 
 private:
-    struct Indices;
-    struct Corners;
-    void prefetch(const Corners& at, std::size_t k) const;
-    void interpolateLinear(const Corners& at, std::size_t k, double* out, std::size_t stride) const;
-    void lookUpNearest(const Indices& at, std::size_t k, double* out, std::size_t stride) const;
-    bool rests(const Corners& at, std::size_t k) const;
-    double averageOfValid(const Corners& at, std::size_t k, const double (&across)[4],
+    void prefetch(const MerlCorners& at, std::size_t k) const;
+    void interpolateLinear(const MerlCorners& at, std::size_t k, double* out,
+                           std::size_t stride) const;
+    void lookUpNearest(const MerlIndices& at, std::size_t k, double* out, std::size_t stride) const;
+    bool rests(const MerlCorners& at, std::size_t k) const;
+    double averageOfValid(const MerlCorners& at, std::size_t k, const double (&across)[4],
                           std::size_t channel) const;
     /// Two cells of a row, in one vector register.
     using Pair [[gnu::vector_size(16)]] = double;
     using PairBits [[gnu::vector_size(16)]] = std::int64_t;
-    Pair rawPair(std::size_t channel, const Corners& at, int row, std::size_t k) const;
+    Pair rawPair(std::size_t channel, const MerlCorners& at, int row, std::size_t k) const;
     double raw(std::size_t channel, std::size_t cell) const;
     void remember(std::size_t channel, std::size_t cell) const;
 

@@ -8,8 +8,13 @@
 #include <cmath>
 #include <utility>
 
+#define HWY_TARGET_INCLUDE "brdfs/measured/rgl_eval_lanes.h"
+#include <brdfs/lanes/each_target.h>
+
 namespace hshfit::brdfs {
 namespace {
+
+HWY_EXPORT(evalRgl);
 
 constexpr std::size_t blockSize = 64;
 
@@ -142,6 +147,13 @@ inline void RglBrdf::evalAt(const Block& block, std::size_t k, double cosine, do
 }
 
 void RglBrdf::eval(const Direction& wo, DirectionBatch wi, double* out) const {
+    if (wo.z > 0 && tables_.spectra.channels == 3)
+        HWY_DYNAMIC_DISPATCH(evalRgl)(tables_, wo, wi, out);
+    else
+        evalScalar(wo, wi, out);
+}
+
+void RglBrdf::evalScalar(const Direction& wo, DirectionBatch wi, double* out) const {
     const std::size_t channelCount = tables_.spectra.channels;
     if (!(wo.z > 0)) {
         std::fill_n(out, channelCount * wi.count, 0.0);

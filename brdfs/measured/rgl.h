@@ -68,6 +68,9 @@ public:
     const Channels& channels() const override { return tables_.channels; }
     const Laws& laws() const override { return laws_; }
     void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
+    /// The same without vector instructions of a run-time choice: what eval is held against for
+    /// RGB, and what it does for spectra.
+    void evalScalar(const Direction& wo, DirectionBatch wi, double* out) const;
 
     /// Covered are incident directions between the file's first and last: beyond them the table is
     /// continued constantly. Which of the vertices were measured the files do not tell reliably.

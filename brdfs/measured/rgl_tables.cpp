@@ -27,22 +27,6 @@ Between locate(const std::vector<double>& nodes, double value) {
 
 }  // namespace
 
-GridPosition::GridPosition(double u, double v, std::size_t columns, std::size_t rows) {
-    const double x = std::clamp(u, 0.0, 1.0) * static_cast<double>(columns - 1);
-    const double y = std::clamp(v, 0.0, 1.0) * static_cast<double>(rows - 1);
-    column = std::min<std::size_t>(static_cast<unsigned>(x), columns - 2);
-    row = std::min<std::size_t>(static_cast<unsigned>(y), rows - 2);
-    a = x - static_cast<double>(column);
-    b = y - static_cast<double>(row);
-}
-
-double Plane::at(double u, double v) const {
-    const GridPosition p(u, v, columns, rows);
-    const float* corner = values.data() + p.row * columns + p.column;
-    return lerp(p.b, lerp(p.a, corner[0], corner[1]),
-                lerp(p.a, corner[columns], corner[columns + 1]));
-}
-
 Slices IncidentGrid::slices(double phiIncident, double thetaIncident) const {
     const Between p = locate(phi, phiIncident), t = locate(theta, thetaIncident);
     Slices slices;
@@ -64,7 +48,7 @@ VisibleNormals::VisibleNormals(const std::vector<float>& densities, std::size_t 
     : rows_(rows), columns_(columns) {
     const std::size_t slices = densities.size() / (rows * columns);
     vertices_.reserve(densities.size());
-    below_.reserve(slices * rows);
+    rowSums_.reserve(slices * rows);
     for (std::size_t s = 0; s < slices; ++s) {
         double square = 0, lastRow = 0;
         for (std::size_t r = 0; r < rows; ++r) {
@@ -75,7 +59,7 @@ VisibleNormals::VisibleNormals(const std::vector<float>& densities, std::size_t 
                 vertices_.push_back({density[c], static_cast<float>(row)});
             }
             if (r > 0) square += 0.5 * (lastRow + row);
-            below_.push_back(static_cast<float>(square));
+            rowSums_.push_back({static_cast<float>(row), static_cast<float>(square)});
             lastRow = row;
         }
         scale_.push_back(1 / square);
@@ -98,7 +82,7 @@ VisibleNormals::Point VisibleNormals::invert(double u, double v, const Slices& s
         before += weight * lerp(p.b, lower[p.column].before, upper[p.column].before);
         rowBelow += weight * lower[columns_ - 1].before;
         rowAbove += weight * upper[columns_ - 1].before;
-        below += weight * below_[row];
+        below += weight * rowSums_[row].below;
     }
     const double whole = lerp(p.b, rowBelow, rowAbove);
     const double part = before + p.a * (low + 0.5 * p.a * (high - low));
@@ -117,14 +101,16 @@ double inverseTrapezoid(double low, double high, double area) {
 }  // namespace
 
 VisibleNormals::Point VisibleNormals::sample(double x, double y, std::size_t slice) const {
-    const float* below = below_.data() + slice * rows_;
+    const RowSum* sums = rowSums_.data() + slice * rows_;
     const double area = std::clamp(y, 0.0, 1.0) / scale_[slice];
-    const auto above = std::upper_bound(below + 1, below + rows_ - 1, area);
-    const auto row = static_cast<std::size_t>(above - below) - 1;
+    const auto above =
+        std::upper_bound(sums + 1, sums + rows_ - 1, area,
+                         [](double wanted, const RowSum& sum) { return wanted < sum.below; });
+    const auto row = static_cast<std::size_t>(above - sums) - 1;
     const Vertex* lower = vertices_.data() + (slice * rows_ + row) * columns_;
     const Vertex* upper = lower + columns_;
-    const double b =
-        inverseTrapezoid(lower[columns_ - 1].before, upper[columns_ - 1].before, area - below[row]);
+    const double b = inverseTrapezoid(lower[columns_ - 1].before, upper[columns_ - 1].before,
+                                      area - sums[row].below);
 
     const auto before = [&](std::size_t c) { return lerp(b, lower[c].before, upper[c].before); };
     const double whole = before(columns_ - 1), part = std::clamp(x, 0.0, 1.0) * whole;
@@ -149,6 +135,11 @@ double VisibleNormals::density(double u, double v, std::size_t slice) const {
     return cells * scale_[slice] *
            lerp(p.b, lerp(p.a, lower[0].density, lower[1].density),
                 lerp(p.a, upper[0].density, upper[1].density));
+}
+
+VisibleNormals::View VisibleNormals::view() const {
+    static_assert(sizeof(Vertex) == 2 * sizeof(float) && sizeof(RowSum) == 2 * sizeof(float));
+    return {&vertices_.data()->density, &rowSums_.data()->whole, scale_.data(), rows_, columns_};
 }
 
 std::vector<float> VisibleNormals::densities() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +17,14 @@ struct GridPosition {
     std::size_t column, row;
     double a, b;  ///< from the cell's lower corner, 0 to 1, along u and v
 
-    GridPosition(double u, double v, std::size_t columns, std::size_t rows);
+    GridPosition(double u, double v, std::size_t columns, std::size_t rows) {
+        const double x = std::clamp(u, 0.0, 1.0) * static_cast<double>(columns - 1);
+        const double y = std::clamp(v, 0.0, 1.0) * static_cast<double>(rows - 1);
+        column = std::min<std::size_t>(static_cast<unsigned>(x), columns - 2);
+        row = std::min<std::size_t>(static_cast<unsigned>(y), rows - 2);
+        a = x - static_cast<double>(column);
+        b = y - static_cast<double>(row);
+    }
 };
 
 /// A plain table over the square.
@@ -24,7 +32,14 @@ struct Plane {
     std::size_t rows = 0, columns = 0;
     std::vector<float> values;  ///< row by row
 
-    double at(double u, double v) const;
+    double at(double u, double v) const {
+        const GridPosition p(u, v, columns, rows);
+        const float* corner = values.data() + p.row * columns + p.column;
+        const double lower = corner[0] + p.a * (double{corner[1]} - corner[0]);
+        const double upper =
+            corner[columns] + p.a * (double{corner[columns + 1]} - corner[columns]);
+        return lower + p.b * (upper - lower);
+    }
 };
 
 /// Up to four slices of a table that depends on wi, with the weights of a bilinear interpolation
@@ -68,14 +83,27 @@ public:
     std::size_t rows() const { return rows_; }
     std::size_t columns() const { return columns_; }
 
+    /// The tables behind `invert`, for evaluation in batches.
+    struct View {
+        const float* vertices;  ///< [slice][row][column]{density, before}
+        const float* rowSums;   ///< [slice][row]{whole, below}
+        const double* scale;    ///< [slice]
+        std::size_t rows, columns;
+    };
+    View view() const;
+
 private:
     struct Vertex {
         float density;
         float before;  ///< integral over the row up to here, in units of columns
     };
+    struct RowSum {
+        float whole;  ///< integral over the row, in units of columns
+        float below;  ///< integral over the rows up to here
+    };
     std::size_t rows_, columns_;
     std::vector<Vertex> vertices_;  ///< [slice][row][column]
-    std::vector<float> below_;      ///< [slice][row]: integral over the rows up to here
+    std::vector<RowSum> rowSums_;   ///< [slice][row]
     std::vector<double> scale_;     ///< [slice]: 1 / integral over the square
 };
 

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <brdfs/measured/merl_layout.h>
+#include <hshfit/directions.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace hshfit::brdfs {
+
+/// Fractional indices (h, d, p) of a block of direction pairs in a MERL table (merl_layout.h),
+/// within 1e-9. At most `size` directions; arrays are written in whole registers, so that what lies
+/// behind `count` is of no meaning.
+struct MerlIndices {
+    static constexpr std::size_t size = 64;
+
+    double h[size], d[size], p[size];
+
+    void set(const Direction& wo, DirectionBatch wi, const MerlLayout& layout);
+    /// To the nearest nodes.
+    void round(std::size_t count, std::size_t azimuths);
+};
+
+/// The eight cells around each of a block of positions: four rows in phi_d (h and d, each at both
+/// ends), two cells of each row, and the fractions between them.
+struct MerlCorners {
+    std::uint32_t row[4][MerlIndices::size];
+    std::uint32_t p0[MerlIndices::size], p1[MerlIndices::size];
+    double th[MerlIndices::size], td[MerlIndices::size], tp[MerlIndices::size];
+
+    void set(const MerlIndices& at, std::size_t count, const MerlLayout& layout);
+};
+
+}  // namespace hshfit::brdfs
