@@ -204,6 +204,15 @@ void projection(benchmark::State& state, double tolerance) {
     state.counters["textbook_ratio_asked"] = textbook().secondsTo(tolerance) / seconds;
     state.counters["shared_ratio_reached"] = shared().secondsTo(error.value()) / seconds;
     state.counters["shared_ratio_asked"] = shared().secondsTo(tolerance) / seconds;
+    // The same directions with 10,000 samples each, whatever the error.
+    constexpr double usual = 10000;
+    state.counters["textbook_ratio_usual"] = textbook().seconds * (usual / samples) / seconds;
+    state.counters["textbook_error_usual"] = textbook().error * std::sqrt(samples / usual);
+    // Its evaluations at the error that the projection reached.
+    const double ratio = textbook().error / error.value();
+    state.counters["evaluations_share"] =
+        static_cast<double>(result.evaluations) /
+        (static_cast<double>(samples * problem().outgoing.size()) * ratio * ratio);
 }
 
 BENCHMARK_CAPTURE(monteCarlo, textbook, textbook)

@@ -14,7 +14,7 @@ namespace hshfit {
 
 struct ProjectionOptions {
     Quantity quantity = Quantity::brdf;
-    /// Relative agreement of two quadrature levels in energy and coefficients;
+    /// Relative error of the quadrature in energy and coefficients, as its levels show it;
     /// 0 takes the BRDF's own default (1e-6 for analytic models).
     double tolerance = 0;
     /// BRDF evaluations per outgoing direction after which refinement gives up: bounds the time.
@@ -36,8 +36,8 @@ struct Projection {
 /// (Gautron et al. 2004, Eq. 17), in the inner product of each basis.
 ///
 /// The grid has Gauss-Legendre nodes in u = sqrt(cos theta), graded towards the BRDF's lobes, times
-/// equispaced azimuths; it is refined until two levels agree to the tolerance. One azimuth
-/// transform serves all bases. Isotropy and mirror symmetry leave out outgoing directions and sine
+/// equispaced azimuths; it is refined until the error that its levels show is within the tolerance
+/// (refinement.h). One azimuth transform serves all bases. Isotropy and mirror symmetry leave out outgoing directions and sine
 /// terms. Runs on all threads that oneTBB has; results do not depend on their number.
 ///
 /// Throws NumericError where the coefficients do not exist or do not converge, or where f is not
