@@ -19,7 +19,7 @@ namespace hshfit {
 namespace {
 
 constexpr int mostRounds = 60;
-constexpr std::size_t mostPerRound = 200;       // of the lowest minima
+constexpr std::size_t mostPerRound = 400;       // of the lowest minima
 constexpr double lowestRing = 89 * (pi / 180);  // as far down as outgoing directions are kept
 
 /// theta_i, phi_i, theta_o, phi_o.
@@ -73,15 +73,17 @@ public:
         Pair pair;
         double value;
     };
-    /// Local minima over all four angles with a value below the threshold, refined.
+    /// Local minima over all four angles, refined; `thorough`: floors of valleys over wi for every
+    /// wo as well.
     std::vector<Minimum> minima(const std::vector<double>& values, const Brdf* added,
-                                std::size_t channel, double threshold) const {
+                                std::size_t channel, double scale, bool thorough) const {
+        const double threshold = (thorough ? 0.03 : 0.1) * scale;
         std::vector<std::vector<double>> sums(polar_.size() * azimuths_.size());
         for (std::size_t o = 0; o < sums.size(); ++o) sums[o] = sumsAt(values, added, channel, o);
         std::vector<Minimum> found;
         for (std::size_t o = 0; o < sums.size(); ++o) {
-            for (const std::size_t node : scan_.minima(sums[o].data(), threshold)) {
-                if (leastOfNeighbours(sums, o, node)) {
+            for (const std::size_t node : scan_.minima(sums[o].data(), threshold, thorough)) {
+                if (thorough || leastOfNeighbours(sums, o, node)) {
                     found.push_back({pairAt(o, node), sums[o][node]});
                 }
             }
@@ -177,10 +179,11 @@ std::vector<double> nearestMatrix(const PairScan& scan, std::vector<double> valu
     program.solve(1e-12 * norm);
     values = program.x();
     double lift = 0;
-    for (int round = 0; constraints.nonNegative; ++round) {
+    bool thorough = false;
+    for (int round = 0; constraints.nonNegative && round < mostRounds; ++round) {
         bool negative = false;
         lift = 0;
-        for (const auto& each : scan.minima(values, constraints.added, channel, 0.1 * scale)) {
+        for (const auto& each : scan.minima(values, constraints.added, channel, scale, thorough)) {
             if (each.value >= 0) continue;
             const std::vector<double> row = scan.row(each.pair);
             lift = std::max(lift, -each.value / row[0]);
@@ -189,7 +192,11 @@ std::vector<double> nearestMatrix(const PairScan& scan, std::vector<double> valu
             program.add(
                 row, constraints.added ? -scan.addedAt(constraints.added, channel, each.pair) : 0);
         }
-        if (!negative || round == mostRounds) break;
+        if (!negative) {
+            if (thorough) break;
+            thorough = true;
+            continue;
+        }
         program.solve(1e-12 * norm);
         values = program.x();
     }

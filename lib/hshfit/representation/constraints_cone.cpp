@@ -58,8 +58,8 @@ std::vector<double> NonNegativeCone::row(const Direction& wi) const {
 }
 
 std::vector<NonNegativeCone::Minimum> NonNegativeCone::minima(const std::vector<double>& c,
-                                                              const Added& added,
-                                                              double scale) const {
+                                                              const Added& added, double scale,
+                                                              bool thorough) const {
     std::vector<double> values(scan_.size()), at(c.size());
     scan_.synthesise(c.data(), values.data());
     if (added) {
@@ -76,7 +76,8 @@ std::vector<NonNegativeCone::Minimum> NonNegativeCone::minima(const std::vector<
         return product(c, at.data()) + (added ? added(wi) : 0);
     };
     std::vector<Minimum> found;
-    for (const std::size_t node : scan_.minima(values.data(), 0.1 * scale)) {
+    const double threshold = (thorough ? 0.03 : 0.1) * scale;
+    for (const std::size_t node : scan_.minima(values.data(), threshold, thorough)) {
         std::vector<double> x{scan_.polar(node), scan_.azimuth(node)};
         const double least = descend(value, x, axes);
         found.push_back({directionFromAngles(x[0], x[1]), least});
@@ -105,10 +106,11 @@ std::vector<double> NonNegativeCone::nearest(const double* c, const Added& added
     };
     if (limit) solve();
     double lift = 0;
-    for (int round = 0;; ++round) {
+    bool thorough = false;
+    for (int round = 0; round < mostRounds; ++round) {
         bool negative = false;
         lift = 0;
-        for (const Minimum& each : minima(result, added, scale)) {
+        for (const Minimum& each : minima(result, added, scale, thorough)) {
             if (each.value >= 0) continue;
             std::vector<double> first(static_cast<std::size_t>(basis_.slots()));
             basis_.evaluate(each.wi, first.data());
@@ -117,8 +119,13 @@ std::vector<double> NonNegativeCone::nearest(const double* c, const Added& added
             negative = true;
             program.add(row(each.wi), added ? -added(each.wi) : 0);
         }
-        if (!negative || round == mostRounds) break;
-        solve();
+        if (negative) {
+            solve();
+        } else if (thorough) {
+            break;
+        } else {
+            thorough = true;
+        }
     }
     result[0] += lift;
     if (limit) {

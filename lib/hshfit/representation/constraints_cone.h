@@ -30,7 +30,8 @@ public:
 
     /// The coefficients nearest to `c` whose sum plus `added` is at least -1e-6 of its root mean
     /// square everywhere, and within the limit, if any. Directions are added as constraints where
-    /// the sum is negative, until none is found; what rounding leaves is lifted by band 0.
+    /// the sum is negative, first at local minima, then along the floors of valleys, until none is
+    /// found; what the tolerance leaves is lifted by band 0.
     std::vector<double> nearest(const double* c, const Added& added = {},
                                 const Limit* limit = nullptr) const;
 
@@ -39,8 +40,8 @@ private:
         Direction wi;
         double value;
     };
-    std::vector<Minimum> minima(const std::vector<double>& c, const Added& added,
-                                double scale) const;
+    std::vector<Minimum> minima(const std::vector<double>& c, const Added& added, double scale,
+                                bool thorough) const;
     std::vector<double> row(const Direction& wi) const;
 
     const Basis& basis_;

@@ -1,6 +1,8 @@
 #include <hshfit/representation/constraints_scan.h>
 
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace hshfit {
 
@@ -55,9 +57,11 @@ void HemisphereScan::synthesise(const double* c, double* values) const {
     }
 }
 
-std::vector<std::size_t> HemisphereScan::minima(const double* values, double threshold) const {
+std::vector<std::size_t> HemisphereScan::minima(const double* values, double threshold,
+                                                bool alongLines) const {
     const auto rings = static_cast<int>(polar_.size()), around = static_cast<int>(azimuths_.size());
     const auto at = [&](int i, int j) {
+        if (i < 0 || i >= rings) return std::numeric_limits<double>::infinity();
         // Mirrored at both ends where even, else periodic.
         if (even_) {
             j = j < 0 ? -j : j >= around ? 2 * (around - 1) - j : j;
@@ -71,12 +75,13 @@ std::vector<std::size_t> HemisphereScan::minima(const double* values, double thr
         for (int j = 0; j < (i == 0 ? 1 : around); ++j) {
             const double value = at(i, j);
             if (!(value < threshold)) continue;
-            bool least = true;
-            for (int di = -1; di <= 1 && least; ++di) {
-                if (i + di < 0 || i + di >= rings) continue;
-                for (int dj = -1; dj <= 1; ++dj) least &= value <= at(i + di, j + dj);
+            int lines = 0;
+            for (const auto& [di, dj] : {std::pair(0, 1), {1, 0}, {1, 1}, {1, -1}}) {
+                lines += value <= at(i + di, j + dj) && value <= at(i - di, j - dj);
             }
-            if (least) found.push_back(static_cast<std::size_t>(i * around + j));
+            if (alongLines ? lines > 0 : lines == 4) {
+                found.push_back(static_cast<std::size_t>(i * around + j));
+            }
         }
     }
     return found;

@@ -25,8 +25,10 @@ public:
 
     /// values[node] = sum over slots of c B.
     void synthesise(const double* c, double* values) const;
-    /// Nodes with a value below `threshold` that no neighbour undercuts.
-    std::vector<std::size_t> minima(const double* values, double threshold) const;
+    /// Nodes with a value below `threshold` that no neighbour undercuts; `alongLines`: neither of
+    /// the two neighbours along some line of the grid or its diagonals, which finds the floors of
+    /// valleys all along.
+    std::vector<std::size_t> minima(const double* values, double threshold, bool alongLines) const;
 
 private:
     int order_;
