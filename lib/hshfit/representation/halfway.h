@@ -45,7 +45,7 @@ Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
 
 /// The orders whose expansion, stored in `precision`, takes at most `bytes` and has the least error
 /// over pairs that take no part in the fit, of all with 4 to 16, 2 to 8 and 1 to 7 functions. They
-/// are ranked by the residual of one weighted least-squares system; the best three are then fitted
+/// are ranked by the residual of one weighted least-squares system; the best four are then fitted
 /// and quantised. Throws UsageError if not even the smallest fits, and as projectHalfway does.
 HalfwayOrders chooseHalfwayOrders(const Brdf& brdf, std::size_t bytes, Precision precision,
                                   const ProjectionOptions& options = {}, bool reciprocal = false);

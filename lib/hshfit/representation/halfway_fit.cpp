@@ -21,7 +21,7 @@ constexpr std::size_t chunk = 64;
 constexpr double lobeShare = 0.02;
 /// Regularisation, of the mean of the diagonal, and the share of the loss that is left where a
 /// thousandth of it is worth its larger coefficients.
-constexpr double firstRegularisation = 1e-6, worthIt = 0.9;
+constexpr double firstRegularisation = 1e-6, worthIt = 0.95;
 /// Errors below this count as squares: a fiftieth of what fits of measured BRDFs leave.
 constexpr double smallest = 1e-4;
 
@@ -131,40 +131,6 @@ private:
     Eigen::VectorXd right_, weight_;
 };
 
-/// The mean of `lossOf` at each sample and channel, summed in `parts`.
-template <typename LossOf>
-double meanLoss(const HalfwayTerms& terms, const HalfwaySamples& samples,
-                const HalfwayValues& values, const LossOf& lossOf) {
-    const std::size_t channels = samples.channels();
-    std::vector<double> sums(parts, 0.0);
-    tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
-        Eigen::MatrixXd products, now;
-        const std::size_t end = samples.size() * (part + 1) / parts;
-        for (std::size_t first = samples.size() * part / parts; first < end; first += chunk) {
-            const std::size_t count = std::min(chunk, end - first);
-            fillTerms(terms, samples, first, count, products);
-            now.noalias() = products.topRows(values.rows()).transpose() * values;
-            for (std::size_t k = 0; k < count * channels; ++k) {
-                const std::size_t sample = first + k / channels;
-                const double c = samples.cosines[sample], f = samples.values[first * channels + k];
-                const double g = now(static_cast<Eigen::Index>(k / channels),
-                                     static_cast<Eigen::Index>(k % channels));
-                sums[part] += lossOf(sample) * std::abs(std::log1p(f * c) - metricOf(g, c));
-            }
-        }
-    });
-    double total = 0;
-    for (const double sum : sums) total += sum;
-    return total / static_cast<double>(channels);
-}
-
-double weightedLoss(const HalfwayTerms& terms, const HalfwaySamples& samples,
-                    const HalfwayValues& values) {
-    const Weights weights(samples);
-    return meanLoss(terms, samples, values,
-                    [&](std::size_t k) { return weights.at(samples.lobe[k] != 0); });
-}
-
 /// Reweighted least squares from `values`, or from none, down to the least loss.
 struct Descent {
     const HalfwayTerms& terms;
@@ -237,24 +203,45 @@ HalfwayValues solveHalfway(const std::vector<HalfwaySystem>& systems, double reg
 
 HalfwayValues fitHalfway(const HalfwayTerms& terms, const HalfwaySamples& samples,
                          HalfwayValues values) {
-    Descent descent{terms, samples, std::move(values)};
     double regularisation = firstRegularisation;
+    Descent descent{terms, samples, std::move(values)};
     descent.run(regularisation);
     // Small coefficients survive coarse storage: larger ones have to be worth it.
     for (int lower = 0; lower < 2 && descent.loss > 0; ++lower) {
-        const HalfwayValues freer = solveHalfway(descent.systems, regularisation * 1e-3);
-        if (weightedLoss(terms, samples, freer) > worthIt * descent.loss) break;
         regularisation *= 1e-3;
-        descent.values = freer;
-        descent.run(regularisation);
+        Descent freer{terms, samples, solveHalfway(descent.systems, regularisation)};
+        freer.run(regularisation);
+        if (freer.loss > worthIt * descent.loss) break;
+        descent.values = std::move(freer.values);
+        descent.systems = std::move(freer.systems);
+        descent.loss = freer.loss;
     }
     return descent.values;
 }
 
 double halfwayLoss(const HalfwayTerms& terms, const HalfwaySamples& samples,
                    const HalfwayValues& values) {
-    const double weight = 1 / static_cast<double>(samples.size());
-    return meanLoss(terms, samples, values, [&](std::size_t) { return weight; });
+    const std::size_t channels = samples.channels();
+    std::vector<double> sums(parts, 0.0);
+    tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
+        Eigen::MatrixXd products, now;
+        const std::size_t end = samples.size() * (part + 1) / parts;
+        for (std::size_t first = samples.size() * part / parts; first < end; first += chunk) {
+            const std::size_t count = std::min(chunk, end - first);
+            fillTerms(terms, samples, first, count, products);
+            now.noalias() = products.topRows(values.rows()).transpose() * values;
+            for (std::size_t k = 0; k < count * channels; ++k) {
+                const std::size_t sample = first + k / channels;
+                const double c = samples.cosines[sample], f = samples.values[first * channels + k];
+                const double g = now(static_cast<Eigen::Index>(k / channels),
+                                     static_cast<Eigen::Index>(k % channels));
+                sums[part] += std::abs(std::log1p(f * c) - metricOf(g, c));
+            }
+        }
+    });
+    double total = 0;
+    for (const double sum : sums) total += sum;
+    return total / static_cast<double>(samples.values.size());
 }
 
 }  // namespace hshfit

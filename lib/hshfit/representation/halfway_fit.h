@@ -33,7 +33,7 @@ HalfwayPass halfwayPass(const HalfwayTerms& terms, const HalfwaySamples& samples
 HalfwayValues solveHalfway(const std::vector<HalfwaySystem>& systems, double regularisation);
 
 /// Steps until the loss changes by less than a part in 300, from `values` if there are any, with
-/// as much regularisation as does not cost a tenth of the loss.
+/// as much regularisation as costs little (worthIt in halfway_fit.cpp).
 HalfwayValues fitHalfway(const HalfwayTerms& terms, const HalfwaySamples& samples,
                          HalfwayValues values);
 

@@ -178,7 +178,7 @@ HalfwayOrders chooseHalfwayOrders(const Brdf& brdf, std::size_t bytes, Precision
     }
     std::stable_sort(ranked.begin(), ranked.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
-    constexpr std::size_t fitted = 3;
+    constexpr std::size_t fitted = 4;
     double least = std::numeric_limits<double>::infinity();
     HalfwayOrders best;
     for (std::size_t n = 0; n < std::min(fitted, ranked.size()); ++n) {
