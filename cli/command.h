@@ -42,6 +42,7 @@ void addFit(CLI::App& app, Globals& globals);
 void addRender(CLI::App& app, Globals& globals);
 void addLtc(CLI::App& app, Globals& globals);
 void addGaussians(CLI::App& app, Globals& globals);
+void addTradeoff(CLI::App& app, Globals& globals);
 void addPlan(CLI::App& app, Globals& globals);
 void addStress(CLI::App& app, Globals& globals);
 void addImport(CLI::App& app, Globals& globals);

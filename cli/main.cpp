@@ -41,6 +41,7 @@ int run(int argc, char** argv) {
     cli::addRender(app, globals);
     cli::addLtc(app, globals);
     cli::addGaussians(app, globals);
+    cli::addTradeoff(app, globals);
     cli::addPlan(app, globals);
     cli::addStress(app, globals);
     cli::addImport(app, globals);

@@ -220,7 +220,7 @@ void addSweep(CLI::App& command, TradeoffArguments& arguments) {
     list("--forms", arguments.forms, "Of outgoing, basis, halfway (default: all)");
     list("--bases", arguments.bases, "all, or names from hshfit list bases (default: three)");
     list("--orders", arguments.orders, "Orders (default: 3,5,7,10)")->check(CLI::Range(1, 1000));
-    list("--ranks", arguments.ranks, "Ranks of factors, 0 for none (default: 0,1,2,4)")
+    list("--ranks", arguments.ranks, "Ranks of factors, 0 for none (default: 0,2,4)")
         ->check(CLI::Range(0, 1000));
     list("--precisions", arguments.precisions,
          "Of float64, float32, half, unorm16, unorm8 (default: float32,half,unorm8)");
@@ -235,9 +235,9 @@ void addSweep(CLI::App& command, TradeoffArguments& arguments) {
              "WxH, N or THETA,PHI; give it once for each (default: 8, 16, 32; 8x8, 16x16 if "
              "anisotropic)");
     repeated("--halfway", arguments.halfway,
-             "Orders H,D,A of --form halfway; give it once for each (default: seven)");
+             "Orders H,D,A of --form halfway; give it once for each (default: four)");
     repeated("--split", arguments.splits,
-             "none, diffuse or a BRDF to take out; give it once for each (default: none, diffuse)");
+             "none, diffuse or a BRDF to take out; give it once for each (default: none)");
 }
 
 }  // namespace

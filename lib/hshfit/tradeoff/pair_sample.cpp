@@ -15,7 +15,7 @@
 namespace hshfit::tradeoff {
 namespace {
 
-constexpr double leastSlope = 1e-3, greatestSlope = 10;
+constexpr double leastSlope = 1e-4, greatestSlope = 10;
 constexpr int givenReplicates = 8;
 const double slopeRange = std::log(greatestSlope / leastSlope);
 

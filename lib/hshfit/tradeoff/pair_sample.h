@@ -46,7 +46,7 @@ struct SpreadOptions {
 
 /// Pairs over both hemispheres: wo uniform in solid angle and stratified; wi from two rank-1
 /// lattices, one uniform in solid angle, one with half vectors whose slope is spread evenly over
-/// the logarithm from 1e-3 to 10, so that lobes of every width are seen. Weights are those of the
+/// the logarithm from 1e-4 to 10, so that lobes of every width are seen. Weights are those of the
 /// mixture (Veach's balance heuristic). The same on every machine: the shifts are those of
 /// mt19937_64 with seed 1 (Cranley & Patterson 1976).
 PairSample spreadPairs(const SpreadOptions& options = {});

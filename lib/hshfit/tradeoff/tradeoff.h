@@ -22,7 +22,7 @@ struct TradeoffOptions {
     double maxNanoseconds = std::numeric_limits<double>::infinity();
     bool timing = true;
     bool byTime = false;  ///< the choice is the knee over time instead of that over bytes
-    ProjectionOptions projection = {.maxEvaluations = std::size_t{1} << 23};
+    ProjectionOptions projection = {};
     /// Called with steps done and in all, from any thread.
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
