@@ -2,12 +2,12 @@
 // Compiled once for each instruction set. `tests/brdfs/lanes_test.cpp` holds them to these bounds
 // against the library, of the arguments that models have; in units of the last place, with fused
 // multiply-adds and without:
-//     exp        1.0  for x <= 709.78; beyond, infinity; 0 below -707 instead of down to 5e-324
-//     log        1.0  for x >= 2.3e-308, subnormal numbers included
+//     exp        1.5  for x <= 709.78; beyond, infinity; 0 below -707 instead of down to 5e-324
+//     log        1.0  for x > 0, subnormal numbers included
 //     log1p      3.0  for x > -1; the sum 1 + x is rounded, unless it is near 1
-//     expm1      2.0  for x <= 709.78
-//     pow        exp(y log x): 1 + 1.2 |y log x|, for x >= 0
-//     ierfc      no bound of its own: within 5e-16 of the exact value for x >= 0
+//     expm1      3.0  for x <= 709.78
+//     pow        exp(y log x): 1.5 + 2 |y log x|, for x >= 0
+//     ierfc      no bound of its own: within 1e-15 of the exact value for x >= 0
 // NaN does not stay NaN.
 
 #if defined(BRDFS_LANES_LANES_MATH_H) == defined(HWY_TARGET_TOGGLE)

@@ -16,9 +16,15 @@ using Quad [[gnu::vector_size(32)]] = double;
 using FloatQuad [[gnu::vector_size(16)]] = float;
 
 HWY_INLINE void loadQuad(const float* from, Quad& to) {
+#if HWY_MAX_BYTES >= 32  // what the compiler makes of the conversion below goes through memory
+    const hn::FixedTag<double, 4> doubles;
+    hn::StoreU(hn::PromoteTo(doubles, hn::LoadU(hn::FixedTag<float, 4>(), from)), doubles,
+               reinterpret_cast<double*>(&to));
+#else
     FloatQuad floats;
     std::memcpy(&floats, from, sizeof floats);
     to = __builtin_convertvector(floats, Quad);
+#endif
 }
 
 /// Where a block of directions lies in the tables.
@@ -110,41 +116,39 @@ HWY_INLINE void place(const RglCall& call, Lanes x, Lanes y, Lanes z, RglBlock& 
     store(v - floorOf(v), block.vIncident + k);
 }
 
-/// IncidentGrid::slices of a direction of the block.
+/// IncidentGrid::slices of a direction of the block: 1, 2 or 4.
+template <int count>
 HWY_INLINE void slicesAt(const RglCall& call, const RglBlock& block, std::size_t k,
                          Slices& slices) {
-    const std::size_t elevations = call.tables.incident.theta.size();
-    std::size_t first = 0;
-    slices.count = 1;
+    const auto elevations = static_cast<std::uint32_t>(call.tables.incident.theta.size());
+    const auto first = call.elevations ? static_cast<std::uint32_t>(block.thetaNode[k]) : 0;
+    slices.index[0] = first;
     slices.weight[0] = 1;
+    const int inRow = call.elevations ? 2 : 1;
     if (call.elevations) {
-        first = static_cast<unsigned>(block.thetaNode[k]);
-        slices.count = 2;
+        slices.index[1] = first + 1;
         slices.weight[1] = block.thetaFraction[k];
         slices.weight[0] = 1 - slices.weight[1];
-        slices.index[1] = static_cast<std::uint32_t>(first + 1);
     }
-    slices.index[0] = static_cast<std::uint32_t>(first);
-    if (!call.azimuths) return;
-    const auto row = static_cast<unsigned>(block.phiNode[k]) * elevations;
+    if (count == inRow) return;
+    const auto row = static_cast<std::uint32_t>(block.phiNode[k]) * elevations;
     const double fraction = block.phiFraction[k];
-    const int count = slices.count;
-    for (int i = 0; i < count; ++i) {
-        slices.index[i] += static_cast<std::uint32_t>(row);
-        slices.index[i + count] = slices.index[i] + static_cast<std::uint32_t>(elevations);
-        slices.weight[i + count] = slices.weight[i] * fraction;
+    for (int i = 0; i < inRow; ++i) {
+        slices.index[i] += row;
+        slices.index[i + inRow] = slices.index[i] + elevations;
+        slices.weight[i + inRow] = slices.weight[i] * fraction;
         slices.weight[i] *= 1 - fraction;
     }
-    slices.count = 2 * count;
 }
 
 /// The place in the square of colours: VisibleNormals::invert with a slice's sums in a register.
+template <int count>
 HWY_INLINE VisibleNormals::Point invert(const VisibleNormals::View& normals, double u, double v,
                                         const Slices& slices) {
     const GridPosition p(u, v, normals.columns, normals.rows);
     const std::size_t cell = p.row * normals.columns + p.column;
     Quad along = {}, across = {};  // {low, before, high, -} and {rowBelow, below, rowAbove, -}
-    for (int i = 0; i < slices.count; ++i) {
+    for (int i = 0; i < count; ++i) {
         const std::size_t slice = slices.index[i];
         const double weight = slices.weight[i] * normals.scale[slice];
         const float* corner =
@@ -166,6 +170,7 @@ HWY_INLINE VisibleNormals::Point invert(const VisibleNormals::View& normals, dou
 
 /// Spectra::at for three channels. Of two neighbours the second is read from one float before its
 /// red on, so that nothing behind the table is touched.
+template <int count>
 HWY_INLINE void colourAt(const Spectra& spectra, const VisibleNormals::Point& point,
                          const Slices& slices, double factor, double* out, std::size_t stride) {
     const GridPosition p(point.x, point.y, spectra.columns, spectra.rows);
@@ -173,7 +178,7 @@ HWY_INLINE void colourAt(const Spectra& spectra, const VisibleNormals::Point& po
     const double w00 = (1 - p.a) * (1 - p.b), w10 = p.a * (1 - p.b);
     const double w01 = (1 - p.a) * p.b, w11 = p.a * p.b;
     Quad left = {}, right = {};
-    for (int i = 0; i < slices.count; ++i) {
+    for (int i = 0; i < count; ++i) {
         const float* corner =
             spectra.values.data() + 3 * (slices.index[i] * spectra.rows * spectra.columns + cell);
         const float* above = corner + 3 * spectra.columns;
@@ -208,31 +213,42 @@ HWY_INLINE void placeBlock(const RglCall& call, const DirectionBatch& wi, RglBlo
     place(call, x, y, z, block, k);
 }
 
-void evalRgl(const RglTables& tables, const Direction& wo, DirectionBatch wi, double* out) {
-    const RglCall call(tables, wo);
-    const double cosine = std::max(wo.z, 1e-9);
+template <int count>
+HWY_INLINE void evalSlices(const RglCall& call, const DirectionBatch& wi, double* out) {
+    const RglTables& tables = call.tables;
+    const double cosine = std::max(call.wo.z, 1e-9);
     RglBlock block;
     std::fill_n(block.vIncident, RglBlock::size, 0.5);
     Slices slices;
     for (std::size_t begin = 0; begin < wi.count; begin += RglBlock::size) {
-        const std::size_t count = std::min(RglBlock::size, wi.count - begin);
-        placeBlock(call, {wi.x + begin, wi.y + begin, wi.z + begin, count}, block);
-        for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t size = std::min(RglBlock::size, wi.count - begin);
+        placeBlock(call, {wi.x + begin, wi.y + begin, wi.z + begin, size}, block);
+        for (std::size_t k = 0; k < size; ++k) {
             double* to = out + begin + k;
             if (!(wi.z[begin + k] > 0)) {
                 for (std::size_t c = 0; c < 3; ++c) to[c * wi.count] = 0;
                 continue;
             }
             const double u = block.uHalf[k], v = block.vHalf[k];
-            slicesAt(call, block, k, slices);
-            const VisibleNormals::Point point = invert(call.normals, u, v, slices);
+            slicesAt<count>(call, block, k, slices);
+            const VisibleNormals::Point point = invert<count>(call.normals, u, v, slices);
             double factor = 1 / cosine;
             if (tables.jacobian)
                 factor *= tables.ndf.at(u, v) /
                           (4 * tables.sigma.at(block.uIncident[k], block.vIncident[k]));
-            colourAt(tables.spectra, point, slices, factor, to, wi.count);
+            colourAt<count>(tables.spectra, point, slices, factor, to, wi.count);
         }
     }
+}
+
+void evalRgl(const RglTables& tables, const Direction& wo, DirectionBatch wi, double* out) {
+    const RglCall call(tables, wo);
+    if (call.azimuths && call.elevations)
+        evalSlices<4>(call, wi, out);
+    else if (call.azimuths || call.elevations)
+        evalSlices<2>(call, wi, out);
+    else
+        evalSlices<1>(call, wi, out);
 }
 
 }  // namespace hshfit::brdfs::HWY_NAMESPACE

@@ -2,18 +2,18 @@
 // instruction set of the machine, over the grid of parameters and at random ones.
 
 #include <brdfs/models_grid.h>
+#include <brdfs/vector_targets.h>
 
 #include <brdfs/analytic/term_brdf.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
-
-#include <functional>
 
 namespace hshfit::brdfs {
 namespace {
+
+using test::forEveryTarget;
 
 struct Points {
     std::vector<double> x, y, z;
@@ -44,20 +44,6 @@ Points extremePoints() {
     Points points;
     for (const Direction& d : extremeDirections()) points.add(d);
     return points;
-}
-
-/// `check` with each instruction set that the machine has, one after the other.
-void forEveryTarget(const std::function<void()>& check) {
-    const auto use = [](std::int64_t targets) {
-        hwy::SetSupportedTargetsForTest(targets);
-        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    };
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        SCOPED_TRACE(hwy::TargetName(target));
-        use(target);
-        check();
-    }
-    use(0);
 }
 
 /// A value above 1e-30 of the largest is exp(-69) of it at least: the 20 or so roundings in an
