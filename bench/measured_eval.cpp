@@ -1,11 +1,13 @@
 // What one RGB value of a measured BRDF costs, on one thread: batches of one outgoing direction and
 // a grid over all incoming ones, for 110 outgoing elevations. The MERL file is a GGX lobe; the RGL
-// file is synthetic, of the sizes of the isotropic RGL files.
+// files are synthetic, of the sizes of the isotropic RGL files, and of an anisotropic one with five
+// azimuths of a quarter of the circle. `rglScalar` is RglBrdf::evalScalar, without vectors.
 
 #include "bench_folder.h"
 
 #include <brdfs/catalog.h>
 #include <brdfs/measured/merl_writer.h>
+#include <brdfs/measured/rgl.h>
 
 #include <benchmark/benchmark.h>
 #include <brdfs/tensor_writer.h>
@@ -33,14 +35,19 @@ std::string merlPath() {
     return path;
 }
 
-std::string rglPath() {
-    const std::string path = folder().path / "synthetic.bsdf";
+std::string rglPath(bool isotropic = true) {
+    const std::string path = folder().path / (isotropic ? "isotropic.bsdf" : "anisotropic.bsdf");
     hshfit::test::RglShape shape{.theta = {},
                                  .normalRows = 128,
                                  .normalColumns = 128,
                                  .colourRows = 32,
                                  .colourColumns = 32};
     for (int i = 0; i < 8; ++i) shape.theta.push_back(1.57F * static_cast<float>(i) / 7);
+    if (!isotropic) {
+        shape.phi.clear();
+        for (int i = 0; i < 5; ++i)
+            shape.phi.push_back(static_cast<float>(-hshfit::pi + i * hshfit::pi / 8));
+    }
     const std::string bytes = hshfit::test::tensorFile(hshfit::test::rglFields(shape));
     std::ofstream(path, std::ios::binary)
         .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
@@ -51,8 +58,9 @@ std::string rglPath() {
 enum class Incoming { everywhere, lobe };
 
 void evaluate(benchmark::State& state, const std::string& spec,
-              Incoming incoming = Incoming::everywhere) {
+              Incoming incoming = Incoming::everywhere, bool scalar = false) {
     const auto brdf = hshfit::brdfs::open(spec);
+    const auto* rgl = dynamic_cast<const hshfit::brdfs::RglBrdf*>(brdf.get());
     constexpr int elevations = 150, azimuths = 200, outgoing = 110;
     std::vector<double> x, y, z;
     for (int i = 0; i < elevations; ++i) {
@@ -74,7 +82,11 @@ void evaluate(benchmark::State& state, const std::string& spec,
         for (int i = 0; i < outgoing; ++i) {
             const Direction wo =
                 hshfit::directionFromAngles((i + 0.3) / outgoing * hshfit::pi / 2, 0);
-            brdf->eval(wo, {x.data(), y.data(), z.data(), x.size()}, out.data());
+            const hshfit::DirectionBatch wi{x.data(), y.data(), z.data(), x.size()};
+            if (scalar)
+                rgl->evalScalar(wo, wi, out.data());
+            else
+                brdf->eval(wo, wi, out.data());
             benchmark::DoNotOptimize(out.data());
         }
     }
@@ -96,11 +108,23 @@ void merlNearest(benchmark::State& state) {
 void rgl(benchmark::State& state) {
     evaluate(state, rglPath());
 }
+void rglScalar(benchmark::State& state) {
+    evaluate(state, rglPath(), Incoming::everywhere, true);
+}
+void rglAnisotropic(benchmark::State& state) {
+    evaluate(state, rglPath(false));
+}
+void rglAnisotropicScalar(benchmark::State& state) {
+    evaluate(state, rglPath(false), Incoming::everywhere, true);
+}
 
 BENCHMARK(merlLinear)->Unit(benchmark::kMillisecond);
 BENCHMARK(merlLinearInALobe)->Unit(benchmark::kMillisecond);
 BENCHMARK(merlNearest)->Unit(benchmark::kMillisecond);
 BENCHMARK(rgl)->Unit(benchmark::kMillisecond);
+BENCHMARK(rglScalar)->Unit(benchmark::kMillisecond);
+BENCHMARK(rglAnisotropic)->Unit(benchmark::kMillisecond);
+BENCHMARK(rglAnisotropicScalar)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 
