@@ -59,6 +59,7 @@ do for [pass = from:to] {
         set xrange [*:*]
         set yrange [*:*]
         if (pass == 0) {
+            set xrange [*:20000 * channels[row]<*]
             set xtics ('64' 64, '256' 256, '1 KiB' 1024, '4 KiB' 4096, '16 KiB' 16384, \
                        '64 KiB' 65536, '256 KiB' 262144, '1 MiB' 1048576, '4 MiB' 4194304, \
                        '16 MiB' 16777216)
