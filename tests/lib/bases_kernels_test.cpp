@@ -1,5 +1,5 @@
 // The vector kernels on every instruction set of this machine: against the scalar path, against
-// recurrences in 60 digits, and bit for bit against themselves in batches of other sizes.
+// recurrences in 100 digits, and bit for bit against themselves in batches of other sizes.
 
 #include <hshfit/bases/kernels/targets.h>
 

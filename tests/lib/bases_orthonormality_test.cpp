@@ -40,7 +40,7 @@ TEST_P(OrthonormalBasis, AtOrder256) {
 TEST_P(OrthonormalBasis, OverTheWholeDomain) {
     constexpr int order = 6, azimuths = 2 * order;
     const auto basis = GetParam()->make(std::min(order, GetParam()->maxOrder), {});
-    const quadrature::Rule rule = quadrature::ruleOf(*basis, 10);
+    const quadrature::Rule rule = quadrature::ruleOf(*basis, 12);
     const int slots = basis->slots();
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(slots, slots);
     Eigen::VectorXd values(slots);

@@ -55,7 +55,7 @@ TEST(BasisValues, AgreeWithTheOracle) {
 TEST(BasisValues, AgreeWithExplicitSums) {
     constexpr int order = 13;
     for (const bases::Entry& entry : bases::catalog()) {
-        if (entry.maxOrder < order) continue;
+        if (entry.maxOrder < order || entry.name == "slepian") continue;  // no explicit sums
         const auto basis = entry.make(order, {});
         std::vector<double> out(static_cast<std::size_t>(basis->slots()));
         for (const double theta : {0.0, 1e-9, 0.2, 0.8, 1.1, 1.4, 1.5707, 1.57079632}) {

@@ -5,6 +5,7 @@
 #include <hshfit/bases/lsosh.h>
 #include <hshfit/bases/makhotkin.h>
 #include <hshfit/bases/sh.h>
+#include <hshfit/bases/slepian.h>
 #include <hshfit/bases/zernike.h>
 #include <hshfit/error.h>
 
@@ -38,6 +39,8 @@ constexpr std::array table{
           "after Makhotkin 1996, not consulted", jacobiOrders, true, makeMakhotkinFlux},
     Entry{"h-basis", "six functions for irradiance; orders 1 to 3", "Habel & Wimmer 2010", 3, true,
           makeHBasis},
+    Entry{"slepian", "spherical harmonics of twice the order, best concentrated on the hemisphere",
+          "Simons, Dahlen & Wieczorek 2006", 100, true, makeSlepian},
 };
 
 std::string knownNames() {

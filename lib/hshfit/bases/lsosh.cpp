@@ -68,6 +68,12 @@ public:
     void theta(int m, std::span<const Elevation<float>> points, float* out) const override {
         functions_->theta(m, points, out);
     }
+    void tabulate(DirectionBatch directions, Layout layout, double* out) const override {
+        functions_->tabulate(directions, layout, out);
+    }
+    void tabulate(DirectionBatch directions, Layout layout, float* out) const override {
+        functions_->tabulate(directions, layout, out);
+    }
     void analysisTheta(int m, std::span<const Elevation<double>> points,
                        double* out) const override {
         halfRangeTheta(recurrences_[static_cast<std::size_t>(m)], m, order() - m, points, out);

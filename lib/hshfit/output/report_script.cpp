@@ -26,14 +26,15 @@ struct Style {
     const char* colour;
     int dash, mark;
 };
-constexpr std::array<Style, 8> styles{{{"#0072B2", 1, 7},
+constexpr std::array<Style, 9> styles{{{"#0072B2", 1, 7},
                                        {"#E69F00", 2, 5},
                                        {"#D55E00", 4, 9},
                                        {"#9A6A4F", 5, 11},
                                        {"#009E73", 1, 13},
                                        {"#CC79A7", 2, 6},
                                        {"#8A63C9", 4, 4},
-                                       {"#56B4E9", 1, 8}}};
+                                       {"#56B4E9", 1, 8},
+                                       {"#4D4D4D", 3, 10}}};
 
 Style styleOf(const std::string& basis) {
     const auto table = bases::catalog();

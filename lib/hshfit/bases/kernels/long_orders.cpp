@@ -120,6 +120,19 @@ private:
         const auto noFactor = hn::Lt(factor, tiny), noWeight = hn::Lt(weight, tiny);
         const Scaled<Doubles> base(hn::IfThenElse(noFactor, one, factor));
         Scaled<Doubles> power(hn::IfThenElse(noWeight, one, weight));
+        // Where no power leaves the range, the same products without exponents.
+        const W lowest = hn::MulAdd(base.exponent, hn::Set(wide, static_cast<double>(order - 1)),
+                                    power.exponent);
+        const auto inRange = hn::Gt(lowest, hn::Set(wide, -shiftOf<T> / 2.0));
+        if (hn::AllTrue(wide, inRange) && hn::AllFalse(wide, hn::Or(noFactor, noWeight))) {
+            W product = weight;
+            for (std::size_t m = 0; m < order; ++m) {
+                storeReal(wide, hn::Mul(product, hn::Set(wide, r.starts[m])), p + m * width + j);
+                storeReal(wide, hn::Zero(wide), e + m * width + j);
+                product = hn::Mul(product, factor);
+            }
+            return;
+        }
         for (std::size_t m = 0; m < order; ++m) {
             W value, exponent;
             startOf<T>(wide, power, m > 0 ? hn::Or(noFactor, noWeight) : noWeight, value, exponent);

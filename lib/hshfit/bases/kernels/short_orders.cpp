@@ -162,44 +162,56 @@ struct Rows {
     }
 };
 
-/// `valid` directions from `first` on, at most as many as D has lanes.
-template <class D, int step, bool bySlot, class T = hn::TFromD<D>>
-HWY_NOINLINE void someDirections(const ShortJob<T>& job, std::size_t first, std::size_t valid) {
-    constexpr std::size_t n = lanesOf<D>, most = shortOrders * shortOrders;
-    double x[n], y[n], z[n];
-    for (std::size_t j = 0; j < n; ++j) {
-        const std::size_t k = first + std::min(j, valid - 1);
-        x[j] = job.directions.x[k], y[j] = job.directions.y[k], z[j] = job.directions.z[k];
-    }
-    HWY_ALIGN T values[n * most];
-    const auto slots = static_cast<std::size_t>(job.order * job.order);
-    const std::size_t stride = bySlot ? n : slots;
-    Rows<D, step, bySlot> rows(placeOf(D(), job.front, x, y, z), *job.table, values, stride);
-    rows.template row<0>(job.order);
-    if constexpr (bySlot)
-        for (std::size_t i = 0; i < slots; ++i)
-            std::copy_n(values + i * n, valid, job.out + i * job.directions.count + first);
-    else
-        std::copy_n(values, valid * slots, job.out + first * slots);
-}
-
-template <class D, int step, bool bySlot, class T = hn::TFromD<D>>
-void allDirections(const ShortJob<T>& job) {
+/// What `valid` directions from `first` on bring; lanes beyond repeat the last one.
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE Place<hn::Vec<D>> placeOfSome(const ShortJob<T>& job, std::size_t first,
+                                         std::size_t valid) {
     constexpr std::size_t n = lanesOf<D>;
     const auto& [x, y, z, count] = job.directions;
-    const auto slots = static_cast<std::size_t>(job.order * job.order);
-    const std::size_t whole = count - count % n;
-    // Roots and quotients of the next block are under way while this one runs.
-    auto next = count < n ? Place<hn::Vec<D>>{} : placeOf(D(), job.front, x, y, z);
-    for (std::size_t k = 0; k < whole; k += n) {
-        const std::size_t ahead = std::min(k + n, whole - n);
-        const auto place = next;
-        next = placeOf(D(), job.front, x + ahead, y + ahead, z + ahead);
-        Rows<D, step, bySlot> rows(place, *job.table, job.out + k * (bySlot ? 1 : slots),
-                                   bySlot ? count : slots);
-        rows.template row<0>(job.order);
+    if (valid >= n) return placeOf(D(), job.front, x + first, y + first, z + first);
+    double px[n], py[n], pz[n];
+    for (std::size_t j = 0; j < n; ++j) {
+        const std::size_t k = first + std::min(j, valid - 1);
+        px[j] = x[k], py[j] = y[k], pz[j] = z[k];
     }
-    if (whole < count) someDirections<D, step, bySlot>(job, whole, count - whole);
+    return placeOf(D(), job.front, px, py, pz);
+}
+
+/// Whole vectors of directions straight to their rows, the rest through a copy.
+template <class D, int step, class T = hn::TFromD<D>>
+void byDirection(const ShortJob<T>& job) {
+    constexpr std::size_t n = lanesOf<D>;
+    const std::size_t count = job.directions.count;
+    const auto slots = static_cast<std::size_t>(job.order * job.order);
+    HWY_ALIGN T some[n * shortOrders * shortOrders];
+    // Roots and quotients of the next block are under way while this one runs.
+    auto next = placeOfSome<D>(job, 0, count);
+    for (std::size_t k = 0; k < count; k += n) {
+        const auto place = next;
+        if (k + n < count) next = placeOfSome<D>(job, k + n, count - k - n);
+        const bool whole = k + n <= count;
+        Rows<D, step, false> rows(place, *job.table, whole ? job.out + k * slots : some, slots);
+        rows.template row<0>(job.order);
+        if (!whole) std::copy_n(some, (count - k) * slots, job.out + k * slots);
+    }
+}
+
+/// Through a tile, so that every slot gets whole cache lines: slots may lie 4096 bytes apart.
+template <class D, int step, class T = hn::TFromD<D>>
+void bySlot(const ShortJob<T>& job) {
+    constexpr std::size_t n = lanesOf<D>, width = 4 * n;
+    const std::size_t count = job.directions.count;
+    HWY_ALIGN T tile[width * shortOrders * shortOrders];
+    for (std::size_t first = 0; first < count; first += width) {
+        const std::size_t valid = std::min(width, count - first);
+        for (std::size_t k = 0; k < valid; k += n) {
+            Rows<D, step, true> rows(placeOfSome<D>(job, first + k, valid - k), *job.table,
+                                     tile + k, width);
+            rows.template row<0>(job.order);
+        }
+        for (std::size_t i = 0; i < static_cast<std::size_t>(job.order * job.order); ++i)
+            std::copy_n(tile + i * width, valid, job.out + i * count + first);
+    }
 }
 
 /// One direction: the same operations on vectors of one lane, so that the result is the same.
@@ -216,9 +228,9 @@ void tabulate(const ShortJob<T>& job) {
     if (job.directions.count == 1)
         oneDirection<step>(job);
     else if (job.bySlot)
-        allDirections<Wide<T>, step, true>(job);
+        bySlot<Wide<T>, step>(job);
     else
-        allDirections<Wide<T>, step, false>(job);
+        byDirection<Wide<T>, step>(job);
 }
 
 }  // namespace
