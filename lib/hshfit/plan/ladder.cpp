@@ -17,9 +17,9 @@ using Kind = Representation::Kind;
 
 constexpr std::array elevationCounts{2, 3, 4, 6, 8, 12, 16, 24, 32};
 constexpr std::array mapSizes{4, 6, 8, 10, 12, 16, 20, 24, 32};
-constexpr std::array halfwaySizes{HalfwayOrders{4, 2, 1},  HalfwayOrders{6, 3, 2},
-                                  HalfwayOrders{8, 4, 2},  HalfwayOrders{12, 6, 3},
-                                  HalfwayOrders{16, 8, 3}, HalfwayOrders{20, 10, 4}};
+constexpr std::array halfwaySizes{HalfwayOrders{4, 2, 1}, HalfwayOrders{6, 3, 2},
+                                  HalfwayOrders{8, 4, 2}, HalfwayOrders{12, 6, 3},
+                                  HalfwayOrders{16, 8, 3}};
 constexpr std::array ranks{2, 4, 8, 16};
 constexpr int leastFactoredOrder = 5;
 /// Anisotropic matrices have order^4 terms.
@@ -61,6 +61,8 @@ public:
                 }
             }
         }
+        // It is no linear form: taking the diffuse part out hardly helps it.
+        if (split_ == "diffuse") return;
         for (const HalfwayOrders& orders : halfwaySizes) {
             Form form;
             form.kind = Kind::halfway;
@@ -128,7 +130,8 @@ private:
         if (!bases::find(form.basis).orthonormal) return;
         if (!laws_.isotropic && form.order > mostAnisotropicOrder) return;
         form.kind = Kind::basis;
-        form.reciprocal = laws_.reciprocal && form.quantity == Quantity::brdf;
+        if (laws_.reciprocal && form.quantity == Quantity::brdfCosine) return;
+        form.reciprocal = laws_.reciprocal;
         const auto basis = bases::make(form.basis, form.order);
         const std::size_t terms =
             productTerms(*basis, {laws_.isotropic, laws_.mirrorSymmetric, form.reciprocal}).size();

@@ -14,7 +14,7 @@ namespace hshfit::plan {
 struct Rung {
     Form form;
     std::size_t source = 0;  ///< which of the material's versions (all channels, one channel)
-    std::size_t bytes = 0;   ///< what the numbers will take
+    std::size_t bytes = 0;   ///< what the numbers will take; factors of low rank take less
 };
 
 /// One version of a material and what may be taken out of it first.
@@ -34,8 +34,8 @@ struct LadderOptions {
 /// Every form worth trying, from few bytes to many, in an order that depends on nothing else.
 ///     outgoing   f and f cos(theta_i); elevations, a parabolic map or the one direction there is;
 ///                every order; ranks 2 to 16 from order 5 on
-///     basis      f (its symmetric half where reciprocal) and f cos(theta_i); every order
-///     halfway    six sizes, of what is symmetric only where reciprocal
+///     basis      every order: the symmetric half of f where reciprocal, else f and f cos(theta_i)
+///     halfway    five sizes, of what is symmetric only where reciprocal
 /// each in float32, half, unorm16 and unorm8.
 std::vector<Rung> ladder(std::span<const LadderSource> sources, const LadderOptions& options);
 

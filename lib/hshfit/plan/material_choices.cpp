@@ -22,8 +22,15 @@ constexpr double floorSlack = 1.25;
 constexpr std::size_t shownCheaper = 3;
 /// How far up a choice with half the error is looked for.
 constexpr std::size_t farthestDearer = 4;
+constexpr std::size_t mostTriedDearer = 150;
+/// A file's projection agrees this much better than the budget asks.
+constexpr double fileShare = 100;
 /// Forms that are timed where times decide.
 constexpr std::size_t mostTimed = 12;
+
+std::string keyOf(const Rung& rung) {
+    return fmt::format("{} {}", rung.source, optionsOf(rung.form));
+}
 
 std::vector<Radiance> withAdded(std::vector<Radiance> radiance,
                                 const std::vector<Radiance>& added) {
@@ -62,8 +69,7 @@ std::vector<Radiance> MaterialSearch::radianceOf(const Representation& represent
 }
 
 std::optional<double> MaterialSearch::errorOf(const Rung& rung) {
-    const std::string key =
-        fmt::format("{} {} {}", rung.source, optionsOf(rung.form), rung.form.split);
+    const std::string key = keyOf(rung);
     if (const auto found = errors_.find(key); found != errors_.end()) return found->second;
     std::optional<double> error;
     try {
@@ -78,15 +84,28 @@ std::optional<double> MaterialSearch::errorOf(const Rung& rung) {
     return errors_[key] = error;
 }
 
+bool MaterialSearch::wasTried(const Rung& rung) const {
+    const auto found = errors_.find(keyOf(rung));
+    return found != errors_.end() && found->second;
+}
+
 std::optional<double> MaterialSearch::unroundedError(const Rung& rung) {
     Rung unrounded = rung;
     unrounded.form.precision = Precision::float64;
     return errorOf(unrounded);
 }
 
+/// A hundredth of the budget: projecting more exactly would show nowhere.
+double MaterialSearch::toleranceOf(const Form& form) const {
+    if (form.kind == Representation::Kind::halfway) return 0;
+    return std::max(versions_.front().brdf->defaultTolerance(),
+                    plan_.material.budget.error / fileShare);
+}
+
 Choice MaterialSearch::choiceOf(const Rung& rung, double error) const {
     return {.spec = versions_[rung.source].spec,
             .form = rung.form,
+            .tolerance = toleranceOf(rung.form),
             .bytes = rung.bytes,
             .error = error};
 }
@@ -95,7 +114,8 @@ std::optional<Accepted> MaterialSearch::accept(const Rung& rung) {
     const Version& version = versions_[rung.source];
     Accepted result{.choice = choiceOf(rung, 0), .representation = {}};
     try {
-        result.representation = represent(*version.brdf, rung.form, open_);
+        result.representation =
+            represent(*version.brdf, rung.form, open_, {.tolerance = toleranceOf(rung.form)});
     } catch (const NumericError& failure) {
         lastFailure_ = failure.what();
         return {};
@@ -177,6 +197,7 @@ void MaterialSearch::findNeighbours(std::size_t chosen) {
     double least = never;
     for (std::size_t i = 0; i < rungs_.size(); ++i) {
         if (plan_.accepted && rungs_[i].bytes >= rungs_[chosen].bytes) break;
+        if (!plan_.accepted && !wasTried(rungs_[i])) continue;
         const double floor = floorOf(rungs_[i]);
         if (!(floor < least)) continue;
         const double error = errorOf(rungs_[i]).value_or(never);
@@ -190,7 +211,8 @@ void MaterialSearch::findNeighbours(std::size_t chosen) {
     }
     if (!plan_.accepted) return;
     const double wanted = plan_.accepted->choice.error / 2;
-    for (std::size_t i = chosen + 1; i < rungs_.size(); ++i) {
+    const std::size_t enough = plan_.tried + mostTriedDearer;
+    for (std::size_t i = chosen + 1; i < rungs_.size() && plan_.tried < enough; ++i) {
         if (rungs_[i].bytes > farthestDearer * rungs_[chosen].bytes) return;
         if (floorOf(rungs_[i]) > wanted) continue;
         const double error = errorOf(rungs_[i]).value_or(never);

@@ -52,10 +52,13 @@ private:
     std::vector<Radiance> radianceOf(const Representation& representation, const Part& part);
     /// The error of the rung as tried; none where it cannot be made.
     std::optional<double> errorOf(const Rung& rung);
+    /// Whether it has been tried and could be made.
+    bool wasTried(const Rung& rung) const;
     /// What its truncation alone costs, from a few directions; 0 if not known.
     double floorOf(const Rung& rung);
     /// The error that its numbers have before they are rounded.
     std::optional<double> unroundedError(const Rung& rung);
+    double toleranceOf(const Form& form) const;
     Choice choiceOf(const Rung& rung, double error) const;
     /// Projects as the command does and checks by lattice points; none if it does not hold.
     std::optional<Accepted> accept(const Rung& rung);
@@ -63,7 +66,10 @@ private:
     std::optional<std::size_t> firstWithin(std::size_t from);
     void takeCheapest();
     void takeFastest();
+    /// Without an accepted choice: the front of all that was tried.
     void findNeighbours(std::size_t chosen);
+    /// The least error that truncation leaves to any linear form.
+    double leastFloor() const;
     void refuse();
 
     const Scene& scene_;

@@ -44,8 +44,10 @@ Plan planScene(const Scene& scene, const BrdfOpener& open, const PlanOptions& op
 }
 
 std::string commandOf(const Choice& choice, const std::string& file) {
-    return fmt::format("hshfit project {} {} -o {}", quoted(choice.spec), optionsOf(choice.form),
-                       file);
+    const std::string tolerance =
+        choice.tolerance > 0 ? fmt::format(" --tolerance {:g}", choice.tolerance) : "";
+    return fmt::format("hshfit project {} {}{} -o {}", quoted(choice.spec), optionsOf(choice.form),
+                       tolerance, file);
 }
 
 }  // namespace hshfit::plan

@@ -14,6 +14,7 @@ namespace hshfit::plan {
 struct Choice {
     std::string spec;  ///< the material's specification, or one channel of it ("grey:…")
     Form form;
+    double tolerance = 0;  ///< of the projection; 0 where the form has none
     std::size_t bytes = 0;
     double error = 0;                        ///< the budget's measure
     std::optional<double> nanoseconds = {};  ///< a pair; only where times were asked for

@@ -2,12 +2,14 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
+#include <hshfit/quadrature.h>
 #include <hshfit/representation/basis_matrix.h>
 #include <hshfit/representation/halfway.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace hshfit::plan {
 namespace {
@@ -15,13 +17,58 @@ namespace {
 /// Of f, per direction, before a projection gives up: this is only a search.
 constexpr std::size_t mostEvaluations = std::size_t{1} << 22;
 
-/// Bands of a matrix of both directions that are projected at once: costs grow with the fourth
-/// power of the order where BRDFs are not isotropic.
-int stepUp(int order, int highest) {
-    for (int step : {4, 6, 8}) {
-        if (order <= step) return std::min(step, highest);
+/// Order of the matrices of BRDFs that are not isotropic, whose terms grow with its fourth power.
+constexpr int anisotropicOrder = 8;
+/// Outgoing directions closer to the horizon than this cosine are left out here: they stand for a
+/// thousandth of the hemisphere, and lobes are narrowest there.
+constexpr double leastCosine = 1e-3;
+
+/// Gauss-Legendre in sqrt(cos theta_o) by equispaced azimuths, for products of `order` bands.
+OutgoingSet outerNodes(int order, bool isotropic) {
+    const GaussRule& rule = gaussLegendre(2 * order + 6);
+    const int azimuths = isotropic ? 1 : 4 * (order / 2 + 2);
+    OutgoingSet set{.map = OutgoingSet::Map::parabolic, .directions = {}, .solidAngles = {}};
+    for (std::size_t r = 0; r < rule.nodes.size(); ++r) {
+        const double u = (1 + rule.nodes[r]) / 2, mu = u * u;
+        if (mu < leastCosine) continue;
+        for (int j = 0; j < azimuths; ++j) {
+            const double phi = isotropic ? 0 : (j + 0.5) * 2 * pi / azimuths;
+            set.directions.push_back(directionFromAngles(std::acos(mu), phi));
+            set.solidAngles.push_back(rule.weights[r] * u * 2 * pi / azimuths);
+        }
     }
-    return highest;
+    set.width = static_cast<int>(set.directions.size());
+    return set;
+}
+
+/// The matrix that has these coefficients over wi at the nodes over wo.
+Representation gathered(const Coefficients& c, const Basis& basis, bool reciprocal) {
+    Representation result;
+    result.kind = Representation::Kind::basis;
+    result.head = c;
+    result.head.values.clear();
+    result.head.outgoing = {};
+    result.head.reciprocal = reciprocal;
+    const ProductSymmetry symmetry = symmetryOf(result);
+    const std::vector<ProductTerm> terms = productTerms(basis, symmetry);
+    const std::size_t channels = c.channels.count();
+    StoredArray matrix{.name = "matrix", .shape = {channels, terms.size()}, .values = {}};
+    matrix.values.assign(channels * terms.size(), 0.0);
+    std::vector<double> atWo(c.slots()), products(terms.size());
+    for (std::size_t o = 0; o < c.outgoing.size(); ++o) {
+        const Direction& wo = c.outgoing.directions[o];
+        basis.evaluate(wo, atWo.data());
+        const bool flux = basis.inner() == Basis::Inner::projectedSolidAngle;
+        const double weight = c.outgoing.solidAngles[o] * (flux ? wo.z : 1);
+        for (std::size_t channel = 0; channel < channels; ++channel) {
+            evaluateProducts(terms, symmetry, c.at(o, channel), atWo.data(), products.data());
+            for (std::size_t t = 0; t < terms.size(); ++t) {
+                matrix.values[channel * terms.size() + t] += weight * products[t];
+            }
+        }
+    }
+    result.arrays.push_back(std::move(matrix));
+    return result;
 }
 
 }  // namespace
@@ -52,11 +99,13 @@ void KeptProjections::once(const std::string& key, const std::function<void()>& 
     }
 }
 
-std::vector<Coefficients> KeptProjections::allBases(const OutgoingSet& set, Quantity quantity) {
+std::vector<Coefficients> KeptProjections::allBases(const OutgoingSet& set, Quantity quantity,
+                                                    int order) {
     std::vector<std::unique_ptr<Basis>> made;
     std::vector<const Basis*> pointers;
     for (const std::string& name : ladder_.bases) {
-        made.push_back(bases::make(name, highestOrder(name)));
+        const int highest = highestOrder(name);
+        made.push_back(bases::make(name, order > 0 ? std::min(order, highest) : highest));
         pointers.push_back(made.back().get());
     }
     std::vector<Coefficients> result;
@@ -91,19 +140,27 @@ Coefficients KeptProjections::outgoing(const Form& form) {
 }
 
 Representation KeptProjections::both(const Form& form) {
-    const int order = stepUp(form.order, highestOrder(form.basis));
-    const std::string key =
-        fmt::format("{} {} {} {}", form.basis, order, quantityName(form.quantity), form.reciprocal);
+    const bool isotropic = brdf_.laws().isotropic;
+    const int highest = std::min(ladder_.maxOrder, isotropic ? ladder_.maxOrder : anisotropicOrder);
+    const std::string quantity = quantityName(form.quantity);
+    const std::string key = fmt::format("{} {} {}", form.basis, quantity, form.reciprocal);
+    auto& rows = outer_[quantity];
+    if (rows.empty()) {
+        once("both " + quantity,
+             [&] { rows = allBases(outerNodes(highest, isotropic), form.quantity, highest); });
+    }
     auto found = both_.find(key);
     if (found == both_.end()) {
-        once(key, [&] {
-            found = both_
-                        .emplace(key, projectBoth(brdf_, *bases::make(form.basis, order),
-                                                  form.reciprocal, optionsFor(form.quantity)))
-                        .first;
+        const auto row = std::find_if(rows.begin(), rows.end(), [&](const Coefficients& each) {
+            return each.basis == form.basis;
         });
+        found =
+            both_
+                .emplace(key, gathered(*row, *bases::make(row->basis, row->order), form.reciprocal))
+                .first;
     }
-    return form.order == order ? found->second : truncated(found->second, form.order);
+    return form.order == found->second.head.order ? found->second
+                                                  : truncated(found->second, form.order);
 }
 
 Representation KeptProjections::halfway(const Form& form) {

@@ -13,7 +13,7 @@ namespace hshfit::plan {
 
 /// Projections of one BRDF that are made once, at the highest order, and cut to what is asked for.
 /// To be used for choosing: cut coefficients agree with those of `project` at that order within the
-/// tolerance, not to the last bit.
+/// tolerance, not to the last bit; matrices leave out the last thousandth above the horizon.
 class KeptProjections : public ProjectionSource {
 public:
     /// `brdf` has to outlive this.
@@ -25,8 +25,9 @@ public:
     Representation halfway(const Form& form) override;
     const Brdf& remainder() const override { return brdf_; }
 
-    /// In every basis of the ladder at its highest order, for any set of directions; not kept.
-    std::vector<Coefficients> allBases(const OutgoingSet& set, Quantity quantity);
+    /// In every basis of the ladder, at its highest order or at most `order`, for any set of
+    /// directions; not kept.
+    std::vector<Coefficients> allBases(const OutgoingSet& set, Quantity quantity, int order = 0);
 
 private:
     ProjectionOptions optionsFor(Quantity quantity) const;
@@ -39,6 +40,7 @@ private:
     LadderOptions ladder_;
     double tolerance_;
     std::map<std::string, std::map<std::string, Coefficients>> outgoing_;  ///< by set, by basis
+    std::map<std::string, std::vector<Coefficients>> outer_;  ///< for matrices, by quantity
     std::map<std::string, Representation> both_, halfway_;
     std::map<std::string, std::string> failed_;
 };

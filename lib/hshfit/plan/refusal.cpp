@@ -44,6 +44,18 @@ LightKinds kindsOf(const Scene& scene) {
 
 }  // namespace
 
+double MaterialSearch::leastFloor() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Version& version : versions_) {
+        for (const auto& [split, part] : version.parts) {
+            for (const auto& [basis, floor] : part.floor) {
+                for (double error : floor) least = std::min(least, error);
+            }
+        }
+    }
+    return least;
+}
+
 void MaterialSearch::refuse() {
     const Brdf& brdf = *versions_.front().brdf;
     const std::optional<double> width = lobeDegrees(brdf);
@@ -58,11 +70,15 @@ void MaterialSearch::refuse() {
                 "order {} follows what they do not resolve.{}",
                 light_->change(), light_->samples(), options_.maxOrder, lobe);
         } else {
-            const double best = plan_.cheaper.empty() ? std::numeric_limits<double>::infinity()
-                                                      : plan_.cheaper.back().error;
+            const std::string tried = plan_.cheaper.empty()
+                                          ? ""
+                                          : fmt::format(" The best that was tried has {:.2g}.",
+                                                        plan_.cheaper.back().error);
             plan_.refused = fmt::format(
-                "no form within {} bytes and order {} keeps to {:g}: the best of {} has {:.2g}.{}",
-                scene_.limits.bytes, options_.maxOrder, material.budget.error, rungs_.size(), best,
+                "no form within {} bytes and order {} keeps to {:g}: cutting off higher bands "
+                "alone "
+                "costs {:.2g} or more.{}{}",
+                scene_.limits.bytes, options_.maxOrder, material.budget.error, leastFloor(), tried,
                 lobe);
         }
     }
