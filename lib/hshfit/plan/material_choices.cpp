@@ -112,12 +112,14 @@ Choice MaterialSearch::choiceOf(const Rung& rung, double error) const {
 
 std::optional<Accepted> MaterialSearch::accept(const Rung& rung) {
     const Version& version = versions_[rung.source];
+    std::optional<double>& known = errors_[keyOf(rung)];
     Accepted result{.choice = choiceOf(rung, 0), .representation = {}};
     try {
         result.representation =
             represent(*version.brdf, rung.form, open_, {.tolerance = toleranceOf(rung.form)});
     } catch (const NumericError& failure) {
         lastFailure_ = failure.what();
+        known.reset();
         return {};
     }
     result.choice.bytes = result.representation.bytes();
@@ -130,6 +132,7 @@ std::optional<Accepted> MaterialSearch::accept(const Rung& rung) {
     const double budget = plan_.material.budget.error;
     const bool holds = result.choice.error <= budget && result.verified <= budget &&
                        result.choice.bytes <= scene_.limits.bytes;
+    if (!holds) known = std::max(result.choice.error, result.verified);
     return holds ? std::optional(std::move(result)) : std::nullopt;
 }
 
