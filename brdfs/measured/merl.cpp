@@ -16,9 +16,6 @@ static_assert(std::endian::native == std::endian::little, "MERL files are little
 namespace {
 
 constexpr std::size_t blockSize = MerlIndices::size;
-/// Evaluations between asking for cells and using them; 4 to 8 are equally good (measured_eval in
-/// bench/), without it an evaluation takes half as long again.
-constexpr std::size_t prefetchDistance = 6;
 
 MerlLayout checkedLayout(const MappedFile& file) {
     if (file.size() < MerlLayout::headerBytes) {
@@ -84,16 +81,6 @@ double MerlBrdf::stored(std::size_t channel, std::size_t cell) const {
 void MerlBrdf::remember(std::size_t channel, std::size_t cell) const {
     corruptCell_.store(static_cast<std::int64_t>(channel * layout_.cells() + cell),
                        std::memory_order_relaxed);
-}
-
-inline void MerlBrdf::prefetch(const MerlCorners& at, std::size_t k) const {
-    for (std::size_t c = 0; c < 3; ++c) {
-        const std::size_t first = c * layout_.cells() + at.p0[k];
-        for (const auto& row : at.row) {
-            __builtin_prefetch(file_.data() + MerlLayout::headerBytes +
-                               (first + row[k]) * sizeof(double));
-        }
-    }
 }
 
 double MerlBrdf::averageOfValid(const MerlCorners& at, std::size_t k, const double (&across)[4],
@@ -172,15 +159,16 @@ void MerlBrdf::eval(const Direction& wo, DirectionBatch wi, double* out) const {
     for (std::size_t begin = 0; begin < wi.count; begin += blockSize) {
         const std::size_t count = std::min(blockSize, wi.count - begin);
         at.set(wo, {wi.x + begin, wi.y + begin, wi.z + begin, count}, layout_);
+        std::uint64_t open = ~std::uint64_t{0};
         if (linear) {
             corners.set(at, count, layout_);
+            open = corners.blend(file_.data() + MerlLayout::headerBytes, layout_, wi.z + begin,
+                                 count, out + begin, wi.count);
         } else {
             at.round(count, layout_.azimuthCount);
         }
-        for (std::size_t k = 0; k < count; ++k) {
-            if (linear && k + prefetchDistance < count) {
-                prefetch(corners, k + prefetchDistance);
-            }
+        for (std::size_t k = 0; k < count && open != 0; ++k, open >>= 1) {
+            if ((open & 1) == 0) continue;
             double* to = out + begin + k;
             if (!(wi.z[begin + k] > 0)) {
                 for (std::size_t c = 0; c < 3; ++c) to[c * wi.count] = 0;

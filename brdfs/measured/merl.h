@@ -55,7 +55,6 @@ public:
     double stored(std::size_t channel, std::size_t cell) const;
 
 private:
-    void prefetch(const MerlCorners& at, std::size_t k) const;
     void interpolateLinear(const MerlCorners& at, std::size_t k, double* out,
                            std::size_t stride) const;
     void lookUpNearest(const MerlIndices& at, std::size_t k, double* out, std::size_t stride) const;

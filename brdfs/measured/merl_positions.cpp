@@ -10,6 +10,7 @@ namespace hshfit::brdfs {
 
 HWY_EXPORT(merlIndices);
 HWY_EXPORT(merlCorners);
+HWY_EXPORT(merlBlend);
 
 void MerlIndices::set(const Direction& wo, DirectionBatch wi, const MerlLayout& layout) {
     HWY_DYNAMIC_DISPATCH(merlIndices)(wo, wi, layout.azimuthCount == 180, *this);
@@ -26,6 +27,13 @@ void MerlIndices::round(std::size_t count, std::size_t azimuths) {
 void MerlCorners::set(const MerlIndices& at, std::size_t count, const MerlLayout& layout) {
     HWY_DYNAMIC_DISPATCH(merlCorners)
     (at, count, static_cast<double>(layout.azimuthCount), *this);
+}
+
+std::uint64_t MerlCorners::blend(const unsigned char* cells, const MerlLayout& layout,
+                                 const double* z, std::size_t count, double* out,
+                                 std::size_t stride) const {
+    return HWY_DYNAMIC_DISPATCH(merlBlend)(cells, layout.cells() * sizeof(double), *this, z, count,
+                                           out, stride);
 }
 
 }  // namespace hshfit::brdfs

@@ -29,6 +29,13 @@ struct MerlCorners {
     double th[MerlIndices::size], td[MerlIndices::size], tp[MerlIndices::size];
 
     void set(const MerlIndices& at, std::size_t count, const MerlLayout& layout);
+
+    /// Interpolates f at `count` positions, to out[channel * stride + k], or 0 where z[k] <= 0, in
+    /// registers that hold two rows. `cells` is where those of a file start. Returns which are left
+    /// to do otherwise, one bit each: where a cell is not a value or the azimuth wraps around, or
+    /// all, without such registers.
+    std::uint64_t blend(const unsigned char* cells, const MerlLayout& layout, const double* z,
+                        std::size_t count, double* out, std::size_t stride) const;
 };
 
 }  // namespace hshfit::brdfs

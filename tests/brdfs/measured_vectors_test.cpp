@@ -1,7 +1,9 @@
-// The vectors by which RGL files are evaluated against RglBrdf::evalScalar, for every instruction
-// set of the machine.
+// The vectors by which RGL and MERL files are evaluated, for every instruction set of the machine:
+// against RglBrdf::evalScalar, and against each other.
 
+#include <brdfs/catalog.h>
 #include <brdfs/measured/rgl.h>
+#include <brdfs/measured_files.h>
 #include <brdfs/tensor_writer.h>
 #include <brdfs/vector_targets.h>
 
@@ -76,6 +78,36 @@ TEST(RglVectors, AgreeWithScalarEvaluation) {
                         ASSERT_EQ(vectors[k], untouched);
                 }
         });
+    }
+}
+
+// A MERL table of a narrow lobe, one cell in 97 without a value, and a NaN: every instruction set
+// reads the same from it. Angles differ by 1e-15, which is 1e-13 of a cell, and cells beside each
+// other by as much as the lobe is high.
+TEST(MerlVectors, AgreeAmongInstructionSets) {
+    const Points points = pointsOf(2000);
+    const std::size_t count = points.x.size();
+    for (const int azimuths : {180, 360}) {
+        const test::TemporaryFile file(test::merlFile(
+            [&](int c, int h, int d, int p) {
+                if (c == 1 && h == 40 && d == 40 && p == 40) return std::nan("");
+                if ((c + 31 * (h + 37 * (d + 41 * p))) % 97 == 0) return -1.0;
+                return 1 + 1000 * std::exp(-0.1 * h * h) + d + c + std::cos(radians(2. * p));
+            },
+            azimuths));
+        const auto brdf = brdfs::open(file.path());
+        for (const double theta : {0., .7, 1.5}) {
+            const Direction wo = directionFromAngles(theta, 1.1);
+            std::vector<double> first, values(3 * count);
+            test::forEveryTarget([&] {
+                brdf->eval(wo, points.first(count), values.data());
+                if (first.empty()) first = values;
+                const double largest = *std::max_element(first.begin(), first.end());
+                EXPECT_GT(largest, 0);
+                for (std::size_t k = 0; k < 3 * count; ++k)
+                    ASSERT_NEAR(values[k], first[k], 1e-12 * largest) << k << ", wo at " << theta;
+            });
+        }
     }
 }
 
