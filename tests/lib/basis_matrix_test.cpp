@@ -175,7 +175,7 @@ private:
 };
 
 TEST(ProjectBoth, ReturnsTheCoefficientsOfWhatLiesInItsSpan) {
-    for (const char* name : {"hsh", "zernike", "makhotkin", "makhotkin-flux", "esh", "h"}) {
+    for (const char* name : {"hsh", "zernike", "makhotkin", "makhotkin-flux", "esh", "h-basis"}) {
         const auto basis = bases::make(name, 3);
         for (const ProductSymmetry& symmetry : symmetries) {
             const InSpan brdf(*basis, symmetry, 7);

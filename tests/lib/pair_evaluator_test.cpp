@@ -90,7 +90,7 @@ Representation randomMatrix(const char* name, int order, const ProductSymmetry& 
 
 std::vector<Representation> everyForm() {
     std::vector<Representation> forms;
-    for (const char* basis : {"hsh", "sh", "zernike", "makhotkin", "esh", "h"}) {
+    for (const char* basis : {"hsh", "sh", "zernike", "makhotkin", "esh", "h-basis"}) {
         const int order = std::min(7, bases::find(basis).maxOrder);
         for (Quantity quantity : {Quantity::brdf, Quantity::brdfCosine}) {
             forms.push_back(randomRows(basis, order, OutgoingSet::elevations(9), quantity));
