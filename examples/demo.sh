@@ -58,6 +58,10 @@ echo "6. A model fitted to the measured file, with errors and a page that compar
 show fit out/ggx.binary --model lambert+beckmann --samples 20000 -o out/fit_beckmann
 
 echo
+echo "7. The least that a scene needs: matte materials under one sky, and a mirror that has no plan."
+finding "no form of this order holds a mirror." plan examples/scenes/matte_room.json -o out/plan
+
+echo
 echo "Captured energy of f cos with order 7 (49 slots) and the files it went to:"
 # The BRDF is the last column, in quotes and with commas of its own.
 awk -F, '
@@ -74,5 +78,6 @@ done
 echo
 echo "Open out/report_cosine/report.html, and report_phong and report_ward beside it;"
 echo "the fit is out/fit_beckmann/fit.json, with comparison.html beside it;"
+echo "the plan is out/plan/plan.html;"
 echo "the viewer is out/export/ward_cosine_viewer.html;"
 echo "the coefficients are out/*.json and out/*.exr: build/hshfit info out/ward_cosine.json"
