@@ -22,11 +22,11 @@ struct Case {
 const std::vector<Case> cases = {
     {"half", "--outgoing 16 --precision half", "outgoing"},
     {"unorm16", "--outgoing 16 --precision unorm16", "outgoing"},
-    {"unorm8", "--outgoing 8x8 --precision unorm8", "outgoing"},
+    {"unorm8", "--outgoing 24x24 --precision unorm8", "outgoing"},
     {"cosine", "--outgoing 16 --cosine --precision half", "outgoing"},
     {"rank", "--outgoing 16 --rank 3", "outgoing"},
     {"rank_error", "--outgoing 16 --rank-error 0.01", "outgoing"},
-    {"keep", "--outgoing 16 --keep 300", "outgoing"},
+    {"keep", "--outgoing 16 --keep 800", "outgoing"},
     {"split", "--outgoing 16 --split diffuse", "outgoing"},
     {"lobe", "--outgoing 16 --split ggx:alpha=.4", "outgoing"},
     {"window", "--outgoing 16 --window lanczos", "outgoing"},

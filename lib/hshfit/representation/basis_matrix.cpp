@@ -6,8 +6,10 @@
 #include <hshfit/representation/factoring_blocks.h>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -82,52 +84,82 @@ void addExchanged(const ProductTerm& t, bool isotropic, double value, const doub
     addOnesided({t.k, t.p, t.l, t.m, t.sine}, isotropic, sign * value, wo, out);
 }
 
-/// Outgoing directions and weights of one level of the outer quadrature.
-OutgoingSet outerNodes(const Basis& basis, bool isotropic, int level) {
-    const double growth = std::pow(1.5, level);
-    const int rings = static_cast<int>(std::ceil((basis.order() + 6) * growth));
-    const int quarter =
-        isotropic ? 1 : static_cast<int>(std::ceil((basis.order() + 4) / 2.0 * growth));
-    const GaussRule& rule = gaussLegendre(rings);
+/// The outgoing directions of one elevation, with their weights.
+OutgoingSet ringAt(double u, double weight, int quarter) {
     OutgoingSet set;
     set.map = OutgoingSet::Map::parabolic;  // any but elevations; only directions and weights count
-    const auto add = [&](double x, double y, double mu, double weight) {
-        set.directions.push_back({x, y, mu});
-        set.solidAngles.push_back(weight);
-    };
-    for (int r = 0; r < rings; ++r) {
-        const double u = (1 + rule.nodes[r]) / 2, mu = u * u;
-        double weight = rule.weights[r] / 2 * 2 * u * 2 * pi;
-        if (basis.inner() == Basis::Inner::projectedSolidAngle) weight *= mu;
-        const double s = std::sqrt((1 - mu) * (1 + mu));
-        if (isotropic) {
-            add(s, 0, mu, weight);
-            continue;
-        }
-        // Mirrored copies of one quadrant, so that symmetric directions agree to the last bit.
-        for (int j = 0; j < quarter; ++j) {
-            const double phi = (j + 0.5) * (pi / 2) / quarter;
-            const double x = s * std::cos(phi), y = s * std::sin(phi), w = weight / (4 * quarter);
-            for (double sx : {1.0, -1.0}) {
-                for (double sy : {1.0, -1.0}) add(sx * x, sy * y, mu, w);
+    const double mu = u * u, s = std::sqrt((1 - mu) * (1 + mu));
+    if (quarter == 0) {
+        set.directions = {{s, 0, mu}};
+        set.solidAngles = {weight};
+        return set;
+    }
+    // Mirrored copies of one quadrant, so that symmetric directions agree to the last bit.
+    for (int j = 0; j < quarter; ++j) {
+        const double phi = (j + 0.5) * (pi / 2) / quarter;
+        for (double sx : {1.0, -1.0}) {
+            for (double sy : {1.0, -1.0}) {
+                set.directions.push_back({sx * s * std::cos(phi), sy * s * std::sin(phi), mu});
+                set.solidAngles.push_back(weight / (4 * quarter));
             }
         }
     }
     set.width = static_cast<int>(set.size());
-    set.height = 1;
     return set;
 }
 
-/// Coefficients [channel][term] from those per outgoing direction: a product function is linear in
+/// One level of the outer quadrature: rings of outgoing directions and what they weigh together.
+struct OuterGrid {
+    std::vector<OutgoingSet> rings;
+    std::vector<double> weights;
+};
+
+OuterGrid outerGrid(const Basis& basis, bool isotropic, int level) {
+    const double growth = std::pow(1.5, level);
+    const int rings = static_cast<int>(std::ceil((basis.order() + 6) * growth));
+    const int quarter =
+        isotropic ? 0 : static_cast<int>(std::ceil((basis.order() + 4) / 2.0 * growth));
+    const GaussRule& rule = gaussLegendre(rings);
+    OuterGrid grid;
+    for (int r = 0; r < rings; ++r) {
+        const double u = (1 + rule.nodes[r]) / 2;
+        double weight = rule.weights[r] / 2 * 2 * u * 2 * pi;
+        if (basis.inner() == Basis::Inner::projectedSolidAngle) weight *= u * u;
+        grid.rings.push_back(ringAt(u, weight, quarter));
+        grid.weights.push_back(weight);
+    }
+    return grid;
+}
+
+/// Projections over wi of every ring. Each is asked for the tolerance that its weight calls for:
+/// grazing rings, which weigh next to nothing, are the hardest of all.
+std::vector<Projection> projectRings(const Brdf& brdf, const Basis& basis, const OuterGrid& grid,
+                                     const ProjectionOptions& options) {
+    constexpr double loosest = 0.1;
+    const Basis* const one[] = {&basis};
+    const double heaviest = *std::max_element(grid.weights.begin(), grid.weights.end());
+    std::vector<Projection> results(grid.rings.size());
+    std::atomic<std::size_t> done = 0;
+    tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t r) {
+        ProjectionOptions own = options;
+        own.progress = {};
+        own.tolerance = std::clamp(options.tolerance * heaviest / grid.weights[r],
+                                   options.tolerance, std::max(loosest, options.tolerance));
+        results[r] = std::move(project(brdf, one, grid.rings[r], own)[0]);
+        results[r].coefficients.error *= grid.weights[r] / heaviest;
+        if (options.progress) options.progress(++done, results.size());
+    });
+    return results;
+}
+
+/// Adds to [channel][term] what the coefficients of one ring hold: a product function is linear in
 /// what it takes of wi, so that coefficients over wi can stand for the basis values there.
-std::vector<double> gather(const Coefficients& c, const Basis& basis,
-                           const std::vector<ProductTerm>& terms, const ProductSymmetry& symmetry) {
-    const std::size_t channels = c.channels.count();
-    std::vector<double> sums(channels * terms.size(), 0.0), products(terms.size());
-    std::vector<double> atWo(basis.slots());
+void gather(const Coefficients& c, const Basis& basis, const std::vector<ProductTerm>& terms,
+            const ProductSymmetry& symmetry, std::vector<double>& sums) {
+    std::vector<double> products(terms.size()), atWo(basis.slots());
     for (std::size_t o = 0; o < c.outgoing.size(); ++o) {
         basis.evaluate(c.outgoing.directions[o], atWo.data());
-        for (std::size_t channel = 0; channel < channels; ++channel) {
+        for (std::size_t channel = 0; channel < c.channels.count(); ++channel) {
             evaluateProducts(terms, symmetry, c.at(o, channel), atWo.data(), products.data());
             double* out = sums.data() + channel * terms.size();
             for (std::size_t t = 0; t < terms.size(); ++t) {
@@ -135,7 +167,24 @@ std::vector<double> gather(const Coefficients& c, const Basis& basis,
             }
         }
     }
-    return sums;
+}
+
+/// What the rings have in common, with their energies added up.
+Coefficients headOf(const std::vector<Projection>& rings) {
+    Coefficients head = rings[0].coefficients;
+    for (std::size_t r = 1; r < rings.size(); ++r) {
+        const Coefficients& c = rings[r].coefficients;
+        head.energy.value += c.energy.value;
+        head.energy.error += c.energy.error;
+        if (head.energy.finite && !c.energy.finite) {
+            head.energy.finite = false;
+            head.energy.reason = c.energy.reason;
+        }
+        head.error = std::max(head.error, c.error);
+    }
+    head.values.clear();
+    head.outgoing = {};
+    return head;
 }
 
 double relativeChange(const std::vector<double>& now, const std::vector<double>& before) {
@@ -227,7 +276,6 @@ Representation projectBoth(const Brdf& brdf, const Basis& basis, bool reciprocal
         options.tolerance > 0 ? options.tolerance : std::max(1e-5, brdf.defaultTolerance());
     const ProductSymmetry symmetry{brdf.laws().isotropic, brdf.laws().mirrorSymmetric, reciprocal};
     const std::vector<ProductTerm> terms = productTerms(basis, symmetry);
-    const Basis* const one[] = {&basis};
     ProjectionOptions inner = options;
     inner.tolerance = tolerance / 4;
 
@@ -237,16 +285,16 @@ Representation projectBoth(const Brdf& brdf, const Basis& basis, bool reciprocal
         .name = "matrix", .shape = {brdf.channels().count(), terms.size()}, .values = {}};
     double change = 0;
     for (int level = 0; level <= lastLevel; ++level) {
-        const OutgoingSet nodes = outerNodes(basis, symmetry.isotropic, level);
-        const Projection projection = std::move(project(brdf, one, nodes, inner)[0]);
-        std::vector<double> values = gather(projection.coefficients, basis, terms, symmetry);
+        const OuterGrid grid = outerGrid(basis, symmetry.isotropic, level);
+        const std::vector<Projection> rings = projectRings(brdf, basis, grid, inner);
+        std::vector<double> values(matrix.shape[0] * terms.size(), 0.0);
+        for (const Projection& ring : rings) {
+            gather(ring.coefficients, basis, terms, symmetry, values);
+        }
         change = level > 0 ? relativeChange(values, matrix.values) : 1;
         matrix.values = std::move(values);
         if (level == 0 || change > tolerance) continue;
-        result.head = projection.coefficients;
-        result.head.values.clear();
-        result.head.outgoing = {};
-        result.head.outgoing.directions.clear();
+        result.head = headOf(rings);
         result.head.reciprocal = reciprocal;
         result.head.tolerance = tolerance;
         result.head.error = std::max(result.head.error, change);
