@@ -3,6 +3,8 @@
 // call on, plus the product alone: what has to be added to turn values into coefficients, as fast
 // as this library's own matrix product does it.
 
+#include "bench_folder.h"
+
 #include <benchmark/benchmark.h>
 #include <brdfs/catalog.h>
 #include <hshfit/azimuth_tables.h>
@@ -11,7 +13,7 @@
 #include <hshfit/ring_kernels.h>
 #include <tbb/global_control.h>
 
-#include <atomic>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -219,6 +221,20 @@ BENCHMARK_CAPTURE(floorShare, ggx, Job{.spec = "ggx:alpha=0.3"})
 BENCHMARK_CAPTURE(floorShare, lambert, Job{.spec = "lambert", .tolerance = 1e-6})
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
+
+/// A full-size MERL-layout file that is in the page cache, from opening it to coefficients: RGB,
+/// order 7, the tables' own tolerance.
+void merl(benchmark::State& state, const std::string& outgoing) {
+    static const BenchFolder folder;
+    const std::string path = (folder.path / "ggx.binary").string();
+    if (!std::filesystem::exists(path)) {
+        const auto writer = std::ranges::find(brdfs::writers(), "merl", &brdfs::Writer::name);
+        writer->write(*brdfs::open("ggx:alpha=0.3,F0=0.9"), path, {}, {});
+    }
+    measure(state, {.spec = path, .outgoing = outgoing, .quantity = Quantity::brdf});
+}
+BENCHMARK_CAPTURE(merl, 16, "16")->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(merl, 32x32, "32x32")->UseManualTime()->Unit(benchmark::kMillisecond);
 
 /// Wall time, with as many threads as the argument says.
 void byThreads(benchmark::State& state) {

@@ -51,11 +51,11 @@ def series(found, name):
     return sorted(points, key=lambda point: point[0])
 
 
-def plot(name, labels, curves, log="xy"):
+def plot(name, labels, curves, log="xy", key="top left"):
     """Curves are (title, [(x, y)], style) with gnuplot styles."""
     script = [f"set terminal svg size 560,360 dynamic font 'sans-serif,12' background '#ffffff'",
               f"set output '{HERE / f'performance-{name}.svg'}'",
-              "set grid lc rgb '#dddddd'", "set key top left", "set border 3", "set tics nomirror",
+              "set grid lc rgb '#dddddd'", f"set key {key}", "set border 3", "set tics nomirror",
               f"set xlabel '{labels[0]}'", f"set ylabel '{labels[1]}'"]
     if log:
         script.append(f"set logscale {log}")
@@ -85,7 +85,7 @@ def by_order(found):
     plot("order", ("order", "ms, one outgoing direction"),
          [("projection", curve, SOLID),
           ("operation count, through the last point",
-           [(n, ms(entry) * work[n] / work[last]) for n, _ in points], DASHED)])
+           [(n, ms(entry) * work[n] / work[last]) for n, _ in points], DASHED)], key="bottom right")
     return {"order": table(
         ["order", "evaluations", "ms", "growth", "growth of the operation count"],
         [[n, f"{e['evaluations']:.0f}", f"{ms(e):.3g}",
@@ -116,7 +116,7 @@ def by_tolerance(found, carlo):
         reach = [1e-1, 1e-2, 1e-3]
         curves.append(("textbook Monte Carlo", [
             (error, 1e0 * ms(monte) * (monte["error"] / error) ** 2) for error in reach], DASHED))
-    plot("error", ("relative error asked for", "ms, 1024 directions"), curves, log="xy")
+    plot("error", ("relative error asked for", "ms, 1024 directions"), curves, key="center right")
     return {"error": table(
         ["tolerance", "evaluations", "ms", "error reported"],
         [[f"1e-{n}", f"{e['evaluations']:.0f}", f"{ms(e):.3g}", f"{e['error']:.1e}"]
@@ -182,7 +182,8 @@ def analysis(found):
     curves = []
     for basis in ("sh", "hsh"):
         own = [(int(n.split("/")[2]), ms(e)) for n, e in points if n.split("/")[1] == basis]
-        curves.append((f"{basis}, Analysis", own, SOLID))
+        if own:
+            curves.append((f"{basis}, Analysis", own, SOLID))
     curves.append(("sh, libsharp", [(int(n.split("/")[2]), 1e3 * e["sharp_seconds"])
                                     for n, e in points if n.split("/")[1] == "sh"], DASHED))
     plot("analysis", ("degree", "ms, 1024 functions"), curves)
@@ -202,13 +203,19 @@ def monte_carlo(found):
          "x as fast at equal error", "evaluations at equal error"], rows)}
 
 
-def merl(found):
+def merl(found, projection):
+    sections = {}
+    rows = [[name.split("/")[1], f"{ms(e):.3g}", f"{e['evaluations']:.0f}", f"{e['error']:.1e}"]
+            for name, e in projection.items() if name.startswith("merl/")]
+    if rows:
+        sections["merl"] = table(["outgoing", "CPU ms, file to coefficients", "evaluations",
+                                  "error reported"], rows)
     rows = [[name.split("/")[1], f"{1e3 * e['median_s']:.0f}", f"{1e3 * e['start_s']:.0f}",
              f"{e['peak_mb']:.0f}"] for name, e in found.items() if "median_s" in e]
-    if not rows:
-        return {}
-    return {"merl": table(["job", "CPU ms, file to file", "of it starting the program",
-                           "peak MB"], rows)}
+    if rows:
+        sections["merl_program"] = table(
+            ["job", "CPU ms, file to file", "of it starting the program", "peak MB"], rows)
+    return sections
 
 
 def folder_of_ten(found):
@@ -229,7 +236,7 @@ def main():
     for part in (by_order(projection), by_directions(projection),
                  by_tolerance(projection, carlo), by_channels_and_bases(projection),
                  by_threads(projection), floor(projection), analysis(load(folder, "analysis")),
-                 monte_carlo(carlo), merl(load(folder, "merl_projection")),
+                 monte_carlo(carlo), merl(load(folder, "merl_projection"), projection),
                  folder_of_ten(load(folder, "folder"))):
         sections.update(part)
     if not sections:
