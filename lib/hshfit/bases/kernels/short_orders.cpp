@@ -209,8 +209,15 @@ void bySlot(const ShortJob<T>& job) {
                                      tile + k, width);
             rows.template row<0>(job.order);
         }
-        for (std::size_t i = 0; i < static_cast<std::size_t>(job.order * job.order); ++i)
-            std::copy_n(tile + i * width, valid, job.out + i * count + first);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(job.order * job.order); ++i) {
+            const T* from = tile + i * width;
+            T* to = job.out + i * count + first;
+            if (valid < width)
+                std::copy_n(from, valid, to);
+            else
+                for (std::size_t k = 0; k < width; k += n)
+                    hn::StoreU(hn::Load(D(), from + k), D(), to + k);
+        }
     }
 }
 
