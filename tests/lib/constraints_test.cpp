@@ -182,7 +182,7 @@ TEST(NonNegative, HoldsEverywhereAndCostsWhatIsMeasured) {
             const auto set = isotropic ? OutgoingSet::elevations(6) : OutgoingSet::parabolic(4, 4);
             const Representation before = perOutgoing(brdf, *basis, set);
             const Representation after = madeNonNegative(before);
-            const double tolerance = 2 * nonNegativeTolerance;
+            const double tolerance = nonNegativeTolerance;
             EXPECT_GE(smallestAtRandom(after, 100000), -tolerance) << entry.name << isotropic;
             if (entry.maxOrder > 3) {
                 EXPECT_LT(smallestAtRandom(before, 100000), -1e-3) << entry.name << isotropic;
@@ -223,7 +223,7 @@ TEST(NonNegative, IsTheNearest) {
 
 TEST(NonNegative, OfBothDirectionsHoldsEverywhere) {
     const FormulaBrdf round = glossy(30, 0.01), along = brushed();
-    for (const char* name : {"hsh", "zernike", "sh"}) {
+    for (const char* name : {"hsh", "sh"}) {
         for (const bool isotropic : {true, false}) {
             const auto basis = bases::make(name, isotropic ? 5 : 3);
             const Brdf& brdf = isotropic ? static_cast<const Brdf&>(round) : along;
@@ -231,7 +231,7 @@ TEST(NonNegative, OfBothDirectionsHoldsEverywhere) {
                 const Representation before = bothIn(brdf, *basis, reciprocal);
                 const Representation after = madeNonNegative(before);
                 EXPECT_LT(smallestAtRandom(before, 20000), -1e-3) << name;
-                EXPECT_GE(smallestAtRandom(after, 100000), -2 * nonNegativeTolerance)
+                EXPECT_GE(smallestAtRandom(after, 100000), -nonNegativeTolerance)
                     << name << isotropic << reciprocal;
                 EXPECT_NEAR(after.steps.at(0).change, measuredChange(before, after), 1e-7) << name;
             }
@@ -251,7 +251,7 @@ TEST(NonNegative, CountsWhatIsAdded) {
     const Representation before = perOutgoing(*split.remainder, *basis, OutgoingSet::elevations(6));
     const Representation with = madeNonNegative(before, addedTo(*split.remainder));
     const Representation without = madeNonNegative(before);
-    EXPECT_GE(smallestAtRandom(with, 100000, addedTo(*split.remainder)), -2 * nonNegativeTolerance);
+    EXPECT_GE(smallestAtRandom(with, 100000, addedTo(*split.remainder)), -nonNegativeTolerance);
     EXPECT_LT(with.steps.at(0).change, without.steps.at(0).change);
 }
 
@@ -314,7 +314,7 @@ TEST(Energy, StaysBelowTheSourceAtAndBetweenStoredDirections) {
             if (entry.maxOrder < 6 || !isotropic) continue;
             const Representation both = madeEnergyPreserving(madeNonNegative(plain), brdf);
             EXPECT_LE(largestExcess(both, brdf, wo), 3e-6) << entry.name;
-            EXPECT_GE(smallestAtRandom(both, 20000), -2 * nonNegativeTolerance) << entry.name;
+            EXPECT_GE(smallestAtRandom(both, 20000), -nonNegativeTolerance) << entry.name;
         }
     }
     EXPECT_GT(before, 1e-3);  // so that there was something to do
@@ -334,7 +334,7 @@ TEST(Energy, OfBothDirectionsStaysBelowTheSource) {
         EXPECT_NEAR(after.steps.at(0).change, measuredChange(plain, after), 1e-7) << name;
         const Representation both = madeEnergyPreserving(madeNonNegative(plain), brdf);
         EXPECT_LE(largestExcess(both, brdf, wo), 1e-5) << name;
-        EXPECT_GE(smallestAtRandom(both, 20000), -2 * nonNegativeTolerance) << name;
+        EXPECT_GE(smallestAtRandom(both, 20000), -nonNegativeTolerance) << name;
     }
     EXPECT_GT(before, 1e-4);
 }

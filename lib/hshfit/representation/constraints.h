@@ -25,11 +25,11 @@ std::vector<double> windowFactors(Window window, int order, double lambda = 0);
 /// is stretched by cos theta' = 2 cos theta - 1; for the other bases it is a penalty that
 /// grows in the same way.
 Representation windowed(Representation representation, Window window);
-/// The coefficients nearest in L2 (for sh: over the sphere) with q >= -1e-6 of its root mean
+/// The coefficients nearest in L2 (for sh: over the sphere) with q >= -1e-5 of its root mean
 /// square, over wi in the hemisphere, for each stored wo (kind basis: over both). A quadratic
 /// program by Goldfarb & Idnani's dual method (1983), with directions as constraints that
-/// are added where the result is still negative: local minima on a grid of 8 nodes per shortest
-/// wavelength, refined. Bilinear lookups between stored directions keep it.
+/// are added where the result is still negative: local minima on a grid of 8, at last 24 nodes
+/// per shortest wavelength, refined. Bilinear lookups between stored directions keep it.
 /// `added`: q + added >= 0 instead, for a BRDF that the reconstruction adds; between stored
 /// directions that holds if `added` does not depend on wo.
 /// Throws UsageError for lsosh of an order with condition above 1e9, and NumericError where the

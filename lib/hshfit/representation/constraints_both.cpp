@@ -14,16 +14,15 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace hshfit {
 namespace {
 
 constexpr int mostRounds = 60;
+constexpr std::size_t mostRefined = 8000;       // of the lowest nodes
 constexpr std::size_t mostPerRound = 400;       // of the lowest minima
 constexpr double lowestRing = 89 * (pi / 180);  // as far down as outgoing directions are kept
-
-/// theta_i, phi_i, theta_o, phi_o.
-using Pair = std::vector<double>;
 
 /// Everything that the channels of one matrix share.
 class PairScan {
@@ -35,7 +34,8 @@ public:
           symmetry_(symmetryOf(matrix)),
           terms_(productTerms(*basis_, symmetry_)),
           even_(symmetry_.isotropic && symmetry_.bilateral),
-          scan_(*basis_, even_),
+          coarse_(*basis_, even_),
+          fine_(*basis_, even_, HemisphereScan::fine),
           moments_(albedoMoments(*basis_, quantity_)) {
         const int order = basis_->order(), polar = 4 * order + 9;
         polarStep_ = HemisphereScan::horizon() / (polar - 1);
@@ -48,10 +48,10 @@ public:
 
     std::size_t terms() const { return terms_.size(); }
 
-    std::vector<double> row(const Pair& x) const {
+    std::vector<double> row(const DirectionPair& at) const {
         std::vector<double> atWi(slots()), atWo(slots()), out(terms());
-        basis_->evaluate(directionFromAngles(x[0], x[1]), atWi.data());
-        basis_->evaluate(directionFromAngles(x[2], x[3]), atWo.data());
+        basis_->evaluate(at.wi, atWi.data());
+        basis_->evaluate(at.wo, atWo.data());
         evaluateProducts(terms_, symmetry_, atWi.data(), atWo.data(), out.data());
         return out;
     }
@@ -62,48 +62,40 @@ public:
         evaluateProducts(terms_, symmetry_, moments_.data(), atWo.data(), out.data());
         return out;
     }
-    double addedAt(const Brdf* added, std::size_t channel, const Pair& x) const {
+    double addedAt(const Brdf* added, std::size_t channel, const DirectionPair& at) const {
         if (!added) return 0;
-        const Direction wi = directionFromAngles(x[0], x[1]);
-        const std::vector<double> f = evaluate(*added, wi, directionFromAngles(x[2], x[3]));
-        return f[f.size() == 1 ? 0 : channel] * (quantity_ == Quantity::brdf ? 1 : wi.z);
+        const std::vector<double> f = evaluate(*added, at.wi, at.wo);
+        return f[f.size() == 1 ? 0 : channel] * (quantity_ == Quantity::brdf ? 1 : at.wi.z);
     }
 
     struct Minimum {
-        Pair pair;
+        DirectionPair pair;
         double value;
     };
-    /// Local minima over all four angles, refined; `thorough`: floors of valleys over wi for every
-    /// wo as well.
+    /// The lowest local minima over all four angles, refined; `thorough`: floors of valleys over wi
+    /// for every wo as well.
     std::vector<Minimum> minima(const std::vector<double>& values, const Brdf* added,
                                 std::size_t channel, double scale, bool thorough) const {
         const double threshold = (thorough ? 0.03 : 0.1) * scale;
         std::vector<std::vector<double>> sums(polar_.size() * azimuths_.size());
-        for (std::size_t o = 0; o < sums.size(); ++o) sums[o] = sumsAt(values, added, channel, o);
-        std::vector<Minimum> found;
+        const HemisphereScan& scan = thorough ? fine_ : coarse_;
         for (std::size_t o = 0; o < sums.size(); ++o) {
-            for (const std::size_t node : scan_.minima(sums[o].data(), threshold, thorough)) {
-                if (thorough || leastOfNeighbours(sums, o, node)) {
-                    found.push_back({pairAt(o, node), sums[o][node]});
-                }
+            sums[o] = sumsAt(scan, values, added, channel, o);
+        }
+        std::vector<std::pair<std::size_t, std::size_t>> nodes;  // of wo and wi
+        for (std::size_t o = 0; o < sums.size(); ++o) {
+            for (const std::size_t i : scan.minima(sums[o].data(), threshold, thorough)) {
+                if (thorough || leastOfNeighbours(sums, o, i)) nodes.emplace_back(o, i);
             }
         }
+        std::ranges::sort(nodes, {}, [&](const auto& at) { return sums[at.first][at.second]; });
+        if (nodes.size() > mostRefined) nodes.resize(mostRefined);
+        std::vector<Minimum> found(nodes.size());
+        tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t k) {
+            found[k] = refined(scan, values, added, channel, nodes[k].first, nodes[k].second);
+        });
         std::ranges::sort(found, {}, &Minimum::value);
         if (found.size() > mostPerRound) found.resize(mostPerRound);
-        constexpr double any = std::numeric_limits<double>::infinity();
-        const double turn = symmetry_.isotropic ? 0 : azimuthStep_;
-        const std::vector<SearchAxis> axes{{scan_.polarStep(), 0, HemisphereScan::horizon()},
-                                           {scan_.azimuthStep(), -any, any},
-                                           {polarStep_, 0, HemisphereScan::horizon()},
-                                           {turn, -any, any}};
-        const auto value = [&](const Pair& x) {
-            const std::vector<double> products = row(x);
-            return std::inner_product(products.begin(), products.end(), values.begin(), 0.0) +
-                   addedAt(added, channel, x);
-        };
-        tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t k) {
-            found[k].value = descend(value, found[k].pair, axes, 5);
-        });
         return found;
     }
 
@@ -121,19 +113,42 @@ public:
 
 private:
     std::size_t slots() const { return static_cast<std::size_t>(basis_->slots()); }
-    Pair pairAt(std::size_t o, std::size_t node) const {
-        return {scan_.polar(node), scan_.azimuth(node), polar_[o / azimuths_.size()],
-                azimuths_[o % azimuths_.size()]};
+    /// Offsets from the node of wo, as in HemisphereScan::offset.
+    Direction outgoing(std::size_t o, double along, double across) const {
+        const double radius = polar_[o / azimuths_.size()] + along;
+        return directionFromAngles(std::min(std::hypot(radius, across), HemisphereScan::horizon()),
+                                   azimuths_[o % azimuths_.size()] + std::atan2(across, radius));
     }
-    std::vector<double> sumsAt(const std::vector<double>& values, const Brdf* added,
-                               std::size_t channel, std::size_t o) const {
-        std::vector<double> atWo(slots()), c(slots(), 0.0), sums(scan_.size());
-        const Pair at = pairAt(o, 0);
-        basis_->evaluate(directionFromAngles(at[2], at[3]), atWo.data());
+    Minimum refined(const HemisphereScan& scan, const std::vector<double>& values,
+                    const Brdf* added, std::size_t channel, std::size_t o, std::size_t i) const {
+        constexpr double any = std::numeric_limits<double>::infinity();
+        const auto [along, across] = scan.axesAt(i);
+        const double turn = symmetry_.isotropic
+                                ? 0
+                                : std::max(polarStep_, azimuthStep_ * polar_[o / azimuths_.size()]);
+        std::vector<double> x(4, 0.0);
+        const auto pairAt = [&](const std::vector<double>& to) {
+            return DirectionPair{scan.offset(i, to[0], to[1]), outgoing(o, to[2], to[3])};
+        };
+        const double least = descend(
+            [&](const std::vector<double>& to) {
+                const DirectionPair at = pairAt(to);
+                const std::vector<double> products = row(at);
+                return std::inner_product(products.begin(), products.end(), values.begin(), 0.0) +
+                       addedAt(added, channel, at);
+            },
+            x, {along, across, {polarStep_, -any, any}, {turn, -any, any}}, 6);
+        return {pairAt(x), least};
+    }
+    std::vector<double> sumsAt(const HemisphereScan& scan, const std::vector<double>& values,
+                               const Brdf* added, std::size_t channel, std::size_t o) const {
+        std::vector<double> atWo(slots()), c(slots(), 0.0), sums(scan.size());
+        const Direction wo = outgoing(o, 0, 0);
+        basis_->evaluate(wo, atWo.data());
         contractWithOutgoing(terms_, symmetry_, values.data(), atWo.data(), c.data());
-        scan_.synthesise(c.data(), sums.data());
+        scan.synthesise(c.data(), sums.data());
         for (std::size_t k = 0; added && k < sums.size(); ++k) {
-            sums[k] += addedAt(added, channel, pairAt(o, k));
+            sums[k] += addedAt(added, channel, {scan.offset(k, 0, 0), wo});
         }
         return sums;
     }
@@ -153,7 +168,7 @@ private:
     ProductSymmetry symmetry_;
     std::vector<ProductTerm> terms_;
     bool even_;
-    HemisphereScan scan_;
+    HemisphereScan coarse_, fine_;
     std::vector<double> moments_;
     double polarStep_ = 0, azimuthStep_ = 0;
     std::vector<double> polar_, azimuths_;  ///< of wo
@@ -187,7 +202,7 @@ std::vector<double> nearestMatrix(const PairScan& scan, std::vector<double> valu
             if (each.value >= 0) continue;
             const std::vector<double> row = scan.row(each.pair);
             lift = std::max(lift, -each.value / row[0]);
-            if (each.value > -0.1 * nonNegativeTolerance * scale) continue;
+            if (-each.value < 0.01 * nonNegativeTolerance * norm * row[0]) continue;
             negative = true;
             program.add(
                 row, constraints.added ? -scan.addedAt(constraints.added, channel, each.pair) : 0);

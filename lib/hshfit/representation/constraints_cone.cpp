@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace hshfit {
@@ -37,7 +36,7 @@ bool withoutSines(const std::vector<int>& slots) {
 }
 
 NonNegativeCone::NonNegativeCone(const Basis& basis, bool even)
-    : basis_(basis), even_(even), scan_(basis, even) {
+    : basis_(basis), even_(even), coarse_(basis, even), fine_(basis, even, HemisphereScan::fine) {
     if (bases::find(basis.name()).orthonormal) return;
     gram_ = std::make_unique<HemisphereGram>(basis);
     if (gram_->condition() > 1e9) {
@@ -60,27 +59,27 @@ std::vector<double> NonNegativeCone::row(const Direction& wi) const {
 std::vector<NonNegativeCone::Minimum> NonNegativeCone::minima(const std::vector<double>& c,
                                                               const Added& added, double scale,
                                                               bool thorough) const {
-    std::vector<double> values(scan_.size()), at(c.size());
-    scan_.synthesise(c.data(), values.data());
+    const HemisphereScan& scan = thorough ? fine_ : coarse_;
+    std::vector<double> values(scan.size()), at(c.size());
+    scan.synthesise(c.data(), values.data());
     if (added) {
         for (std::size_t k = 0; k < values.size(); ++k) {
-            values[k] += added(directionFromAngles(scan_.polar(k), scan_.azimuth(k)));
+            values[k] += added(directionFromAngles(scan.polar(k), scan.azimuth(k)));
         }
     }
-    constexpr double any = std::numeric_limits<double>::infinity();
-    const std::vector<SearchAxis> axes{{scan_.polarStep(), 0, HemisphereScan::horizon()},
-                                       {scan_.azimuthStep(), -any, any}};
-    const auto value = [&](const std::vector<double>& x) {
-        const Direction wi = directionFromAngles(x[0], x[1]);
+    const auto valueAt = [&](const Direction& wi) {
         basis_.evaluate(wi, at.data());
         return product(c, at.data()) + (added ? added(wi) : 0);
     };
     std::vector<Minimum> found;
     const double threshold = (thorough ? 0.03 : 0.1) * scale;
-    for (const std::size_t node : scan_.minima(values.data(), threshold, thorough)) {
-        std::vector<double> x{scan_.polar(node), scan_.azimuth(node)};
-        const double least = descend(value, x, axes);
-        found.push_back({directionFromAngles(x[0], x[1]), least});
+    for (const std::size_t node : scan.minima(values.data(), threshold, thorough)) {
+        const auto [along, across] = scan.axesAt(node);
+        std::vector<double> x{0, 0};
+        const double least = descend(
+            [&](const std::vector<double>& to) { return valueAt(scan.offset(node, to[0], to[1])); },
+            x, {along, across});
+        found.push_back({scan.offset(node, x[0], x[1]), least});
     }
     return found;
 }
@@ -114,8 +113,9 @@ std::vector<double> NonNegativeCone::nearest(const double* c, const Added& added
             if (each.value >= 0) continue;
             std::vector<double> first(static_cast<std::size_t>(basis_.slots()));
             basis_.evaluate(each.wi, first.data());
+            // In units of band 0, which for some bases falls to 0 at the horizon.
             lift = std::max(lift, -each.value / first[0]);
-            if (each.value > -0.1 * nonNegativeTolerance * scale) continue;
+            if (-each.value < 0.01 * nonNegativeTolerance * norm * first[0]) continue;
             negative = true;
             program.add(row(each.wi), added ? -added(each.wi) : 0);
         }

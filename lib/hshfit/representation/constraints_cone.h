@@ -11,7 +11,7 @@
 namespace hshfit {
 
 /// Negative values down to this share of the root mean square count as 0.
-inline constexpr double nonNegativeTolerance = 1e-6;
+inline constexpr double nonNegativeTolerance = 1e-5;
 
 /// Sums over a basis that are nowhere negative on the hemisphere, and the nearest of them.
 class NonNegativeCone {
@@ -28,7 +28,7 @@ public:
     /// Throws UsageError for a basis that is not orthonormal with a condition above 1e9.
     NonNegativeCone(const Basis& basis, bool even);
 
-    /// The coefficients nearest to `c` whose sum plus `added` is at least -1e-6 of its root mean
+    /// The coefficients nearest to `c` whose sum plus `added` is at least -1e-5 of its root mean
     /// square everywhere, and within the limit, if any. Directions are added as constraints where
     /// the sum is negative, first at local minima, then along the floors of valleys, until none is
     /// found; what the tolerance leaves is lifted by band 0.
@@ -46,7 +46,7 @@ private:
 
     const Basis& basis_;
     bool even_;
-    HemisphereScan scan_;
+    HemisphereScan coarse_, fine_;
     std::unique_ptr<HemisphereGram> gram_;  ///< null: the norm is that of the coefficients
 };
 

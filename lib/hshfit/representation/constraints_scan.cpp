@@ -1,5 +1,6 @@
 #include <hshfit/representation/constraints_scan.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -10,10 +11,11 @@ double HemisphereScan::horizon() {
     return pi / 2 - 1e-6;
 }
 
-HemisphereScan::HemisphereScan(const Basis& basis, bool even) : order_(basis.order()), even_(even) {
+HemisphereScan::HemisphereScan(const Basis& basis, bool even, int density)
+    : order_(basis.order()), even_(even) {
     // A quarter turn of theta is stretched to a half by hsh and its kin: band l has l / 2
     // wavelengths in it.
-    const int polar = 4 * order_ + 9, around = 8 * order_ + 8;
+    const int polar = density * (order_ + 2) / 2 + 1, around = density * (order_ + 1);
     const int azimuths = even ? around / 2 + 1 : around;
     polarStep_ = horizon() / (polar - 1);
     azimuthStep_ = 2 * pi / around;
@@ -33,6 +35,18 @@ HemisphereScan::HemisphereScan(const Basis& basis, bool even) : order_(basis.ord
         hshfit::azimuthParts(directionFromAngles(pi / 4, azimuths_[j]), order_,
                              basis.condonShortley(), azimuthParts_.data() + j * width);
     }
+}
+
+std::array<SearchAxis, 2> HemisphereScan::axesAt(std::size_t node) const {
+    constexpr double any = std::numeric_limits<double>::infinity();
+    const double across = std::max(polarStep_, azimuthStep_ * polar(node));
+    return {SearchAxis{polarStep_, -any, any}, SearchAxis{across, -any, any}};
+}
+
+Direction HemisphereScan::offset(std::size_t node, double along, double across) const {
+    const double radius = polar(node) + along;
+    return directionFromAngles(std::min(std::hypot(radius, across), horizon()),
+                               azimuth(node) + std::atan2(across, radius));
 }
 
 void HemisphereScan::synthesise(const double* c, double* values) const {

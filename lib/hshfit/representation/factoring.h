@@ -29,7 +29,7 @@ struct FactorOptions {
 ///           it for more. Blocks that would not get smaller, and antisymmetric ones, stay whole:
 ///           "block NAME" [channel][term]; those of rank 0 have no arrays. In the norm of the
 ///           coefficients (for sh: over the sphere).
-/// nonNegative, outgoing only: left >= 0 everywhere and right >= -1e-6 of its root mean square at
+/// nonNegative, outgoing only: left >= 0 everywhere and right >= -1e-5 of its root mean square at
 ///           all wi: alternating projections (hierarchical least squares, Cichocki et al. 2007,
 ///           with the cone of functions that are non-negative on the hemisphere in place of
 ///           non-negative vectors), a local optimum. Deterministic.
