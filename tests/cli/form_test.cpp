@@ -150,7 +150,7 @@ TEST_F(Form, BrokenFilesAreRefusedInOneLine) {
     refuse("/representation/arrays/0/base64", "AAAA", "base64");
     refuse("/representation/arrays/0/precision", "float16", "precision");
     refuse("/representation/arrays/0/bytes", 1e12, "bytes");
-    refuse("/representation/arrays/0/name", "other", "matrix");
+    refuse("/representation/arrays/0/name", "other", "factors of blocks");
     refuse("/representation/arrays", Json::array(), "matrix");
     refuse("/basis/order", 4, "matrix");
     refuse("/representation/added", "nonsense:x=1", "nonsense");

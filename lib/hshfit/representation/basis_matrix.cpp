@@ -271,9 +271,9 @@ Representation projectBoth(const Brdf& brdf, const Basis& basis, bool reciprocal
             "f cos(theta_i) is not symmetric in its directions: leave out --cosine or "
             "--reciprocal");
     }
-    constexpr int lastLevel = 7;
+    constexpr int lastLevel = 5;
     const double tolerance =
-        options.tolerance > 0 ? options.tolerance : std::max(1e-5, brdf.defaultTolerance());
+        options.tolerance > 0 ? options.tolerance : std::max(1e-4, brdf.defaultTolerance());
     const ProductSymmetry symmetry{brdf.laws().isotropic, brdf.laws().mirrorSymmetric, reciprocal};
     const std::vector<ProductTerm> terms = productTerms(basis, symmetry);
     ProjectionOptions inner = options;

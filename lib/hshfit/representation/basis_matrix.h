@@ -53,7 +53,7 @@ std::vector<double> matrixValues(const Representation& matrix);
 ///     c_t = integral integral q(wi, wo) P_t(wi, wo) d omega_i d omega_o
 /// (cos-weighted on both sides for a basis of Inner::projectedSolidAngle). Over wi by `project`;
 /// over wo by Gauss-Legendre nodes in sqrt(cos theta_o) times equispaced azimuths, refined until
-/// the coefficients agree to the tolerance (default: the larger of 1e-5 and the BRDF's own).
+/// the coefficients agree to the tolerance (default: the larger of 1e-4 and the BRDF's own).
 /// `reciprocal` asks for the symmetric half only: that is the projection of the mean of q(wi, wo)
 /// and q(wo, wi); quantity brdf only. Head's energy is that of q over both hemispheres, head's
 /// `reciprocal` says whether the terms are the symmetric ones.

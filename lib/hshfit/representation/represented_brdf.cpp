@@ -24,7 +24,7 @@ public:
         laws_.reciprocal = representation_.kind != Representation::Kind::outgoing &&
                            head.reciprocal && head.quantity == Quantity::brdf;
         if (representation_.added.empty()) return;
-        added_ = open(representation_.added);
+        added_ = opened(open);
         const std::size_t theirs = added_->channels().count();
         if (theirs != 1 && theirs != head.channels.count()) {
             throw InputError(fmt::format("{}: adds {}, which has {} channels instead of {}",
@@ -66,6 +66,16 @@ protected:
     Representation representation_;
 
 private:
+    /// What a file names has to open, or the file is at fault.
+    std::unique_ptr<Brdf> opened(const BrdfOpener& open) const {
+        try {
+            return open(representation_.added);
+        } catch (const UsageError& error) {
+            throw InputError(fmt::format("{}: adds '{}': {}", representation_.head.source,
+                                         representation_.added, error.what()));
+        }
+    }
+
     std::unique_ptr<Brdf> added_;
     Laws laws_;
 };
