@@ -35,8 +35,12 @@ bool withoutSines(const std::vector<int>& slots) {
     });
 }
 
-NonNegativeCone::NonNegativeCone(const Basis& basis, bool even)
-    : basis_(basis), even_(even), coarse_(basis, even), fine_(basis, even, HemisphereScan::fine) {
+NonNegativeCone::NonNegativeCone(const Basis& basis, bool even, bool sure)
+    : basis_(basis),
+      even_(even),
+      sure_(sure),
+      coarse_(basis, even),
+      fine_(basis, even, HemisphereScan::fine) {
     if (bases::find(basis.name()).orthonormal) return;
     gram_ = std::make_unique<HemisphereGram>(basis);
     if (gram_->condition() > 1e9) {
@@ -121,7 +125,7 @@ std::vector<double> NonNegativeCone::nearest(const double* c, const Added& added
         }
         if (negative) {
             solve();
-        } else if (thorough) {
+        } else if (thorough || !sure_) {
             break;
         } else {
             thorough = true;

@@ -24,9 +24,10 @@ public:
         double most = 0;
     };
 
-    /// `even`: the sums have no sines, before and after.
-    /// Throws UsageError for a basis that is not orthonormal with a condition above 1e9.
-    NonNegativeCone(const Basis& basis, bool even);
+    /// `even`: the sums have no sines, before and after. `sure`: look on the finer grid as well,
+    /// for minima that the coarse one hides; without, some are missed. Throws UsageError for a
+    /// basis that is not orthonormal with a condition above 1e9.
+    NonNegativeCone(const Basis& basis, bool even, bool sure = true);
 
     /// The coefficients nearest to `c` whose sum plus `added` is at least -1e-5 of its root mean
     /// square everywhere, and within the limit, if any. Directions are added as constraints where
@@ -45,7 +46,7 @@ private:
     std::vector<double> row(const Direction& wi) const;
 
     const Basis& basis_;
-    bool even_;
+    bool even_, sure_;
     HemisphereScan coarse_, fine_;
     std::unique_ptr<HemisphereGram> gram_;  ///< null: the norm is that of the coefficients
 };

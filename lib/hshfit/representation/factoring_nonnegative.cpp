@@ -18,6 +18,7 @@ class NonNegativeSearch {
 public:
     NonNegativeSearch(const WeightedRows& rows, const Basis& basis, std::size_t rank, bool even)
         : cone_(basis, even),
+          roughCone_(basis, even, /*sure=*/false),
           gram_(basis),
           weights_(Eigen::Map<const Eigen::VectorXd>(rows.solidAngles.data(),
                                                      static_cast<Index>(rows.rows))),
@@ -36,6 +37,8 @@ public:
             if (before - now <= 1e-4 * before) break;
             before = now;
         }
+        sure_ = true;
+        for (Index r = 0; r < right_.rows(); ++r) improve(r);
         RowFactors factors{
             .rank = static_cast<std::size_t>(right_.rows()), .left = {}, .right = {}};
         factors.left.assign(left_.data(), left_.data() + left_.size());
@@ -90,12 +93,13 @@ private:
     /// For fixed left parts the error is |right - best|^2 up to a constant: the nearest in the
     /// cone.
     void setRight(Index r, const Eigen::VectorXd& best) {
-        const std::vector<double> nearest = cone_.nearest(best.data());
+        const std::vector<double> nearest = (sure_ ? cone_ : roughCone_).nearest(best.data());
         right_.row(r) = Eigen::Map<const Eigen::RowVectorXd>(nearest.data(),
                                                              static_cast<Index>(nearest.size()));
     }
 
-    NonNegativeCone cone_;
+    bool sure_ = false;  ///< for the last sweep
+    NonNegativeCone cone_, roughCone_;
     HemisphereGram gram_;
     Eigen::VectorXd weights_;
     Matrix rest_;  ///< coefficients less the product of the factors
