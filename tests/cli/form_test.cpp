@@ -33,7 +33,7 @@ const std::vector<Case> cases = {
     {"both", "--form basis", "basis"},
     {"zernike", "--form basis --basis zernike --order 9 --reciprocal --precision half", "basis"},
     {"both_rank", "--form basis --order 9 --rank 3", "basis"},
-    {"both_keep", "--form basis --keep 100 --precision unorm8", "basis"},
+    {"both_keep", "--form basis --keep 300 --precision unorm16", "basis"},
     {"halfway", "--form halfway --halfway 8,4,2 --precision half", "halfway"},
 };
 

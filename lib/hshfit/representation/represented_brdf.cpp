@@ -47,6 +47,12 @@ public:
         return added_ ? added_->kinks(wo) : std::vector<double>{};
     }
 
+    /// The halfway form has kinks where its roots begin, and where it is cut off at 0.
+    double defaultTolerance() const override {
+        const double own = representation_.kind == Representation::Kind::halfway ? 3e-3 : 1e-6;
+        return added_ ? std::max(own, added_->defaultTolerance()) : own;
+    }
+
     void eval(const Direction& wo, DirectionBatch wi, double* out) const override {
         sum(wo, wi, out);
         if (!added_) return;
