@@ -16,7 +16,7 @@ std::ptrdiff_t lines(const std::string& text) {
 TEST_F(ManyInputs, AFolderAndAModelGoOnPastAFailure) {
     fs::create_directory(path("in"));
     ASSERT_EQ(run("convert lambert " + path("in/one.alta")).code, 0);
-    ASSERT_EQ(run("convert lambert:rho=.25 " + path("in/two.alta")).code, 0);
+    ASSERT_EQ(run("convert lambert:kd=.25 " + path("in/two.alta")).code, 0);
     write("in/broken.binary", "no MERL file");
     write("in/notes.md", "not of a known format: passed over");
     const std::string job =
