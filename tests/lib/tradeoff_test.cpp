@@ -301,7 +301,7 @@ TEST(Cache, DerivesWhatDirectProjectionGives) {
             Form form;
             form.basis = std::string(entry.name);
             form.order = order;
-            form.outgoing = "4";
+            form.outgoing = std::string{"4"};
             forms.push_back(form);
             if (!entry.orthonormal || entry.name == "slepian") continue;
             form.outgoing.clear();
