@@ -270,9 +270,7 @@ TEST(Energy, MomentsAreThoseOfQuadrature) {
                            values[k * static_cast<std::size_t>(basis->slots()) +
                                   static_cast<std::size_t>(slot)];
                 }
-                // Slepian functions hold SH of twice the order, which the nodes resolve less well.
-                const double tolerance = entry.name == "slepian" ? 1e-10 : 1e-12;
-                EXPECT_NEAR(moments[static_cast<std::size_t>(slot)], sum, tolerance) << entry.name;
+                EXPECT_NEAR(moments[static_cast<std::size_t>(slot)], sum, 1e-12) << entry.name;
             }
         }
     }

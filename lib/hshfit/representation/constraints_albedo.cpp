@@ -26,7 +26,8 @@ std::array<long long, 3> keyOf(const Direction& d, const Laws& laws) {
 }  // namespace
 
 std::vector<double> albedoMoments(const Basis& basis, Quantity quantity) {
-    const GaussRule& rule = gaussLegendre(basis.order() + 6);
+    // Exact for bands below twice the order, which Slepian functions hold.
+    const GaussRule& rule = gaussLegendre(2 * basis.order() + 6);
     const std::size_t count = rule.nodes.size();
     std::vector<Elevation<double>> points;
     std::vector<double> weights, values(count * static_cast<std::size_t>(basis.order()));
