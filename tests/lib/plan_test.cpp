@@ -324,8 +324,11 @@ TEST(Plan, SmoothLightBoundsTheOrder) {
 }
 
 TEST(Plan, AMirrorHasNoPlanAndSaysWhatToUse) {
-    const DiscLight lamp{directionFromAngles(0.6, 1), 0.02, grey(1)};
-    const Plan plan = planScene(smallScene("ggx:alpha=0.0001", lamp, 0.05), open);
+    // A wall sees the edge between sky and ground.
+    const SkyLight sky{SkyLight::Model::overcast, grey(1), grey(0.1)};
+    Scene scene = smallScene("ggx:alpha=0.0001", sky, 0.05);
+    scene.materials[0].orientations = {{pi / 2, 0, 0}};
+    const Plan plan = planScene(scene, open);
     EXPECT_FALSE(plan.materials[0].accepted);
     EXPECT_NE(plan.materials[0].refused.find("°"), std::string::npos);
     EXPECT_EQ(plan.materials[0].instead.at(0), "the model itself: ggx:alpha=0.0001");
