@@ -98,7 +98,10 @@ std::string formLine(const Representation& r) {
                                    kindName(r.kind), r.numbers(), r.bytes(), r.entropyBytes());
     if (!r.added.empty()) text += fmt::format("  added exactly: {}\n", r.added);
     for (const RepresentationStep& step : r.steps) {
-        text += fmt::format("  {}: changes it by {:.3g} (relative L2)\n", step.what, step.change);
+        const bool linear = r.kind != Representation::Kind::halfway;
+        text += linear ? fmt::format("  {}: changes it by {:.3g} (relative L2)\n", step.what,
+                                     step.change)
+                       : fmt::format("  {}: {:.3g}\n", step.what, step.change);
     }
     return text;
 }

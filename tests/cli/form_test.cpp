@@ -77,13 +77,22 @@ TEST_F(Form, EveryOneIsWrittenReadEvaluatedAndExported) {
             EXPECT_NEAR(found[k], exact[k], 0.15 * exact[k]) << c.name;
         }
 
+        const Answer compared = run("compare '" + std::string(source) + "' " + file(c) +
+                                    " --metrics nbrdf --json --quiet");
+        EXPECT_EQ(compared.code, 0) << c.name << ": " << compared.err;
+        EXPECT_LT(Json::parse(compared.out)["metrics"][0]["value"], 0.06) << c.name;
+    }
+}
+
+TEST_F(Form, EveryKindIsExported) {
+    for (const Case& c : cases) {
+        const std::string name = c.name;
+        if (name != "unorm16" && name != "lobe" && name != "both" && name != "halfway") continue;
+        ASSERT_EQ(project(c).code, 0) << c.name;
         const Answer exported = run("export " + file(c) + " -o " + path(c.name) +
                                     " --target bin --number float32 --json --quiet");
         ASSERT_EQ(exported.code, 0) << c.name << ": " << exported.err;
         EXPECT_LT(Json::parse(exported.out)["fit_error"]["total"], 0.4) << c.name;
-        const Answer compared =
-            run("compare '" + std::string(source) + "' " + file(c) + " --json --quiet");
-        EXPECT_EQ(compared.code, 0) << c.name << ": " << compared.err;
     }
 }
 
