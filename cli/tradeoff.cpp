@@ -223,7 +223,7 @@ void addSweep(CLI::App& command, TradeoffArguments& arguments) {
     list("--ranks", arguments.ranks, "Ranks of factors, 0 for none (default: 0,2,4)")
         ->check(CLI::Range(0, 1000));
     list("--precisions", arguments.precisions,
-         "Of float64, float32, half, unorm16, unorm8 (default: float32,half,unorm8)");
+         "Of float64, float32, half, unorm16, unorm8 (default: all but float64)");
     list("--keep", arguments.keep, "Numbers of each array to keep, 0 for all (default: 0)");
     list("--windows", arguments.windows, "Of none, hann, lanczos, bending (default: none)");
     list("--constraints", arguments.constraints,

@@ -18,7 +18,7 @@ import sys
 import tempfile
 
 # What is tried of each material.
-SWEEP = ("--bases hsh,zernike --orders 3,5,7 --ranks 0,2 --precisions half,unorm8 "
+SWEEP = ("--bases hsh,zernike --orders 3,5,7 --ranks 0,2 --precisions float32,half,unorm16,unorm8 "
          "--tolerance 1e-2 --no-timing").split()
 SMALLER_MAPS = "--outgoing 8 --outgoing 16".split()
 ANISOTROPIC = "--orders 3,5,7 --outgoing 8x8 --outgoing 16x16 --ranks 0".split()

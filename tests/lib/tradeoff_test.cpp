@@ -257,7 +257,7 @@ TEST(Errors, AgreeWithQuadrature) {
     const FormulaBrdf f = lobe();
     const auto form = [] {
         Form made;
-        made.outgoing = "24";
+        made.outgoing = OutgoingSet::elevations(24).spec();
         made.order = 6;
         return made;
     }();

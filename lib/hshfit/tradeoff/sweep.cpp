@@ -44,11 +44,14 @@ std::vector<Form> projectedForms(const Sweep& sweep, const Brdf& brdf) {
         } else if (kind == Kind::basis) {
             addBases(form);
             form.reciprocal = true;
-            if (sweep.reciprocal && brdf.laws().reciprocal) addBases(form);
+            if (sweep.reciprocal) addBases(form);
         } else {
             for (const HalfwayOrders& orders : sweep.halfway) {
                 form.halfway = orders;
                 forms.push_back(form);
+                if (!sweep.reciprocal || brdf.laws().reciprocal) continue;
+                forms.push_back(form);
+                forms.back().reciprocal = true;
             }
         }
     }

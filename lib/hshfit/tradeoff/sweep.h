@@ -24,13 +24,15 @@ struct Sweep {
     /// Of kind halfway; the numbers of functions that `project --halfway` takes.
     std::vector<HalfwayOrders> halfway = {{6, 3, 1}, {8, 4, 2}, {10, 5, 2}, {12, 6, 3}};
     std::vector<int> ranks = {0, 2, 4};  ///< 0: not factored
-    std::vector<Precision> precisions = {Precision::float32, Precision::half, Precision::unorm8};
+    std::vector<Precision> precisions = {Precision::float32, Precision::half, Precision::unorm16,
+                                         Precision::unorm8};
     std::vector<std::size_t> keep = {0};     ///< 0: all numbers
     std::vector<std::string> splits = {""};  ///< "diffuse", or a BRDF to take out
     std::vector<Window> windows = {Window::none};
     std::vector<Constraint> constraints = {Constraint::none};
     Quantity quantity = Quantity::brdf;
-    /// Try the reciprocal half of kind basis as well as the whole, where the BRDF is reciprocal.
+    /// Try the symmetric half of the kinds basis and halfway as well as the whole, for measured
+    /// BRDFs that are reciprocal up to their noise too. Of a reciprocal one, halfway has no other.
     bool reciprocal = true;
 };
 
