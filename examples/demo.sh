@@ -58,7 +58,7 @@ echo "6. A model fitted to the measured file, with errors and a page that compar
 show fit out/ggx.binary --model lambert+beckmann --samples 20000 -o out/fit_beckmann
 
 echo
-echo "7. The least that a scene needs: matte materials under one sky, and a mirror that has no plan."
+echo "7. The least that a scene needs: matte materials under one sky; a mirror has no plan."
 finding "no form of this order holds a mirror." plan examples/scenes/matte_room.json -o out/plan
 
 echo

@@ -1,4 +1,4 @@
-#include <hshfit/representation/halfway_fit.h>
+#include <hshfit/representation/internal/halfway_fit.h>
 
 #include <hshfit/error.h>
 

@@ -1,7 +1,7 @@
 #include <hshfit/representation/halfway.h>
 
 #include <hshfit/error.h>
-#include <hshfit/representation/halfway_fit.h>
+#include <hshfit/representation/internal/halfway_fit.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>

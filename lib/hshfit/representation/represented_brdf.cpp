@@ -47,8 +47,8 @@ public:
         return added_ ? added_->kinks(wo) : std::vector<double>{};
     }
 
-    /// The halfway form has kinks where its roots begin and where it is cut off at 0, on curves that
-    /// no panel of a quadrature ends at.
+    /// The halfway form has kinks where its roots begin and where it is cut off at 0, on curves
+    /// that no panel of a quadrature ends at.
     double defaultTolerance() const override {
         const double own = representation_.kind == Representation::Kind::halfway ? 1e-2 : 1e-6;
         return added_ ? std::max(own, added_->defaultTolerance()) : own;
