@@ -122,7 +122,9 @@ std::map<std::string, Form> forms() {
     return all;
 }
 
-[[maybe_unused]] const bool registered = [] {
+}  // namespace
+
+int main(int argc, char** argv) {
     for (const int block : {64, 256, 1024, 4096}) {
         benchmark::RegisterBenchmark("network", network)->Arg(block);
     }
@@ -130,9 +132,15 @@ std::map<std::string, Form> forms() {
         benchmark::RegisterBenchmark(("batch/" + name).c_str(), batch, form);
         benchmark::RegisterBenchmark(("single/" + name).c_str(), single, form);
     }
-    return true;
-}();
-
-}  // namespace
-
-BENCHMARK_MAIN();
+    // Short repetitions that take turns; their medians count.
+    std::vector<std::string> defaults{"pair_eval", "--benchmark_enable_random_interleaving=true",
+                                      "--benchmark_repetitions=9", "--benchmark_min_time=0.02",
+                                      "--benchmark_report_aggregates_only=true"};
+    defaults.insert(defaults.end(), argv + 1, argv + argc);
+    std::vector<char*> arguments;
+    for (std::string& argument : defaults) arguments.push_back(argument.data());
+    int count = static_cast<int>(arguments.size());
+    benchmark::Initialize(&count, arguments.data());
+    benchmark::RunSpecifiedBenchmarks();
+    benchmark::Shutdown();
+}
