@@ -277,6 +277,7 @@ Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& opti
                    .channels = brdf.channels(),
                    .laws = brdf.laws(),
                    .metric = options.metric,
+                   .tolerance = options.projection.tolerance,
                    .pairs = reference.pairs().size(),
                    .noSquares = reference.noSquares()};
     boundByRank(trade, brdf, options.sweep.quantity);

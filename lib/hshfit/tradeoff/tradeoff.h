@@ -59,6 +59,7 @@ struct Tradeoff {
     Channels channels;
     Laws laws;
     std::string metric;
+    double tolerance = 0;  ///< asked of projections; 0: each BRDF's own
     std::size_t pairs = 0;
     std::string noSquares;  ///< why metrics of squares without a cosine have no value
     std::vector<Measured> forms = {};

@@ -99,8 +99,10 @@ std::size_t seriesOf(const Form& form) {
 }
 
 std::string commandOf(const Tradeoff& trade, std::size_t form) {
-    return fmt::format("hshfit project {} -o OUT.json {}", forShell(trade.brdf),
-                       trade.forms[form].options);
+    const std::string tolerance =
+        trade.tolerance > 0 ? fmt::format(" --tolerance {}", trade.tolerance) : std::string();
+    return fmt::format("hshfit project {} -o OUT.json {}{}", forShell(trade.brdf),
+                       trade.forms[form].options, tolerance);
 }
 
 std::optional<std::size_t> bestWithin(const Tradeoff& trade, Kind kind, std::size_t bytes) {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <kainjow/mustache.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 
@@ -20,6 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using kainjow::mustache::data;
+
+/// Of one channel of an RGL material, which figures mark.
+constexpr double tableBytes = 16384;
 
 bool isTimed(std::span<const Tradeoff> trades) {
     return !trades.empty() && !trades[0].times.empty();
@@ -61,7 +65,13 @@ std::string tradeoffScript(std::span<const Tradeoff> trades) {
         data entry;
         entry.set("index", std::to_string(t + 1));
         entry.set("title", gnuplotString(shortName(trades[t].brdf, 110)));
-        entry.set("channels", std::to_string(trades[t].channels.count()));
+        const std::size_t channels = trades[t].channels.count();
+        const auto [smallest, largest] = std::ranges::minmax(trades[t].forms, {}, &Measured::bytes);
+        entry.set("channels", std::to_string(channels));
+        entry.set("smallest", fmt::format("{}", 0.7 * static_cast<double>(smallest.bytes)));
+        entry.set("largest",
+                  fmt::format("{}", std::max(1.4 * static_cast<double>(largest.bytes),
+                                             tableBytes * 1.4 * static_cast<double>(channels))));
         entries.push_back(entry);
     }
     fields.set("entries", entries);

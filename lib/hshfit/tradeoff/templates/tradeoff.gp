@@ -11,9 +11,13 @@ set datafile separator comma
 
 array rowTitle[{{rows}}]
 array channels[{{rows}}]
+array smallest[{{rows}}]
+array largest[{{rows}}]
 {{#entries}}
 rowTitle[{{index}}] = {{{title}}}
 channels[{{index}}] = {{channels}}
+smallest[{{index}}] = {{smallest}}
+largest[{{index}}] = {{largest}}
 {{/entries}}
 metric = {{{metric}}}
 
@@ -59,7 +63,7 @@ do for [pass = from:to] {
         set xrange [*:*]
         set yrange [*:*]
         if (pass == 0) {
-            set xrange [*:20000 * channels[row]<*]
+            set xrange [smallest[row]:largest[row]]
             set xtics ('64' 64, '256' 256, '1 KiB' 1024, '4 KiB' 4096, '16 KiB' 16384, \
                        '64 KiB' 65536, '256 KiB' 262144, '1 MiB' 1048576, '4 MiB' 4194304, \
                        '16 MiB' 16777216)
