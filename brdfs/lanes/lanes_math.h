@@ -7,6 +7,7 @@
 //     log1p      3.0  for x > -1; the sum 1 + x is rounded, unless it is near 1
 //     expm1      3.0  for x <= 709.78
 //     pow        exp(y log x): 1.5 + 2 |y log x|, for x >= 0
+//     erfc       4 + x^2 for 0 <= x <= 7; beyond, erfc(7) = 4e-23
 //     ierfc      no bound of its own: within 1e-15 of the exact value for x >= 0
 // NaN does not stay NaN.
 
@@ -34,6 +35,29 @@ HWY_INLINE Lanes pow(Lanes x, Lanes y) {
 }
 HWY_INLINE double pow(double x, double y) {
     return std::pow(x, y);
+}
+
+HWY_INLINE double erfc(double x) {
+    return std::erfc(x);
+}
+
+/// As ierfc below: exp(-x^2)/(1 + x) times a polynomial in t = (x - 3)/(x + 3), which has the
+/// values of (1 + x) exp(x^2) erfc(x) at Chebyshev's nodes of 0 <= x <= 7.
+HWY_INLINE Lanes erfc(Lanes x) {
+    constexpr double c[] = {
+        0.716004604725559712,    -0.230927333083807806,     0.0990207536794738968,
+        -0.0102353888991968331,  -0.0238039131113514831,    0.0219577640182659142,
+        -0.00975068920933819423, 0.00161856911067820275,    0.00064581296721022397,
+        -0.00036728981701312721, -0.0000205429926197742085, 0.0000561388927705667873,
+        -1.53252518343489162e-6, -9.08955110002711632e-6,   1.87110263291484882e-7,
+        1.72451128113540511e-6,  3.61718879988453458e-7,    -8.32540888080551914e-8,
+        -3.04351050883187469e-8};
+    const Lanes y = min(x, 7.0);
+    const Lanes beyond = y + 3.0, t = (y - 3.0) / beyond, t2 = t * t;
+    Lanes even = c[18], odd = c[17];
+    for (int i = 16; i >= 0; i -= 2) even = fused(even, t2, c[i]);
+    for (int i = 15; i >= 1; i -= 2) odd = fused(odd, t2, c[i]);
+    return exp(-(y * y)) * fused(odd, t, even) / (y + 1.0);
 }
 
 /// The integral of erfc from x on: exp(-x^2)/sqrt(pi) - x erfc(x).

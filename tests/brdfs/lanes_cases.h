@@ -33,6 +33,9 @@ void lanesLog(const double* x, std::size_t size, double* y) {
 void lanesLog1p(const double* x, std::size_t size, double* y) {
     overArray(x, size, y, [](Lanes v) HWY_ATTR { return log1p(v); });
 }
+void lanesErfc(const double* x, std::size_t size, double* y) {
+    overArray(x, size, y, [](Lanes v) HWY_ATTR { return erfc(v); });
+}
 void lanesIerfc(const double* x, std::size_t size, double* y) {
     overArray(x, size, y, [](Lanes v) HWY_ATTR { return ierfc(v); });
 }

@@ -19,6 +19,7 @@ HWY_EXPORT(lanesExp);
 HWY_EXPORT(lanesExpm1);
 HWY_EXPORT(lanesLog);
 HWY_EXPORT(lanesLog1p);
+HWY_EXPORT(lanesErfc);
 HWY_EXPORT(lanesIerfc);
 HWY_EXPORT(lanesPow);
 
@@ -143,6 +144,22 @@ TEST(Lanes, PowIsWithinItsBound) {
         HWY_DYNAMIC_DISPATCH(lanesPow)(zeros, 0, 4, values);
         EXPECT_EQ(values[1], 1);
         EXPECT_EQ(values[3], 1);
+    });
+}
+
+TEST(Lanes, ErfcIsWithinItsBound) {
+    std::vector<double> x = uniform(0, 7, 9);
+    for (const double small : scales(1e-300, 1, false)) x.push_back(small);
+    const std::vector<double> beyond{8, 1e10, 1e300, static_cast<double>(INFINITY)};
+    const std::size_t within = x.size();
+    x.insert(x.end(), beyond.begin(), beyond.end());
+    test::forEveryTarget([&] {
+        std::vector<double> y(x.size());
+        HWY_DYNAMIC_DISPATCH(lanesErfc)(x.data(), x.size(), y.data());
+        for (std::size_t k = 0; k < within; ++k)
+            ASSERT_LE(unitsOff(y[k], std::erfc(static_cast<long double>(x[k]))), 4 + x[k] * x[k])
+                << x[k];
+        for (std::size_t k = within; k < x.size(); ++k) ASSERT_NEAR(y[k], 2e-23, 2.5e-23) << x[k];
     });
 }
 

@@ -1,0 +1,167 @@
+// Terms of he.h. Included by he.cpp once for each instruction set.
+
+#include <brdfs/analytic/fresnel_terms.h>
+#include <brdfs/analytic/half_vector.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace hshfit::brdfs::HWY_NAMESPACE {
+
+/// Lambert's W of 0 < x <= 1e300 to 2 %, and far better for small x (Winitzki 2003,
+/// 10.1007/3-540-44839-X_82).
+template <class T>
+HWY_INLINE T lambertWNear(T x) {
+    const T l = log1p(x);
+    return l - l * log1p(l) / (2.0 + l);
+}
+
+/// By the steps of Fritsch, Shafer & Crowley (1973, 10.1145/361952.361970), whose relative error is
+/// that of the last to the fourth power; the first leaves 3e-9.
+template <class T>
+HWY_INLINE T lambertWOf(T x) {
+    const T positive = max(x, T(1e-300));
+    T w = lambertWNear(positive);
+    for (int step = 0; step < 2; ++step) {
+        const T above = 1.0 + w, z = log(positive / w) - w;
+        const T q = 2.0 * above * (above + (2. / 3) * z);
+        w = w + w * z * (q - z) / (above * (q - 2.0 * z));
+    }
+    return w;
+}
+
+/// (1 + x) log(1 + x) - x for x > -1, without cancellation near 0.
+template <class T>
+HWY_INLINE T entropy(T x) {
+    T sum = 0.0;
+    for (int n = 9; n >= 2; --n) sum = T(1.0 / (n * (n - 1))) - sum * x;
+    const auto far = abs(x) > T(0.02);
+    if (!anyOf(far)) return sum * x * x;
+    return select(far, (1.0 + x) * log1p(x) - x, sum * x * x);
+}
+
+/// g^m exp(-g) / m! for m > 20, whose digits do not suffer from g and m being large: Stirling's
+/// series, and g log(m / g) + g - m as a function of (m - g) / g (Loader 2000); times exp(-b / m).
+template <class T>
+HWY_INLINE T dampedPoisson(T m, T g, T b) {
+    const T inverse = 1.0 / m, squared = inverse * inverse;
+    const T series = inverse * (1. / 12 - squared * (1. / 360 - squared * (1. / 1260)));
+    return exp(-g * entropy((m - g) / g) - series - b * inverse) / sqrt((2 * pi) * m);
+}
+
+/// The series of he.h: its terms rise to a peak and fall ever faster after it, so that a sum ends
+/// where a term no longer changes it. Every lane goes on until the last of them has ended.
+template <class T>
+class HeSeries {
+public:
+    HWY_INLINE HeSeries(T g, T b) : g_(max(g, T(1e-300))), b_(b) {
+        // Where the terms are largest, to some per cent: the root of log(m / g) = b / m^2, at
+        // least 1.
+        const T w = lambertWNear(min(2.0 * b_ / g_ / g_, T(1e300)));
+        peak_ = max(g_ * exp(0.5 * w), T(1.0));
+    }
+
+    HWY_INLINE T sum() const {
+        // The logarithm of the terms falls at least like that of a Gaussian of the deviation
+        // sqrt(peak) about the peak, more slowly only like a Poisson distribution's.
+        const T longer = peak_ + 9.0 * sqrt(peak_) + 12.0 - static_cast<double>(HeFactors::last);
+        const auto many = longer > T(0.0);
+        if (!anyOf(many)) return dense(longer);
+        if (!anyOf(longer < T(0.0))) return sampled(longer);
+        return select(many, sampled(longer), dense(longer));
+    }
+
+private:
+    static constexpr double negligible = 1e-18;
+    static constexpr int mostSamples = 75;
+
+    /// From m = 1 on, one by one; for the lanes with longer < 0.
+    HWY_INLINE T dense(T longer) const {
+        T factor = exp(-g_), sum = factor * exp(-b_);
+        for (std::size_t m = 2; m <= HeFactors::last; ++m) {
+            factor = factor * (g_ * heFactors.growth[m]);
+            const T term = factor * exp(-b_ * heFactors.inverse[m]);
+            sum = sum + term;
+            const T left = select(peak_ < T(static_cast<double>(m)), term - negligible * sum, 1.0);
+            if (!anyOf(select(longer < T(0.0), left, 0.0) > T(0.0))) break;
+        }
+        return sum;
+    }
+
+    /// So many terms of a smooth bell of the deviation s sum up to its integral, and so do samples
+    /// of it at a distance of 0.6 s: they err by exp(-2 (pi s / distance)^2). For the others.
+    HWY_INLINE T sampled(T longer) const {
+        const T curvature = 1.0 / peak_ + 2.0 * b_ / (peak_ * peak_ * peak_);
+        const T step = max(T(1.0), truncated(0.6 / sqrt(curvature)));
+        const T middle = truncated(peak_ + 0.5);
+        T sum = termAt(middle);
+        for (int i = 1; i < mostSamples; ++i) {
+            const T added = termAt(middle + i * step) + termAt(middle - i * step);
+            sum = sum + added;
+            const T left = added - negligible * sum;
+            if (!anyOf(select(longer < T(0.0), 0.0, left) > T(0.0))) break;
+        }
+        return sum * step / g_;
+    }
+
+    HWY_INLINE T termAt(T m) const {
+        const T inside = max(m, T(1.0));
+        return select(m < T(1.0), T(0.0), dampedPoisson(inside, g_, b_) / inside);
+    }
+
+    T g_, b_, peak_;
+};
+
+/// What depends on one direction of height z: S / z, and K = tan(theta) erfc(a).
+template <class T>
+struct Roughened {
+    T visibility, hidden;
+
+    HWY_INLINE Roughened(T z, double slope) {
+        const T s = sqrt(max(T(0.0), (1.0 - z) * (1.0 + z)));
+        const T a = z / (slope * s), tail = erfc(a);
+        visibility = (1.0 - 0.5 * tail) / (z + 0.5 * slope * s * ierfc(a));
+        hidden = min(s / z, T(1e150)) * tail;
+    }
+};
+
+template <class T>
+class HeTerms {
+public:
+    static constexpr std::size_t count = 1;
+
+    HWY_INLINE HeTerms(const HeShape& shape, const Direction& wo)
+        : shape_(shape), wo_(wo), outgoing_(T(wo.z), shape.slope) {}
+
+    HWY_INLINE void operator()(const Incoming<T>& wi, T* term) const {
+        const auto& [ior, height, correlation, slope] = shape_;
+        // Below the horizon, where the result is ignored, the series is to end as well.
+        const Incoming<T> above{wi.x, wi.y, max(wi.z, T(5e-324))};
+        const HalfVector<T> h(wo_, above);
+        const Roughened<T> incoming(above.z, slope);
+        const T shading = (incoming.hidden + outgoing_.hidden) * (1 / std::sqrt(8 * pi));
+        // sigma / sigma0, twice: g = height^2 h.z^2 / (1 + W)
+        const T shrunk = 1.0 / (1.0 + lambertWOf(min(shading * shading, T(1e300))));
+        const T heights = 2 * pi * height * (above.z + T(wo_.z));
+        const T across = pi * correlation * h.scale;
+        const T slopes = h.x * h.x + h.y * h.y;
+        const T series = HeSeries<T>(heights * heights * shrunk, across * across * slopes).sum();
+        // (pi tau)^2 / 4 (2 pi sigma)^2 / pi: the g that the series lacks, over h.z^2.
+        const double tall = pi * correlation * height;
+        const T scale = tall * tall * pi * shrunk;
+        const T length = h.squaredLength() * h.scale * h.scale;
+        const T visible = bounded(incoming.visibility * outgoing_.visibility);
+        term[0] = reflectanceOf(h.dotOutgoing(), ior, 0) * length * length *
+                  bounded(scale * series * visible);
+    }
+
+private:
+    HeShape shape_;
+    Direction wo_;
+    Roughened<T> outgoing_;
+};
+
+void evalHe(const HeShape& shape, const TermBatch& batch) {
+    evalLanes<HeTerms>(shape, batch);
+}
+
+}  // namespace hshfit::brdfs::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
