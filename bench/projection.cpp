@@ -89,19 +89,19 @@ struct Job {
 double productSeconds(int order) {
     constexpr std::size_t rings = 16, quadrant = 32, rounds = 2000;
     AzimuthTable table;
-    table.fill(order, 4 * quadrant, 0, quadrant);
+    table.fill(order, {4 * quadrant}, 0, quadrant);
     const AzimuthColumns columns(order);
     const std::vector<double> values(rings * 4 * quadrant, 0.5);
     std::vector<double> out(rings * columns.all());
     const double start = threadSeconds();
     for (std::size_t i = 0; i < rounds; ++i) {
-        const double* rows = table.rows.data();
+        const double *from = values.data(), *rows = table.rows.data();
         double* to = out.data();
-        std::size_t quarter = 0;
         for (const std::size_t kind : {columns.c0, columns.c1, columns.s1, columns.s0}) {
-            addRowProducts({values.data() + quarter++ * rings * quadrant, rings, quadrant},
-                           {rows, kind, quadrant}, quadrant, to, columns.all());
-            rows += kind * quadrant;
+            addProducts({from, rings, quadrant}, {rows, kind, columns.all()}, quadrant, to,
+                        columns.all());
+            from += rings * quadrant;
+            rows += kind;
             to += kind;
         }
         benchmark::DoNotOptimize(out.data());

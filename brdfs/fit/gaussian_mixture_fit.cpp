@@ -39,13 +39,13 @@ Slice sliceOf(const Brdf& brdf, double theta, int level) {
     std::vector<double> x, y, z;
     for (const auto& panel : grid.panels)
         for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring)
-            for (std::size_t j = 0; j < panel.azimuths / 2; ++j) {
-                const double phi =
-                    (static_cast<double>(j) + 0.5) * 2 * pi / static_cast<double>(panel.azimuths);
+            for (std::size_t j = 0; j < panel.spacing.azimuths / 2; ++j) {
+                const double phi = (static_cast<double>(j) + 0.5) * 2 * pi /
+                                   static_cast<double>(panel.spacing.azimuths);
                 slice.wi.push_back({grid.sines[ring] * std::cos(phi),
                                     grid.sines[ring] * std::sin(phi), grid.elevations[ring].mu});
                 slice.areas.push_back(2 * grid.weights[ring] * 2 * pi /
-                                      static_cast<double>(panel.azimuths));
+                                      static_cast<double>(panel.spacing.azimuths));
                 x.push_back(slice.wi.back().x);
                 y.push_back(slice.wi.back().y);
                 z.push_back(slice.wi.back().z);

@@ -17,7 +17,7 @@ std::vector<double> directionalAlbedo(const Brdf& brdf, const Direction& wo, dou
     const AzimuthTables azimuths(1);
     RingSpectrum spectrum;
     for (int level = 0;; ++level) {
-        const HemisphereGrid grid = gridFor(lobes, wo, {.order = 1, .level = level});
+        const HemisphereGrid grid = gridFor(lobes, wo, {.order = 1, .level = level, .squeezed = true});
         evaluations += grid.points();
         if (evaluations > maxEvaluations) break;
         sampleRings(brdf, wo, grid, Quantity::brdfCosine, azimuths, /*even=*/false, spectrum);
@@ -25,7 +25,7 @@ std::vector<double> directionalAlbedo(const Brdf& brdf, const Direction& wo, dou
         double change = 0;
         for (std::size_t c = 0; c < spectrum.channels; ++c) {
             for (std::size_t r = 0; r < spectrum.rings; ++r) {
-                albedo[c] += grid.weights[r] * spectrum.part(0, c)[r] * std::sqrt(2 * pi);
+                albedo[c] += grid.weights[r] * spectrum.part(r, c, 0) * std::sqrt(2 * pi);
             }
             if (level > 0) change = std::max(change, std::abs(albedo[c] - previous[c]));
         }

@@ -46,7 +46,7 @@ Analysis::Analysis(const Basis& basis, AnalysisGrid grid)
     : order_(basis.order()),
       slots_(static_cast<std::size_t>(basis.slots())),
       grid_(std::move(grid)),
-      columns_(order_) {
+      columns_(order_, 1) {
     const std::size_t rings = grid_.weights.size();
     std::vector<double> whole;  // for each m: [l - m][ring]
     for (int m = 0; m < order_; ++m) {
@@ -78,7 +78,14 @@ Analysis::Analysis(const Basis& basis, AnalysisGrid grid)
         for (int parity = 0; parity < (folded_ ? 2 : 1); ++parity)
             for (int l = std::abs(m) + parity; l < order_; l += folded_ ? 2 : 1)
                 slotOfRow_.push_back(static_cast<std::size_t>(slotOf(l, m)));
-    azimuths_.fill(order_, grid_.azimuths, 0, grid_.azimuths / 4);
+    AzimuthTable table;
+    table.fill(order_, {grid_.azimuths}, 0, grid_.azimuths / 4);
+    const AzimuthColumns grouped(order_);
+    azimuths_.resize(columns_.all() * table.count);
+    for (int m = 1 - order_; m < order_; ++m)
+        for (std::size_t j = 0; j < table.count; ++j)
+            azimuths_[columns_.of(m) * table.count + j] =
+                table.rows[j * grouped.all() + grouped.of(m)];
 }
 
 bool Analysis::findParity(const std::vector<double>& whole) const {
@@ -143,9 +150,9 @@ void Analysis::ringSums(const double* samples, std::size_t functions, std::size_
     for (std::size_t side = 0; side < (paired ? 2 : 1); ++side) {
         const double* from = side == 0 ? w.folded.data() : w.difference.data();
         double* to = w.spectrum.data() + (side * half_ + r) * lanes;
-        const double* rows = azimuths_.rows.data();
+        const double* rows = azimuths_.data();
         for (const std::size_t kind : {columns_.c0, columns_.c1, columns_.s1, columns_.s0}) {
-            addColumnProducts({rows, kind, quadrant}, from, quadrant, to, column);
+            addProducts({rows, kind, quadrant}, {from, lanes, lanes}, quadrant, to, column);
             rows += kind * quadrant;
             from += quadrant * lanes;
             to += kind * column;
@@ -160,8 +167,8 @@ double* Analysis::thetaSums(int m, const Workspace& w, double* out) const {
         w.spectrum.data() + columns_.of(m) * static_cast<std::size_t>(sides) * side;
     for (int parity = 0; parity < sides; ++parity, spectrum += side) {
         const auto rows = static_cast<std::size_t>((order_ - absM - parity + sides - 1) / sides);
-        addColumnProducts({theta_.data() + first_[2 * absM + parity], rows, half_}, spectrum, half_,
-                          out, lanes);
+        addProducts({theta_.data() + first_[2 * absM + parity], rows, half_},
+                    {spectrum, lanes, lanes}, half_, out, lanes);
         out += rows * lanes;
     }
     return out;

@@ -56,8 +56,8 @@ private:
     AnalysisGrid grid_;
     bool folded_ = false;
     std::size_t half_ = 0;  ///< rings that are left after folding
-    AzimuthTable azimuths_;
     AzimuthColumns columns_;
+    std::vector<double> azimuths_;    ///< [column][azimuth of the quadrant]
     std::vector<double> theta_;       ///< for each m, for each parity of l - m: [l][ring], weighted
     std::vector<std::size_t> first_;  ///< in theta_, [2 m + parity]
     std::vector<std::size_t> slotOfRow_;

@@ -2,68 +2,114 @@
 
 #include <hshfit/directions.h>
 
+#include <tbb/concurrent_unordered_map.h>
+
+#include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <mutex>
 
 namespace hshfit {
 
-void AzimuthTable::fill(int order, std::size_t azimuths, std::size_t first, std::size_t howMany) {
+namespace {
+
+/// cos, sin and d phi / dt of one azimuth, from those of t / 2: none of them cancels.
+void spreadAzimuth(double t, double kappa, double& cosine, double& sine, double& weight) {
+    const double c = std::cos(t / 2), s = kappa * std::sin(t / 2), square = c * c + s * s;
+    cosine = (c - s) * (c + s) / square;
+    sine = 2 * s * c / square;
+    weight = kappa / square;
+}
+
+}  // namespace
+
+void AzimuthTable::fill(int order, const AzimuthSpacing& spacing, std::size_t first,
+                        std::size_t howMany) {
     count = howMany;
     cosine.resize(count);
     sine.resize(count);
-    const double step = 2 * pi / static_cast<double>(azimuths);
+    weights.resize(spacing.squeeze > 0 ? count : 0);
+    const double step = 2 * pi / static_cast<double>(spacing.azimuths);
     for (std::size_t j = 0; j < count; ++j) {
-        const double phi = (static_cast<double>(first + j) + 0.5) * step;
-        cosine[j] = std::cos(phi);
-        sine[j] = std::sin(phi);
-    }
-    const AzimuthColumns columns(order);
-    rows.resize(columns.all() * count);
-    const auto row = [&](int m) { return rows.data() + columns.of(m) * count; };
-    for (std::size_t j = 0; j < count; ++j) row(0)[j] = 1 / std::sqrt(2 * pi);
-    // Powers of exp(i phi): their error is about m eps.
-    for (int m = 1; m < order; ++m) {
-        double *re = row(m), *im = row(-m);
-        if (m == 1) {
-            for (std::size_t j = 0; j < count; ++j) re[j] = cosine[j] / std::sqrt(pi);
-            for (std::size_t j = 0; j < count; ++j) im[j] = sine[j] / std::sqrt(pi);
+        const double t = (static_cast<double>(first + j) + 0.5) * step;
+        if (spacing.squeeze > 0) {
+            spreadAzimuth(t, spacing.kappa(), cosine[j], sine[j], weights[j]);
             continue;
         }
-        const double *before = row(m - 1), *imBefore = row(1 - m);
-        for (std::size_t j = 0; j < count; ++j) {
-            re[j] = before[j] * cosine[j] - imBefore[j] * sine[j];
-            im[j] = before[j] * sine[j] + imBefore[j] * cosine[j];
+        cosine[j] = std::cos(t);
+        sine[j] = std::sin(t);
+    }
+    const AzimuthColumns columns(order);
+    const std::size_t stride = columns.all();
+    rows.assign(stride * count, 0.0);
+    // Powers of exp(i phi): their error is about m eps. Several azimuths at a time, since each is a
+    // chain of its own.
+    constexpr std::size_t together = 8;
+    for (std::size_t from = 0; from < count; from += together) {
+        const std::size_t some = std::min(together, count - from);
+        double re[together] = {}, im[together] = {}, c[together] = {}, s[together] = {};
+        std::copy_n(cosine.data() + from, some, c);
+        std::copy_n(sine.data() + from, some, s);
+        for (std::size_t j = 0; j < some; ++j) re[j] = weights.empty() ? 1 : weights[from + j];
+        double* to = rows.data() + from * stride;
+        for (std::size_t j = 0; j < some; ++j) to[j * stride] = re[j] / std::sqrt(2 * pi);
+        for (std::size_t j = 0; j < together; ++j) re[j] /= std::sqrt(pi);
+        for (int m = 1; m < order; ++m) {
+            for (std::size_t j = 0; j < together; ++j) {
+                const double next = re[j] * c[j] - im[j] * s[j];
+                im[j] = re[j] * s[j] + im[j] * c[j];
+                re[j] = next;
+            }
+            const std::size_t even = columns.of(m), odd = columns.of(-m);
+            for (std::size_t j = 0; j < some; ++j) {
+                to[j * stride + even] = re[j];
+                to[j * stride + odd] = im[j];
+            }
         }
     }
 }
 
 namespace {
 
-constexpr std::size_t largestQuadrant = 1024, mostValues = std::size_t{1} << 18;
+constexpr std::size_t largestQuadrant = 1024, largestHalf = 2048;
+constexpr std::size_t mostValues = std::size_t{1} << 18, mostSqueezed = std::size_t{1} << 23;
+
+struct Slot {
+    std::once_flag once;
+    AzimuthTable table;
+};
 
 }  // namespace
 
 struct AzimuthTables::Kept {
-    struct Slot {
-        std::once_flag once;
-        AzimuthTable table;
-    };
     std::vector<Slot> byQuadrant = std::vector<Slot>(largestQuadrant + 1);
+    tbb::concurrent_unordered_map<std::size_t, std::unique_ptr<Slot>> squeezed;
+    std::atomic<std::size_t> squeezedValues = 0;
+
+    Slot* findSqueezed(const AzimuthSpacing& spacing, std::size_t values) {
+        const std::size_t key = spacing.azimuths * 64 + static_cast<std::size_t>(spacing.squeeze);
+        if (const auto found = squeezed.find(key); found != squeezed.end())
+            return found->second.get();
+        if (squeezedValues.load(std::memory_order_relaxed) + values > mostSqueezed) return nullptr;
+        const auto [place, isNew] = squeezed.emplace(key, std::make_unique<Slot>());
+        if (isNew) squeezedValues += values;
+        return place->second.get();
+    }
 };
 
 AzimuthTables::AzimuthTables(int order) : order_(order), kept_(std::make_unique<Kept>()) {}
 AzimuthTables::~AzimuthTables() = default;
 
-const AzimuthTable* AzimuthTables::find(std::size_t azimuths) const {
-    const std::size_t quadrant = azimuths / 4;
-    assert(azimuths % 4 == 0);
-    if (quadrant > largestQuadrant || quadrant * AzimuthColumns(order_).all() > mostValues) {
-        return nullptr;
-    }
-    Kept::Slot& slot = kept_->byQuadrant[quadrant];
-    std::call_once(slot.once, [&] { slot.table.fill(order_, azimuths, 0, quadrant); });
-    return &slot.table;
+const AzimuthTable* AzimuthTables::find(const AzimuthSpacing& spacing) const {
+    assert(spacing.azimuths % 4 == 0);
+    const bool squeezed = spacing.squeeze > 0;
+    const std::size_t count = tableSize(spacing), values = count * AzimuthColumns(order_).all();
+    if (count > (squeezed ? largestHalf : largestQuadrant) || values > mostValues) return nullptr;
+    Slot* slot = squeezed ? kept_->findSqueezed(spacing, values) : &kept_->byQuadrant[count];
+    if (!slot) return nullptr;
+    std::call_once(slot->once, [&] { slot->table.fill(order_, spacing, 0, count); });
+    return &slot->table;
 }
 
 }  // namespace hshfit

@@ -1,28 +1,22 @@
 #pragma once
 
+#include <hshfit/quadrature.h>
+#include <hshfit/ring_kernels.h>
+
 #include <cstddef>
 #include <memory>
 #include <vector>
 
 namespace hshfit {
 
-/// The azimuth functions on a part of a quadrant: phi_j = (j + 1/2) 2 pi / azimuths for `count` of
-/// j = 0 .. azimuths/4 - 1. The other quadrants follow by symmetry (ring_kernels.h).
-struct AzimuthTable {
-    std::size_t count = 0;
-    std::vector<double> cosine, sine;  ///< of phi_j
-    /// [column][count], az_m without the Condon-Shortley sign: cos(m phi) for m = 0, 2, …, for m =
-    /// 1, 3, …, then sin(m phi) for m = 1, 3, …, for m = 2, 4, ….
-    std::vector<double> rows;
-
-    void fill(int order, std::size_t azimuths, std::size_t first, std::size_t howMany);
-};
-
-/// How many columns of an AzimuthTable each kind takes.
+/// How many columns each kind of azimuth function takes, with room for whole groups of `group`.
 struct AzimuthColumns {
     std::size_t c0, c1, s1, s0;
-    explicit AzimuthColumns(int order)
-        : c0((order + 1) / 2), c1(order / 2), s1(order / 2), s0((order - 1) / 2) {}
+    explicit AzimuthColumns(int order, std::size_t group = laneGroup)
+        : c0(whole((order + 1) / 2, group)),
+          c1(whole(order / 2, group)),
+          s1(c1),
+          s0(whole((order - 1) / 2, group)) {}
     std::size_t all() const { return c0 + c1 + s1 + s0; }
     /// The column of az_m, |m| < order.
     std::size_t of(int m) const {
@@ -30,9 +24,35 @@ struct AzimuthColumns {
         if (m >= 0) return m % 2 == 0 ? k : c0 + k;
         return m % 2 != 0 ? c0 + c1 + k : c0 + c1 + s1 + k - 1;
     }
+
+private:
+    static std::size_t whole(int count, std::size_t group) {
+        return (static_cast<std::size_t>(count) + group - 1) / group * group;
+    }
 };
 
-/// Tables of whole quadrants, kept for all outgoing directions of a projection. Safe to use from
+/// The azimuth functions at some of a ring's azimuths, relative to its centre: equispaced ones on a
+/// part of a quadrant, squeezed ones on a part of the half circle above 0. The rest of the ring
+/// follows by symmetry (ring_kernels.h).
+struct AzimuthTable {
+    std::size_t count = 0;
+    std::vector<double> cosine, sine;  ///< of phi_j
+    std::vector<double> weights;       ///< d phi / dt where squeezed
+    /// [count][column], az_m without the Condon-Shortley sign, times the weight, columns as in
+    /// AzimuthColumns: cos(m phi) for m = 0, 2, …, for m = 1, 3, …, then sin(m phi) for m = 1, 3,
+    /// …, for m = 2, 4, …; 0 in columns that only fill a group.
+    std::vector<double> rows;
+
+    /// Azimuths number first to first + howMany - 1.
+    void fill(int order, const AzimuthSpacing& spacing, std::size_t first, std::size_t howMany);
+};
+
+/// Azimuths that a table has: a quadrant, or half of the circle where squeezed.
+inline std::size_t tableSize(const AzimuthSpacing& spacing) {
+    return spacing.azimuths / (spacing.squeeze > 0 ? 2 : 4);
+}
+
+/// Whole tables, kept for all outgoing directions of a projection. Safe to use from
 /// many threads.
 class AzimuthTables {
 public:
@@ -40,9 +60,9 @@ public:
     ~AzimuthTables();
 
     int order() const { return order_; }
-    /// The whole quadrant of a ring; none where it would take too much room (2 MB, 4096 azimuths):
-    /// whoever needs it fills it piece by piece. `azimuths` is a multiple of 4.
-    const AzimuthTable* find(std::size_t azimuths) const;
+    /// None where it would take too much room (2 MB, 4096 azimuths; 64 MB for all squeezed ones):
+    /// whoever needs it fills it piece by piece.
+    const AzimuthTable* find(const AzimuthSpacing& spacing) const;
 
 private:
     struct Kept;

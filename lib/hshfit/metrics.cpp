@@ -145,18 +145,18 @@ Sums sumOver(const PairEvaluator& pair, const Direction& wo, const HemisphereGri
     std::vector<double> x, y, z, f, g;
     std::vector<double> albedo(pair.channels, 0.0);
     for (const auto& panel : grid.panels) {
-        const double step = 2 * pi / static_cast<double>(panel.azimuths);
+        const double step = 2 * pi / static_cast<double>(panel.spacing.azimuths);
         for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring) {
             const double s = grid.sines[ring], mu = grid.elevations[ring].mu;
-            x.resize(panel.azimuths);
-            y.resize(panel.azimuths);
-            z.assign(panel.azimuths, mu);
-            for (std::size_t j = 0; j < panel.azimuths; ++j) {
+            x.resize(panel.spacing.azimuths);
+            y.resize(panel.spacing.azimuths);
+            z.assign(panel.spacing.azimuths, mu);
+            for (std::size_t j = 0; j < panel.spacing.azimuths; ++j) {
                 const double phi = (static_cast<double>(j) + 0.5) * step;
                 x[j] = s * std::cos(phi);
                 y[j] = s * std::sin(phi);
             }
-            pair.eval(wo, {x.data(), y.data(), z.data(), panel.azimuths}, f, g);
+            pair.eval(wo, {x.data(), y.data(), z.data(), panel.spacing.azimuths}, f, g);
             const double weight = grid.weights[ring] * step;
             for (std::size_t k = 0; k < f.size(); ++k) {
                 const Sample sample{f[k], g[k], mu};
@@ -166,8 +166,8 @@ Sums sumOver(const PairEvaluator& pair, const Direction& wo, const HemisphereGri
                     sums.term[m] += weight * formulas[m].term(sample);
                     if (formulas[m].scale) sums.scale[m] += weight * formulas[m].scale(sample);
                 }
-                const std::size_t j = k % panel.azimuths;
-                albedo[k / panel.azimuths] += weight * mu * (g[k] - f[k]);
+                const std::size_t j = k % panel.spacing.azimuths;
+                albedo[k / panel.spacing.azimuths] += weight * mu * (g[k] - f[k]);
                 if (const double error = std::abs(g[k] - f[k]) * mu; error > sums.maximum) {
                     sums.maximum = error;
                     sums.maximumWi = {x[j], y[j], mu};

@@ -109,13 +109,20 @@ OutgoingSet OutgoingSet::parabolic(int width, int height) {
     set.height = height;
     const auto centre = [](int i, int n) { return (2.0 * i + 1 - n) / (n - 2); };
     const double dx = 1.0 / (width - 2), dy = 1.0 / (height - 2);
+    set.solidAngles.resize(static_cast<std::size_t>(width) * height);
+    const auto angleAt = [&](int i, int j) -> double& {
+        return set.solidAngles[static_cast<std::size_t>(j) * width + i];
+    };
     for (int j = 0; j < height; ++j) {
         for (int i = 0; i < width; ++i) {
             const double px = centre(i, width), py = centre(j, height);
             set.directions.push_back(fromParabolic(px, py));
-            const bool inside = px * px + py * py < 1;
-            set.solidAngles.push_back(inside ? discSolidAngle(px - dx, px + dx, py - dy, py + dy)
-                                             : 0.0);
+            const int left = std::min(i, width - 1 - i), low = std::min(j, height - 1 - j);
+            if (left != i || low != j) {
+                angleAt(i, j) = angleAt(left, low);
+            } else if (px * px + py * py < 1) {
+                angleAt(i, j) = discSolidAngle(px - dx, px + dx, py - dy, py + dy);
+            }
         }
     }
     // Slivers of texels whose centre lies outside go to the others in proportion.

@@ -23,7 +23,7 @@ namespace {
 /// An outgoing direction that follows from its group's representative by symmetry.
 struct Member {
     std::size_t index;
-    double turn = 0;                    ///< rotation about z (isotropic)
+    double turnX = 1, turnY = 0;        ///< cosine and sine of a rotation about z (isotropic)
     bool flipX = false, flipY = false;  ///< x -> -x, y -> -y (mirror symmetric)
 };
 
@@ -44,8 +44,9 @@ std::vector<Group> groupBySymmetry(const OutgoingSet& outgoing, const Laws& laws
         Direction representative = wo;
         std::pair<double, double> key(static_cast<double>(k), -2);
         if (laws.isotropic) {
-            representative = {std::hypot(wo.x, wo.y), 0, wo.z};
-            member.turn = azimuth(wo);
+            const double sine = std::hypot(wo.x, wo.y);
+            representative = {sine, 0, wo.z};
+            if (sine > 0) member.turnX = wo.x / sine, member.turnY = wo.y / sine;
             key = {wo.z, 0};
         } else if (laws.mirrorSymmetric) {
             representative = {std::abs(wo.x), std::abs(wo.y), wo.z};
@@ -67,8 +68,13 @@ std::vector<Group> groupBySymmetry(const OutgoingSet& outgoing, const Laws& laws
 
 /// Coefficients of a member from those of its group's representative.
 void applySymmetry(const Member& member, int order, const double* from, double* to) {
+    double c = 1, s = 0;  // of m times the angle
     for (int m = 0; m < order; ++m) {
-        const double c = std::cos(m * member.turn), s = std::sin(m * member.turn);
+        if (m > 0) {
+            const double next = c * member.turnX - s * member.turnY;
+            s = s * member.turnX + c * member.turnY;
+            c = next;
+        }
         const double flipX = member.flipX && m % 2 ? -1 : 1;
         const double cosineSign = flipX, sineSign = member.flipX ? -flipX : 1;
         for (int l = m; l < order; ++l) {

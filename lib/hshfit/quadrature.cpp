@@ -109,38 +109,94 @@ void splitPanels(double a, double b, const std::vector<Complex>& points, int dep
     splitPanels(middle, b, points, depth + 1, breaks);
 }
 
-/// Distance of the lobe's nearest singularity from the real phi axis on the ring (s, mu):
-/// acosh(1 + q/2), where q is the squared distance in the plane of incidence over s s'; infinite at
-/// the pole, where nothing depends on phi.
-double azimuthScale(const Lobe& lobe, const Direction& wo, double s, double mu) {
-    const auto acosh1 = [](double q) { return 2 * std::asinh(std::sqrt(q) / 2); };
-    if (lobe.about == Lobe::About::axis) {
-        const double axisSine = std::hypot(lobe.axis.x, lobe.axis.y);
-        const double across = std::atan2(s, mu) - std::atan2(axisSine, lobe.axis.z);
-        return acosh1((across * across + lobe.width * lobe.width) / (s * axisSine));
-    }
-    // Off the peak by `away` along the wide axis, the narrow one has grown by hypot(1, away /
-    // spread) only; `across` is what that makes of the width, times mu + mu_o.
-    const double woSine = std::hypot(wo.x, wo.y), heights = mu + wo.z;
-    const double ratio = lobe.spread > lobe.width ? lobe.width / lobe.spread : 1;
-    const double away = (s - woSine) * ratio, across = lobe.width * heights;
-    const double scale = acosh1((away * away + across * across) / (s * woSine));
-    if (ratio == 1) return scale;
-    // An anisotropic lobe varies with phi even about the pole: with slope t on the ring,
-    // 1 + t^2 (cos^2 phi / spread^2 + sin^2 phi / width^2) vanishes at phi = i asinh(…).
-    const double reach = lobe.spread * heights / (s + woSine);
-    return std::min(scale,
-                    std::asinh(ratio * std::sqrt((1 + reach * reach) / (1 - ratio * ratio))));
-}
+/// Where along phi the BRDF is not smooth: `scale` off the real axis, at an azimuth given by its
+/// cosine and sine.
+struct AzimuthPeak {
+    double x, y, scale;
+};
 
-std::size_t azimuthsFor(const std::vector<Lobe>& lobes, const Direction& wo, double a, double b,
-                        const GridOptions& options, double refinement) {
-    double narrowest = 1;  // what a BRDF without lobes is taken to need
+/// The narrowest peak at each azimuth where there are any.
+class AzimuthPeaks {
+public:
+    void add(double x, double y, double scale) {
+        constexpr double together = 1 - 1e-12, farOff = 20;
+        if (!(scale < farOff)) return;
+        for (AzimuthPeak& peak : peaks_) {
+            if (peak.x * x + peak.y * y > together) {
+                peak.scale = std::min(peak.scale, scale);
+                return;
+            }
+        }
+        peaks_.push_back({x, y, scale});
+    }
+
+    /// On the ring (s, mu): acosh(1 + q/2), where q is the squared distance in the plane of
+    /// incidence over s s'; none at the pole, where nothing depends on phi.
+    void addLobe(const Lobe& lobe, const Direction& wo, double s, double mu) {
+        const auto acosh1 = [](double q) { return 2 * std::asinh(std::sqrt(q) / 2); };
+        if (lobe.about == Lobe::About::axis) {
+            const double axisSine = std::hypot(lobe.axis.x, lobe.axis.y);
+            if (s * axisSine == 0) return;
+            const double across = std::atan2(s, mu) - std::atan2(axisSine, lobe.axis.z);
+            add(lobe.axis.x / axisSine, lobe.axis.y / axisSine,
+                acosh1((across * across + lobe.width * lobe.width) / (s * axisSine)));
+            return;
+        }
+        // Off the peak by `away` along the wide axis, the narrow one has grown by hypot(1, away /
+        // spread) only; `across` is what that makes of the width, times mu + mu_o.
+        const double woSine = std::hypot(wo.x, wo.y), heights = mu + wo.z;
+        const double ratio = lobe.spread > lobe.width ? lobe.width / lobe.spread : 1;
+        const double away = (s - woSine) * ratio, across = lobe.width * heights;
+        if (s * woSine > 0)
+            add(-wo.x / woSine, -wo.y / woSine,
+                acosh1((away * away + across * across) / (s * woSine)));
+        if (ratio == 1) return;
+        // An anisotropic lobe varies with phi even about the pole: with slope t on the ring,
+        // 1 + t^2 (cos^2 phi / spread^2 + sin^2 phi / width^2) vanishes at phi = i asinh(…) off
+        // one of its axes.
+        const double reach = lobe.spread * heights / (s + woSine);
+        const double scale =
+            std::asinh(ratio * std::sqrt((1 + reach * reach) / (1 - ratio * ratio)));
+        for (const auto& [x, y] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) add(x, y, scale);
+    }
+
+    const AzimuthPeak* narrowest(bool even) const {
+        const AzimuthPeak* best = nullptr;
+        for (const AzimuthPeak& peak : peaks_) {
+            if (even && peak.y != 0) continue;
+            if (!best || peak.scale < best->scale) best = &peak;
+        }
+        return best;
+    }
+    double scale() const {
+        double least = 1;  // what a BRDF without lobes is taken to need
+        for (const AzimuthPeak& peak : peaks_) least = std::min(least, peak.scale);
+        return least;
+    }
+    /// What the least scale becomes where azimuths are squeezed about `centre`: with
+    /// tan((difference + i scale) / 2) / kappa = u + i v, the imaginary part of 2 atan(u + i v).
+    double scaleAbout(const AzimuthPeak& centre, double kappa) const {
+        double least = 2 * std::atanh(kappa);  // cos(m phi) has poles there
+        for (const AzimuthPeak& peak : peaks_) {
+            const double cosine = centre.x * peak.x + centre.y * peak.y;
+            const double sine = centre.x * peak.y - centre.y * peak.x;
+            const double below = (cosine + std::cosh(peak.scale)) * kappa;
+            const double u = sine / below, v = std::sinh(peak.scale) / below;
+            least = std::min(
+                least, 0.5 * std::log((u * u + (1 + v) * (1 + v)) / (u * u + (1 - v) * (1 - v))));
+        }
+        return least;
+    }
+
+private:
+    std::vector<AzimuthPeak> peaks_;
+};
+
+AzimuthPeaks azimuthPeaks(const std::vector<Lobe>& lobes, const Direction& wo, double a, double b) {
+    AzimuthPeaks peaks;
     const auto visit = [&](double u) {
         const double mu = u * u, s = std::sqrt((1 - mu) * (1 + mu));
-        for (const Lobe& lobe : lobes) {
-            narrowest = std::min(narrowest, azimuthScale(lobe, wo, s, mu));
-        }
+        for (const Lobe& lobe : lobes) peaks.addLobe(lobe, wo, s, mu);
     };
     visit(a);
     visit(b);
@@ -149,13 +205,38 @@ std::size_t azimuthsFor(const std::vector<Lobe>& lobes, const Direction& wo, dou
         const double u = std::sqrt(std::clamp(peak, 0.0, 1.0));
         if (u > a && u < b) visit(u);
     }
+    return peaks;
+}
+
+void spreadAzimuths(HemisphereGrid::Panel& panel, const AzimuthPeaks& peaks,
+                    const GridOptions& options, double refinement) {
     // Products with the highest basis function need `order` more than the lobe alone. At least 8
     // and `order` of the rest grow with the level, so that no two levels use the same azimuths.
-    const double forLobe =
-        std::max({firstAzimuthExponent / narrowest, static_cast<double>(options.order), 8.0});
-    const auto count = static_cast<std::size_t>(std::min(
-        std::ceil(options.order + forLobe * refinement), static_cast<double>(maxAzimuths)));
-    return (count + 3) / 4 * 4;
+    const double order = options.order;
+    const double smooth = order + std::max(order, 8.0) * refinement;
+    const auto needed = [&](double scale, double kappa) {
+        return std::max(smooth / kappa, order / kappa + firstAzimuthExponent / scale * refinement);
+    };
+    double count = needed(peaks.scale(), 1);
+    const AzimuthPeak* centre = options.squeezed ? peaks.narrowest(options.even) : nullptr;
+    if (centre) {
+        constexpr int maxSqueeze = 24;
+        constexpr double worthIt = 0.9;  // sums of squeezed rings cost a little more
+        double least = worthIt * count;
+        for (int squeeze = 1; squeeze <= maxSqueeze; ++squeeze) {
+            const double kappa = std::ldexp(1.0, -squeeze);
+            if (smooth / kappa >= least) break;
+            const double squeezed = needed(peaks.scaleAbout(*centre, kappa), kappa);
+            if (squeezed >= least) continue;
+            count = least = squeezed;
+            panel.spacing.squeeze = squeeze;
+            panel.centreX = centre->x;
+            panel.centreY = centre->y;
+        }
+    }
+    const auto whole =
+        static_cast<std::size_t>(std::min(std::ceil(count), static_cast<double>(maxAzimuths)));
+    panel.spacing.azimuths = (whole + 3) / 4 * 4;
 }
 
 }  // namespace
@@ -178,7 +259,7 @@ const GaussRule& gaussLegendre(int n) {
 
 std::size_t HemisphereGrid::points() const {
     std::size_t total = 0;
-    for (const Panel& panel : panels) total += panel.rings * panel.azimuths;
+    for (const Panel& panel : panels) total += panel.rings * panel.spacing.azimuths;
     return total;
 }
 
@@ -214,8 +295,8 @@ void appendPanel(HemisphereGrid& grid, double a, double b, const std::vector<Lob
     const int nodes =
         static_cast<int>(std::ceil(firstNodes * refinement + options.order * (b - a) * 1.3));
     const GaussRule& rule = gaussLegendre(nodes);
-    grid.panels.push_back({grid.weights.size(), static_cast<std::size_t>(nodes),
-                           azimuthsFor(lobes, wo, a, b, options, refinement)});
+    grid.panels.push_back({grid.weights.size(), static_cast<std::size_t>(nodes)});
+    spreadAzimuths(grid.panels.back(), azimuthPeaks(lobes, wo, a, b), options, refinement);
     for (int i = 0; i < nodes; ++i) {
         const double u = a + half * (1 + rule.nodes[i]);
         const double mu = u * u, oneMinusMu = (1 - u) * (1 + u);

@@ -3,6 +3,8 @@
 #include <hshfit/bases/basis.h>
 #include <hshfit/brdf.h>
 
+#include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace hshfit {
@@ -18,13 +20,27 @@ struct GaussRule {
 /// Throws UsageError unless 1 <= n <= 100000.
 const GaussRule& gaussLegendre(int n);
 
-/// Rings of constant elevation, in groups that share a number of equispaced azimuths.
+/// How a ring's azimuths are spread. Without a squeeze they are equispaced: phi_j = t_j = (j + 1/2)
+/// 2 pi / azimuths. With one they crowd about a centre, where a lobe is narrow:
+///     tan((phi_j - centre) / 2) = kappa tan(t_j / 2),   kappa = 2^-squeeze,
+/// a map of the unit circle onto itself, so that periodic functions stay periodic and what is
+/// analytic stays so: a singularity that lies i delta off the centre moves away to i delta / kappa,
+/// and lobes of width w need of the order of w^-1/2 azimuths, not w^-1.
+struct AzimuthSpacing {
+    std::size_t azimuths = 0;  ///< a multiple of 4
+    int squeeze = 0;
+    bool operator==(const AzimuthSpacing&) const = default;
+    double kappa() const { return std::ldexp(1.0, -squeeze); }
+};
+
+/// Rings of constant elevation, in groups that share their azimuths.
 /// The integral of q over the hemisphere is the sum over rings of
-///     weight * (2 pi / azimuths) * (sum over the ring's azimuths of q).
+///     weight * (2 pi / azimuths) * (sum over the ring's azimuths of q d phi / dt).
 struct HemisphereGrid {
     struct Panel {
         std::size_t firstRing = 0, rings = 0;
-        std::size_t azimuths = 0;  ///< even; phi_j = (j + 1/2) 2 pi / azimuths
+        AzimuthSpacing spacing = {};
+        double centreX = 1, centreY = 0;  ///< cosine and sine of the centre, where squeezed
     };
     std::vector<Elevation<double>> elevations;  ///< per ring
     std::vector<double> sines;                  ///< sin(theta) per ring
@@ -40,6 +56,9 @@ struct GridOptions {
     /// Refinement: every level has half as many nodes again, in both directions. Lobes are seen at
     /// level 0, are right to about 1e-3 at level 2 and to 1e-6 at level 4.
     int level = 0;
+    /// Whether azimuths may be squeezed; if not, all panels have equispaced ones.
+    bool squeezed = false;
+    bool even = false;  ///< only about a centre on the x axis
 };
 
 /// Ends of the elevation panels, in u = sqrt(cos theta) from 0 to 1, for a BRDF with these lobes.
@@ -49,9 +68,10 @@ struct GridOptions {
 std::vector<double> panelBreaks(const std::vector<Lobe>& lobes, const Direction& wo,
                                 const std::vector<double>& kinks = {});
 
-/// Adds the panel [a, b] in u: Gauss-Legendre rings times equispaced azimuths, whose number follows
-/// from the same singularities seen along phi. In u, functions that behave like sqrt(cos theta) at
-/// the horizon are smooth.
+/// Adds the panel [a, b] in u: Gauss-Legendre rings times azimuths, whose number follows from the
+/// same singularities seen along phi, and so does their squeeze: the one that takes fewest, with
+/// nowhere fewer than a BRDF without lobes would get. In u, functions that behave like sqrt(cos
+/// theta) at the horizon are smooth.
 void appendPanel(HemisphereGrid& grid, double a, double b, const std::vector<Lobe>& lobes,
                  const Direction& wo, const GridOptions& options);
 

@@ -45,22 +45,29 @@ struct Change {
 struct Panel {
     double a, b;  ///< ends in u
     int level = -1;
-    std::vector<double> moments = {};  ///< [basis][channel][slot]
+    std::vector<double> moments = {};  ///< in the order of ThetaProducts
     PerInner energy{};
     std::vector<Change> change = {};  ///< per basis: of the moments, by norm
     std::array<Change, 2> energyChange = {};
 };
 
+/// The root of the sum of squares of `count` values, in four sums side by side.
+template <class Value>
+double rootOfSquares(std::size_t count, Value value) {
+    constexpr std::size_t lanes = laneGroup;
+    double sums[lanes] = {};
+    for (std::size_t i = 0; i + lanes <= count; i += lanes)
+        for (std::size_t k = 0; k < lanes; ++k) sums[k] += value(i + k) * value(i + k);
+    for (std::size_t i = count / lanes * lanes; i < count; ++i) sums[0] += value(i) * value(i);
+    return std::sqrt((sums[0] + sums[1]) + (sums[2] + sums[3]));
+}
+
 double distance(std::span<const double> a, std::span<const double> b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-    return std::sqrt(sum);
+    return rootOfSquares(a.size(), [&](std::size_t i) { return a[i] - b[i]; });
 }
 
 double norm(std::span<const double> a) {
-    double sum = 0;
-    for (const double value : a) sum += value * value;
-    return std::sqrt(sum);
+    return rootOfSquares(a.size(), [&](std::size_t i) { return a[i]; });
 }
 
 double relative(double difference, double reference) {
@@ -103,8 +110,8 @@ public:
             active = unconverged();
         }
         for (std::size_t b = 0; b < bases_.size(); ++b) {
-            const auto moments = ofBasis(totals_, b);
-            result_.moments.emplace_back(moments.begin(), moments.end());
+            result_.moments.push_back(
+                tables_.theta.toSlots(b, spectrum_.channels, ofBasis(totals_, b).data()));
         }
         return std::move(result_);
     }
@@ -117,7 +124,10 @@ private:
             Panel& panel = panels_[p];
             ++panel.level;
             appendPanel(grid_, panel.a, panel.b, lobes_, wo_,
-                        {.order = tables_.azimuths.order(), .level = panel.level});
+                        {.order = tables_.azimuths.order(),
+                         .level = panel.level,
+                         .squeezed = true,
+                         .even = options_.even});
         }
         const std::size_t cost = grid_.points() / (options_.even ? 2 : 1);
         const bool tooDeep = std::any_of(active.begin(), active.end(), [&](std::size_t p) {
@@ -131,8 +141,8 @@ private:
         const auto takePanel = [&](std::size_t k) {
             Panel& panel = panels_[active[k]];
             std::vector<double> moments(offsets_.back());
-            tables_.theta.moments(grid_, k, panel.a, panel.b, spectrum_, options_.even,
-                                  moments.data());
+            tables_.theta.addMoments(grid_, k, panel.a, panel.b, spectrum_, options_.even,
+                                     moments.data());
             update(panel, std::move(moments), energyOf(k));
         };
         // Worth sharing where the functions are many.

@@ -18,98 +18,128 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::ScalableTag<double>;
 using Vec = hn::Vec<Tag>;
 
-/// I x J products at once: 4 x 3 keep 12 sums, and what is multiplied, in 16 registers.
-template <std::size_t I, std::size_t J>
-HWY_INLINE void tile(const double* HWY_RESTRICT a, std::size_t aStride,
-                     const double* HWY_RESTRICT b, std::size_t bStride, std::size_t depth,
-                     double* HWY_RESTRICT out, std::size_t outStride) {
-    const Tag d;
-    const std::size_t lanes = hn::Lanes(d);
-    Vec sums[I][J];
-    for (auto& row : sums)
-        for (Vec& sum : row) sum = hn::Zero(d);
+/// What one tile multiplies: rows that each start somewhere, by columns side by side.
+struct Factors {
+    const double* const* rows;
+    std::size_t step;
+    const double* columns;
+    std::size_t stride, depth;
+};
+
+/// I rows by J vectors: 4 x 3 keep 12 sums, and what is multiplied, in 16 registers. Few sums would
+/// each wait for the one before: then there are several of each, for every so-many-th k.
+template <std::size_t I, std::size_t J, class D>
+HWY_INLINE void tile(D d, const Factors& factors, std::size_t column, double* HWY_RESTRICT out,
+                     std::size_t outStride) {
+    constexpr std::size_t parts = I * J >= 4 ? 1 : I * J >= 2 ? 2 : 4;
+    const std::size_t lanes = hn::Lanes(d), step = factors.step, stride = factors.stride;
+    const double* HWY_RESTRICT rows[I];
+    for (std::size_t i = 0; i < I; ++i) rows[i] = factors.rows[i];
+    hn::Vec<D> sums[parts][I][J];
+    for (std::size_t part = 0; part < parts; ++part)
+        for (std::size_t i = 0; i < I; ++i)
+            for (std::size_t j = 0; j < J; ++j)
+                sums[part][i][j] =
+                    part > 0 ? hn::Zero(d) : hn::LoadU(d, out + i * outStride + j * lanes);
+    const double* HWY_RESTRICT b = factors.columns + column;
+    const auto add = [&](hn::Vec<D>(&to)[I][J], std::size_t k) HWY_ATTR {
+        hn::Vec<D> right[J];
+        for (std::size_t j = 0; j < J; ++j) right[j] = hn::LoadU(d, b + k * stride + j * lanes);
+        for (std::size_t i = 0; i < I; ++i) {
+            const hn::Vec<D> left = hn::Set(d, rows[i][k * step]);
+            for (std::size_t j = 0; j < J; ++j) to[i][j] = hn::MulAdd(left, right[j], to[i][j]);
+        }
+    };
     std::size_t k = 0;
-    for (; k + lanes <= depth; k += lanes) {
-        Vec right[J];
-        for (std::size_t j = 0; j < J; ++j) right[j] = hn::LoadU(d, b + j * bStride + k);
-        for (std::size_t i = 0; i < I; ++i) {
-            const Vec left = hn::LoadU(d, a + i * aStride + k);
-            for (std::size_t j = 0; j < J; ++j) sums[i][j] = hn::MulAdd(left, right[j], sums[i][j]);
-        }
-    }
-    if (k < depth) {
-        const auto mask = hn::FirstN(d, depth - k);
-        Vec right[J];
-        for (std::size_t j = 0; j < J; ++j) right[j] = hn::MaskedLoad(mask, d, b + j * bStride + k);
-        for (std::size_t i = 0; i < I; ++i) {
-            const Vec left = hn::MaskedLoad(mask, d, a + i * aStride + k);
-            for (std::size_t j = 0; j < J; ++j) sums[i][j] = hn::MulAdd(left, right[j], sums[i][j]);
-        }
-    }
+    for (; k + parts <= factors.depth; k += parts)
+        for (std::size_t part = 0; part < parts; ++part) add(sums[part], k + part);
+    for (; k < factors.depth; ++k) add(sums[0], k);
     for (std::size_t i = 0; i < I; ++i)
-        for (std::size_t j = 0; j < J; ++j)
-            out[i * outStride + j] += hn::GetLane(hn::SumOfLanes(d, sums[i][j]));
+        for (std::size_t j = 0; j < J; ++j) {
+            hn::Vec<D> sum = sums[0][i][j];
+            for (std::size_t part = 1; part < parts; ++part) sum = hn::Add(sum, sums[part][i][j]);
+            hn::StoreU(sum, d, out + i * outStride + j * lanes);
+        }
 }
 
+/// I rows by all columns: three vectors at a time, then what is left, in groups at the end where
+/// vectors are longer than that.
 template <std::size_t I>
-void rowsOf(const double* a, std::size_t aStride, const RowBlock& b, std::size_t depth, double* out,
-            std::size_t outStride) {
-    std::size_t j = 0;
-    for (; j + 3 <= b.rows; j += 3)
-        tile<I, 3>(a, aStride, b.data + j * b.stride, b.stride, depth, out + j, outStride);
-    if (b.rows - j == 2)
-        tile<I, 2>(a, aStride, b.data + j * b.stride, b.stride, depth, out + j, outStride);
-    if (b.rows - j == 1)
-        tile<I, 1>(a, aStride, b.data + j * b.stride, b.stride, depth, out + j, outStride);
-}
-
-void rowProducts(const RowBlock& a, const RowBlock& b, std::size_t depth, double* out,
-                 std::size_t outStride) {
-    std::size_t i = 0;
-    for (; i + 4 <= a.rows; i += 4)
-        rowsOf<4>(a.data + i * a.stride, a.stride, b, depth, out + i * outStride, outStride);
-    for (; i + 2 <= a.rows; i += 2)
-        rowsOf<2>(a.data + i * a.stride, a.stride, b, depth, out + i * outStride, outStride);
-    if (i < a.rows)
-        rowsOf<1>(a.data + i * a.stride, a.stride, b, depth, out + i * outStride, outStride);
-}
-
-/// I rows by J vectors of functions.
-template <std::size_t I, std::size_t J>
-HWY_INLINE void columnTile(const double* HWY_RESTRICT a, std::size_t aStride,
-                           const double* HWY_RESTRICT b, std::size_t depth,
-                           double* HWY_RESTRICT out, std::size_t outStride) {
+HWY_INLINE void rowsOf(const Factors& factors, std::size_t columns, double* out,
+                       std::size_t outStride) {
     const Tag d;
     const std::size_t lanes = hn::Lanes(d);
-    Vec sums[I][J];
-    for (std::size_t i = 0; i < I; ++i)
-        for (std::size_t j = 0; j < J; ++j)
-            sums[i][j] = hn::LoadU(d, out + i * outStride + j * lanes);
-    for (std::size_t k = 0; k < depth; ++k, b += lanesOfFunctions) {
-        Vec right[J];
-        for (std::size_t j = 0; j < J; ++j) right[j] = hn::LoadU(d, b + j * lanes);
-        for (std::size_t i = 0; i < I; ++i) {
-            const Vec left = hn::Set(d, a[i * aStride + k]);
-            for (std::size_t j = 0; j < J; ++j) sums[i][j] = hn::MulAdd(left, right[j], sums[i][j]);
+    std::size_t j = 0;
+    if constexpr (I <= 4) {
+        for (; j + 3 * lanes <= columns; j += 3 * lanes)
+            tile<I, 3>(d, factors, j, out + j, outStride);
+        if (j + 2 * lanes <= columns) {
+            tile<I, 2>(d, factors, j, out + j, outStride);
+            j += 2 * lanes;
         }
     }
-    for (std::size_t i = 0; i < I; ++i)
-        for (std::size_t j = 0; j < J; ++j)
-            hn::StoreU(sums[i][j], d, out + i * outStride + j * lanes);
+    for (; j + lanes <= columns; j += lanes) tile<I, 1>(d, factors, j, out + j, outStride);
+    if (j < columns) tile<I, 1>(hn::CappedTag<double, laneGroup>(), factors, j, out + j, outStride);
 }
 
-void columnProducts(const RowBlock& a, const double* b, std::size_t depth, double* out,
-                    std::size_t outStride) {
-    constexpr std::size_t vectors = 3;
-    const std::size_t step = vectors * hn::Lanes(Tag());
-    for (std::size_t f = 0; f < lanesOfFunctions; f += step) {
-        std::size_t i = 0;
-        for (; i + 4 <= a.rows; i += 4)
-            columnTile<4, vectors>(a.data + i * a.stride, a.stride, b + f, depth,
-                                   out + i * outStride + f, outStride);
-        for (; i < a.rows; ++i)
-            columnTile<1, vectors>(a.data + i * a.stride, a.stride, b + f, depth,
-                                   out + i * outStride + f, outStride);
+/// All rows, shared out evenly among tiles: `rowAt(i)` is where row i starts.
+template <class RowAt>
+HWY_INLINE void tiles(std::size_t rows, RowAt rowAt, std::size_t step, const ColumnBlock& b,
+                      std::size_t depth, double* out, std::size_t outStride) {
+    constexpr std::size_t most = 6;
+    const double* starts[most];
+    const Factors factors{starts, step, b.data, b.stride, depth};
+    const std::size_t atOnce = b.columns <= hn::Lanes(Tag()) ? most : 4;
+    std::size_t tilesLeft = (rows + atOnce - 1) / atOnce;
+    for (std::size_t i = 0; i < rows; --tilesLeft) {
+        const std::size_t count = (rows - i + tilesLeft - 1) / tilesLeft;
+        for (std::size_t k = 0; k < count; ++k) starts[k] = rowAt(i + k);
+        double* to = out + i * outStride;
+        switch (count) {
+            case 1:
+                rowsOf<1>(factors, b.columns, to, outStride);
+                break;
+            case 2:
+                rowsOf<2>(factors, b.columns, to, outStride);
+                break;
+            case 3:
+                rowsOf<3>(factors, b.columns, to, outStride);
+                break;
+            case 4:
+                rowsOf<4>(factors, b.columns, to, outStride);
+                break;
+            case 5:
+                rowsOf<5>(factors, b.columns, to, outStride);
+                break;
+            default:
+                rowsOf<6>(factors, b.columns, to, outStride);
+                break;
+        }
+        i += count;
+    }
+}
+
+void products(const RowBlock& a, const ColumnBlock& b, std::size_t depth, double* out,
+              std::size_t outStride) {
+    tiles(
+        a.rows, [&](std::size_t i) HWY_ATTR { return a.data + i * a.stride; }, a.step, b, depth,
+        out, outStride);
+}
+
+void thetaSums(const ThetaSums& sums, double* out) {
+    const std::size_t ring = sums.channels * sums.columns;
+    const double* theta = sums.theta;
+    for (int m = sums.firstM; m < sums.lastM; ++m) {
+        const std::size_t lanes = thetaLanes(sums.order, m);
+        const std::size_t kinds = m == 0 || sums.even ? 1 : 2;
+        const std::size_t* columns = sums.columnOf + 2 * m;
+        const auto rowAt = [&](std::size_t i) HWY_ATTR {
+            const std::size_t kind = i < sums.channels ? 0 : 1;
+            return sums.spectrum + (i - kind * sums.channels) * sums.columns + columns[kind];
+        };
+        tiles(kinds * sums.channels, rowAt, ring, {theta, lanes, lanes}, sums.rings, out, lanes);
+        theta += sums.rings * lanes;
+        out += 2 * sums.channels * lanes;
     }
 }
 
@@ -184,7 +214,7 @@ void ringDirections(const RingDirections& ring, double sinTheta, double cosTheta
     const Tag d;
     const std::size_t lanes = hn::Lanes(d);
     const Vec height = hn::Set(d, cosTheta);
-    for (std::size_t quadrant = 0; quadrant < ring.quadrants; ++quadrant) {
+    for (std::size_t quadrant = 0; quadrant < ring.copies; ++quadrant) {
         const double sx = quadrant % 2 == 0 ? sinTheta : -sinTheta;
         const double sy = quadrant < 2 ? sinTheta : -sinTheta;
         std::size_t j = 0;
@@ -204,44 +234,118 @@ void ringDirections(const RingDirections& ring, double sinTheta, double cosTheta
     }
 }
 
-/// `load` and `store` take what is left at the end of the quadrant with a mask.
-template <bool Half, class Load, class Store>
-HWY_INLINE Vec foldOnce(const double* values, std::size_t count, std::size_t k,
-                        const QuadrantFold& out, Vec squares, Load load, Store store) {
-    const Vec first = load(values + k), second = load(values + count + k);
-    squares = hn::MulAdd(first, first, hn::MulAdd(second, second, squares));
-    if constexpr (Half) {
-        store(hn::Add(first, second), out.c0 + k);
-        store(hn::Sub(first, second), out.c1 + k);
-    } else {
-        const Vec third = load(values + 2 * count + k), fourth = load(values + 3 * count + k);
-        squares = hn::MulAdd(third, third, hn::MulAdd(fourth, fourth, squares));
-        const Vec even = hn::Add(first, third), odd = hn::Sub(first, third);
-        const Vec evenBehind = hn::Add(second, fourth), oddBehind = hn::Sub(second, fourth);
-        store(hn::Add(even, evenBehind), out.c0 + k);
-        store(hn::Sub(even, evenBehind), out.c1 + k);
-        store(hn::Add(odd, oddBehind), out.s1 + k);
-        store(hn::Sub(odd, oddBehind), out.s0 + k);
+void squeezedDirections(const RingDirections& ring, double sinTheta, double cosTheta,
+                        double* HWY_RESTRICT x, double* HWY_RESTRICT y, double* HWY_RESTRICT z) {
+    const Tag d;
+    const std::size_t lanes = hn::Lanes(d);
+    const double a = sinTheta * ring.centreX, b = sinTheta * ring.centreY;
+    for (std::size_t copy = 0; copy < ring.copies; ++copy) {
+        const double across = copy == 0 ? 1 : -1;
+        const Vec xc = hn::Set(d, a), xs = hn::Set(d, -across * b);
+        const Vec yc = hn::Set(d, b), ys = hn::Set(d, across * a), height = hn::Set(d, cosTheta);
+        std::size_t j = 0;
+        for (; j + lanes <= ring.count; j += lanes) {
+            const Vec c = hn::LoadU(d, ring.cosine + j), s = hn::LoadU(d, ring.sine + j);
+            hn::StoreU(hn::MulAdd(xc, c, hn::Mul(xs, s)), d, x + j);
+            hn::StoreU(hn::MulAdd(yc, c, hn::Mul(ys, s)), d, y + j);
+            hn::StoreU(height, d, z + j);
+        }
+        for (; j < ring.count; ++j) {
+            x[j] = a * ring.cosine[j] - across * b * ring.sine[j];
+            y[j] = b * ring.cosine[j] + across * a * ring.sine[j];
+            z[j] = cosTheta;
+        }
+        x += ring.count;
+        y += ring.count;
+        z += ring.count;
+    }
+}
+
+template <bool Half, class D>
+HWY_INLINE hn::Vec<D> foldPairs(D d, const double* values, const double* weights, std::size_t from,
+                                std::size_t to, std::size_t count, double* even, double* odd) {
+    hn::Vec<D> squares = hn::Zero(d);
+    for (std::size_t k = from; k < to; k += hn::Lanes(d)) {
+        const hn::Vec<D> first = hn::LoadU(d, values + k);
+        hn::Vec<D> square = hn::Mul(first, first);
+        if constexpr (Half) {
+            hn::StoreU(first, d, even + k);
+        } else {
+            const hn::Vec<D> second = hn::LoadU(d, values + count + k);
+            square = hn::MulAdd(second, second, square);
+            hn::StoreU(hn::Add(first, second), d, even + k);
+            hn::StoreU(hn::Sub(first, second), d, odd + k);
+        }
+        squares = hn::MulAdd(hn::LoadU(d, weights + k), square, squares);
     }
     return squares;
 }
 
 template <bool Half>
+HWY_INLINE double foldSqueezedOf(const double* values, const double* weights, std::size_t count,
+                                 double* even, double* odd) {
+    const Tag d;
+    const hn::CappedTag<double, 1> one;
+    const std::size_t whole = count / hn::Lanes(d) * hn::Lanes(d);
+    const Vec most = foldPairs<Half>(d, values, weights, 0, whole, count, even, odd);
+    const auto rest = foldPairs<Half>(one, values, weights, whole, count, count, even, odd);
+    return hn::GetLane(hn::SumOfLanes(d, most)) + hn::GetLane(rest);
+}
+
+double foldSqueezed(const double* values, const double* weights, std::size_t count, double* even,
+                    double* odd) {
+    return odd ? foldSqueezedOf<false>(values, weights, count, even, odd)
+               : foldSqueezedOf<true>(values, weights, count, even, odd);
+}
+
+/// One vector's worth from number k on; the squares of the lanes in `counted` only.
+template <bool Half, class D, class Mask>
+HWY_INLINE hn::Vec<D> foldOnce(D d, const double* values, std::size_t count, std::size_t k,
+                               const QuadrantFold& out, hn::Vec<D> squares, Mask counted) {
+    const auto at = [&](std::size_t quadrant)
+                        HWY_ATTR { return hn::LoadU(d, values + quadrant * count + k); };
+    const auto add = [&](hn::Vec<D> a, hn::Vec<D> b) HWY_ATTR {
+        squares = hn::Add(squares, counted(hn::MulAdd(a, a, hn::Mul(b, b))));
+    };
+    const hn::Vec<D> first = at(0), second = at(1);
+    add(first, second);
+    if constexpr (Half) {
+        hn::StoreU(hn::Add(first, second), d, out.c0 + k);
+        hn::StoreU(hn::Sub(first, second), d, out.c1 + k);
+    } else {
+        const hn::Vec<D> third = at(2), fourth = at(3);
+        add(third, fourth);
+        const hn::Vec<D> even = hn::Add(first, third), odd = hn::Sub(first, third);
+        const hn::Vec<D> evenBehind = hn::Add(second, fourth), oddBehind = hn::Sub(second, fourth);
+        hn::StoreU(hn::Add(even, evenBehind), d, out.c0 + k);
+        hn::StoreU(hn::Sub(even, evenBehind), d, out.c1 + k);
+        hn::StoreU(hn::Add(odd, oddBehind), d, out.s1 + k);
+        hn::StoreU(hn::Sub(odd, oddBehind), d, out.s0 + k);
+    }
+    return squares;
+}
+
+/// The last vector of a quadrant overlaps the one before; less than a vector goes one by one.
+template <bool Half>
 double fold(const double* values, std::size_t count, const QuadrantFold& out) {
     const Tag d;
     const std::size_t lanes = hn::Lanes(d);
+    const auto all = [](auto v) HWY_ATTR { return v; };
+    if (count < lanes) {
+        const hn::CappedTag<double, 1> one;
+        auto squares = hn::Zero(one);
+        for (std::size_t k = 0; k < count; ++k)
+            squares = foldOnce<Half>(one, values, count, k, out, squares, all);
+        return hn::GetLane(squares);
+    }
     Vec squares = hn::Zero(d);
     std::size_t k = 0;
     for (; k + lanes <= count; k += lanes)
-        squares = foldOnce<Half>(
-            values, count, k, out, squares, [&](const double* from) { return hn::LoadU(d, from); },
-            [&](Vec v, double* to) { hn::StoreU(v, d, to); });
+        squares = foldOnce<Half>(d, values, count, k, out, squares, all);
     if (k < count) {
-        const auto mask = hn::FirstN(d, count - k);
-        squares = foldOnce<Half>(
-            values, count, k, out, squares,
-            [&](const double* from) { return hn::MaskedLoad(mask, d, from); },
-            [&](Vec v, double* to) { hn::BlendedStore(v, mask, d, to); });
+        const auto known = hn::FirstN(d, lanes - (count - k));
+        squares = foldOnce<Half>(d, values, count, count - lanes, out, squares,
+                                 [&](Vec v) HWY_ATTR { return hn::IfThenZeroElse(known, v); });
     }
     return hn::GetLane(hn::SumOfLanes(d, squares));
 }
@@ -260,26 +364,37 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace hshfit {
 
-HWY_EXPORT(rowProducts);
-HWY_EXPORT(columnProducts);
+HWY_EXPORT(products);
+HWY_EXPORT(thetaSums);
 HWY_EXPORT(ringDirections);
+HWY_EXPORT(squeezedDirections);
+HWY_EXPORT(foldSqueezed);
 HWY_EXPORT(interleave);
 HWY_EXPORT(foldMany);
 HWY_EXPORT(foldWhole);
 HWY_EXPORT(foldHalf);
 
-void addRowProducts(RowBlock a, RowBlock b, std::size_t depth, double* out, std::size_t outStride) {
-    HWY_DYNAMIC_DISPATCH(rowProducts)(a, b, depth, out, outStride);
+void addProducts(RowBlock a, ColumnBlock b, std::size_t depth, double* out, std::size_t outStride) {
+    HWY_DYNAMIC_DISPATCH(products)(a, b, depth, out, outStride);
 }
 
-void addColumnProducts(RowBlock a, const double* b, std::size_t depth, double* out,
-                       std::size_t outStride) {
-    HWY_DYNAMIC_DISPATCH(columnProducts)(a, b, depth, out, outStride);
+void addThetaSums(const ThetaSums& sums, double* out) {
+    HWY_DYNAMIC_DISPATCH(thetaSums)(sums, out);
 }
 
 void fillRing(const RingDirections& ring, double sinTheta, double cosTheta, double* x, double* y,
               double* z) {
     HWY_DYNAMIC_DISPATCH(ringDirections)(ring, sinTheta, cosTheta, x, y, z);
+}
+
+void fillSqueezedRing(const RingDirections& ring, double sinTheta, double cosTheta, double* x,
+                      double* y, double* z) {
+    HWY_DYNAMIC_DISPATCH(squeezedDirections)(ring, sinTheta, cosTheta, x, y, z);
+}
+
+double foldSqueezedRing(const double* values, const double* weights, std::size_t count,
+                        double* even, double* odd) {
+    return HWY_DYNAMIC_DISPATCH(foldSqueezed)(values, weights, count, even, odd);
 }
 
 void interleaveFunctions(const double* rows, std::size_t functions, std::size_t stride,

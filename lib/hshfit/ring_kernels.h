@@ -4,15 +4,39 @@
 
 namespace hshfit {
 
-/// Rows of `depth` values each, `stride` apart.
+/// Columns of a product come in whole groups: what is missing is filled with zeros.
+constexpr std::size_t laneGroup = 4;
+
+/// Rows of values, `stride` apart, each value `step` after the one before.
 struct RowBlock {
     const double* data = nullptr;
-    std::size_t rows = 0, stride = 0;
+    std::size_t rows = 0, stride = 0, step = 1;
+};
+/// Columns side by side, a multiple of laneGroup; rows are `stride` apart.
+struct ColumnBlock {
+    const double* data = nullptr;
+    std::size_t columns = 0, stride = 0;
 };
 
-/// out[i * outStride + j] += sum over k < depth of a[i][k] b[j][k], by the vector instructions that
-/// this processor has (Google Highway). The order of each sum depends on `depth` alone.
-void addRowProducts(RowBlock a, RowBlock b, std::size_t depth, double* out, std::size_t outStride);
+/// out[i * outStride + j] += sum over k < depth of a[i][k] b[k][j], by the vector instructions that
+/// this processor has (Google Highway). The order of a sum depends on the shapes alone.
+void addProducts(RowBlock a, ColumnBlock b, std::size_t depth, double* out, std::size_t outStride);
+
+/// Azimuth transforms of a panel's rings times theta functions, m after m.
+struct ThetaSums {
+    const double* spectrum;  ///< [ring][channel][column]
+    std::size_t rings, channels, columns;
+    const std::size_t* columnOf;  ///< of cos(m phi), then of sin(m phi), for each m
+    int order, firstM, lastM;     ///< m = firstM .. lastM - 1
+    bool even;                    ///< leave sines alone
+    const double* theta;          ///< for each m: [ring][l - m], whole groups of l
+};
+/// out += sums over the rings, for each m: [cosine, sine][channel][l - m], whole groups of l.
+void addThetaSums(const ThetaSums& sums, double* out);
+/// Room that one m takes for each channel, of cosines and of sines, and for each ring of theta.
+constexpr std::size_t thetaLanes(int order, int m) {
+    return (static_cast<std::size_t>(order - m) + laneGroup - 1) / laneGroup * laneGroup;
+}
 
 /// Values at phi, pi - phi, -phi and pi + phi for `count` azimuths phi of the first quadrant,
 /// folded into what is even (c) or odd (s) in phi, and keeps (0) or changes (1) its sign with pi -
@@ -29,22 +53,27 @@ double foldRing(const double* values, std::size_t count, const QuadrantFold& out
 /// are left alone, and the sum of squares is that of the half ring.
 double foldHalfRing(const double* values, std::size_t count, const QuadrantFold& out);
 
-/// Directions of one ring, quadrant after quadrant in the order of QuadrantFold: `quadrants` is 4,
-/// or 2 for half a ring. `cosine` and `sine` are those of the first quadrant's azimuths.
+/// A squeezed ring: values at phi and then at -phi, `count` each, into sums `even` and differences
+/// `odd`; returns the sum of weight * value^2. Without `odd`, only phi is there.
+double foldSqueezedRing(const double* values, const double* weights, std::size_t count,
+                        double* even, double* odd);
+
+/// Directions of one ring. `fillRing`: quadrant after quadrant in the order of QuadrantFold, 4
+/// copies, or 2 for half a ring; `cosine` and `sine` are those of the first quadrant's azimuths.
+/// `fillSqueezedRing`: those of azimuths about the centre, then of their mirror images, 2 copies,
+/// or 1 for half a ring.
 struct RingDirections {
     const double *cosine, *sine;
-    std::size_t count, quadrants;
+    std::size_t count, copies;
+    double centreX, centreY;
 };
 void fillRing(const RingDirections& ring, double sinTheta, double cosTheta, double* x, double* y,
               double* z);
+void fillSqueezedRing(const RingDirections& ring, double sinTheta, double cosTheta, double* x,
+                      double* y, double* z);
 
 /// Functions side by side, innermost in memory: as many as full vectors of every size take.
 constexpr std::size_t lanesOfFunctions = 24;
-
-/// out[i][f] += sum over k < depth of a[i][k] b[k][f] for f < lanesOfFunctions; rows of `out` are
-/// outStride apart, rows of b follow each other.
-void addColumnProducts(RowBlock a, const double* b, std::size_t depth, double* out,
-                       std::size_t outStride);
 
 /// `count` values of `functions` <= lanesOfFunctions rows, `stride` apart, to out[value][function];
 /// 0 for functions that are missing.

@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -17,9 +18,14 @@ namespace {
 /// cache holds beside the tables; 512 to 4096 are equally good (bench/projection).
 constexpr std::size_t blockValues = 6144, leastPoints = 64;
 
-/// Rings with the same azimuths.
+/// Neighbouring rings of one panel.
 struct Run {
-    std::size_t firstRing, rings, azimuths;
+    const HemisphereGrid::Panel* panel;
+    const AzimuthTable* table;  ///< none where it is not kept
+    std::size_t firstRing, rings;
+
+    const AzimuthSpacing& spacing() const { return panel->spacing; }
+    bool squeezed() const { return spacing().squeeze > 0; }
 };
 
 /// Runs that are evaluated in one call, numbers first to last - 1.
@@ -35,7 +41,7 @@ struct Blocks {
 /// The buffers of one block. BRDFs may wait for other work within eval, so that a thread can need
 /// more than one: Lease.
 struct Workspace {
-    std::vector<double> x, y, z, values, folded, spectrum, squares;
+    std::vector<double> x, y, z, values, folded;
     AzimuthTable piece;
 };
 
@@ -74,73 +80,71 @@ public:
           quantity_(quantity),
           tables_(tables),
           even_(even),
-          columns_(tables.order()),
           result_(result) {}
-
-    /// Points evaluated for each azimuth of a quadrant.
-    std::size_t quadrants() const { return even_ ? 2 : 4; }
 
     void operator()(const Blocks& all, const Block& block) const {
         Lease lease;
         Workspace& w = *lease;
-        if (const Run& run = all.runs[block.first]; !tables_.find(run.azimuths)) {
+        if (const Run& run = all.runs[block.first]; !run.table) {
             byPieces(run, w);
             return;
         }
         std::size_t points = 0;
         for (std::size_t k = block.first; k < block.last; ++k) {
-            fillDirections(all.runs[k], *tables_.find(all.runs[k].azimuths), points, w);
+            fillDirections(all.runs[k], *all.runs[k].table, points, w);
             points += pointsOf(all.runs[k]);
         }
         evaluate(points, w);
         std::size_t offset = 0;
         for (std::size_t k = block.first; k < block.last; ++k) {
-            clear(all.runs[k], w);
-            add(all.runs[k], *tables_.find(all.runs[k].azimuths), offset, points, w);
-            store(all.runs[k], w);
+            add(all.runs[k], *all.runs[k].table, offset, points, w);
+            weight(all.runs[k]);
             offset += pointsOf(all.runs[k]);
         }
     }
 
 private:
+    /// Points evaluated for each azimuth of the run's table: one for each quadrant, or for each
+    /// half of the circle, and half of them where q is even.
+    std::size_t copies(const Run& run) const { return (run.squeezed() ? 2 : 4) / (even_ ? 2 : 1); }
     std::size_t pointsOf(const Run& run) const {
-        return run.rings * quadrants() * (run.azimuths / 4);
+        return run.rings * copies(run) * tableSize(run.spacing());
     }
 
     /// A run whose table is too large to be kept.
     void byPieces(const Run& run, Workspace& w) const {
-        const std::size_t quadrant = run.azimuths / 4;
+        const std::size_t whole = tableSize(run.spacing());
         const std::size_t most = std::max<std::size_t>(
-            blockValues / ((3 + result_.channels) * quadrants() * run.rings), leastPoints);
-        clear(run, w);
-        for (std::size_t first = 0; first < quadrant; first += most) {
-            const std::size_t count = std::min(most, quadrant - first);
-            w.piece.fill(tables_.order(), run.azimuths, first, count);
+            blockValues / ((3 + result_.channels) * copies(run) * run.rings), leastPoints);
+        for (std::size_t first = 0; first < whole; first += most) {
+            const std::size_t count = std::min(most, whole - first);
+            w.piece.fill(tables_.order(), run.spacing(), first, count);
             fillDirections(run, w.piece, 0, w);
-            const std::size_t points = run.rings * quadrants() * count;
+            const std::size_t points = run.rings * copies(run) * count;
             evaluate(points, w);
             add(run, w.piece, 0, points, w);
         }
-        store(run, w);
+        weight(run);
     }
 
-    void clear(const Run& run, Workspace& w) const {
-        w.spectrum.assign(result_.channels * run.rings * columns_.all(), 0.0);
-        w.squares.assign(run.rings, 0.0);
-    }
-
-    /// Ring by ring from number `offset`: phi, pi - phi, and unless even -phi, pi + phi.
+    /// Ring by ring from number `offset`: phi, pi - phi, and unless even -phi, pi + phi; about the
+    /// centre of squeezed rings phi, and unless even -phi.
     void fillDirections(const Run& run, const AzimuthTable& table, std::size_t offset,
                         Workspace& w) const {
-        const std::size_t count = table.count, points = run.rings * quadrants() * count;
+        const std::size_t ring = copies(run) * table.count, points = run.rings * ring;
         growTo(w.x, offset + points);
         growTo(w.y, offset + points);
         growTo(w.z, offset + points);
-        const RingDirections ring{table.cosine.data(), table.sine.data(), count, quadrants()};
-        for (std::size_t r = run.firstRing; r < run.firstRing + run.rings; ++r) {
-            fillRing(ring, grid_.sines[r], grid_.elevations[r].mu, w.x.data() + offset,
-                     w.y.data() + offset, w.z.data() + offset);
-            offset += count * quadrants();
+        const RingDirections directions{.cosine = table.cosine.data(),
+                                        .sine = table.sine.data(),
+                                        .count = table.count,
+                                        .copies = copies(run),
+                                        .centreX = run.panel->centreX,
+                                        .centreY = run.panel->centreY};
+        const auto fill = run.squeezed() ? fillSqueezedRing : fillRing;
+        for (std::size_t r = run.firstRing; r < run.firstRing + run.rings; ++r, offset += ring) {
+            fill(directions, grid_.sines[r], grid_.elevations[r].mu, w.x.data() + offset,
+                 w.y.data() + offset, w.z.data() + offset);
         }
     }
 
@@ -152,31 +156,42 @@ private:
     /// Adds a run's values, from number `offset` of `points` in each channel, to its spectrum.
     void add(const Run& run, const AzimuthTable& table, std::size_t offset, std::size_t points,
              Workspace& w) const {
-        const std::size_t count = table.count, rows = result_.channels * run.rings;
-        const std::size_t part = rows * count;
-        growTo(w.folded, quadrants() * part);
+        const std::size_t count = table.count, part = run.rings * count;
+        const AzimuthColumns& columns = result_.columns;
+        std::array<std::size_t, 4> kinds = {columns.c0, columns.c1, columns.s1, columns.s0};
+        if (run.squeezed()) kinds = {columns.c0 + columns.c1, columns.s1 + columns.s0};
+        growTo(w.folded, copies(run) * part);
         double sum = 0;
-        for (std::size_t row = 0; row < rows; ++row) {
-            const std::size_t channel = row / run.rings, ring = row % run.rings;
-            double* c0 = w.folded.data() + row * count;
-            const QuadrantFold fold{c0, c0 + part, c0 + 2 * part, c0 + 3 * part};
-            const double* values =
-                w.values.data() + channel * points + offset + ring * quadrants() * count;
-            const double squares =
-                even_ ? foldHalfRing(values, count, fold) : foldRing(values, count, fold);
-            w.squares[ring] += squares;
-            sum += squares;
+        for (std::size_t channel = 0; channel < result_.channels; ++channel) {
+            const double* values = w.values.data() + channel * points + offset;
+            for (std::size_t ring = 0; ring < run.rings; ++ring) {
+                const double squares = fold(run, table, values + ring * copies(run) * count, part,
+                                            w.folded.data() + ring * count);
+                result_.squares[run.firstRing + ring] += squares;
+                sum += squares;
+            }
+            double* to =
+                result_.parts.data() + run.firstRing * result_.ringSize() + channel * columns.all();
+            const double *azimuths = table.rows.data(), *from = w.folded.data();
+            for (std::size_t k = 0; k < copies(run); ++k, from += part) {
+                addProducts({from, run.rings, count}, {azimuths, kinds[k], columns.all()}, count,
+                            to, result_.ringSize());
+                azimuths += kinds[k];
+                to += kinds[k];
+            }
         }
         if (!std::isfinite(sum)) requireFinite(w, points);
+    }
 
-        const std::size_t kinds[] = {columns_.c0, columns_.c1, columns_.s1, columns_.s0};
-        std::size_t column = 0;
-        for (std::size_t k = 0; k < quadrants(); ++k) {
-            addRowProducts({w.folded.data() + k * part, rows, count},
-                           {table.rows.data() + column * count, kinds[k], count}, count,
-                           w.spectrum.data() + column, columns_.all());
-            column += kinds[k];
-        }
+    /// One ring into sums, one for each kind, `part` apart; returns the sum of squares.
+    double fold(const Run& run, const AzimuthTable& table, const double* values, std::size_t part,
+                double* to) const {
+        const QuadrantFold folded{to, to + part, to + 2 * part, to + 3 * part};
+        if (!run.squeezed())
+            return even_ ? foldHalfRing(values, table.count, folded)
+                         : foldRing(values, table.count, folded);
+        const double* weights = table.weights.data();
+        return foldSqueezedRing(values, weights, table.count, to, even_ ? nullptr : to + part);
     }
 
     /// Squares overflow before values do: only the values tell.
@@ -195,19 +210,36 @@ private:
             degrees(azimuth(wo_))));
     }
 
-    void store(const Run& run, const Workspace& w) const {
-        const double weight = (even_ ? 4 : 2) * pi / static_cast<double>(run.azimuths);
-        const int n = result_.order;
-        for (std::size_t r = 0; r < run.rings; ++r) {
-            const std::size_t ring = run.firstRing + r;
+    /// Sums over azimuths become integrals of q.
+    void weight(const Run& run) const {
+        const double step = (even_ ? 4 : 2) * pi / static_cast<double>(run.spacing().azimuths);
+        for (std::size_t ring = run.firstRing; ring < run.firstRing + run.rings; ++ring) {
             const double cosine =
                 quantity_ == Quantity::brdfCosine ? grid_.elevations[ring].mu : 1.0;
-            for (std::size_t c = 0; c < result_.channels; ++c) {
-                const double* from = w.spectrum.data() + (c * run.rings + r) * columns_.all();
-                for (int m = even_ ? 0 : 1 - n; m < n; ++m)
-                    result_.part(m, c)[ring] = weight * cosine * from[columns_.of(m)];
+            double* parts = result_.parts.data() + ring * result_.ringSize();
+            for (std::size_t k = 0; k < result_.ringSize(); ++k) parts[k] *= step * cosine;
+            result_.squares[ring] *= step * cosine * cosine;
+        }
+        if (run.squeezed() && tables_.order() > 1) turn(run);
+    }
+
+    /// From azimuths about the panel's centre to those about the x axis.
+    void turn(const Run& run) const {
+        const double x = run.panel->centreX, y = run.panel->centreY;
+        const AzimuthColumns& columns = result_.columns;
+        double* first = result_.parts.data() + run.firstRing * result_.ringSize();
+        double* end = first + run.rings * result_.ringSize();
+        double re = 1, im = 0;
+        for (int m = 1; m < tables_.order(); ++m) {
+            const double next = re * x - im * y;
+            im = re * y + im * x;
+            re = next;
+            const std::size_t even = columns.of(m), odd = columns.of(-m);
+            for (double* parts = first; parts < end; parts += columns.all()) {
+                const double before = parts[even];
+                parts[even] = re * before - im * parts[odd];
+                parts[odd] = im * before + re * parts[odd];
             }
-            result_.squares[ring] = weight * cosine * cosine * w.squares[r];
         }
     }
 
@@ -217,7 +249,6 @@ private:
     Quantity quantity_;
     const AzimuthTables& tables_;
     bool even_;
-    AzimuthColumns columns_;
     RingSpectrum& result_;
 };
 
@@ -229,8 +260,8 @@ Blocks blocksOf(const HemisphereGrid& grid, const AzimuthTables& tables, std::si
     const std::size_t most = blockValues / (3 + channels);
     std::size_t filled = 0;
     for (const auto& panel : grid.panels) {
-        const std::size_t points = panel.azimuths / (even ? 2 : 1);
-        const bool kept = tables.find(panel.azimuths) != nullptr;
+        const std::size_t points = panel.spacing.azimuths / (even ? 2 : 1);
+        const AzimuthTable* kept = tables.find(panel.spacing);
         for (std::size_t r = 0; r < panel.rings;) {
             const bool fits = kept && filled > 0 && filled + points <= most;
             if (!fits) {
@@ -239,7 +270,7 @@ Blocks blocksOf(const HemisphereGrid& grid, const AzimuthTables& tables, std::si
             }
             const std::size_t together = std::clamp<std::size_t>(
                 (most - std::min(filled, most)) / points, 1, panel.rings - r);
-            result.runs.push_back({panel.firstRing + r, together, panel.azimuths});
+            result.runs.push_back({&panel, kept, panel.firstRing + r, together});
             result.blocks.back().last = result.runs.size();
             filled = kept ? filled + together * points : 0;
             r += together;
@@ -252,11 +283,11 @@ Blocks blocksOf(const HemisphereGrid& grid, const AzimuthTables& tables, std::si
 
 void sampleRings(const Brdf& brdf, const Direction& wo, const HemisphereGrid& grid,
                  Quantity quantity, const AzimuthTables& tables, bool even, RingSpectrum& result) {
-    result.order = tables.order();
+    result.columns = AzimuthColumns(tables.order());
     result.channels = brdf.channels().count();
     result.rings = grid.weights.size();
     result.evaluations = grid.points() / (even ? 2 : 1);
-    result.parts.assign(2 * tables.order() * result.channels * result.rings, 0.0);
+    result.parts.assign(result.rings * result.ringSize(), 0.0);
     result.squares.assign(result.rings, 0.0);
 
     const Blocks all = blocksOf(grid, tables, result.channels, even);

@@ -10,30 +10,25 @@
 namespace hshfit {
 
 /// The azimuth transform of q = f or f cos(theta_i) on every ring of a grid, for one wo:
-///     part(m, c)[ring] = integral over phi of q_c(theta_ring, phi) az_m(phi) d phi.
+///     integral over phi of q_c(theta_ring, phi) az_m(phi) d phi.
 /// It is what every basis shares; only the theta functions differ between them.
 struct RingSpectrum {
-    int order = 0;
+    AzimuthColumns columns{1};
     std::size_t channels = 0, rings = 0;
     std::size_t evaluations = 0;  ///< BRDF evaluations made
-    std::vector<double> parts;    ///< [m][cosine, sine][channel][ring]: 2 channels rows for each m
+    std::vector<double> parts;    ///< [ring][channel][column of m]
     std::vector<double> squares;  ///< per ring: integral over phi of q^2, summed over channels
 
-    const double* part(int m, std::size_t channel) const {
-        return parts.data() + indexOf(m, channel);
-    }
-    double* part(int m, std::size_t channel) { return parts.data() + indexOf(m, channel); }
-
-private:
-    std::size_t indexOf(int m, std::size_t channel) const {
-        const std::size_t row = m < 0 ? -2 * m + 1 : 2 * m;
-        return (row * channels + channel) * rings;
+    std::size_t ringSize() const { return channels * columns.all(); }
+    double part(std::size_t ring, std::size_t channel, int m) const {
+        return parts[ring * ringSize() + channel * columns.all() + columns.of(m)];
     }
 };
 
 /// Samples q on the grid and transforms it for |m| < tables.order(), block by block of points that
 /// fit into the nearest caches; only `result` is stored, in the room that it has. With `even`, q is
-/// taken to be even in phi, and only half of each ring is evaluated. Parallel over blocks; the
+/// taken to be even in phi, only half of each ring is evaluated, and the parts of sines are not
+/// to be read. Parallel over blocks; the
 /// result does not depend on the number of threads. Throws NumericError with the directions where q
 /// is not finite.
 void sampleRings(const Brdf& brdf, const Direction& wo, const HemisphereGrid& grid,

@@ -21,20 +21,22 @@ public:
     ~ThetaProducts();
 
     std::span<const Basis* const> bases() const { return bases_; }
-    /// Values that `moments` writes for each basis: channels * slots.
-    std::size_t size(std::size_t basis, std::size_t channels) const {
-        return channels * static_cast<std::size_t>(bases_[basis]->slots());
-    }
+    /// Values that `moments` writes for each basis.
+    std::size_t size(std::size_t basis, std::size_t channels) const;
 
-    /// Moments over panel number `panel` of the grid, [basis][channel][slot], to `out`. `a` and `b`
-    /// are the panel's ends in u. With `even`, those of sines are 0.
-    void moments(const HemisphereGrid& grid, std::size_t panel, double a, double b,
-                 const RingSpectrum& spectrum, bool even, double* out) const;
+    /// Moments over panel number `panel` of the grid added to `out`, basis after basis, in an order
+    /// that `toSlots` knows; 0 between them. `a` and `b` are the panel's ends in u. With `even`,
+    /// those of sines are left alone.
+    void addMoments(const HemisphereGrid& grid, std::size_t panel, double a, double b,
+                    const RingSpectrum& spectrum, bool even, double* out) const;
+    /// What `addMoments` wrote for one basis as [channel][slot].
+    std::vector<double> toSlots(std::size_t basis, std::size_t channels, const double* from) const;
 
 private:
     struct Kept;
     std::vector<const Basis*> bases_;
-    std::size_t pairs_ = 0;  ///< (l, m >= 0) over all bases
+    std::size_t lanes_ = 0;              ///< of theta for each ring, over all bases
+    std::vector<std::size_t> columnOf_;  ///< of the azimuth functions of m and -m
     std::unique_ptr<Kept> kept_;
 };
 

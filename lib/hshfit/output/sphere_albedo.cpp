@@ -24,7 +24,7 @@ Albedo albedoAt(const Brdf& brdf, const Direction& wo, const std::vector<Lobe>& 
     Albedo albedo{std::vector<double>(brdf.channels().count(), 0.0), 0};
     std::vector<double> x, y, z, f;
     for (const auto& panel : grid.panels) {
-        const std::size_t count = panel.azimuths;
+        const std::size_t count = panel.spacing.azimuths;
         const double step = 2 * pi / static_cast<double>(count);
         x.resize(count);
         y.resize(count);
