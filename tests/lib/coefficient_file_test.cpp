@@ -270,7 +270,7 @@ TEST(CoefficientFile, ExrheaderReadsTheExrForm) {
                                  Quantity::brdfCosine, 2, 3);
     writeCoefficients(c, folder / "c.exr");
     const std::string header = printed("exrheader '" + folder / "c.exr" + "'");
-    for (const char* line : {"zip", "dataWindow (type box2i): (0 0) - (4 8)",
+    for (const char* line : {"run-length encoding", "dataWindow (type box2i): (0 0) - (4 8)",
                              "hshfit:format (type string): \"hshfit-coefficients\"",
                              "hshfit:quantity (type string): \"brdf_cosine\"",
                              "c000.360nm, 32-bit floating-point, sampling 1 1",

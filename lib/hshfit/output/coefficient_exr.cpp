@@ -157,7 +157,7 @@ void coefficientsToExr(const Coefficients& c, AtomicFile& file) {
     }
     std::vector<float> pixels = rounded(c);
     Imf::Header header(c.outgoing.width, c.outgoing.height);
-    header.compression() = Imf::ZIP_COMPRESSION;
+    header.compression() = Imf::RLE_COMPRESSION;
     for (const auto& [key, text] : metadataOf(c)) {
         const bool bare = std::find(stringKeys.begin(), stringKeys.end(), key) != stringKeys.end();
         const std::string value = bare ? nlohmann::json::parse(text).get<std::string>() : text;

@@ -2,9 +2,9 @@
 #include <hshfit/output/coefficient_formats.h>
 
 #include <cmath>
-#include <iterator>
 #include <set>
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -139,6 +139,26 @@ std::string reasonOf(const Json::exception& error) {
     return reason;
 }
 
+constexpr std::size_t longestNumber = sizeof("-1.7976931348623157e+308");  // and the comma
+
+/// Straight into memory of the largest size that they can have, with a format known when this is
+/// compiled: less than half the time of an appending iterator.
+void appendNumbers(const double* values, std::size_t count, std::string& out) {
+    const std::size_t start = out.size();
+    out.resize(start + count * longestNumber);
+    char* at = out.data() + start;
+    for (std::size_t k = 0; k < count; ++k) {
+        if (k > 0) *at++ = ',';
+        // "-0" would come back as the integer 0.
+        if (values[k] == 0 && std::signbit(values[k])) {
+            at = fmt::format_to(at, FMT_COMPILE("-0.0"));
+        } else {
+            at = fmt::format_to(at, FMT_COMPILE("{}"), values[k]);
+        }
+    }
+    out.resize(static_cast<std::size_t>(at - out.data()));
+}
+
 }  // namespace
 
 std::string coefficientsToJson(const Coefficients& c) {
@@ -148,19 +168,12 @@ std::string coefficientsToJson(const Coefficients& c) {
         out += fmt::format("  \"{}\": {},\n", key, text);
     }
     out += "  \"coefficients\": [\n";
+    // Pages that the numbers do not reach are never touched.
+    out.reserve(out.size() + c.values.size() * longestNumber + c.outgoing.size() * 64);
     for (std::size_t o = 0; o < c.outgoing.size(); ++o) {
         for (std::size_t channel = 0; channel < c.channels.count(); ++channel) {
             out += channel == 0 ? "    [[" : ",\n     [";
-            const double* row = c.at(o, channel);
-            for (std::size_t slot = 0; slot < c.slots(); ++slot) {
-                if (slot > 0) out += ',';
-                // "-0" would come back as the integer 0.
-                if (row[slot] == 0) {
-                    out += std::signbit(row[slot]) ? "-0.0" : "0";
-                } else {
-                    fmt::format_to(std::back_inserter(out), "{}", row[slot]);
-                }
-            }
+            appendNumbers(c.at(o, channel), c.slots(), out);
             out += ']';
         }
         out += o + 1 < c.outgoing.size() ? "],\n" : "]\n";
