@@ -6,72 +6,13 @@ usage: docs/figures/performance.py [FOLDER = out/bench]
 Replaces what stands between `<!-- NAME -->` and `<!-- /NAME -->` in docs/performance.md and draws
 docs/figures/performance-*.svg with gnuplot. Sections whose benchmark was not run stay as they are.
 """
-import json
 import pathlib
-import re
-import subprocess
 import sys
 
-HERE = pathlib.Path(__file__).resolve().parent
+import performance_floors as floors
+from benchmark_results import DASHED, HERE, SOLID, load, ms, plot, series, table
+
 PAGE = HERE.parent / "performance.md"
-UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
-
-
-def load(folder, program):
-    """Benchmarks by name; of repetitions, the median."""
-    path = folder / f"{program}.json"
-    if not path.exists():
-        return {}
-    found = {}
-    for entry in json.loads(path.read_text(encoding="utf-8"))["benchmarks"]:
-        if entry.get("error_occurred"):
-            print(f"{program}: {entry['name']}: {entry['error_message']}", file=sys.stderr)
-            continue
-        name = entry.get("run_name", entry["name"])
-        aggregate = entry.get("aggregate_name")
-        if aggregate == "median" or (aggregate is None and name not in found):
-            found[name] = entry
-    return {re.sub(r"/(manual_time|iterations:\d+|repeats:\d+)", "", name): e
-            for name, e in found.items()}
-
-
-def ms(entry):
-    return entry["real_time"] * UNITS[entry["time_unit"]] * 1e3
-
-
-def table(columns, rows):
-    lines = [columns, ["---"] * len(columns)] + [[str(c) for c in row] for row in rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
-
-
-def series(found, name):
-    """(argument, entry) of a benchmark with one argument."""
-    points = [(int(key.split("/")[1]), e) for key, e in found.items()
-              if key.startswith(name + "/")]
-    return sorted(points, key=lambda point: point[0])
-
-
-def plot(name, labels, curves, log="xy", key="top left"):
-    """Curves are (title, [(x, y)], style) with gnuplot styles."""
-    script = [f"set terminal svg size 560,360 dynamic font 'sans-serif,12' background '#ffffff'",
-              f"set output '{HERE / f'performance-{name}.svg'}'",
-              "set grid lc rgb '#dddddd'", f"set key {key}", "set border 3", "set tics nomirror",
-              f"set xlabel '{labels[0]}'", f"set ylabel '{labels[1]}'"]
-    if log:
-        script.append(f"set logscale {log}")
-    if "x" in log:
-        script.append("set xtics (" + ", ".join(str(x) for x, _ in curves[0][1]) + ")")
-    parts, data = [], []
-    for title, points, style in curves:
-        parts.append(f"'-' using 1:2 with {style} title '{title}'")
-        data += [f"{x} {y:.6g}" for x, y in points] + ["e"]
-    script.append("plot " + ", ".join(parts))
-    text = "\n".join(script + data) + "\n"
-    subprocess.run(["gnuplot"], input=text, text=True, check=True)
-
-
-SOLID = "linespoints lw 2 pt 7 ps 0.6"
-DASHED = "lines lw 1 dt 2 lc rgb '#777777'"
 
 
 def by_order(found):
@@ -115,8 +56,9 @@ def by_tolerance(found, carlo):
     if monte:
         reach = [1e-1, 1e-2, 1e-3]
         curves.append(("textbook Monte Carlo", [
-            (error, 1e0 * ms(monte) * (monte["error"] / error) ** 2) for error in reach], DASHED))
-    plot("error", ("relative error asked for", "ms, 1024 directions"), curves, key="center right")
+            (error, ms(monte) * (monte["error"] / error) ** 2) for error in reach], DASHED))
+    plot("error", ("relative error asked for", "ms, 1024 directions"), curves,
+         extra=["unset mxtics", "set format '10^{%L}'", "set xtics 10 format '10^{%L}'"])
     return {"error": table(
         ["tolerance", "evaluations", "ms", "error reported"],
         [[f"1e-{n}", f"{e['evaluations']:.0f}", f"{ms(e):.3g}", f"{e['error']:.1e}"]
@@ -131,7 +73,8 @@ def by_channels_and_bases(found):
             ["channels", "evaluations", "ms"],
             [[n, f"{e['evaluations']:.0f}", f"{ms(e):.3g}"] for n, e in channels])
         plot("channels", ("channels", "ms"),
-             [("GGX .3 x cos, 1024 directions", [(n, ms(e)) for n, e in channels], SOLID)], log="")
+             [("GGX .3 x cos, 1024 directions", [(n, ms(e)) for n, e in channels], SOLID)], log="",
+             key="bottom right", extra=["set yrange [0:*]", "set xtics 1"])
     bases = series(found, "byBases")
     if bases:
         first = ms(bases[0][1])
@@ -149,46 +92,12 @@ def by_threads(found):
     if not points:
         return {}
     plot("threads", ("threads", "ms of wall time"),
-         [("Ward .2/.5 x cos, 1024 directions", [(n, ms(e)) for n, e in points], SOLID)])
+         [("Ward .2/.5 x cos, 1024 directions", [(n, ms(e)) for n, e in points], SOLID),
+          ("in proportion", [(n, ms(points[0][1]) / n) for n, _ in points], DASHED)],
+         log="", key="bottom left Left reverse", extra=["set yrange [0:*]", "set xtics 1"])
     return {"threads": table(
         ["threads", "ms, wall", "speed"],
         [[n, f"{ms(e):.3g}", f"{ms(points[0][1]) / ms(e):.2f}"] for n, e in points])}
-
-
-def floor(found):
-    rows = []
-    for name in ("ward", "ggx"):
-        e = found.get(f"floorShare/{name}")
-        if e:
-            rows.append([name, f"{ms(e):.3g}", f"{e['brdf_ns']:.2f}", f"{e['product_ns']:.2f}",
-                         f"{e['rest_ns']:.2f}", f"{100 * e['brdf_share']:.0f} %",
-                         f"{e['over_floor']:.2f}"])
-    if not rows:
-        return {}
-    return {"floor": table(
-        ["BRDF", "ms", "BRDF, ns an evaluation", "product alone, ns", "all but the BRDF, ns",
-         "share of the BRDF", "all / (BRDF + product)"], rows)}
-
-
-def analysis(found):
-    points = [(name, e) for name, e in found.items() if name.startswith("againstSharp/")]
-    if not points:
-        return {}
-    rows = []
-    for name, e in points:
-        _, basis, degree = name.split("/")
-        rows.append([basis, degree, f"{ms(e):.3g}", f"{1e3 * e['sharp_seconds']:.3g}",
-                     f"{e['ratio']:.2f}", f"{e['error']:.1e}", f"{e['sharp_error']:.1e}"])
-    curves = []
-    for basis in ("sh", "hsh"):
-        own = [(int(n.split("/")[2]), ms(e)) for n, e in points if n.split("/")[1] == basis]
-        if own:
-            curves.append((f"{basis}, Analysis", own, SOLID))
-    curves.append(("sh, libsharp", [(int(n.split("/")[2]), 1e3 * e["sharp_seconds"])
-                                    for n, e in points if n.split("/")[1] == "sh"], DASHED))
-    plot("analysis", ("degree", "ms, 1024 functions"), curves)
-    return {"analysis": table(["basis", "degree", "ms", "libsharp, ms", "ratio", "error",
-                               "libsharp, error"], rows)}
 
 
 def monte_carlo(found):
@@ -232,11 +141,17 @@ def main():
     folder = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "out/bench")
     projection = load(folder, "projection")
     carlo = load(folder, "projection_vs_monte_carlo")
+    machine = load(folder, "machine")
+    rates = {real: floors.fma_rate(machine, real) for real in ("double", "float")}
+    kernels = load(folder, "basis_kernels")
     sections = {}
-    for part in (by_order(projection), by_directions(projection),
-                 by_tolerance(projection, carlo), by_channels_and_bases(projection),
-                 by_threads(projection), floor(projection), analysis(load(folder, "analysis")),
-                 monte_carlo(carlo), merl(load(folder, "merl_projection"), projection),
+    for part in (floors.machine(machine), floors.basis_kernels(kernels),
+                 floors.basis_orders(kernels, rates), floors.projection_floor(projection, rates),
+                 floors.analysis(load(folder, "analysis"), rates),
+                 floors.writing(load(folder, "writing")), by_order(projection),
+                 by_directions(projection), by_tolerance(projection, carlo),
+                 by_channels_and_bases(projection), by_threads(projection), monte_carlo(carlo),
+                 merl(load(folder, "merl_projection"), projection),
                  folder_of_ten(load(folder, "folder"))):
         sections.update(part)
     if not sections:
