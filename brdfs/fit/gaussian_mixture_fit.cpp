@@ -2,6 +2,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/quadrature.h>
+#include <hshfit/ring_points.h>
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>
@@ -29,7 +30,8 @@ struct Slice {
 Slice sliceOf(const Brdf& brdf, double theta, int level) {
     Slice slice{.theta = theta, .channels = brdf.channels().count()};
     const Direction wo = directionFromAngles(theta, pi);
-    const HemisphereGrid grid = gridFor(brdf.lobes(wo), wo, {.order = 7, .level = level});
+    const HemisphereGrid grid =
+        gridFor(brdf.lobes(wo), wo, {.order = 7, .level = level, .squeezed = true});
     constexpr std::size_t mostPoints = 1'000'000;
     if (grid.points() > mostPoints)
         throw NumericError(
@@ -37,19 +39,20 @@ Slice sliceOf(const Brdf& brdf, double theta, int level) {
                         "lobe is too narrow",
                         brdf.name(), degrees(theta), grid.points(), mostPoints));
     std::vector<double> x, y, z;
-    for (const auto& panel : grid.panels)
-        for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring)
-            for (std::size_t j = 0; j < panel.spacing.azimuths / 2; ++j) {
-                const double phi = (static_cast<double>(j) + 0.5) * 2 * pi /
-                                   static_cast<double>(panel.spacing.azimuths);
-                slice.wi.push_back({grid.sines[ring] * std::cos(phi),
-                                    grid.sines[ring] * std::sin(phi), grid.elevations[ring].mu});
-                slice.areas.push_back(2 * grid.weights[ring] * 2 * pi /
-                                      static_cast<double>(panel.spacing.azimuths));
+    RingPoints points;
+    for (const auto& panel : grid.panels) {
+        points.start(panel);
+        for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring) {
+            points.move(grid, ring);
+            for (std::size_t j = 0; j < points.count() / 2; ++j) {
+                slice.wi.push_back(points.direction(j));
+                slice.areas.push_back(2 * points.weight(j));
                 x.push_back(slice.wi.back().x);
                 y.push_back(slice.wi.back().y);
                 z.push_back(slice.wi.back().z);
             }
+        }
+    }
     slice.values.resize(slice.channels * slice.wi.size());
     brdf.eval(wo, {x.data(), y.data(), z.data(), x.size()}, slice.values.data());
     if (!std::ranges::all_of(slice.values, [](double v) { return std::isfinite(v); }))

@@ -12,17 +12,12 @@
 
 namespace hshfit {
 
-namespace {
-
-/// cos, sin and d phi / dt of one azimuth, from those of t / 2: none of them cancels.
-void spreadAzimuth(double t, double kappa, double& cosine, double& sine, double& weight) {
+SpreadAzimuth spreadAzimuth(double t, const AzimuthSpacing& spacing) {
+    if (spacing.squeeze == 0) return {std::cos(t), std::sin(t), 1};
+    const double kappa = spacing.kappa();
     const double c = std::cos(t / 2), s = kappa * std::sin(t / 2), square = c * c + s * s;
-    cosine = (c - s) * (c + s) / square;
-    sine = 2 * s * c / square;
-    weight = kappa / square;
+    return {(c - s) * (c + s) / square, 2 * s * c / square, kappa / square};
 }
-
-}  // namespace
 
 void AzimuthTable::fill(int order, const AzimuthSpacing& spacing, std::size_t first,
                         std::size_t howMany) {
@@ -33,12 +28,10 @@ void AzimuthTable::fill(int order, const AzimuthSpacing& spacing, std::size_t fi
     const double step = 2 * pi / static_cast<double>(spacing.azimuths);
     for (std::size_t j = 0; j < count; ++j) {
         const double t = (static_cast<double>(first + j) + 0.5) * step;
-        if (spacing.squeeze > 0) {
-            spreadAzimuth(t, spacing.kappa(), cosine[j], sine[j], weights[j]);
-            continue;
-        }
-        cosine[j] = std::cos(t);
-        sine[j] = std::sin(t);
+        const SpreadAzimuth at = spreadAzimuth(t, spacing);
+        cosine[j] = at.cosine;
+        sine[j] = at.sine;
+        if (!weights.empty()) weights[j] = at.weight;
     }
     const AzimuthColumns columns(order);
     const std::size_t stride = columns.all();

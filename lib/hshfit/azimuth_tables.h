@@ -47,6 +47,12 @@ struct AzimuthTable {
     void fill(int order, const AzimuthSpacing& spacing, std::size_t first, std::size_t howMany);
 };
 
+/// Cosine and sine of the azimuth at t, from the centre, and d phi / dt; none of them cancels.
+struct SpreadAzimuth {
+    double cosine, sine, weight;
+};
+SpreadAzimuth spreadAzimuth(double t, const AzimuthSpacing& spacing);
+
 /// Azimuths that a table has: a quadrant, or half of the circle where squeezed.
 inline std::size_t tableSize(const AzimuthSpacing& spacing) {
     return spacing.azimuths / (spacing.squeeze > 0 ? 2 : 4);

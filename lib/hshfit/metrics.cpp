@@ -3,6 +3,7 @@
 #include <hshfit/error.h>
 #include <hshfit/horizon.h>
 #include <hshfit/quadrature.h>
+#include <hshfit/ring_points.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -142,23 +143,18 @@ private:
 
 Sums sumOver(const PairEvaluator& pair, const Direction& wo, const HemisphereGrid& grid) {
     Sums sums;
-    std::vector<double> x, y, z, f, g;
+    std::vector<double> f, g;
     std::vector<double> albedo(pair.channels, 0.0);
+    RingPoints points;
     for (const auto& panel : grid.panels) {
-        const double step = 2 * pi / static_cast<double>(panel.spacing.azimuths);
+        points.start(panel);
         for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring) {
-            const double s = grid.sines[ring], mu = grid.elevations[ring].mu;
-            x.resize(panel.spacing.azimuths);
-            y.resize(panel.spacing.azimuths);
-            z.assign(panel.spacing.azimuths, mu);
-            for (std::size_t j = 0; j < panel.spacing.azimuths; ++j) {
-                const double phi = (static_cast<double>(j) + 0.5) * step;
-                x[j] = s * std::cos(phi);
-                y[j] = s * std::sin(phi);
-            }
-            pair.eval(wo, {x.data(), y.data(), z.data(), panel.spacing.azimuths}, f, g);
-            const double weight = grid.weights[ring] * step;
+            points.move(grid, ring);
+            const double mu = grid.elevations[ring].mu;
+            pair.eval(wo, points.directions(), f, g);
             for (std::size_t k = 0; k < f.size(); ++k) {
+                const std::size_t j = k % points.count();
+                const double weight = points.weight(j);
                 const Sample sample{f[k], g[k], mu};
                 sums.weight += weight;
                 for (std::size_t m = 0; m < formulaCount; ++m) {
@@ -166,11 +162,10 @@ Sums sumOver(const PairEvaluator& pair, const Direction& wo, const HemisphereGri
                     sums.term[m] += weight * formulas[m].term(sample);
                     if (formulas[m].scale) sums.scale[m] += weight * formulas[m].scale(sample);
                 }
-                const std::size_t j = k % panel.spacing.azimuths;
-                albedo[k / panel.spacing.azimuths] += weight * mu * (g[k] - f[k]);
+                albedo[k / points.count()] += weight * mu * (g[k] - f[k]);
                 if (const double error = std::abs(g[k] - f[k]) * mu; error > sums.maximum) {
                     sums.maximum = error;
-                    sums.maximumWi = {x[j], y[j], mu};
+                    sums.maximumWi = points.direction(j);
                 }
             }
         }
@@ -218,7 +213,8 @@ LevelValues valuesAt(const Brdf& f, const Brdf& g, const PairEvaluator& pair,
             std::vector<Lobe> lobes = f.lobes(wo);
             const std::vector<Lobe> others = g.lobes(wo);
             lobes.insert(lobes.end(), others.begin(), others.end());
-            perDirection[k] = sumOver(pair, wo, gridFor(lobes, wo, {.order = 24, .level = level}));
+            perDirection[k] = sumOver(
+                pair, wo, gridFor(lobes, wo, {.order = 24, .level = level, .squeezed = true}));
         }
         progress();
     });

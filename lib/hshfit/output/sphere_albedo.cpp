@@ -1,5 +1,6 @@
 #include <hshfit/output/sphere_albedo.h>
 #include <hshfit/quadrature.h>
+#include <hshfit/ring_points.h>
 
 #include <tbb/parallel_for.h>
 
@@ -20,27 +21,22 @@ struct Albedo {
 
 Albedo albedoAt(const Brdf& brdf, const Direction& wo, const std::vector<Lobe>& lobes,
                 int gridLevel) {
-    const HemisphereGrid grid = gridFor(lobes, wo, {.order = 1, .level = gridLevel});
+    const HemisphereGrid grid =
+        gridFor(lobes, wo, {.order = 1, .level = gridLevel, .squeezed = true});
     Albedo albedo{std::vector<double>(brdf.channels().count(), 0.0), 0};
-    std::vector<double> x, y, z, f;
+    std::vector<double> f;
+    RingPoints points;
     for (const auto& panel : grid.panels) {
-        const std::size_t count = panel.spacing.azimuths;
-        const double step = 2 * pi / static_cast<double>(count);
-        x.resize(count);
-        y.resize(count);
+        points.start(panel);
+        const std::size_t count = points.count();
         f.resize(count * albedo.values.size());
         for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring) {
-            const double mu = grid.elevations[ring].mu;
-            z.assign(count, mu);
-            for (std::size_t j = 0; j < count; ++j) {
-                const double phi = (static_cast<double>(j) + 0.5) * step;
-                x[j] = grid.sines[ring] * std::cos(phi);
-                y[j] = grid.sines[ring] * std::sin(phi);
-            }
-            brdf.eval(wo, {x.data(), y.data(), z.data(), count}, f.data());
+            points.move(grid, ring);
+            brdf.eval(wo, points.directions(), f.data());
             for (std::size_t k = 0; k < f.size(); ++k) {
                 if (std::isfinite(f[k])) {
-                    albedo.values[k / count] += grid.weights[ring] * step * mu * f[k];
+                    albedo.values[k / count] +=
+                        points.weight(k % count) * grid.elevations[ring].mu * f[k];
                 } else {
                     ++albedo.notFinite;
                 }

@@ -1,0 +1,35 @@
+#include <hshfit/ring_points.h>
+
+#include <hshfit/azimuth_tables.h>
+
+namespace hshfit {
+
+void RingPoints::start(const HemisphereGrid::Panel& panel) {
+    const std::size_t azimuths = panel.spacing.azimuths;
+    const double step = 2 * pi / static_cast<double>(azimuths);
+    cosine_.resize(azimuths);
+    sine_.resize(azimuths);
+    step_.resize(azimuths);
+    for (std::size_t j = 0; j < azimuths; ++j) {
+        const SpreadAzimuth at =
+            spreadAzimuth((static_cast<double>(j) + 0.5) * step, panel.spacing);
+        const bool squeezed = panel.spacing.squeeze > 0;
+        const double cx = squeezed ? panel.centreX : 1, cy = squeezed ? panel.centreY : 0;
+        cosine_[j] = cx * at.cosine - cy * at.sine;
+        sine_[j] = cy * at.cosine + cx * at.sine;
+        step_[j] = step * at.weight;
+    }
+    for (auto* values : {&x_, &y_, &z_, &weights_}) values->resize(azimuths);
+}
+
+void RingPoints::move(const HemisphereGrid& grid, std::size_t ring) {
+    const double sine = grid.sines[ring], height = grid.elevations[ring].mu;
+    for (std::size_t j = 0; j < count(); ++j) {
+        x_[j] = sine * cosine_[j];
+        y_[j] = sine * sine_[j];
+        z_[j] = height;
+        weights_[j] = grid.weights[ring] * step_[j];
+    }
+}
+
+}  // namespace hshfit
