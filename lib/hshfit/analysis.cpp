@@ -124,9 +124,10 @@ void Analysis::block(const double* samples, std::size_t functions, double* out,
     w.moments.assign(slots_ * lanes, 0.0);
     double* to = w.moments.data();
     for (int m = 1 - order_; m < order_; ++m) to = thetaSums(m, w, to);
-    for (std::size_t f = 0; f < functions; ++f)
-        for (std::size_t k = 0; k < slots_; ++k)
+    for (std::size_t k = 0; k < slots_; ++k) {
+        for (std::size_t f = 0; f < functions; ++f)
             out[f * slots_ + slotOfRow_[k]] = w.moments[k * lanes + f];
+    }
 }
 
 void Analysis::ringSums(const double* samples, std::size_t functions, std::size_t r,
@@ -135,14 +136,18 @@ void Analysis::ringSums(const double* samples, std::size_t functions, std::size_
     const std::size_t opposite = grid_.weights.size() - 1 - r, values = azimuths * lanes;
     w.ring.resize(values);
     w.folded.resize(values);
-    interleaveFunctions(samples + r * azimuths, functions, grid_.points(), azimuths, w.ring.data());
+    const auto interleave = [&](std::size_t ring, std::size_t nextRing, double* to) {
+        const double* next = r + 1 < half_ ? samples + nextRing * azimuths : nullptr;
+        interleaveFunctions(samples + ring * azimuths, functions, grid_.points(), azimuths, next,
+                            to);
+    };
+    interleave(r, r + 1, w.ring.data());
     // The middle ring is its own partner: once among the even, never among the odd.
     const bool paired = folded_ && opposite != r;
     if (paired) {
         w.mirror.resize(values);
         w.difference.resize(values);
-        interleaveFunctions(samples + opposite * azimuths, functions, grid_.points(), azimuths,
-                            w.mirror.data());
+        interleave(opposite, opposite - 1, w.mirror.data());
     }
     foldFunctions(w.ring.data(), paired ? w.mirror.data() : nullptr, azimuths, w.folded.data(),
                   w.difference.data());

@@ -8,6 +8,7 @@
 #include <hwy/foreach_target.h>
 
 #include <hshfit/ring_kernels.h>
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -143,30 +144,44 @@ void thetaSums(const ThetaSums& sums, double* out) {
     }
 }
 
-/// Two by two, a full cache line of every row at a time.
+/// Four functions by four values: rows of values become rows of functions.
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_SSE4 && HWY_TARGET != HWY_NEON
+constexpr bool byFours = true;
+HWY_INLINE void turnFour(const double* rows, std::size_t stride, double* out) {
+    const hn::FixedTag<double, 4> d;
+    const auto a = hn::LoadU(d, rows), b = hn::LoadU(d, rows + stride);
+    const auto c = hn::LoadU(d, rows + 2 * stride), e = hn::LoadU(d, rows + 3 * stride);
+    const auto ab = hn::InterleaveLower(d, a, b), abUpper = hn::InterleaveUpper(d, a, b);
+    const auto ce = hn::InterleaveLower(d, c, e), ceUpper = hn::InterleaveUpper(d, c, e);
+    hn::StoreU(hn::ConcatLowerLower(d, ce, ab), d, out);
+    hn::StoreU(hn::ConcatLowerLower(d, ceUpper, abUpper), d, out + lanesOfFunctions);
+    hn::StoreU(hn::ConcatUpperUpper(d, ce, ab), d, out + 2 * lanesOfFunctions);
+    hn::StoreU(hn::ConcatUpperUpper(d, ceUpper, abUpper), d, out + 3 * lanesOfFunctions);
+}
+#else
+constexpr bool byFours = false;
+HWY_INLINE void turnFour(const double*, std::size_t, double*) {}
+#endif
+
+/// A full cache line of every row at a time. The rows of the next ring are on their way meanwhile.
 void interleave(const double* rows, std::size_t functions, std::size_t stride, std::size_t count,
-                double* out) {
+                const double* next, double* out) {
     constexpr std::size_t line = 8;
     for (std::size_t p = 0; p < count; p += line) {
         const std::size_t end = p + line < count ? p + line : count;
-        for (std::size_t f = 0; f < lanesOfFunctions; f += 2) {
-            const double *first = rows + f * stride, *second = first + stride;
+        for (std::size_t f = 0; f < lanesOfFunctions; f += 4) {
+            const double* first = rows + f * stride;
             double* to = out + f;
             std::size_t q = p;
-#if HWY_TARGET != HWY_SCALAR
-            const hn::FixedTag<double, 2> d;
-            if (f + 1 < functions) {
-                for (; q + 2 <= end; q += 2) {
-                    const auto a = hn::LoadU(d, first + q), b = hn::LoadU(d, second + q);
-                    hn::StoreU(hn::InterleaveLower(d, a, b), d, to + q * lanesOfFunctions);
-                    hn::StoreU(hn::InterleaveUpper(d, a, b), d, to + (q + 1) * lanesOfFunctions);
-                }
+            if (f + 4 <= functions) {
+                for (std::size_t k = 0; next && k < 4; ++k)
+                    hwy::Prefetch(next + (f + k) * stride + p);
+                for (; byFours && q + 4 <= end; q += 4)
+                    turnFour(first + q, stride, to + q * lanesOfFunctions);
             }
-#endif
-            for (; q < end; ++q) {
-                to[q * lanesOfFunctions] = f < functions ? first[q] : 0.0;
-                to[q * lanesOfFunctions + 1] = f + 1 < functions ? second[q] : 0.0;
-            }
+            for (; q < end; ++q)
+                for (std::size_t k = 0; k < 4; ++k)
+                    to[q * lanesOfFunctions + k] = f + k < functions ? first[k * stride + q] : 0.0;
         }
     }
 }
@@ -398,8 +413,8 @@ double foldSqueezedRing(const double* values, const double* weights, std::size_t
 }
 
 void interleaveFunctions(const double* rows, std::size_t functions, std::size_t stride,
-                         std::size_t count, double* out) {
-    HWY_DYNAMIC_DISPATCH(interleave)(rows, functions, stride, count, out);
+                         std::size_t count, const double* next, double* out) {
+    HWY_DYNAMIC_DISPATCH(interleave)(rows, functions, stride, count, next, out);
 }
 
 void foldFunctions(const double* ring, const double* mirror, std::size_t azimuths, double* sum,

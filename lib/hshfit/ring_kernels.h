@@ -76,9 +76,9 @@ void fillSqueezedRing(const RingDirections& ring, double sinTheta, double cosThe
 constexpr std::size_t lanesOfFunctions = 24;
 
 /// `count` values of `functions` <= lanesOfFunctions rows, `stride` apart, to out[value][function];
-/// 0 for functions that are missing.
+/// 0 for functions that are missing. `next`, if any, is what will be asked for after these rows.
 void interleaveFunctions(const double* rows, std::size_t functions, std::size_t stride,
-                         std::size_t count, double* out);
+                         std::size_t count, const double* next, double* out);
 /// A whole ring, [azimuth][function], into the four sums of QuadrantFold, one after the other,
 /// [kind][azimuth of the quadrant][function]. With a second ring, to `sum` what the two have in
 /// common (ring + mirror), and to `difference` what changes sign.
