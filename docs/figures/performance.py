@@ -147,6 +147,7 @@ def main():
     sections = {}
     for part in (floors.machine(machine), floors.basis_kernels(kernels),
                  floors.basis_orders(kernels, rates), floors.projection_floor(projection, rates),
+                 floors.brdf_kernels(load(folder, "brdf_kernels")),
                  floors.analysis(load(folder, "analysis"), rates),
                  floors.writing(load(folder, "writing")), by_order(projection),
                  by_directions(projection), by_tolerance(projection, carlo),

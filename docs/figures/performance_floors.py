@@ -144,6 +144,27 @@ def projection_floor(found, rates):
         rows)}
 
 
+def brdf_kernels(found):
+    """Vectors against double, and both against writing a value."""
+    value = {name: 1e6 * ms(e) * e["cpu_time"] / e["real_time"] / (4096 * e["channels"])
+             for name, e in found.items() if "channels" in e}
+    rows = []
+    for name, scalar in value.items():
+        spec = name.split("/", 1)[1]
+        vectors = value.get(f"vectors/{spec}")
+        if not name.startswith("scalar/") or not vectors:
+            continue
+        entry = found[f"vectors/{spec}"]
+        rows.append([f"`{spec}`", f"{entry['channels']:.0f}", f"{scalar:.1f}", f"{vectors:.2f}",
+                     f"{scalar / vectors:.1f}", f"{vectors / value['floor/write']:.0f}",
+                     f"{entry['difference']:.0e}"])
+    if not rows:
+        return {}
+    return {"brdf_kernels": table(
+        ["model", "channels", "double, ns", "vectors, ns", "times as fast", "/ memset",
+         "difference"], rows)}
+
+
 def analysis_operations(degree):
     """Multiply-adds for a function: folded azimuth sums, then theta sums over half of the rings."""
     n, azimuths = degree + 1, (2 * degree + 4) // 4 * 4
