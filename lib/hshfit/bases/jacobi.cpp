@@ -160,13 +160,30 @@ const std::array<std::vector<kernels::Step<float>>, 2>& JacobiBasis::floatSteps(
     return floatSteps_;
 }
 
+template <class Real>
+void JacobiBasis::byRows(const RowTables<Real>& tables,
+                         const std::array<std::vector<kernels::Step<Real>>, 2>& steps,
+                         DirectionBatch directions, Real* out) const {
+    std::call_once(tables.once, [&] {
+        const auto columns = recurrences(steps_);
+        for (const std::size_t side : {0u, 1u})
+            if (side == 0 || !columns.symmetric)
+                tables.rows[side] = kernels::StepRows<Real>(columns, side);
+    });
+    auto recurrence = recurrences(steps);
+    recurrence.rows = {&tables.rows[0], &tables.rows[1]};
+    kernels::tabulateLong(recurrence, directions, out);
+}
+
 void JacobiBasis::tabulate(DirectionBatch directions, Layout layout, double* out) const {
     const bool bySlot = layout == Layout::bySlot;
     if (order() <= kernels::shortOrders)
         kernels::tabulateShort(
             {frontOf(family_), shortStep(), order(), &short_, directions, bySlot, out});
+    else if (bySlot && directions.count > 1)
+        kernels::tabulateLongBySlot(recurrences(steps_), directions, out);
     else
-        kernels::tabulateLong(recurrences(steps_), directions, bySlot, out);
+        byRows(rows_, steps_, directions, out);
 }
 
 void JacobiBasis::tabulate(DirectionBatch directions, Layout layout, float* out) const {
@@ -174,8 +191,10 @@ void JacobiBasis::tabulate(DirectionBatch directions, Layout layout, float* out)
     if (order() <= kernels::shortOrders)
         kernels::tabulateShort(
             {frontOf(family_), shortStep(), order(), &shortFloat_, directions, bySlot, out});
+    else if (bySlot && directions.count > 1)
+        kernels::tabulateLongBySlot(recurrences(floatSteps()), directions, out);
     else
-        kernels::tabulateLong(recurrences(floatSteps()), directions, bySlot, out);
+        byRows(floatRows_, floatSteps_, directions, out);
 }
 
 void JacobiBasis::theta(int m, std::span<const Elevation<double>> points, double* out) const {

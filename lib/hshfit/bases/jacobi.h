@@ -93,6 +93,17 @@ private:
         const std::array<std::vector<kernels::Step<Real>>, 2>& steps) const;
     const std::array<std::vector<kernels::Step<float>>, 2>& floatSteps() const;
 
+    /// Steps row by row, made when they are first asked for.
+    template <class Real>
+    struct RowTables {
+        mutable std::once_flag once;
+        mutable std::array<kernels::StepRows<Real>, 2> rows;
+    };
+    template <class Real>
+    void byRows(const RowTables<Real>& tables,
+                const std::array<std::vector<kernels::Step<Real>>, 2>& steps,
+                DirectionBatch directions, Real* out) const;
+
     JacobiFamily family_;
     std::vector<double> starts_;              ///< c_m
     std::vector<std::size_t> offsets_;        ///< where the steps of each m begin
@@ -102,6 +113,8 @@ private:
     /// Steps in single precision, made when they are first asked for.
     mutable std::once_flag floatStepsOnce_;
     mutable std::array<std::vector<kernels::Step<float>>, 2> floatSteps_;
+    RowTables<double> rows_;
+    RowTables<float> floatRows_;
 };
 
 /// The same functions by `thetaScalar`; `basis` has to outlive it.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/bases/basis.h>
+#include <hshfit/bases/kernels/step_rows.h>
 #include <hshfit/directions.h>
 
 #include <array>
@@ -32,13 +33,17 @@ struct Recurrences {
     const double* starts;                    ///< c_m
     const std::size_t* offsets;              ///< where the steps of each m begin
     std::array<const Step<Real>*, 2> steps;  ///< from t = 1 and from t = -1
+    /// The same row by row, which `tabulateLong` needs; where the weight is symmetric the first.
+    std::array<const StepRows<Real>*, 2> rows{};
 };
 
-/// All functions at all directions, for any order: out[i * directions.count + k] if `bySlot`, else
-/// out[k * order^2 + i]. Starts below the range of Real carry an exponent of their own.
-void tabulateLong(const Recurrences<double>& r, DirectionBatch directions, bool bySlot,
-                  double* out);
-void tabulateLong(const Recurrences<float>& r, DirectionBatch directions, bool bySlot, float* out);
+/// All functions at all directions, orders above the short ones: out[k * order^2 + i]. Starts below
+/// the range of Real carry an exponent of their own.
+void tabulateLong(const Recurrences<double>& r, DirectionBatch directions, double* out);
+void tabulateLong(const Recurrences<float>& r, DirectionBatch directions, float* out);
+/// The same numbers as out[i * directions.count + k].
+void tabulateLongBySlot(const Recurrences<double>& r, DirectionBatch directions, double* out);
+void tabulateLongBySlot(const Recurrences<float>& r, DirectionBatch directions, float* out);
 
 /// Theta parts of one m, laid out as for Basis::theta.
 void theta(const Recurrences<double>& r, int m, std::span<const Elevation<double>> points,

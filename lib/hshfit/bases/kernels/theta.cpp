@@ -98,17 +98,15 @@ struct Elevations {
         for (std::size_t j = 0; j < width; j += lanesOf<Doubles>) start(r, m, j);
         HWY_ALIGN T sign[width];
         for (std::size_t j = 0; j < width; ++j) sign[j] = r.symmetric && side[j] > 0 ? -1 : 1;
-        Column<D, vectors> state;
-        state.place(distance, side);
-        state.resume(p, nullptr, e);
+        Column<D, vectors> state(distance, side, p, e);
         const auto column = static_cast<std::size_t>(m);
         const Step<T>*one = r.steps[0] + r.offsets[column], *other = r.steps[1] + r.offsets[column];
         const int count = (r.order - m + r.bandStep - 1) / r.bandStep;
         const Take take{sign, out, rowStep, !r.evenOnly};
         if (r.symmetric)
-            state.template run<true>(one, other, 0, count, true, take);
+            state.template run<true>(one, other, count, take);
         else
-            state.template run<false>(one, other, 0, count, true, take);
+            state.template run<false>(one, other, count, take);
     }
 };
 

@@ -41,6 +41,38 @@ HWY_INLINE hn::Vec<D> loadReal(D d, const double* p) {
     }
 }
 
+/// The first `count` lanes to to[0 .. count - 1].
+template <std::size_t count, class D>
+HWY_INLINE void storeFirst(D d, hn::Vec<D> v, hn::TFromD<D>* to) {
+    [[maybe_unused]] constexpr std::size_t half = lanesOf<D> / 2;
+    if constexpr (count == lanesOf<D>) {
+        hn::StoreU(v, d, to);
+    } else if constexpr (count > 0) {
+#if HWY_TARGET != HWY_SCALAR
+        const hn::Half<D> part;
+        storeFirst<count <= half ? count : half>(part, hn::LowerHalf(part, v), to);
+        if constexpr (count > half)
+            storeFirst<count - half>(part, hn::UpperHalf(part, v), to + half);
+#endif
+    }
+}
+
+/// The last `count` lanes to to[0 .. count - 1].
+template <std::size_t count, class D>
+HWY_INLINE void storeLast(D d, hn::Vec<D> v, hn::TFromD<D>* to) {
+    [[maybe_unused]] constexpr std::size_t half = lanesOf<D> / 2;
+    if constexpr (count == lanesOf<D>) {
+        hn::StoreU(v, d, to);
+    } else if constexpr (count > 0) {
+#if HWY_TARGET != HWY_SCALAR
+        const hn::Half<D> part;
+        constexpr std::size_t lower = count > half ? count - half : 0;
+        storeLast<lower>(part, hn::LowerHalf(part, v), to);
+        storeLast<count - lower>(part, hn::UpperHalf(part, v), to + lower);
+#endif
+    }
+}
+
 #if HWY_TARGET == HWY_SCALAR
 template <class D, class V>
 HWY_INLINE void transpose(D /*d*/, V* /*v*/) {}
