@@ -60,10 +60,7 @@ public:
 
     std::vector<Lobe> lobes(const Direction&) const override {
         const auto width = [](double n) { return std::min(1.0, 2.5 / std::sqrt(n + 1)); };
-        return {{Lobe::About::halfway,
-                 width(std::max(shape_.nu, shape_.nv)),
-                 {},
-                 width(std::min(shape_.nu, shape_.nv))}};
+        return {halfwayLobe(width(shape_.nu), width(shape_.nv))};
     }
 
     /// max(cos theta_i, cos theta_o).

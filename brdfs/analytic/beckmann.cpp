@@ -12,8 +12,8 @@ struct BeckmannShape {
     Roughness r;
 
     /// exp(-(t / alpha)^2) has a standard deviation of alpha / sqrt(2).
-    double width() const { return 2.5 / std::numbers::sqrt2 * std::min(r.ax, r.ay); }
-    double spread() const { return 2.5 / std::numbers::sqrt2 * std::max(r.ax, r.ay); }
+    double widthX() const { return 2.5 / std::numbers::sqrt2 * r.ax; }
+    double widthY() const { return 2.5 / std::numbers::sqrt2 * r.ay; }
 };
 
 }  // namespace hshfit::brdfs

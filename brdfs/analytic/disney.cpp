@@ -90,10 +90,7 @@ public:
         : TermBrdf(disneyModel(), p, lawsOf(p), {0.0}, weightsOf(p)), shape_(shapeOf(p)) {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
-        std::vector<Lobe> lobes{{Lobe::About::halfway,
-                                 std::min(shape_.axes.ax, shape_.axes.ay),
-                                 {},
-                                 std::max(shape_.axes.ax, shape_.axes.ay)}};
+        std::vector<Lobe> lobes{halfwayLobe(shape_.axes.ax, shape_.axes.ay)};
         if (shape_.clearcoat > 0) lobes.push_back({Lobe::About::halfway, shape_.gloss, {}});
         return lobes;
     }

@@ -11,8 +11,8 @@ struct GgxShape {
     Roughness r;
 
     /// D has a pole at the slope i alpha.
-    double width() const { return std::min(r.ax, r.ay); }
-    double spread() const { return std::max(r.ax, r.ay); }
+    double widthX() const { return r.ax; }
+    double widthY() const { return r.ay; }
 };
 
 }  // namespace hshfit::brdfs

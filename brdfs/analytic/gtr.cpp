@@ -21,8 +21,8 @@ struct GtrShape {
     double alpha, gamma, peak;
     std::shared_ptr<const LambdaTable> table;
 
-    double width() const { return std::min(1.0, alpha); }
-    double spread() const { return width(); }
+    double widthX() const { return std::min(1.0, alpha); }
+    double widthY() const { return widthX(); }
 };
 
 }  // namespace hshfit::brdfs

@@ -36,8 +36,8 @@ struct FacetShape {
 ///     correlated  G = 1 / (1 + Lambda_i + Lambda_o)   (heights of both directions correlated)
 ///     separable   G = 1 / ((1 + Lambda_i)(1 + Lambda_o))
 ///
-/// `Shape` is what D is computed from, and says how wide its peak is in units of slope: `width` and
-/// `spread`, along the narrower and the wider axis.
+/// `Shape` is what D is computed from, and says how wide its peak is in units of slope, along x and
+/// along y.
 template <class Shape>
 class Microfacet : public TermBrdf {
 public:
@@ -47,8 +47,7 @@ public:
                                        p.choice("masking") == "correlated"}) {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
-        return {
-            {Lobe::About::halfway, shape_.distribution.width(), {}, shape_.distribution.spread()}};
+        return {halfwayLobe(shape_.distribution.widthX(), shape_.distribution.widthY())};
     }
 
 protected:

@@ -44,6 +44,14 @@ std::vector<Colour> eachInItsChannel(const Colour& colour, std::size_t count) {
     return weights;
 }
 
+Lobe halfwayLobe(double widthX, double widthY) {
+    const auto [narrow, wide] = std::minmax(widthX, widthY);
+    return {.about = Lobe::About::halfway,
+            .width = narrow,
+            .axis = widthX > widthY ? Direction{1, 0, 0} : Direction{0, 1, 0},
+            .spread = wide};
+}
+
 TermBrdf::TermBrdf(const Model& model, const Parameters& parameters, Laws laws,
                    const Colour& constant, const std::vector<Colour>& weights)
     : name_(model.name),

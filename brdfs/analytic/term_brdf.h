@@ -22,6 +22,9 @@ std::vector<Colour> eachInItsChannel(const Colour& colour, std::size_t count);
 /// +inf becomes the largest double.
 double atMostLargest(double value);
 
+/// The hint for a lobe about the normal with these widths, in units of slope, along x and y.
+Lobe halfwayLobe(double widthX, double widthY);
+
 /// One call of TermBrdf::eval, for wo.z > 0: `constant` [channel], `weights` [channel][term].
 struct TermBatch {
     static constexpr std::size_t maxTerms = 4, maxChannels = 3;

@@ -53,10 +53,7 @@ public:
     /// exp(-(t / a)^2) has a standard deviation of a / sqrt(2).
     std::vector<Lobe> lobes(const Direction&) const override {
         constexpr double deviations = 2.5 / std::numbers::sqrt2;
-        return {{Lobe::About::halfway,
-                 deviations * std::min(shape_.ax, shape_.ay),
-                 {},
-                 deviations * std::max(shape_.ax, shape_.ay)}};
+        return {halfwayLobe(deviations * shape_.ax, deviations * shape_.ay)};
     }
 
 protected:

@@ -7,9 +7,9 @@
 namespace hshfit {
 
 /// Directional albedo, one value per channel: the integral of f(wi, wo) cos(theta_i) d omega_i.
-/// Refined until two levels agree to `tolerance` (absolute, of a quantity that is at most 1 for a
-/// passive surface). Throws NumericError where it does not converge within 2^26 evaluations or f is
-/// not finite.
+/// Refined until levels agree to `tolerance`, twice in a row or well within it (absolute, of a
+/// quantity that is at most 1 for a passive surface). Throws NumericError where it does not
+/// converge within 2^26 evaluations or f is not finite.
 std::vector<double> directionalAlbedo(const Brdf& brdf, const Direction& wo,
                                       double tolerance = 1e-4);
 

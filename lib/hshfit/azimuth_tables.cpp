@@ -12,13 +12,6 @@
 
 namespace hshfit {
 
-SpreadAzimuth spreadAzimuth(double t, const AzimuthSpacing& spacing) {
-    if (spacing.squeeze == 0) return {std::cos(t), std::sin(t), 1};
-    const double kappa = spacing.kappa();
-    const double c = std::cos(t / 2), s = kappa * std::sin(t / 2), square = c * c + s * s;
-    return {(c - s) * (c + s) / square, 2 * s * c / square, kappa / square};
-}
-
 void AzimuthTable::fill(int order, const AzimuthSpacing& spacing, std::size_t first,
                         std::size_t howMany) {
     count = howMany;

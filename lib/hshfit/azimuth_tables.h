@@ -1,6 +1,6 @@
 #pragma once
 
-#include <hshfit/quadrature.h>
+#include <hshfit/azimuth_spread.h>
 #include <hshfit/ring_kernels.h>
 
 #include <cstddef>
@@ -46,12 +46,6 @@ struct AzimuthTable {
     /// Azimuths number first to first + howMany - 1.
     void fill(int order, const AzimuthSpacing& spacing, std::size_t first, std::size_t howMany);
 };
-
-/// Cosine and sine of the azimuth at t, from the centre, and d phi / dt; none of them cancels.
-struct SpreadAzimuth {
-    double cosine, sine, weight;
-};
-SpreadAzimuth spreadAzimuth(double t, const AzimuthSpacing& spacing);
 
 /// Azimuths that a table has: a quadrant, or half of the circle where squeezed.
 inline std::size_t tableSize(const AzimuthSpacing& spacing) {

@@ -35,9 +35,9 @@ struct Lobe {
     /// point off the real axis where f stops being smooth: alpha for GGX; 2.5 standard deviations
     /// for a Gaussian, whose trapezoid sums converge faster. Smaller costs more nodes.
     double width = 1;
-    Direction axis = {};  ///< only for About::axis
-    /// The width across the direction in which the lobe is widest, for an anisotropic half-vector
-    /// lobe; 0: as `width`. Away from the peak the lobe stays narrow over this distance.
+    Direction axis = {};  ///< for About::halfway with a spread, x or y: where it is wider
+    /// The width along the axis on which the lobe is wider, for an anisotropic half-vector lobe; 0:
+    /// as `width`.
     double spread = 0;
 };
 

@@ -26,14 +26,19 @@ bool HorizonBehaviour::coefficientsExist() const {
 HorizonBehaviour horizonBehaviour(const Brdf& brdf, const Direction& wo, Quantity quantity) {
     constexpr std::size_t count = azimuths * heights.size();
     std::array<double, count> x, y, z;
-    const double woAzimuth = azimuth(wo);
+    const double woAzimuth = azimuth(wo), cx = std::cos(woAzimuth), cy = std::sin(woAzimuth);
+    static const std::array<Direction, azimuths> circle = [] {
+        std::array<Direction, azimuths> points;
+        for (int j = 0; j < azimuths; ++j)
+            points[j] = directionFromAngles(pi / 2, 2 * pi * j / azimuths);
+        return points;
+    }();
     std::size_t k = 0;
     for (double mu : heights) {
         const double s = std::sqrt((1 - mu) * (1 + mu));
         for (int j = 0; j < azimuths; ++j, ++k) {
-            const double phi = woAzimuth + 2 * pi * j / azimuths;
-            x[k] = s * std::cos(phi);
-            y[k] = s * std::sin(phi);
+            x[k] = s * (cx * circle[j].x - cy * circle[j].y);
+            y[k] = s * (cy * circle[j].x + cx * circle[j].y);
             z[k] = mu;
         }
     }

@@ -67,12 +67,10 @@ double bernstein(double a, double b, Complex z) {
     return std::max(std::abs(t + root), std::abs(t - root));
 }
 
-/// Gauss-Legendre converges like rho^(-2 p) with p nodes a panel; halving until rho >= 2.4 gives
-/// 1e-4 at 5 nodes and 1e-9 at 12. Trapezoid sums over azimuth converge like exp(-N psi) for a
-/// singularity at distance psi: the exponent at level 0 is enough to see the lobe, not more.
-constexpr double panelEllipse = 2.4;
-constexpr double firstNodes = 5, firstAzimuthExponent = 4.5, levelGrowth = 1.5;
-constexpr std::size_t maxAzimuths = std::size_t{1} << 22;
+/// Gauss-Legendre converges like rho^(-2 p) with p nodes a panel; halving until rho >= 2.2 gives
+/// 4e-4 at 5 nodes and 6e-9 at 12.
+constexpr double panelEllipse = 2.2;
+constexpr double firstNodes = 5, levelGrowth = 1.4;
 
 /// Points of the complex u plane where the BRDF is not smooth.
 std::vector<Complex> singularities(const std::vector<Lobe>& lobes, const Direction& wo) {
@@ -88,6 +86,15 @@ std::vector<Complex> singularities(const std::vector<Lobe>& lobes, const Directi
         // the shadowing term's 1 + alpha^2 tan(theta)^2 = 0 add two points near the horizon.
         const double alpha = std::min(lobe.width, 0.95);
         addAngle({polarAngle(wo), 2 * std::atanh(alpha)});
+        // A lobe that is long and narrow is a ridge: rings touch it where the sine is wo's
+        // component across, if it reaches so far.
+        if (lobe.spread > lobe.width) {
+            const bool wideX = std::abs(lobe.axis.x) > std::abs(lobe.axis.y);
+            const double across = std::abs(wideX ? wo.y : wo.x);
+            const double along = std::abs(wideX ? wo.x : wo.y);
+            if (along < 2 * lobe.spread * (wo.z + std::sqrt((1 - across) * (1 + across))))
+                addAngle({std::asin(across), 2 * std::atanh(alpha)});
+        }
         points.push_back(Complex(0, std::sqrt(std::max(wo.z, 0.0))));
         points.push_back(std::sqrt(Complex(0, alpha / std::sqrt(1 - alpha * alpha))));
     }
@@ -107,136 +114,6 @@ void splitPanels(double a, double b, const std::vector<Complex>& points, int dep
     const double middle = 0.5 * (a + b);
     splitPanels(a, middle, points, depth + 1, breaks);
     splitPanels(middle, b, points, depth + 1, breaks);
-}
-
-/// Where along phi the BRDF is not smooth: `scale` off the real axis, at an azimuth given by its
-/// cosine and sine.
-struct AzimuthPeak {
-    double x, y, scale;
-};
-
-/// The narrowest peak at each azimuth where there are any.
-class AzimuthPeaks {
-public:
-    void add(double x, double y, double scale) {
-        constexpr double together = 1 - 1e-12, farOff = 20;
-        if (!(scale < farOff)) return;
-        for (AzimuthPeak& peak : peaks_) {
-            if (peak.x * x + peak.y * y > together) {
-                peak.scale = std::min(peak.scale, scale);
-                return;
-            }
-        }
-        peaks_.push_back({x, y, scale});
-    }
-
-    /// On the ring (s, mu): acosh(1 + q/2), where q is the squared distance in the plane of
-    /// incidence over s s'; none at the pole, where nothing depends on phi.
-    void addLobe(const Lobe& lobe, const Direction& wo, double s, double mu) {
-        const auto acosh1 = [](double q) { return 2 * std::asinh(std::sqrt(q) / 2); };
-        if (lobe.about == Lobe::About::axis) {
-            const double axisSine = std::hypot(lobe.axis.x, lobe.axis.y);
-            if (s * axisSine == 0) return;
-            const double across = std::atan2(s, mu) - std::atan2(axisSine, lobe.axis.z);
-            add(lobe.axis.x / axisSine, lobe.axis.y / axisSine,
-                acosh1((across * across + lobe.width * lobe.width) / (s * axisSine)));
-            return;
-        }
-        // Off the peak by `away` along the wide axis, the narrow one has grown by hypot(1, away /
-        // spread) only; `across` is what that makes of the width, times mu + mu_o.
-        const double woSine = std::hypot(wo.x, wo.y), heights = mu + wo.z;
-        const double ratio = lobe.spread > lobe.width ? lobe.width / lobe.spread : 1;
-        const double away = (s - woSine) * ratio, across = lobe.width * heights;
-        if (s * woSine > 0)
-            add(-wo.x / woSine, -wo.y / woSine,
-                acosh1((away * away + across * across) / (s * woSine)));
-        if (ratio == 1) return;
-        // An anisotropic lobe varies with phi even about the pole: with slope t on the ring,
-        // 1 + t^2 (cos^2 phi / spread^2 + sin^2 phi / width^2) vanishes at phi = i asinh(…) off
-        // one of its axes.
-        const double reach = lobe.spread * heights / (s + woSine);
-        const double scale =
-            std::asinh(ratio * std::sqrt((1 + reach * reach) / (1 - ratio * ratio)));
-        for (const auto& [x, y] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) add(x, y, scale);
-    }
-
-    const AzimuthPeak* narrowest(bool even) const {
-        const AzimuthPeak* best = nullptr;
-        for (const AzimuthPeak& peak : peaks_) {
-            if (even && peak.y != 0) continue;
-            if (!best || peak.scale < best->scale) best = &peak;
-        }
-        return best;
-    }
-    double scale() const {
-        double least = 1;  // what a BRDF without lobes is taken to need
-        for (const AzimuthPeak& peak : peaks_) least = std::min(least, peak.scale);
-        return least;
-    }
-    /// What the least scale becomes where azimuths are squeezed about `centre`: with
-    /// tan((difference + i scale) / 2) / kappa = u + i v, the imaginary part of 2 atan(u + i v).
-    double scaleAbout(const AzimuthPeak& centre, double kappa) const {
-        double least = 2 * std::atanh(kappa);  // cos(m phi) has poles there
-        for (const AzimuthPeak& peak : peaks_) {
-            const double cosine = centre.x * peak.x + centre.y * peak.y;
-            const double sine = centre.x * peak.y - centre.y * peak.x;
-            const double below = (cosine + std::cosh(peak.scale)) * kappa;
-            const double u = sine / below, v = std::sinh(peak.scale) / below;
-            least = std::min(
-                least, 0.5 * std::log((u * u + (1 + v) * (1 + v)) / (u * u + (1 - v) * (1 - v))));
-        }
-        return least;
-    }
-
-private:
-    std::vector<AzimuthPeak> peaks_;
-};
-
-AzimuthPeaks azimuthPeaks(const std::vector<Lobe>& lobes, const Direction& wo, double a, double b) {
-    AzimuthPeaks peaks;
-    const auto visit = [&](double u) {
-        const double mu = u * u, s = std::sqrt((1 - mu) * (1 + mu));
-        for (const Lobe& lobe : lobes) peaks.addLobe(lobe, wo, s, mu);
-    };
-    visit(a);
-    visit(b);
-    for (const Lobe& lobe : lobes) {
-        const double peak = lobe.about == Lobe::About::axis ? lobe.axis.z : wo.z;
-        const double u = std::sqrt(std::clamp(peak, 0.0, 1.0));
-        if (u > a && u < b) visit(u);
-    }
-    return peaks;
-}
-
-void spreadAzimuths(HemisphereGrid::Panel& panel, const AzimuthPeaks& peaks,
-                    const GridOptions& options, double refinement) {
-    // Products with the highest basis function need `order` more than the lobe alone. At least 8
-    // and `order` of the rest grow with the level, so that no two levels use the same azimuths.
-    const double order = options.order;
-    const double smooth = order + std::max(order, 8.0) * refinement;
-    const auto needed = [&](double scale, double kappa) {
-        return std::max(smooth / kappa, order / kappa + firstAzimuthExponent / scale * refinement);
-    };
-    double count = needed(peaks.scale(), 1);
-    const AzimuthPeak* centre = options.squeezed ? peaks.narrowest(options.even) : nullptr;
-    if (centre) {
-        constexpr int maxSqueeze = 24;
-        constexpr double worthIt = 0.9;  // sums of squeezed rings cost a little more
-        double least = worthIt * count;
-        for (int squeeze = 1; squeeze <= maxSqueeze; ++squeeze) {
-            const double kappa = std::ldexp(1.0, -squeeze);
-            if (smooth / kappa >= least) break;
-            const double squeezed = needed(peaks.scaleAbout(*centre, kappa), kappa);
-            if (squeezed >= least) continue;
-            count = least = squeezed;
-            panel.spacing.squeeze = squeeze;
-            panel.centreX = centre->x;
-            panel.centreY = centre->y;
-        }
-    }
-    const auto whole =
-        static_cast<std::size_t>(std::min(std::ceil(count), static_cast<double>(maxAzimuths)));
-    panel.spacing.azimuths = (whole + 3) / 4 * 4;
 }
 
 }  // namespace
@@ -259,7 +136,7 @@ const GaussRule& gaussLegendre(int n) {
 
 std::size_t HemisphereGrid::points() const {
     std::size_t total = 0;
-    for (const Panel& panel : panels) total += panel.rings * panel.spacing.azimuths;
+    for (const Panel& panel : panels) total += panel.rings * panel.azimuths.spacing.azimuths;
     return total;
 }
 
@@ -288,15 +165,18 @@ std::vector<double> panelBreaks(const std::vector<Lobe>& lobes, const Direction&
     return breaks;
 }
 
-void appendPanel(HemisphereGrid& grid, double a, double b, const std::vector<Lobe>& lobes,
-                 const Direction& wo, const GridOptions& options) {
+void appendPanel(HemisphereGrid& grid, double a, double b, const AzimuthPeaks& peaks,
+                 const GridOptions& options) {
     const double refinement = std::pow(levelGrowth, options.level), half = 0.5 * (b - a);
     // Basis functions are polynomials of degree 2 order in u: half as many nodes, by length.
     const int nodes =
         static_cast<int>(std::ceil(firstNodes * refinement + options.order * (b - a) * 1.3));
     const GaussRule& rule = gaussLegendre(nodes);
-    grid.panels.push_back({grid.weights.size(), static_cast<std::size_t>(nodes)});
-    spreadAzimuths(grid.panels.back(), azimuthPeaks(lobes, wo, a, b), options, refinement);
+    grid.panels.push_back({grid.weights.size(), static_cast<std::size_t>(nodes),
+                           spreadAzimuths(peaks, {.order = options.order,
+                                                  .refinement = refinement,
+                                                  .squeezed = options.squeezed,
+                                                  .even = options.even})});
     for (int i = 0; i < nodes; ++i) {
         const double u = a + half * (1 + rule.nodes[i]);
         const double mu = u * u, oneMinusMu = (1 - u) * (1 + u);
@@ -311,7 +191,8 @@ HemisphereGrid gridFor(const std::vector<Lobe>& lobes, const Direction& wo,
     const std::vector<double> breaks = panelBreaks(lobes, wo);
     HemisphereGrid grid;
     for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-        appendPanel(grid, breaks[k], breaks[k + 1], lobes, wo, options);
+        const double a = breaks[k], b = breaks[k + 1];
+        appendPanel(grid, a, b, AzimuthPeaks(lobes, wo, a, b), options);
     }
     return grid;
 }

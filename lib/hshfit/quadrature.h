@@ -1,9 +1,9 @@
 #pragma once
 
+#include <hshfit/azimuth_spread.h>
 #include <hshfit/bases/basis.h>
 #include <hshfit/brdf.h>
 
-#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -20,27 +20,13 @@ struct GaussRule {
 /// Throws UsageError unless 1 <= n <= 100000.
 const GaussRule& gaussLegendre(int n);
 
-/// How a ring's azimuths are spread. Without a squeeze they are equispaced: phi_j = t_j = (j + 1/2)
-/// 2 pi / azimuths. With one they crowd about a centre, where a lobe is narrow:
-///     tan((phi_j - centre) / 2) = kappa tan(t_j / 2),   kappa = 2^-squeeze,
-/// a map of the unit circle onto itself, so that periodic functions stay periodic and what is
-/// analytic stays so: a singularity that lies i delta off the centre moves away to i delta / kappa,
-/// and lobes of width w need of the order of w^-1/2 azimuths, not w^-1.
-struct AzimuthSpacing {
-    std::size_t azimuths = 0;  ///< a multiple of 4
-    int squeeze = 0;
-    bool operator==(const AzimuthSpacing&) const = default;
-    double kappa() const { return std::ldexp(1.0, -squeeze); }
-};
-
 /// Rings of constant elevation, in groups that share their azimuths.
 /// The integral of q over the hemisphere is the sum over rings of
 ///     weight * (2 pi / azimuths) * (sum over the ring's azimuths of q d phi / dt).
 struct HemisphereGrid {
     struct Panel {
         std::size_t firstRing = 0, rings = 0;
-        AzimuthSpacing spacing = {};
-        double centreX = 1, centreY = 0;  ///< cosine and sine of the centre, where squeezed
+        AzimuthSpread azimuths = {};
     };
     std::vector<Elevation<double>> elevations;  ///< per ring
     std::vector<double> sines;                  ///< sin(theta) per ring
@@ -53,8 +39,9 @@ struct HemisphereGrid {
 
 struct GridOptions {
     int order = 7;  ///< bands that have to be resolved exactly
-    /// Refinement: every level has half as many nodes again, in both directions. Lobes are seen at
-    /// level 0, are right to about 1e-3 at level 2 and to 1e-6 at level 4.
+    /// Refinement: every level has 1.4 times as many nodes, in both directions. Isotropic lobes are
+    /// right to about 1e-3 at level 0 and to 1e-6 at level 2, long and narrow ones two levels
+    /// later.
     int level = 0;
     /// Whether azimuths may be squeezed; if not, all panels have equispaced ones.
     bool squeezed = false;
@@ -72,8 +59,8 @@ std::vector<double> panelBreaks(const std::vector<Lobe>& lobes, const Direction&
 /// same singularities seen along phi, and so does their squeeze: the one that takes fewest, with
 /// nowhere fewer than a BRDF without lobes would get. In u, functions that behave like sqrt(cos
 /// theta) at the horizon are smooth.
-void appendPanel(HemisphereGrid& grid, double a, double b, const std::vector<Lobe>& lobes,
-                 const Direction& wo, const GridOptions& options);
+void appendPanel(HemisphereGrid& grid, double a, double b, const AzimuthPeaks& peaks,
+                 const GridOptions& options);
 
 /// All panels at one level: a grid for integrands made of a BRDF with these lobes at `wo`, its
 /// square, and basis functions.

@@ -14,7 +14,7 @@ namespace {
 
 using Inner = Basis::Inner;
 
-constexpr int maxLevel = 16;
+constexpr int maxLevel = 20;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// How a quantity has moved from level to level, and what that says of the error that is left.
@@ -27,9 +27,9 @@ struct Change {
         last = change;
     }
 
-    /// Levels grow by half, and what converges exponentially gains more with every one: then the
+    /// Levels grow by 1.4, and what converges exponentially gains more with every one: then the
     /// next change, and with it the error, is at most last (last / before). Kinks gain a factor of
-    /// 2 to 4 a level, with accidents: without two steps that were faster than that (or one that
+    /// 2 or 3 a level, with accidents: without two steps that were faster than that (or one that
     /// was far faster), the last change itself is what is known.
     double error() const {
         constexpr double fast = 0.2, fastBefore = 0.35, fastAtOnce = 0.1, safety = 3;
@@ -44,6 +44,7 @@ struct Change {
 /// What one elevation panel holds at its present level.
 struct Panel {
     double a, b;  ///< ends in u
+    AzimuthPeaks peaks;
     int level = -1;
     std::vector<double> moments = {};  ///< in the order of ThetaProducts
     PerInner energy{};
@@ -80,18 +81,15 @@ class Refinement {
 public:
     Refinement(const Brdf& brdf, const ProjectionTables& tables, const Direction& wo,
                const RefinementOptions& options)
-        : brdf_(brdf),
-          tables_(tables),
-          bases_(tables.theta.bases()),
-          wo_(wo),
-          options_(options),
-          lobes_(brdf.lobes(wo)) {
+        : brdf_(brdf), tables_(tables), bases_(tables.theta.bases()), wo_(wo), options_(options) {
         offsets_ = {0};
         for (std::size_t b = 0; b < bases_.size(); ++b)
             offsets_.push_back(offsets_[b] + tables.theta.size(b, brdf.channels().count()));
-        const std::vector<double> breaks = panelBreaks(lobes_, wo, brdf.kinks(wo));
+        const std::vector<Lobe> lobes = brdf.lobes(wo);
+        const std::vector<double> breaks = panelBreaks(lobes, wo, brdf.kinks(wo));
         for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-            panels_.push_back({.a = breaks[k], .b = breaks[k + 1]});
+            const double a = breaks[k], b = breaks[k + 1];
+            panels_.push_back({.a = a, .b = b, .peaks = {lobes, wo, a, b}});
         }
         result_.horizon = horizonBehaviour(brdf, wo, options.quantity);
     }
@@ -123,7 +121,7 @@ private:
         for (std::size_t p : active) {
             Panel& panel = panels_[p];
             ++panel.level;
-            appendPanel(grid_, panel.a, panel.b, lobes_, wo_,
+            appendPanel(grid_, panel.a, panel.b, panel.peaks,
                         {.order = tables_.azimuths.order(),
                          .level = panel.level,
                          .squeezed = true,
@@ -234,7 +232,6 @@ private:
     std::span<const Basis* const> bases_;
     Direction wo_;
     RefinementOptions options_;
-    std::vector<Lobe> lobes_;
     std::vector<std::size_t> offsets_;  ///< of each basis among the moments
     std::vector<Panel> panels_;
     HemisphereGrid grid_;    ///< of the panels that are being refined

@@ -5,16 +5,17 @@
 namespace hshfit {
 
 void RingPoints::start(const HemisphereGrid::Panel& panel) {
-    const std::size_t azimuths = panel.spacing.azimuths;
+    const std::size_t azimuths = panel.azimuths.spacing.azimuths;
     const double step = 2 * pi / static_cast<double>(azimuths);
     cosine_.resize(azimuths);
     sine_.resize(azimuths);
     step_.resize(azimuths);
     for (std::size_t j = 0; j < azimuths; ++j) {
         const SpreadAzimuth at =
-            spreadAzimuth((static_cast<double>(j) + 0.5) * step, panel.spacing);
-        const bool squeezed = panel.spacing.squeeze > 0;
-        const double cx = squeezed ? panel.centreX : 1, cy = squeezed ? panel.centreY : 0;
+            spreadAzimuth((static_cast<double>(j) + 0.5) * step, panel.azimuths.spacing);
+        const bool squeezed = panel.azimuths.spacing.squeeze > 0;
+        const double cx = squeezed ? panel.azimuths.centreX : 1,
+                     cy = squeezed ? panel.azimuths.centreY : 0;
         cosine_[j] = cx * at.cosine - cy * at.sine;
         sine_[j] = cy * at.cosine + cx * at.sine;
         step_[j] = step * at.weight;

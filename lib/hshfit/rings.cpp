@@ -24,7 +24,7 @@ struct Run {
     const AzimuthTable* table;  ///< none where it is not kept
     std::size_t firstRing, rings;
 
-    const AzimuthSpacing& spacing() const { return panel->spacing; }
+    const AzimuthSpacing& spacing() const { return panel->azimuths.spacing; }
     bool squeezed() const { return spacing().squeeze > 0; }
 };
 
@@ -139,8 +139,8 @@ private:
                                         .sine = table.sine.data(),
                                         .count = table.count,
                                         .copies = copies(run),
-                                        .centreX = run.panel->centreX,
-                                        .centreY = run.panel->centreY};
+                                        .centreX = run.panel->azimuths.centreX,
+                                        .centreY = run.panel->azimuths.centreY};
         const auto fill = run.squeezed() ? fillSqueezedRing : fillRing;
         for (std::size_t r = run.firstRing; r < run.firstRing + run.rings; ++r, offset += ring) {
             fill(directions, grid_.sines[r], grid_.elevations[r].mu, w.x.data() + offset,
@@ -225,7 +225,7 @@ private:
 
     /// From azimuths about the panel's centre to those about the x axis.
     void turn(const Run& run) const {
-        const double x = run.panel->centreX, y = run.panel->centreY;
+        const double x = run.panel->azimuths.centreX, y = run.panel->azimuths.centreY;
         const AzimuthColumns& columns = result_.columns;
         double* first = result_.parts.data() + run.firstRing * result_.ringSize();
         double* end = first + run.rings * result_.ringSize();
@@ -260,8 +260,8 @@ Blocks blocksOf(const HemisphereGrid& grid, const AzimuthTables& tables, std::si
     const std::size_t most = blockValues / (3 + channels);
     std::size_t filled = 0;
     for (const auto& panel : grid.panels) {
-        const std::size_t points = panel.spacing.azimuths / (even ? 2 : 1);
-        const AzimuthTable* kept = tables.find(panel.spacing);
+        const std::size_t points = panel.azimuths.spacing.azimuths / (even ? 2 : 1);
+        const AzimuthTable* kept = tables.find(panel.azimuths.spacing);
         for (std::size_t r = 0; r < panel.rings;) {
             const bool fits = kept && filled > 0 && filled + points <= most;
             if (!fits) {

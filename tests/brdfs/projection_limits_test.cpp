@@ -1,12 +1,14 @@
 // Where numbers do not exist or are hard to get: every case ends in a right number or a clear
 // error.
 
+#include <hshfit/albedo.h>
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/horizon.h>
 #include <hshfit/metrics.h>
 #include <hshfit/projection.h>
 #include <hshfit/reconstruction.h>
+#include <hshfit/ring_points.h>
 
 #include <brdfs/catalog.h>
 
@@ -108,6 +110,47 @@ TEST(Limits, TheNarrowestLobesAreMirrors) {
             for (std::size_t k = 0; k < mirror.size(); ++k)
                 EXPECT_NEAR(p.coefficients.at(0, 0)[k], mirror[k], 2e-5)
                     << spec << " " << theta << " " << k;
+        }
+    }
+}
+
+/// The levels of a grid are as good as quadrature.h says, squeezed or not.
+TEST(Limits, LevelsHoldWhatTheyClaim) {
+    struct Case {
+        const char* spec;
+        int later;
+    };
+    for (const auto& [spec, later] : {Case{"phong:exponent=1e4", 0},
+                                      {"ggx:alpha=.3", 0},
+                                      {"ggx:alpha=.01", 0},
+                                      {"beckmann:alpha=.1", 0},
+                                      {"ward:ax=.2,ay=.5", 0},
+                                      {"ward:ax=.01,ay=.1", 2}}) {
+        const auto brdf = brdfs::open(spec);
+        for (const double theta : {5.0, 30.0, 60.0, 80.0}) {
+            const Direction wo = directionFromAngles(radians(theta), 0.4);
+            const double exact = directionalAlbedo(*brdf, wo, 1e-11)[0];
+            for (const auto& [level, bound] : {std::pair{0, 1e-3}, {2, 1e-6}}) {
+                for (const bool squeezed : {false, true}) {
+                    const HemisphereGrid grid =
+                        gridFor(brdf->lobes(wo), wo,
+                                {.order = 1, .level = level + later, .squeezed = squeezed});
+                    double albedo = 0;
+                    RingPoints points;
+                    for (const auto& panel : grid.panels) {
+                        points.start(panel);
+                        for (std::size_t r = 0; r < panel.rings; ++r) {
+                            const std::size_t ring = panel.firstRing + r;
+                            points.move(grid, ring);
+                            std::vector<double> f(points.count());
+                            brdf->eval(wo, points.directions(), f.data());
+                            for (std::size_t j = 0; j < f.size(); ++j)
+                                albedo += points.weight(j) * grid.elevations[ring].mu * f[j];
+                        }
+                    }
+                    EXPECT_NEAR(albedo / exact, 1, bound) << spec << " " << theta << " " << level;
+                }
+            }
         }
     }
 }

@@ -50,9 +50,7 @@ HemisphereGrid oneRing(const AzimuthSpacing& spacing, double azimuth, std::size_
     }
     grid.panels = {{.firstRing = 0,
                     .rings = rings,
-                    .spacing = spacing,
-                    .centreX = std::cos(azimuth),
-                    .centreY = std::sin(azimuth)}};
+                    .azimuths = {spacing, std::cos(azimuth), std::sin(azimuth)}}};
     return grid;
 }
 
@@ -98,7 +96,7 @@ TEST(Rings, HalfOfAnEvenOneIsEnough) {
         const PoissonBrdf brdf(1e-3, azimuth);
         // The centre exactly on the axis, as the projector makes it.
         HemisphereGrid grid = oneRing({1024, 4}, azimuth, 3);
-        grid.panels[0].centreY = 0;
+        grid.panels[0].azimuths.centreY = 0;
         RingSpectrum whole, half;
         sampleRings(brdf, {0, 0, 1}, grid, Quantity::brdfCosine, tables, false, whole);
         sampleRings(brdf, {0, 0, 1}, grid, Quantity::brdfCosine, tables, true, half);
@@ -141,9 +139,9 @@ TEST(Rings, AzimuthsGrowWithTheRootOfTheWidth) {
         const std::vector<Lobe> lobes = {{Lobe::About::halfway, width}};
         HemisphereGrid grid;
         const double u = std::sqrt(wo.z);
-        appendPanel(grid, u - width, u + width, lobes, wo,
+        appendPanel(grid, u - width, u + width, {lobes, wo, u - width, u + width},
                     {.order = 7, .level = 2, .squeezed = squeezed});
-        return static_cast<double>(grid.panels[0].spacing.azimuths);
+        return static_cast<double>(grid.panels[0].azimuths.spacing.azimuths);
     };
     for (const double width : {1e-1, 1e-2, 1e-3, 1e-4}) {
         EXPECT_LE(azimuths(width / 10, true), azimuths(width, true) * std::sqrt(10) * 1.5) << width;
@@ -162,11 +160,11 @@ TEST(Rings, TheFarSideKeepsItsAzimuths) {
                 const std::vector<Lobe> lobes = {{Lobe::About::halfway, width}};
                 HemisphereGrid with, without;
                 const GridOptions options{.order = order, .level = level, .squeezed = true};
-                appendPanel(with, 0.5, 0.6, lobes, wo, options);
-                appendPanel(without, 0.5, 0.6, {}, wo, options);
-                const AzimuthSpacing& spacing = with.panels[0].spacing;
+                appendPanel(with, 0.5, 0.6, {lobes, wo, 0.5, 0.6}, options);
+                appendPanel(without, 0.5, 0.6, {{}, wo, 0.5, 0.6}, options);
+                const AzimuthSpacing& spacing = with.panels[0].azimuths.spacing;
                 EXPECT_GE(static_cast<double>(spacing.azimuths) * spacing.kappa(),
-                          static_cast<double>(without.panels[0].spacing.azimuths) - 4);
+                          static_cast<double>(without.panels[0].azimuths.spacing.azimuths) - 4);
             }
 }
 
