@@ -169,9 +169,7 @@ public:
           out(to) {
         columns = (order + StepRows<T>::group - 1) / StepRows<T>::group * StepRows<T>::group;
         const std::size_t need =
-            columns * (count < together
-                           ? arraysOf(true, true)
-                           : std::max(together * arraysOf(sparse, false), arraysOf(sparse, true)));
+            columns * arraysOf(sparse, true) * (count < together ? 1 : together);
         if (need > smallMemory) large = hwy::AllocateAligned<T>(need);
         state = large ? large.get() : small;
     }
@@ -184,19 +182,22 @@ public:
             placeAll<Single<double>>(directions, first, count);
         else
             placeAll<Wide<double>>(directions, first, count);
-        std::size_t members[3][chunk], counts[3] = {0, 0, 0};
+        // Those that start from the same end and stay in range alike run together.
+        std::size_t members[4][chunk], counts[4] = {0, 0, 0, 0};
         for (std::size_t k = 0; k < count; ++k) {
-            const std::size_t kind = awake[k] == 0 ? 2 : far[k] > 0 ? 1 : 0;
+            const std::size_t kind = (awake[k] > 0 ? 0 : 2) + (far[k] > 0 ? 1 : 0);
             members[kind][counts[kind]++] = k;
         }
         T* const base = out + first * order * order;
-        for (const std::size_t kind : {0u, 1u}) {
+        for (std::size_t kind = 0; kind < 4; ++kind) {
             std::size_t i = 0;
             for (; i + together <= counts[kind]; i += together)
-                runTeam<together, false>(members[kind] + i, base);
-            for (; i < counts[kind]; ++i) runTeam<1, false>(members[kind] + i, base);
+                kind < 2 ? runTeam<together, false>(members[kind] + i, base)
+                         : runTeam<together, true>(members[kind] + i, base);
+            for (; i < counts[kind]; ++i)
+                kind < 2 ? runTeam<1, false>(members[kind] + i, base)
+                         : runTeam<1, true>(members[kind] + i, base);
         }
-        for (std::size_t i = 0; i < counts[2]; ++i) runTeam<1, true>(members[2] + i, base);
     }
 
 private:

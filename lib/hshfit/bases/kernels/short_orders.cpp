@@ -3,6 +3,7 @@
 #include <hshfit/bases/kernels/targets.h>
 
 #include <algorithm>
+#include <numeric>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "hshfit/bases/kernels/short_orders.cpp"
@@ -196,9 +197,28 @@ void byDirection(const ShortJob<T>& job) {
     }
 }
 
-/// Through a tile, so that every slot gets whole cache lines: slots may lie 4096 bytes apart.
+/// Whole vectors of directions straight to their slots, the rest through a copy.
 template <class D, int step, class T = hn::TFromD<D>>
 void bySlot(const ShortJob<T>& job) {
+    constexpr std::size_t n = lanesOf<D>;
+    const std::size_t count = job.directions.count;
+    const auto slots = static_cast<std::size_t>(job.order * job.order);
+    HWY_ALIGN T some[n * shortOrders * shortOrders];
+    auto next = placeOfSome<D>(job, 0, count);
+    for (std::size_t k = 0; k < count; k += n) {
+        const auto place = next;
+        if (k + n < count) next = placeOfSome<D>(job, k + n, count - k - n);
+        const bool whole = k + n <= count;
+        Rows<D, step, true> rows(place, *job.table, whole ? job.out + k : some, whole ? count : n);
+        rows.template row<0>(job.order);
+        for (std::size_t i = 0; i < slots && !whole; ++i)
+            std::copy_n(some + i * n, count - k, job.out + i * count + k);
+    }
+}
+
+/// Through a tile, so that every slot gets whole cache lines at once.
+template <class D, int step, class T = hn::TFromD<D>>
+void bySlotTiled(const ShortJob<T>& job) {
     constexpr std::size_t n = lanesOf<D>, width = 4 * n;
     const std::size_t count = job.directions.count;
     HWY_ALIGN T tile[width * shortOrders * shortOrders];
@@ -221,6 +241,15 @@ void bySlot(const ShortJob<T>& job) {
     }
 }
 
+/// Whether so many slots fall into the same sets of a first-level cache (lines 4096 bytes apart
+/// share one) that lines would be thrown out between the vectors that fill them.
+template <class T>
+bool slotsCollide(std::size_t slots, std::size_t count) {
+    constexpr std::size_t period = 4096, line = 64, perSet = 4;
+    const std::size_t places = period / std::gcd(count * sizeof(T), period);
+    return slots > perSet * std::min(places, period / line);
+}
+
 /// One direction: the same operations on vectors of one lane, so that the result is the same.
 template <int step, class T>
 void oneDirection(const ShortJob<T>& job) {
@@ -234,6 +263,9 @@ template <int step, class T>
 void tabulate(const ShortJob<T>& job) {
     if (job.directions.count == 1)
         oneDirection<step>(job);
+    else if (job.bySlot &&
+             slotsCollide<T>(static_cast<std::size_t>(job.order * job.order), job.directions.count))
+        bySlotTiled<Wide<T>, step>(job);
     else if (job.bySlot)
         bySlot<Wide<T>, step>(job);
     else

@@ -130,7 +130,8 @@ HWY_INLINE Place<D> placeAt(D d, const Recurrences<Real>& r, V px, V py, V mu) {
     return place;
 }
 
-/// Where no power F^m W, m < order, leaves the range of Real, so that all exponents are 0.
+/// Where no power F^m W, m < order, leaves the range of Real, so that exponents can be left out.
+/// The quarter of the range that is kept back is for differences: y >= F^2 / 4.
 template <class Real, class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> staysInRange(D d, V factor, V weight, int order) {
     const V tiny = hn::Set(d, std::numeric_limits<double>::min()), one = hn::Set(d, 1);
@@ -138,7 +139,7 @@ HWY_INLINE hn::Mask<D> staysInRange(D d, V factor, V weight, int order) {
     const Scaled<D> base(hn::IfThenElse(vanishes, one, factor));
     const Scaled<D> first(hn::IfThenElse(vanishes, one, weight));
     const V lowest = hn::MulAdd(base.exponent, hn::Set(d, order - 1.0), first.exponent);
-    return hn::AndNot(vanishes, hn::Gt(lowest, hn::Set(d, -shiftOf<Real> / 2.0)));
+    return hn::AndNot(vanishes, hn::Gt(lowest, hn::Set(d, -1.5 * shiftOf<Real>)));
 }
 
 /// Starts p 2^(shift e) and azimuths a, b (cosine and sine, with normalisation and sign) of four
