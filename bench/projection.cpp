@@ -168,6 +168,44 @@ void floorShare(benchmark::State& state, const Job& job) {
 
 constexpr const char* ward = "ward:kd=0,ks=1,ax=0.2,ay=0.5";
 
+/// What a projection on a fixed grid takes at the least: the bare BRDF at 10,000 directions for
+/// each of 1024 outgoing ones, and the product of these values with 49 functions, each alone, from
+/// the caches.
+void fixedGrid(benchmark::State& state, const std::string& spec) {
+    constexpr std::size_t outgoing = 1024, points = 10000, functions = 49, together = 8;
+    constexpr std::size_t columns = (functions + laneGroup - 1) / laneGroup * laneGroup;
+    const auto brdf = brdfs::open(spec);
+    const OutgoingSet set = OutgoingSet::parse("32x32");
+    std::vector<double> x, y, z;
+    for (std::size_t k = 0; k < points; ++k) {
+        const double golden = 2.399963229728653;
+        const Direction wi = directionFromAngles(std::acos((static_cast<double>(k) + 0.5) / points),
+                                                 golden * static_cast<double>(k));
+        x.push_back(wi.x), y.push_back(wi.y), z.push_back(wi.z);
+    }
+    std::vector<double> values(together * points), table(points * columns, 0.5),
+        out(together * columns);
+    double bare = 0, product = 0;
+    for (auto _ : state) {
+        const double start = threadSeconds();
+        for (std::size_t k = 0; k < outgoing; ++k)
+            brdf->eval(set.directions[k], {x.data(), y.data(), z.data(), points},
+                       values.data() + k % together * points);
+        const double middle = threadSeconds();
+        for (std::size_t k = 0; k < outgoing; k += together)
+            addProducts({values.data(), together, points}, {table.data(), columns, columns}, points,
+                        out.data(), columns);
+        benchmark::DoNotOptimize(out.data());
+        const double end = threadSeconds();
+        bare += middle - start;
+        product += end - middle;
+        state.SetIterationTime(end - start);
+    }
+    const double rounds = static_cast<double>(state.iterations());
+    state.counters["brdf_ms"] = bare / rounds * 1e3;
+    state.counters["product_ms"] = product / rounds * 1e3;
+}
+
 void byOrder(benchmark::State& state) {
     // One outgoing direction, the grid that the order needs: a tolerance that the second level
     // meets.
@@ -219,6 +257,11 @@ BENCHMARK_CAPTURE(floorShare, ggx, Job{.spec = "ggx:alpha=0.3"})
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(floorShare, lambert, Job{.spec = "lambert", .tolerance = 1e-6})
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+
+BENCHMARK_CAPTURE(fixedGrid, ward, ward)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(fixedGrid, ggx, std::string("ggx:alpha=0.3"))
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
 

@@ -135,13 +135,23 @@ def projection_floor(found, rates):
                      f"{least:.2f} ({percent(least / e['product_ns'])})" if least else "",
                      f"{e['rest_ns']:.2f}", percent(e["brdf_share"]),
                      percent((e["brdf_ns"] + least) / every) if least else "",
-                     f"{e['over_floor']:.2f}"])
+                     f"{e['over_floor']:.2f}"] + fixed_grid(found, name, ms(e)))
     if not rows:
         return {}
     return {"floor": table(
         ["BRDF", "ms", "BRDF, ns an evaluation", "product alone, ns", "at the FMA rate, ns",
-         "all but the BRDF, ns", "share of the BRDF", "BRDF + FMA rate", "all / (BRDF + product)"],
+         "all but the BRDF, ns", "share of the BRDF", "BRDF + FMA rate", "all / (BRDF + product)",
+         "10,000 points each: BRDF + product, ms", "all / that"],
         rows)}
+
+
+def fixed_grid(found, name, milliseconds):
+    """What the bare evaluations and the product of a fixed grid would take."""
+    e = found.get(f"fixedGrid/{name}")
+    if not e:
+        return ["", ""]
+    least = e["brdf_ms"] + e["product_ms"]
+    return [f"{e['brdf_ms']:.1f} + {e['product_ms']:.1f}", f"{milliseconds / least:.2f}"]
 
 
 def brdf_kernels(found):

@@ -19,7 +19,7 @@ std::string quantityName(Quantity quantity);
 /// An energy integral with its error; `finite` is false where it does not exist.
 struct Energy {
     double value = 0;  ///< NaN where it does not exist
-    double error = 0;  ///< absolute, from the difference of two quadrature levels
+    double error = 0;  ///< absolute, estimated from quadrature levels
     bool finite = true;
     std::string reason;  ///< why it does not exist
 };
@@ -48,8 +48,8 @@ struct Coefficients {
     /// Energy in the inner product of the basis, summed over channels and, with their solid angles,
     /// over the outgoing directions (Eq. 15's denominator).
     Energy energy;
-    /// Largest relative difference, over the outgoing directions, between the last two quadrature
-    /// levels, in coefficients and in energy.
+    /// Estimated relative error, the largest over the outgoing directions, of coefficients and of
+    /// energy (refinement.h).
     double error = 0;
 
     std::string source;     ///< the specification that was projected
