@@ -161,7 +161,7 @@ const std::array<std::vector<kernels::Step<float>>, 2>& JacobiBasis::floatSteps(
 }
 
 template <class Real>
-void JacobiBasis::byRows(const RowTables<Real>& tables,
+void JacobiBasis::byRows(const kernels::LazyStepRows<Real>& tables,
                          const std::array<std::vector<kernels::Step<Real>>, 2>& steps,
                          DirectionBatch directions, Real* out) const {
     std::call_once(tables.once, [&] {

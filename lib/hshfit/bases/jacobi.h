@@ -92,15 +92,8 @@ private:
     kernels::Recurrences<Real> recurrences(
         const std::array<std::vector<kernels::Step<Real>>, 2>& steps) const;
     const std::array<std::vector<kernels::Step<float>>, 2>& floatSteps() const;
-
-    /// Steps row by row, made when they are first asked for.
     template <class Real>
-    struct RowTables {
-        mutable std::once_flag once;
-        mutable std::array<kernels::StepRows<Real>, 2> rows;
-    };
-    template <class Real>
-    void byRows(const RowTables<Real>& tables,
+    void byRows(const kernels::LazyStepRows<Real>& tables,
                 const std::array<std::vector<kernels::Step<Real>>, 2>& steps,
                 DirectionBatch directions, Real* out) const;
 
@@ -113,8 +106,8 @@ private:
     /// Steps in single precision, made when they are first asked for.
     mutable std::once_flag floatStepsOnce_;
     mutable std::array<std::vector<kernels::Step<float>>, 2> floatSteps_;
-    RowTables<double> rows_;
-    RowTables<float> floatRows_;
+    kernels::LazyStepRows<double> rows_;
+    kernels::LazyStepRows<float> floatRows_;
 };
 
 /// The same functions by `thetaScalar`; `basis` has to outlive it.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <mutex>
 #include <vector>
 
 namespace hshfit::bases::kernels {
@@ -35,6 +36,13 @@ private:
     };
     std::vector<Line> lines_;
     std::vector<std::size_t> offsets_, widths_;
+};
+
+/// Both ends' steps, made when they are first asked for.
+template <class Real>
+struct LazyStepRows {
+    mutable std::once_flag once;
+    mutable std::array<StepRows<Real>, 2> rows;
 };
 
 }  // namespace hshfit::bases::kernels
