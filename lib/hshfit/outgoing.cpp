@@ -120,6 +120,8 @@ OutgoingSet OutgoingSet::parabolic(int width, int height) {
             const int left = std::min(i, width - 1 - i), low = std::min(j, height - 1 - j);
             if (left != i || low != j) {
                 angleAt(i, j) = angleAt(left, low);
+            } else if (width == height && i < j) {
+                angleAt(i, j) = angleAt(j, i);
             } else if (px * px + py * py < 1) {
                 angleAt(i, j) = discSolidAngle(px - dx, px + dx, py - dy, py + dy);
             }
@@ -197,31 +199,44 @@ std::string OutgoingSet::spec() const {
                        degrees(azimuth(directions[0])));
 }
 
+namespace {
+
+struct Cell {
+    int first;
+    double fraction;
+};
+
+Cell cellOf(double position, int n) {
+    const double clamped = std::clamp(position, 0.0, n - 1.0);
+    const int first = std::min(static_cast<int>(clamped), n - 2);
+    return {first, clamped - first};
+}
+
+void add(OutgoingLookup& to, std::size_t index, double weight) {
+    if (weight == 0) return;
+    to.index[to.count] = index;
+    to.weight[to.count++] = weight;
+}
+
+}  // namespace
+
+OutgoingLookup lookUpElevation(const OutgoingSet& set, double tangent) {
+    OutgoingLookup result;
+    const auto [first, fraction] = cellOf(tangent * (set.width - 0.5), set.width);
+    add(result, first, 1 - fraction);
+    add(result, first + 1, fraction);
+    return result;
+}
+
 OutgoingLookup lookUp(const OutgoingSet& set, const Direction& wo) {
     OutgoingLookup result;
-    const auto add = [&](std::size_t index, double weight) {
-        if (weight == 0) return;
-        result.index[result.count] = index;
-        result.weight[result.count++] = weight;
-    };
     if (set.map == OutgoingSet::Map::direction) {
-        add(0, 1);
+        add(result, 0, 1);
         return result;
     }
     const double z = std::max(wo.z, 0.0), px = wo.x / (1 + z), py = wo.y / (1 + z);
-    struct Cell {
-        int first;
-        double fraction;
-    };
-    const auto cellOf = [](double position, int n) {
-        const double clamped = std::clamp(position, 0.0, n - 1.0);
-        const int first = std::min(static_cast<int>(clamped), n - 2);
-        return Cell{first, clamped - first};
-    };
     if (set.map == OutgoingSet::Map::elevations) {
-        const auto [first, fraction] = cellOf(std::hypot(px, py) * (set.width - 0.5), set.width);
-        add(first, 1 - fraction);
-        add(first + 1, fraction);
+        result = lookUpElevation(set, std::hypot(px, py));
         result.turn = azimuth(wo);
         return result;
     }
@@ -229,7 +244,7 @@ OutgoingLookup lookUp(const OutgoingSet& set, const Direction& wo) {
     const auto row = cellOf((py * (set.height - 2) + set.height - 1) / 2, set.height);
     for (int j : {0, 1}) {
         for (int i : {0, 1}) {
-            add(static_cast<std::size_t>(row.first + j) * set.width + column.first + i,
+            add(result, static_cast<std::size_t>(row.first + j) * set.width + column.first + i,
                 (j ? row.fraction : 1 - row.fraction) *
                     (i ? column.fraction : 1 - column.fraction));
         }

@@ -48,5 +48,7 @@ struct OutgoingLookup {
     double turn = 0;
 };
 OutgoingLookup lookUp(const OutgoingSet& set, const Direction& wo);
+/// The same for an elevation set alone, by tan(theta_o / 2) in [0, 1]; no turn.
+OutgoingLookup lookUpElevation(const OutgoingSet& set, double tangent);
 
 }  // namespace hshfit

@@ -7,6 +7,7 @@
 #include <hshfit/representation/represented_brdf.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hshfit {
@@ -187,30 +188,39 @@ public:
     }
 
 private:
-    /// Basis values byDirection, then one padded row.
-    std::size_t workspaceSize(std::size_t block) const override {
-        return block * basis().slots() + length_ + channels();
-    }
+    std::size_t workspaceSize(std::size_t block) const override { return block * basis().slots(); }
     bool turns() const override { return set_.map == OutgoingSet::Map::elevations; }
     void sum(const PairBlock& pairs, std::size_t count, std::size_t block, float* workspace,
              float* values) const override {
-        const std::size_t slots = basis().slots();
-        float* padded = workspace + block * slots;
-        float* sums = padded + length_;
-        std::fill_n(padded, length_, 0.0F);
+        constexpr std::size_t together = 64;
+        std::array<RowMix, together> mixes;
+        const auto slots = static_cast<std::size_t>(basis().slots());
         basis().evaluate(pairs.incoming(count), workspace);
-        for (std::size_t k = 0; k < count; ++k) {
-            const OutgoingLookup found = lookUp(set_, {pairs.ox[k], pairs.oy[k], pairs.oz[k]});
-            RowMix mix;
-            mix.count = found.count;
-            for (int r = 0; r < found.count; ++r) {
-                mix.rows[r] = rows_.data() + found.index[r] * channels() * length_;
-                mix.weights[r] = static_cast<float>(found.weight[r]);
-            }
-            std::copy_n(workspace + k * slots, slots, padded);
-            dotMixed(mix, padded, length_, channels(), sums);
-            for (std::size_t c = 0; c < channels(); ++c) values[c * block + k] = sums[c];
+        for (std::size_t first = 0; first < count; first += together) {
+            const std::size_t some = std::min(together, count - first);
+            for (std::size_t k = 0; k < some; ++k) mixes[k] = mixAt(pairs, first + k);
+            dotMixed({.basis = workspace + first * slots,
+                      .length = slots,
+                      .stride = length_,
+                      .channels = channels(),
+                      .count = some,
+                      .outStride = block},
+                     mixes.data(), values + first);
         }
+    }
+
+    RowMix mixAt(const PairBlock& pairs, std::size_t k) const {
+        // Turned pairs have wo at azimuth 0.
+        const OutgoingLookup found =
+            turns() ? lookUpElevation(set_, pairs.ox[k] / (1 + std::max(pairs.oz[k], 0.0)))
+                    : lookUp(set_, {pairs.ox[k], pairs.oy[k], pairs.oz[k]});
+        RowMix mix;
+        mix.count = found.count;
+        for (int r = 0; r < found.count; ++r) {
+            mix.rows[r] = rows_.data() + found.index[r] * channels() * length_;
+            mix.weights[r] = static_cast<float>(found.weight[r]);
+        }
+        return mix;
     }
 
     OutgoingSet set_;

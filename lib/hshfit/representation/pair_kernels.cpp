@@ -53,21 +53,64 @@ void SumBilinear(const BilinearForm& form, const float* rows, const float* colum
     }
 }
 
-void DotMixed(const RowMix& mix, const float* basis, std::size_t length, std::size_t channels,
-              float* out) {
+/// One pair and `Channels` channels from number `c` on: a sum for each row and channel, which are
+/// mixed at the end.
+template <std::size_t Rows, std::size_t Channels>
+HWY_INLINE void dotOne(const MixedDots& dots, const RowMix& mix, const float* basis, std::size_t c,
+                       float* out) {
     const Lanes lanes;
-    for (std::size_t c = 0; c < channels; ++c) {
-        Vector sum = hn::Zero(lanes);
-        for (std::size_t k = 0; k < length; k += hn::Lanes(lanes)) {
-            Vector mixed = hn::Mul(hn::Set(lanes, mix.weights[0]),
-                                   hn::LoadU(lanes, mix.rows[0] + c * length + k));
-            for (int r = 1; r < mix.count; ++r) {
-                mixed = hn::MulAdd(hn::Set(lanes, mix.weights[r]),
-                                   hn::LoadU(lanes, mix.rows[r] + c * length + k), mixed);
-            }
-            sum = hn::MulAdd(mixed, hn::LoadU(lanes, basis + k), sum);
+    const std::size_t n = hn::Lanes(lanes);
+    const float* rows[Rows];
+    for (std::size_t r = 0; r < Rows; ++r) rows[r] = mix.rows[r] + c * dots.stride;
+    Vector sums[Rows][Channels];
+    for (auto& row : sums)
+        for (Vector& sum : row) sum = hn::Zero(lanes);
+    const auto add = [&](Vector value, std::size_t i) HWY_ATTR {
+        for (std::size_t r = 0; r < Rows; ++r)
+            for (std::size_t k = 0; k < Channels; ++k)
+                sums[r][k] =
+                    hn::MulAdd(value, hn::LoadU(lanes, rows[r] + k * dots.stride + i), sums[r][k]);
+    };
+    std::size_t i = 0;
+    for (; i + n <= dots.length; i += n) add(hn::LoadU(lanes, basis + i), i);
+    if (i < dots.length) {
+        // Masked loads may read all lanes, and on some targets want them aligned.
+        HWY_ALIGN float rest[pairPadding] = {};
+        for (std::size_t k = i; k < dots.length; ++k) rest[k - i] = basis[k];
+        add(hn::Load(lanes, rest), i);
+    }
+    for (std::size_t k = 0; k < Channels; ++k) {
+        Vector total = hn::Mul(hn::Set(lanes, mix.weights[0]), sums[0][k]);
+        for (std::size_t r = 1; r < Rows; ++r)
+            total = hn::MulAdd(hn::Set(lanes, mix.weights[r]), sums[r][k], total);
+        out[(c + k) * dots.outStride] = hn::GetLane(hn::SumOfLanes(lanes, total));
+    }
+}
+
+template <std::size_t Rows>
+HWY_INLINE void dotAll(const MixedDots& dots, const RowMix& mix, const float* basis, float* out) {
+    std::size_t c = 0;
+    for (; c + 3 <= dots.channels; c += 3) dotOne<Rows, 3>(dots, mix, basis, c, out);
+    for (; c < dots.channels; ++c) dotOne<Rows, 1>(dots, mix, basis, c, out);
+}
+
+void DotMixed(const MixedDots& dots, const RowMix* mixes, float* out) {
+    for (std::size_t k = 0; k < dots.count; ++k) {
+        const float* basis = dots.basis + k * dots.length;
+        switch (mixes[k].count) {
+            case 1:
+                dotAll<1>(dots, mixes[k], basis, out + k);
+                break;
+            case 2:
+                dotAll<2>(dots, mixes[k], basis, out + k);
+                break;
+            case 3:
+                dotAll<3>(dots, mixes[k], basis, out + k);
+                break;
+            default:
+                dotAll<4>(dots, mixes[k], basis, out + k);
+                break;
         }
-        out[c] = hn::GetLane(hn::SumOfLanes(lanes, sum));
     }
 }
 
@@ -85,9 +128,8 @@ void sumBilinear(const BilinearForm& form, const float* rows, const float* colum
     HWY_DYNAMIC_DISPATCH(SumBilinear)(form, rows, columns, count, out);
 }
 
-void dotMixed(const RowMix& mix, const float* basis, std::size_t length, std::size_t channels,
-              float* out) {
-    HWY_DYNAMIC_DISPATCH(DotMixed)(mix, basis, length, channels, out);
+void dotMixed(const MixedDots& dots, const RowMix* mixes, float* out) {
+    HWY_DYNAMIC_DISPATCH(DotMixed)(dots, mixes, out);
 }
 
 }  // namespace hshfit

@@ -24,16 +24,21 @@ constexpr std::size_t pairPadding = 16;
 void sumBilinear(const BilinearForm& form, const float* rows, const float* columns,
                  std::size_t count, float* out);
 
-/// Up to four rows of coefficients to mix, [channel][length] each, with their weights.
+/// Up to four rows of coefficients to mix, [channel][stride] each, with their weights.
 struct RowMix {
     const float* rows[4] = {};
     float weights[4] = {};
     int count = 0;
 };
 
-/// out[c] = sum over k < length of basis[k] sum over rows of weight row[c][k]. `length` is a
-/// multiple of `pairPadding`.
-void dotMixed(const RowMix& mix, const float* basis, std::size_t length, std::size_t channels,
-              float* out);
+/// Basis values [k][length] against a mix of rows for each of `count` pairs.
+struct MixedDots {
+    const float* basis;
+    std::size_t length, stride;  ///< rows have `stride` values a channel, 0 from `length` on
+    std::size_t channels, count, outStride;
+};
+
+/// out[c * outStride + k] = sum over i < length of basis[k][i] sum over rows of weight row[c][i].
+void dotMixed(const MixedDots& dots, const RowMix* mixes, float* out);
 
 }  // namespace hshfit
