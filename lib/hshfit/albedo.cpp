@@ -20,7 +20,7 @@ std::vector<double> directionalAlbedo(const Brdf& brdf, const Direction& wo, dou
     RingSpectrum spectrum;
     for (int level = 0;; ++level) {
         const HemisphereGrid grid =
-            gridFor(lobes, wo, {.order = 1, .level = level, .squeezed = true});
+            gridFor(lobes, wo, {.order = 1, .level = level, .squeezed = true}, brdf.kinks(wo));
         evaluations += grid.points();
         if (evaluations > maxEvaluations) break;
         sampleRings(brdf, wo, grid, Quantity::brdfCosine, azimuths, /*even=*/false, spectrum);

@@ -187,8 +187,8 @@ void appendPanel(HemisphereGrid& grid, double a, double b, const AzimuthPeaks& p
 }
 
 HemisphereGrid gridFor(const std::vector<Lobe>& lobes, const Direction& wo,
-                       const GridOptions& options) {
-    const std::vector<double> breaks = panelBreaks(lobes, wo);
+                       const GridOptions& options, const std::vector<double>& kinks) {
+    const std::vector<double> breaks = panelBreaks(lobes, wo, kinks);
     HemisphereGrid grid;
     for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
         const double a = breaks[k], b = breaks[k + 1];

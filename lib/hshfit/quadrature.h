@@ -62,9 +62,9 @@ std::vector<double> panelBreaks(const std::vector<Lobe>& lobes, const Direction&
 void appendPanel(HemisphereGrid& grid, double a, double b, const AzimuthPeaks& peaks,
                  const GridOptions& options);
 
-/// All panels at one level: a grid for integrands made of a BRDF with these lobes at `wo`, its
-/// square, and basis functions.
+/// All panels at one level: a grid for integrands made of a BRDF with these lobes and kinks at
+/// `wo`, its square, and basis functions.
 HemisphereGrid gridFor(const std::vector<Lobe>& lobes, const Direction& wo,
-                       const GridOptions& options);
+                       const GridOptions& options, const std::vector<double>& kinks = {});
 
 }  // namespace hshfit

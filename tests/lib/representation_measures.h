@@ -105,7 +105,7 @@ inline Representation perOutgoing(const Brdf& brdf, const Basis& basis, const Ou
                                   Quantity quantity = Quantity::brdf) {
     const Basis* const one[] = {&basis};
     return fromCoefficients(
-        project(brdf, one, set, {.quantity = quantity, .tolerance = 1e-4})[0].coefficients);
+        project(brdf, one, set, {.quantity = quantity, .tolerance = 1e-6})[0].coefficients);
 }
 
 inline Representation bothIn(const Brdf& brdf, const Basis& basis, bool reciprocal) {
