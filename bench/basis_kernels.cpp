@@ -5,6 +5,8 @@
 
 #include <hshfit/bases/kernels/targets.h>
 
+#include "interleaved.h"
+
 #include <benchmark/benchmark.h>
 #include <gsl/gsl_sf_legendre.h>
 #include <hshfit/bases/catalog.h>
@@ -224,15 +226,5 @@ int main(int argc, char** argv) {
             add(name + "/scalar", order, [=](auto& s) { scalar(s, name, order); });
         }
     }
-    std::vector<std::string> defaults{"basis_kernels",
-                                      "--benchmark_enable_random_interleaving=true",
-                                      "--benchmark_repetitions=11", "--benchmark_min_time=0.005",
-                                      "--benchmark_report_aggregates_only=true"};
-    defaults.insert(defaults.end(), argv + 1, argv + argc);
-    std::vector<char*> arguments;
-    for (std::string& argument : defaults) arguments.push_back(argument.data());
-    int count = static_cast<int>(arguments.size());
-    benchmark::Initialize(&count, arguments.data());
-    benchmark::RunSpecifiedBenchmarks();
-    benchmark::Shutdown();
+    runInterleaved(argc, argv, 11, "0.005");
 }

@@ -9,12 +9,13 @@
 //              vectors (memcpy falls to a tenth where source and target differ by whole pages, as
 //              large buffers do); in buffers that fit into the first and the second cache, and that
 //              exceed the last
-// Short repetitions that take turns; their medians count.
 
 #define HWY_TARGET_INCLUDE "bench/machine_lanes.h"
 #include <brdfs/lanes/each_target.h>
 
 #include "machine_product.h"
+
+#include "interleaved.h"
 
 #include <benchmark/benchmark.h>
 #include <hwy/targets.h>
@@ -133,14 +134,5 @@ int main(int argc, char** argv) {
         add("copy" + in, [bytes = bytes](auto& state) { copy(state, bytes); });
         add("sum" + in, [bytes = bytes](auto& state) { read(state, bytes); });
     }
-    std::vector<std::string> defaults{"machine", "--benchmark_enable_random_interleaving=true",
-                                      "--benchmark_repetitions=9", "--benchmark_min_time=0.02",
-                                      "--benchmark_report_aggregates_only=true"};
-    defaults.insert(defaults.end(), argv + 1, argv + argc);
-    std::vector<char*> arguments;
-    for (std::string& argument : defaults) arguments.push_back(argument.data());
-    int count = static_cast<int>(arguments.size());
-    benchmark::Initialize(&count, arguments.data());
-    benchmark::RunSpecifiedBenchmarks();
-    benchmark::Shutdown();
+    runInterleaved(argc, argv, 9, "0.02");
 }

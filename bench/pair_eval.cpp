@@ -4,6 +4,8 @@
 
 #include "network.h"
 
+#include "interleaved.h"
+
 #include <benchmark/benchmark.h>
 #include <hshfit/representation/form.h>
 #include <hshfit/representation/pair_evaluator.h>
@@ -132,15 +134,5 @@ int main(int argc, char** argv) {
         benchmark::RegisterBenchmark(("batch/" + name).c_str(), batch, form);
         benchmark::RegisterBenchmark(("single/" + name).c_str(), single, form);
     }
-    // Short repetitions that take turns; their medians count.
-    std::vector<std::string> defaults{"pair_eval", "--benchmark_enable_random_interleaving=true",
-                                      "--benchmark_repetitions=9", "--benchmark_min_time=0.02",
-                                      "--benchmark_report_aggregates_only=true"};
-    defaults.insert(defaults.end(), argv + 1, argv + argc);
-    std::vector<char*> arguments;
-    for (std::string& argument : defaults) arguments.push_back(argument.data());
-    int count = static_cast<int>(arguments.size());
-    benchmark::Initialize(&count, arguments.data());
-    benchmark::RunSpecifiedBenchmarks();
-    benchmark::Shutdown();
+    runInterleaved(argc, argv, 9, "0.02");
 }

@@ -4,6 +4,7 @@
 // as this library's own matrix product does it.
 
 #include "bench_folder.h"
+#include "interleaved.h"
 
 #include <benchmark/benchmark.h>
 #include <brdfs/catalog.h>
@@ -299,7 +300,5 @@ int main(int argc, char** argv) {
             ->Arg(n)
             ->UseManualTime()
             ->Unit(benchmark::kMillisecond);
-    benchmark::Initialize(&argc, argv);
-    benchmark::RunSpecifiedBenchmarks();
-    benchmark::Shutdown();
+    runInterleaved(argc, argv, 7, "0.1");
 }

@@ -46,7 +46,7 @@ struct Panel {
     double a, b;  ///< ends in u
     AzimuthPeaks peaks;
     int level = -1;
-    std::vector<double> moments = {};  ///< in the order of ThetaProducts
+    std::vector<double> moments = {}, before = {};  ///< in the order of ThetaProducts
     PerInner energy{};
     std::vector<Change> change = {};  ///< per basis: of the moments, by norm
     std::array<Change, 2> energyChange = {};
@@ -138,10 +138,11 @@ private:
                     spectrum_);
         const auto takePanel = [&](std::size_t k) {
             Panel& panel = panels_[active[k]];
-            std::vector<double> moments(offsets_.back());
+            panel.before.swap(panel.moments);
+            panel.moments.assign(offsets_.back(), 0.0);
             tables_.theta.addMoments(grid_, k, panel.a, panel.b, spectrum_, options_.even,
-                                     moments.data());
-            update(panel, std::move(moments), energyOf(k));
+                                     panel.moments.data());
+            update(panel, energyOf(k));
         };
         // Worth sharing where the functions are many.
         if (offsets_.back() * spectrum_.rings > std::size_t{1} << 20) {
@@ -166,15 +167,14 @@ private:
         return std::span(moments).subspan(offsets_[b], offsets_[b + 1] - offsets_[b]);
     }
 
-    void update(Panel& panel, std::vector<double> moments, const PerInner& energy) const {
+    void update(Panel& panel, const PerInner& energy) const {
         panel.change.resize(bases_.size());
         for (std::size_t e = 0; e < energy.size() && panel.level > 0; ++e) {
             panel.energyChange[e].add(std::abs(energy[e] - panel.energy[e]));
         }
         for (std::size_t b = 0; b < bases_.size() && panel.level > 0; ++b) {
-            panel.change[b].add(distance(ofBasis(moments, b), ofBasis(panel.moments, b)));
+            panel.change[b].add(distance(ofBasis(panel.moments, b), ofBasis(panel.before, b)));
         }
-        panel.moments = std::move(moments);
         panel.energy = energy;
     }
 
