@@ -3,7 +3,7 @@
 // writing as many bytes. Runs are interleaved; bench/summary prints medians of CPU time and ratios.
 // `error` is the largest error over the largest magnitude of a function, against 100 digits.
 
-#include <hshfit/bases/kernels/targets.h>
+#include <hshfit/vector_targets.h>
 
 #include "interleaved.h"
 

@@ -10,8 +10,8 @@
 #include <brdfs/catalog.h>
 #include <hshfit/azimuth_tables.h>
 #include <hshfit/bases/catalog.h>
+#include <hshfit/lane_products.h>
 #include <hshfit/projection.h>
-#include <hshfit/ring_kernels.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>

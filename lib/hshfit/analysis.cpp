@@ -1,6 +1,7 @@
 #include <hshfit/analysis.h>
 
 #include <hshfit/error.h>
+#include <hshfit/lane_products.h>
 #include <hshfit/quadrature.h>
 #include <hshfit/ring_kernels.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <hshfit/azimuth_spread.h>
-#include <hshfit/ring_kernels.h>
+#include <hshfit/lane_products.h>
 
 #include <cstddef>
 #include <memory>

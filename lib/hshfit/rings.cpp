@@ -1,6 +1,7 @@
 #include <hshfit/rings.h>
 
 #include <hshfit/error.h>
+#include <hshfit/lane_products.h>
 #include <hshfit/ring_kernels.h>
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include <hshfit/theta_products.h>
 
-#include <hshfit/ring_kernels.h>
+#include <hshfit/lane_products.h>
 
 #include <tbb/concurrent_unordered_map.h>
 

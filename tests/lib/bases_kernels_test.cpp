@@ -1,7 +1,7 @@
 // The vector kernels on every instruction set of this machine: against the scalar path, against
 // recurrences in 100 digits, and bit for bit against themselves in batches of other sizes.
 
-#include <hshfit/bases/kernels/targets.h>
+#include <hshfit/vector_targets.h>
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/bases/jacobi.h>

@@ -1,4 +1,5 @@
 #include <hshfit/representation/halfway_kernel.h>
+#include <hshfit/vector_targets.h>
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,5 @@
 #include <hshfit/representation/pair_kernels.h>
+#include <hshfit/vector_targets.h>
 
 // Compiled once for every instruction set; the best one is chosen when the program runs.
 #undef HWY_TARGET_INCLUDE

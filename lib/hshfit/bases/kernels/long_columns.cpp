@@ -2,7 +2,7 @@
 
 #include <hshfit/bases/kernels/long_orders.h>
 
-#include <hshfit/bases/kernels/targets.h>
+#include <hshfit/vector_targets.h>
 
 #include <algorithm>
 #include <utility>

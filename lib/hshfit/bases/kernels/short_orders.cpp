@@ -1,6 +1,6 @@
 #include <hshfit/bases/kernels/short_orders.h>
 
-#include <hshfit/bases/kernels/targets.h>
+#include <hshfit/vector_targets.h>
 
 #include <algorithm>
 #include <numeric>
