@@ -58,8 +58,9 @@ void AzimuthTable::fill(int order, const AzimuthSpacing& spacing, std::size_t fi
 
 namespace {
 
-constexpr std::size_t largestQuadrant = 1024, largestHalf = 2048;
-constexpr std::size_t mostValues = std::size_t{1} << 18, mostSqueezed = std::size_t{1} << 23;
+/// Azimuths and values of one table, values of all that are kept.
+constexpr std::size_t mostAzimuths = 4096;
+constexpr std::size_t mostValues = std::size_t{1} << 18, mostKept = std::size_t{1} << 23;
 
 struct Slot {
     std::once_flag once;
@@ -69,17 +70,16 @@ struct Slot {
 }  // namespace
 
 struct AzimuthTables::Kept {
-    std::vector<Slot> byQuadrant = std::vector<Slot>(largestQuadrant + 1);
-    tbb::concurrent_unordered_map<std::size_t, std::unique_ptr<Slot>> squeezed;
-    std::atomic<std::size_t> squeezedValues = 0;
+    tbb::concurrent_unordered_map<std::size_t, std::unique_ptr<Slot>> slots;
+    std::atomic<std::size_t> values = 0;
 
-    Slot* findSqueezed(const AzimuthSpacing& spacing, std::size_t values) {
+    /// None where there is no room left.
+    Slot* find(const AzimuthSpacing& spacing, std::size_t size) {
         const std::size_t key = spacing.azimuths * 64 + static_cast<std::size_t>(spacing.squeeze);
-        if (const auto found = squeezed.find(key); found != squeezed.end())
-            return found->second.get();
-        if (squeezedValues.load(std::memory_order_relaxed) + values > mostSqueezed) return nullptr;
-        const auto [place, isNew] = squeezed.emplace(key, std::make_unique<Slot>());
-        if (isNew) squeezedValues += values;
+        if (const auto found = slots.find(key); found != slots.end()) return found->second.get();
+        if (values.load(std::memory_order_relaxed) + size > mostKept) return nullptr;
+        const auto [place, isNew] = slots.emplace(key, std::make_unique<Slot>());
+        if (isNew) values += size;
         return place->second.get();
     }
 };
@@ -87,15 +87,18 @@ struct AzimuthTables::Kept {
 AzimuthTables::AzimuthTables(int order) : order_(order), kept_(std::make_unique<Kept>()) {}
 AzimuthTables::~AzimuthTables() = default;
 
-const AzimuthTable* AzimuthTables::find(const AzimuthSpacing& spacing) const {
+std::shared_ptr<const AzimuthTable> AzimuthTables::find(const AzimuthSpacing& spacing) const {
     assert(spacing.azimuths % 4 == 0);
-    const bool squeezed = spacing.squeeze > 0;
-    const std::size_t count = tableSize(spacing), values = count * AzimuthColumns(order_).all();
-    if (count > (squeezed ? largestHalf : largestQuadrant) || values > mostValues) return nullptr;
-    Slot* slot = squeezed ? kept_->findSqueezed(spacing, values) : &kept_->byQuadrant[count];
-    if (!slot) return nullptr;
-    std::call_once(slot->once, [&] { slot->table.fill(order_, spacing, 0, count); });
-    return &slot->table;
+    const std::size_t count = tableSize(spacing), size = count * AzimuthColumns(order_).all();
+    if (spacing.azimuths > mostAzimuths || size > mostValues) return nullptr;
+    const auto fill = [&](AzimuthTable& table) { table.fill(order_, spacing, 0, count); };
+    if (Slot* slot = kept_->find(spacing, size)) {
+        std::call_once(slot->once, fill, slot->table);
+        return {std::shared_ptr<const AzimuthTable>(), &slot->table};  // kept_ owns it
+    }
+    auto own = std::make_shared<AzimuthTable>();
+    fill(*own);
+    return own;
 }
 
 }  // namespace hshfit

@@ -60,9 +60,11 @@ public:
     ~AzimuthTables();
 
     int order() const { return order_; }
-    /// None where it would take too much room (2 MB, 4096 azimuths; 64 MB for all squeezed ones):
-    /// whoever needs it fills it piece by piece.
-    const AzimuthTable* find(const AzimuthSpacing& spacing) const;
+    /// None where it alone would take too much room (2 MB, 4096 azimuths): whoever needs it fills
+    /// it piece by piece. What is kept takes 64 MB at most; beyond, tables are made for the caller.
+    /// Which of these it is does not change a bit of a sum. The table lives as long as both the
+    /// pointer and this object.
+    std::shared_ptr<const AzimuthTable> find(const AzimuthSpacing& spacing) const;
 
 private:
     struct Kept;

@@ -13,9 +13,7 @@ void RingPoints::start(const HemisphereGrid::Panel& panel) {
     for (std::size_t j = 0; j < azimuths; ++j) {
         const SpreadAzimuth at =
             spreadAzimuth((static_cast<double>(j) + 0.5) * step, panel.azimuths.spacing);
-        const bool squeezed = panel.azimuths.spacing.squeeze > 0;
-        const double cx = squeezed ? panel.azimuths.centreX : 1,
-                     cy = squeezed ? panel.azimuths.centreY : 0;
+        const double cx = panel.azimuths.centreX, cy = panel.azimuths.centreY;
         cosine_[j] = cx * at.cosine - cy * at.sine;
         sine_[j] = cy * at.cosine + cx * at.sine;
         step_[j] = step * at.weight;

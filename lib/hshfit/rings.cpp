@@ -22,7 +22,7 @@ constexpr std::size_t blockValues = 6144, leastPoints = 64;
 /// Neighbouring rings of one panel.
 struct Run {
     const HemisphereGrid::Panel* panel;
-    const AzimuthTable* table;  ///< none where it is not kept
+    std::shared_ptr<const AzimuthTable> table;  ///< none where it is too large
     std::size_t firstRing, rings;
 
     const AzimuthSpacing& spacing() const { return panel->azimuths.spacing; }
@@ -112,7 +112,7 @@ private:
         return run.rings * copies(run) * tableSize(run.spacing());
     }
 
-    /// A run whose table is too large to be kept.
+    /// A run whose table is too large.
     void byPieces(const Run& run, Workspace& w) const {
         const std::size_t whole = tableSize(run.spacing());
         const std::size_t most = std::max<std::size_t>(
@@ -253,7 +253,7 @@ private:
     RingSpectrum& result_;
 };
 
-/// As many rings, of neighbouring panels too, as make a block. Rings whose table is not kept stand
+/// As many rings, of neighbouring panels too, as make a block. Rings whose table is too large stand
 /// alone.
 Blocks blocksOf(const HemisphereGrid& grid, const AzimuthTables& tables, std::size_t channels,
                 bool even) {
@@ -262,18 +262,18 @@ Blocks blocksOf(const HemisphereGrid& grid, const AzimuthTables& tables, std::si
     std::size_t filled = 0;
     for (const auto& panel : grid.panels) {
         const std::size_t points = panel.azimuths.spacing.azimuths / (even ? 2 : 1);
-        const AzimuthTable* kept = tables.find(panel.azimuths.spacing);
+        const auto table = tables.find(panel.azimuths.spacing);
         for (std::size_t r = 0; r < panel.rings;) {
-            const bool fits = kept && filled > 0 && filled + points <= most;
+            const bool fits = table && filled > 0 && filled + points <= most;
             if (!fits) {
                 result.blocks.push_back({result.runs.size(), result.runs.size()});
                 filled = 0;
             }
             const std::size_t together = std::clamp<std::size_t>(
                 (most - std::min(filled, most)) / points, 1, panel.rings - r);
-            result.runs.push_back({&panel, kept, panel.firstRing + r, together});
+            result.runs.push_back({&panel, table, panel.firstRing + r, together});
             result.blocks.back().last = result.runs.size();
-            filled = kept ? filled + together * points : 0;
+            filled = table ? filled + together * points : 0;
             r += together;
         }
     }

@@ -132,6 +132,24 @@ TEST(Rings, PointsAreThoseOfTheTransform) {
     EXPECT_NEAR(integral, 2 * pi, 1e-6);
 }
 
+/// More tables than there is room for: those that are not kept are the same.
+TEST(Rings, TablesBeyondTheRoomAreTheSame) {
+    constexpr int order = 200;  // 400 columns, and 8 M values in 40 or so of the largest tables
+    const AzimuthTables tables(order);
+    for (std::size_t k = 0; k < 60; ++k) {
+        const AzimuthSpacing spacing{1200 - 4 * k, 3};
+        const auto table = tables.find(spacing);
+        ASSERT_TRUE(table) << k;
+        AzimuthTable fresh;
+        fresh.fill(order, spacing, 0, tableSize(spacing));
+        EXPECT_EQ(table->count, fresh.count);
+        EXPECT_EQ(table->cosine, fresh.cosine);
+        EXPECT_EQ(table->weights, fresh.weights);
+        EXPECT_EQ(table->rows, fresh.rows);
+    }
+    EXPECT_FALSE(tables.find({1 << 20, 3}));
+}
+
 /// The panel across a halfway lobe's peak: azimuths grow at most like the root of 1 / width.
 TEST(Rings, AzimuthsGrowWithTheRootOfTheWidth) {
     const Direction wo = directionFromAngles(radians(60), 0.4);
