@@ -1,6 +1,7 @@
 // Positions in a MERL table, as many at a time as a register holds. Included by merl_positions.cpp
 // once for each instruction set.
 
+#include <brdfs/lanes/lanes_batch.h>
 #include <brdfs/measured/angle_lanes.h>
 #include <brdfs/measured/merl_positions.h>
 
@@ -35,20 +36,8 @@ HWY_INLINE void indicesOf(const Direction& wo, Lanes x, Lanes y, Lanes z, bool r
 }
 
 void merlIndices(const Direction& wo, const DirectionBatch& wi, bool reciprocal, MerlIndices& at) {
-    const std::size_t lanes = lanesIn<Lanes>();
-    Lanes x, y, z;
-    std::size_t k = 0;
-    for (; k + lanes <= wi.count; k += lanes) {
-        load(wi.x + k, x), load(wi.y + k, y), load(wi.z + k, z);
-        indicesOf(wo, x, y, z, reciprocal, at, k);
-    }
-    if (k == wi.count) return;
-    constexpr std::size_t most = HWY_MAX_BYTES / sizeof(double);
-    double rest[3][most] = {};
-    const double* const axes[] = {wi.x, wi.y, wi.z};
-    for (int i = 0; i < 3; ++i) std::copy_n(axes[i] + k, wi.count - k, rest[i]);
-    load(rest[0], x), load(rest[1], y), load(rest[2], z);
-    indicesOf(wo, x, y, z, reciprocal, at, k);
+    forEachLanes(wi, [&](Lanes x, Lanes y, Lanes z, std::size_t k)
+                         HWY_ATTR { indicesOf(wo, x, y, z, reciprocal, at, k); });
 }
 
 HWY_INLINE void storeIndex(Lanes value, std::uint32_t* to) {

@@ -1,6 +1,7 @@
 // Where directions lie in the tables of an RGL file, as many at a time as a register holds.
 // Included by rgl_eval_lanes.h once for each instruction set.
 
+#include <brdfs/lanes/lanes_batch.h>
 #include <brdfs/measured/angle_lanes.h>
 #include <brdfs/measured/rgl.h>
 
@@ -122,20 +123,8 @@ HWY_INLINE void slicesAt(const RglCall& call, const RglBlock& block, std::size_t
 }
 
 HWY_INLINE void placeBlock(const RglCall& call, const DirectionBatch& wi, RglBlock& block) {
-    const std::size_t lanes = lanesIn<Lanes>();
-    Lanes x, y, z;
-    std::size_t k = 0;
-    for (; k + lanes <= wi.count; k += lanes) {
-        load(wi.x + k, x), load(wi.y + k, y), load(wi.z + k, z);
-        place(call, x, y, z, block, k);
-    }
-    if (k == wi.count) return;
-    constexpr std::size_t most = HWY_MAX_BYTES / sizeof(double);
-    double rest[3][most] = {};
-    const double* const axes[] = {wi.x, wi.y, wi.z};
-    for (int i = 0; i < 3; ++i) std::copy_n(axes[i] + k, wi.count - k, rest[i]);
-    load(rest[0], x), load(rest[1], y), load(rest[2], z);
-    place(call, x, y, z, block, k);
+    forEachLanes(wi, [&](Lanes x, Lanes y, Lanes z, std::size_t k)
+                         HWY_ATTR { place(call, x, y, z, block, k); });
 }
 
 }  // namespace hshfit::brdfs::HWY_NAMESPACE
