@@ -178,9 +178,10 @@ HWY_INLINE Place<hn::Vec<D>> placeOfSome(const ShortJob<T>& job, std::size_t fir
     return placeOf(D(), job.front, px, py, pz);
 }
 
-/// Whole vectors of directions straight to their rows, the rest through a copy.
-template <class D, int step, class T = hn::TFromD<D>>
-void byDirection(const ShortJob<T>& job) {
+/// Whole vectors of directions straight to their places, [direction][slot] or, with `Slots`,
+/// [slot][direction]; the rest through a copy.
+template <class D, int step, bool Slots, class T = hn::TFromD<D>>
+void straight(const ShortJob<T>& job) {
     constexpr std::size_t n = lanesOf<D>;
     const std::size_t count = job.directions.count;
     const auto slots = static_cast<std::size_t>(job.order * job.order);
@@ -191,28 +192,16 @@ void byDirection(const ShortJob<T>& job) {
         const auto place = next;
         if (k + n < count) next = placeOfSome<D>(job, k + n, count - k - n);
         const bool whole = k + n <= count;
-        Rows<D, step, false> rows(place, *job.table, whole ? job.out + k * slots : some, slots);
+        T* const out = job.out + (Slots ? k : k * slots);
+        Rows<D, step, Slots> rows(place, *job.table, whole ? out : some,
+                                  !Slots ? slots : (whole ? count : n));
         rows.template row<0>(job.order);
-        if (!whole) std::copy_n(some, (count - k) * slots, job.out + k * slots);
-    }
-}
-
-/// Whole vectors of directions straight to their slots, the rest through a copy.
-template <class D, int step, class T = hn::TFromD<D>>
-void bySlot(const ShortJob<T>& job) {
-    constexpr std::size_t n = lanesOf<D>;
-    const std::size_t count = job.directions.count;
-    const auto slots = static_cast<std::size_t>(job.order * job.order);
-    HWY_ALIGN T some[n * shortOrders * shortOrders];
-    auto next = placeOfSome<D>(job, 0, count);
-    for (std::size_t k = 0; k < count; k += n) {
-        const auto place = next;
-        if (k + n < count) next = placeOfSome<D>(job, k + n, count - k - n);
-        const bool whole = k + n <= count;
-        Rows<D, step, true> rows(place, *job.table, whole ? job.out + k : some, whole ? count : n);
-        rows.template row<0>(job.order);
-        for (std::size_t i = 0; i < slots && !whole; ++i)
-            std::copy_n(some + i * n, count - k, job.out + i * count + k);
+        if (whole) continue;
+        if constexpr (Slots)
+            for (std::size_t i = 0; i < slots; ++i)
+                std::copy_n(some + i * n, count - k, out + i * count);
+        else
+            std::copy_n(some, (count - k) * slots, out);
     }
 }
 
@@ -267,9 +256,9 @@ void tabulate(const ShortJob<T>& job) {
              slotsCollide<T>(static_cast<std::size_t>(job.order * job.order), job.directions.count))
         bySlotTiled<Wide<T>, step>(job);
     else if (job.bySlot)
-        bySlot<Wide<T>, step>(job);
+        straight<Wide<T>, step, true>(job);
     else
-        byDirection<Wide<T>, step>(job);
+        straight<Wide<T>, step, false>(job);
 }
 
 }  // namespace
