@@ -1,5 +1,6 @@
 #include "command.h"
 
+#include <brdfs/spec.h>
 #include <hshfit/error.h>
 #include <hshfit/output/atomic_file.h>
 #include <hshfit/version.h>
@@ -8,12 +9,47 @@
 #include <tbb/global_control.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <cstring>
 #include <new>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace {
 
 using namespace hshfit;
+
+/// The name of what was mistyped, with the nearest that exists: an unknown command, or an unknown
+/// option of a known one. "" where the error is another.
+std::string unknownWord(const CLI::App& app, int argc, char** argv) {
+    const auto nearest = [](const std::string& word, const std::vector<std::string>& names) {
+        const std::vector<std::string_view> known(names.begin(), names.end());
+        return brdfs::suggestion(word, known);
+    };
+    const std::string first = argc > 1 ? argv[1] : "";
+    if (first.empty() || first.starts_with('-')) return "";
+    std::vector<std::string> names;
+    const CLI::App* chosen = nullptr;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+        names.push_back(command->get_name());
+        if (command->get_name() == first) chosen = command;
+    }
+    if (!chosen)
+        return fmt::format("unknown command '{}'{}; known: {}", first, nearest(first, names),
+                           fmt::join(names, ", "));
+    names.clear();
+    for (const CLI::Option* option : chosen->get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (int k = 2; k < argc; ++k) {
+        const std::string word(argv[k], std::strcspn(argv[k], "="));
+        if (word.size() > 2 && word.starts_with("--") &&
+            std::ranges::find(names, word) == names.end())
+            return fmt::format("{}: unknown option '{}'{}", first, word, nearest(word, names));
+    }
+    return "";
+}
 
 /// Usage errors of ours and of CLI11 alike end in exit code 2 with one line.
 int run(int argc, char** argv) {
@@ -51,8 +87,9 @@ int run(int argc, char** argv) {
     } catch (const CLI::Success& success) {
         return app.exit(success);
     } catch (const CLI::ParseError& error) {
-        std::string message = error.what();
-        for (char& c : message) c = c == '\n' ? ' ' : c;
+        std::string message = unknownWord(app, argc, argv);
+        if (message.empty()) message = error.what();
+        std::ranges::replace(message, '\n', ' ');
         throw UsageError(message + "; see hshfit --help");
     }
     return globals.exitCode;

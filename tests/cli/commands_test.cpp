@@ -55,6 +55,11 @@ TEST_F(Cli, ConvertRepairsOnlyWhatIsAskedAndSaysSo) {
 
 TEST_F(Cli, UsageErrorsNameWhatIsValid) {
     expectError("frobnicate", 2, "--help", 0);
+    expectError("tradeof lambert", 2, "did you mean 'tradeoff'", 0);
+    expectError("project lambert --tolerence=1e-3 -o " + path("x.json"), 2,
+                "did you mean '--tolerance'", 0);
+    expectError("project lambert --frobnicate", 2, "project: unknown option '--frobnicate';", 0);
+    expectError("project lambert --tolerance high -o " + path("x.json"), 2, "high", 0);
     expectError("eval lambret --wi 0,0 --wo 0,0", 2, "lambert", 0);
     expectError("eval phong:expnent=3 --wi 0,0 --wo 0,0", 2, "exponent", 0);
     expectError("eval lambert --wi 0 --wo 0,0", 2, "THETA,PHI", 0);
