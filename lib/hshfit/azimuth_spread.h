@@ -17,7 +17,6 @@ namespace hshfit {
 struct AzimuthSpacing {
     std::size_t azimuths = 0;  ///< a multiple of 4
     int squeeze = 0;
-    bool operator==(const AzimuthSpacing&) const = default;
     double kappa() const { return std::ldexp(1.0, -squeeze); }
 };
 
