@@ -39,7 +39,7 @@ if [ ! -e "$root/etc/debian_version" ]; then
     rm -rf "$root/etc/apt/sources.list"
     carry /etc/apt/sources.list /etc/apt/sources.list.d /etc/apt/apt.conf.d /etc/apt/trusted.gpg.d \
         /etc/apt/keyrings /usr/share/keyrings /etc/hosts /etc/resolv.conf \
-        /etc/ssl/certs/ca-certificates.crt
+        /etc/ssl/certs/ca-certificates.crt "${NODE_EXTRA_CA_CERTS:-}" /root/.npmrc
     # Hooks of packages that the bare root does not have.
     rm -f "$root"/etc/apt/apt.conf.d/20packagekit "$root"/etc/apt/apt.conf.d/50appstream
 fi
@@ -62,6 +62,7 @@ unshare --mount sh -c '
     mount -t proc proc "$root/proc"
     mount --rbind /dev "$root/dev"
     exec chroot "$root" /usr/bin/env -i HOME=/root LANG=C.UTF-8 \
+        ${NODE_EXTRA_CA_CERTS:+NODE_EXTRA_CA_CERTS="$NODE_EXTRA_CA_CERTS"} \
         PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
         sh -c "cd /src/hshfit && exec \"\$@\"" sh "$@"
 ' sh "$root" "$@" || code=$?
