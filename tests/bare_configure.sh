@@ -32,7 +32,8 @@ for commands in "$@"; do
     # Packages that were downloaded for one command serve the next.
     rm -rf "$work/root"
     cp -a "$work/minimal" "$work/root"
-    if [ -d "$work/archives" ]; then cp -a "$work/archives/." "$work/root/var/cache/apt/archives/"; fi
+    mkdir -p "$work/archives"
+    cp -a "$work/archives/." "$work/root/var/cache/apt/archives/"
     start=$(date +%s)
     code=0
     # shellcheck disable=SC2086  # a list of words
@@ -42,7 +43,6 @@ for commands in "$@"; do
         failed="$failed $commands"
         grep -vE '^(Get|Selecting|Preparing|Unpacking|Setting up)' "$work/log" | tail -n 25
     fi
-    mkdir -p "$work/archives"
     cp -an "$work/root/var/cache/apt/archives/." "$work/archives/"
 done
 [ -z "$failed" ] || { echo "bare_configure: these do not configure:$failed" >&2; exit 1; }

@@ -61,7 +61,7 @@ unshare --mount sh -c '
     shift
     mount -t proc proc "$root/proc"
     mount --rbind /dev "$root/dev"
-    exec chroot "$root" /usr/bin/env -i HOME=/root LANG=C.UTF-8 \
+    exec chroot "$root" /usr/bin/env -i HOME=/root LANG=C.UTF-8 HSHFIT_BARE_ROOT=yes \
         ${NODE_EXTRA_CA_CERTS:+NODE_EXTRA_CA_CERTS="$NODE_EXTRA_CA_CERTS"} \
         PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
         sh -c "cd /src/hshfit && exec \"\$@\"" sh "$@"
