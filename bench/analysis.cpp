@@ -5,9 +5,9 @@
 // coefficients, in the largest norm.
 
 #include <benchmark/benchmark.h>
-#include <hshfit/analysis.h>
 #include <hshfit/bases/catalog.h>
-#include <hshfit/quadrature.h>
+#include <hshfit/projection/analysis.h>
+#include <hshfit/quadrature/quadrature.h>
 #include <libsharp/sharp_almhelpers.h>
 #include <libsharp/sharp_cxx.h>
 #include <libsharp/sharp_geomhelpers.h>

@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-#include <lib/bases_columns_reference.h>
+#include <lib/bases/columns_reference.h>
 
 namespace {
 

@@ -7,8 +7,8 @@
 #include "interleaved.h"
 
 #include <benchmark/benchmark.h>
-#include <hshfit/representation/form.h>
-#include <hshfit/representation/pair_evaluator.h>
+#include <hshfit/representation/forms/form.h>
+#include <hshfit/representation/forms/pair_evaluators.h>
 
 #include <brdfs/catalog.h>
 

@@ -8,10 +8,10 @@
 
 #include <benchmark/benchmark.h>
 #include <brdfs/catalog.h>
-#include <hshfit/azimuth_tables.h>
 #include <hshfit/bases/catalog.h>
-#include <hshfit/lane_products.h>
-#include <hshfit/projection.h>
+#include <hshfit/projection/internal/lane_products.h>
+#include <hshfit/projection/projection.h>
+#include <hshfit/quadrature/azimuth_tables.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>

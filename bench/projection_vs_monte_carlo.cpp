@@ -11,7 +11,7 @@
 #include <benchmark/benchmark.h>
 #include <brdfs/catalog.h>
 #include <hshfit/bases/catalog.h>
-#include <hshfit/projection.h>
+#include <hshfit/projection/projection.h>
 #include <tbb/global_control.h>
 
 #include <array>

@@ -8,8 +8,8 @@
 #include <benchmark/benchmark.h>
 #include <brdfs/catalog.h>
 #include <hshfit/bases/catalog.h>
-#include <hshfit/output/coefficient_file.h>
-#include <hshfit/projection.h>
+#include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/projection/projection.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>

@@ -42,9 +42,9 @@
 #include <brdfs/preset_collection.h>
 #include <brdfs/spec.h>
 #include <brdfs/sum.h>
-#include <hshfit/colour.h>
+#include <hshfit/brdf/colour.h>
+#include <hshfit/brdf/one_channel.h>
 #include <hshfit/error.h>
-#include <hshfit/one_channel.h>
 
 #include <fmt/format.h>
 

@@ -1,13 +1,11 @@
 #pragma once
 
+#include <hshfit/brdf/brdf.h>
+
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
-
-namespace hshfit {
-class Brdf;
-}
 
 namespace hshfit::brdfs {
 

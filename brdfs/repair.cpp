@@ -1,8 +1,8 @@
 #include <brdfs/measured/measured_brdf.h>
 #include <brdfs/repair.h>
 #include <brdfs/spec.h>
-#include <hshfit/albedo.h>
 #include <hshfit/error.h>
+#include <hshfit/projection/albedo.h>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>

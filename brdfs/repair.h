@@ -1,7 +1,7 @@
 #pragma once
 
-#include <hshfit/brdf.h>
-#include <hshfit/health.h>
+#include <hshfit/accuracy/health.h>
+#include <hshfit/brdf/brdf.h>
 
 #include <cstdint>
 #include <functional>

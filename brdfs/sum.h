@@ -1,6 +1,6 @@
 #pragma once
 
-#include <hshfit/brdf.h>
+#include <hshfit/brdf/brdf.h>
 
 #include <memory>
 #include <string>

@@ -1,13 +1,13 @@
 #include "command.h"
 #include "form_options.h"
 
-#include <hshfit/colour.h>
+#include <hshfit/brdf/colour.h>
+#include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/coefficient_files/representation_file.h>
+#include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
 #include <hshfit/gpu/containers/containers.h>
-#include <hshfit/output/coefficient_file.h>
-#include <hshfit/output/representation_file.h>
-#include <hshfit/reconstruction.h>
-#include <hshfit/representation/represented_brdf.h>
+#include <hshfit/representation/forms/represented_brdf.h>
 
 #include <brdfs/catalog.h>
 

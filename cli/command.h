@@ -1,7 +1,7 @@
 #pragma once
 
-#include <hshfit/brdf.h>
-#include <hshfit/outgoing.h>
+#include <hshfit/brdf/brdf.h>
+#include <hshfit/coefficients/outgoing.h>
 
 #include <nlohmann/json_fwd.hpp>
 

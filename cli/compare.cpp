@@ -1,10 +1,10 @@
 #include "command.h"
 #include "documents.h"
 
-#include <hshfit/metrics.h>
-#include <hshfit/output/comparison.h>
-#include <hshfit/reconstruction.h>
-#include <hshfit/representation/represented_brdf.h>
+#include <hshfit/accuracy/metrics.h>
+#include <hshfit/coefficients/reconstruction.h>
+#include <hshfit/pages/comparison.h>
+#include <hshfit/representation/forms/represented_brdf.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

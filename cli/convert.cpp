@@ -1,8 +1,8 @@
 #include "command.h"
 #include "documents.h"
 
+#include <hshfit/accuracy/metrics.h>
 #include <hshfit/error.h>
-#include <hshfit/metrics.h>
 
 #include <brdfs/catalog.h>
 #include <brdfs/repair.h>

@@ -2,7 +2,7 @@
 
 // Pieces of the answers that several commands give.
 
-#include <hshfit/metrics.h>
+#include <hshfit/accuracy/metrics.h>
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>

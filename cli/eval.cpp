@@ -2,7 +2,7 @@
 #include "documents.h"
 
 #include <hshfit/error.h>
-#include <hshfit/output/atomic_file.h>
+#include <hshfit/files/atomic_file.h>
 
 #include <fmt/format.h>
 #include <libfccp/csv.h>

@@ -1,15 +1,15 @@
 #include "command.h"
 #include "form_options.h"
 
+#include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/error.h>
+#include <hshfit/files/file_set.h>
 #include <hshfit/gpu/containers/containers.h>
+#include <hshfit/gpu/containers/targets.h>
 #include <hshfit/gpu/error_split.h>
 #include <hshfit/gpu/shader.h>
-#include <hshfit/gpu/targets.h>
 #include <hshfit/gpu/viewer.h>
-#include <hshfit/output/file_set.h>
-#include <hshfit/output/representation_file.h>
-#include <hshfit/representation/represented_brdf.h>
+#include <hshfit/representation/forms/represented_brdf.h>
 
 #include <brdfs/catalog.h>
 

@@ -7,8 +7,8 @@
 #include <brdfs/fit/fit_json.h>
 #include <brdfs/measured/measured_brdf.h>
 #include <hshfit/error.h>
-#include <hshfit/output/atomic_file.h>
-#include <hshfit/output/comparison.h>
+#include <hshfit/files/atomic_file.h>
+#include <hshfit/pages/comparison.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

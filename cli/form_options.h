@@ -1,6 +1,6 @@
 #pragma once
 
-#include <hshfit/representation/form.h>
+#include <hshfit/representation/forms/form.h>
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -3,8 +3,8 @@
 
 #include <brdfs/fit/gaussian_mixture_fit.h>
 #include <brdfs/fit/gaussian_mixture_json.h>
-#include <hshfit/metrics.h>
-#include <hshfit/output/atomic_file.h>
+#include <hshfit/accuracy/metrics.h>
+#include <hshfit/files/atomic_file.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -2,7 +2,7 @@
 
 // What `info` says about the health of a BRDF.
 
-#include <hshfit/health.h>
+#include <hshfit/accuracy/health.h>
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>

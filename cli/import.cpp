@@ -1,8 +1,8 @@
 #include "command.h"
 
+#include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/error.h>
 #include <hshfit/gpu/containers/containers.h>
-#include <hshfit/output/coefficient_file.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

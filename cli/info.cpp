@@ -3,10 +3,10 @@
 #include "form_options.h"
 #include "health.h"
 
+#include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/gpu/containers/containers.h>
-#include <hshfit/quadrature.h>
-#include <hshfit/reconstruction.h>
-#include <hshfit/representation/represented_brdf.h>
+#include <hshfit/quadrature/quadrature.h>
+#include <hshfit/representation/forms/represented_brdf.h>
 
 #include <brdfs/measured/measured_brdf.h>
 

@@ -1,6 +1,6 @@
 #include "inputs.h"
 
-#include <hshfit/output/coefficient_file.h>
+#include <hshfit/coefficient_files/coefficient_file.h>
 
 #include <brdfs/catalog.h>
 

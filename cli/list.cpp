@@ -1,10 +1,10 @@
 #include "command.h"
 #include "documents.h"
 
+#include <hshfit/accuracy/metrics.h>
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
-#include <hshfit/gpu/targets.h>
-#include <hshfit/metrics.h>
+#include <hshfit/gpu/containers/targets.h>
 
 #include <brdfs/catalog.h>
 #include <brdfs/preset.h>

@@ -2,7 +2,7 @@
 
 #include <brdfs/spec.h>
 #include <hshfit/error.h>
-#include <hshfit/output/atomic_file.h>
+#include <hshfit/files/atomic_file.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>

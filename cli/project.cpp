@@ -3,11 +3,11 @@
 #include "inputs.h"
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/error.h>
-#include <hshfit/least_squares.h>
-#include <hshfit/output/coefficient_file.h>
-#include <hshfit/output/representation_file.h>
-#include <hshfit/projection.h>
+#include <hshfit/projection/least_squares.h>
+#include <hshfit/projection/projection.h>
 
 #include <brdfs/catalog.h>
 #include <brdfs/measured/scattered/scattered.h>

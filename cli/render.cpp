@@ -2,7 +2,7 @@
 #include "documents.h"
 
 #include <hshfit/error.h>
-#include <hshfit/output/sphere_picture.h>
+#include <hshfit/pictures/sphere_picture.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -3,8 +3,8 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
-#include <hshfit/output/report.h>
-#include <hshfit/projection.h>
+#include <hshfit/pages/report.h>
+#include <hshfit/projection/projection.h>
 
 #include <brdfs/catalog.h>
 

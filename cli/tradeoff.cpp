@@ -3,7 +3,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
-#include <hshfit/output/atomic_file.h>
+#include <hshfit/files/atomic_file.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
 
 #include <brdfs/catalog.h>

@@ -4,9 +4,9 @@
 #include <brdfs/catalog.h>
 #include <fmt/format.h>
 #include <hshfit/bases/catalog.h>
+#include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/error.h>
-#include <hshfit/output/coefficient_file.h>
-#include <hshfit/projection.h>
+#include <hshfit/projection/projection.h>
 
 int main(int argc, char** argv) try {
     if (argc != 3) throw hshfit::UsageError("usage: project_example SPEC OUT.json");

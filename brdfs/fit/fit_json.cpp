@@ -1,7 +1,7 @@
 #include <brdfs/fit/fit_json.h>
 
 #include <brdfs/catalog.h>
-#include <hshfit/metrics.h>
+#include <hshfit/accuracy/metrics.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 #include <brdfs/fit/gaussian_mixture_fit.h>
 
 #include <hshfit/error.h>
-#include <hshfit/quadrature.h>
-#include <hshfit/ring_points.h>
+#include <hshfit/quadrature/quadrature.h>
+#include <hshfit/quadrature/ring_points.h>
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <brdfs/fit/gaussian_mixture.h>
-#include <hshfit/outgoing.h>
+#include <hshfit/coefficients/outgoing.h>
 
 #include <cstddef>
 #include <functional>

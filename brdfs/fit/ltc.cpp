@@ -1,6 +1,6 @@
 #include <brdfs/fit/ltc.h>
 
-#include <hshfit/quadrature.h>
+#include <hshfit/quadrature/quadrature.h>
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
 #include <brdfs/fit/ltc_files.h>
 
 #include <hshfit/error.h>
-#include <hshfit/output/atomic_file.h>
-#include <hshfit/output/exr_picture.h>
+#include <hshfit/files/atomic_file.h>
+#include <hshfit/files/exr_picture.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>

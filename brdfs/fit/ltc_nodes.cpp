@@ -1,7 +1,7 @@
 #include <brdfs/fit/ltc_nodes.h>
 
 #include <hshfit/error.h>
-#include <hshfit/quadrature.h>
+#include <hshfit/quadrature/quadrature.h>
 
 #include <algorithm>
 #include <array>

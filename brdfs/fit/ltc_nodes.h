@@ -1,7 +1,7 @@
 #pragma once
 
 #include <brdfs/fit/ltc.h>
-#include <hshfit/brdf.h>
+#include <hshfit/brdf/brdf.h>
 
 #include <vector>
 

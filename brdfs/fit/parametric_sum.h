@@ -2,7 +2,7 @@
 
 #include <brdfs/fit/free_parameters.h>
 #include <brdfs/fit/lobe_formula.h>
-#include <hshfit/brdf.h>
+#include <hshfit/brdf/brdf.h>
 
 #include <memory>
 #include <span>

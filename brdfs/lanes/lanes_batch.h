@@ -9,7 +9,7 @@
 #endif
 
 #include <brdfs/lanes/lanes.h>
-#include <hshfit/directions.h>
+#include <hshfit/brdf/directions.h>
 
 #include <algorithm>
 

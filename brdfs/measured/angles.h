@@ -3,7 +3,7 @@
 // Angles from sines and cosines for the inner loops of the tables: no calls and no branches, so
 // that the compiler can vectorise the loops that use them.
 
-#include <hshfit/directions.h>
+#include <hshfit/brdf/directions.h>
 
 #include <array>
 #include <cmath>

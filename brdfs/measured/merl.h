@@ -4,7 +4,7 @@
 #include <brdfs/measured/measured_brdf.h>
 #include <brdfs/measured/merl_layout.h>
 #include <brdfs/measured/merl_positions.h>
-#include <hshfit/mapped_file.h>
+#include <hshfit/files/mapped_file.h>
 
 #include <atomic>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <brdfs/measured/merl_layout.h>
-#include <hshfit/directions.h>
+#include <hshfit/brdf/directions.h>
 
 #include <cstddef>
 #include <cstdint>

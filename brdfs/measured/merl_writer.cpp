@@ -1,7 +1,7 @@
 #include <brdfs/measured/merl_layout.h>
 #include <brdfs/measured/merl_writer.h>
 #include <hshfit/error.h>
-#include <hshfit/output/atomic_file.h>
+#include <hshfit/files/atomic_file.h>
 
 #include <fmt/core.h>
 #include <tbb/blocked_range2d.h>

@@ -1,7 +1,7 @@
 #include <brdfs/measured/pbsdf.h>
 #include <hshfit/error.h>
-#include <hshfit/mapped_file.h>
-#include <hshfit/tensor_file.h>
+#include <hshfit/files/mapped_file.h>
+#include <hshfit/files/tensor_file.h>
 
 #include <fmt/core.h>
 

@@ -1,8 +1,8 @@
 #include <brdfs/measured/angles.h>
 #include <brdfs/measured/rgl.h>
 #include <hshfit/error.h>
-#include <hshfit/mapped_file.h>
-#include <hshfit/tensor_file.h>
+#include <hshfit/files/mapped_file.h>
+#include <hshfit/files/tensor_file.h>
 
 #include <algorithm>
 #include <cmath>

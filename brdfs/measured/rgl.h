@@ -3,15 +3,12 @@
 #include <brdfs/catalog.h>
 #include <brdfs/measured/measured_brdf.h>
 #include <brdfs/measured/rgl_tables.h>
-#include <hshfit/brdf.h>
+#include <hshfit/brdf/brdf.h>
+#include <hshfit/files/tensor_file.h>
 
 #include <memory>
 #include <span>
 #include <string>
-
-namespace hshfit {
-class TensorFile;
-}
 
 namespace hshfit::brdfs {
 

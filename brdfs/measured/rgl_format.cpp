@@ -1,5 +1,5 @@
 #include <brdfs/measured/rgl.h>
-#include <hshfit/tensor_file.h>
+#include <hshfit/files/tensor_file.h>
 
 #include <algorithm>
 

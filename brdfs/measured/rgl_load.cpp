@@ -2,7 +2,7 @@
 
 #include <brdfs/measured/rgl.h>
 #include <hshfit/error.h>
-#include <hshfit/tensor_file.h>
+#include <hshfit/files/tensor_file.h>
 
 #include <fmt/core.h>
 

@@ -2,7 +2,7 @@
 
 #include <brdfs/measured/rgl.h>
 #include <brdfs/measured/rgl_tables.h>
-#include <hshfit/brdf.h>
+#include <hshfit/brdf/brdf.h>
 
 #include <cstddef>
 #include <vector>

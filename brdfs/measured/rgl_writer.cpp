@@ -1,6 +1,6 @@
 #include <brdfs/measured/rgl_writer.h>
 #include <hshfit/error.h>
-#include <hshfit/output/tensor_file_writer.h>
+#include <hshfit/files/tensor_file_writer.h>
 
 #include <fmt/core.h>
 #include <tbb/parallel_for.h>

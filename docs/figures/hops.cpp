@@ -6,8 +6,8 @@
 
 #include <brdfs/catalog.h>
 #include <brdfs/spec.h>
+#include <hshfit/accuracy/metrics.h>
 #include <hshfit/error.h>
-#include <hshfit/metrics.h>
 
 #include <fmt/core.h>
 

@@ -4,8 +4,8 @@
 // direction has the sign of +x.
 
 #include <brdfs/catalog.h>
-#include <hshfit/albedo.h>
 #include <hshfit/error.h>
+#include <hshfit/projection/albedo.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // files' own definitions imply.
 
 #include <brdfs/catalog.h>
-#include <hshfit/albedo.h>
+#include <hshfit/projection/albedo.h>
 
 #include "bsdf_xml_files.h"
 

@@ -1,7 +1,7 @@
 // Matrices and trees written here are read with the conventions of docs/bsdf_xml.md, derived a
 // second time.
 
-#include <hshfit/albedo.h>
+#include <hshfit/projection/albedo.h>
 
 #include "bsdf_xml_files.h"
 

@@ -2,7 +2,7 @@
 
 #include <brdfs/catalog.h>
 #include <brdfs/spec.h>
-#include <hshfit/albedo.h>
+#include <hshfit/projection/albedo.h>
 
 #include "bsdf_xml_files.h"
 

@@ -1,8 +1,8 @@
 #include <brdfs/catalog.h>
 #include <brdfs/fit/gaussian_mixture_fit.h>
 #include <brdfs/fit/gaussian_mixture_json.h>
-#include <hshfit/albedo.h>
 #include <hshfit/error.h>
+#include <hshfit/projection/albedo.h>
 
 #include <brdfs/measured_files.h>
 #include <gtest/gtest.h>

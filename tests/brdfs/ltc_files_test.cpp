@@ -1,6 +1,6 @@
 #include <brdfs/fit/ltc_files.h>
 #include <hshfit/error.h>
-#include <hshfit/output/exr_picture.h>
+#include <hshfit/files/exr_picture.h>
 
 #include <brdfs/ltc_published.h>
 #include <brdfs/measured_files.h>

@@ -1,8 +1,8 @@
 #include <brdfs/catalog.h>
 #include <brdfs/fit/ltc_table.h>
-#include <hshfit/albedo.h>
 #include <hshfit/error.h>
-#include <hshfit/quadrature.h>
+#include <hshfit/projection/albedo.h>
+#include <hshfit/quadrature/quadrature.h>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <hshfit/brdf.h>
-#include <hshfit/directions.h>
+#include <hshfit/brdf/brdf.h>
+#include <hshfit/brdf/directions.h>
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 
 #include <gsl/gsl_integration.h>
 #include <gtest/gtest.h>
-#include <hshfit/albedo.h>
+#include <hshfit/projection/albedo.h>
 
 #include <map>
 #include <memory>

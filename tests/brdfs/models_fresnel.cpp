@@ -3,7 +3,7 @@
 
 #include <brdfs/analytic/fresnel.h>
 #include <gtest/gtest.h>
-#include <hshfit/directions.h>
+#include <hshfit/brdf/directions.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <brdfs/catalog.h>
-#include <hshfit/directions.h>
+#include <hshfit/brdf/directions.h>
 
 #include <cmath>
 #include <random>

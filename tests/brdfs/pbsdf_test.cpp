@@ -1,6 +1,6 @@
 #include <brdfs/catalog.h>
 #include <brdfs/measured/pbsdf.h>
-#include <hshfit/albedo.h>
+#include <hshfit/projection/albedo.h>
 
 #include <brdfs/measured_files.h>
 #include <brdfs/tensor_writer.h>

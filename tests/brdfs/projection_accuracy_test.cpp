@@ -2,7 +2,7 @@
 // nodes, other coordinates, other basis code, formulas written out again.
 
 #include <hshfit/bases/catalog.h>
-#include <hshfit/projection.h>
+#include <hshfit/projection/projection.h>
 
 #include <brdfs/catalog.h>
 

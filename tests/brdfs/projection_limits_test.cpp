@@ -1,14 +1,14 @@
 // Where numbers do not exist or are hard to get: every case ends in a right number or a clear
 // error.
 
-#include <hshfit/albedo.h>
+#include <hshfit/accuracy/metrics.h>
 #include <hshfit/bases/catalog.h>
+#include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
-#include <hshfit/horizon.h>
-#include <hshfit/metrics.h>
-#include <hshfit/projection.h>
-#include <hshfit/reconstruction.h>
-#include <hshfit/ring_points.h>
+#include <hshfit/projection/albedo.h>
+#include <hshfit/projection/horizon.h>
+#include <hshfit/projection/projection.h>
+#include <hshfit/quadrature/ring_points.h>
 
 #include <brdfs/catalog.h>
 

@@ -1,7 +1,7 @@
 #include <brdfs/catalog.h>
 #include <brdfs/measured/merl_layout.h>
 #include <brdfs/repair.h>
-#include <hshfit/albedo.h>
+#include <hshfit/projection/albedo.h>
 
 #include <brdfs/measured_files.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 
 #include <brdfs/catalog.h>
 #include <brdfs/measured/rgl.h>
-#include <hshfit/tensor_file.h>
+#include <hshfit/files/tensor_file.h>
 
 #include <brdfs/measured_files.h>
 #include <brdfs/tensor_writer.h>

@@ -3,7 +3,7 @@
 // Reads a tensor file and evaluates the RGL layout a second time, from the description of the
 // format and the formulas of Dupuy & Jakob 2018, without tables of integrals.
 
-#include <hshfit/directions.h>
+#include <hshfit/brdf/directions.h>
 
 #include <algorithm>
 #include <cmath>

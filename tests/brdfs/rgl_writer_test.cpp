@@ -3,7 +3,7 @@
 #include <brdfs/measured/rgl_normals.h>
 #include <brdfs/measured/rgl_writer.h>
 #include <brdfs/spec.h>
-#include <hshfit/albedo.h>
+#include <hshfit/projection/albedo.h>
 
 #include <brdfs/measured_files.h>
 #include <brdfs/rgl_reference.h>

@@ -10,7 +10,7 @@
 #include <brdfs/measured/scattered/scattered.h>
 #include <brdfs/measured/text_reader.h>
 #include <brdfs/measured_files.h>
-#include <hshfit/albedo.h>
+#include <hshfit/projection/albedo.h>
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <brdfs/catalog.h>
 #include <brdfs/sum.h>
 #include <gtest/gtest.h>
-#include <hshfit/albedo.h>
 #include <hshfit/error.h>
+#include <hshfit/projection/albedo.h>
 
 #include <filesystem>
 #include <fstream>

@@ -3,8 +3,8 @@
 
 #include "program.h"
 
-#include <hshfit/output/representation_file.h>
-#include <hshfit/representation/represented_brdf.h>
+#include <hshfit/coefficient_files/representation_file.h>
+#include <hshfit/representation/forms/represented_brdf.h>
 
 #include <brdfs/catalog.h>
 

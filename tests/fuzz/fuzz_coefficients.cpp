@@ -2,10 +2,10 @@
 // coefficients or another form. What reads is also written and read again, and has to be the same;
 // forms are evaluated besides.
 
+#include <hshfit/coefficient_files/coefficient_formats.h>
 #include <hshfit/error.h>
-#include <hshfit/output/coefficient_formats.h>
-#include <hshfit/output/exr_header.h>
-#include <hshfit/representation/represented_brdf.h>
+#include <hshfit/files/exr_header.h>
+#include <hshfit/representation/forms/represented_brdf.h>
 
 #include <cstdint>
 #include <cstdlib>

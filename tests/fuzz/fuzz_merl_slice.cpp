@@ -3,7 +3,7 @@
 
 #include <brdfs/measured/gridded/slice.h>
 #include <hshfit/error.h>
-#include <hshfit/output/exr_header.h>
+#include <hshfit/files/exr_header.h>
 
 #include <fuzz/gridded_checks.h>
 

@@ -4,7 +4,7 @@
 
 #include <brdfs/measured/gridded/utia.h>
 #include <hshfit/error.h>
-#include <hshfit/output/exr_header.h>
+#include <hshfit/files/exr_header.h>
 
 #include <fuzz/gridded_checks.h>
 

@@ -1,16 +1,16 @@
 // make_seeds FOLDER: FOLDER/fuzz_NAME with small synthetic inputs for each target to start from.
 
 #include <hshfit/bases/catalog.h>
-#include <hshfit/output/atomic_file.h>
-#include <hshfit/output/coefficient_file.h>
-#include <hshfit/output/exr_picture.h>
-#include <hshfit/output/representation_file.h>
+#include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/coefficient_files/representation_file.h>
+#include <hshfit/files/atomic_file.h>
+#include <hshfit/files/exr_picture.h>
 #include <hshfit/representation/basis_matrix.h>
 
 #include <brdfs/bsdf_xml_text.h>
 #include <brdfs/tensor_writer.h>
 #include <gpu/containers/container_samples.h>
-#include <lib/coefficient_samples.h>
+#include <lib/coefficient_files/coefficient_samples.h>
 
 #include <algorithm>
 #include <cstdint>

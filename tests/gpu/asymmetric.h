@@ -1,7 +1,7 @@
 #pragma once
 
 #include <hshfit/bases/catalog.h>
-#include <hshfit/coefficients.h>
+#include <hshfit/coefficients/coefficients.h>
 
 #include <cmath>
 #include <cstdint>

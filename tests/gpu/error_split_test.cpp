@@ -2,7 +2,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/gpu/error_split.h>
-#include <hshfit/projection.h>
+#include <hshfit/projection/projection.h>
 
 #include <brdfs/catalog.h>
 

@@ -1,8 +1,8 @@
 #include "asymmetric.h"
 
+#include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
 #include <hshfit/gpu/payload.h>
-#include <hshfit/reconstruction.h>
 
 #include <gtest/gtest.h>
 

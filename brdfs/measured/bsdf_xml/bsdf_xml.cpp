@@ -1,7 +1,7 @@
 #include <brdfs/measured/bsdf_xml/bsdf_xml.h>
 #include <brdfs/measured/bsdf_xml/klems_brdf.h>
 #include <brdfs/measured/bsdf_xml/tree_brdf.h>
-#include <hshfit/mapped_file.h>
+#include <hshfit/files/mapped_file.h>
 
 namespace hshfit::brdfs {
 namespace {

@@ -1,5 +1,5 @@
 #include <brdfs/measured/bsdf_xml/cell_averages.h>
-#include <hshfit/colour.h>
+#include <hshfit/brdf/colour.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>

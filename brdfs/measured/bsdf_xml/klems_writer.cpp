@@ -1,7 +1,7 @@
 #include <brdfs/measured/bsdf_xml/angle_basis.h>
 #include <brdfs/measured/bsdf_xml/klems_writer.h>
 #include <brdfs/measured/bsdf_xml/xml_frame.h>
-#include <hshfit/quadrature.h>
+#include <hshfit/quadrature/quadrature.h>
 
 #include <fmt/format.h>
 

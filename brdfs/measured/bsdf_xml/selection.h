@@ -1,7 +1,7 @@
 #pragma once
 
 #include <brdfs/measured/bsdf_xml/document.h>
-#include <hshfit/brdf.h>
+#include <hshfit/brdf/brdf.h>
 
 #include <array>
 #include <string>

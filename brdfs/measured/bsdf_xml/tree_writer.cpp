@@ -2,7 +2,7 @@
 #include <brdfs/measured/bsdf_xml/tree_writer.h>
 #include <brdfs/measured/bsdf_xml/xml_frame.h>
 #include <hshfit/error.h>
-#include <hshfit/quadrature.h>
+#include <hshfit/quadrature/quadrature.h>
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 #include <brdfs/measured/bsdf_xml/xml_frame.h>
-#include <hshfit/output/atomic_file.h>
+#include <hshfit/files/atomic_file.h>
 
 #include <fmt/format.h>
 #include <pugixml.hpp>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <brdfs/measured/angles.h>
-#include <hshfit/directions.h>
+#include <hshfit/brdf/directions.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include <brdfs/catalog.h>
 #include <brdfs/measured/measured_brdf.h>
-#include <hshfit/mapped_file.h>
+#include <hshfit/files/mapped_file.h>
 
 #include <array>
 #include <atomic>

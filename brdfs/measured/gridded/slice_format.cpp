@@ -2,11 +2,11 @@
 
 #include <brdfs/measured/gridded/slice.h>
 #include <brdfs/measured/text_reader.h>
+#include <hshfit/coefficient_files/coefficient_formats.h>
 #include <hshfit/error.h>
-#include <hshfit/mapped_file.h>
-#include <hshfit/output/coefficient_formats.h>
-#include <hshfit/output/exr_header.h>
-#include <hshfit/output/exr_picture.h>
+#include <hshfit/files/exr_header.h>
+#include <hshfit/files/exr_picture.h>
+#include <hshfit/files/mapped_file.h>
 
 #include <fmt/core.h>
 

@@ -1,8 +1,8 @@
 #include <brdfs/measured/gridded/slice.h>
 #include <brdfs/measured/gridded/slice_writer.h>
 #include <hshfit/error.h>
-#include <hshfit/output/atomic_file.h>
-#include <hshfit/output/exr_picture.h>
+#include <hshfit/files/atomic_file.h>
+#include <hshfit/files/exr_picture.h>
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>

@@ -1,5 +1,5 @@
 #include <brdfs/measured/gridded/utia.h>
-#include <hshfit/output/exr_header.h>
+#include <hshfit/files/exr_header.h>
 
 namespace hshfit::brdfs {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <brdfs/measured/gridded/utia.h>
 #include <hshfit/error.h>
-#include <hshfit/mapped_file.h>
-#include <hshfit/output/exr_header.h>
-#include <hshfit/output/exr_picture.h>
+#include <hshfit/files/exr_header.h>
+#include <hshfit/files/exr_picture.h>
+#include <hshfit/files/mapped_file.h>
 
 #include <fmt/core.h>
 

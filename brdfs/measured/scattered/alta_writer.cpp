@@ -1,7 +1,7 @@
 #include <brdfs/measured/scattered/alta_writer.h>
 #include <brdfs/measured/scattered/scattered.h>
 #include <hshfit/error.h>
-#include <hshfit/output/atomic_file.h>
+#include <hshfit/files/atomic_file.h>
 
 #include <fmt/format.h>
 

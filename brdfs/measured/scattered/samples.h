@@ -2,7 +2,7 @@
 
 #include <brdfs/measured/measured_brdf.h>
 #include <brdfs/measured/scattered/chart.h>
-#include <hshfit/brdf.h>
+#include <hshfit/brdf/brdf.h>
 #include <hshfit/error.h>
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <brdfs/catalog.h>
-#include <hshfit/brdf.h>
+#include <hshfit/brdf/brdf.h>
 
 #include <string>
 #include <string_view>

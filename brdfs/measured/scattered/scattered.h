@@ -4,7 +4,7 @@
 #include <brdfs/measured/measured_brdf.h>
 #include <brdfs/measured/scattered/interpolant.h>
 #include <brdfs/measured/scattered/samples.h>
-#include <hshfit/least_squares.h>
+#include <hshfit/projection/least_squares.h>
 
 #include <memory>
 #include <optional>

@@ -1,6 +1,6 @@
 #include <brdfs/measured/scattered/scattered.h>
 #include <brdfs/measured/scattered/text_file.h>
-#include <hshfit/mapped_file.h>
+#include <hshfit/files/mapped_file.h>
 
 namespace hshfit::brdfs {
 

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
-namespace hshfit {
-
+namespace hshfit::bases {
 namespace {
 
 constexpr std::size_t blockSize = 32;
@@ -81,10 +80,6 @@ void tabulateByTheta(const Basis& basis, DirectionBatch directions, Basis::Layou
 
 }  // namespace
 
-Elevation<double> elevationOf(const Direction& d) {
-    return {d.z, d.z > 0 ? oneMinusZ(d) : 1 - d.z};
-}
-
 double azimuthSign(int m, bool condonShortley) {
     return condonShortley && m % 2 != 0 ? -1 : 1;
 }
@@ -131,4 +126,4 @@ void Basis::tabulate(DirectionBatch directions, Layout layout, float* out) const
     tabulateByTheta(*this, directions, layout, out);
 }
 
-}  // namespace hshfit
+}  // namespace hshfit::bases

@@ -1,22 +1,12 @@
 #pragma once
 
-#include <hshfit/directions.h>
+#include <hshfit/brdf/directions.h>
 
 #include <span>
 #include <string>
 #include <vector>
 
-namespace hshfit {
-
-/// A polar position as both mu = cos(theta) and 1 - mu, so that neither end loses digits.
-/// Use `elevationOf`, which takes 1 - mu from x and y near the pole.
-template <class Real>
-struct Elevation {
-    Real mu;
-    Real oneMinusMu;
-};
-
-Elevation<double> elevationOf(const Direction& d);
+namespace hshfit::bases {
 
 /// Slot of (l, m) in a coefficient vector: l(l+1) + m. Every basis uses it, with zeros in the
 /// slots of functions that it does not have.
@@ -117,4 +107,12 @@ void azimuthParts(const Direction& d, int order, bool condonShortley, double* ou
 /// (-1)^m with the Condon-Shortley phase, else 1.
 double azimuthSign(int m, bool condonShortley);
 
+}  // namespace hshfit::bases
+
+namespace hshfit {
+using bases::azimuthParts;
+using bases::azimuthSign;
+using bases::Basis;
+using bases::BasisOptions;
+using bases::slotOf;
 }  // namespace hshfit

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <hshfit/bases/basis.h>
-#include <hshfit/bases/kernels/long_orders.h>
-#include <hshfit/bases/kernels/short_orders.h>
+#include <hshfit/bases/internal/long_orders.h>
+#include <hshfit/bases/internal/short_orders.h>
 
 #include <array>
 #include <memory>

@@ -1,7 +1,7 @@
 #include <hshfit/bases/slepian.h>
 
 #include <hshfit/bases/sh.h>
-#include <hshfit/quadrature.h>
+#include <hshfit/quadrature/quadrature.h>
 
 #include <algorithm>
 #include <cassert>

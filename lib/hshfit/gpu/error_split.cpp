@@ -1,10 +1,10 @@
 #include <hshfit/gpu/error_split.h>
 
+#include <hshfit/accuracy/metrics.h>
 #include <hshfit/bases/catalog.h>
+#include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
-#include <hshfit/metrics.h>
-#include <hshfit/projection.h>
-#include <hshfit/reconstruction.h>
+#include <hshfit/projection/projection.h>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <hshfit/brdf.h>
+#include <hshfit/brdf/brdf.h>
 #include <hshfit/gpu/payload.h>
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <hshfit/coefficients.h>
+#include <hshfit/coefficients/coefficients.h>
 #include <hshfit/gpu/texels.h>
 
 #include <array>

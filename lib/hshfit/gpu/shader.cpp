@@ -11,16 +11,14 @@
 #include <array>
 #include <cctype>
 
-namespace hshfit {
-
-namespace embedded {
+namespace hshfit::embedded {
 extern const std::string_view shader_basis, shader_clamp, shader_ends, shader_eval, shader_header,
     shader_shade, shader_turn, shader_uv;
 extern const std::string_view shader_glsl, shader_glsl_es, shader_glsl_functions, shader_hlsl,
     shader_metal, shader_osl, shader_wgsl;
-}  // namespace embedded
+}  // namespace hshfit::embedded
 
-namespace gpu {
+namespace hshfit::gpu {
 namespace {
 
 using kainjow::mustache::data;
@@ -294,5 +292,4 @@ std::string shaderSource(Language language, const Payload& payload, const Shader
     return withoutGaps(text.render(page));
 }
 
-}  // namespace gpu
-}  // namespace hshfit
+}  // namespace hshfit::gpu

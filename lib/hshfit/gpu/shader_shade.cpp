@@ -1,5 +1,5 @@
-#include <hshfit/gpu/environment_matrix.h>
 #include <hshfit/gpu/shader_data.h>
+#include <hshfit/light/environment_matrix.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

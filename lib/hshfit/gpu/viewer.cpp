@@ -1,9 +1,9 @@
 #include <hshfit/gpu/viewer.h>
 
 #include <hshfit/error.h>
+#include <hshfit/files/atomic_file.h>
 #include <hshfit/gpu/shader.h>
-#include <hshfit/output/atomic_file.h>
-#include <hshfit/output/page_figures.h>
+#include <hshfit/pages/page_figures.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>
@@ -14,18 +14,16 @@
 #include <cctype>
 #include <cmath>
 
-namespace hshfit {
-
-namespace embedded {
+namespace hshfit::embedded {
 extern const std::string_view viewer_page, viewer_style;
 extern const std::string_view viewer_shapes, viewer_sky, viewer_renderer, viewer_controls,
     viewer_panes, viewer_main;
 extern const std::string_view viewer_geometry_vert, viewer_geometry_frag, viewer_screen_vert,
     viewer_environment_glsl, viewer_exact_glsl, viewer_fit_glsl, viewer_shade_frag,
     viewer_composite_frag;
-}  // namespace embedded
+}  // namespace hshfit::embedded
 
-namespace gpu {
+namespace hshfit::gpu {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -200,5 +198,4 @@ void writeViewer(const std::string& path, const ViewerInput& input, bool force) 
     file.commit();
 }
 
-}  // namespace gpu
-}  // namespace hshfit
+}  // namespace hshfit::gpu

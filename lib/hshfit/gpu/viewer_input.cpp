@@ -1,7 +1,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/gpu/viewer.h>
-#include <hshfit/projection.h>
+#include <hshfit/projection/projection.h>
 
 #include <fmt/format.h>
 

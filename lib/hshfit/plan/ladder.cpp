@@ -2,7 +2,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/representation/basis_matrix.h>
-#include <hshfit/representation/halfway_terms.h>
+#include <hshfit/representation/halfway/halfway_terms.h>
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <hshfit/brdf.h>
+#include <hshfit/brdf/brdf.h>
 #include <hshfit/plan/scene.h>
-#include <hshfit/representation/form.h>
+#include <hshfit/representation/forms/form.h>
 
 #include <span>
 #include <string>

@@ -3,8 +3,8 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/plan/timing.h>
-#include <hshfit/representation/pair_evaluator.h>
-#include <hshfit/representation/represented_brdf.h>
+#include <hshfit/representation/forms/pair_evaluators.h>
+#include <hshfit/representation/forms/represented_brdf.h>
 
 #include <fmt/format.h>
 

@@ -55,7 +55,7 @@ MaterialLight::MaterialLight(const Scene& scene, const Material& material, const
         }
         if (level > 0 && countOf(light) > mostSamples) return;
         std::vector<Radiance> truth = radianceIn(light, brdf, views_);
-        if (level > 0) change_ = plan::errorOf(budget_, views_, truth, truth_);
+        if (level > 0) change_ = light::errorOf(budget_, views_, truth, truth_);
         light_ = std::move(light);
         truth_ = std::move(truth);
         if (level > 0 && converged()) return;

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <hshfit/plan/light_samples.h>
-#include <hshfit/plan/radiance.h>
-#include <hshfit/plan/views.h>
+#include <hshfit/light/light_samples.h>
+#include <hshfit/light/radiance.h>
+#include <hshfit/light/views.h>
+#include <hshfit/plan/scene.h>
 
 #include <map>
 #include <string>
@@ -37,7 +38,7 @@ public:
     std::vector<Radiance> radianceOf(const PairEvaluator& evaluator, std::size_t channels) const;
 
     double errorOf(const std::vector<Radiance>& radiance) const {
-        return plan::errorOf(budget_, views_, truth_, radiance);
+        return light::errorOf(budget_, views_, truth_, radiance);
     }
 
 private:

@@ -1,8 +1,8 @@
 #include <hshfit/plan/material_search.h>
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/brdf/one_channel.h>
 #include <hshfit/error.h>
-#include <hshfit/one_channel.h>
 #include <hshfit/representation/split.h>
 
 #include <fmt/format.h>
@@ -198,7 +198,7 @@ void MaterialSearch::measureFloor(Part& part, Quantity quantity) {
                     }
                 }
             }
-            floor.push_back(plan::errorOf(plan_.material.budget, views, truth, radiance));
+            floor.push_back(light::errorOf(plan_.material.budget, views, truth, radiance));
         }
     }
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <hshfit/plan/scene.h>
-#include <hshfit/representation/form.h>
+#include <hshfit/representation/forms/form.h>
 
 #include <functional>
 #include <optional>

@@ -1,4 +1,4 @@
-#include <hshfit/output/page_figures.h>
+#include <hshfit/pages/page_figures.h>
 #include <hshfit/plan/plan_files.h>
 #include <hshfit/version.h>
 
@@ -8,13 +8,11 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hshfit {
-
-namespace embedded {
+namespace hshfit::embedded {
 extern const std::string_view plan_html;
-}
+}  // namespace hshfit::embedded
 
-namespace plan {
+namespace hshfit::plan {
 namespace {
 
 using kainjow::mustache::data;
@@ -141,5 +139,4 @@ std::string planPage(const Plan& plan) {
     return kainjow::mustache::mustache(std::string(embedded::plan_html)).render(page);
 }
 
-}  // namespace plan
-}  // namespace hshfit
+}  // namespace hshfit::plan

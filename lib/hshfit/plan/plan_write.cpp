@@ -1,6 +1,6 @@
-#include <hshfit/output/atomic_file.h>
-#include <hshfit/output/page_figures.h>
-#include <hshfit/output/representation_file.h>
+#include <hshfit/coefficient_files/representation_file.h>
+#include <hshfit/files/atomic_file.h>
+#include <hshfit/pages/page_figures.h>
 #include <hshfit/plan/plan_files.h>
 
 #include <fmt/format.h>

@@ -2,9 +2,9 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
-#include <hshfit/quadrature.h>
+#include <hshfit/quadrature/quadrature.h>
 #include <hshfit/representation/basis_matrix.h>
-#include <hshfit/representation/halfway.h>
+#include <hshfit/representation/halfway/halfway.h>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include <hshfit/error.h>
-#include <hshfit/mapped_file.h>
-#include <hshfit/output/internal/json_fields.h>
-#include <hshfit/plan/picture_light.h>
+#include <hshfit/files/json_fields.h>
+#include <hshfit/files/mapped_file.h>
+#include <hshfit/light/picture_light.h>
 #include <hshfit/plan/scene.h>
 
 #include <fmt/format.h>
@@ -224,10 +224,6 @@ Material material(const JsonFields& fields, const Json& object, const Budget& st
 }
 
 }  // namespace
-
-std::string_view metricName(Budget::Metric metric) {
-    return metric == Budget::Metric::log ? "log" : "relative_l2";
-}
 
 Scene readScene(const std::string& path) {
     const MappedFile file(path);

@@ -1,6 +1,6 @@
 #include <hshfit/plan/timing.h>
 
-#include <hshfit/representation/pair_evaluator.h>
+#include <hshfit/representation/forms/pair_evaluators.h>
 
 #include <algorithm>
 #include <chrono>

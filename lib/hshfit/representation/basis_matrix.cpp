@@ -2,7 +2,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
-#include <hshfit/quadrature.h>
+#include <hshfit/quadrature/quadrature.h>
 #include <hshfit/representation/factoring_blocks.h>
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@
 #include <numbers>
 #include <tuple>
 
-namespace hshfit {
+namespace hshfit::inline representation {
 namespace {
 
 constexpr double halfRoot = 1 / std::numbers::sqrt2;
@@ -347,4 +347,4 @@ Representation truncated(const Representation& matrix, int order) {
     return result;
 }
 
-}  // namespace hshfit
+}  // namespace hshfit::inline representation

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <hshfit/projection.h>
+#include <hshfit/projection/projection.h>
 #include <hshfit/representation/representation.h>
 
 #include <vector>
 
-namespace hshfit {
+namespace hshfit::inline representation {
 
 /// One orthonormal product function of both directions, with B the basis functions:
 /// of norm 1 over both hemispheres in the basis' inner product, (l, m) for wi and (k, p) for wo:
@@ -70,4 +70,4 @@ ProductSymmetry symmetryOf(const Representation& matrix);
 /// functions depend on the order, or a factored matrix.
 Representation truncated(const Representation& matrix, int order);
 
-}  // namespace hshfit
+}  // namespace hshfit::inline representation

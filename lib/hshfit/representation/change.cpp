@@ -8,7 +8,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace hshfit {
+namespace hshfit::inline representation {
 namespace {
 
 /// In slots, as many rows as there are, with the L2 norm over the hemisphere as Euclidean norm.
@@ -99,4 +99,4 @@ void addStep(Representation& after, const Representation& before, std::string wh
     after.steps.push_back({std::move(what), relativeChange(before, after)});
 }
 
-}  // namespace hshfit
+}  // namespace hshfit::inline representation

@@ -2,7 +2,7 @@
 
 #include <hshfit/representation/representation.h>
 
-namespace hshfit {
+namespace hshfit::inline representation {
 
 /// Relative change of the projected quantity in L2 over both hemispheres, |after - before| over
 /// |before|, from coefficients: with the solid angles of the outgoing set, or over all terms.
@@ -17,4 +17,4 @@ std::vector<double> changeWeights(const Representation& representation);
 /// Appends the step with its cost.
 void addStep(Representation& after, const Representation& before, std::string what);
 
-}  // namespace hshfit
+}  // namespace hshfit::inline representation

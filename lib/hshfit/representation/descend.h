@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace hshfit {
+namespace hshfit::inline representation {
 
 /// Where a search may move along one coordinate, and how far at first.
 struct SearchAxis {
@@ -51,4 +51,4 @@ double descend(F&& f, std::vector<double>& x, const std::vector<SearchAxis>& axe
     return best;
 }
 
-}  // namespace hshfit
+}  // namespace hshfit::inline representation

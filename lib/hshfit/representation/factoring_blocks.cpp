@@ -9,7 +9,7 @@
 #include <map>
 #include <numbers>
 
-namespace hshfit {
+namespace hshfit::inline representation {
 namespace {
 
 std::string blockName(const ProductTerm& term, const ProductSymmetry& symmetry) {
@@ -172,4 +172,4 @@ std::vector<double> multipliedOut(const Representation& matrix,
     return values;
 }
 
-}  // namespace hshfit
+}  // namespace hshfit::inline representation

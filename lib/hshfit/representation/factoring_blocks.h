@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace hshfit {
+namespace hshfit::inline representation {
 
 /// Terms of both directions that form one matrix: rows the functions of wo, columns those of wi.
 /// Terms in different blocks share no pair of functions:
@@ -35,4 +35,4 @@ std::vector<TermBlock> termBlocks(const std::vector<ProductTerm>& terms,
 std::vector<double> multipliedOut(const Representation& matrix,
                                   const std::vector<ProductTerm>& terms);
 
-}  // namespace hshfit
+}  // namespace hshfit::inline representation

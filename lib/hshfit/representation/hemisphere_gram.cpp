@@ -1,13 +1,13 @@
 #include <hshfit/representation/hemisphere_gram.h>
 
-#include <hshfit/quadrature.h>
+#include <hshfit/quadrature/quadrature.h>
 
 #include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
 
-namespace hshfit {
+namespace hshfit::inline representation {
 namespace {
 
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -106,4 +106,4 @@ void HemisphereGram::whitenFunctional(double* slots) const {
     apply(Step::solveTransposed, slots);
 }
 
-}  // namespace hshfit
+}  // namespace hshfit::inline representation

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace hshfit {
+namespace hshfit::inline representation {
 
 /// What the functions of a basis are to each other over the hemisphere, in the basis' inner
 /// product: for each m, with T the theta parts and w = 1 or mu,
@@ -39,4 +39,4 @@ private:
     double condition_ = 1;
 };
 
-}  // namespace hshfit
+}  // namespace hshfit::inline representation

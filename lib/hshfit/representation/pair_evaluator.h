@@ -1,11 +1,8 @@
 #pragma once
 
-#include <hshfit/directions.h>
-#include <hshfit/representation/representation.h>
+#include <hshfit/brdf/directions.h>
 
-#include <memory>
-
-namespace hshfit {
+namespace hshfit::inline representation {
 
 /// A representation laid out for speed: many pairs at once, in single precision, by vector code
 /// chosen at run time. The same values as `reconstruct` within single-precision rounding of the
@@ -19,8 +16,4 @@ public:
     virtual void evaluate(DirectionBatch wi, DirectionBatch wo, float* out) const = 0;
 };
 
-/// Throws InputError as `reconstruct` does.
-std::unique_ptr<PairEvaluator> pairEvaluator(const Representation& representation,
-                                             const BrdfOpener& open);
-
-}  // namespace hshfit
+}  // namespace hshfit::inline representation

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <stdexcept>
 
-namespace hshfit {
+namespace hshfit::inline representation {
 namespace {
 
 const StoredArray* find(const Representation& representation, std::string_view name) {
@@ -142,4 +142,4 @@ Coefficients decoded(const Representation& representation) {
     return result;
 }
 
-}  // namespace hshfit
+}  // namespace hshfit::inline representation

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <hshfit/brdf.h>
-#include <hshfit/coefficients.h>
+#include <hshfit/brdf/brdf.h>
+#include <hshfit/coefficients/coefficients.h>
 #include <hshfit/representation/stored_array.h>
 
 #include <functional>
@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace hshfit {
+namespace hshfit::inline representation {
 
 /// What was done to coefficients and what it cost: the relative change, in L2 over both
 /// hemispheres, of the projected quantity between before and after.
@@ -74,4 +74,4 @@ Representation fromCoefficients(const Coefficients& coefficients);
 /// multiplied out. UsageError for another kind: `expand` (represented_brdf.h) projects those.
 Coefficients decoded(const Representation& representation);
 
-}  // namespace hshfit
+}  // namespace hshfit::inline representation

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-namespace hshfit {
+namespace hshfit::inline representation {
 namespace {
 
 constexpr double lowestRing = 89 * (pi / 180);  // as far down as outgoing directions are kept
@@ -194,4 +194,4 @@ Split takeOut(const Brdf& brdf, const std::string& what, const BrdfOpener& open)
     return {added, std::make_unique<Remainder>(brdf, open(added), true)};
 }
 
-}  // namespace hshfit
+}  // namespace hshfit::inline representation

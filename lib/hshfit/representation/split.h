@@ -1,12 +1,12 @@
 #pragma once
 
-#include <hshfit/brdf.h>
+#include <hshfit/brdf/brdf.h>
 #include <hshfit/representation/representation.h>
 
 #include <memory>
 #include <string>
 
-namespace hshfit {
+namespace hshfit::inline representation {
 
 /// f - added: lobes and kinks of both, covered where both are; isotropy, mirror symmetry and
 /// reciprocity where both have them, energy conservation where f has it and `added` is nowhere
@@ -56,4 +56,4 @@ std::vector<double> diffuseAlbedo(const Brdf& brdf);
 /// Throws UsageError as `open` and `Remainder` do.
 Split takeOut(const Brdf& brdf, const std::string& what, const BrdfOpener& open);
 
-}  // namespace hshfit
+}  // namespace hshfit::inline representation

@@ -14,7 +14,7 @@
 #include <limits>
 #include <numeric>
 
-namespace hshfit {
+namespace hshfit::inline representation {
 
 static_assert(std::endian::native == std::endian::little, "arrays are packed little-endian");
 
@@ -284,4 +284,4 @@ void unpackInto(StoredArray& array, std::span<const std::byte> bytes, bool maske
     }
 }
 
-}  // namespace hshfit
+}  // namespace hshfit::inline representation

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace hshfit {
+namespace hshfit::inline representation {
 
 /// How the numbers of a stored array are kept; little-endian.
 enum class Precision {
@@ -64,4 +64,4 @@ std::size_t entropyBytes(const StoredArray& array);
 void unpackInto(StoredArray& array, std::span<const std::byte> bytes, bool masked,
                 const std::string& where);
 
-}  // namespace hshfit
+}  // namespace hshfit::inline representation

@@ -1,7 +1,7 @@
 #include <hshfit/stability/basis_errors.h>
 
 #include <hshfit/error.h>
-#include <hshfit/quadrature.h>
+#include <hshfit/quadrature/quadrature.h>
 #include <hshfit/stability/reference.h>
 
 #include <fmt/format.h>

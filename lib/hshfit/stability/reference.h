@@ -1,7 +1,7 @@
 #pragma once
 
 #include <hshfit/bases/jacobi.h>
-#include <hshfit/directions.h>
+#include <hshfit/brdf/directions.h>
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 #include <hshfit/stability/stress.h>
 
 #include <hshfit/error.h>
-#include <hshfit/projection.h>
+#include <hshfit/projection/projection.h>
 
 #include <tbb/parallel_for.h>
 

@@ -2,7 +2,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/bases/lsosh.h>
-#include <hshfit/brdf.h>
+#include <hshfit/brdf/brdf.h>
 #include <hshfit/stability/basis_errors.h>
 
 #include <functional>

@@ -1,4 +1,4 @@
-#include <hshfit/output/file_set.h>
+#include <hshfit/files/file_set.h>
 #include <hshfit/stability/stress.h>
 
 #include <fmt/format.h>

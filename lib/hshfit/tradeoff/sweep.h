@@ -1,7 +1,7 @@
 #pragma once
 
-#include <hshfit/brdf.h>
-#include <hshfit/representation/form.h>
+#include <hshfit/brdf/brdf.h>
+#include <hshfit/representation/forms/form.h>
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <hshfit/representation/pair_evaluator.h>
+#include <hshfit/representation/forms/pair_evaluators.h>
 
 #include <functional>
 #include <span>

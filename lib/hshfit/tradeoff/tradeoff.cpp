@@ -1,8 +1,8 @@
 #include <hshfit/tradeoff/tradeoff.h>
 
-#include <hshfit/representation/factoring.h>
-#include <hshfit/representation/pair_evaluator.h>
-#include <hshfit/representation/represented_brdf.h>
+#include <hshfit/representation/factoring/factoring.h>
+#include <hshfit/representation/forms/pair_evaluators.h>
+#include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/representation/split.h>
 #include <hshfit/tradeoff/front.h>
 #include <hshfit/tradeoff/projection_cache.h>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <hshfit/accuracy/pair_errors.h>
 #include <hshfit/error.h>
-#include <hshfit/tradeoff/pair_errors.h>
 #include <hshfit/tradeoff/sweep.h>
 #include <hshfit/tradeoff/timing.h>
 

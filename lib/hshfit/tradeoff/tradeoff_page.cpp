@@ -1,4 +1,4 @@
-#include <hshfit/output/page_figures.h>
+#include <hshfit/pages/page_figures.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
 #include <hshfit/version.h>
 

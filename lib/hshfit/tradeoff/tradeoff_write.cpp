@@ -1,8 +1,8 @@
 #include <hshfit/error.h>
-#include <hshfit/output/atomic_file.h>
-#include <hshfit/output/gnuplot.h>
-#include <hshfit/output/page_figures.h>
-#include <hshfit/output/report_files.h>
+#include <hshfit/files/atomic_file.h>
+#include <hshfit/pages/gnuplot.h>
+#include <hshfit/pages/page_figures.h>
+#include <hshfit/pages/report_files.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
 
 #include <fmt/format.h>

@@ -8,11 +8,11 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
+#include <hshfit/files/atomic_file.h>
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/viewer.h>
-#include <hshfit/output/atomic_file.h>
-#include <hshfit/output/page_figures.h>
-#include <hshfit/projection.h>
+#include <hshfit/pages/page_figures.h>
+#include <hshfit/projection/projection.h>
 
 #include <brdfs/catalog.h>
 

@@ -3,7 +3,7 @@
 #include "container_samples.h"
 
 #include <hshfit/error.h>
-#include <hshfit/gpu/containers/checksum.h>
+#include <hshfit/files/checksum.h>
 
 #include <cstring>
 #include <functional>

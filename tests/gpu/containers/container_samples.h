@@ -3,7 +3,7 @@
 // Payloads of every kind, and folders of exported files, for the tests of containers.
 
 #include <gpu/asymmetric.h>
-#include <lib/coefficient_samples.h>
+#include <lib/coefficient_files/coefficient_samples.h>
 
 #include <hshfit/gpu/containers/containers.h>
 

@@ -4,7 +4,7 @@
 
 #include "container_samples.h"
 
-#include <hshfit/gpu/containers/checksum.h>
+#include <hshfit/files/checksum.h>
 
 #include <cstdio>
 #include <cstdlib>

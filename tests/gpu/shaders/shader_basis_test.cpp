@@ -4,7 +4,7 @@
 #include <hshfit/bases/sh.h>
 #include <hshfit/error.h>
 #include <hshfit/gpu/basis_steps.h>
-#include <hshfit/gpu/environment_matrix.h>
+#include <hshfit/light/environment_matrix.h>
 
 #include <gtest/gtest.h>
 #include <boost/math/quadrature/gauss.hpp>

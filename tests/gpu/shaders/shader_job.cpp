@@ -3,8 +3,8 @@
 #include "../asymmetric.h"
 
 #include <hshfit/bases/catalog.h>
-#include <hshfit/quadrature.h>
-#include <hshfit/reconstruction.h>
+#include <hshfit/coefficients/reconstruction.h>
+#include <hshfit/quadrature/quadrature.h>
 
 #include <algorithm>
 #include <cmath>

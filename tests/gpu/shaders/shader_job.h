@@ -1,6 +1,6 @@
 #pragma once
 
-#include <hshfit/directions.h>
+#include <hshfit/brdf/directions.h>
 #include <hshfit/gpu/payload.h>
 #include <hshfit/gpu/shader.h>
 

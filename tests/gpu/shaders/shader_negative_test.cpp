@@ -81,8 +81,7 @@ void expectRefused(Compile compile) {
 TEST_P(ShaderNegative, UndeclaredNamesAreRefused) {
     const ShaderJob once = job();
     onItsWay([&](const Way& way) {
-        expectRefused(
-            [&] { way.run(once, source(way, once, "= wi.z;", "= undeclaredName;")); });
+        expectRefused([&] { way.run(once, source(way, once, "= wi.z;", "= undeclaredName;")); });
     });
 }
 
@@ -98,8 +97,7 @@ TEST_P(ShaderNegative, WrongTypesAreRefused) {
 TEST(ShaderNegativeFragment, WrongTypesAreRefused) {
     const ShaderJob once = job();
     try {
-        expectRefused(
-            [&] { validateFragment(source(ways().front(), once, "= wi.z;", "= wi;")); });
+        expectRefused([&] { validateFragment(source(ways().front(), once, "= wi.z;", "= wi;")); });
     } catch (const Missing& reason) {
         GTEST_SKIP() << reason.what();
     }

@@ -1,7 +1,7 @@
 #include <hshfit/gpu/containers/internal/byte_fields.h>
 #include <hshfit/gpu/containers/internal/container_files.h>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 namespace {
 
 void write(const TexelFile& file, AtomicFile& out) {
@@ -35,4 +35,4 @@ const Container& binContainer() {
     return row;
 }
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 namespace {
 
 std::string_view numberTag(Number number) {
@@ -57,4 +57,4 @@ const Container& findContainer(std::string_view name) {
     throw UsageError(fmt::format("unknown container '{}'; known: {}", name, known));
 }
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <hshfit/files/file_set.h>
 #include <hshfit/gpu/payload.h>
-#include <hshfit/output/file_set.h>
 
 #include <cstdint>
 #include <optional>
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 
 /// What the texels of a file are.
 enum class Role { coefficients, basis };
@@ -102,4 +102,4 @@ ImportedPayload readTexelFile(std::string_view bytes, const Container& container
 /// Whether readPayload would take the file for one of ours. False for one that cannot be read.
 bool looksLikePayload(const std::string& path);
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

@@ -6,7 +6,7 @@
 
 #include <array>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 namespace {
 
 constexpr std::string_view magic = "DDS ";
@@ -105,4 +105,4 @@ const Container& ddsContainer() {
     return row;
 }
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

@@ -1,13 +1,13 @@
-#include <hshfit/gpu/containers/checksum.h>
+#include <hshfit/files/checksum.h>
+#include <hshfit/files/mapped_file.h>
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/containers/sidecar.h>
-#include <hshfit/mapped_file.h>
 
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 namespace {
 
 void checkName(const std::string& name) {
@@ -83,4 +83,4 @@ std::vector<ExportedFile> writeContainers(const Payload& payload,
     return written;
 }
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

@@ -1,13 +1,13 @@
+#include <hshfit/files/exr_header.h>
+#include <hshfit/files/exr_stream.h>
 #include <hshfit/gpu/containers/internal/byte_fields.h>
 #include <hshfit/gpu/containers/internal/container_files.h>
 #include <hshfit/gpu/containers/internal/exr_texels.h>
-#include <hshfit/output/exr_header.h>
-#include <hshfit/output/internal/exr_stream.h>
 
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 namespace {
 
 constexpr std::size_t maxHeight = 1 << 16;  // of what checkExrHeader lets through
@@ -86,4 +86,4 @@ const Container& exrContainer() {
     return row;
 }
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

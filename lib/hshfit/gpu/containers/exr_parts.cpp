@@ -1,8 +1,8 @@
+#include <hshfit/files/exr_header.h>
+#include <hshfit/files/exr_stream.h>
 #include <hshfit/gpu/containers/internal/byte_fields.h>
 #include <hshfit/gpu/containers/internal/container_files.h>
 #include <hshfit/gpu/containers/internal/exr_texels.h>
-#include <hshfit/output/exr_header.h>
-#include <hshfit/output/internal/exr_stream.h>
 
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
@@ -10,7 +10,7 @@
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 namespace {
 
 constexpr ExrRules rules{.files = "parts of texels", .picture = true};
@@ -102,4 +102,4 @@ const Container& exrPartsContainer() {
     return row;
 }
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

@@ -6,7 +6,7 @@
 #include <ImfStringAttribute.h>
 #include <fmt/format.h>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 namespace {
 
 constexpr const char* names[] = {"R", "G", "B", "A"};
@@ -64,4 +64,4 @@ std::string exrSidecarOf(const Imf::Header& header, const std::string& file) {
     return text->value();
 }
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

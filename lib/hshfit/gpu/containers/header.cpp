@@ -8,7 +8,7 @@
 #include <charconv>
 #include <utility>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 namespace {
 
 constexpr std::string_view magic = "/* hshfit-gpu 1\n";
@@ -177,4 +177,4 @@ const Container& headerContainer() {
     return row;
 }
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

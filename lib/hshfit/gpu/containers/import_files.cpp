@@ -1,8 +1,8 @@
-#include <hshfit/gpu/containers/checksum.h>
+#include <hshfit/files/checksum.h>
+#include <hshfit/files/mapped_file.h>
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/containers/internal/byte_fields.h>
 #include <hshfit/gpu/containers/sidecar.h>
-#include <hshfit/mapped_file.h>
 
 #include <hshfit/error.h>
 
@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 namespace {
 
 namespace fs = std::filesystem;
@@ -214,4 +214,4 @@ bool looksLikePayload(const std::string& path) {
     }
 }
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

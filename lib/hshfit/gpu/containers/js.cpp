@@ -1,11 +1,11 @@
 // An ECMAScript module: metadata as an object literal (the sidecar word for word), the numbers as a
 // typed array out of base64.
 
-#include <hshfit/gpu/containers/checksum.h>
+#include <hshfit/files/checksum.h>
 #include <hshfit/gpu/containers/internal/byte_fields.h>
 #include <hshfit/gpu/containers/internal/container_files.h>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 namespace {
 
 constexpr std::string_view magic = "// hshfit-gpu 1: ";
@@ -94,4 +94,4 @@ const Container& jsContainer() {
     return row;
 }
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

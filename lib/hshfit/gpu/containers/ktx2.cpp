@@ -12,7 +12,7 @@
 
 #include <zstd.h>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 namespace {
 
 constexpr std::string_view magic("\xabKTX 20\xbb\r\n\x1a\n", 12);
@@ -214,4 +214,4 @@ const Container& ktx2Container() {
     return row;
 }
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 
 /// What a sidecar says about files: to be known before texels are read.
 struct SidecarIndex {
@@ -43,4 +43,4 @@ std::string testText(const Payload& payload, std::span<const TestTriple> tests);
 /// Order, layout, map and so on as words, for attributes beside the sidecar.
 std::vector<std::pair<std::string, std::string>> payloadFacts(const Payload& payload);
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

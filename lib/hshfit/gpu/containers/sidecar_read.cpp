@@ -1,9 +1,9 @@
 #include <hshfit/gpu/containers/sidecar.h>
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/coefficient_files/coefficient_formats.h>
 #include <hshfit/error.h>
-#include <hshfit/output/coefficient_formats.h>
-#include <hshfit/output/internal/json_fields.h>
+#include <hshfit/files/json_fields.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 namespace {
 
 using Json = nlohmann::json;
@@ -253,4 +253,4 @@ Payload parseSidecar(std::string_view text, const std::string& file, SidecarInde
     return payload;
 }
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

@@ -1,8 +1,8 @@
 #include <hshfit/gpu/containers/sidecar.h>
 
 #include <hshfit/bases/catalog.h>
-#include <hshfit/gpu/containers/checksum.h>
-#include <hshfit/output/coefficient_formats.h>
+#include <hshfit/coefficient_files/coefficient_formats.h>
+#include <hshfit/files/checksum.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -253,4 +253,4 @@ std::vector<std::pair<std::string, std::string>> payloadFacts(const Payload& pay
             {"source", payload.source}};
 }
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

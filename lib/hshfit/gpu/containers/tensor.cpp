@@ -1,9 +1,9 @@
+#include <hshfit/files/tensor_file.h>
+#include <hshfit/files/tensor_file_writer.h>
 #include <hshfit/gpu/containers/internal/byte_fields.h>
 #include <hshfit/gpu/containers/internal/container_files.h>
-#include <hshfit/output/tensor_file_writer.h>
-#include <hshfit/tensor_file.h>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 namespace {
 
 constexpr std::string_view sidecarField = "hshfit_sidecar";
@@ -88,4 +88,4 @@ const Container& tensorContainer() {
     return row;
 }
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

@@ -1,12 +1,12 @@
 #include <hshfit/gpu/containers/test_triples.h>
 
-#include <hshfit/reconstruction.h>
+#include <hshfit/coefficients/reconstruction.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 namespace {
 
 constexpr int spread = 64;
@@ -81,4 +81,4 @@ double largestDifference(const Payload& payload, std::span<const TestTriple> tri
     return largest > 0 ? difference / largest : difference;
 }
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 
 /// A pair of directions and what the payload means there, for whoever reads the files to check
 /// himself with.
@@ -25,4 +25,4 @@ std::vector<TestTriple> testTriples(const Payload& payload);
 /// absolute, if all are 0).
 double largestDifference(const Payload& payload, std::span<const TestTriple> triples);
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

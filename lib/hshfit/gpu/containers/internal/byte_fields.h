@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 
 /// Little-endian fields of a file in memory, and messages that name the field and where it is.
 class ByteFields {
@@ -68,4 +68,4 @@ inline std::size_t byteCount(const Texels& texels) {
     return texels.count() * numberBytes(texels.number);
 }
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

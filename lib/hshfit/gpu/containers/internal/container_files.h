@@ -2,7 +2,7 @@
 
 #include <hshfit/gpu/containers/containers.h>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 
 // The rows of the table, each in a source file of its own.
 const Container& binContainer();
@@ -14,4 +14,4 @@ const Container& jsContainer();
 const Container& headerContainer();
 const Container& tensorContainer();
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

@@ -2,15 +2,16 @@
 
 // What the two EXR containers share. Only for sources that use OpenEXR.
 
+#include <hshfit/coefficient_files/coefficient_formats.h>
 #include <hshfit/error.h>
+#include <hshfit/files/printable.h>
 #include <hshfit/gpu/containers/containers.h>
-#include <hshfit/output/coefficient_formats.h>
 
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <fmt/format.h>
 
-namespace hshfit::gpu {
+namespace hshfit::gpu::inline containers {
 
 inline constexpr std::string_view exrSidecar = "hshfit:sidecar";
 
@@ -38,4 +39,4 @@ auto readingExr(const std::string& file, const Work& work) {
 /// Throws InputError if there is none.
 std::string exrSidecarOf(const Imf::Header& header, const std::string& file);
 
-}  // namespace hshfit::gpu
+}  // namespace hshfit::gpu::inline containers

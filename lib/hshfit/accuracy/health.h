@@ -1,0 +1,55 @@
+#pragma once
+
+#include <hshfit/brdf/brdf.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace hshfit::inline accuracy {
+
+/// What is right and wrong with a BRDF, from evaluating it. Deterministic: the same for any number
+/// of threads.
+struct Health {
+    /// Direction pairs evaluated: half of them uniform over both hemispheres, half by half and
+    /// difference angles with theta_h crowded towards 0, where lobes are.
+    std::size_t pairs = 0;
+    /// The share of the uniform pairs at which f rests on measured samples, to about half a per
+    /// cent of all pairs; 1 for a model.
+    double coverage = 1;
+    /// Among the values (one per channel and pair).
+    std::uint64_t values = 0, negative = 0, notFinite = 0;
+
+    /// Sum of |f(wi, wo) - f(wo, wi)| c over that of (|f(wi, wo)| + |f(wo, wi)|) c with
+    /// c = cos(theta_i) cos(theta_o), over the pairs that are covered both ways and all channels:
+    /// 0 if reciprocal, 1 if one of the two is always 0.
+    double reciprocityDefect = 0;
+    /// The covered pair with the largest difference, times c, in a channel.
+    struct Exchange {
+        Direction wi, wo;
+        std::size_t channel = 0;
+        double value = 0, exchanged = 0;  ///< f(wi, wo), f(wo, wi)
+    };
+    std::optional<Exchange> worstExchange;
+
+    /// Directional albedos, by theta and, for an anisotropic BRDF, four azimuths.
+    struct Albedo {
+        Direction wo;
+        std::vector<double> values;  ///< one per channel; empty where it did not converge
+    };
+    std::vector<Albedo> albedos;
+    double albedoTolerance = 0;  ///< quadrature tolerance of the albedos
+    /// The largest of them: above 1, the surface reflects more than it receives.
+    double largestAlbedo() const;
+};
+
+struct HealthOptions {
+    std::size_t pairs = 16384;
+    double albedoTolerance = 1e-3;
+    std::function<void(std::size_t, std::size_t)> progress = {};
+};
+
+Health examine(const Brdf& brdf, const HealthOptions& options = {});
+
+}  // namespace hshfit::inline accuracy

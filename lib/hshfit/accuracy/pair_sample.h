@@ -1,0 +1,63 @@
+#pragma once
+
+#include <hshfit/brdf/brdf.h>
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::inline accuracy {
+
+/// Elevation bands of wo, in degrees: errors are given for each.
+constexpr std::array<double, 5> bandEdges{0, 30, 60, 75, 90};
+constexpr std::size_t bandCount = bandEdges.size() - 1;
+/// The band of a direction above the horizon.
+std::size_t bandOf(const Direction& wo);
+
+/// Pairs of directions with weights that add up to 1: sums over them are means over both
+/// hemispheres (d omega_i d omega_o). Pairs of one wo stand together.
+struct PairSample {
+    std::vector<Direction> wo;       ///< one per group
+    std::vector<std::size_t> first;  ///< [group], and the number of pairs: where a group begins
+    std::vector<double> x, y, z;     ///< wi of every pair
+    std::vector<double> weights;
+    /// Which of `replicates` independent estimates a pair belongs to: their scatter tells how
+    /// well the mean over all pairs is known.
+    std::vector<unsigned char> replicate;
+    int replicates = 1;
+    /// Per group, the stratum of cos(theta_o) over which albedo is integrated; empty where the
+    /// pairs do not cover the hemisphere.
+    std::vector<std::size_t> stratum;
+
+    std::size_t size() const { return x.size(); }
+    DirectionBatch group(std::size_t g) const {
+        return {x.data() + first[g], y.data() + first[g], z.data() + first[g],
+                first[g + 1] - first[g]};
+    }
+};
+
+struct SpreadOptions {
+    int replicates = 8;  ///< each of `outgoing` x `incoming` pairs, shifted at random
+    int outgoing = 16;   ///< equal strata of cos(theta_o)
+    int incoming = 256;  ///< half of them spread evenly, half towards lobes about the mirror
+};
+
+/// Pairs over both hemispheres: wo uniform in solid angle and stratified; wi from two rank-1
+/// lattices, one uniform in solid angle, one with half vectors whose slope is spread evenly over
+/// the logarithm from 1e-4 to 10, so that lobes of every width are seen. Weights are those of the
+/// mixture (Veach's balance heuristic). The same on every machine: the shifts are those of
+/// mt19937_64 with seed 1 (Cranley & Patterson 1976).
+PairSample spreadPairs(const SpreadOptions& options = {});
+
+/// Pairs as given; `weights` one per pair, or empty for equal ones. Replicates take turns. Pairs
+/// with a direction that is not above the horizon are left out. Throws UsageError if none is left
+/// or a weight is not positive.
+PairSample pairsFrom(std::span<const Direction> wi, std::span<const Direction> wo,
+                     std::span<const double> weights);
+
+/// f at every pair, [channel * size + pair]. On all threads unless `serial`.
+std::vector<double> evaluateOn(const Brdf& brdf, const PairSample& pairs, bool serial = false);
+
+}  // namespace hshfit::inline accuracy

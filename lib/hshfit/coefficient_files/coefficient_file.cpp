@@ -1,0 +1,143 @@
+#include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/coefficient_files/coefficient_formats.h>
+#include <hshfit/coefficient_files/representation_file.h>
+#include <hshfit/error.h>
+#include <hshfit/files/atomic_file.h>
+#include <hshfit/files/exr_header.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace hshfit::inline coefficient_files {
+namespace {
+
+enum class Form { none, json, exr };
+
+Form formByExtension(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    if (extension == ".json") return Form::json;
+    if (extension == ".exr") return Form::exr;
+    return Form::none;
+}
+
+Form formByContent(std::string_view bytes) {
+    if (hasExrMagic(bytes)) return Form::exr;
+    const auto first = bytes.find_first_not_of(" \t\r\n");
+    return first != std::string_view::npos && bytes[first] == '{' ? Form::json : Form::none;
+}
+
+/// At most `limit` bytes of a regular file.
+std::string readBytes(const std::string& path, std::size_t limit) {
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) {
+        throw InputError(fmt::format("{}: no such file", path));
+    }
+    if (!std::filesystem::is_regular_file(status)) {
+        throw InputError(fmt::format("{}: is not a regular file", path));
+    }
+    std::ifstream in(path, std::ios::binary);
+    if (!in) {
+        throw InputError(
+            fmt::format("{}: cannot be opened: {}", path, std::generic_category().message(errno)));
+    }
+    std::string bytes;
+    std::string block(std::size_t{1} << 16, '\0');
+    while (in && bytes.size() < limit) {
+        in.read(block.data(), static_cast<std::streamsize>(block.size()));
+        bytes.append(block, 0, static_cast<std::size_t>(in.gcount()));
+    }
+    if (in.bad()) throw InputError(fmt::format("{}: cannot be read to its end", path));
+    return bytes;
+}
+
+}  // namespace
+
+void writeCoefficients(const Coefficients& coefficients, const std::string& path) {
+    const Form form = formByExtension(path);
+    if (form == Form::none) {
+        throw UsageError(fmt::format(
+            "'{}': coefficient files are .json (exact) or .exr (float32); give one of the two",
+            path));
+    }
+    assert(coefficients.values.size() ==
+           coefficients.outgoing.size() * coefficients.channels.count() * coefficients.slots());
+    AtomicFile file(path);
+    if (form == Form::json) {
+        file.write(coefficientsToJson(coefficients));
+    } else {
+        coefficientsToExr(coefficients, file);
+    }
+    file.commit();
+}
+
+Coefficients readCoefficients(const std::string& path) {
+    const std::string bytes = readBytes(path, std::numeric_limits<std::size_t>::max());
+    if (bytes.empty()) throw InputError(fmt::format("{}: is empty", path));
+    Form form = formByContent(bytes);
+    if (form == Form::none) form = formByExtension(path);
+    switch (form) {
+        case Form::json:
+            return coefficientsFromJson(bytes, path);
+        case Form::exr:
+            return coefficientsFromExr(bytes, path);
+        case Form::none:
+            break;
+    }
+    throw InputError(
+        fmt::format("{}: is not a coefficient file, neither hshfit JSON nor OpenEXR", path));
+}
+
+void writeRepresentation(const Representation& representation, const std::string& path) {
+    const bool plain = representation.kind == Representation::Kind::outgoing &&
+                       representation.added.empty() && representation.steps.empty() &&
+                       representation.has("coefficients") &&
+                       representation.array("coefficients").precision == Precision::float64;
+    if (plain) return writeCoefficients(decoded(representation), path);
+    if (formByExtension(path) != Form::json) {
+        throw UsageError(
+            fmt::format("'{}': forms other than plain coefficients are kept in .json files", path));
+    }
+    AtomicFile file(path);
+    file.write(representationToJson(representation));
+    file.commit();
+}
+
+Representation readRepresentation(const std::string& path) {
+    const std::string bytes = readBytes(path, std::numeric_limits<std::size_t>::max());
+    if (formByContent(bytes) == Form::json && hasRepresentation(bytes)) {
+        return representationFromJson(bytes, path);
+    }
+    return fromCoefficients(readCoefficients(path));
+}
+
+bool looksLikeCoefficients(const std::string& path) {
+    std::string head;
+    try {
+        head = readBytes(path, std::size_t{1} << 16);
+        // The list of channels comes before the attribute that tells.
+        if (hasExrMagic(head)) head = readBytes(path, std::size_t{1} << 22);
+    } catch (const InputError&) {
+        return false;
+    }
+    switch (formByContent(head)) {
+        case Form::json:
+            return head.find("\"hshfit-coefficients\"") != std::string::npos;
+        case Form::exr:
+            return exrSaysCoefficients(head);
+        case Form::none:
+            break;
+    }
+    return false;
+}
+
+}  // namespace hshfit::inline coefficient_files

@@ -1,0 +1,302 @@
+#include <hshfit/bases/catalog.h>
+#include <hshfit/coefficient_files/coefficient_formats.h>
+#include <hshfit/error.h>
+#include <hshfit/files/json_fields.h>
+#include <hshfit/version.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace hshfit::inline coefficient_files {
+namespace {
+
+using Json = nlohmann::json;
+using Ordered = nlohmann::ordered_json;  // what is written keeps the order of this source
+
+constexpr const char* formatName = "hshfit-coefficients";
+constexpr int formatVersion = 1;
+constexpr const char* slotRule = "l*(l+1)+m";
+// The constants of OutgoingSet that a reader needs in order to rebuild the directions.
+constexpr int insetTexels = 1;
+constexpr double horizonRingDegrees = 1;
+constexpr int maxMapSide = 1 << 16;
+constexpr int maxDepth = 8;
+
+std::string text(const Ordered& value) {
+    return value.dump(-1, ' ', false, Ordered::error_handler_t::replace);
+}
+
+Json finiteOrNull(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+/// 51.99999999999999 is what 52 degrees come back as from a unit vector.
+double tidyDegrees(double angle) {
+    const double rounded = std::round(degrees(angle) * 1e10) / 1e10;
+    return rounded == 0 ? 0 : rounded;
+}
+
+Ordered describe(const OutgoingSet& set) {
+    if (set.directions.empty()) return {{"map", "none"}};
+    switch (set.map) {
+        case OutgoingSet::Map::parabolic:
+            return {{"map", "parabolic"},
+                    {"width", set.width},
+                    {"height", set.height},
+                    {"inset_texels", insetTexels},
+                    {"horizon_ring_degrees", horizonRingDegrees}};
+        case OutgoingSet::Map::elevations:
+            return {{"map", "elevations"},
+                    {"count", set.width},
+                    {"spacing", "tan(theta/2) = k/(count - 1/2)"},
+                    {"horizon_ring_degrees", horizonRingDegrees}};
+        case OutgoingSet::Map::direction:
+            break;
+    }
+    const Direction& d = set.directions.at(0);
+    return {{"map", "direction"},
+            {"theta", tidyDegrees(polarAngle(d))},
+            {"phi", tidyDegrees(azimuth(d))},
+            {"direction", {d.x, d.y, d.z}}};
+}
+
+const char* kindName(Channels::Kind kind) {
+    switch (kind) {
+        case Channels::Kind::grey:
+            return "grey";
+        case Channels::Kind::rgb:
+            return "rgb";
+        case Channels::Kind::spectral:
+            break;
+    }
+    return "spectral";
+}
+
+using Fields = JsonFields;
+
+void checkVersion(const Fields& root) {
+    if (const std::string format = root.word("format"); format != formatName) {
+        root.fail(fmt::format("is '{}'; it has to be '{}'", format.substr(0, 40), formatName),
+                  "format");
+    }
+    const int version = root.integer("version", 1, std::numeric_limits<int>::max());
+    if (version > formatVersion) {
+        root.fail(fmt::format("is {}: written by a newer hshfit; this one reads version {}",
+                              version, formatVersion),
+                  "version");
+    }
+}
+
+void readBasis(const Fields& basis, Coefficients& result) {
+    result.basis = basis.word("name");
+    const auto known = bases::catalog();
+    const auto entry = std::find_if(known.begin(), known.end(), [&](const bases::Entry& candidate) {
+        return candidate.name == result.basis;
+    });
+    if (entry == known.end()) {
+        std::string names;
+        for (const auto& candidate : known) names += fmt::format(" {}", candidate.name);
+        basis.fail(fmt::format("is '{}'; known:{}", result.basis.substr(0, 40), names), "name");
+    }
+    result.order = basis.integer("order", 1, entry->maxOrder);
+    result.condonShortley = basis.flag("condon_shortley");
+    if (basis.word("index") != slotRule) {
+        basis.fail(fmt::format("has to be '{}'", slotRule), "index");
+    }
+}
+
+Channels readChannels(const Fields& root) {
+    const std::string kind = root.word("channel_kind");
+    Channels channels;
+    if (kind == "rgb") {
+        channels = Channels::rgb();
+    } else if (kind == "spectral") {
+        channels = Channels::spectral(root.numbers("wavelengths_nm"));
+        const auto& nm = channels.wavelengths;
+        if (nm.empty() || nm.front() <= 0 ||
+            !std::is_sorted(nm.begin(), nm.end(), std::less_equal<>())) {
+            root.fail("has to hold positive wavelengths in ascending order", "wavelengths_nm");
+        }
+    } else if (kind != "grey") {
+        root.fail("has to be 'grey', 'rgb' or 'spectral'", "channel_kind");
+    }
+    const Json& names = root.at("channels");
+    if (!names.is_array() || names.size() != channels.count()) {
+        root.fail(fmt::format("has to be an array of {} names", channels.count()), "channels");
+    }
+    // Wavelengths are told by their numbers; another order of R, G, B would swap colours unseen.
+    if (channels.kind != Channels::Kind::spectral && names != Json(channels.names())) {
+        root.fail(fmt::format("has to be {} for '{}'", text(channels.names()), kind), "channels");
+    }
+    return channels;
+}
+
+OutgoingSet readDirection(const Fields& fields) {
+    const double theta = fields.number("theta"), phi = fields.number("phi");
+    if (theta < 0 || theta >= 90) fields.fail("has to be at least 0 and less than 90", "theta");
+    if (std::abs(phi) > 360) fields.fail("has to be from -360 to 360", "phi");
+    OutgoingSet set;
+    Direction d = directionFromAngles(radians(theta), radians(phi));
+    if (fields.has("direction")) {
+        const auto v = fields.numbers("direction");
+        if (v.size() != 3) fields.fail("has to be [x, y, z]", "direction");
+        const double off = std::hypot(v[0] - d.x, v[1] - d.y, v[2] - d.z);
+        if (!(off < 1e-6) || v[2] <= 0) {
+            fields.fail("has to be the unit vector of theta and phi, above the horizon",
+                        "direction");
+        }
+        d = {v[0], v[1], v[2]};
+    }
+    set.directions = {d};
+    set.solidAngles = {1};
+    return set;
+}
+
+OutgoingSet readOutgoing(const Fields& fields, std::size_t present) {
+    const std::string map = fields.word("map");
+    const auto requireCount = [&](std::size_t stated) {
+        if (stated == present) return;
+        const std::string found = present == 0 ? "'coefficients' is missing or empty"
+                                               : fmt::format("the file has {}", present);
+        fields.fail(fmt::format("states {} outgoing directions, but {}", stated, found));
+    };
+    const auto requireRing = [&] {
+        if (fields.number("horizon_ring_degrees") != horizonRingDegrees) {
+            fields.fail(fmt::format("has to be {}", horizonRingDegrees), "horizon_ring_degrees");
+        }
+    };
+    try {
+        if (map == "parabolic") {
+            const int width = fields.integer("width", 1, maxMapSide);
+            const int height = fields.integer("height", 1, maxMapSide);
+            requireCount(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+            requireRing();
+            if (fields.number("inset_texels") != insetTexels) {
+                fields.fail(fmt::format("has to be {}", insetTexels), "inset_texels");
+            }
+            return OutgoingSet::parabolic(width, height);
+        }
+        if (map == "elevations") {
+            const int count = fields.integer("count", 1, maxMapSide);
+            requireCount(static_cast<std::size_t>(count));
+            requireRing();
+            return OutgoingSet::elevations(count);
+        }
+    } catch (const UsageError& error) {  // a size that the set itself refuses
+        fields.fail(fmt::format("is invalid: {}", error.what()));
+    }
+    if (map == "none" && present == 0) return {.directions = {}, .solidAngles = {}};
+    if (map != "direction") {
+        fields.fail("has to be 'parabolic', 'elevations' or 'direction'", "map");
+    }
+    requireCount(1);
+    return readDirection(fields);
+}
+
+Energy readEnergy(const Fields& root) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    Energy energy;
+    const auto value = root.numberOrNull("energy");
+    energy.finite = value.has_value();
+    energy.value = value.value_or(none);
+    energy.error = root.numberOrNull("energy_error").value_or(none);
+    if (root.has("energy_reason")) energy.reason = root.word("energy_reason");
+    return energy;
+}
+
+}  // namespace
+
+CoefficientMetadata metadataOf(const Coefficients& c) {
+    CoefficientMetadata metadata;
+    const auto add = [&](const char* key, const Ordered& value) {
+        metadata.emplace_back(key, text(value));
+    };
+    add("format", formatName);
+    add("version", formatVersion);
+    add("generator", c.generator.empty() ? std::string("hshfit ") + version : c.generator);
+    add("source", {{"brdf", c.source}});
+    if (!c.basis.empty()) {
+        add("basis", {{"name", c.basis},
+                      {"order", c.order},
+                      {"condon_shortley", c.condonShortley},
+                      {"index", slotRule}});
+    }
+    add("quantity", quantityName(c.quantity));
+    add("channels", c.channels.names());
+    add("channel_kind", kindName(c.channels.kind));
+    if (c.channels.kind == Channels::Kind::spectral) {
+        add("wavelengths_nm", c.channels.wavelengths);
+    }
+    add("outgoing", describe(c.outgoing));
+    add("symmetry",
+        {{"isotropic", c.isotropic}, {"bilateral", c.bilateral}, {"reciprocal", c.reciprocal}});
+    const bool exists = c.energy.finite && std::isfinite(c.energy.value);
+    add("energy", exists ? Ordered(c.energy.value) : Ordered(nullptr));
+    add("energy_error", finiteOrNull(c.energy.error));
+    if (!exists) add("energy_reason", c.energy.reason);
+    add("error", finiteOrNull(c.error));
+    add("tolerance", finiteOrNull(c.tolerance));
+    if (c.leastSquares) {
+        add("least_squares", {{"regularisation", c.leastSquares->regularisation},
+                              {"kernel_degrees", c.leastSquares->kernelDegrees},
+                              {"condition", c.leastSquares->condition},
+                              {"residual", c.leastSquares->residual},
+                              {"samples", c.leastSquares->samples}});
+    }
+    return metadata;
+}
+
+Coefficients coefficientsFromMetadata(std::string_view text, std::size_t outgoingCount,
+                                      const std::string& file) {
+    const Json json = parseJson(text, file, maxDepth);
+    const Fields root(json, "", file);
+    checkVersion(root);
+    Coefficients result;
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    result.generator = root.word("generator");
+    result.source = root.object("source").word("brdf");
+    // Without coefficients per outgoing direction there may be no basis.
+    if (outgoingCount > 0 || root.has("basis")) readBasis(root.object("basis"), result);
+    const std::string quantity = root.word("quantity");
+    result.quantity =
+        quantity == quantityName(Quantity::brdfCosine) ? Quantity::brdfCosine : Quantity::brdf;
+    if (quantity != quantityName(result.quantity)) {
+        root.fail("has to be 'brdf' or 'brdf_cosine'", "quantity");
+    }
+    result.channels = readChannels(root);
+    result.outgoing = readOutgoing(root.object("outgoing"), outgoingCount);
+    const Fields symmetry = root.object("symmetry");
+    result.isotropic = symmetry.flag("isotropic");
+    result.bilateral = symmetry.flag("bilateral");
+    result.reciprocal = symmetry.flag("reciprocal");
+    result.energy = readEnergy(root);
+    result.error = root.numberOrNull("error").value_or(none);
+    result.tolerance = root.numberOrNull("tolerance").value_or(none);
+    if (root.has("least_squares")) {
+        const Fields fit = root.object("least_squares");
+        result.leastSquares = LeastSquaresNote{.regularisation = fit.number("regularisation"),
+                                               .kernelDegrees = fit.number("kernel_degrees"),
+                                               .condition = fit.number("condition"),
+                                               .residual = fit.number("residual"),
+                                               .samples = static_cast<std::size_t>(fit.integer(
+                                                   "samples", 0, std::numeric_limits<int>::max()))};
+    }
+    return result;
+}
+
+void requireFinite(const Coefficients& c) {
+    const auto bad = std::find_if_not(c.values.begin(), c.values.end(),
+                                      [](double value) { return std::isfinite(value); });
+    if (bad == c.values.end()) return;
+    const auto at = static_cast<std::size_t>(bad - c.values.begin());
+    throw NumericError(fmt::format(
+        "coefficient {} of channel {} at outgoing direction {} is not finite; nothing is written",
+        at % c.slots(), at / c.slots() % c.channels.count(), at / c.slots() / c.channels.count()));
+}
+
+}  // namespace hshfit::inline coefficient_files

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <hshfit/representation/representation.h>
+
+#include <string>
+
+namespace hshfit::inline coefficient_files {
+
+/// Writes a coefficient file (coefficient_file.h) in any form. What is neither rounded nor changed
+/// in kind is written as plain coefficients; everything else as JSON with a member
+/// "representation", whose arrays are base64 of what `packed` gives. Throws UsageError for an EXR
+/// of what only JSON can hold, otherwise as `writeCoefficients`.
+void writeRepresentation(const Representation& representation, const std::string& path);
+
+/// Reads a coefficient file in any form; plain coefficients become the form outgoing in float64
+/// (EXR: float32). Shapes and sizes are checked against what the file holds before anything is
+/// allocated. Throws InputError naming the file and the field.
+Representation readRepresentation(const std::string& path);
+
+}  // namespace hshfit::inline coefficient_files

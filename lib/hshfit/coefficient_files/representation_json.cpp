@@ -1,0 +1,223 @@
+#include <hshfit/bases/catalog.h>
+#include <hshfit/coefficient_files/coefficient_formats.h>
+#include <hshfit/error.h>
+#include <hshfit/files/checksum.h>
+#include <hshfit/files/json_fields.h>
+#include <hshfit/files/printable.h>
+#include <hshfit/representation/basis_matrix.h>
+#include <hshfit/representation/halfway/halfway.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace hshfit::inline coefficient_files {
+namespace {
+
+using Json = nlohmann::json;
+using Ordered = nlohmann::ordered_json;
+using Kind = Representation::Kind;
+
+constexpr int maxSide = 1 << 28, maxDepth = 8;
+
+Ordered describe(const StoredArray& array) {
+    const std::vector<std::byte> bytes = packed(array);
+    return {{"name", array.name},
+            {"shape", array.shape},
+            {"precision", precisionName(array.precision)},
+            {"masked", !array.kept.empty()},
+            {"bytes", bytes.size()},
+            {"base64", base64(bytes)}};
+}
+
+Ordered describe(const Representation& r) {
+    Ordered out = {{"kind", kindName(r.kind)}};
+    if (r.kind == Kind::outgoing) out["slots"] = r.slots;
+    if (r.kind == Kind::halfway) {
+        out["orders"] = {{"half", r.halfway.half},
+                         {"difference", r.halfway.difference},
+                         {"azimuth", r.halfway.azimuth}};
+    }
+    if (!r.added.empty()) out["added"] = r.added;
+    out["bytes"] = r.bytes();
+    out["entropy_bytes"] = r.entropyBytes();
+    Ordered steps = Ordered::array();
+    for (const RepresentationStep& step : r.steps) {
+        const bool known = std::isfinite(step.change);
+        steps.push_back({{"what", step.what}, {"change", known ? Ordered(step.change) : nullptr}});
+    }
+    out["steps"] = steps;
+    out["arrays"] = Ordered::array();
+    for (const StoredArray& array : r.arrays) out["arrays"].push_back(describe(array));
+    return out;
+}
+
+StoredArray readArray(const JsonFields& fields, const std::string& file) {
+    StoredArray array;
+    array.name = fields.word("name");
+    for (double side : fields.numbers("shape")) {
+        if (!(side >= 0) || side > maxSide || side != std::floor(side)) {
+            fields.fail("has to hold whole numbers from 0", "shape");
+        }
+        array.shape.push_back(static_cast<std::size_t>(side));
+    }
+    if (array.shape.empty() || array.shape.size() > 3) {
+        fields.fail("has to have one to three sides", "shape");
+    }
+    const std::string precision = fields.word("precision");
+    try {
+        array.precision = parsePrecision(precision);
+    } catch (const UsageError& error) {
+        fields.fail(error.what(), "precision");
+    }
+    const auto bytes = static_cast<std::size_t>(fields.integer("bytes", 0, maxSide));
+    const std::string text = fields.word("base64");
+    const std::vector<std::byte> data = fromBase64(text, bytes);
+    if (data.size() != bytes) {
+        fields.fail(fmt::format("has to be base64 of {} bytes", bytes), "base64");
+    }
+    unpackInto(array, data, fields.flag("masked"),
+               fmt::format("{}: array '{}'", file, printable(array.name.substr(0, 40))));
+    return array;
+}
+
+/// Rows and columns of the arrays against what kind, basis, channels and slots call for.
+class ShapeCheck {
+public:
+    ShapeCheck(const Representation& r, const JsonFields& fields) : r_(r), fields_(fields) {}
+
+    void outgoing(std::size_t directions) const {
+        const std::size_t rows = directions * r_.head.channels.count(), columns = r_.slots.size();
+        if (r_.has("coefficients")) {
+            require("coefficients", {directions, r_.head.channels.count(), columns});
+            return;
+        }
+        const std::size_t rank = columnsOf("left");
+        require("left", {rows, rank});
+        require("right", {rank, columns});
+    }
+    /// One value for each term and channel; the order alone says how many that are.
+    void basis() const {
+        constexpr std::size_t most = std::size_t{1} << 26;
+        const auto functions = bases::make(r_.head.basis, r_.head.order);
+        const std::size_t terms = productTermCount(*functions, symmetryOf(r_));
+        const std::size_t channels = r_.head.channels.count();
+        if (r_.has("matrix")) {
+            require("matrix", {channels, terms});
+        } else if (r_.arrays.empty()) {
+            fields_.fail("has no array 'matrix' and no factors", "arrays");
+        } else if (terms > most / channels) {
+            fields_.fail(fmt::format("are factors of a matrix of {} terms; at most {} are read",
+                                     terms, most / channels),
+                         "arrays");
+        }
+    }
+    void slots() const {
+        const auto all = static_cast<int>(r_.head.slots());
+        const bool ascending =
+            std::is_sorted(r_.slots.begin(), r_.slots.end(), std::less_equal<>());
+        if (!ascending || (!r_.slots.empty() && (r_.slots.front() < 0 || r_.slots.back() >= all))) {
+            fields_.fail(fmt::format("has to hold ascending slots below {}", all), "slots");
+        }
+    }
+
+private:
+    std::size_t columnsOf(const char* name) const {
+        if (!r_.has(name)) fields_.fail(fmt::format("has no array '{}'", name), "arrays");
+        return r_.array(name).columns();
+    }
+    void require(const char* name, const std::vector<std::size_t>& shape) const {
+        columnsOf(name);
+        if (r_.array(name).shape == shape) return;
+        std::string text;
+        for (std::size_t side : shape) text += fmt::format("{}{}", text.empty() ? "" : " x ", side);
+        fields_.fail(fmt::format("'{}' has to be {}", name, text), "arrays");
+    }
+
+    const Representation& r_;
+    const JsonFields& fields_;
+};
+
+/// Directions that the arrays of the form outgoing speak of; 0 for the other forms.
+std::size_t directionsIn(const Json& root) {
+    const Json& arrays = root.value("/representation/arrays"_json_pointer, Json::array());
+    const std::size_t channels = root.value("channels", Json::array()).size();
+    for (const Json& array : arrays) {
+        if (!array.is_object() || !array.contains("shape") || !array["shape"].is_array() ||
+            array["shape"].empty() || !array["shape"][0].is_number_unsigned()) {
+            continue;
+        }
+        const auto rows = array["shape"][0].get<std::size_t>();
+        const std::string name = array.value("name", Json()).is_string()
+                                     ? array["name"].get<std::string>()
+                                     : std::string();
+        if (name == "coefficients") return rows;
+        if (name == "left" && channels > 0) return rows / channels;
+    }
+    return 0;
+}
+
+}  // namespace
+
+std::string representationToJson(const Representation& r) {
+    std::string out = "{\n";
+    for (const auto& [key, text] : metadataOf(r.head))
+        out += fmt::format("  \"{}\": {},\n", key, text);
+    const std::string body =
+        Ordered(describe(r)).dump(2, ' ', false, Ordered::error_handler_t::replace);
+    out += "  \"representation\": " + body + "\n}\n";
+    return out;
+}
+
+bool hasRepresentation(std::string_view text) {
+    // A parser that keeps nothing but the top-level keys; what does not parse has none.
+    bool found = false;
+    const auto keys = [&](int depth, Json::parse_event_t event, Json& parsed) {
+        if (depth == 1 && event == Json::parse_event_t::key) found |= parsed == "representation";
+        return depth == 0;
+    };
+    const Json ignored = Json::parse(text.begin(), text.end(), keys, false);
+    return found && !ignored.is_discarded();
+}
+
+Representation representationFromJson(std::string_view text, const std::string& file) {
+    const Json root = parseJson(text, file, maxDepth);
+    const JsonFields fields(root, "", file);
+    const JsonFields part = fields.object("representation");
+    Representation r;
+    const std::string kind = part.word("kind");
+    const auto kinds = {Kind::outgoing, Kind::basis, Kind::halfway};
+    const auto known = std::find_if(kinds.begin(), kinds.end(),
+                                    [&](Kind candidate) { return kindName(candidate) == kind; });
+    if (known == kinds.end()) part.fail("has to be 'outgoing', 'basis' or 'halfway'", "kind");
+    r.kind = *known;
+    r.head =
+        coefficientsFromMetadata(text, r.kind == Kind::outgoing ? directionsIn(root) : 0, file);
+    if (part.has("added")) r.added = part.word("added");
+    for (const JsonFields& array : part.objects("arrays"))
+        r.arrays.push_back(readArray(array, file));
+    for (const JsonFields& step : part.objects("steps")) {
+        r.steps.push_back({step.word("what"), step.numberOrNull("change").value_or(
+                                                  std::numeric_limits<double>::quiet_NaN())});
+    }
+    if (r.kind == Kind::outgoing) {
+        for (double slot : part.numbers("slots")) r.slots.push_back(static_cast<int>(slot));
+        const ShapeCheck check(r, part);
+        check.slots();
+        check.outgoing(r.head.outgoing.size());
+    }
+    if (r.kind == Kind::halfway) {
+        const JsonFields orders = part.object("orders");
+        r.halfway = {.half = orders.integer("half", 1, 256),
+                     .difference = orders.integer("difference", 1, 256),
+                     .azimuth = orders.integer("azimuth", 1, 256)};
+    }
+    if (r.kind != Kind::halfway && r.head.basis.empty()) fields.fail("is missing", "basis");
+    if (r.kind == Kind::basis) ShapeCheck(r, part).basis();
+    return r;
+}
+
+}  // namespace hshfit::inline coefficient_files

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace hshfit::inline files {
+
+/// A file that appears under its name only once it is complete.
+///
+/// The bytes go to a temporary name in the same folder; commit() renames it. Without a commit the
+/// destructor removes the temporary, and whatever stood at `path` is as it was. A symbolic link is
+/// followed; a device or a pipe (/dev/stdout, /dev/null) is written to directly. New files get the
+/// permissions 0666 less the umask. Nothing is synced to the disk: a power cut may lose the file.
+///
+/// Every member but the destructor throws OutputError, with the path and the system's reason.
+class AtomicFile {
+public:
+    enum class Existing { replace, refuse };
+
+    explicit AtomicFile(std::string path, Existing existing = Existing::replace);
+    ~AtomicFile();
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+
+    void write(std::string_view text);
+    void write(std::span<const std::byte> bytes);
+
+    /// The open stream, for writers that seek. Close it only through commit().
+    std::FILE* stream() { return stream_; }
+    /// What another program may write to before commit(); `path` itself for a device.
+    const std::string& temporaryPath() const { return temporary_; }
+
+    /// Flushes and closes: every byte is in the temporary, or this throws. Nothing after it but
+    /// commit().
+    void finish();
+    /// finish(), unless that was called, and the rename.
+    void commit();
+
+private:
+    [[noreturn]] void fail(int error) const;
+    void openTemporary(const std::string& folder);
+    void discard() noexcept;
+
+    std::string path_;       ///< as given, for messages
+    std::string target_;     ///< links resolved
+    std::string temporary_;  ///< target_ itself when it is written directly
+    Existing existing_;
+    std::FILE* stream_ = nullptr;
+    int registration_ = -1;
+    bool finished_ = false;
+};
+
+/// Writes `text` to `path` through an AtomicFile.
+void writeFile(const std::string& path, std::string_view text);
+
+/// Makes SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGPIPE remove the temporaries of all open
+/// AtomicFiles before they end the process, and a file-size limit a write error instead of a
+/// signal. For `main` to call once.
+void removeTemporariesOnSignals();
+
+}  // namespace hshfit::inline files

@@ -1,0 +1,52 @@
+#pragma once
+
+// Checked access to JSON that somebody else wrote. Only for sources that use nlohmann-json.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace hshfit::inline files {
+
+/// Throws InputError that starts with `file` for what is no JSON, is nested more deeply than
+/// `maxDepth`, or holds a key twice in one object.
+nlohmann::json parseJson(std::string_view text, const std::string& file, int maxDepth);
+
+/// One object of a file, with messages that name the field: every member but `has` throws
+/// InputError. Numbers are finite.
+class JsonFields {
+public:
+    /// `path` is what leads to the object, "" for the root; both references have to outlive this.
+    JsonFields(const nlohmann::json& object, std::string path, const std::string& file);
+
+    [[noreturn]] void fail(std::string_view what, std::string_view key = {}) const;
+    bool has(const char* key) const { return object_.contains(key); }
+    const nlohmann::json& at(const char* key) const;
+    JsonFields object(const char* key) const;
+    /// Each element of an array of objects.
+    std::vector<JsonFields> objects(const char* key) const;
+    std::string word(const char* key) const;
+    bool flag(const char* key) const;
+    double number(const char* key) const;
+    std::optional<double> numberOrNull(const char* key) const;
+    int integer(const char* key, int min, int max) const;
+    std::vector<double> numbers(const char* key) const;
+    /// `count` of them.
+    std::vector<double> numbers(const char* key, std::size_t count) const;
+    /// An array of `rows` arrays of `columns` numbers.
+    std::vector<std::vector<double>> table(const char* key, std::size_t rows,
+                                           std::size_t columns) const;
+
+private:
+    double finite(const nlohmann::json& value, const char* key) const;
+    std::vector<double> numbersOf(const nlohmann::json& array, const char* key) const;
+
+    const nlohmann::json& object_;
+    std::string path_;
+    const std::string& file_;
+};
+
+}  // namespace hshfit::inline files

@@ -1,0 +1,102 @@
+#include <hshfit/gpu/containers/targets.h>
+
+#include <hshfit/error.h>
+#include <hshfit/gpu/containers/containers.h>
+#include <hshfit/gpu/shader.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace hshfit::gpu::inline containers {
+namespace {
+
+struct Renderer {
+    const char *name, *summary;
+    std::vector<std::string> parts;
+};
+
+/// docs/renderers.md says why these.
+const Renderer renderers[] = {
+    {"three", "three.js: data for a DataArrayTexture, a GLSL ES snippet", {"bin", "js", "glsl-es"}},
+    {"babylon", "Babylon.js: data for a RawTexture2DArray", {"bin", "js", "glsl-es", "wgsl"}},
+    {"godot", "Godot 4: a texture array, or a strip to import as one", {"dds", "exr", "glsl-es"}},
+    {"unity", "Unity: data for a Texture2DArray", {"bin", "hlsl"}},
+    {"unreal", "Unreal: a strip to slice, a custom node's code", {"exr", "hlsl"}},
+    {"falcor", "Falcor: a texture array, a Slang snippet", {"dds", "hlsl"}},
+    {"blender",
+     "Blender: a strip for image nodes, parts for an OSL script",
+     {"exr", "exr-parts", "osl"}},
+    {"mitsuba", "Mitsuba 3: a tensor file", {"tensor"}},
+};
+
+std::vector<Target> makeTargets() {
+    std::vector<Target> rows;
+    for (const Container& container : containers()) {
+        rows.push_back({Target::Kind::container,
+                        std::string(container.name),
+                        std::string(container.summary),
+                        {}});
+    }
+    for (const LanguageEntry& language : languages()) {
+        rows.push_back(
+            {Target::Kind::shader, std::string(language.name), std::string(language.summary), {}});
+    }
+    rows.push_back({Target::Kind::viewer,
+                    "viewer",
+                    "a page that shows the material: exact, HSH, SH and their difference",
+                    {}});
+    for (const Renderer& renderer : renderers) {
+        rows.push_back({Target::Kind::renderer, renderer.name, renderer.summary, renderer.parts});
+    }
+    return rows;
+}
+
+const Target& find(std::string_view name) {
+    const auto& rows = targets();
+    const auto row = std::find_if(rows.begin(), rows.end(),
+                                  [&](const Target& target) { return target.name == name; });
+    if (row != rows.end()) return *row;
+    std::string known;
+    for (const Target& target : rows) known += ", " + target.name;
+    throw UsageError(fmt::format("unknown target '{}'; known: all{}", name, known));
+}
+
+}  // namespace
+
+std::string_view kindName(Target::Kind kind) {
+    constexpr std::array<std::string_view, 4> names = {"container", "shader", "viewer", "renderer"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
+const std::vector<Target>& targets() {
+    static const std::vector<Target> rows = makeTargets();
+    return rows;
+}
+
+std::vector<const Target*> selectTargets(std::string_view names) {
+    std::vector<const Target*> wanted;
+    const auto want = [&](const Target& target) {
+        if (target.kind != Target::Kind::renderer) wanted.push_back(&target);
+        for (const std::string& part : target.parts) wanted.push_back(&find(part));
+    };
+    for (std::size_t first = 0; first <= names.size();) {
+        const std::size_t last = std::min(names.find(',', first), names.size());
+        const std::string_view name = names.substr(first, last - first);
+        if (name == "all") {
+            for (const Target& target : targets()) want(target);
+        } else {
+            want(find(name));
+        }
+        first = last + 1;
+    }
+    std::vector<const Target*> chosen;
+    for (const Target& target : targets()) {
+        if (std::find(wanted.begin(), wanted.end(), &target) != wanted.end())
+            chosen.push_back(&target);
+    }
+    return chosen;
+}
+
+}  // namespace hshfit::gpu::inline containers

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::gpu::inline containers {
+
+/// What `hshfit export --target` takes: a container, a shader language, the viewer, or the set of
+/// them that suits one renderer.
+struct Target {
+    enum class Kind { container, shader, viewer, renderer };
+
+    Kind kind = Kind::container;
+    std::string name, summary;
+    std::vector<std::string> parts;  ///< of a renderer: names of the other kinds
+};
+std::string_view kindName(Target::Kind kind);  ///< "container", …
+
+/// The containers, the languages, the viewer and the renderers, in this order.
+const std::vector<Target>& targets();
+
+/// Containers, languages and the viewer named in a comma-separated list, renderers replaced by
+/// their parts, each once and in the order of the table; "all" is everything.
+/// Throws UsageError that lists the known ones.
+std::vector<const Target*> selectTargets(std::string_view names);
+
+}  // namespace hshfit::gpu::inline containers

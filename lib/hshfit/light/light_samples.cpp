@@ -1,0 +1,274 @@
+#include <hshfit/light/light_samples.h>
+
+#include <hshfit/light/picture_light.h>
+#include <hshfit/quadrature/quadrature.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hshfit::inline light {
+namespace {
+
+Direction sum(double a, const Direction& u, double b, const Direction& v, double c,
+              const Direction& w) {
+    return {a * u.x + b * v.x + c * w.x, a * u.y + b * v.y + c * w.y, a * u.z + b * v.z + c * w.z};
+}
+Direction cross(const Direction& a, const Direction& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+Direction normalised(const Direction& d) {
+    const double length = std::sqrt(dot(d, d));
+    return {d.x / length, d.y / length, d.z / length};
+}
+
+/// Axes with `towards` as the pole, the first along growing theta and the second along phi.
+struct Axes {
+    explicit Axes(const Direction& towards) : Axes(polarAngle(towards), azimuth(towards)) {}
+    Axes(double theta, double phi)
+        : pole(directionFromAngles(theta, phi)),
+          down{std::cos(theta) * std::cos(phi), std::cos(theta) * std::sin(phi), -std::sin(theta)},
+          along{-std::sin(phi), std::cos(phi), 0} {}
+    Direction pole, down, along;
+};
+
+/// Where a point of the panel's plane, at distance 1, is seen; x and y in units of half the size.
+struct PanelPoint {
+    Direction direction;
+    double solidAngle = 0;  ///< per area of [-1, 1]^2
+};
+PanelPoint panelPoint(const PanelLight& light, const Axes& axes, double x, double y) {
+    const double halfWidth = std::tan(light.width / 2), halfHeight = std::tan(light.height / 2);
+    const double px = x * halfWidth, py = y * halfHeight;
+    const double c = std::cos(light.turn), s = std::sin(light.turn);
+    const double squared = 1 + px * px + py * py;
+    return {normalised(sum(1, axes.pole, c * px - s * py, axes.along, s * px + c * py, axes.down)),
+            halfWidth * halfHeight / (squared * std::sqrt(squared))};
+}
+
+Rgb skyRadiance(const SkyLight& light, const Direction& world) {
+    if (world.z < 0) return light.ground;
+    Rgb radiance = light.zenith;
+    if (light.model == SkyLight::Model::overcast) {
+        for (double& value : radiance) value *= (1 + 2 * world.z) / 3;
+    }
+    return radiance;
+}
+
+struct RadianceFrom {
+    const Direction& world;
+
+    Rgb operator()(const DiscLight& light) const {
+        const Direction gap = sum(1, world, -1, light.towards, 0, world);
+        const bool inside = dot(gap, gap) <= std::pow(2 * std::sin(light.radius / 2), 2);
+        return inside ? light.radiance : Rgb{};
+    }
+    Rgb operator()(const PanelLight& light) const {
+        const Axes axes(light.towards);
+        const double ahead = dot(world, axes.pole);
+        if (!(ahead > 0)) return {};
+        const double a = dot(world, axes.along) / ahead, b = dot(world, axes.down) / ahead;
+        const double c = std::cos(light.turn), s = std::sin(light.turn);
+        const bool inside = std::abs(c * a + s * b) <= std::tan(light.width / 2) &&
+                            std::abs(c * b - s * a) <= std::tan(light.height / 2);
+        return inside ? light.radiance : Rgb{};
+    }
+    Rgb operator()(const SkyLight& light) const { return skyRadiance(light, world); }
+    Rgb operator()(const PictureLight& light) const { return radianceOf(light, world); }
+};
+
+/// Number of nodes at a level, from the number at level 0.
+int grown(double nodes, int level) {
+    return std::max(2, static_cast<int>(std::ceil(nodes * std::pow(1.5, level))));
+}
+
+/// Adds the nodes of one light at one level.
+struct AddNodes {
+    const Frame& frame;
+    int level;
+    LightSamples& samples;
+
+    void operator()(const DiscLight& light) const {
+        const Axes axes(light.towards);
+        const int rings = grown(3 + 2 * light.radius, level), azimuths = 2 * rings + 1;
+        const GaussRule& rule = gaussLegendre(rings);
+        const double depth = 2 * std::pow(std::sin(light.radius / 2), 2);  // 1 - cos(radius)
+        for (std::size_t r = 0; r < rule.nodes.size(); ++r) {
+            const double missing = depth * (1 + rule.nodes[r]) / 2;
+            const double s = std::sqrt(missing * (2 - missing));
+            const double weight = depth * rule.weights[r] / 2 * 2 * pi / azimuths;
+            for (int j = 0; j < azimuths; ++j) {
+                const double phi = (j + 0.5) * 2 * pi / azimuths;
+                samples.add(frame.toLocal(sum(1 - missing, axes.pole, s * std::cos(phi), axes.down,
+                                              s * std::sin(phi), axes.along)),
+                            light.radiance, weight);
+            }
+        }
+    }
+
+    void operator()(const PanelLight& light) const {
+        const Axes axes(light.towards);
+        const GaussRule& across = gaussLegendre(grown(4 + 4 * light.width, level));
+        const GaussRule& down = gaussLegendre(grown(4 + 4 * light.height, level));
+        for (std::size_t i = 0; i < across.nodes.size(); ++i) {
+            for (std::size_t j = 0; j < down.nodes.size(); ++j) {
+                const PanelPoint point = panelPoint(light, axes, across.nodes[i], down.nodes[j]);
+                samples.add(frame.toLocal(point.direction), light.radiance,
+                            across.weights[i] * down.weights[j] * point.solidAngle);
+            }
+        }
+    }
+
+    /// Rings about the normal, in panels that end where the world's horizon touches a ring; each
+    /// ring in its arc of sky and its arc of ground.
+    void operator()(const SkyLight& light) const {
+        const Direction up = frame.toLocal({0, 0, 1});
+        const double touch = std::min(std::hypot(up.x, up.y), 1.0);
+        const GaussRule& rule = gaussLegendre(grown(8, level));
+        for (const auto& [low, high] : {std::pair(0.0, touch), std::pair(touch, 1.0)}) {
+            if (high - low < 1e-12) continue;
+            for (std::size_t r = 0; r < rule.nodes.size(); ++r) {
+                const double z = low + (high - low) * (1 + rule.nodes[r]) / 2;
+                addRing(light, up, z, (high - low) * rule.weights[r] / 2);
+            }
+        }
+    }
+
+    void operator()(const PictureLight& light) const {
+        for (const PictureSample& part : pictureSamples(light, 1e-3 * std::pow(1.5, -3 * level))) {
+            samples.add(frame.toLocal(part.direction), part.flux, 1);
+        }
+    }
+
+private:
+    void addRing(const SkyLight& light, const Direction& up, double z, double weight) const {
+        const double s = std::sqrt((1 - z) * (1 + z)), across = s * std::hypot(up.x, up.y);
+        const double middle = std::atan2(up.y, up.x);
+        // Sky where up.z z + across cos(phi - middle) > 0.
+        const double edge =
+            across > 0 ? std::acos(std::clamp(-up.z * z / across, -1.0, 1.0)) : (up.z > 0 ? pi : 0);
+        addArc(light, z, s, middle, edge, weight);
+        addArc(light, z, s, middle + pi, pi - edge, weight);
+    }
+    void addArc(const SkyLight& light, double z, double s, double middle, double half,
+                double weight) const {
+        if (half < 1e-12) return;
+        const bool whole = half > pi - 1e-9;
+        const int nodes = grown(16 * half / pi + 4, level) * (whole ? 2 : 1);
+        const GaussRule& rule = gaussLegendre(nodes);
+        for (int j = 0; j < nodes; ++j) {
+            const auto k = static_cast<std::size_t>(j);
+            const double at = whole ? (2 * j + 1.0) / nodes - 1 : rule.nodes[k];
+            const double share = whole ? 2.0 / nodes : rule.weights[k];
+            const double phi = middle + half * at;
+            const Direction local{s * std::cos(phi), s * std::sin(phi), z};
+            samples.add(local, skyRadiance(light, frame.toWorld(local)), weight * share * half);
+        }
+    }
+};
+
+/// Point k of the lattice on the unit square.
+std::array<double, 2> latticePoint(std::size_t k) {
+    constexpr double plastic = 1.32471795724474602596;  // the real root of x^3 = x + 1
+    const auto part = [&](double step) {
+        const double at = 0.5 + step * static_cast<double>(k);
+        return at - std::floor(at);
+    };
+    return {part(1 / plastic), part(1 / (plastic * plastic))};
+}
+
+/// Adds lattice points of one light.
+struct AddLattice {
+    const Frame& frame;
+    std::size_t points;
+    LightSamples& samples;
+
+    void operator()(const DiscLight& light) const {
+        const Axes axes(light.towards);
+        const double depth = 2 * std::pow(std::sin(light.radius / 2), 2);
+        for (std::size_t k = 0; k < points; ++k) {
+            const auto [u, v] = latticePoint(k);
+            const double missing = depth * u, s = std::sqrt(missing * (2 - missing));
+            samples.add(frame.toLocal(sum(1 - missing, axes.pole, s * std::cos(2 * pi * v),
+                                          axes.down, s * std::sin(2 * pi * v), axes.along)),
+                        light.radiance, 2 * pi * depth / static_cast<double>(points));
+        }
+    }
+    void operator()(const PanelLight& light) const {
+        const Axes axes(light.towards);
+        for (std::size_t k = 0; k < points; ++k) {
+            const auto [u, v] = latticePoint(k);
+            const PanelPoint point = panelPoint(light, axes, 2 * u - 1, 2 * v - 1);
+            samples.add(frame.toLocal(point.direction), light.radiance,
+                        4 * point.solidAngle / static_cast<double>(points));
+        }
+    }
+    void operator()(const SkyLight& light) const {
+        hemisphere([&](const Direction& world) { return skyRadiance(light, world); });
+    }
+    void operator()(const PictureLight& light) const {
+        hemisphere([&](const Direction& world) { return radianceOf(light, world); });
+    }
+
+private:
+    template <class Radiance>
+    void hemisphere(const Radiance& radiance) const {
+        for (std::size_t k = 0; k < points; ++k) {
+            const auto [u, v] = latticePoint(k);
+            const double z = 1 - u, s = std::sqrt((1 - z) * (1 + z));
+            const Direction local{s * std::cos(2 * pi * v), s * std::sin(2 * pi * v), z};
+            samples.add(local, radiance(frame.toWorld(local)),
+                        2 * pi / static_cast<double>(points));
+        }
+    }
+};
+
+}  // namespace
+
+Frame::Frame(const Orientation& orientation) {
+    const Axes axes(orientation.theta, orientation.phi);
+    normal = axes.pole;
+    // +x and +y, carried from +z along the great circle, then turned.
+    const double turn = orientation.turn - orientation.phi;
+    tangent = sum(std::cos(turn), axes.down, std::sin(turn), axes.along, 0, normal);
+    bitangent = cross(normal, tangent);
+}
+
+Direction Frame::toWorld(const Direction& d) const {
+    return sum(d.x, tangent, d.y, bitangent, d.z, normal);
+}
+Direction Frame::toLocal(const Direction& d) const {
+    return {dot(d, tangent), dot(d, bitangent), dot(d, normal)};
+}
+
+void LightSamples::add(const Direction& local, const Rgb& radiance, double solidAngle) {
+    const double total = radiance[0] + radiance[1] + radiance[2];
+    if (!(local.z > 0) || !(total * solidAngle > 0)) return;
+    const Direction d = normalised(local);
+    x.push_back(d.x);
+    y.push_back(d.y);
+    z.push_back(d.z);
+    for (std::size_t c = 0; c < 3; ++c) flux[c].push_back(radiance[c] * solidAngle);
+}
+
+Rgb radianceFrom(std::span<const Light> lights, const Direction& world) {
+    Rgb total{};
+    for (const Light& light : lights) {
+        const Rgb one = std::visit(RadianceFrom{world}, light);
+        for (std::size_t c = 0; c < 3; ++c) total[c] += one[c];
+    }
+    return total;
+}
+
+LightSamples sampleLights(std::span<const Light> lights, const Frame& frame, int level) {
+    LightSamples samples;
+    for (const Light& light : lights) std::visit(AddNodes{frame, level, samples}, light);
+    return samples;
+}
+
+LightSamples latticeSamples(std::span<const Light> lights, const Frame& frame, std::size_t points) {
+    LightSamples samples;
+    for (const Light& light : lights) std::visit(AddLattice{frame, points, samples}, light);
+    return samples;
+}
+
+}  // namespace hshfit::inline light

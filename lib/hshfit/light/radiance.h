@@ -1,0 +1,48 @@
+#pragma once
+
+#include <hshfit/brdf/brdf.h>
+#include <hshfit/light/light_samples.h>
+#include <hshfit/light/views.h>
+#include <hshfit/representation/pair_evaluator.h>
+#include <hshfit/representation/representation.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hshfit::inline light {
+
+/// L(wo) = sum over k of flux[k] f(wi_k, wo) cos(theta_k) for every view, f grey or RGB.
+/// Runs on all threads; the sum does not depend on their number.
+Radiance outgoingRadiance(const Brdf& brdf, const LightSamples& light, const Views& views);
+
+/// The same from `pairEvaluator`, in single precision and much faster for the halfway form.
+Radiance outgoingRadiance(const PairEvaluator& evaluator, std::size_t channels,
+                          const LightSamples& light, const Views& views);
+
+/// Lighting in one basis: what turns coefficients over wi into outgoing radiance without a sum over
+/// light samples. The same sum as `outgoingRadiance` in another order:
+///     L(wo) = sum over l, m of c_{l,m}(wo) E_{l,m},   E = sum over k of flux[k] w_k B_{l,m}(wi_k)
+/// with w = cos(theta_k) for coefficients of f, 1 for those of f cos(theta_i).
+class BasisLight {
+public:
+    BasisLight(const Basis& basis, Quantity quantity, const LightSamples& light);
+
+    /// `coefficients`: [channel][slot] at `order` bands, one channel or three; `turn` as in
+    /// OutgoingLookup.
+    Rgb radiance(std::span<const double> coefficients, int order, double turn) const;
+
+    /// [l]: power of a band, sum over m and R, G, B of E^2.
+    std::vector<double> bandPower() const;
+
+private:
+    int order_;
+    std::array<std::vector<double>, 3> slots_;
+};
+
+/// What a representation's coefficients give under light in its basis, without `added`.
+/// Not for the halfway form, which is no linear one.
+Radiance linearRadiance(const Representation& representation, const BasisLight& light,
+                        const Views& views);
+
+}  // namespace hshfit::inline light

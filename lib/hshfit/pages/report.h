@@ -1,0 +1,64 @@
+#pragma once
+
+#include <hshfit/coefficients/coefficients.h>
+#include <hshfit/projection/projection.h>
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hshfit::inline pages {
+
+/// One truncation of one basis.
+struct ReportPoint {
+    int order = 0;
+    int coefficients = 0;  ///< functions of the basis that can be non-zero
+    int slots = 0;         ///< order^2
+    /// Captured energy over energy (Gautron et al. 2004, Eq. 15); none where that does not exist.
+    std::optional<double> accuracy;
+};
+
+struct ReportCurve {
+    std::string basis;
+    std::vector<ReportPoint> points;  ///< ascending order
+    /// The energy in this basis' own inner product, where that is not the solid angle.
+    std::optional<Energy> energy;
+};
+
+/// The curves of one BRDF.
+struct ReportEntry {
+    std::string brdf;
+    Quantity quantity = Quantity::brdf;
+    OutgoingSet outgoing;
+    Channels channels;
+    bool condonShortley = false;
+    Energy energy;  ///< over solid angle; channels and outgoing directions summed
+    std::vector<ReportCurve> curves;
+    double error = 0;      ///< as in Coefficients
+    double tolerance = 0;  ///< as in Coefficients
+    std::size_t evaluations = 0;
+};
+
+struct Report {
+    std::vector<ReportEntry> reports;
+};
+
+/// The curves of orders 1 to each projection's order. `projections` are one BRDF's, not empty.
+ReportEntry reportEntry(std::span<const Projection> projections);
+
+/// The first point whose accuracy is at least `accuracy`; none if the curve does not get there.
+std::optional<ReportPoint> firstReaching(const ReportCurve& curve, double accuracy);
+
+/// The document of `report --json` (docs/schemas/report.schema.json), with a line feed at the end.
+std::string reportJson(const Report& report);
+
+/// Writes curves.csv, report.json, curves.gp, curves.svg, curves.pdf and report.html to `folder`,
+/// which is made if it is absent (its parent is not). Each file appears when it is complete; the
+/// same report gives the same bytes. The figures are drawn by gnuplot.
+/// Throws OutputError where a file cannot be written; also where gnuplot is missing or fails, and
+/// then everything but curves.svg and curves.pdf has been written.
+void writeReport(const Report& report, const std::string& folder);
+
+}  // namespace hshfit::inline pages

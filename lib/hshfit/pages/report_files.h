@@ -1,0 +1,37 @@
+#pragma once
+
+// The parts of writeReport, apart from the folder that they go to.
+
+#include <hshfit/pages/report.h>
+
+#include <string>
+#include <vector>
+
+namespace hshfit::inline pages {
+
+/// curves.csv: report (from 1), basis, order, coefficients, slots, accuracy (empty where it does
+/// not exist), then the texts quantity, outgoing, brdf.
+std::string reportCsv(const Report& report);
+
+/// curves.gp: draws the figures from curves.csv.
+std::string reportScript(const Report& report);
+
+/// report.html. `figures` holds an SVG document for each BRDF, or nothing at all.
+std::string reportPage(const Report& report, const std::vector<std::string>& figures);
+
+/// The specification on one line, shortened in its middle to about `limit` characters.
+std::string shortName(const std::string& brdf, std::size_t limit);
+
+/// "1.234 ± 1e-09", or "does not exist".
+std::string energyText(const Energy& energy);
+
+/// "θ = 52°, φ = 0°" and the like.
+std::string outgoingText(const OutgoingSet& outgoing);
+
+/// Whether any point of any curve has an accuracy.
+bool hasAccuracy(const ReportEntry& entry);
+
+/// The colour of a basis in figures and tables, "#rrggbb".
+std::string basisColour(const std::string& basis);
+
+}  // namespace hshfit::inline pages

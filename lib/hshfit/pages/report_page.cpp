@@ -1,0 +1,163 @@
+#include <hshfit/pages/page_figures.h>
+#include <hshfit/pages/report_files.h>
+#include <hshfit/version.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <kainjow/mustache.hpp>
+
+namespace hshfit::embedded {
+extern const std::string_view report_html;
+}
+
+namespace hshfit::inline pages {
+
+namespace {
+
+using kainjow::mustache::data;
+
+constexpr std::array<double, 4> thresholds{0.90, 0.95, 0.99, 0.999};
+
+std::string percent(double fraction) {
+    return fmt::format("{:g} %", 100 * fraction);
+}
+
+/// Enough digits to see what is missing: 98.7 %, 99.9987 %; never rounded up to 100 %.
+std::string accuracyText(const std::optional<double>& accuracy) {
+    if (!accuracy) return "–";
+    const double missing = 1 - *accuracy;
+    if (missing < 5e-9) return "100 %";
+    const int digits = std::clamp(static_cast<int>(1 - std::floor(std::log10(missing)) - 1), 1, 8);
+    return fmt::format("{:.{}f} %", 100 * *accuracy, digits);
+}
+
+/// The fewest coefficients with which a curve reaches a threshold, 0 if none does. Only of bases
+/// that measure the same energy.
+int fewest(const ReportEntry& entry, double threshold) {
+    int best = 0;
+    for (const auto& curve : entry.curves) {
+        const auto point = firstReaching(curve, threshold);
+        if (point && !curve.energy && (best == 0 || point->coefficients < best))
+            best = point->coefficients;
+    }
+    return best;
+}
+
+data needsOf(const ReportEntry& entry) {
+    data rows{data::type::list};
+    for (const auto& curve : entry.curves) {
+        data cells{data::type::list};
+        for (const double threshold : thresholds) {
+            data cell;
+            const auto point = firstReaching(curve, threshold);
+            if (point) {
+                const bool best = !curve.energy && point->coefficients == fewest(entry, threshold);
+                cell.set("text", fmt::format("{} ({})", point->coefficients, point->order));
+                cell.set("class", best ? "best" : "reached");
+            } else {
+                const bool known = !curve.points.empty() && curve.points.back().accuracy;
+                cell.set("text",
+                         known ? fmt::format("> {}", curve.points.back().coefficients) : "–");
+                cell.set("class", "never");
+            }
+            cells.push_back(cell);
+        }
+        data row;
+        row.set("basis", curve.basis);
+        row.set("colour", basisColour(curve.basis));
+        row.set("cells", cells);
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+data everyOrder(const ReportEntry& entry) {
+    int last = 0;
+    for (const auto& curve : entry.curves) {
+        for (const auto& point : curve.points) last = std::max(last, point.order);
+    }
+    data rows{data::type::list};
+    for (int order = 1; order <= last; ++order) {
+        data cells{data::type::list};
+        bool any = false;
+        for (const auto& curve : entry.curves) {
+            const auto point = std::find_if(curve.points.begin(), curve.points.end(),
+                                            [&](const ReportPoint& p) { return p.order == order; });
+            const bool there = point != curve.points.end();
+            any = any || there;
+            cells.push_back(data("text", there ? accuracyText(point->accuracy) : ""));
+        }
+        if (!any) continue;
+        data row;
+        row.set("order", std::to_string(order));
+        row.set("cells", cells);
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+data entryData(const ReportEntry& entry, std::size_t index) {
+    data fields;
+    fields.set("index", std::to_string(index));
+    fields.set("brdf", entry.brdf);
+    fields.set("quantity", entry.quantity == Quantity::brdf ? "f, without the cosine"
+                                                            : "f cos θ, with the cosine");
+    fields.set("outgoing", outgoingText(entry.outgoing));
+    fields.set("channels", fmt::format("{}", fmt::join(entry.channels.names(), ", ")));
+    fields.set("energy", energyText(entry.energy));
+    fields.set("error",
+               std::isfinite(entry.error)
+                   ? fmt::format("{:.1e} relative, asked for {:.0e}", entry.error, entry.tolerance)
+                   : "none: no coefficients were reached");
+    fields.set("evaluations", std::to_string(entry.evaluations));
+    if (!entry.energy.finite) fields.set("reason", entry.energy.reason);
+    fields.set("hasAccuracy", hasAccuracy(entry));
+    data columns{data::type::list}, own{data::type::list};
+    for (const auto& curve : entry.curves) {
+        columns.push_back(data("basis", curve.basis));
+        if (!curve.energy) continue;
+        data line("basis", curve.basis);
+        line.set("energy", energyText(*curve.energy));
+        own.push_back(line);
+    }
+    fields.set("columns", columns);
+    fields.set("ownEnergy", own);
+    fields.set("needs", needsOf(entry));
+    fields.set("rows", everyOrder(entry));
+    return fields;
+}
+
+}  // namespace
+
+std::string reportPage(const Report& report, const std::vector<std::string>& figures) {
+    const std::size_t count = report.reports.size();
+    data page;
+    page.set("generator", std::string("hshfit ") + version);
+    page.set("style", std::string(pageStyle()));
+    page.set("count", std::to_string(count));
+    page.set("plural", count == 1 ? "" : "s");
+    page.set("many", count > 1);
+    const bool phase = count > 0 && report.reports.front().condonShortley;
+    page.set("phase", phase ? "carry" : "do not carry");
+    data limits{data::type::list};
+    for (const double threshold : thresholds) limits.push_back(data("text", percent(threshold)));
+    page.set("thresholds", limits);
+    std::string plotter = "gnuplot";
+    data entries{data::type::list};
+    for (std::size_t i = 0; i < count; ++i) {
+        data entry = entryData(report.reports[i], i + 1);
+        if (i < figures.size()) {
+            plotter = plotterOf(figures[i]);
+            entry.set("figure", inlinedFigure(figures[i], i + 1));
+        }
+        entries.push_back(entry);
+    }
+    page.set("plotter", plotter);
+    page.set("entries", entries);
+    return kainjow::mustache::mustache(std::string(embedded::report_html)).render(page);
+}
+
+}  // namespace hshfit::inline pages

@@ -1,0 +1,206 @@
+#include <hshfit/bases/catalog.h>
+#include <hshfit/pages/gnuplot.h>
+#include <hshfit/pages/report_files.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <kainjow/mustache.hpp>
+
+namespace hshfit::embedded {
+extern const std::string_view curves_gp;
+}
+
+namespace hshfit::inline pages {
+
+namespace {
+
+using kainjow::mustache::data;
+
+/// Colours after Okabe & Ito (2008), told apart with colour-blind eyes and on white and black;
+/// the dashes and marks tell the bases apart in grey too. By place in the table of bases.
+struct Style {
+    const char* colour;
+    int dash, mark;
+};
+constexpr std::array<Style, 9> styles{{{"#0072B2", 1, 7},
+                                       {"#E69F00", 2, 5},
+                                       {"#D55E00", 4, 9},
+                                       {"#9A6A4F", 5, 11},
+                                       {"#009E73", 1, 13},
+                                       {"#CC79A7", 2, 6},
+                                       {"#8A63C9", 4, 4},
+                                       {"#56B4E9", 1, 8},
+                                       {"#4D4D4D", 3, 10}}};
+
+Style styleOf(const std::string& basis) {
+    const auto table = bases::catalog();
+    const auto row = std::find_if(table.begin(), table.end(),
+                                  [&](const bases::Entry& entry) { return entry.name == basis; });
+    return styles[static_cast<std::size_t>(row - table.begin()) % styles.size()];
+}
+
+/// All bases of all entries, each once, in order of appearance.
+std::vector<std::string> basesOf(const Report& report) {
+    std::vector<std::string> names;
+    for (const auto& entry : report.reports) {
+        for (const auto& curve : entry.curves) {
+            if (std::find(names.begin(), names.end(), curve.basis) == names.end()) {
+                names.push_back(curve.basis);
+            }
+        }
+    }
+    return names;
+}
+
+/// Where the axis of what is missing ends: below the best point at 50 %, 20 % or a power of ten,
+/// but not below 1e-6, which is as much as the default tolerance of a projection says.
+double leastMissing(const ReportEntry& entry) {
+    double least = 1;
+    for (const auto& curve : entry.curves) {
+        for (const auto& point : curve.points) {
+            if (point.accuracy) least = std::min(least, 1 - *point.accuracy);
+        }
+    }
+    if (least > 0.2) return least > 0.5 ? 0.5 : 0.2;
+    return least > 1e-6 ? std::pow(10, std::floor(std::log10(least))) : 1e-6;
+}
+
+/// `text` with line breaks instead of the spaces before `width` characters are exceeded.
+std::string wrapped(const std::string& text, std::size_t width) {
+    std::string out;
+    std::size_t column = 0;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find(' ', at), text.size());
+        if (column > 0) {
+            const bool breaks = column + 1 + (end - at) > width;
+            out += breaks ? '\n' : ' ';
+            column = breaks ? 0 : column + 1;
+        }
+        out += text.substr(at, end - at);
+        column += end - at;
+        at = end + 1;
+    }
+    return out;
+}
+
+std::string titleOf(const ReportEntry& entry) {
+    return fmt::format("{}    {}, {}, energy {}", shortName(entry.brdf, 70),
+                       entry.quantity == Quantity::brdf ? "f" : "f cos θ",
+                       outgoingText(entry.outgoing), energyText(entry.energy));
+}
+
+}  // namespace
+
+bool hasAccuracy(const ReportEntry& entry) {
+    for (const auto& curve : entry.curves) {
+        for (const auto& point : curve.points) {
+            if (point.accuracy) return true;
+        }
+    }
+    return false;
+}
+
+std::string basisColour(const std::string& basis) {
+    return styleOf(basis).colour;
+}
+
+std::string shortName(const std::string& brdf, std::size_t limit) {
+    if (brdf.size() <= limit) return brdf;
+    const auto continues = [&](std::size_t at) { return (brdf[at] & 0xc0) == 0x80; };
+    std::size_t head = limit / 2, tail = brdf.size() - limit / 2;
+    while (head > 0 && continues(head)) --head;  // not within a UTF-8 character
+    while (tail < brdf.size() && continues(tail)) ++tail;
+    return brdf.substr(0, head) + "…" + brdf.substr(tail);
+}
+
+std::string energyText(const Energy& energy) {
+    if (!energy.finite || !std::isfinite(energy.value)) return "does not exist";
+    return fmt::format("{:.6g} ± {:.1e}", energy.value, energy.error);
+}
+
+std::string outgoingText(const OutgoingSet& outgoing) {
+    const std::string spec = outgoing.spec();
+    switch (outgoing.map) {
+        case OutgoingSet::Map::parabolic:
+            return fmt::format("{} × {} parabolic map", outgoing.width, outgoing.height);
+        case OutgoingSet::Map::elevations:
+            return fmt::format("{} elevations", outgoing.width);
+        case OutgoingSet::Map::direction:
+            break;
+    }
+    const std::size_t comma = spec.find(',');
+    return fmt::format("θ = {}°, φ = {}°", spec.substr(0, comma), spec.substr(comma + 1));
+}
+
+std::string reportScript(const Report& report) {
+    data fields;
+    fields.set("rows", std::to_string(std::max<std::size_t>(1, report.reports.size())));
+    data entries{data::type::list};
+    for (std::size_t i = 0; i < report.reports.size(); ++i) {
+        const ReportEntry& entry = report.reports[i];
+        int maxCount = 2, maxOrder = 2;
+        for (const auto& curve : entry.curves) {
+            for (const auto& point : curve.points) {
+                maxCount = std::max(maxCount, point.coefficients);
+                maxOrder = std::max(maxOrder, point.order);
+            }
+        }
+        data row;
+        row.set("index", std::to_string(i + 1));
+        row.set("title", gnuplotString(titleOf(entry)));
+        row.set("reason",
+                gnuplotString(hasAccuracy(entry) ? "" : wrapped(entry.energy.reason, 48)));
+        row.set("maxCount", std::to_string(maxCount));
+        row.set("maxOrder", std::to_string(maxOrder));
+        row.set("leastMissing", fmt::format("{:g}", leastMissing(entry)));
+        row.set("interval", std::to_string(std::max(1, maxOrder / 16)));
+        entries.push_back(row);
+    }
+    fields.set("entries", entries);
+    data lines{data::type::list};
+    const auto names = basesOf(report);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const Style style = styleOf(names[i]);
+        data line;
+        line.set("index", std::to_string(i + 1));
+        line.set("colour", style.colour);
+        line.set("dash", std::to_string(style.dash));
+        line.set("point", std::to_string(style.mark));
+        lines.push_back(line);
+    }
+    fields.set("styles", lines);
+    fields.set("bases", fmt::format("{}", fmt::join(names, " ")));
+    return kainjow::mustache::mustache(std::string(embedded::curves_gp)).render(fields);
+}
+
+std::string reportCsv(const Report& report) {
+    const auto quoted = [](const std::string& text) {
+        std::string out = "\"";
+        for (const char c : text) {
+            out +=
+                c == '"' ? "\"\"" : std::string(1, static_cast<unsigned char>(c) < ' ' ? ' ' : c);
+        }
+        return out + '"';
+    };
+    std::string out = "report,basis,order,coefficients,slots,accuracy,quantity,outgoing,brdf\n";
+    for (std::size_t i = 0; i < report.reports.size(); ++i) {
+        const ReportEntry& entry = report.reports[i];
+        // The texts come last: gnuplot finds the columns before them whatever they hold.
+        const std::string texts = fmt::format("{},{},{}", quantityName(entry.quantity),
+                                              quoted(entry.outgoing.spec()), quoted(entry.brdf));
+        for (const auto& curve : entry.curves) {
+            for (const auto& point : curve.points) {
+                fmt::format_to(std::back_inserter(out), "{},{},{},{},{},{},{}\n", i + 1,
+                               curve.basis, point.order, point.coefficients, point.slots,
+                               point.accuracy ? fmt::format("{}", *point.accuracy) : "", texts);
+            }
+        }
+    }
+    return out;
+}
+
+}  // namespace hshfit::inline pages

@@ -1,0 +1,116 @@
+#include <hshfit/pictures/sphere_albedo.h>
+#include <hshfit/quadrature/quadrature.h>
+#include <hshfit/quadrature/ring_points.h>
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace hshfit::inline pictures {
+namespace {
+
+constexpr int level = 2;
+constexpr double azimuthStep = pi / 16;  // of 32, or of 9 over a quadrant
+
+struct Albedo {
+    std::vector<double> values;  ///< per channel
+    std::size_t notFinite = 0;
+};
+
+Albedo albedoAt(const Brdf& brdf, const Direction& wo, const std::vector<Lobe>& lobes,
+                int gridLevel) {
+    const HemisphereGrid grid =
+        gridFor(lobes, wo, {.order = 1, .level = gridLevel, .squeezed = true});
+    Albedo albedo{std::vector<double>(brdf.channels().count(), 0.0), 0};
+    std::vector<double> f;
+    RingPoints points;
+    for (const auto& panel : grid.panels) {
+        points.start(panel);
+        const std::size_t count = points.count();
+        f.resize(count * albedo.values.size());
+        for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring) {
+            points.move(grid, ring);
+            brdf.eval(wo, points.directions(), f.data());
+            for (std::size_t k = 0; k < f.size(); ++k) {
+                if (std::isfinite(f[k])) {
+                    albedo.values[k / count] +=
+                        points.weight(k % count) * grid.elevations[ring].mu * f[k];
+                } else {
+                    ++albedo.notFinite;
+                }
+            }
+        }
+    }
+    return albedo;
+}
+
+std::vector<double> elevationsOf(bool isotropic) {
+    std::vector<double> thetas;
+    for (int degree = 0; degree < 90; degree += isotropic ? 1 : 5) {
+        thetas.push_back(radians(degree));
+    }
+    if (!isotropic) thetas.push_back(radians(89));
+    return thetas;
+}
+
+}  // namespace
+
+AlbedoTable::AlbedoTable(const Brdf& brdf)
+    : channels_(brdf.channels().count()),
+      azimuths_(brdf.laws().isotropic         ? 1
+                : brdf.laws().mirrorSymmetric ? 9
+                                              : 32),
+      mirrored_(brdf.laws().mirrorSymmetric),
+      thetas_(elevationsOf(brdf.laws().isotropic)) {
+    const std::size_t entries = thetas_.size() * azimuths_;
+    std::vector<Albedo> fine(entries), coarse(entries);
+    tbb::parallel_for(std::size_t{0}, entries, [&](std::size_t i) {
+        const double phi = static_cast<double>(i % azimuths_) * azimuthStep;
+        const Direction wo = directionFromAngles(thetas_[i / azimuths_], phi);
+        const std::vector<Lobe> lobes = brdf.lobes(wo);
+        coarse[i] = albedoAt(brdf, wo, lobes, level - 1);
+        fine[i] = albedoAt(brdf, wo, lobes, level);
+    });
+    for (std::size_t i = 0; i < entries; ++i) {
+        for (std::size_t c = 0; c < channels_; ++c) {
+            values_.push_back(fine[i].values[c]);
+            error_ = std::max(error_, std::abs(fine[i].values[c] - coarse[i].values[c]));
+        }
+        notFinite_ += fine[i].notFinite;
+    }
+}
+
+void AlbedoTable::lookUpRow(std::size_t row, double share, const Direction& wo,
+                            std::span<double> albedo) const {
+    const double* values = values_.data() + row * azimuths_ * channels_;
+    std::size_t low = 0, high = 0;
+    double t = 0;
+    if (azimuths_ > 1) {
+        // Under mirror symmetry only |x| and |y| matter, and the last azimuth is 90 degrees.
+        const double phi = mirrored_ ? std::atan2(std::abs(wo.y), std::abs(wo.x)) : azimuth(wo);
+        const double at = (phi < 0 ? phi + 2 * pi : phi) / azimuthStep;
+        low = static_cast<std::size_t>(at);
+        t = at - static_cast<double>(low);
+        low = mirrored_ ? std::min(low, azimuths_ - 1) : low % azimuths_;
+        high = mirrored_ ? std::min(low + 1, azimuths_ - 1) : (low + 1) % azimuths_;
+    }
+    for (std::size_t c = 0; c < channels_; ++c) {
+        albedo[c] +=
+            share * ((1 - t) * values[low * channels_ + c] + t * values[high * channels_ + c]);
+    }
+}
+
+void AlbedoTable::at(const Direction& wo, std::span<double> albedo) const {
+    assert(albedo.size() == channels_);
+    std::fill(albedo.begin(), albedo.end(), 0.0);
+    const double theta = std::min(polarAngle(wo), thetas_.back());
+    const auto above = std::upper_bound(thetas_.begin() + 1, thetas_.end() - 1, theta);
+    const auto row = static_cast<std::size_t>(above - thetas_.begin()) - 1;
+    const double t = (theta - thetas_[row]) / (thetas_[row + 1] - thetas_[row]);
+    lookUpRow(row, 1 - t, wo, albedo);
+    lookUpRow(row + 1, t, wo, albedo);
+}
+
+}  // namespace hshfit::inline pictures

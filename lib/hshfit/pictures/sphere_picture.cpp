@@ -1,0 +1,158 @@
+#include <hshfit/error.h>
+#include <hshfit/files/atomic_file.h>
+#include <hshfit/files/exr_picture.h>
+#include <hshfit/pictures/sphere_picture.h>
+
+#include <fmt/format.h>
+#include <png.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+
+namespace hshfit::inline pictures {
+namespace {
+
+constexpr double shownAsWhite = 0.8;
+
+/// The largest channel of every pixel of which `share` is at or below it; 0 without pixels.
+double quantileOfPixels(std::span<const SpherePicture> spheres, double share) {
+    std::vector<double> largest;
+    for (const SpherePicture& sphere : spheres) {
+        for (std::size_t i = 0; i < sphere.coverage.size(); ++i) {
+            if (sphere.coverage[i] == 0) continue;
+            const float* rgb = sphere.radiance.data() + 3 * i;
+            largest.push_back(*std::max_element(rgb, rgb + 3));
+        }
+    }
+    if (largest.empty()) return 0;
+    const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(largest.size() - 1));
+    std::nth_element(largest.begin(), largest.begin() + at, largest.end());
+    return largest[static_cast<std::size_t>(at)];
+}
+
+/// IEC 61966-2-1, to 8 bits.
+std::uint8_t encoded(double linear) {
+    const double x = std::clamp(linear, 0.0, 1.0);
+    const double s = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+    return static_cast<std::uint8_t>(std::lround(255 * s));
+}
+
+bool endsWith(const std::string& path, std::string_view extension) {
+    return path.size() > extension.size() && path.ends_with(extension);
+}
+
+ExrPicture exrOf(std::span<const SpherePicture> spheres) {
+    const auto size = static_cast<std::size_t>(spheres.front().size);
+    ExrPicture exr{
+        .width = size * spheres.size(), .height = size, .channels = {"R", "G", "B", "A"}};
+    exr.values.resize(exr.width * exr.height * 4);
+    for (std::size_t s = 0; s < spheres.size(); ++s) {
+        for (std::size_t i = 0; i < size * size; ++i) {
+            const std::size_t row = i / size, column = s * size + i % size;
+            const float coverage = spheres[s].coverage[i];
+            for (std::size_t c = 0; c < 3; ++c) {
+                exr.at(row, column, c) = coverage * spheres[s].radiance[3 * i + c];
+            }
+            exr.at(row, column, 3) = coverage;
+        }
+    }
+    return exr;
+}
+
+}  // namespace
+
+double automaticExposure(std::span<const SpherePicture> spheres) {
+    const double bright = quantileOfPixels(spheres, 0.95);
+    return bright > 0 ? std::round(10 * std::log2(shownAsWhite / bright)) / 10 : 0;
+}
+
+SpherePicture sphereDifference(const SpherePicture& reference, const SpherePicture& approximation) {
+    assert(reference.size == approximation.size);
+    SpherePicture difference = approximation;
+    for (std::size_t i = 0; i < difference.radiance.size(); ++i) {
+        difference.radiance[i] -= reference.radiance[i];
+    }
+    return difference;
+}
+
+double meanSquare(const SpherePicture& sphere) {
+    double sum = 0, weight = 0;
+    for (std::size_t i = 0; i < sphere.radiance.size(); ++i) {
+        const double value = sphere.radiance[i], covered = sphere.coverage[i / 3];
+        sum += covered * value * value;
+        weight += covered;
+    }
+    return weight > 0 ? sum / weight : 0;
+}
+
+SpherePicture amplified(const SpherePicture& difference, double factor) {
+    SpherePicture shown = difference;
+    for (float& value : shown.radiance) value = static_cast<float>(factor * std::abs(value));
+    return shown;
+}
+
+double amplificationFor(const SpherePicture& difference, double stops) {
+    const SpherePicture magnitude = amplified(difference, 1);
+    const double large = quantileOfPixels({&magnitude, 1}, 0.98) * std::exp2(stops);
+    double best = 1;
+    if (large <= 0) return best;
+    for (const double factor : {2, 5, 10, 20, 50, 100, 200, 500, 1000}) {
+        if (factor * large <= shownAsWhite) best = factor;
+    }
+    return best;
+}
+
+std::string spheresPng(std::span<const SpherePicture> spheres, double stops) {
+    assert(!spheres.empty());
+    const auto size = static_cast<std::size_t>(spheres.front().size);
+    const std::size_t width = size * spheres.size();
+    const double scale = std::exp2(stops);
+    std::vector<std::uint8_t> pixels(width * size * 4);
+    for (std::size_t s = 0; s < spheres.size(); ++s) {
+        assert(spheres[s].size == spheres.front().size);
+        for (std::size_t i = 0; i < size * size; ++i) {
+            std::uint8_t* pixel = pixels.data() + 4 * (i / size * width + s * size + i % size);
+            for (std::size_t c = 0; c < 3; ++c) {
+                pixel[c] = encoded(scale * spheres[s].radiance[3 * i + c]);
+            }
+            pixel[3] = static_cast<std::uint8_t>(std::lround(255 * spheres[s].coverage[i]));
+        }
+    }
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    image.width = static_cast<png_uint_32>(width);
+    image.height = static_cast<png_uint_32>(size);
+    image.format = PNG_FORMAT_RGBA;
+    std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(image), '\0');
+    png_alloc_size_t length = bytes.size();
+    if (!png_image_write_to_memory(&image, bytes.data(), &length, 0, pixels.data(), 0, nullptr)) {
+        throw OutputError(fmt::format("the picture could not be encoded as PNG: {}",
+                                      static_cast<const char*>(image.message)));
+    }
+    bytes.resize(length);
+    return bytes;
+}
+
+void checkSpheresPath(const std::string& path) {
+    if (endsWith(path, ".png") || endsWith(path, ".exr")) return;
+    throw UsageError(fmt::format("'{}': the picture's extension has to be .png or .exr", path));
+}
+
+void writeSpheres(std::span<const SpherePicture> spheres, double stops, const std::string& path,
+                  const std::map<std::string, std::string>& attributes) {
+    checkSpheresPath(path);
+    if (endsWith(path, ".png")) {
+        writeFile(path, spheresPng(spheres, stops));
+        return;
+    }
+    ExrPicture exr = exrOf(spheres);
+    exr.attributes = attributes;
+    AtomicFile file(path);
+    writeExrPicture(exr, ExrPixels::single, file);
+    file.commit();
+}
+
+}  // namespace hshfit::inline pictures

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <hshfit/pictures/sphere.h>
+
+#include <map>
+#include <span>
+#include <string>
+
+namespace hshfit::inline pictures {
+
+/// The exposure, in stops, at which 95 % of the spheres' pixels have their largest channel at or
+/// below 0.8 of white: highlights may burn out, surfaces do not. Rounded to a tenth; 0 for black.
+double automaticExposure(std::span<const SpherePicture> spheres);
+
+/// approximation - reference, channel by channel. Of the same size.
+SpherePicture sphereDifference(const SpherePicture& reference, const SpherePicture& approximation);
+
+/// Mean over the pixels on the sphere and R, G, B of the radiance squared.
+double meanSquare(const SpherePicture& sphere);
+
+/// |radiance| times `factor`, to look at.
+SpherePicture amplified(const SpherePicture& difference, double factor);
+
+/// The largest of 1, 2, 5, 10, … 1000 that keeps 98 % of the amplified difference, at this
+/// exposure, within 0.8 of white; 1 where there is no difference.
+double amplificationFor(const SpherePicture& difference, double stops);
+
+/// A PNG file of the spheres side by side, sRGB, 8 bits, transparent around them. `stops` doubles
+/// the radiance that often; what is then outside of [0, 1] is clamped. All of the same size.
+std::string spheresPng(std::span<const SpherePicture> spheres, double stops);
+
+/// Writes the spheres side by side to `path`, a .png as spheresPng does or an .exr: channels
+/// R, G, B (radiance times coverage, unexposed), A (coverage), 32-bit float. Throws UsageError for
+/// another extension, OutputError where it cannot be written.
+void writeSpheres(std::span<const SpherePicture> spheres, double stops, const std::string& path,
+                  const std::map<std::string, std::string>& attributes = {});
+
+/// Throws the UsageError of writeSpheres, before any work is done.
+void checkSpheresPath(const std::string& path);
+
+}  // namespace hshfit::inline pictures

@@ -1,0 +1,253 @@
+#include <hshfit/projection/internal/refinement.h>
+
+#include <hshfit/error.h>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hshfit::inline projection {
+namespace {
+
+using Inner = Basis::Inner;
+
+constexpr int maxLevel = 20;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// How a quantity has moved from level to level, and what that says of the error that is left.
+struct Change {
+    double last = infinity, before = infinity, earlier = infinity;
+
+    void add(double change) {
+        earlier = before;
+        before = last;
+        last = change;
+    }
+
+    /// Levels grow by 1.4, and what converges exponentially gains more with every one: then the
+    /// next change, and with it the error, is at most last (last / before). Kinks gain a factor of
+    /// 2 or 3 a level, with accidents: without two steps that were faster than that (or one that
+    /// was far faster), the last change itself is what is known.
+    double error() const {
+        constexpr double fast = 0.2, fastBefore = 0.35, fastAtOnce = 0.1, safety = 3;
+        if (last == 0 || before == infinity) return last;
+        const double ratio = last / before;
+        const bool smooth = earlier == infinity ? ratio < fastAtOnce
+                                                : ratio < fast && before < fastBefore * earlier;
+        return smooth ? last * std::min(1.0, safety * ratio) : last;
+    }
+};
+
+/// What one elevation panel holds at its present level.
+struct Panel {
+    double a, b;  ///< ends in u
+    AzimuthPeaks peaks;
+    int level = -1;
+    std::vector<double> moments = {}, before = {};  ///< in the order of ThetaProducts
+    PerInner energy{};
+    std::vector<Change> change = {};  ///< per basis: of the moments, by norm
+    std::array<Change, 2> energyChange = {};
+};
+
+/// The root of the sum of squares of `count` values, in four sums side by side.
+template <class Value>
+double rootOfSquares(std::size_t count, Value value) {
+    constexpr std::size_t lanes = laneGroup;
+    double sums[lanes] = {};
+    for (std::size_t i = 0; i + lanes <= count; i += lanes)
+        for (std::size_t k = 0; k < lanes; ++k) sums[k] += value(i + k) * value(i + k);
+    for (std::size_t i = count / lanes * lanes; i < count; ++i) sums[0] += value(i) * value(i);
+    return std::sqrt((sums[0] + sums[1]) + (sums[2] + sums[3]));
+}
+
+double distance(std::span<const double> a, std::span<const double> b) {
+    return rootOfSquares(a.size(), [&](std::size_t i) { return a[i] - b[i]; });
+}
+
+double norm(std::span<const double> a) {
+    return rootOfSquares(a.size(), [&](std::size_t i) { return a[i]; });
+}
+
+double relative(double difference, double reference) {
+    if (difference == 0) return 0;
+    return reference > 0 ? difference / reference : infinity;
+}
+
+/// One outgoing direction on its way to convergence.
+class Refinement {
+public:
+    Refinement(const Brdf& brdf, const ProjectionTables& tables, const Direction& wo,
+               const RefinementOptions& options)
+        : brdf_(brdf), tables_(tables), bases_(tables.theta.bases()), wo_(wo), options_(options) {
+        offsets_ = {0};
+        for (std::size_t b = 0; b < bases_.size(); ++b)
+            offsets_.push_back(offsets_[b] + tables.theta.size(b, brdf.channels().count()));
+        const std::vector<Lobe> lobes = brdf.lobes(wo);
+        const std::vector<double> breaks = panelBreaks(lobes, wo, brdf.kinks(wo));
+        for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
+            const double a = breaks[k], b = breaks[k + 1];
+            panels_.push_back({.a = a, .b = b, .peaks = {lobes, wo, a, b}});
+        }
+        result_.horizon = horizonBehaviour(brdf, wo, options.quantity);
+    }
+
+    RefinedMoments run() {
+        if (!result_.horizon.coefficientsExist()) {
+            throw NumericError(
+                fmt::format("{}: {}; its coefficients do not exist either", brdf_.name(),
+                            divergenceReason(result_.horizon, wo_, options_.quantity)));
+        }
+        std::vector<std::size_t> active(panels_.size());
+        for (std::size_t p = 0; p < active.size(); ++p) active[p] = p;
+        while (!active.empty()) {
+            refine(active);
+            addUp();
+            active = unconverged();
+        }
+        for (std::size_t b = 0; b < bases_.size(); ++b) {
+            result_.moments.push_back(
+                tables_.theta.toSlots(b, spectrum_.channels, ofBasis(totals_, b).data()));
+        }
+        return std::move(result_);
+    }
+
+private:
+    /// Takes the given panels one level further.
+    void refine(const std::vector<std::size_t>& active) {
+        grid_.clear();
+        for (std::size_t p : active) {
+            Panel& panel = panels_[p];
+            ++panel.level;
+            appendPanel(grid_, panel.a, panel.b, panel.peaks,
+                        {.order = tables_.azimuths.order(),
+                         .level = panel.level,
+                         .squeezed = true,
+                         .even = options_.even});
+        }
+        const std::size_t cost = grid_.points() / (options_.even ? 2 : 1);
+        const bool tooDeep = std::any_of(active.begin(), active.end(), [&](std::size_t p) {
+            return panels_[p].level > maxLevel;
+        });
+        if (tooDeep || result_.evaluations + cost > options_.maxEvaluations) giveUp();
+        result_.evaluations += cost;
+
+        sampleRings(brdf_, wo_, grid_, options_.quantity, tables_.azimuths, options_.even,
+                    spectrum_);
+        const auto takePanel = [&](std::size_t k) {
+            Panel& panel = panels_[active[k]];
+            panel.before.swap(panel.moments);
+            panel.moments.assign(offsets_.back(), 0.0);
+            tables_.theta.addMoments(grid_, k, panel.a, panel.b, spectrum_, options_.even,
+                                     panel.moments.data());
+            update(panel, energyOf(k));
+        };
+        // Worth sharing where the functions are many.
+        if (offsets_.back() * spectrum_.rings > std::size_t{1} << 20) {
+            tbb::parallel_for(std::size_t{0}, active.size(), takePanel);
+        } else {
+            for (std::size_t k = 0; k < active.size(); ++k) takePanel(k);
+        }
+    }
+
+    PerInner energyOf(std::size_t p) const {
+        PerInner energy{};
+        const auto& panel = grid_.panels[p];
+        for (std::size_t r = panel.firstRing; r < panel.firstRing + panel.rings; ++r) {
+            const double part = grid_.weights[r] * spectrum_.squares[r];
+            energy[static_cast<int>(Inner::solidAngle)] += part;
+            energy[static_cast<int>(Inner::projectedSolidAngle)] += part * grid_.elevations[r].mu;
+        }
+        return energy;
+    }
+
+    std::span<const double> ofBasis(const std::vector<double>& moments, std::size_t b) const {
+        return std::span(moments).subspan(offsets_[b], offsets_[b + 1] - offsets_[b]);
+    }
+
+    void update(Panel& panel, const PerInner& energy) const {
+        panel.change.resize(bases_.size());
+        for (std::size_t e = 0; e < energy.size() && panel.level > 0; ++e) {
+            panel.energyChange[e].add(std::abs(energy[e] - panel.energy[e]));
+        }
+        for (std::size_t b = 0; b < bases_.size() && panel.level > 0; ++b) {
+            panel.change[b].add(distance(ofBasis(panel.moments, b), ofBasis(panel.before, b)));
+        }
+        panel.energy = energy;
+    }
+
+    /// Totals over the panels, in their order.
+    void addUp() {
+        totals_.assign(offsets_.back(), 0.0);
+        result_.energy = result_.energyError = {};
+        for (const Panel& panel : panels_) {
+            for (std::size_t i = 0; i < totals_.size(); ++i) totals_[i] += panel.moments[i];
+            for (std::size_t e = 0; e < result_.energy.size(); ++e) {
+                result_.energy[e] += panel.energy[e];
+                result_.energyError[e] += panel.energyChange[e].error();
+            }
+        }
+        norms_.clear();
+        for (std::size_t b = 0; b < bases_.size(); ++b) norms_.push_back(norm(ofBasis(totals_, b)));
+        result_.error = 0;
+        for (const Panel& panel : panels_) result_.error += errorOf(panel);
+    }
+
+    /// A panel's error, relative to the totals: the largest over bases and their energies.
+    double errorOf(const Panel& panel) const {
+        double error = 0;
+        for (std::size_t b = 0; b < bases_.size(); ++b) {
+            error = std::max(error, relative(panel.change[b].error(), norms_[b]));
+            const Inner inner = bases_[b]->inner();
+            if (!result_.horizon.energyExists(inner)) continue;
+            const int e = static_cast<int>(inner);
+            error = std::max(error, relative(panel.energyChange[e].error(), result_.energy[e]));
+        }
+        return error;
+    }
+
+    /// The panels to refine next: none once the errors add up to the tolerance.
+    std::vector<std::size_t> unconverged() const {
+        std::vector<std::size_t> active;
+        if (result_.error <= options_.tolerance) return active;
+        const double share = 0.5 * options_.tolerance / static_cast<double>(panels_.size());
+        for (std::size_t p = 0; p < panels_.size(); ++p) {
+            if (errorOf(panels_[p]) > share) active.push_back(p);
+        }
+        return active;
+    }
+
+    [[noreturn]] void giveUp() const {
+        throw NumericError(fmt::format(
+            "{}: not converged at theta_o = {:.6g}, phi_o = {:.6g} degrees: relative change {:.2g} "
+            "after {} evaluations, {:.2g} asked; raise --tolerance or --max-evaluations",
+            brdf_.name(), degrees(polarAngle(wo_)), degrees(azimuth(wo_)), result_.error,
+            result_.evaluations, options_.tolerance));
+    }
+
+    const Brdf& brdf_;
+    const ProjectionTables& tables_;
+    std::span<const Basis* const> bases_;
+    Direction wo_;
+    RefinementOptions options_;
+    std::vector<std::size_t> offsets_;  ///< of each basis among the moments
+    std::vector<Panel> panels_;
+    HemisphereGrid grid_;    ///< of the panels that are being refined
+    RingSpectrum spectrum_;  ///< on it
+    std::vector<double> totals_, norms_;
+    RefinedMoments result_;
+};
+
+}  // namespace
+
+ProjectionTables::ProjectionTables(std::span<const Basis* const> bases)
+    : azimuths((*std::ranges::max_element(bases, {}, &Basis::order))->order()), theta(bases) {}
+
+RefinedMoments refineMoments(const Brdf& brdf, const ProjectionTables& tables, const Direction& wo,
+                             const RefinementOptions& options) {
+    return Refinement(brdf, tables, wo, options).run();
+}
+
+}  // namespace hshfit::inline projection

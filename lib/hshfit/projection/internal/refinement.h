@@ -1,0 +1,55 @@
+#pragma once
+
+#include <hshfit/bases/basis.h>
+#include <hshfit/brdf/brdf.h>
+#include <hshfit/coefficients/coefficients.h>
+#include <hshfit/projection/horizon.h>
+#include <hshfit/projection/internal/theta_products.h>
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace hshfit::inline projection {
+
+/// Values for Basis::Inner::solidAngle and ::projectedSolidAngle.
+using PerInner = std::array<double, 2>;
+
+/// Converged moments of q = f or f cos(theta_i) for one outgoing direction.
+struct RefinedMoments {
+    std::vector<std::vector<double>> moments;  ///< per basis: [channel][slot]
+    PerInner energy{};                         ///< integral of q^2, summed over channels
+    PerInner energyError{};                    ///< absolute
+    double error = 0;                          ///< relative, the larger of coefficients and energy
+    std::size_t evaluations = 0;
+    HorizonBehaviour horizon;
+};
+
+struct RefinementOptions {
+    Quantity quantity = Quantity::brdf;
+    bool even = false;  ///< f is even in phi_i for this wo
+    double tolerance = 1e-6;
+    std::size_t maxEvaluations = std::size_t{1} << 26;
+};
+
+/// What all outgoing directions of a projection share. At least one basis.
+struct ProjectionTables {
+    explicit ProjectionTables(std::span<const Basis* const> bases);
+    AzimuthTables azimuths;
+    ThetaProducts theta;
+};
+
+/// Integrates q against the analysis functions of every basis. Each elevation panel is refined on
+/// its own until the errors of all panels add up to no more than the tolerance, relative to the
+/// norm of each basis' moments and to each energy that exists: panels that hold next to nothing
+/// stay coarse. A panel's error is its last change, or, where its changes shrink as fast as those
+/// of a smooth f, what the next change would be. The sum is above the true error for a smooth f,
+/// and within a factor of 3 of it where f has kinks that no panel ends at.
+///
+/// Throws NumericError where the moments do not exist, do not converge within the evaluations
+/// allowed, or q is not finite.
+RefinedMoments refineMoments(const Brdf& brdf, const ProjectionTables& tables, const Direction& wo,
+                             const RefinementOptions& options);
+
+}  // namespace hshfit::inline projection

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <hshfit/quadrature/azimuth_spread.h>
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace hshfit::inline quadrature {
+
+/// Columns come in whole groups of this many; those that are missing are filled with zeros.
+constexpr std::size_t laneGroup = 4;
+
+/// How many columns each kind of azimuth function takes, with room for whole groups of `group`.
+struct AzimuthColumns {
+    std::size_t c0, c1, s1, s0;
+    explicit AzimuthColumns(int order, std::size_t group = laneGroup)
+        : c0(whole((order + 1) / 2, group)),
+          c1(whole(order / 2, group)),
+          s1(c1),
+          s0(whole((order - 1) / 2, group)) {}
+    std::size_t all() const { return c0 + c1 + s1 + s0; }
+    /// The column of az_m, |m| < order.
+    std::size_t of(int m) const {
+        const std::size_t k = static_cast<std::size_t>(m < 0 ? -m : m) / 2;
+        if (m >= 0) return m % 2 == 0 ? k : c0 + k;
+        return m % 2 != 0 ? c0 + c1 + k : c0 + c1 + s1 + k - 1;
+    }
+
+private:
+    static std::size_t whole(int count, std::size_t group) {
+        return (static_cast<std::size_t>(count) + group - 1) / group * group;
+    }
+};
+
+/// The azimuth functions at some of a ring's azimuths, relative to its centre: equispaced ones on a
+/// part of a quadrant, squeezed ones on a part of the half circle above 0. The rest of the ring
+/// follows by symmetry (ring_kernels.h).
+struct AzimuthTable {
+    std::size_t count = 0;
+    std::vector<double> cosine, sine;  ///< of phi_j
+    std::vector<double> weights;       ///< d phi / dt where squeezed
+    /// [count][column], az_m without the Condon-Shortley sign, times the weight, columns as in
+    /// AzimuthColumns: cos(m phi) for m = 0, 2, …, for m = 1, 3, …, then sin(m phi) for m = 1, 3,
+    /// …, for m = 2, 4, …; 0 in columns that only fill a group.
+    std::vector<double> rows;
+
+    /// Azimuths number first to first + howMany - 1.
+    void fill(int order, const AzimuthSpacing& spacing, std::size_t first, std::size_t howMany);
+};
+
+/// Azimuths that a table has: a quadrant, or half of the circle where squeezed.
+inline std::size_t tableSize(const AzimuthSpacing& spacing) {
+    return spacing.azimuths / (spacing.squeeze > 0 ? 2 : 4);
+}
+
+/// Whole tables, kept for all outgoing directions of a projection. Safe to use from
+/// many threads.
+class AzimuthTables {
+public:
+    explicit AzimuthTables(int order);
+    ~AzimuthTables();
+
+    int order() const { return order_; }
+    /// None where it alone would take too much room (2 MB, 4096 azimuths): whoever needs it fills
+    /// it piece by piece. What is kept takes 64 MB at most; beyond, tables are made for the caller.
+    /// Which of these it is does not change a bit of a sum. The table lives as long as both the
+    /// pointer and this object.
+    std::shared_ptr<const AzimuthTable> find(const AzimuthSpacing& spacing) const;
+
+private:
+    struct Kept;
+    int order_;
+    std::unique_ptr<Kept> kept_;
+};
+
+}  // namespace hshfit::inline quadrature

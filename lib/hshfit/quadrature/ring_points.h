@@ -1,0 +1,32 @@
+#pragma once
+
+#include <hshfit/brdf/brdf.h>
+#include <hshfit/quadrature/quadrature.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace hshfit::inline quadrature {
+
+/// The points of a grid, ring by ring, for whoever needs values one by one and not their azimuth
+/// transform (rings.h). Of a ring, the points go once around from the panel's centre, so that the
+/// first half of them is one side of it.
+class RingPoints {
+public:
+    /// Takes the azimuths of a panel.
+    void start(const HemisphereGrid::Panel& panel);
+    /// Takes a ring of that panel; `weights` are then the solid angles of its points, and sum over
+    /// the grid to 2 pi.
+    void move(const HemisphereGrid& grid, std::size_t ring);
+
+    std::size_t count() const { return cosine_.size(); }
+    DirectionBatch directions() const { return {x_.data(), y_.data(), z_.data(), count()}; }
+    Direction direction(std::size_t j) const { return {x_[j], y_[j], z_[j]}; }
+    double weight(std::size_t j) const { return weights_[j]; }
+
+private:
+    std::vector<double> cosine_, sine_, step_;  ///< d phi
+    std::vector<double> x_, y_, z_, weights_;
+};
+
+}  // namespace hshfit::inline quadrature

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <hshfit/brdf/brdf.h>
+#include <hshfit/coefficients/coefficients.h>
+
+#include <vector>
+
+namespace hshfit::inline representation::inline constraints {
+
+/// In slots: what each function of the basis contributes to the directional albedo,
+///     integral of B cos(theta_i) d omega_i, or of B d omega_i for coefficients of f cos(theta_i);
+/// by Gauss-Legendre nodes in sqrt(cos theta), exact. Only m = 0 is not 0.
+std::vector<double> albedoMoments(const Basis& basis, Quantity quantity);
+
+/// [direction][channel]: the directional albedo of `source`, to the larger of 1e-6 and a tenth of
+/// its tolerance; at most 1 where it conserves energy. Directions that its symmetries make alike
+/// are evaluated once.
+std::vector<double> albedoBounds(const Brdf& source, const std::vector<Direction>& directions);
+
+/// How far the albedos of one channel at the stored directions may go, so that albedos interpolated
+/// between them stay below their bounds as well: the targets a' <= a with the least sum of
+/// solid angle times (a - a')^2, by Hildreth's method (1957).
+struct InterpolatedBound {
+    OutgoingLookup lookup;  ///< stored directions and their weights
+    double most = 0;
+};
+std::vector<double> albedoTargets(const std::vector<double>& albedos,
+                                  const std::vector<double>& solidAngles,
+                                  const std::vector<InterpolatedBound>& bounds);
+
+/// The stored directions, the points halfway between neighbours of the map, and the horizon ring.
+std::vector<Direction> albedoChecks(const OutgoingSet& set);
+
+}  // namespace hshfit::inline representation::inline constraints

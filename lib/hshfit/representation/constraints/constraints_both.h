@@ -1,0 +1,18 @@
+#pragma once
+
+#include <hshfit/brdf/brdf.h>
+#include <hshfit/representation/representation.h>
+
+namespace hshfit::inline representation::inline constraints {
+
+/// What is asked of a matrix over both directions.
+struct BothConstraints {
+    bool nonNegative = false;
+    const Brdf* added = nullptr;         ///< q + added >= 0
+    const Brdf* albedoSource = nullptr;  ///< albedo nowhere above that of this
+};
+
+/// The nearest matrix, channel by channel, over all terms at once. See constraints.h.
+void constrainBoth(Representation& matrix, const BothConstraints& constraints);
+
+}  // namespace hshfit::inline representation::inline constraints

@@ -1,0 +1,196 @@
+#include <hshfit/representation/halfway/halfway.h>
+
+#include <hshfit/error.h>
+#include <hshfit/representation/halfway/internal/halfway_fit.h>
+#include <hshfit/version.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hshfit::inline representation::inline halfway {
+namespace {
+
+constexpr std::size_t fewestPairs = 1 << 14, mostPairs = 1 << 18, heldOutPairs = 1 << 15;
+/// More terms than that take too long to fit: time goes with the square of their number.
+constexpr std::size_t mostTerms = 1500;
+/// Change of the error of the pairs that are held out at which their number is enough.
+constexpr double settled = 0.02;
+/// Of the mean of the diagonal, where orders are ranked.
+constexpr double rankRegularisation = 1e-6;
+
+Coefficients headFor(const Brdf& brdf, bool reciprocal) {
+    Coefficients head;
+    head.channels = brdf.channels();
+    head.isotropic = brdf.laws().isotropic;
+    head.bilateral = brdf.laws().mirrorSymmetric || (reciprocal && brdf.laws().isotropic);
+    head.reciprocal = reciprocal || brdf.laws().reciprocal;
+    head.source = brdf.name();
+    head.generator = std::string("hshfit ") + version;
+    head.tolerance = settled;
+    head.outgoing.directions.clear();
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    head.energy = {none, none, false, "the halfway form expands ln(1 + f)"};
+    return head;
+}
+
+HalfwaySamples heldOut(const Brdf& brdf) {
+    HalfwaySamples samples;
+    appendSamples(brdf, HalfwayPart::heldOut, 0, heldOutPairs, samples);
+    return samples;
+}
+
+/// Orders that fill a budget, one for each pair of orders along v and the azimuth.
+std::vector<HalfwayOrders> candidates(std::size_t mostInBudget, const HalfwaySymmetry& symmetry) {
+    std::vector<HalfwayOrders> found;
+    for (int difference = 2; difference <= 8; ++difference) {
+        for (int azimuth = 1; azimuth <= 7; ++azimuth) {
+            int half = 16;
+            const auto terms = [&] {
+                return HalfwayTerms({half, difference, azimuth}, symmetry).size();
+            };
+            while (half >= 4 && terms() > std::min(mostInBudget, mostTerms)) --half;
+            if (half >= 4) found.push_back({half, difference, azimuth});
+        }
+    }
+    return found;
+}
+
+bool within(const HalfwayOrders& a, const HalfwayOrders& b) {
+    return a.half <= b.half && a.difference <= b.difference && a.azimuth <= b.azimuth;
+}
+
+bool same(const HalfwayTerm& a, const HalfwayTerm& b) {
+    return a.i == b.i && a.j == b.j && a.k == b.k && a.q == b.q && a.exchange == b.exchange &&
+           a.mirror == b.mirror && a.sine == b.sine;
+}
+
+/// What the terms of `part` leave of the weighted squares when the others are 0.
+double residual(const HalfwayTerms& all, const HalfwayTerms& part,
+                const std::vector<HalfwaySystem>& systems) {
+    std::vector<Eigen::Index> kept;
+    for (const HalfwayTerm& term : part.list()) {
+        const auto at = std::find_if(all.list().begin(), all.list().end(),
+                                     [&](const HalfwayTerm& t) { return same(t, term); });
+        kept.push_back(at - all.list().begin());
+    }
+    std::vector<HalfwaySystem> smaller;
+    for (const HalfwaySystem& system : systems) {
+        smaller.push_back({system.gram(kept, kept), system.right(kept), system.squares});
+    }
+    const HalfwayValues values = solveHalfway(smaller, rankRegularisation);
+    double total = 0;
+    for (std::size_t c = 0; c < smaller.size(); ++c) {
+        total +=
+            smaller[c].squares - values.col(static_cast<Eigen::Index>(c)).dot(smaller[c].right);
+    }
+    return total;
+}
+
+}  // namespace
+
+Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
+                              const ProjectionOptions& options, bool reciprocal) {
+    Representation r;
+    r.kind = Representation::Kind::halfway;
+    r.head = headFor(brdf, reciprocal);
+    r.halfway = orders;
+    const HalfwayTerms terms(orders, halfwaySymmetryOf(r.head));
+    if (terms.size() > mostTerms) {
+        throw UsageError(
+            fmt::format("orders {},{},{} of the halfway form make {} terms a channel; "
+                        "it fits up to {}",
+                        orders.half, orders.difference, orders.azimuth, terms.size(), mostTerms));
+    }
+    const HalfwaySamples left = heldOut(brdf);
+    HalfwaySamples samples;
+    HalfwayValues values;
+    const std::size_t most = std::clamp(options.maxEvaluations, fewestPairs, mostPairs);
+    double error = 0, change = 1;
+    for (std::size_t first = 0, last = fewestPairs;; first = last, last *= 2) {
+        appendSamples(brdf, HalfwayPart::fitted, first, last, samples);
+        // A fit to fewer pairs than several times the terms says nothing: go on at once.
+        if (samples.size() < 24 * terms.size() && 2 * last <= most) continue;
+        values = fitHalfway(terms, samples, std::move(values));
+        const double before = error;
+        error = halfwayLoss(terms, left, values);
+        change = before > 0 ? std::abs(before - error) / before : 1;
+        if (options.progress) options.progress(last, most);
+        if (error == 0 || (before > 0 && change < settled) || 2 * last > most) break;
+    }
+    if (options.progress) options.progress(most, most);
+    r.head.error = error == 0 ? 0 : change;
+    StoredArray array{
+        .name = "halfway", .shape = {r.head.channels.count(), terms.size()}, .values = {}};
+    array.values.assign(values.data(), values.data() + values.size());
+    r.arrays.push_back(std::move(array));
+    r.steps.push_back({fmt::format("halfway {},{},{}: mean log error over pairs held out",
+                                   orders.half, orders.difference, orders.azimuth),
+                       error});
+    return r;
+}
+
+double halfwayError(const Brdf& brdf, const Representation& representation) {
+    const HalfwayExpansion checked(representation);
+    const std::vector<double>& stored = representation.array("halfway").values;
+    const HalfwayValues values = Eigen::Map<const HalfwayValues>(
+        stored.data(), static_cast<Eigen::Index>(checked.terms().size()),
+        static_cast<Eigen::Index>(representation.head.channels.count()));
+    return halfwayLoss(checked.terms(), heldOut(brdf), values);
+}
+
+HalfwayOrders chooseHalfwayOrders(const Brdf& brdf, std::size_t bytes, Precision precision,
+                                  const ProjectionOptions& options, bool reciprocal) {
+    const Coefficients head = headFor(brdf, reciprocal);
+    const HalfwaySymmetry symmetry = halfwaySymmetryOf(head);
+    const std::size_t channels = head.channels.count();
+    std::size_t most = 0;
+    while (storedBytes({.name = "halfway",
+                        .shape = {channels, most + 1},
+                        .precision = precision,
+                        .values = std::vector<double>(channels * (most + 1))}) <= bytes) {
+        ++most;
+    }
+    std::vector<HalfwayOrders> known = candidates(most, symmetry);
+    if (known.empty()) {
+        throw UsageError(fmt::format("{} bytes are too few for the halfway form of {} channels",
+                                     bytes, channels));
+    }
+    HalfwayOrders largest = known[0];
+    for (const HalfwayOrders& o : known) {
+        largest = {std::max(largest.half, o.half), std::max(largest.difference, o.difference),
+                   std::max(largest.azimuth, o.azimuth)};
+    }
+    const HalfwayTerms all(largest, symmetry);
+    HalfwaySamples samples;
+    appendSamples(brdf, HalfwayPart::fitted, 0, std::max(fewestPairs, 16 * all.size()), samples);
+    HalfwayPass pass = halfwayPass(all, samples, {});
+    pass = halfwayPass(all, samples, solveHalfway(pass.systems, rankRegularisation));
+
+    std::vector<std::pair<double, HalfwayOrders>> ranked;
+    for (const HalfwayOrders& o : known) {
+        const bool contained = std::any_of(known.begin(), known.end(), [&](const auto& other) {
+            return within(o, other) && !within(other, o);
+        });
+        if (!contained) ranked.push_back({residual(all, {o, symmetry}, pass.systems), o});
+    }
+    std::stable_sort(ranked.begin(), ranked.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    constexpr std::size_t fitted = 4;
+    double least = std::numeric_limits<double>::infinity();
+    HalfwayOrders best;
+    for (std::size_t n = 0; n < std::min(fitted, ranked.size()); ++n) {
+        Representation r = projectHalfway(brdf, ranked[n].second, options, reciprocal);
+        quantise(r.arrays[0], precision);
+        const double error = halfwayError(brdf, r);
+        if (error < least) {
+            least = error;
+            best = ranked[n].second;
+        }
+    }
+    return best;
+}
+
+}  // namespace hshfit::inline representation::inline halfway

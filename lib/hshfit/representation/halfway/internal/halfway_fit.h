@@ -1,0 +1,44 @@
+#pragma once
+
+#include <hshfit/representation/halfway/halfway_terms.h>
+#include <hshfit/representation/halfway/internal/halfway_samples.h>
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace hshfit::inline representation::inline halfway {
+
+/// The weighted normal equations of one channel: gram c = right, |y|^2 = squares.
+struct HalfwaySystem {
+    Eigen::MatrixXd gram;
+    Eigen::VectorXd right;
+    double squares = 0;
+};
+
+/// Coefficients [term][channel] of ln(1 + f).
+using HalfwayValues = Eigen::MatrixXd;
+
+/// One pass over the samples: the systems of the next step, one per channel, and the loss of
+/// `values`, the coefficients now; none (0 x 0) before the first step.
+struct HalfwayPass {
+    std::vector<HalfwaySystem> systems;
+    double loss = 0;
+};
+HalfwayPass halfwayPass(const HalfwayTerms& terms, const HalfwaySamples& samples,
+                        const HalfwayValues& values);
+
+/// The coefficients that solve the systems, with `regularisation` times the mean of the diagonal
+/// added to it.
+HalfwayValues solveHalfway(const std::vector<HalfwaySystem>& systems, double regularisation);
+
+/// Steps until the loss changes by less than a part in 300, from `values` if there are any, with
+/// as much regularisation as costs little (worthIt in halfway_fit.cpp).
+HalfwayValues fitHalfway(const HalfwayTerms& terms, const HalfwaySamples& samples,
+                         HalfwayValues values);
+
+/// Mean of |ln(1 + f c) - ln(1 + g c)| over samples and channels.
+double halfwayLoss(const HalfwayTerms& terms, const HalfwaySamples& samples,
+                   const HalfwayValues& values);
+
+}  // namespace hshfit::inline representation::inline halfway

@@ -1,0 +1,95 @@
+#include <hshfit/representation/halfway/internal/halfway_samples.h>
+
+#include <hshfit/error.h>
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace hshfit::inline representation::inline halfway {
+namespace {
+
+/// Where the sequence of the pairs that are held out starts: no fit gets that far.
+constexpr std::size_t heldOutStart = std::size_t{1} << 32;
+
+/// Coordinate `axis` of point n of the sequence in `dimensions` dimensions.
+class Sequence {
+public:
+    explicit Sequence(int dimensions) {
+        double root = 1.5;
+        for (int step = 0; step < 64; ++step) root = std::pow(1 + root, 1.0 / (dimensions + 1));
+        for (int axis = 0; axis < dimensions; ++axis) {
+            // In 64-bit fixed point: exact for every n.
+            const double step = std::pow(root, -(axis + 1));
+            steps_[axis] = static_cast<std::uint64_t>(std::ldexp(step, 64));
+        }
+    }
+    double at(std::size_t n, int axis) const {
+        const std::uint64_t sum = (std::uint64_t{1} << 63) + n * steps_[axis];
+        return std::ldexp(static_cast<double>(sum >> 11) + 0.5, -53);
+    }
+
+private:
+    std::array<std::uint64_t, 4> steps_{};
+};
+
+Direction onHemisphere(double height, double turn) {
+    const double z = 1 - height, radius = std::sqrt(height * (2 - height));
+    return {radius * std::cos(2 * pi * turn), radius * std::sin(2 * pi * turn), z};
+}
+
+DirectionPair pairAt(const Sequence& sequence, std::size_t n, bool isotropic, bool lobe) {
+    const double a = sequence.at(n, 0), b = sequence.at(n, 1), c = sequence.at(n, 2);
+    const double d = isotropic ? 0 : sequence.at(n, 3);
+    if (!lobe) return {onHemisphere(a, c), onHemisphere(b, d)};
+    const double u = 1 - std::cos(pi / 2 * a);
+    const double thetaHalf = 2 * std::asin(std::min(1.0, u * u / std::sqrt(2.0)));
+    return fromHalfDifference(thetaHalf, 2 * pi * d, std::acos(b), 2 * pi * c);
+}
+
+[[noreturn]] void refuse(const Brdf& brdf, const DirectionPair& pair, double value) {
+    throw NumericError(fmt::format(
+        "{}: f is {} at theta_i {:.6g}, phi_i {:.6g}, theta_o {:.6g}, phi_o {:.6g} degrees; the "
+        "halfway form needs finite values",
+        brdf.name(), value, degrees(polarAngle(pair.wi)), degrees(azimuth(pair.wi)),
+        degrees(polarAngle(pair.wo)), degrees(azimuth(pair.wo))));
+}
+
+}  // namespace
+
+void appendSamples(const Brdf& brdf, HalfwayPart part, std::size_t first, std::size_t last,
+                   HalfwaySamples& samples) {
+    const bool isotropic = brdf.laws().isotropic;
+    const Sequence sequence(isotropic ? 3 : 4);
+    std::vector<DirectionPair> pairs;
+    for (std::size_t n = first; n < last; ++n) {
+        const bool lobe = part == HalfwayPart::fitted && n % 4 == 3;
+        const std::size_t place = part == HalfwayPart::fitted ? n : heldOutStart + n;
+        const DirectionPair pair = pairAt(sequence, place, isotropic, lobe);
+        if (!(pair.wi.z > 0 && pair.wo.z > 0)) continue;
+        pairs.push_back(pair);
+        samples.lobe.push_back(lobe ? 1 : 0);
+        samples.cosines.push_back(pair.wi.z);
+        samples.points.push_back(halfwayPoint(pair.wi, pair.wo));
+    }
+    const std::size_t channels = brdf.channels().count(), start = samples.values.size();
+    samples.values.resize(start + pairs.size() * channels);
+    double* values = samples.values.data() + start;
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, pairs.size(), 256), [&](const auto& range) {
+            for (std::size_t k = range.begin(); k < range.end(); ++k) {
+                const Direction& wi = pairs[k].wi;
+                brdf.eval(pairs[k].wo, {&wi.x, &wi.y, &wi.z, 1}, values + k * channels);
+            }
+        });
+    for (std::size_t k = 0; k < pairs.size() * channels; ++k) {
+        if (!std::isfinite(values[k])) refuse(brdf, pairs[k / channels], values[k]);
+        values[k] = std::max(values[k], 0.0);
+    }
+}
+
+}  // namespace hshfit::inline representation::inline halfway

@@ -1,0 +1,362 @@
+#include "lib/formula_brdf.h"
+
+#include <hshfit/error.h>
+#include <hshfit/representation/forms/represented_brdf.h>
+#include <hshfit/representation/halfway/halfway.h>
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <set>
+#include <tuple>
+
+namespace hshfit {
+namespace {
+
+using test::FormulaBrdf;
+
+constexpr HalfwaySymmetry symmetries[] = {
+    {.isotropic = true, .bilateral = true, .reciprocal = true},
+    {.isotropic = true, .bilateral = true, .reciprocal = false},
+    {.isotropic = true, .bilateral = false, .reciprocal = true},
+    {.isotropic = true, .bilateral = false, .reciprocal = false},
+    {.isotropic = false, .bilateral = true, .reciprocal = true},
+    {.isotropic = false, .bilateral = true, .reciprocal = false},
+    {.isotropic = false, .bilateral = false, .reciprocal = true},
+    {.isotropic = false, .bilateral = false, .reciprocal = false},
+};
+
+Direction uniform(std::mt19937_64& random) {
+    std::uniform_real_distribution<double> unit(0, 1);
+    const double z = 1 - unit(random), turn = 2 * pi * unit(random), r = std::sqrt(1 - z * z);
+    return {r * std::cos(turn), r * std::sin(turn), z};
+}
+
+using Key = std::tuple<int, int, int, int, bool, bool, bool>;
+Key keyOf(const HalfwayTerm& t) {
+    return {t.i, t.j, t.k, t.q, t.exchange, t.mirror, t.sine};
+}
+std::set<Key> keysOf(const HalfwayTerms& terms) {
+    std::set<Key> keys;
+    for (const HalfwayTerm& term : terms.list()) keys.insert(keyOf(term));
+    return keys;
+}
+
+/// Coefficients whose sum is about 1.5 and stays above 0.
+Representation inSpan(const HalfwayOrders& orders, const HalfwaySymmetry& symmetry, int channels) {
+    Representation r;
+    r.kind = Representation::Kind::halfway;
+    r.halfway = orders;
+    r.head.isotropic = symmetry.isotropic;
+    r.head.bilateral = symmetry.bilateral;
+    r.head.reciprocal = symmetry.reciprocal;
+    r.head.source = "random";
+    if (channels == 3) r.head.channels = Channels::rgb();
+    if (channels != 3 && channels != 1) {
+        std::vector<double> wavelengths;
+        for (int c = 0; c < channels; ++c) wavelengths.push_back(400 + 50 * c);
+        r.head.channels = Channels::spectral(wavelengths);
+    }
+    const HalfwayTerms terms(orders, symmetry);
+    const auto count = static_cast<std::size_t>(channels);
+    StoredArray array{.name = "halfway", .shape = {count, terms.size()}, .values = {}};
+    std::mt19937_64 random(7);
+    for (std::size_t c = 0; c < count; ++c) {
+        double bound = 0;
+        std::vector<double> row;
+        for (const HalfwayTerm& t : terms.list()) {
+            const double largest =
+                std::sqrt((2 * t.i + 1) * (2 * t.j + 1) * (2 * t.k + 1) * (t.q > 0 ? 2 : 1));
+            row.push_back(std::uniform_real_distribution<double>(-1, 1)(random) / largest);
+            bound += std::abs(row.back()) * largest;
+        }
+        for (double& value : row) value *= 1.2 / bound;
+        row[0] = 1.5;
+        array.values.insert(array.values.end(), row.begin(), row.end());
+    }
+    r.arrays.push_back(array);
+    return r;
+}
+
+std::unique_ptr<RepresentedBrdf> asBrdf(const Representation& r) {
+    return reconstruct(r, [](const std::string&) { return std::unique_ptr<Brdf>(); });
+}
+
+TEST(HalfwayTerms, AreThoseOfTheTruncation) {
+    const HalfwayOrders n{7, 4, 5};
+    for (const HalfwaySymmetry& s : symmetries) {
+        std::set<Key> expected;
+        for (int bits = 0; bits < 8; ++bits) {
+            const bool a = bits & 1, b = bits & 2, sine = bits & 4;
+            for (int q = 0; q <= 10; ++q) {
+                if (s.isotropic ? (q > 0 || sine) : (q == 0 && sine)) continue;
+                if (s.isotropic && s.bilateral && b) continue;
+                if (!s.isotropic && s.bilateral && (q % 2 == 1 || b != sine)) continue;
+                if (s.reciprocal && a != b) continue;
+                for (int i = 0; i < n.half; ++i) {
+                    for (int j = 0; j < n.difference; ++j) {
+                        for (int k = 0; k < n.azimuth; ++k) {
+                            const int d = k + a + b + (s.bilateral ? q / 2 : q);
+                            const double sum = i / 7.0 + j / 4.0 + d / 5.0;
+                            if (d < n.azimuth && sum <= 1.4 + 1e-12) {
+                                expected.insert({i, j, k, q, a, b, sine});
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        const HalfwayTerms terms(n, s);
+        EXPECT_EQ(keysOf(terms), expected);
+        EXPECT_EQ(terms.size(), expected.size());
+    }
+}
+
+TEST(HalfwayTerms, OfSmallerOrdersAreAmongThoseOfLargerOnes) {
+    for (const HalfwaySymmetry& s : symmetries) {
+        const std::set<Key> small = keysOf({{5, 3, 2}, s});
+        for (const HalfwayOrders& more :
+             {HalfwayOrders{6, 3, 2}, HalfwayOrders{5, 4, 2}, HalfwayOrders{9, 5, 4}}) {
+            const std::set<Key> large = keysOf({more, s});
+            EXPECT_TRUE(std::includes(large.begin(), large.end(), small.begin(), small.end()));
+        }
+    }
+}
+
+TEST(HalfwayTerms, HaveTheValuesOfTheFormulaInAngles) {
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> unit(0, 1);
+    const HalfwayTerms terms({6, 4, 4}, {});
+    std::vector<double> values(terms.size());
+    int tried = 0;
+    while (tried < 200) {
+        const double th = unit(random) * pi / 2, td = unit(random) * pi / 2;
+        const double ph = 2 * pi * unit(random), pd = 2 * pi * unit(random);
+        const DirectionPair pair = fromHalfDifference(th, ph, td, pd);
+        const double mean = std::cos(th) * std::cos(td);
+        const double half = std::sin(th) * std::sin(td) * std::cos(pd);
+        if (mean - std::abs(half) < 0.01) continue;
+        ++tried;
+        terms.evaluate(halfwayPoint(pair.wi, pair.wo), values.data());
+        const double tau = half / mean;
+        const double kappa = -std::sin(th) * std::sin(2 * td) * std::sin(pd);
+        const double u = std::pow(1 - std::cos(th), 0.25), v = std::cos(td);
+        const double w = std::pow(1 - tau * tau, 0.25);
+        const auto p = [](int n, double x) {
+            return std::sqrt(2 * n + 1) * std::legendre(static_cast<unsigned>(n), 2 * x - 1);
+        };
+        for (std::size_t n = 0; n < terms.size(); ++n) {
+            const HalfwayTerm& t = terms.list()[n];
+            double expected = p(t.i, u) * p(t.j, v) * p(t.k, w);
+            if (t.exchange) expected *= tau;
+            if (t.mirror) expected *= kappa;
+            if (t.q > 0) {
+                expected *=
+                    std::sqrt(2.0) * u * u * (t.sine ? std::sin(t.q * ph) : std::cos(t.q * ph));
+            }
+            EXPECT_NEAR(values[n], expected, 1e-9) << t.i << t.j << t.k << t.q;
+        }
+    }
+}
+
+TEST(HalfwayTerms, RefuseWhatIsTooLarge) {
+    EXPECT_THROW(HalfwayTerms({256, 256, 256}, {}), UsageError);
+    EXPECT_THROW(HalfwayTerms({0, 2, 2}, {}), UsageError);
+    EXPECT_THROW(HalfwayTerms({257, 1, 1}, {}), UsageError);
+}
+
+TEST(Halfway, KeepsTheLawsThatItsTermsHave) {
+    std::mt19937_64 random(11);
+    for (const HalfwaySymmetry& s : symmetries) {
+        const auto brdf = asBrdf(inSpan({6, 3, 4}, s, 3));
+        double exchanged = 0, turned = 0, mirrored = 0;
+        for (int n = 0; n < 200; ++n) {
+            const Direction wi = uniform(random), wo = uniform(random);
+            const auto f = evaluate(*brdf, wi, wo), back = evaluate(*brdf, wo, wi);
+            const auto around = evaluate(*brdf, rotateAboutZ(wi, 1), rotateAboutZ(wo, 1));
+            const auto mirror = evaluate(*brdf, {wi.x, -wi.y, wi.z}, {wo.x, -wo.y, wo.z});
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_GT(f[c], 0);
+                exchanged = std::max(exchanged, std::abs(f[c] - back[c]));
+                turned = std::max(turned, std::abs(f[c] - around[c]) / f[c]);
+                mirrored = std::max(mirrored, std::abs(f[c] - mirror[c]) / f[c]);
+            }
+        }
+        // Exactly where the law holds by the terms, and visibly broken where it does not.
+        EXPECT_EQ(exchanged == 0, s.reciprocal) << exchanged;
+        EXPECT_EQ(turned < 1e-12, s.isotropic) << turned;
+        EXPECT_EQ(mirrored < 1e-12, s.bilateral) << mirrored;
+        if (!s.reciprocal) {
+            EXPECT_GT(exchanged, 1e-3);
+        }
+        if (!s.isotropic) {
+            EXPECT_GT(turned, 1e-3);
+        }
+        if (!s.bilateral) {
+            EXPECT_GT(mirrored, 1e-3);
+        }
+    }
+}
+
+TEST(Halfway, IsContinuousAtPolesAndHorizon) {
+    for (const HalfwaySymmetry& s : symmetries) {
+        const auto brdf = asBrdf(inSpan({6, 3, 4}, s, 1));
+        const auto at = [&](const Direction& wi, const Direction& wo) {
+            return evaluate(*brdf, wi, wo)[0];
+        };
+        const Direction normal{0, 0, 1};
+        const double there = at(normal, normal);
+        EXPECT_TRUE(std::isfinite(there));
+        for (double turn : {0.1, 2.0, 4.0}) {
+            // h at the normal, from all sides: u goes with the root of the angle.
+            for (double tilt : {0.0, 0.7, 1.5}) {
+                const auto pole = fromHalfDifference(0, 0, tilt, 0.4);
+                const auto near = fromHalfDifference(1e-12, turn, tilt, 0.4 - turn);
+                EXPECT_NEAR(at(pole.wi, pole.wo), at(near.wi, near.wo), 1e-4);
+            }
+            const auto same = fromHalfDifference(0.5, 0.3, 0, 0);
+            const auto close = fromHalfDifference(0.5, 0.3, 1e-9, turn);
+            EXPECT_NEAR(at(same.wi, same.wo), at(close.wi, close.wo), 1e-7);
+            const Direction grazing{std::cos(turn), std::sin(turn), 1e-300};
+            EXPECT_TRUE(std::isfinite(at(grazing, normal)));
+            EXPECT_TRUE(std::isfinite(at(grazing, grazing)));
+            EXPECT_TRUE(std::isfinite(at(grazing, {-grazing.x, -grazing.y, 1e-300})));
+            EXPECT_EQ(at({grazing.x, grazing.y, 0}, normal), 0);
+            EXPECT_EQ(at(normal, {grazing.x * 0.8, grazing.y * 0.8, -0.6}), 0);
+        }
+    }
+}
+
+TEST(Halfway, FastPathHasTheValuesOfTheSlowOne) {
+    std::mt19937_64 random(5);
+    for (int channels : {1, 2, 3, 5}) {
+        for (const HalfwaySymmetry& s : symmetries) {
+            const Representation r = inSpan({9, 4, 4}, s, channels);
+            const HalfwayExpansion slow(r);
+            const auto fast = halfwayPairEvaluator(r);
+            for (std::size_t count : {1, 7, 101}) {
+                std::vector<double> d[6];
+                for (std::size_t k = 0; k < count; ++k) {
+                    Direction wi = uniform(random), wo = uniform(random);
+                    if (k % 10 == 3) wi.z = -wi.z;
+                    if (k % 10 == 5) wo = {-wi.x, -wi.y, wi.z};
+                    if (k % 10 == 6) wi = wo = {0, 0, 1};
+                    int axis = 0;
+                    for (const double v : {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z}) {
+                        d[axis++].push_back(v);
+                    }
+                }
+                std::vector<float> out(count * channels, -1.0F);
+                fast->evaluate({d[0].data(), d[1].data(), d[2].data(), count},
+                               {d[3].data(), d[4].data(), d[5].data(), count}, out.data());
+                std::vector<double> expected(channels);
+                for (std::size_t k = 0; k < count; ++k) {
+                    slow.evaluate({d[3][k], d[4][k], d[5][k]}, {&d[0][k], &d[1][k], &d[2][k], 1},
+                                  expected.data());
+                    for (int c = 0; c < channels; ++c) {
+                        const double value = out[c * count + k];
+                        if (d[2][k] <= 0) {
+                            EXPECT_EQ(value, 0);
+                        }
+                        EXPECT_NEAR(value, expected[c], 1e-5 * (1 + expected[c]));
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(Halfway, FitFindsWhatLiesInItsSpan) {
+    for (const HalfwaySymmetry& s : symmetries) {
+        const HalfwayOrders orders = s.isotropic ? HalfwayOrders{6, 3, 3} : HalfwayOrders{4, 3, 3};
+        const auto brdf = asBrdf(inSpan(orders, s, 1));
+        const Representation fitted = projectHalfway(*brdf, orders, {.maxEvaluations = 1 << 15});
+        EXPECT_LT(halfwayError(*brdf, fitted), 1e-5);
+        // Fewer functions do not do, so that the bound says something.
+        const Representation fewer = projectHalfway(*brdf, {3, 2, 2}, {.maxEvaluations = 1 << 14});
+        EXPECT_GT(halfwayError(*brdf, fewer), 1e-3);
+    }
+}
+
+TEST(Halfway, FitDoesNotDependOnThreads) {
+    const auto brdf = asBrdf(inSpan({8, 4, 3}, symmetries[0], 3));
+    const auto fit = [&] {
+        return projectHalfway(*brdf, {5, 3, 2}, {.maxEvaluations = 1 << 14}).arrays[0].values;
+    };
+    const std::vector<double> many = fit();
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    EXPECT_EQ(many, fit());
+}
+
+TEST(Halfway, HeldOutErrorIsTheMetricOverUniformPairs) {
+    // g = 0 for a constant f: the mean of ln(1 + f c) over c uniform in [0, 1] in closed form.
+    const double f = 3;
+    const FormulaBrdf constant(
+        [=](const Direction& wi, const Direction& wo) { return wi.z > 0 && wo.z > 0 ? f : 0.0; });
+    Representation none = inSpan({1, 1, 1}, {.isotropic = true}, 1);
+    none.arrays[0].values[0] = 0;
+    const double mean = (1 + f) * std::log(1 + f) / f - 1;
+    EXPECT_NEAR(halfwayError(constant, none), mean, 1e-4);
+    const Representation fitted = projectHalfway(constant, {1, 1, 1});
+    EXPECT_NEAR(fitted.array("halfway").values[0], std::log(1 + f), 1e-6);
+    EXPECT_LT(fitted.steps.at(0).change, 1e-6);
+}
+
+TEST(Halfway, ErrorFallsWithBudget) {
+    // A microfacet lobe of roughness 0.2 by its distribution alone, and a diffuse floor.
+    const FormulaBrdf lobe(
+        [](const Direction& wi, const Direction& wo) {
+            if (!(wi.z > 0 && wo.z > 0)) return 0.0;
+            const double x = wi.x + wo.x, y = wi.y + wo.y, z = wi.z + wo.z;
+            return 0.1 + 2 / std::pow(1 + (x * x + y * y) / (z * z * 0.04), 2);
+        },
+        {}, {.nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true});
+    const ProjectionOptions options{.maxEvaluations = 1 << 14};
+    double before = 1;
+    for (std::size_t bytes : {80, 240, 800}) {
+        const HalfwayOrders orders = chooseHalfwayOrders(lobe, bytes, Precision::float32, options);
+        Representation r = projectHalfway(lobe, orders, options);
+        quantise(r.arrays[0], Precision::float32);
+        EXPECT_LE(storedBytes(r.arrays[0]), bytes);
+        const double error = halfwayError(lobe, r);
+        EXPECT_LT(error, before);
+        before = error;
+    }
+    EXPECT_THROW(chooseHalfwayOrders(lobe, 3, Precision::float32, options), UsageError);
+}
+
+TEST(Halfway, TakesHugeValuesAndRefusesNone) {
+    const FormulaBrdf huge([](const Direction& wi, const Direction& wo) {
+        if (!(wi.z > 0 && wo.z > 0)) return 0.0;
+        const double x = wi.x + wo.x, y = wi.y + wo.y, z = wi.z + wo.z;
+        const double slope2 = (x * x + y * y) / (z * z);
+        return 1e8 / std::pow(1 + slope2 / 1e-4, 2);
+    });
+    const Representation r = projectHalfway(huge, {16, 2, 1}, {.maxEvaluations = 1 << 14});
+    const double peak = evaluate(*asBrdf(r), {0, 0, 1}, {0, 0, 1})[0];
+    EXPECT_NEAR(std::log(peak / 1e8), 0, std::log(3));
+    for (const double bad :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        const FormulaBrdf broken(
+            [=](const Direction& wi, const Direction&) { return wi.z < 0.2 ? bad : 1.0; });
+        EXPECT_THROW(projectHalfway(broken, {4, 2, 1}), NumericError);
+    }
+}
+
+TEST(Halfway, RefusesArraysOfOtherSizes) {
+    Representation r = inSpan({4, 2, 2}, symmetries[0], 3);
+    r.halfway.half = 5;
+    EXPECT_THROW(HalfwayExpansion{r}, InputError);
+    EXPECT_THROW(halfwayPairEvaluator(r), InputError);
+    r.halfway = {256, 256, 256};
+    EXPECT_THROW(HalfwayExpansion{r}, InputError);
+    r.arrays.clear();
+    EXPECT_THROW(HalfwayExpansion{r}, InputError);
+    EXPECT_THROW(projectHalfway(*asBrdf(inSpan({2, 2, 2}, {}, 1)), {40, 20, 9}), UsageError);
+}
+
+}  // namespace
+}  // namespace hshfit
