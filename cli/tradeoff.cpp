@@ -20,7 +20,6 @@
 namespace hshfit::cli {
 namespace {
 
-using tradeoff::PairSample;
 using tradeoff::Tradeoff;
 using tradeoff::TradeoffOptions;
 
@@ -133,14 +132,14 @@ PairSample readPairs(const std::string& path) {
         error.format_error_message();
         throw InputError(error.what());
     }
-    return tradeoff::pairsFrom(wi, wo, weights);
+    return pairsFrom(wi, wo, weights);
 }
 
 PairSample pairsFor(const TradeoffArguments& arguments) {
     if (!arguments.pairs.empty()) return readPairs(arguments.pairs);
-    tradeoff::SpreadOptions spread;
+    SpreadOptions spread;
     spread.incoming = std::max(2, arguments.pairCount / (spread.replicates * spread.outgoing));
-    return tradeoff::spreadPairs(spread);
+    return spreadPairs(spread);
 }
 
 /// The pairs with their weights and the values of one BRDF, so that others can be measured on them.

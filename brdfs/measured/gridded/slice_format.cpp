@@ -7,6 +7,7 @@
 #include <hshfit/files/exr_header.h>
 #include <hshfit/files/exr_picture.h>
 #include <hshfit/files/mapped_file.h>
+#include <hshfit/files/printable.h>
 
 #include <fmt/core.h>
 
