@@ -41,7 +41,7 @@ void readSidecar(std::string_view text) {
 }
 
 void read(std::string_view bytes) {
-    for (const Container& container : containers()) {
+    for (const Container& container : containers::catalog()) {
         if (!container.recognises(bytes)) continue;
         if (container.holdsSidecar) {
             check(readTexelFile(bytes, container, "input").payload);

@@ -175,10 +175,6 @@ void addGroup(const Basis& basis, std::size_t basisIndex, const Group& group,
 
 }  // namespace
 
-std::string quantityName(Quantity quantity) {
-    return quantity == Quantity::brdf ? "brdf" : "brdf_cosine";
-}
-
 std::vector<Projection> project(const Brdf& brdf, std::span<const Basis* const> bases,
                                 const OutgoingSet& outgoing, const ProjectionOptions& options) {
     if (outgoing.map == OutgoingSet::Map::elevations && !brdf.laws().isotropic) {

@@ -59,7 +59,7 @@ protected:
 const char* const selfContained[] = {"exr", "exr-parts", "ktx2", "js", "h", "tensor"};
 
 TEST_F(ContainerAttack, EveryTruncation) {
-    for (const Container& container : containers()) {
+    for (const Container& container : containers::catalog()) {
         const std::string path = exported(std::string(container.name).c_str());
         const std::string good = contentOf(path);
         // every length of the head, then steps that meet each part of the rest
@@ -81,7 +81,7 @@ TEST_F(ContainerAttack, EveryByteChanged) {
     // A change is refused, or it is one that means nothing (padding, a compressor's choice): then
     // the texels are the same, because their SHA-256 is checked.
     const Payload payload = smallPayload();
-    for (const Container& container : containers()) {
+    for (const Container& container : containers::catalog()) {
         const std::string path = exported(std::string(container.name).c_str());
         const std::string good = contentOf(path);
         std::mt19937_64 random(7);

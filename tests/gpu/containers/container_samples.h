@@ -62,7 +62,7 @@ inline std::vector<gpu::ExportedFile> exportTo(const std::string& folder,
                                                const std::string& name = "sample") {
     std::vector<const gpu::Container*> chosen;
     for (const std::string& wanted : names) chosen.push_back(&gpu::findContainer(wanted));
-    for (const gpu::Container& container : gpu::containers()) {
+    for (const gpu::Container& container : gpu::containers::catalog()) {
         if (names.empty() && container.holds(payload.coefficients.number)) {
             chosen.push_back(&container);
         }

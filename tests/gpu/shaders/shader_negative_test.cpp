@@ -157,7 +157,7 @@ TEST_P(ShaderNegative, FlippedRowsShow) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Languages, ShaderNegative, testing::ValuesIn(ways()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& entry) { return entry.param.name; });
 
 }  // namespace
 }  // namespace hshfit::shaders

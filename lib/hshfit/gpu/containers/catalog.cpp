@@ -40,7 +40,7 @@ std::string Container::fileName(const std::string& exportName, Role role, Number
                        fmt::format(fmt::runtime(suffix), numberTag(number)));
 }
 
-std::span<const Container> containers() {
+std::span<const Container> catalog() {
     static const std::vector<Container> table = {
         binContainer(), exrContainer(), exrPartsContainer(), ktx2Container(),
         ddsContainer(), jsContainer(),  headerContainer(),   tensorContainer(),
@@ -50,7 +50,7 @@ std::span<const Container> containers() {
 
 const Container& findContainer(std::string_view name) {
     std::string known;
-    for (const Container& container : containers()) {
+    for (const Container& container : containers::catalog()) {
         if (container.name == name) return container;
         known += fmt::format("{}{}", known.empty() ? "" : ", ", container.name);
     }

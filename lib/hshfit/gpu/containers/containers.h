@@ -52,7 +52,7 @@ struct Container {
     std::string fileName(const std::string& name, Role role, Number number) const;
 };
 
-std::span<const Container> containers();
+std::span<const Container> catalog();
 /// Throws UsageError with the known names.
 const Container& findContainer(std::string_view name);
 

@@ -22,7 +22,7 @@ void checkName(const std::string& name) {
 void checkNumber(const Container& container, Number number) {
     if (container.holds(number)) return;
     std::string others;
-    for (const Container& other : containers()) {
+    for (const Container& other : containers::catalog()) {
         if (other.holds(number)) others += fmt::format(" {}", other.name);
     }
     throw UsageError(

@@ -27,7 +27,7 @@ std::string_view textOf(const MappedFile& file) {
 }
 
 const Container* recognised(std::string_view bytes) {
-    for (const Container& container : containers()) {
+    for (const Container& container : containers::catalog()) {
         if (container.recognises(bytes)) return &container;
     }
     return nullptr;

@@ -178,7 +178,7 @@ std::vector<ExportedFile> readFiles(const Fields& root) {
         const double bytes = row.number("bytes");
         if (!(bytes >= 0 && bytes <= maxCount)) row.fail("is no size of a file", "bytes");
         file.bytes = static_cast<std::uint64_t>(bytes);
-        const auto known = containers();
+        const auto known = containers::catalog();
         if (std::none_of(known.begin(), known.end(),
                          [&](const Container& c) { return c.name == file.container; })) {
             row.fail(fmt::format("is '{}', which is no container", file.container.substr(0, 40)),

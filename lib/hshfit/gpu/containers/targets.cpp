@@ -33,7 +33,7 @@ const Renderer renderers[] = {
 
 std::vector<Target> makeTargets() {
     std::vector<Target> rows;
-    for (const Container& container : containers()) {
+    for (const Container& container : containers::catalog()) {
         rows.push_back({Target::Kind::container,
                         std::string(container.name),
                         std::string(container.summary),
