@@ -1,4 +1,6 @@
 #include "command.h"
+
+#include "command_table.h"
 #include "form_options.h"
 
 #include <hshfit/brdf/colour.h>
@@ -25,15 +27,15 @@
 
 namespace hshfit::cli {
 
-CLI::App& addCommand(CLI::App& app, Globals& globals, const std::string& name,
-                     const std::string& help, const std::string& example) {
-    CLI::App& command = *app.add_subcommand(name, help);
-    command.footer("Example: " + example);
+void addCommand(CLI::App& app, Globals& globals, const Command& row) {
+    CLI::App& command = *app.add_subcommand(row.name, row.help);
+    command.group(row.group);
+    command.footer(std::string("Example: ") + row.example);
     command.add_flag("--json", globals.json, "Print a machine-readable answer to standard output");
     command.add_flag("--quiet", globals.quiet, "No progress and no notes on standard error");
     command.add_option("--threads", globals.threads, "Threads to use; 0: all cores")
         ->check(CLI::Range(0, 4096));
-    return command;
+    row.add(command, globals);
 }
 
 namespace {

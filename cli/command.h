@@ -17,6 +17,8 @@ class App;
 
 namespace hshfit::cli {
 
+struct Command;
+
 /// Options that every command has, and the exit code of a command that ended without an exception.
 struct Globals {
     bool json = false;
@@ -25,27 +27,8 @@ struct Globals {
     int exitCode = 0;
 };
 
-/// Adds a command with the global options and an example below its help.
-CLI::App& addCommand(CLI::App& app, Globals& globals, const std::string& name,
-                     const std::string& help, const std::string& example);
-
-// One per file of this folder; each adds its command to the program.
-void addList(CLI::App& app, Globals& globals);
-void addInfo(CLI::App& app, Globals& globals);
-void addEval(CLI::App& app, Globals& globals);
-void addProject(CLI::App& app, Globals& globals);
-void addReport(CLI::App& app, Globals& globals);
-void addCompare(CLI::App& app, Globals& globals);
-void addConvert(CLI::App& app, Globals& globals);
-void addExport(CLI::App& app, Globals& globals);
-void addFit(CLI::App& app, Globals& globals);
-void addRender(CLI::App& app, Globals& globals);
-void addLtc(CLI::App& app, Globals& globals);
-void addGaussians(CLI::App& app, Globals& globals);
-void addTradeoff(CLI::App& app, Globals& globals);
-void addPlan(CLI::App& app, Globals& globals);
-void addStress(CLI::App& app, Globals& globals);
-void addImport(CLI::App& app, Globals& globals);
+/// Adds a command with the global options, its own, and its example below the help.
+void addCommand(CLI::App& app, Globals& globals, const Command& row);
 
 /// A BRDF specification. With `rgb`, a spectral one as linear Rec. 709; others stay as they are.
 std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb);

@@ -87,11 +87,8 @@ void runCompare(const CompareArguments& arguments, Globals& globals) {
 
 }  // namespace
 
-void addCompare(CLI::App& app, Globals& globals) {
+void addCompare(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<CompareArguments>();
-    CLI::App& command = addCommand(
-        app, globals, "compare", "Error metrics between two BRDFs, or a BRDF and its coefficients",
-        "hshfit compare ward:ax=.2,ay=.5 ward.json");
     command.add_option("A", arguments->a, "Reference: BRDF or coefficient file")->required();
     command.add_option("B", arguments->b, "Approximation: BRDF or coefficient file")->required();
     command.add_option("--metrics", arguments->metrics, "all, or names from hshfit list metrics")

@@ -163,10 +163,8 @@ std::string writersHelp() {
 
 }  // namespace
 
-void addConvert(CLI::App& app, Globals& globals) {
+void addConvert(CLI::App& command, Globals& globals) {
     auto options = std::make_shared<ConvertOptions>();
-    CLI::App& command = addCommand(app, globals, "convert", "Write a BRDF in another format",
-                                   "hshfit convert ggx:alpha=.3,F0=.9 ggx.binary --report-loss");
     command.footer(command.get_footer() + "\n" + writersHelp());
     command.add_option("IN", options->input, "BRDF, measured file or coefficient file")->required();
     command.add_option("OUT", options->output, "File to write")->required();

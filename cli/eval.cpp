@@ -123,10 +123,8 @@ void evaluatePairs(const EvalOptions& options) {
 
 }  // namespace
 
-void addEval(CLI::App& app, Globals& globals) {
+void addEval(CLI::App& command, Globals& globals) {
     auto options = std::make_shared<EvalOptions>();
-    CLI::App& command = addCommand(app, globals, "eval", "Values of a BRDF or of coefficients",
-                                   "hshfit eval ward:ax=.2,ay=.5 --wi 30,0 --wo 45,180");
     command.add_option("SPEC", options->spec, "BRDF or coefficient file")->required();
     auto* wi = command.add_option("--wi", options->wi, "Incoming direction THETA,PHI, degrees");
     auto* wo = command.add_option("--wo", options->wo, "Outgoing direction THETA,PHI, degrees");

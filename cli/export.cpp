@@ -263,12 +263,8 @@ void runExport(const ExportArguments& arguments, const Globals& globals) {
 
 }  // namespace
 
-void addExport(CLI::App& app, Globals& globals) {
+void addExport(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ExportArguments>();
-    CLI::App& command =
-        addCommand(app, globals, "export",
-                   "Coefficients as textures, shaders and a viewer, with the error that they have",
-                   "hshfit export ward.json -o out/ward --target three,viewer");
     command.add_option("COEFFS", arguments->coefficients, "Coefficient file of hshfit project")
         ->required();
     command.add_option("-o,--output", arguments->output, "Folder, made if absent")->required();

@@ -209,10 +209,8 @@ void runFit(const FitArguments& arguments, Globals& globals) {
 
 }  // namespace
 
-void addFit(CLI::App& app, Globals& globals) {
+void addFit(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<FitArguments>();
-    CLI::App& command = addCommand(app, globals, "fit", "Fit analytic models to data",
-                                   "hshfit fit ggx:alpha=.2,F0=.3,kd=.1 --model ward -o fit.json");
     command.add_option("DATA", arguments->data, "BRDF or coefficient file");
     command.add_option(
         "--all", arguments->all,

@@ -88,12 +88,8 @@ void runGaussians(GaussianArguments arguments, Globals& globals) {
 
 }  // namespace
 
-void addGaussians(CLI::App& app, Globals& globals) {
+void addGaussians(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<GaussianArguments>();
-    CLI::App& command = addCommand(
-        app, globals, "gaussians",
-        "Spherical or anisotropic Gaussians of a BRDF, per elevation; the file is a BRDF too",
-        "hshfit gaussians ggx:alpha=.2 --lobes 3 --kind asg -o ggx.json");
     command.add_option("SPEC", arguments->spec, "BRDF; isotropic")->required();
     command.add_option("-o,--output", arguments->output, "Mixture, .json")->required();
     command.add_option("--lobes", arguments->fit.lobes, "Gaussians for each outgoing direction")

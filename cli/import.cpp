@@ -70,11 +70,8 @@ void runImport(const ImportArguments& arguments, const Globals& globals) {
 
 }  // namespace
 
-void addImport(CLI::App& app, Globals& globals) {
+void addImport(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ImportArguments>();
-    CLI::App& command =
-        addCommand(app, globals, "import", "Coefficients back from a file that hshfit export wrote",
-                   "hshfit import out/ward/ward.hsh.json -o ward_again.json");
     command
         .add_option("FILE", arguments->input,
                     "Sidecar (.hsh.json), .bin, .exr, .ktx2, .dds, .js, .h or .tensor of an export")

@@ -137,17 +137,12 @@ std::string text(const Json& document) {
 
 }  // namespace
 
-void addInfo(CLI::App& app, Globals& globals) {
+void addInfo(CLI::App& command, Globals& globals) {
     struct Options {
         std::string spec;
         bool rgb = false;
     };
     auto options = std::make_shared<Options>();
-    CLI::App& command =
-        addCommand(app, globals, "info",
-                   "What a BRDF or a coefficient file is, and how healthy: channels, symmetry, "
-                   "sampling, invalid values, coverage, reciprocity, albedo, repairs",
-                   "hshfit info ggx:alpha=.2,F0=.9");
     command.add_option("SPEC", options->spec, "BRDF, coefficient file or file of an export")
         ->required();
     addRgb(command, options->rgb);

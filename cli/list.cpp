@@ -276,17 +276,12 @@ void listPresets(const std::string& text, bool all, bool json, Json& document) {
 
 }  // namespace
 
-void addList(CLI::App& app, Globals& globals) {
+void addList(CLI::App& command, Globals& globals) {
     struct Options {
         std::string section, text;
         bool all = false;
     };
     auto options = std::make_shared<Options>();
-    CLI::App& command =
-        addCommand(app, globals, "list",
-                   "The catalogs: models, formats (read), writers, bases, metrics, targets, "
-                   "presets",
-                   "hshfit list presets acrylic");
     std::vector<std::string> names{"presets"};
     for (const Section& s : sections) names.emplace_back(s.name);
     command.add_option("SECTION", options->section, "One catalog; all of them if left out")

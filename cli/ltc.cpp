@@ -69,12 +69,8 @@ void runLtc(LtcArguments arguments, Globals& globals) {
 
 }  // namespace
 
-void addLtc(CLI::App& app, Globals& globals) {
+void addLtc(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<LtcArguments>();
-    CLI::App& command = addCommand(
-        app, globals, "ltc",
-        "Linearly transformed cosines of a model over roughness and elevation, for area lights",
-        "hshfit ltc ggx -o ggx.dds -o ggx.json");
     command
         .add_option("MODEL", arguments->spec,
                     "Model, without the parameter that runs over roughness")

@@ -1,4 +1,6 @@
 #include "command.h"
+#include "command_table.h"
+#include "completion.h"
 
 #include <brdfs/spec.h>
 #include <hshfit/error.h>
@@ -55,6 +57,9 @@ std::string unknownWord(const CLI::App& app, int argc, char** argv) {
 int run(int argc, char** argv) {
     CLI::App app("hshfit: BRDFs as hemispherical-basis coefficients", "hshfit");
     app.set_version_flag("--version", std::string("hshfit ") + version);
+    app.add_flag_callback(
+        "--completion", [&app] { throw CLI::CallForVersion(cli::bashCompletion(app), 0); },
+        "Print completions for bash: source <(hshfit --completion)");
     app.require_subcommand(1);
     app.footer("hshfit COMMAND --help shows a command's options and an example.");
 
@@ -65,22 +70,7 @@ int run(int argc, char** argv) {
             threads.emplace(tbb::global_control::max_allowed_parallelism, globals.threads);
         }
     });
-    cli::addList(app, globals);
-    cli::addInfo(app, globals);
-    cli::addEval(app, globals);
-    cli::addProject(app, globals);
-    cli::addReport(app, globals);
-    cli::addCompare(app, globals);
-    cli::addConvert(app, globals);
-    cli::addExport(app, globals);
-    cli::addFit(app, globals);
-    cli::addRender(app, globals);
-    cli::addLtc(app, globals);
-    cli::addGaussians(app, globals);
-    cli::addTradeoff(app, globals);
-    cli::addPlan(app, globals);
-    cli::addStress(app, globals);
-    cli::addImport(app, globals);
+    for (const cli::Command& row : cli::commands()) cli::addCommand(app, globals, row);
 
     try {
         app.parse(argc, argv);

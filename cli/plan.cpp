@@ -37,12 +37,8 @@ void runPlan(const PlanArguments& arguments, Globals& globals) {
 
 }  // namespace
 
-void addPlan(CLI::App& app, Globals& globals) {
+void addPlan(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<PlanArguments>();
-    CLI::App& command = addCommand(app, globals, "plan",
-                                   "The least that a scene needs: the cheapest coefficient file "
-                                   "for each material, checked in the scene's own light",
-                                   "hshfit plan examples/scenes/matte_room.json -o out/plan");
     command.add_option("SCENE", arguments->scene, "Materials, lights, views and budget, as JSON")
         ->required();
     command

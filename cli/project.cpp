@@ -237,11 +237,8 @@ void runProject(const ProjectOptions& options, Globals& globals) {
 
 }  // namespace
 
-void addProject(CLI::App& app, Globals& globals) {
+void addProject(CLI::App& command, Globals& globals) {
     auto options = std::make_shared<ProjectOptions>();
-    CLI::App& command = addCommand(
-        app, globals, "project", "Coefficients of a BRDF, per outgoing direction, to a file",
-        "hshfit project ward:ax=.2,ay=.5 -o ward.json --basis hsh --order 7 --cosine");
     command
         .add_option("SPEC", options->specs,
                     "One or more BRDFs; of a folder, the measured files in it")

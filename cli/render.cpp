@@ -114,11 +114,8 @@ void runRender(const RenderArguments& arguments, Globals& globals) {
 
 }  // namespace
 
-void addRender(CLI::App& app, Globals& globals) {
+void addRender(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<RenderArguments>();
-    CLI::App& command = addCommand(app, globals, "render",
-                                   "Lit spheres of BRDFs or coefficient files, side by side",
-                                   "hshfit render lambert ggx:alpha=.2 -o spheres.png");
     command.add_option("SPEC", arguments->specs, "One or more BRDFs or coefficient files")
         ->required();
     command.add_option("-o,--output", arguments->output, "Picture to write, .png or .exr")

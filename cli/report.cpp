@@ -149,11 +149,8 @@ void runReport(const ReportOptions& options, Globals& globals) {
 
 }  // namespace
 
-void addReport(CLI::App& app, Globals& globals) {
+void addReport(CLI::App& command, Globals& globals) {
     auto options = std::make_shared<ReportOptions>();
-    CLI::App& command = addCommand(
-        app, globals, "report", "Accuracy against number of coefficients, for every basis",
-        "hshfit report phong:exponent=22 ward:ax=.2,ay=.5 -o report --cosine");
     command
         .add_option("SPEC", options->specs,
                     "One or more BRDFs; of a folder, the measured files in it")

@@ -44,12 +44,8 @@ void runStress(const StressArguments& arguments, const Globals& globals) {
 
 }  // namespace
 
-void addStress(CLI::App& app, Globals& globals) {
+void addStress(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<StressArguments>();
-    CLI::App& command = addCommand(app, globals, "stress",
-                                   "Where the program's numbers stop being good: bases by degree, "
-                                   "lobes by width and elevation",
-                                   "hshfit stress --max-order 1000 -o out/stress");
     command.add_option("SPEC", arguments->lobes,
                        "Lobes to project (default: Lambert, and Phong, GGX and Ward to a mirror)");
     command.add_option("--bases", arguments->bases, "all, or names from hshfit list bases")

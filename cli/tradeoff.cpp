@@ -241,11 +241,8 @@ void addSweep(CLI::App& command, TradeoffArguments& arguments) {
 
 }  // namespace
 
-void addTradeoff(CLI::App& app, Globals& globals) {
+void addTradeoff(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<TradeoffArguments>();
-    CLI::App& command = addCommand(
-        app, globals, "tradeoff", "Size, speed and error of every form of a coefficient file",
-        "hshfit tradeoff ggx:alpha=.3 -o trade --bases hsh --max-bytes 4096");
     command
         .add_option("SPEC", arguments->specs,
                     "One or more BRDFs; of a folder, the measured files in it")

@@ -13,28 +13,6 @@ using hshfit::test::Cli;
 
 namespace fs = std::filesystem;
 
-TEST_F(Cli, EveryCommandHasHelpWithAnExample) {
-    for (const char* command :
-         {"list", "info", "eval", "project", "report", "compare", "convert"}) {
-        const Answer answer = run(std::string(command) + " --help");
-        EXPECT_EQ(answer.code, 0);
-        EXPECT_NE(answer.out.find("Example: hshfit " + std::string(command)), std::string::npos);
-    }
-}
-
-// Each example of `--help`, as it is printed, in an empty folder.
-TEST_F(Cli, ExamplesOfTheHelpWork) {
-    const std::string here = "cd " + folder_.string() + " && ";
-    for (const char* command :
-         {"list", "info", "project", "eval", "compare", "report", "convert"}) {
-        const std::string help = run(std::string(command) + " --help").out;
-        const std::size_t begin = help.find("Example: hshfit ") + 16;
-        const std::string example = help.substr(begin, help.find('\n', begin) - begin);
-        const std::string line = here + HSHFIT_PROGRAM + " " + example + " >out 2>err";
-        EXPECT_EQ(std::system(line.c_str()), 0) << example << "\n" << read(path("err"));
-    }
-}
-
 TEST_F(Cli, ConvertRepairsOnlyWhatIsAskedAndSaysSo) {
     const Answer plain = run("convert --json lambert:kd=.5 " + path("a.binary"));
     EXPECT_EQ(plain.out.find("repairs"), std::string::npos);

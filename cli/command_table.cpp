@@ -1,0 +1,139 @@
+#include "command_table.h"
+
+namespace hshfit::cli {
+
+void addList(CLI::App& command, Globals& globals);
+void addInfo(CLI::App& command, Globals& globals);
+void addEval(CLI::App& command, Globals& globals);
+void addProject(CLI::App& command, Globals& globals);
+void addReport(CLI::App& command, Globals& globals);
+void addCompare(CLI::App& command, Globals& globals);
+void addConvert(CLI::App& command, Globals& globals);
+void addExport(CLI::App& command, Globals& globals);
+void addFit(CLI::App& command, Globals& globals);
+void addRender(CLI::App& command, Globals& globals);
+void addLtc(CLI::App& command, Globals& globals);
+void addGaussians(CLI::App& command, Globals& globals);
+void addTradeoff(CLI::App& command, Globals& globals);
+void addPlan(CLI::App& command, Globals& globals);
+void addStress(CLI::App& command, Globals& globals);
+void addImport(CLI::App& command, Globals& globals);
+
+namespace {
+
+constexpr const char* inspection = "Inspection";
+constexpr const char* coefficients = "Coefficients";
+constexpr const char* files = "Files";
+constexpr const char* fits = "Fits";
+constexpr const char* studies = "Studies";
+
+constexpr Command table[] = {
+    {.name = "list",
+     .group = inspection,
+     .help = "The catalogs: models, formats (read), writers, bases, metrics, targets, presets",
+     .file = "list.cpp",
+     .example = "hshfit list presets acrylic",
+     .add = addList},
+    {.name = "info",
+     .group = inspection,
+     .help = "What a BRDF or a coefficient file is, and how healthy: channels, symmetry, sampling, "
+             "invalid values, coverage, reciprocity, albedo, repairs",
+     .file = "info.cpp",
+     .example = "hshfit info ggx:alpha=.2,F0=.9",
+     .add = addInfo},
+    {.name = "eval",
+     .group = inspection,
+     .help = "Values of a BRDF or of coefficients",
+     .file = "eval.cpp",
+     .example = "hshfit eval ward:ax=.2,ay=.5 --wi 30,0 --wo 45,180",
+     .add = addEval},
+    {.name = "project",
+     .group = coefficients,
+     .help = "Coefficients of a BRDF, per outgoing direction, to a file",
+     .file = "project.cpp",
+     .example = "hshfit project ward:ax=.2,ay=.5 -o ward.json --basis hsh --order 7 --cosine",
+     .add = addProject},
+    {.name = "report",
+     .group = coefficients,
+     .help = "Accuracy against number of coefficients, for every basis",
+     .file = "report.cpp",
+     .example = "hshfit report phong:exponent=22 ward:ax=.2,ay=.5 -o report --cosine",
+     .add = addReport},
+    {.name = "compare",
+     .group = inspection,
+     .help = "Error metrics between two BRDFs, or a BRDF and its coefficients",
+     .file = "compare.cpp",
+     .example = "hshfit compare ward:ax=.2,ay=.5 ward.json",
+     .add = addCompare},
+    {.name = "convert",
+     .group = files,
+     .help = "Write a BRDF in another format",
+     .file = "convert.cpp",
+     .example = "hshfit convert ggx:alpha=.3,F0=.9 ggx.binary --report-loss",
+     .add = addConvert},
+    {.name = "export",
+     .group = files,
+     .help = "Coefficients as textures, shaders and a viewer, with the error that they have",
+     .file = "export.cpp",
+     .example = "hshfit export ward.json -o out/ward --target three,viewer",
+     .add = addExport},
+    {.name = "fit",
+     .group = fits,
+     .help = "Fit analytic models to data",
+     .file = "fit.cpp",
+     .example = "hshfit fit ggx:alpha=.2,F0=.3,kd=.1 --model ward -o fit.json",
+     .add = addFit},
+    {.name = "render",
+     .group = inspection,
+     .help = "Lit spheres of BRDFs or coefficient files, side by side",
+     .file = "render.cpp",
+     .example = "hshfit render lambert ggx:alpha=.2 -o spheres.png",
+     .add = addRender},
+    {.name = "ltc",
+     .group = fits,
+     .help =
+         "Linearly transformed cosines of a model over roughness and elevation, for area lights",
+     .file = "ltc.cpp",
+     .example = "hshfit ltc ggx -o ggx.dds -o ggx.json",
+     .add = addLtc},
+    {.name = "gaussians",
+     .group = fits,
+     .help = "Spherical or anisotropic Gaussians of a BRDF, per elevation; the file is a BRDF too",
+     .file = "gaussians.cpp",
+     .example = "hshfit gaussians ggx:alpha=.2 --lobes 3 --kind asg -o ggx.json",
+     .add = addGaussians},
+    {.name = "tradeoff",
+     .group = studies,
+     .help = "Size, speed and error of every form of a coefficient file",
+     .file = "tradeoff.cpp",
+     .example = "hshfit tradeoff ggx:alpha=.3 -o trade --bases hsh --max-bytes 4096",
+     .add = addTradeoff},
+    {.name = "plan",
+     .group = studies,
+     .help = "The least that a scene needs: the cheapest coefficient file for each material, "
+             "checked in the scene's own light",
+     .file = "plan.cpp",
+     .example = "hshfit plan examples/scenes/car_paint.json -o out/plan",
+     .add = addPlan},
+    {.name = "stress",
+     .group = studies,
+     .help = "Where the program's numbers stop being good: bases by degree, lobes by width and "
+             "elevation",
+     .file = "stress.cpp",
+     .example = "hshfit stress --max-order 1000 -o out/stress",
+     .add = addStress},
+    {.name = "import",
+     .group = files,
+     .help = "Coefficients back from a file that hshfit export wrote",
+     .file = "import.cpp",
+     .example = "hshfit import out/ward/ward.hsh.json -o ward_again.json",
+     .add = addImport},
+};
+
+}  // namespace
+
+std::span<const Command> commands() {
+    return table;
+}
+
+}  // namespace hshfit::cli

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+
+namespace CLI {
+class App;
+}
+
+namespace hshfit::cli {
+
+struct Globals;
+
+/// A command. The help, the completion of shells, the index in docs/commands.md and the law tests
+/// all come from its row.
+struct Command {
+    const char* name;
+    const char* group;    ///< heading in the help of the program
+    const char* help;     ///< one line
+    const char* file;     ///< the source in this folder
+    const char* example;  ///< works in a folder where the examples that write its inputs have run
+    /// Adds the options and what is done with them.
+    void (*add)(CLI::App& command, Globals& globals);
+};
+
+/// Every command, in the order in which messages list them.
+std::span<const Command> commands();
+
+}  // namespace hshfit::cli

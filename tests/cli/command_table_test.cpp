@@ -1,0 +1,118 @@
+// What the table of commands promises: every command has a one-line help, a source, a place in the
+// docs and in the completion of shells, and an example that works as it is printed.
+
+#include <cli/command_table.h>
+#include <cli/program.h>
+
+#include <set>
+#include <string_view>
+#include <vector>
+
+namespace {
+
+using hshfit::cli::Command;
+using hshfit::cli::commands;
+using hshfit::test::Answer;
+using hshfit::test::Cli;
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> wordsOf(const std::string& line) {
+    std::istringstream in(line);
+    std::vector<std::string> words;
+    for (std::string word; in >> word;) words.push_back(word);
+    return words;
+}
+
+/// Whether the example `user` reads what the example `maker` writes with -o.
+bool reads(const Command& user, const Command& maker) {
+    const auto made = wordsOf(maker.example), used = wordsOf(user.example);
+    for (std::size_t m = 1; m < made.size(); ++m) {
+        if (made[m - 1] != "-o") continue;
+        for (std::size_t u = 1; u < used.size(); ++u)
+            if (used[u - 1] != "-o" && used[u].starts_with(made[m])) return true;
+    }
+    return false;
+}
+
+class CommandTable : public Cli, public testing::WithParamInterface<Command> {
+protected:
+    /// Runs the example in a folder that has those of the repository, after the examples that write
+    /// its inputs.
+    void runExample(const Command& command) {
+        for (const Command& other : commands())
+            if (reads(command, other)) runExample(other);
+        const std::string arguments = std::string(command.example).substr(7);
+        const std::string line = "cd " + folder_.string() + " && " + HSHFIT_PROGRAM + " " +
+                                 arguments + " >out.txt 2>err.txt";
+        ASSERT_EQ(std::system(line.c_str()), 0) << command.example << "\n" << read(path("err.txt"));
+    }
+};
+
+TEST_P(CommandTable, HelpIsOneLineAndEndsInTheExample) {
+    const Command& command = GetParam();
+    const Answer answer = run(std::string(command.name) + " --help");
+    ASSERT_EQ(answer.code, 0);
+    EXPECT_TRUE(answer.out.starts_with(std::string(command.help) + "\n")) << answer.out;
+    EXPECT_EQ(std::string_view(command.help).find('\n'), std::string_view::npos);
+    EXPECT_TRUE(std::string(command.example).starts_with("hshfit " + std::string(command.name)));
+    EXPECT_NE(answer.out.find("\nExample: " + std::string(command.example) + "\n"),
+              std::string::npos)
+        << answer.out;
+    for (const char* option : {"--json", "--quiet", "--threads"})
+        EXPECT_NE(answer.out.find(option), std::string::npos) << option;
+}
+
+TEST_P(CommandTable, ExampleWorks) {
+    fs::create_directory_symlink(fs::path(HSHFIT_SOURCE) / "examples", path("examples"));
+    runExample(GetParam());
+}
+
+TEST_P(CommandTable, SourceAddsIt) {
+    const std::string file = std::string(HSHFIT_SOURCE) + "/cli/" + GetParam().file;
+    EXPECT_NE(read(file).find("(CLI::App& command, Globals& globals) {"), std::string::npos)
+        << file;
+}
+
+TEST_P(CommandTable, BashCompletesItAndItsOptions) {
+    const std::string name = GetParam().name;
+    ASSERT_EQ(run("--completion >" + path("completion.bash")).code, 0);
+    const auto completed = [&](const std::string& words, int at) {
+        write("ask.bash", ". " + path("completion.bash") + "\nCOMP_WORDS=(hshfit " + words +
+                              ")\nCOMP_CWORD=" + std::to_string(at) +
+                              "\n_hshfit\nprintf '%s\\n' \"${COMPREPLY[@]}\"\n");
+        const std::string line = "bash " + path("ask.bash") + " >" + path("words");
+        EXPECT_EQ(std::system(line.c_str()), 0);
+        return wordsOf(read(path("words")));
+    };
+    const auto names = completed(name.substr(0, 2), 1);
+    EXPECT_NE(std::ranges::find(names, name), names.end()) << read(path("words"));
+    const auto options = completed(name + " --th", 2);
+    EXPECT_EQ(options, std::vector<std::string>{"--threads"});
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, CommandTable, testing::ValuesIn(commands()),
+                         [](const auto& row) { return std::string(row.param.name); });
+
+TEST_F(Cli, HelpOfTheProgramListsEveryCommandUnderItsGroup) {
+    const std::string help = run("--help").out;
+    for (const Command& command : commands()) {
+        const std::size_t group = help.find("\n" + std::string(command.group) + ":\n");
+        const std::size_t line = help.find("\n  " + std::string(command.name) + " ");
+        ASSERT_NE(group, std::string::npos) << command.group;
+        ASSERT_NE(line, std::string::npos) << command.name;
+        EXPECT_EQ(help.find("\n\n", group + 1) > line, group < line) << command.name;
+    }
+}
+
+// The index is the first table of the page: `name …` in its first column.
+TEST(CommandDocs, IndexHasExactlyTheCommandsOfTheTable) {
+    std::set<std::string> known, indexed;
+    for (const Command& command : commands()) known.insert(command.name);
+    std::ifstream page(std::string(HSHFIT_SOURCE) + "/docs/commands.md");
+    for (std::string line; std::getline(page, line) && !line.starts_with("## ");)
+        if (line.starts_with("| `")) indexed.insert(wordsOf(line.substr(3))[0]);
+    EXPECT_EQ(indexed, known);
+}
+
+}  // namespace
