@@ -1,17 +1,8 @@
 #include "command.h"
 
 #include "command_table.h"
-#include "form_options.h"
 
-#include <hshfit/brdf/colour.h>
-#include <hshfit/coefficient_files/coefficient_file.h>
-#include <hshfit/coefficient_files/representation_file.h>
-#include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
-#include <hshfit/gpu/containers/containers.h>
-#include <hshfit/representation/forms/represented_brdf.h>
-
-#include <brdfs/catalog.h>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -38,34 +29,6 @@ void addCommand(CLI::App& app, Globals& globals, const Command& row) {
     row.add(command, globals);
 }
 
-namespace {
-
-std::unique_ptr<Brdf> seenAsRgb(std::unique_ptr<Brdf> brdf, bool rgb) {
-    if (!rgb || brdf->channels().kind != Channels::Kind::spectral) return brdf;
-    return asRgb(std::move(brdf));
-}
-
-}  // namespace
-
-std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb) {
-    return seenAsRgb(brdfs::open(spec), rgb);
-}
-
-std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb) {
-    if (gpu::looksLikePayload(spec)) {
-        auto coefficients = gpu::unpack(gpu::readPayload(spec).payload);
-        return seenAsRgb(std::make_unique<Reconstruction>(std::move(coefficients)), rgb);
-    }
-    if (!looksLikeCoefficients(spec)) return openBrdf(spec, rgb);
-    Representation representation = readRepresentation(spec);
-    const bool plain = representation.steps.empty() && representation.added.empty() &&
-                       representation.has("coefficients");
-    if (plain) {
-        return seenAsRgb(std::make_unique<Reconstruction>(decoded(representation)), rgb);
-    }
-    return seenAsRgb(reconstruct(std::move(representation), formOpener()), rgb);
-}
-
 void addRgb(CLI::App& command, bool& rgb) {
     command.add_flag("--rgb", rgb,
                      "Turn wavelengths into linear Rec. 709 (CIE 1931 2 degrees, D65)");
@@ -84,11 +47,6 @@ Direction parseDirection(const std::string& text, std::string_view option) {
                         option, text));
     }
     return directionFromAngles(radians(theta), radians(phi));
-}
-
-OutgoingSet outgoingOrDefault(const std::string& text, const Brdf& brdf) {
-    if (!text.empty()) return OutgoingSet::parse(text);
-    return brdf.laws().isotropic ? OutgoingSet::elevations(16) : OutgoingSet::parabolic(16, 16);
 }
 
 void printText(std::string_view text) {
@@ -113,6 +71,15 @@ struct Progress::State {
     Clock::time_point start = Clock::now(), shown = start;
     bool visible = false;
 
+    explicit State(std::string text) : what(std::move(text)) {}
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+    ~State() { clear(); }
+
+    void clear() {
+        if (visible) fmt::print(stderr, "\r\x1b[K");
+        visible = false;
+    }
     void update(std::size_t done, std::size_t total) {
         constexpr auto interval = std::chrono::milliseconds(200);
         const std::lock_guard lock(mutex);
@@ -130,17 +97,33 @@ struct Progress::State {
 
 Progress::Progress(const Globals& globals, std::string what) {
     if (globals.quiet || !isatty(STDERR_FILENO)) return;
-    state_ = std::make_shared<State>();
-    state_->what = std::move(what);
+    state_ = std::make_shared<State>(std::move(what));
 }
 
 Progress::~Progress() {
-    if (state_ && state_->visible) fmt::print(stderr, "\r\x1b[K");
+    if (state_) state_->clear();
 }
 
-std::function<void(std::size_t, std::size_t)> Progress::callback() {
+jobs::ProgressCall Progress::callback() {
     if (!state_) return {};
     return [state = state_](std::size_t done, std::size_t total) { state->update(done, total); };
+}
+
+jobs::Listener listenerFor(const Globals& globals) {
+    return {
+        .begin = [&globals](const std::string& part) { return Progress(globals, part).callback(); },
+        .note = [&globals](const std::string& remark) { note(globals, remark); }};
+}
+
+void reportFailures(const std::vector<jobs::InputFailure>& failures, std::size_t inputs,
+                    Globals& globals) {
+    if (failures.empty()) return;
+    fmt::print(stderr, "hshfit: {} of {} inputs failed:\n", failures.size(), inputs);
+    for (const jobs::InputFailure& failure : failures) {
+        const bool named = failure.reason.find(failure.spec) != std::string::npos;
+        fmt::print(stderr, "  {}\n", named ? failure.reason : failure.spec + ": " + failure.reason);
+    }
+    globals.exitCode = static_cast<int>(jobs::codeOf(failures));
 }
 
 }  // namespace hshfit::cli

@@ -1,15 +1,17 @@
 #pragma once
 
-#include <hshfit/brdf/brdf.h>
-#include <hshfit/coefficients/outgoing.h>
+#include <hshfit/brdf/directions.h>
+
+#include <jobs/batch.h>
+#include <jobs/listener.h>
 
 #include <nlohmann/json_fwd.hpp>
 
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -30,18 +32,11 @@ struct Globals {
 /// Adds a command with the global options, its own, and its example below the help.
 void addCommand(CLI::App& app, Globals& globals, const Command& row);
 
-/// A BRDF specification. With `rgb`, a spectral one as linear Rec. 709; others stay as they are.
-std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb);
-/// A BRDF specification, a coefficient file or a file of an export, as a BRDF; `rgb` likewise.
-std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb);
 /// The option --rgb.
 void addRgb(CLI::App& command, bool& rgb);
 
 /// "THETA,PHI" in degrees, theta from 0 to 90. Throws UsageError naming `option`.
 Direction parseDirection(const std::string& text, std::string_view option);
-
-/// The set asked for; if empty, 16 elevations for an isotropic BRDF and a 16x16 map otherwise.
-OutgoingSet outgoingOrDefault(const std::string& text, const Brdf& brdf);
 
 /// Prints a JSON document to standard output. Throws OutputError if it cannot be written.
 void printJson(const nlohmann::ordered_json& document);
@@ -58,7 +53,7 @@ public:
     Progress& operator=(const Progress&) = delete;
 
     /// For the options of library calls; may be called from any thread.
-    std::function<void(std::size_t, std::size_t)> callback();
+    jobs::ProgressCall callback();
 
 private:
     struct State;
@@ -67,5 +62,13 @@ private:
 
 /// A message on standard error, unless --quiet.
 void note(const Globals& globals, std::string_view message);
+
+/// Progress lines and notes of a job; none with --quiet.
+jobs::Listener listenerFor(const Globals& globals);
+
+/// One line for each failure on standard error, whatever --quiet says, and the exit code: 3, or 4
+/// if all of them are of numbers.
+void reportFailures(const std::vector<jobs::InputFailure>& failures, std::size_t inputs,
+                    Globals& globals);
 
 }  // namespace hshfit::cli

@@ -6,6 +6,8 @@
 #include <hshfit/pages/comparison.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 
+#include <jobs/source.h>
+
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -33,7 +35,7 @@ OutgoingSet outgoingOf(const CompareArguments& arguments, const Brdf& a, const B
             }
         }
     }
-    return outgoingOrDefault(arguments.outgoing, a.laws().isotropic ? b : a);
+    return jobs::outgoingOrDefault(arguments.outgoing, a.laws().isotropic ? b : a);
 }
 
 /// The page; its table holds every metric, whatever was asked to be printed.
@@ -49,8 +51,8 @@ std::vector<std::string> writePage(const Brdf& a, const Brdf& b, const OutgoingS
 
 void runCompare(const CompareArguments& arguments, Globals& globals) {
     const auto metrics = selectMetrics(arguments.metrics);
-    const auto a = openSource(arguments.a, arguments.rgb),
-               b = openSource(arguments.b, arguments.rgb);
+    const auto a = jobs::openSource(arguments.a, arguments.rgb),
+               b = jobs::openSource(arguments.b, arguments.rgb);
     const OutgoingSet outgoing = outgoingOf(arguments, *a, *b);
     Progress progress(globals, "compare");
     const auto results = compare(*a, *b, outgoing, metrics, {.progress = progress.callback()});

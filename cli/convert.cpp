@@ -2,93 +2,55 @@
 #include "documents.h"
 
 #include <hshfit/accuracy/metrics.h>
-#include <hshfit/error.h>
 
 #include <brdfs/catalog.h>
 #include <brdfs/repair.h>
-#include <brdfs/spec.h>
+
+#include <jobs/convert.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace hshfit::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct ConvertOptions {
-    std::string input, output, to, repairs, outgoing;
-    bool rgb = false, reportLoss = false, force = false;
+struct ConvertArguments {
+    std::string input, output;
+    jobs::ConvertOptions options;
 };
 
-/// "merl (.binary), rgl (.bsdf), …"
-std::string writableFormats() {
-    std::string text;
-    for (const auto& writer : brdfs::writers()) {
-        text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", writer.name, writer.extension);
-    }
-    return text;
-}
-
-/// The one asked for, else the first one in the table that has the file's extension.
-const brdfs::Writer& chooseWriter(const ConvertOptions& options) {
-    const std::string_view name = std::string_view(options.to).substr(0, options.to.find(':'));
-    const std::string extension = std::filesystem::path(options.output).extension().string();
-    for (const auto& writer : brdfs::writers()) {
-        if (name.empty() ? writer.extension == extension : writer.name == name) return writer;
-    }
-    if (!name.empty()) {
-        throw UsageError(fmt::format("--to {}: unknown format; those that can be written are {}",
-                                     name, writableFormats()));
-    }
-    throw UsageError(
-        fmt::format("{}: the formats that can be written are {}; choose by the "
-                    "extension or with --to",
-                    options.output, writableFormats()));
-}
-
-brdfs::Parameters writerParameters(const brdfs::Writer& writer, const std::string& to) {
-    const std::size_t colon = to.find(':');
-    return brdfs::parseParameters(writer.name, writer.parameters,
-                                  colon == std::string::npos ? "" : to.substr(colon + 1));
-}
-
-struct Loss {
-    std::string outgoing;
-    std::vector<MetricValue> metrics;
-};
-
-/// What was written, read back and compared with what it was written from.
-Loss measureLoss(const Brdf& input, const brdfs::Writer& writer, const ConvertOptions& options,
-                 const Globals& globals) {
-    if (!writer.readBack) {
-        throw UsageError(fmt::format(
-            "--report-loss: {} is for other programs to read; nothing here reads it", writer.name));
-    }
-    const auto output = brdfs::open(options.output);
-    const OutgoingSet outgoing =
-        outgoingOrDefault(options.outgoing, input.laws().isotropic ? *output : input);
-    Progress progress(globals, "loss");
-    return {outgoing.spec(), compare(input, *output, outgoing, selectMetrics("all"),
-                                     {.progress = progress.callback()})};
-}
-
-Json repairsJson(const brdfs::RepairedBrdf& repaired) {
+Json repairsJson(const jobs::Repairs& repairs) {
     Json rows = Json::array();
-    for (const auto& count : repaired.counts()) {
+    for (const auto& count : repairs.counts) {
         rows.push_back({{"name", count.name},
-                        {"values", repaired.evaluated()},
+                        {"values", repairs.evaluated},
                         {"changed", count.changed},
                         {"left", count.left}});
     }
     return rows;
 }
 
-std::string convertText(const Json& document, const Loss* loss) {
+Json document(const jobs::Converted& converted, const std::string& output) {
+    Json document = {{"format", "hshfit-convert"},   {"version", 1},
+                     {"input", converted.input},     {"output", output},
+                     {"written", converted.written}, {"altered", converted.altered},
+                     {"bytes", converted.bytes}};
+    if (converted.repairs) document["repairs"] = repairsJson(*converted.repairs);
+    if (const auto& loss = converted.loss) {
+        Json rows = Json::array();
+        for (const MetricValue& result : loss->metrics) rows.push_back(metricJson(result));
+        document["loss"] = {{"outgoing", loss->outgoing}, {"metrics", std::move(rows)}};
+    }
+    return document;
+}
+
+std::string convertText(const Json& document, const std::optional<jobs::ConversionLoss>& loss) {
     std::string text =
         fmt::format("{}: {}, {} bytes\n", document["output"].get<std::string>(),
                     document["written"].get<std::string>(), document["bytes"].get<std::size_t>());
@@ -109,43 +71,14 @@ std::string convertText(const Json& document, const Loss* loss) {
     return text;
 }
 
-void runConvert(const ConvertOptions& options, const Globals& globals) {
-    const brdfs::Writer& writer = chooseWriter(options);
-    const brdfs::Parameters parameters = writerParameters(writer, options.to);
-    std::unique_ptr<Brdf> brdf = openSource(options.input, options.rgb);
-    const brdfs::RepairedBrdf* repaired = nullptr;
-    if (!options.repairs.empty()) {
-        Progress progress(globals, "repair");
-        auto wrapped = brdfs::repaired(std::move(brdf), options.repairs, progress.callback());
-        repaired = wrapped.get();
-        brdf = std::move(wrapped);
-    }
-
-    Json document = {{"format", "hshfit-convert"},
-                     {"version", 1},
-                     {"input", brdf->name()},
-                     {"output", options.output},
-                     {"written", writer.name}};
-    {
-        Progress progress(globals, "convert");
-        document["altered"] =
-            writer.write(*brdf, options.output, parameters,
-                         {.force = options.force, .progress = progress.callback()});
-    }
-    document["bytes"] = std::filesystem::file_size(options.output);
-    if (repaired) document["repairs"] = repairsJson(*repaired);
-    std::optional<Loss> loss;
-    if (options.reportLoss) {
-        loss = measureLoss(*brdf, writer, options, globals);
-        Json rows = Json::array();
-        for (const MetricValue& result : loss->metrics) rows.push_back(metricJson(result));
-        document["loss"] = {{"outgoing", loss->outgoing}, {"metrics", std::move(rows)}};
-    }
-    brdf->checkIntact();
+void runConvert(const ConvertArguments& arguments, const Globals& globals) {
+    const jobs::Converted converted =
+        jobs::convert(arguments.input, arguments.output, arguments.options, listenerFor(globals));
+    const Json answer = document(converted, arguments.output);
     if (globals.json) {
-        printJson(document);
+        printJson(answer);
     } else {
-        printText(convertText(document, loss ? &*loss : nullptr));
+        printText(convertText(answer, converted.loss));
     }
 }
 
@@ -164,21 +97,23 @@ std::string writersHelp() {
 }  // namespace
 
 void addConvert(CLI::App& command, Globals& globals) {
-    auto options = std::make_shared<ConvertOptions>();
+    auto arguments = std::make_shared<ConvertArguments>();
+    jobs::ConvertOptions& options = arguments->options;
     command.footer(command.get_footer() + "\n" + writersHelp());
-    command.add_option("IN", options->input, "BRDF, measured file or coefficient file")->required();
-    command.add_option("OUT", options->output, "File to write")->required();
-    command.add_option("--to", options->to,
+    command.add_option("IN", arguments->input, "BRDF, measured file or coefficient file")
+        ->required();
+    command.add_option("OUT", arguments->output, "File to write")->required();
+    command.add_option("--to", options.format,
                        "Format and its options, NAME[:key=value,...] (default: by the extension)");
-    command.add_flag("--report-loss", options->reportLoss,
+    command.add_flag("--report-loss", options.measureLoss,
                      "Read the file back and say what error it costs");
-    command.add_option("--outgoing", options->outgoing,
+    command.add_option("--outgoing", options.outgoing,
                        "Outgoing directions of the loss: WxH, N or THETA,PHI");
-    command.add_option("--repair", options->repairs,
+    command.add_option("--repair", options.repairs,
                        "Repairs before writing, separated by commas, or all");
-    addRgb(command, options->rgb);
-    command.add_flag("--force", options->force, "Replace an existing file");
-    command.callback([options, &globals] { runConvert(*options, globals); });
+    addRgb(command, options.rgb);
+    command.add_flag("--force", options.force, "Replace an existing file");
+    command.callback([arguments, &globals] { runConvert(*arguments, globals); });
 }
 
 }  // namespace hshfit::cli

@@ -4,6 +4,8 @@
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 
+#include <jobs/source.h>
+
 #include <fmt/format.h>
 #include <libfccp/csv.h>
 #include <CLI/CLI.hpp>
@@ -34,7 +36,7 @@ std::vector<double> evaluatePair(const Brdf& brdf, const Direction& wi, const Di
 void evaluateOne(const EvalOptions& options, const Globals& globals) {
     const Direction wi = parseDirection(options.wi, "--wi");
     const Direction wo = parseDirection(options.wo, "--wo");
-    const auto brdf = openSource(options.spec, options.rgb);
+    const auto brdf = jobs::openSource(options.spec, options.rgb);
     const std::vector<double> values = evaluatePair(*brdf, wi, wo, options.cosine);
     brdf->checkIntact();
     const std::vector<std::string> names = brdf->channels().names();
@@ -105,7 +107,7 @@ std::string evaluateRows(const Brdf& brdf, const EvalOptions& options) {
 }
 
 void evaluatePairs(const EvalOptions& options) {
-    const auto brdf = openSource(options.spec, options.rgb);
+    const auto brdf = jobs::openSource(options.spec, options.rgb);
     std::string csv;
     try {
         csv = evaluateRows(*brdf, options);

@@ -1,7 +1,5 @@
 #include "form_options.h"
 
-#include "command.h"
-
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -46,13 +44,13 @@ void FormOptions::addTo(CLI::App& command) {
            "options, plain coefficients in float64)");
 }
 
-std::optional<Form> FormOptions::build(Form base) const {
+std::optional<Form> FormOptions::build() const {
     const bool asked = !form_.empty() || !halfway_.empty() || !window_.empty() ||
                        !precision_.empty() || !split_.empty() || reciprocal_ || nonNegative_ ||
                        energyPreserving_ || nonNegativeFactors_ || rank_ > 0 || rankError_ > 0 ||
                        keep_ > 0;
     if (!asked) return std::nullopt;
-    Form form = std::move(base);
+    Form form;
     if (!form_.empty()) form.kind = parseKind(form_);
     if (!halfway_.empty()) {
         if (form.kind != Representation::Kind::halfway) {
@@ -71,10 +69,6 @@ std::optional<Form> FormOptions::build(Form base) const {
     form.rankError = rankError_;
     form.keep = keep_;
     return form;
-}
-
-BrdfOpener formOpener() {
-    return [](const std::string& spec) { return openSource(spec, false); };
 }
 
 Json describeForm(const Representation& r) {

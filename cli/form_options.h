@@ -18,9 +18,9 @@ class FormOptions {
 public:
     void addTo(CLI::App& command);
 
-    /// The form asked for, with basis, order, quantity and outgoing set from `base`; none where no
-    /// option was given: plain coefficients. Throws UsageError.
-    std::optional<Form> build(Form base) const;
+    /// The form asked for, without basis, order, quantity and outgoing set; none where no option
+    /// was given: plain coefficients. Throws UsageError.
+    std::optional<Form> build() const;
 
 private:
     std::string form_, halfway_, window_, precision_, split_;
@@ -30,9 +30,6 @@ private:
     double rankError_ = 0;
     std::size_t keep_ = 0;
 };
-
-/// A BRDF specification, coefficient files included, for what representations add.
-BrdfOpener formOpener();
 
 /// Kind, bytes and steps, for JSON answers.
 nlohmann::ordered_json describeForm(const Representation& representation);

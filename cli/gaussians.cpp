@@ -6,6 +6,8 @@
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/files/atomic_file.h>
 
+#include <jobs/source.h>
+
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -45,7 +47,7 @@ void runGaussians(GaussianArguments arguments, Globals& globals) {
     const auto metrics =
         arguments.metrics.empty() ? std::vector<const Metric*>() : selectMetrics(arguments.metrics);
     const OutgoingSet outgoing = OutgoingSet::parse(arguments.outgoing);
-    const auto brdf = openBrdf(arguments.spec, arguments.rgb);
+    const auto brdf = jobs::openBrdf(arguments.spec, arguments.rgb);
     arguments.fit.kind =
         arguments.kind == "sg" ? brdfs::GaussianKind::spherical : brdfs::GaussianKind::anisotropic;
     arguments.fit.cosine = arguments.weight == "cosine";

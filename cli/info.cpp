@@ -8,7 +8,7 @@
 #include <hshfit/quadrature/quadrature.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 
-#include <brdfs/measured/measured_brdf.h>
+#include <jobs/source.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -147,14 +147,10 @@ void addInfo(CLI::App& command, Globals& globals) {
         ->required();
     addRgb(command, options->rgb);
     command.callback([options, &globals] {
-        const auto brdf = openSource(options->spec, options->rgb);
+        const auto brdf = jobs::openSource(options->spec, options->rgb);
         Json document = describe(*brdf, globals);
         describeContainer(options->spec, document["facts"]);
-        if (const auto* measured = dynamic_cast<const brdfs::MeasuredBrdf*>(brdf.get())) {
-            measured->checkReadable();  // what is no number has been counted
-        } else {
-            brdf->checkIntact();
-        }
+        jobs::requireReadable(*brdf);  // what is no number has been counted
         if (globals.json) {
             printJson(document);
         } else {

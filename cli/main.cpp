@@ -1,6 +1,7 @@
 #include "command.h"
 #include "command_table.h"
 #include "completion.h"
+#include "wording.h"
 
 #include <brdfs/spec.h>
 #include <hshfit/error.h>
@@ -89,6 +90,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     hshfit::removeTemporariesOnSignals();
+    hshfit::setWording(hshfit::cli::optionWording());
     try {
         return run(argc, argv);
     } catch (const hshfit::Error& error) {

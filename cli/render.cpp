@@ -4,6 +4,8 @@
 #include <hshfit/error.h>
 #include <hshfit/pictures/sphere_picture.h>
 
+#include <jobs/source.h>
+
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -83,7 +85,7 @@ void runRender(const RenderArguments& arguments, Globals& globals) {
                      {"dome", options.rig.dome}};
     Json list = Json::array();
     for (const auto& spec : arguments.specs) {
-        const auto brdf = openSource(spec, /*rgb=*/false);
+        const auto brdf = jobs::openSource(spec, /*rgb=*/false);
         Progress progress(globals, brdf->name());
         options.progress = progress.callback();
         spheres.push_back(renderSphere(*brdf, options));

@@ -1,5 +1,4 @@
 #include "command.h"
-#include "inputs.h"
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
@@ -7,6 +6,8 @@
 #include <hshfit/tradeoff/tradeoff_files.h>
 
 #include <brdfs/catalog.h>
+
+#include <jobs/source.h>
 
 #include <fmt/format.h>
 #include <libfccp/csv.h>
@@ -165,13 +166,13 @@ void writePairs(const PairSample& pairs, const Brdf& brdf, const std::string& pa
 /// The trades of all inputs, in their order; one after the other, so that times can be compared.
 std::vector<Tradeoff> measureAll(const TradeoffArguments& arguments,
                                  const std::vector<std::string>& specs, const Globals& globals,
-                                 std::vector<InputFailure>& failures) {
+                                 std::vector<jobs::InputFailure>& failures) {
     const PairSample pairs = pairsFor(arguments);
     const TradeoffOptions common = optionsFrom(arguments);
     std::vector<Tradeoff> trades;
     for (const std::string& spec : specs) {
         try {
-            const auto brdf = openBrdf(spec, arguments.rgb);
+            const auto brdf = jobs::openBrdf(spec, arguments.rgb);
             if (!arguments.writePairs.empty()) writePairs(pairs, *brdf, arguments.writePairs);
             Progress progress(globals, spec);
             TradeoffOptions options = common;
@@ -192,11 +193,11 @@ void runTradeoff(const TradeoffArguments& arguments, Globals& globals) {
     if (arguments.output.empty() && !globals.json) {
         throw UsageError("tradeoff: give -o DIR for the files, or --json");
     }
-    const std::vector<std::string> specs = expandInputs(arguments.specs);
+    const std::vector<std::string> specs = jobs::expandInputs(arguments.specs);
     if (!arguments.writePairs.empty() && specs.size() > 1) {
         throw UsageError("--write-pairs holds the values of one BRDF: give one SPEC");
     }
-    std::vector<InputFailure> failures;
+    std::vector<jobs::InputFailure> failures;
     const std::vector<Tradeoff> trades = measureAll(arguments, specs, globals, failures);
     if (!trades.empty() && !arguments.output.empty()) writeTradeoffs(trades, arguments.output);
     if (globals.json) {

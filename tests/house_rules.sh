@@ -48,7 +48,8 @@ matches 'file *\( *GLOB' '*.cmake' '*CMakeLists.txt' | rule 'sources are listed,
 tests/room_graph.py | rule 'rooms of lib: arrows only go down, namespace = folder' || true
 matches '#include *[<"](brdfs|cli|jobs)/' lib | rule 'lib includes nothing from brdfs, jobs or cli'
 matches 'hshfit::brdfs|hshfit_brdfs' 'lib/**CMakeLists.txt' | rule 'lib links nothing from brdfs'
-matches '#include *[<"]cli/' brdfs | rule 'brdfs includes nothing from cli'
+matches '#include *[<"](jobs|cli)/' brdfs | rule 'brdfs includes nothing from jobs or cli'
+matches '#include *[<"](cli|CLI)/' jobs | rule 'jobs includes nothing from cli, nor CLI11'
 # files/json_fields.h and files/exr_stream.h wrap a library for the rooms above; nobody installs them.
 matches '#include *[<"](Eigen|OpenEXR|Imf|Imath|nlohmann)' 'lib/*.h' ':!lib/**/internal/*.h' \
     ':!lib/hshfit/files/json_fields.h' ':!lib/hshfit/files/exr_stream.h' |

@@ -1,6 +1,7 @@
-#include "inputs.h"
+#include "batch.h"
 
 #include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/wording.h>
 
 #include <brdfs/catalog.h>
 
@@ -17,7 +18,7 @@
 #include <new>
 #include <optional>
 
-namespace hshfit::cli {
+namespace hshfit::jobs {
 
 namespace fs = std::filesystem;
 
@@ -54,8 +55,8 @@ std::vector<std::string> measuredFiles(const std::string& folder) {
         if (entry.is_regular_file(error) && isMeasured(entry.path()))
             files.push_back(entry.path().string());
     if (files.empty())
-        throw InputError(fmt::format(
-            "{}: no measured BRDF in this folder; hshfit list formats shows what is read", folder));
+        throw InputError(fmt::format("{}: no measured BRDF in this folder; {} shows what is read",
+                                     folder, Call{.function = "formats"}));
     std::ranges::sort(files);
     return files;
 }
@@ -149,10 +150,9 @@ std::vector<std::string> outputPaths(const std::vector<std::string>& specs,
 }
 
 std::vector<InputFailure> forEachInput(const std::vector<std::string>& specs,
-                                       const Globals& globals, const std::string& what,
+                                       const Listener& listener, const std::string& part,
                                        const std::function<void(std::size_t, ProgressCall)>& work) {
-    Progress line(globals, what);
-    TotalProgress progress(specs.size(), line.callback());
+    TotalProgress progress(specs.size(), listener.part(part));
     std::vector<std::optional<InputFailure>> failed(specs.size());
     const auto one = [&](std::size_t i) {
         try {
@@ -183,17 +183,11 @@ std::vector<InputFailure> forEachInput(const std::vector<std::string>& specs,
     return failures;
 }
 
-void reportFailures(const std::vector<InputFailure>& failures, std::size_t inputs,
-                    Globals& globals) {
-    if (failures.empty()) return;
-    fmt::print(stderr, "hshfit: {} of {} inputs failed:\n", failures.size(), inputs);
-    bool numeric = true;
-    for (const InputFailure& failure : failures) {
-        numeric = numeric && failure.code == ExitCode::numeric;
-        const bool named = failure.reason.find(failure.spec) != std::string::npos;
-        fmt::print(stderr, "  {}\n", named ? failure.reason : failure.spec + ": " + failure.reason);
-    }
-    globals.exitCode = static_cast<int>(numeric ? ExitCode::numeric : ExitCode::input);
+ExitCode codeOf(const std::vector<InputFailure>& failures) {
+    if (failures.empty()) return ExitCode::done;
+    const bool numeric = std::ranges::all_of(
+        failures, [](const InputFailure& failure) { return failure.code == ExitCode::numeric; });
+    return numeric ? ExitCode::numeric : ExitCode::input;
 }
 
-}  // namespace hshfit::cli
+}  // namespace hshfit::jobs

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace hshfit::cli {
+namespace hshfit::jobs {
 
 /// What became of a folder.
 struct BatchOutcome {
@@ -24,4 +24,4 @@ BatchOutcome fitFolder(const std::string& folder, const std::string& results,
                        const std::function<void(const std::string&, const std::string&)>& fitOne,
                        const std::function<void(std::size_t, std::size_t)>& progress = {});
 
-}  // namespace hshfit::cli
+}  // namespace hshfit::jobs

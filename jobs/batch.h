@@ -1,6 +1,6 @@
 #pragma once
 
-#include "command.h"
+#include "listener.h"
 
 #include <hshfit/error.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace hshfit::cli {
+namespace hshfit::jobs {
 
 /// SPECs with each folder replaced by the measured files in it, in the order of their names: those
 /// that a format recognises by content or that have its extension; coefficient files, presets and
@@ -30,19 +30,15 @@ struct InputFailure {
     ExitCode code;
 };
 
-using ProgressCall = std::function<void(std::size_t, std::size_t)>;
-
 /// Calls `work(index, progress)` for every input, on all threads that oneTBB has: as many inputs at
 /// a time as there are threads, and those left over help with the last ones from within. An Error
 /// of one input, out of memory included, does not stop the others; an OutputError does. Failures
 /// come back in the order of the inputs.
 std::vector<InputFailure> forEachInput(const std::vector<std::string>& specs,
-                                       const Globals& globals, const std::string& what,
+                                       const Listener& listener, const std::string& part,
                                        const std::function<void(std::size_t, ProgressCall)>& work);
 
-/// One line for each failure on standard error, whatever --quiet says, and the exit code: 3, or 4
-/// if all of them are of numbers.
-void reportFailures(const std::vector<InputFailure>& failures, std::size_t inputs,
-                    Globals& globals);
+/// Of all of them together: 3, or 4 if every one is of numbers; 0 if there are none.
+ExitCode codeOf(const std::vector<InputFailure>& failures);
 
-}  // namespace hshfit::cli
+}  // namespace hshfit::jobs

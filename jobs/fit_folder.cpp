@@ -1,4 +1,4 @@
-#include "fit_batch.h"
+#include "fit_folder.h"
 
 #include <hshfit/error.h>
 
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <system_error>
 
-namespace hshfit::cli {
+namespace hshfit::jobs {
 
 namespace fs = std::filesystem;
 
@@ -43,4 +43,4 @@ BatchOutcome fitFolder(const std::string& folder, const std::string& results,
     return outcome;
 }
 
-}  // namespace hshfit::cli
+}  // namespace hshfit::jobs

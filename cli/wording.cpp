@@ -1,0 +1,125 @@
+#include "wording.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace hshfit::cli {
+namespace {
+
+enum class Value {
+    shown,   ///< --option VALUE
+    quoted,  ///< --option 'VALUE'
+    none,    ///< a flag
+};
+
+struct OptionRow {
+    std::string_view member, option;
+    Value value = Value::shown;
+};
+
+constexpr OptionRow options[] = {
+    {"ConvertOptions::format", "--to"},
+    {"ConvertOptions::measureLoss", "--report-loss"},
+    {"ExportOptions::force", "--force"},
+    {"ExportOptions::source", "--source"},
+    {"FileSet::force", "--force"},
+    {"FitOptions::accept", "--accept"},
+    {"Form::basis", "--basis"},
+    {"Form::condonShortley", "--condon-shortley"},
+    {"Form::energyPreserving", "--energy-preserving"},
+    {"Form::halfway", "--halfway"},
+    {"Form::keep", "--keep"},
+    {"Form::kind", "--form"},
+    {"Form::nonNegative", "--non-negative"},
+    {"Form::nonNegativeFactors", "--non-negative-factors"},
+    {"Form::order", "--order"},
+    {"Form::outgoing", "--outgoing"},
+    {"Form::precision", "--precision"},
+    {"Form::quantity", "--cosine", Value::none},
+    {"Form::rank", "--rank"},
+    {"Form::rankError", "--rank-error"},
+    {"Form::reciprocal", "--reciprocal"},
+    {"Form::split", "--split", Value::quoted},
+    {"Form::window", "--window"},
+    {"PlanOptions::bases", "--bases"},
+    {"ProjectOptions::leastSquares", "--least-squares"},
+    {"ProjectionOptions::maxEvaluations", "--max-evaluations"},
+    {"ProjectionOptions::quantity", "--cosine", Value::none},
+    {"ProjectionOptions::tolerance", "--tolerance"},
+    {"TradeoffOptions::byTime", "--by-time"},
+    {"TradeoffOptions::maxBytes", "--max-bytes"},
+    {"TradeoffOptions::maxNanoseconds", "--max-ns"},
+    {"TradeoffOptions::metric", "--metric"},
+    {"TradeoffOptions::timing", "--no-timing", Value::none},
+    {"output", "-o"},
+};
+
+std::string optionOf(const Setting& setting) {
+    const auto* row = std::ranges::find(options, setting.member, &OptionRow::member);
+    if (row == std::end(options)) return asMember(setting);
+    const std::string option(row->option);
+    if (setting.value.empty() || row->value == Value::none) return option;
+    return row->value == Value::quoted ? option + " '" + setting.value + "'"
+                                       : option + " " + setting.value;
+}
+
+std::string quoted(const std::string& text) {
+    std::string out = "'";
+    for (const char c : text) {
+        if (c == '\'')
+            out += "'\\''";
+        else
+            out += c;
+    }
+    return out + "'";
+}
+
+/// Quoted where a shell would take it for something else.
+std::string forShell(const std::string& text) {
+    const auto plain = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+               std::string_view("._-/:=,+@%").find(c) != std::string_view::npos;
+    };
+    return !text.empty() && std::ranges::all_of(text, plain) ? text : quoted(text);
+}
+
+std::string optionsOf(const Call& call) {
+    std::string text;
+    for (const Setting& setting : call.settings) text += " " + optionOf(setting);
+    return text;
+}
+
+struct CommandRow {
+    std::string_view function;
+    std::string (*command)(const Call& call);
+};
+
+const CommandRow commandsOfFunctions[] = {
+    {"asRgb", [](const Call&) -> std::string { return "--rgb"; }},
+    {"fit",
+     [](const Call& call) { return "hshfit fit '" + call.subject + "' --model ggx -o fit.json"; }},
+    {"formats", [](const Call&) -> std::string { return "hshfit list formats"; }},
+    {"linearlyTransformedCosines", [](const Call&) -> std::string { return "hshfit ltc"; }},
+    {"metricCatalog", [](const Call&) -> std::string { return "hshfit list metrics"; }},
+    {"represent",
+     [](const Call& call) {
+         return "hshfit project " + quoted(call.subject) + optionsOf(call) + " -o " + call.output;
+     }},
+    {"writeRepresentation",
+     [](const Call& call) {
+         return "hshfit project " + forShell(call.subject) + " -o " + call.output + optionsOf(call);
+     }},
+};
+
+std::string commandOf(const Call& call) {
+    const auto* row = std::ranges::find(commandsOfFunctions, call.function, &CommandRow::function);
+    return row == std::end(commandsOfFunctions) ? asFunction(call) : row->command(call);
+}
+
+}  // namespace
+
+Wording optionWording() {
+    return {.setting = optionOf, .call = commandOf};
+}
+
+}  // namespace hshfit::cli

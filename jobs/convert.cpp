@@ -1,0 +1,96 @@
+#include "convert.h"
+
+#include "source.h"
+
+#include <hshfit/error.h>
+#include <hshfit/wording.h>
+
+#include <brdfs/catalog.h>
+#include <brdfs/spec.h>
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+namespace hshfit::jobs {
+namespace {
+
+/// "merl (.binary), rgl (.bsdf), …"
+std::string writableFormats() {
+    std::string text;
+    for (const auto& writer : brdfs::writers()) {
+        text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", writer.name, writer.extension);
+    }
+    return text;
+}
+
+/// The one asked for, else the first one in the table that has the file's extension.
+const brdfs::Writer& chooseWriter(const std::string& format, const std::string& output) {
+    const std::string name = format.substr(0, format.find(':'));
+    const std::string extension = std::filesystem::path(output).extension().string();
+    for (const auto& writer : brdfs::writers()) {
+        if (name.empty() ? writer.extension == extension : writer.name == name) return writer;
+    }
+    if (!name.empty()) {
+        throw UsageError(fmt::format("{}: unknown format; those that can be written are {}",
+                                     Setting{"ConvertOptions::format", name}, writableFormats()));
+    }
+    throw UsageError(
+        fmt::format("{}: the formats that can be written are {}; choose by the extension or with "
+                    "{}",
+                    output, writableFormats(), Setting{"ConvertOptions::format"}));
+}
+
+brdfs::Parameters writerParameters(const brdfs::Writer& writer, const std::string& format) {
+    const std::size_t colon = format.find(':');
+    return brdfs::parseParameters(writer.name, writer.parameters,
+                                  colon == std::string::npos ? "" : format.substr(colon + 1));
+}
+
+/// What was written, read back and compared with what it was written from.
+ConversionLoss measureLoss(const Brdf& input, const brdfs::Writer& writer,
+                           const std::string& output, const ConvertOptions& options,
+                           const Listener& listener) {
+    if (!writer.readBack) {
+        throw UsageError(fmt::format("{}: {} is for other programs to read; nothing here reads it",
+                                     Setting{"ConvertOptions::measureLoss"}, writer.name));
+    }
+    const auto read = brdfs::open(output);
+    const OutgoingSet outgoing =
+        outgoingOrDefault(options.outgoing, input.laws().isotropic ? *read : input);
+    return {outgoing.spec(), compare(input, *read, outgoing, selectMetrics("all"),
+                                     {.progress = listener.part("loss")})};
+}
+
+}  // namespace
+
+Converted convert(const std::string& input, const std::string& output,
+                  const ConvertOptions& options, const Listener& listener) {
+    const brdfs::Writer& writer = chooseWriter(options.format, output);
+    const brdfs::Parameters parameters = writerParameters(writer, options.format);
+    std::unique_ptr<Brdf> brdf = openSource(input, options.rgb);
+    const brdfs::RepairedBrdf* repaired = nullptr;
+    if (!options.repairs.empty()) {
+        auto wrapped = brdfs::repaired(std::move(brdf), options.repairs, listener.part("repair"));
+        repaired = wrapped.get();
+        brdf = std::move(wrapped);
+    }
+
+    Converted converted;
+    converted.input = brdf->name();
+    converted.written = writer.name;
+    converted.altered = writer.write(
+        *brdf, output, parameters, {.force = options.force, .progress = listener.part("convert")});
+    converted.bytes = std::filesystem::file_size(output);
+    if (repaired) converted.repairs = Repairs{repaired->evaluated(), repaired->counts()};
+    if (options.measureLoss) {
+        converted.loss = measureLoss(*brdf, writer, output, options, listener);
+    }
+    brdf->checkIntact();
+    return converted;
+}
+
+}  // namespace hshfit::jobs

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "listener.h"
+
+#include <hshfit/accuracy/metrics.h>
+
+#include <brdfs/repair.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hshfit::jobs {
+
+struct ConvertOptions {
+    std::string format;    ///< a writer's NAME[:key=value,…]; empty: by the extension
+    std::string repairs;   ///< names separated by commas, or "all"; empty: none
+    std::string outgoing;  ///< of the loss, as in outgoingOrDefault
+    bool rgb = false;      ///< wavelengths as linear Rec. 709
+    bool measureLoss = false;
+    bool force = false;  ///< replace a file that stands
+};
+
+/// What the file, read back, has lost.
+struct ConversionLoss {
+    std::string outgoing;
+    std::vector<MetricValue> metrics;
+};
+
+struct Repairs {
+    std::uint64_t evaluated = 0;  ///< values
+    std::vector<brdfs::RepairCount> counts;
+};
+
+struct Converted {
+    std::string input;                 ///< name of the BRDF, repairs included
+    std::string written;               ///< the writer
+    std::vector<std::string> altered;  ///< what the format leaves out or changes, a sentence each
+    std::uintmax_t bytes = 0;
+    std::optional<Repairs> repairs;
+    std::optional<ConversionLoss> loss;
+};
+
+/// A BRDF or a coefficient file in the format of another program, to the file `output`. Throws
+/// UsageError for a format that does not exist or cannot hold it, InputError, NumericError and
+/// OutputError.
+Converted convert(const std::string& input, const std::string& output,
+                  const ConvertOptions& options, const Listener& listener = {});
+
+}  // namespace hshfit::jobs

@@ -1,0 +1,183 @@
+#include "export.h"
+
+#include "source.h"
+
+#include <hshfit/coefficient_files/representation_file.h>
+#include <hshfit/error.h>
+#include <hshfit/files/file_set.h>
+#include <hshfit/gpu/containers/targets.h>
+#include <hshfit/gpu/viewer.h>
+#include <hshfit/representation/forms/represented_brdf.h>
+#include <hshfit/wording.h>
+
+#include <brdfs/catalog.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+namespace hshfit::jobs {
+namespace {
+
+using gpu::Target;
+using Targets = std::vector<const Target*>;
+
+/// What the coefficients came from, if it can still be opened.
+struct Source {
+    std::unique_ptr<Brdf> brdf;
+    std::string reason;  ///< why there is none
+};
+
+Source openSourceOf(const ExportOptions& options, const Coefficients& coefficients) {
+    if (!options.source.empty()) return {brdfs::open(options.source), {}};
+    try {
+        return {brdfs::open(coefficients.source), {}};
+    } catch (const Error& error) {
+        return {nullptr, fmt::format("the source does not open ({}); name it with {}", error.what(),
+                                     Setting{"ExportOptions::source"})};
+    }
+}
+
+/// Coefficients per outgoing direction. Other forms, and files with a BRDF added, are projected
+/// anew, and what that costs is part of the error that the export states.
+Coefficients coefficientsOf(const std::string& path, const ExportOptions& options,
+                            const Listener& listener) {
+    const Representation stored = readRepresentation(path);
+    ExpandOptions expansion{.basis = options.basis, .order = options.order};
+    std::optional<OutgoingSet> outgoing;
+    if (!options.outgoing.empty()) outgoing = OutgoingSet::parse(options.outgoing);
+    if (outgoing) expansion.outgoing = &*outgoing;
+    expansion.projection.progress = listener.part("project");
+    if (stored.kind != Representation::Kind::outgoing || !stored.added.empty() || outgoing) {
+        listener.say(fmt::format("{}: form {}{}; exported as coefficients per outgoing direction",
+                                 path, kindName(stored.kind),
+                                 stored.added.empty() ? "" : " with " + stored.added));
+    }
+    return expand(stored, sourceOpener(), expansion);
+}
+
+/// The error, or why there is none. A source that was named has to do.
+ExportError errorOf(const Source& source, const Coefficients& coefficients,
+                    const gpu::Payload& payload, const ExportOptions& options,
+                    const Listener& listener) {
+    if (!options.measureError) return {{}, "not asked for"};
+    if (!source.brdf) return {{}, source.reason};
+    try {
+        return {gpu::splitError(*source.brdf, coefficients, payload,
+                                {.progress = listener.part("error")}),
+                {}};
+    } catch (const Error& error) {
+        if (!options.source.empty()) throw;
+        return {{}, error.what()};
+    }
+}
+
+/// Before the error is measured; every file is looked at again when it is written.
+void refuseToReplace(const std::string& folder, const std::string& sidecar, bool force) {
+    const auto path = std::filesystem::path(folder) / sidecar;
+    std::error_code ignored;
+    if (!force && std::filesystem::exists(path, ignored)) {
+        throw OutputError(fmt::format("'{}' exists; {} replaces the files of an export",
+                                      path.string(), Setting{"ExportOptions::force"}));
+    }
+}
+
+std::vector<const gpu::Container*> containersOf(const Targets& chosen, const ExportOptions& options,
+                                                const Listener& listener) {
+    std::vector<const gpu::Container*> containers;
+    for (const Target* target : chosen) {
+        if (target->kind != Target::Kind::container) continue;
+        const gpu::Container& container = gpu::findContainer(target->name);
+        if (options.targets == "all" && !container.holds(options.pack.number)) {
+            listener.say(fmt::format("left out: {} cannot hold {}", container.name,
+                                     gpu::numberName(options.pack.number)));
+        } else {
+            containers.push_back(&container);
+        }
+    }
+    return containers;
+}
+
+std::string shaderFile(const std::string& name, const gpu::LanguageEntry& language,
+                       const std::string& prefix) {
+    const bool es = language.language == gpu::Language::glslEs;
+    return fmt::format("{}_{}.{}{}", name, prefix, es ? "es." : "", language.extension);
+}
+
+void writeShaders(const Targets& chosen, const ExportOptions& options, const Listener& listener,
+                  FileSet& files, Exported& exported) {
+    for (const gpu::LanguageEntry& language : gpu::languages()) {
+        const bool wanted = std::ranges::any_of(chosen, [&](const Target* target) {
+            return target->kind == Target::Kind::shader && target->name == language.name;
+        });
+        if (!wanted) continue;
+        std::string source;
+        try {
+            source = gpu::shaderSource(language.language, exported.payload, options.shader);
+        } catch (const UsageError& error) {
+            if (options.targets != "all") throw;
+            listener.say(fmt::format("left out: {}", error.what()));
+            continue;
+        }
+        const std::string file = shaderFile(exported.name, language, options.shader.prefix);
+        files.write(file, source);
+        exported.texts.push_back({"shader", std::string(language.name), file});
+    }
+}
+
+void writeViewer(const Targets& chosen, const Brdf* source, const Listener& listener,
+                 FileSet& files, Exported& exported) {
+    const bool wanted = std::ranges::any_of(
+        chosen, [](const Target* target) { return target->kind == Target::Kind::viewer; });
+    if (!wanted) return;
+    const std::string file = exported.name + "_viewer.html";
+    files.write(
+        file, gpu::viewerPage(gpu::viewerInput(exported.payload, source, listener.part("viewer"))));
+    exported.texts.push_back({"viewer", "viewer", file});
+}
+
+}  // namespace
+
+nlohmann::ordered_json errorJson(const ExportError& error) {
+    if (!error.split) return {{"reason", error.reason}};
+    const gpu::ErrorSplit& split = *error.split;
+    return {{"metric", "rms of the difference times cos(theta_i), over that of f"},
+            {"outgoing", split.outgoing},
+            {"truncation", split.truncation},
+            {"interpolation", split.interpolation},
+            {"quantisation", split.quantisation},
+            {"total", split.total},
+            {"mean_log", split.meanLog}};
+}
+
+Exported exportCoefficients(const std::string& path, const std::string& folder,
+                            const ExportOptions& options, const Listener& listener) {
+    const Targets chosen = gpu::selectTargets(options.targets);
+    const Coefficients coefficients = coefficientsOf(path, options, listener);
+    Exported exported;
+    exported.payload = gpu::pack(coefficients, options.pack);
+    exported.name =
+        options.name.empty() ? std::filesystem::path(path).stem().string() : options.name;
+    exported.sidecar = exported.name + ".hsh.json";
+    exported.test = exported.name + "_test.json";
+
+    FileSet files(folder, options.force);
+    refuseToReplace(folder, exported.sidecar, options.force);
+    const Source source = openSourceOf(options, coefficients);
+    exported.error = errorOf(source, coefficients, exported.payload, options, listener);
+    exported.textures = gpu::writeContainers(
+        exported.payload, containersOf(chosen, options, listener), exported.name,
+        {.zstd = options.zstd,
+         .fitError = exported.error.split ? errorJson(exported.error).dump() : std::string()},
+        files);
+    writeShaders(chosen, options, listener, files, exported);
+    writeViewer(chosen, source.brdf.get(), listener, files, exported);
+    files.commit();
+    return exported;
+}
+
+}  // namespace hshfit::jobs

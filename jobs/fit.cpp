@@ -1,0 +1,96 @@
+#include "fit.h"
+
+#include "source.h"
+
+#include <hshfit/error.h>
+#include <hshfit/files/atomic_file.h>
+#include <hshfit/pages/comparison.h>
+#include <hshfit/wording.h>
+
+#include <brdfs/catalog.h>
+#include <brdfs/fit/fit_json.h>
+
+#include <fmt/format.h>
+
+namespace hshfit::jobs {
+namespace {
+
+brdfs::FitOptions optionsOf(const FitOptions& options) {
+    brdfs::FitOptions fit;
+    fit.model = options.model;
+    fit.loss = brdfs::findLoss(options.loss).kind;
+    fit.robust = brdfs::findRobust(options.robust);
+    fit.robustScale = options.robustScale;
+    fit.perChannel = options.perChannel;
+    fit.starts = options.starts;
+    fit.seed = options.seed;
+    fit.iterations = options.iterations;
+    return fit;
+}
+
+brdfs::FitSamples samplesOf(const FitOptions& options, const std::string& data) {
+    const brdfs::SampleOptions how{.weights = brdfs::findSampleWeights(options.weights),
+                                   .grazingCut = options.grazingCut,
+                                   .most = options.samples,
+                                   .seed = options.seed};
+    const auto brdf = openSource(data, options.rgb);
+    brdfs::FitSamples samples = brdfs::gatherSamples(*brdf, how);
+    requireReadable(*brdf);
+    return samples;
+}
+
+/// Data and fit side by side in the folder where the fit is; the number of files.
+std::size_t writePage(const std::string& data, const std::string& spec, const std::string& folder,
+                      bool rgb, const Listener& listener) {
+    const auto measured = openSource(data, rgb);
+    const auto fitted = brdfs::open(spec);
+    ComparisonOptions options;
+    options.progress = options.sphere.progress = listener.part("report");
+    return writeComparison(*measured, *fitted, options, folder).size();
+}
+
+}  // namespace
+
+bool isPresetPath(const std::string& output) {
+    return output.ends_with(".json");
+}
+
+Fitted fit(const std::string& data, const std::string& output, const FitOptions& options,
+           const Listener& listener) {
+    brdfs::FitOptions how = optionsOf(options);
+    const brdfs::FitSamples samples = samplesOf(options, data);
+    how.progress = listener.part("fit");
+    Fitted fitted{.result = brdfs::fit(samples, how), .preset = {}};
+    if (!fitted.result.converged && !options.accept) {
+        throw NumericError(
+            fmt::format("{}: the fit of {} did not converge ({}); {} takes it as it "
+                        "is",
+                        data, options.model, fitted.result.message, Setting{"FitOptions::accept"}));
+    }
+    fitted.preset = brdfs::fitPreset({data, &samples, how, fitted.result});
+    const std::string text = fitted.preset.dump(2) + "\n";
+    if (isPresetPath(output)) {
+        writeFile(output, text);
+    } else if (!output.empty()) {
+        fitted.pageFiles = writePage(data, fitted.result.spec, output, options.rgb, listener);
+        writeFile(output + "/fit.json", text);
+    }
+    return fitted;
+}
+
+BatchOutcome fitAll(const std::string& folder, const std::string& results,
+                    const FitOptions& options, const Listener& listener) {
+    return fitFolder(
+        folder, results,
+        [&](const std::string& file, const std::string& result) { fit(file, result, options); },
+        listener.part("files"));
+}
+
+std::vector<brdfs::ModelRank> rankModels(const std::string& data,
+                                         const std::vector<std::string>& models,
+                                         const FitOptions& options) {
+    const brdfs::FitSamples samples = samplesOf(options, data);
+    return brdfs::compareModels(samples, models, optionsOf(options));
+}
+
+}  // namespace hshfit::jobs

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "fit_folder.h"
+#include "listener.h"
+
+#include <brdfs/fit/compare_models.h>
+#include <brdfs/fit/fit.h>
+#include <brdfs/fit/fit_samples.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace hshfit::jobs {
+
+struct FitOptions {
+    /// MODEL[:key=value,…][+MODEL…]; parameters that are given are not fitted.
+    std::string model;
+    std::string loss = "cosine";   ///< brdfs::findLoss
+    std::string robust = "none";   ///< brdfs::findRobust
+    std::string weights = "auto";  ///< brdfs::findSampleWeights
+    double robustScale = 0;        ///< residual at which `robust` sets in; 0: from their spread
+    bool perChannel = false;       ///< shapes of their own for each channel
+    int starts = 16;               ///< local searches
+    int iterations = 200;          ///< at most, in the last search
+    std::uint64_t seed = 1;        ///< of starts and drawn samples
+    double grazingCut = brdfs::SampleOptions{}.grazingCut;
+    std::size_t samples = 0;  ///< to draw; 0: all
+    bool accept = false;      ///< take a fit that did not converge
+    bool rgb = false;         ///< wavelengths as linear Rec. 709
+};
+
+struct Fitted {
+    brdfs::FitResult result;
+    nlohmann::ordered_json preset;  ///< docs/schemas/fit.schema.json
+    std::size_t pageFiles = 0;      ///< of the page, where one was asked for
+};
+
+/// Whether a fit to `output` is a preset, and no folder with a preset and a page.
+bool isPresetPath(const std::string& output);
+
+/// A model fitted to a BRDF or a coefficient file. The preset goes to `output` (.json), or with a
+/// page that compares fit and data to the folder `output`; nowhere if it is empty. Throws
+/// NumericError for a fit that did not converge, unless it is accepted.
+Fitted fit(const std::string& data, const std::string& output, const FitOptions& options,
+           const Listener& listener = {});
+
+/// Every file of a folder, each to RESULTS/NAME.EXTENSION.json; those that stand are kept.
+BatchOutcome fitAll(const std::string& folder, const std::string& results,
+                    const FitOptions& options, const Listener& listener = {});
+
+/// Every model fitted to the same data, ranked by directions that the fit did not see.
+std::vector<brdfs::ModelRank> rankModels(const std::string& data,
+                                         const std::vector<std::string>& models,
+                                         const FitOptions& options);
+
+}  // namespace hshfit::jobs

@@ -1,0 +1,132 @@
+#include "project.h"
+
+#include "source.h"
+
+#include <hshfit/bases/catalog.h>
+#include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/coefficient_files/representation_file.h>
+#include <hshfit/error.h>
+#include <hshfit/projection/least_squares.h>
+#include <hshfit/wording.h>
+
+#include <brdfs/measured/scattered/scattered.h>
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+namespace hshfit::jobs {
+namespace {
+
+constexpr const char* defaultMap = "32x32";
+
+Quantity quantityOf(const ProjectOptions& options) {
+    return options.cosine ? Quantity::brdfCosine : Quantity::brdf;
+}
+
+std::optional<Form> formOf(const ProjectOptions& options) {
+    std::optional<Form> form = options.form;
+    if (!form) return form;
+    if (options.leastSquares) {
+        throw UsageError(fmt::format("{} writes plain coefficients: leave out the form",
+                                     Setting{"ProjectOptions::leastSquares"}));
+    }
+    form->basis = options.basis;
+    form->order = options.order;
+    form->condonShortley = options.condonShortley;
+    form->quantity = quantityOf(options);
+    form->outgoing = options.outgoing;
+    return form;
+}
+
+/// Scattered samples straight to coefficients, without interpolating between them.
+Projection projectSamples(const Brdf& brdf, const Basis& basis, const OutgoingSet& outgoing,
+                          const ProjectOptions& options, ProgressCall progress) {
+    const auto* scattered = dynamic_cast<const brdfs::Scattered*>(&brdf);
+    if (!scattered) {
+        throw UsageError(
+            fmt::format("{}: {} is for files of scattered samples; project others without it",
+                        brdf.name(), Setting{"ProjectOptions::leastSquares"}));
+    }
+    LeastSquaresProjection fit = projectLeastSquares(scattered->directionSamples(), basis, outgoing,
+                                                     {.quantity = quantityOf(options),
+                                                      .regularisation = options.regularise,
+                                                      .kernel = radians(options.kernel),
+                                                      .progress = std::move(progress)});
+    return {.coefficients = std::move(fit.coefficients), .captured = {}, .evaluations = 0};
+}
+
+/// What all inputs share.
+class Projector {
+public:
+    explicit Projector(const ProjectOptions& options)
+        : options_(options),
+          basis_(bases::make(options.basis, options.order,
+                             {.condonShortley = options.condonShortley})),
+          outgoing_(OutgoingSet::parse(options.outgoing.empty() ? defaultMap : options.outgoing)),
+          form_(formOf(options)) {}
+
+    Projected run(const std::string& spec, const std::string& output,
+                  const ProgressCall& progress) const {
+        const auto brdf = openBrdf(spec, options_.rgb);
+        const ProjectionOptions how = {.quantity = quantityOf(options_),
+                                       .tolerance = options_.tolerance,
+                                       .maxEvaluations = options_.maxEvaluations,
+                                       .progress = progress};
+        Projected result{.projection = {}, .output = output};
+        if (form_) {
+            result.kept = represent(*brdf, *form_, sourceOpener(), how);
+            writeRepresentation(*result.kept, output);
+            result.projection.coefficients = result.kept->head;
+            return result;
+        }
+        const Basis* const one[] = {basis_.get()};
+        result.projection = options_.leastSquares
+                                ? projectSamples(*brdf, *basis_, outgoing_, options_, progress)
+                                : std::move(hshfit::project(*brdf, one, outgoing_, how)[0]);
+        writeCoefficients(result.projection.coefficients, output);
+        return result;
+    }
+
+private:
+    const ProjectOptions& options_;
+    std::unique_ptr<Basis> basis_;
+    OutgoingSet outgoing_;
+    std::optional<Form> form_;
+};
+
+}  // namespace
+
+Projected project(const std::string& spec, const std::string& output, const ProjectOptions& options,
+                  const Listener& listener) {
+    const Projector projector(options);
+    return projector.run(spec, output, listener.part("project"));
+}
+
+ManyProjected projectMany(const std::vector<std::string>& specs, const std::string& folder,
+                          const std::string& extension, const ProjectOptions& options,
+                          const Listener& listener) {
+    const Projector projector(options);
+    ManyProjected many;
+    many.specs = expandInputs(specs);
+    const std::vector<std::string> outputs = outputPaths(many.specs, folder, extension);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) {
+        throw OutputError(fmt::format("{}: {}; {} of several inputs is a folder", folder,
+                                      error.message(), Setting{"output"}));
+    }
+    many.results.resize(many.specs.size());
+    many.failures = forEachInput(
+        many.specs, listener, "project", [&](std::size_t i, const ProgressCall& progress) {
+            Projected result = projector.run(many.specs[i], outputs[i], progress);
+            result.projection.coefficients.values = {};  // they are in the file
+            many.results[i] = std::move(result);
+        });
+    return many;
+}
+
+}  // namespace hshfit::jobs

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "batch.h"
+#include "listener.h"
+
+#include <hshfit/projection/projection.h>
+#include <hshfit/representation/forms/form.h>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hshfit::jobs {
+
+struct ProjectOptions {
+    std::string basis = "hsh";
+    int order = 7;
+    std::string outgoing;  ///< OutgoingSet::parse; empty: 32x32, or what the form needs
+    bool cosine = false;   ///< f cos(theta_i) instead of f
+    bool condonShortley = false;
+    bool rgb = false;      ///< wavelengths as linear Rec. 709
+    double tolerance = 0;  ///< as in ProjectionOptions
+    std::size_t maxEvaluations = ProjectionOptions{}.maxEvaluations;
+    /// The samples of a scattered measurement themselves, without interpolating between them.
+    bool leastSquares = false;
+    double regularise = 1e-3;  ///< Tikhonov weight of that fit
+    double kernel = 20;        ///< degrees about an outgoing direction that count in it
+    /// The form that coefficients are kept in; none: plain, in float64. Its basis, order, quantity,
+    /// sign and outgoing set are those above.
+    std::optional<Form> form = {};
+};
+
+/// A projection and, where a form was asked for, what the file keeps of it.
+struct Projected {
+    Projection projection;
+    std::optional<Representation> kept = {};
+    std::string output;
+};
+
+/// The coefficients of one BRDF, to the file `output`, .json or .exr. Throws UsageError for options
+/// that contradict each other or the BRDF, InputError, NumericError and OutputError.
+Projected project(const std::string& spec, const std::string& output, const ProjectOptions& options,
+                  const Listener& listener = {});
+
+struct ManyProjected {
+    std::vector<std::string> specs;  ///< with folders expanded
+    /// In the order of `specs`; none where one failed. Coefficients are in the files alone.
+    std::vector<std::optional<Projected>> results;
+    std::vector<InputFailure> failures;
+};
+
+/// Several BRDFs and folders of them, each to FOLDER/NAME.json or .exr (`extension`, with the dot).
+/// The folder is made if it is absent. One that fails does not stop the others.
+ManyProjected projectMany(const std::vector<std::string>& specs, const std::string& folder,
+                          const std::string& extension, const ProjectOptions& options,
+                          const Listener& listener = {});
+
+}  // namespace hshfit::jobs

@@ -1,0 +1,91 @@
+#include "report.h"
+
+#include "source.h"
+
+#include <hshfit/bases/catalog.h>
+#include <hshfit/error.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace hshfit::jobs {
+namespace {
+
+/// The chosen bases at the largest order that each of them has.
+std::vector<std::unique_ptr<Basis>> makeBases(const ReportOptions& options) {
+    std::vector<std::unique_ptr<Basis>> made;
+    for (const bases::Entry* entry : bases::select(options.bases)) {
+        made.push_back(bases::make(entry->name, std::min(options.maxOrder, entry->maxOrder)));
+    }
+    return made;
+}
+
+/// The projections of a BRDF whose coefficients do not exist or did not converge.
+std::vector<Projection> withoutNumbers(const Brdf& brdf, std::span<const Basis* const> bases,
+                                       const OutgoingSet& outgoing, Quantity quantity,
+                                       const std::string& reason) {
+    std::vector<Projection> projections(bases.size());
+    for (std::size_t b = 0; b < bases.size(); ++b) {
+        Coefficients& c = projections[b].coefficients;
+        c.basis = bases[b]->name();
+        c.order = bases[b]->order();
+        c.quantity = quantity;
+        c.channels = brdf.channels();
+        c.outgoing = outgoing;
+        c.source = brdf.name();
+        c.energy.finite = false;
+        c.energy.reason = reason;
+        c.energy.value = c.energy.error = c.error = std::numeric_limits<double>::quiet_NaN();
+        projections[b].captured.assign(bases[b]->order(), c.energy.value);
+    }
+    return projections;
+}
+
+ReportEntry entryOf(const std::string& spec, std::span<const Basis* const> bases,
+                    const ReportOptions& options, const ProgressCall& progress) {
+    const auto brdf = openBrdf(spec, options.rgb);
+    const OutgoingSet outgoing = outgoingOrDefault(options.outgoing, *brdf);
+    const Quantity quantity = options.cosine ? Quantity::brdfCosine : Quantity::brdf;
+    try {
+        return reportEntry(hshfit::project(*brdf, bases, outgoing,
+                                           {.quantity = quantity,
+                                            .tolerance = options.tolerance,
+                                            .maxEvaluations = options.maxEvaluations,
+                                            .progress = progress}));
+    } catch (const NumericError& error) {
+        return reportEntry(withoutNumbers(*brdf, bases, outgoing, quantity, error.what()));
+    }
+}
+
+}  // namespace
+
+Reported report(const std::vector<std::string>& specs, const ReportOptions& options,
+                const Listener& listener) {
+    const auto bases = makeBases(options);
+    std::vector<const Basis*> pointers;
+    for (const auto& basis : bases) pointers.push_back(basis.get());
+
+    Reported result;
+    result.specs = expandInputs(specs);
+    if (result.specs.empty()) return result;
+    std::vector<ReportEntry>& found = result.report.reports;
+    if (!areMany(specs)) {
+        const std::string& spec = result.specs.front();
+        found.push_back(entryOf(spec, pointers, options, listener.part(spec)));
+        return result;
+    }
+    std::vector<std::optional<ReportEntry>> entries(result.specs.size());
+    result.failures = forEachInput(
+        result.specs, listener, "report", [&](std::size_t i, const ProgressCall& progress) {
+            entries[i] = entryOf(result.specs[i], pointers, options, progress);
+        });
+    for (auto& entry : entries)
+        if (entry) found.push_back(std::move(*entry));
+    return result;
+}
+
+}  // namespace hshfit::jobs

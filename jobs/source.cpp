@@ -1,0 +1,60 @@
+#include "source.h"
+
+#include <hshfit/brdf/colour.h>
+#include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/coefficient_files/representation_file.h>
+#include <hshfit/coefficients/reconstruction.h>
+#include <hshfit/gpu/containers/containers.h>
+#include <hshfit/representation/forms/represented_brdf.h>
+
+#include <brdfs/catalog.h>
+#include <brdfs/measured/measured_brdf.h>
+
+#include <utility>
+
+namespace hshfit::jobs {
+namespace {
+
+std::unique_ptr<Brdf> seenAsRgb(std::unique_ptr<Brdf> brdf, bool rgb) {
+    if (!rgb || brdf->channels().kind != Channels::Kind::spectral) return brdf;
+    return asRgb(std::move(brdf));
+}
+
+}  // namespace
+
+std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb) {
+    return seenAsRgb(brdfs::open(spec), rgb);
+}
+
+std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb) {
+    if (gpu::looksLikePayload(spec)) {
+        auto coefficients = gpu::unpack(gpu::readPayload(spec).payload);
+        return seenAsRgb(std::make_unique<Reconstruction>(std::move(coefficients)), rgb);
+    }
+    if (!looksLikeCoefficients(spec)) return openBrdf(spec, rgb);
+    Representation representation = readRepresentation(spec);
+    const bool plain = representation.steps.empty() && representation.added.empty() &&
+                       representation.has("coefficients");
+    if (plain) {
+        return seenAsRgb(std::make_unique<Reconstruction>(decoded(representation)), rgb);
+    }
+    return seenAsRgb(reconstruct(std::move(representation), sourceOpener()), rgb);
+}
+
+BrdfOpener sourceOpener() {
+    return [](const std::string& spec) { return openSource(spec); };
+}
+
+void requireReadable(const Brdf& brdf) {
+    if (const auto* measured = dynamic_cast<const brdfs::MeasuredBrdf*>(&brdf))
+        measured->checkReadable();
+    else
+        brdf.checkIntact();
+}
+
+OutgoingSet outgoingOrDefault(const std::string& text, const Brdf& brdf) {
+    if (!text.empty()) return OutgoingSet::parse(text);
+    return brdf.laws().isotropic ? OutgoingSet::elevations(16) : OutgoingSet::parabolic(16, 16);
+}
+
+}  // namespace hshfit::jobs

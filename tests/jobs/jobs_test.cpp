@@ -1,0 +1,132 @@
+// Jobs write the files that the program writes, byte for byte, and tell a listener what they do.
+
+#include <cli/program.h>
+
+#include <hshfit/error.h>
+#include <hshfit/pages/report.h>
+
+#include <jobs/export.h>
+#include <jobs/fit.h>
+#include <jobs/project.h>
+#include <jobs/report.h>
+#include <jobs/source.h>
+
+#include <map>
+#include <set>
+
+namespace {
+
+using namespace hshfit;
+namespace fs = std::filesystem;
+
+class Jobs : public test::Cli {
+protected:
+    void runProgram(const std::string& arguments) const {
+        const test::Answer answer = run(arguments);
+        ASSERT_EQ(answer.code, 0) << arguments << "\n" << answer.err;
+    }
+
+    /// Name -> bytes of every file below a folder.
+    std::map<std::string, std::string> filesIn(const std::string& folder) const {
+        std::map<std::string, std::string> files;
+        for (const auto& entry : fs::recursive_directory_iterator(path(folder)))
+            if (entry.is_regular_file())
+                files[fs::relative(entry.path(), path(folder)).string()] =
+                    read(entry.path().string());
+        return files;
+    }
+};
+
+TEST_F(Jobs, ProjectWritesTheFileOfTheProgram) {
+    const std::string spec = "ward:ax=.2,ay=.5";
+    for (const std::string extension : {".json", ".exr"}) {
+        const jobs::Projected projected =
+            jobs::project(spec, path("job" + extension),
+                          {.basis = "zernike", .order = 5, .outgoing = "6x6", .cosine = true});
+        EXPECT_EQ(projected.projection.coefficients.outgoing.spec(), "6x6");
+        runProgram("project " + spec + " --basis zernike --order 5 --outgoing 6x6 --cosine -o " +
+                   path("program" + extension));
+        EXPECT_FALSE(read(path("job" + extension)).empty());
+        EXPECT_EQ(read(path("job" + extension)), read(path("program" + extension)));
+    }
+}
+
+TEST_F(Jobs, ProjectKeepsTheFormOfTheProgram) {
+    const jobs::Projected projected = jobs::project(
+        "ggx:alpha=.4", path("job.json"),
+        {.order = 4, .outgoing = "8", .form = Form{.rank = 2, .precision = Precision::half}});
+    ASSERT_TRUE(projected.kept);
+    EXPECT_FALSE(projected.kept->steps.empty());
+    runProgram("project ggx:alpha=.4 --order 4 --outgoing 8 --rank 2 --precision half -o " +
+               path("program.json"));
+    EXPECT_EQ(read(path("job.json")), read(path("program.json")));
+}
+
+TEST_F(Jobs, SeveralInputsAreProjectedAndFailuresAreValues) {
+    const std::vector<std::string> specs = {"lambert", "no_such_model", "phong:exponent=9"};
+    const jobs::ManyProjected many =
+        jobs::projectMany(specs, path("job"), ".json", {.order = 3, .outgoing = "4"});
+    EXPECT_EQ(many.specs, specs);
+    ASSERT_EQ(many.failures.size(), 1u);
+    EXPECT_EQ(many.failures[0].spec, "no_such_model");
+    EXPECT_EQ(jobs::codeOf(many.failures), ExitCode::input);
+    EXPECT_FALSE(many.results[1]);
+    runProgram("project lambert phong:exponent=9 --order 3 --outgoing 4 -o " + path("program"));
+    EXPECT_EQ(filesIn("job").size(), 2u);
+    EXPECT_EQ(filesIn("job"), filesIn("program"));
+}
+
+TEST_F(Jobs, ReportIsTheDocumentOfTheProgram) {
+    const jobs::Reported reported =
+        jobs::report({"phong:exponent=9", "lambert"},
+                     {.bases = "hsh,zernike", .maxOrder = 4, .outgoing = "4", .cosine = true});
+    EXPECT_TRUE(reported.failures.empty());
+    const test::Answer answer = run(
+        "report phong:exponent=9 lambert --bases hsh,zernike --max-order 4 --outgoing 4 --cosine "
+        "--json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_EQ(reportJson(reported.report), answer.out);
+}
+
+TEST_F(Jobs, ExportWritesTheFilesOfTheProgram) {
+    jobs::project("ggx:alpha=.4", path("ggx.json"), {.order = 4, .outgoing = "8"});
+    std::set<std::string> parts;
+    const jobs::Listener listener{.begin = [&](const std::string& part) {
+        parts.insert(part);
+        return jobs::ProgressCall();
+    }};
+    const jobs::Exported exported = jobs::exportCoefficients(
+        path("ggx.json"), path("job"),
+        {.targets = "bin,ktx2,glsl,viewer", .shader = {.environmentOrder = 3}}, listener);
+    EXPECT_EQ(exported.name, "ggx");
+    EXPECT_EQ(exported.texts.size(), 2u);
+    ASSERT_TRUE(exported.error.split) << exported.error.reason;
+    EXPECT_EQ(parts, (std::set<std::string>{"error", "project", "viewer"}));
+    runProgram("export " + path("ggx.json") + " --target bin,ktx2,glsl,viewer " +
+               "--environment-order 3 -o " + path("program"));
+    EXPECT_GE(filesIn("job").size(), 6u);
+    EXPECT_EQ(filesIn("job"), filesIn("program"));
+    EXPECT_THROW(jobs::exportCoefficients(path("ggx.json"), path("job"), {}), OutputError);
+}
+
+TEST_F(Jobs, FilesOfAnExportOpenAsSources) {
+    jobs::project("ggx:alpha=.4", path("ggx.json"), {.order = 4, .outgoing = "8"});
+    const jobs::Exported exported = jobs::exportCoefficients(
+        path("ggx.json"), path("job"),
+        {.targets = "bin", .pack = {.number = gpu::Number::float32}, .measureError = false});
+    const Direction wi = directionFromAngles(0.4, 0.1), wo = directionFromAngles(0.7, 2);
+    const auto stored = jobs::openSource(path("ggx.json"));
+    const auto opened = jobs::openSource(path("job/" + exported.sidecar));
+    EXPECT_NEAR(evaluate(*opened, wi, wo)[0], evaluate(*stored, wi, wo)[0], 1e-6);
+}
+
+TEST_F(Jobs, FitWritesThePresetOfTheProgram) {
+    const std::string data = "ggx:alpha=.3,F0=.4";
+    const jobs::Fitted fitted =
+        jobs::fit(data, path("job.json"), {.model = "ward", .starts = 4, .seed = 7});
+    EXPECT_TRUE(fitted.result.converged);
+    runProgram("fit " + data + " --model ward --starts 4 --seed 7 -o " + path("program.json"));
+    EXPECT_EQ(read(path("job.json")), read(path("program.json")));
+}
+
+}  // namespace
