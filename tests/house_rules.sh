@@ -47,6 +47,8 @@ done
 matches 'file *\( *GLOB' '*.cmake' '*CMakeLists.txt' | rule 'sources are listed, never globbed'
 tests/room_graph.py | rule 'rooms of lib: arrows only go down, namespace = folder' || true
 matches '#include *[<"](brdfs|cli|jobs)/' lib | rule 'lib includes nothing from brdfs, jobs or cli'
+matches '"([^"]*[^-[:alnum:]"])?--[a-z]|"[^"]*hshfit [a-z]+ ' 'lib/*.cpp' 'lib/*.h' jobs |
+    rule 'options and commands of the program are named in cli only (wording.h)'
 matches 'hshfit::brdfs|hshfit_brdfs' 'lib/**CMakeLists.txt' | rule 'lib links nothing from brdfs'
 matches '#include *[<"](jobs|cli)/' brdfs | rule 'brdfs includes nothing from jobs or cli'
 matches '#include *[<"](cli|CLI)/' jobs | rule 'jobs includes nothing from cli, nor CLI11'

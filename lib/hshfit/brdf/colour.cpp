@@ -1,6 +1,7 @@
 #include <hshfit/brdf/cie_1931.h>
 #include <hshfit/brdf/colour.h>
 #include <hshfit/error.h>
+#include <hshfit/wording.h>
 
 #include <Eigen/Dense>
 
@@ -150,7 +151,8 @@ std::array<double, 3> tristimulus(std::span<const double> nanometres, std::span<
 
 std::unique_ptr<Brdf> asRgb(std::unique_ptr<Brdf> spectral) {
     if (spectral->channels().kind != Channels::Kind::spectral) {
-        throw UsageError(spectral->name() + ": is not spectral; --rgb is for spectral BRDFs");
+        throw UsageError(fmt::format("{}: is not spectral; {} is for spectral BRDFs",
+                                     spectral->name(), Call{.function = "asRgb"}));
     }
     return std::make_unique<RgbView>(std::move(spectral));
 }

@@ -1,5 +1,6 @@
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
+#include <hshfit/wording.h>
 
 #include <algorithm>
 #include <atomic>
@@ -38,8 +39,8 @@ AtomicFile& FileSet::add(const std::string& name) {
     }
     std::error_code error;
     if (!force_ && fs::exists(path, error)) {
-        throw OutputError(
-            fmt::format("'{}' exists; nothing is written without --force", path.string()));
+        throw OutputError(fmt::format("'{}' exists; nothing is written without {}", path.string(),
+                                      Setting{"FileSet::force"}));
     }
     members_.emplace_back(path,
                           force_ ? AtomicFile::Existing::replace : AtomicFile::Existing::refuse);

@@ -2,6 +2,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
+#include <hshfit/wording.h>
 
 #include <fmt/format.h>
 
@@ -81,7 +82,8 @@ std::size_t layersOf(const Payload& payload) {
 
 void checkOptions(const Coefficients& c, const PackOptions& options) {
     if (options.luminanceChroma && c.channels.kind != Channels::Kind::rgb) {
-        throw UsageError("luminance and chroma need RGB coefficients; project with --rgb");
+        throw UsageError(fmt::format("luminance and chroma need RGB coefficients; project with {}",
+                                     Call{.function = "asRgb"}));
     }
     if (options.chromaOrder != 0 && !options.luminanceChroma) {
         throw UsageError("an order of the chroma goes with luminance and chroma only");

@@ -5,6 +5,7 @@
 #include <hshfit/gpu/shader.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/version.h>
+#include <hshfit/wording.h>
 
 #include <fmt/format.h>
 #include <kainjow/mustache.hpp>
@@ -148,8 +149,8 @@ void check(const ViewerInput& input) {
     for (const Payload& payload : input.payloads) {
         if (payload.channels.kind != Channels::Kind::spectral) continue;
         throw UsageError(
-            fmt::format("{}: the viewer shows grey or RGB; project the spectral BRDF with --rgb",
-                        payload.source));
+            fmt::format("{}: the viewer shows grey or RGB; project the spectral BRDF with {}",
+                        payload.source, Call{.function = "asRgb"}));
     }
     if (input.environmentOrder < 2 || input.environmentOrder > 10) {
         throw UsageError(fmt::format("an environment of {} bands; the viewer takes 2 to 10",

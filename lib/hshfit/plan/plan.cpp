@@ -3,6 +3,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/plan/material_search.h>
+#include <hshfit/wording.h>
 
 #include <fmt/format.h>
 
@@ -13,21 +14,10 @@ void requireUsable(const std::vector<std::string>& names) {
     for (const std::string& name : names) {
         if (bases::find(name).orthonormal) continue;
         throw UsageError(fmt::format(
-            "--bases: {} is not orthonormal; the planner cuts projections to lower orders, which "
-            "needs bases that are",
-            name));
+            "{}: {} is not orthonormal; the planner cuts projections to lower orders, which needs "
+            "bases that are",
+            Setting{"PlanOptions::bases"}, name));
     }
-}
-
-/// Quoted for a shell.
-std::string quoted(const std::string& text) {
-    std::string out(1, '\'');
-    for (char c : text) {
-        if (c == '\'') out += "'\\'";
-        out += c;
-    }
-    out += '\'';
-    return out;
 }
 
 }  // namespace
@@ -44,10 +34,15 @@ Plan planScene(const Scene& scene, const BrdfOpener& open, const PlanOptions& op
 }
 
 std::string commandOf(const Choice& choice, const std::string& file) {
-    const std::string tolerance =
-        choice.tolerance > 0 ? fmt::format(" --tolerance {:g}", choice.tolerance) : "";
-    return fmt::format("hshfit project {} {}{} -o {}", quoted(choice.spec), optionsOf(choice.form),
-                       tolerance, file);
+    Call call{.function = "represent",
+              .subject = choice.spec,
+              .settings = settingsOf(choice.form),
+              .output = file};
+    if (choice.tolerance > 0) {
+        call.settings.push_back(
+            {"ProjectionOptions::tolerance", fmt::format("{:g}", choice.tolerance)});
+    }
+    return fmt::format("{}", call);
 }
 
 }  // namespace hshfit::plan

@@ -60,14 +60,14 @@ struct PlanOptions {
 /// The cheapest way to keep every material within its budget in the light of its scene.
 ///
 /// Choices are tried from few bytes to many (ladder.h) with outgoing radiance by quadrature that
-/// follows the lights; the first within the budget is projected as `hshfit project` does and
+/// follows the lights; the first within the budget is projected in full and
 /// checked by `latticeSamples` at other views; if that fails, the search goes on. The same scene
 /// gives the same plan, unless times are asked for. A material without a plan says why.
 /// Throws UsageError for a basis that is not orthonormal or a spectral material, InputError for one
 /// that cannot be opened.
 Plan planScene(const Scene& scene, const BrdfOpener& open, const PlanOptions& options = {});
 
-/// The command that makes the choice's file.
+/// The call that makes the choice's file, as messages name it (wording.h).
 std::string commandOf(const Choice& choice, const std::string& file);
 
 /// What HSH of order 10 on a 32 x 32 map takes, RGB in float32.

@@ -1,4 +1,5 @@
 #include <hshfit/plan/material_search.h>
+#include <hshfit/wording.h>
 
 #include <fmt/format.h>
 
@@ -86,15 +87,16 @@ void MaterialSearch::refuse() {
         plan_.instead.push_back(fmt::format("the model itself: {}", brdf.name()));
     } else {
         plan_.instead.push_back(fmt::format(
-            "an analytic lobe: hshfit fit '{}' --model ggx -o fit.json; named as 'lobe' in the "
-            "scene, it is taken out first and the remainder planned",
-            material.brdf));
+            "an analytic lobe: {}; named as 'lobe' in the scene, it is taken out first and the "
+            "remainder planned",
+            Call{.function = "fit", .subject = material.brdf}));
     }
     const LightKinds kinds = kindsOf(scene_);
     if (kinds.small) {
-        plan_.instead.emplace_back(
+        plan_.instead.push_back(fmt::format(
             "for discs and panels: multiple importance sampling of light and lobe, or linearly "
-            "transformed cosines (hshfit ltc)");
+            "transformed cosines ({})",
+            Call{.function = "linearlyTransformedCosines"}));
     }
     if (kinds.wide) {
         plan_.instead.emplace_back(

@@ -1,5 +1,7 @@
 #include <hshfit/projection/horizon.h>
 
+#include <hshfit/wording.h>
+
 #include <fmt/format.h>
 
 #include <array>
@@ -75,7 +77,9 @@ std::string divergenceReason(const HorizonBehaviour& behaviour, const Direction&
         "degrees), so that the integral of its square diverges{}",
         cosine ? "f cos(theta_i)" : "f", behaviour.exponent, degrees(polarAngle(wo)),
         degrees(std::remainder(behaviour.azimuth, 2 * pi)),
-        cosine ? "" : "; project f cos(theta_i) instead (--cosine)");
+        cosine ? ""
+               : fmt::format("; project f cos(theta_i) instead ({})",
+                             Setting{"ProjectionOptions::quantity", "brdf_cosine"}));
 }
 
 }  // namespace hshfit::inline projection

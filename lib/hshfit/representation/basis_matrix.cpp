@@ -4,6 +4,7 @@
 #include <hshfit/error.h>
 #include <hshfit/quadrature/quadrature.h>
 #include <hshfit/representation/factoring_blocks.h>
+#include <hshfit/wording.h>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -267,9 +268,9 @@ Representation projectBoth(const Brdf& brdf, const Basis& basis, bool reciprocal
             basis.name()));
     }
     if (reciprocal && options.quantity == Quantity::brdfCosine) {
-        throw UsageError(
-            "f cos(theta_i) is not symmetric in its directions: leave out --cosine or "
-            "--reciprocal");
+        throw UsageError(fmt::format(
+            "f cos(theta_i) is not symmetric in its directions: leave out {} or {}",
+            Setting{"ProjectionOptions::quantity", "brdf_cosine"}, Setting{"Form::reciprocal"}));
     }
     constexpr int lastLevel = 5;
     const double tolerance =
@@ -303,8 +304,9 @@ Representation projectBoth(const Brdf& brdf, const Basis& basis, bool reciprocal
     }
     throw NumericError(fmt::format(
         "{}: both directions in {} of order {} did not converge over the outgoing directions: the "
-        "last change is {:.1e}, {:.1e} was asked for (--tolerance)",
-        brdf.name(), basis.name(), basis.order(), change, tolerance));
+        "last change is {:.1e}, {:.1e} was asked for ({})",
+        brdf.name(), basis.name(), basis.order(), change, tolerance,
+        Setting{"ProjectionOptions::tolerance"}));
 }
 
 std::vector<double> matrixValues(const Representation& matrix) {

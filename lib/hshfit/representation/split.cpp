@@ -2,6 +2,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/representation/descend.h>
+#include <hshfit/wording.h>
 
 #include <fmt/format.h>
 
@@ -114,9 +115,9 @@ Remainder::Remainder(const Brdf& whole, std::unique_ptr<Brdf> added, bool nonNeg
     const Channels &ours = whole.channels(), &theirs = added_->channels();
     const bool same = theirs.kind == ours.kind && theirs.wavelengths == ours.wavelengths;
     if (theirs.kind != Channels::Kind::grey && !same) {
-        throw UsageError(fmt::format("--split '{}' has other channels ({}) than {} ({})",
-                                     added_->name(), fmt::join(theirs.names(), " "), whole.name(),
-                                     fmt::join(ours.names(), " ")));
+        throw UsageError(fmt::format(
+            "{} has other channels ({}) than {} ({})", Setting{"Form::split", added_->name()},
+            fmt::join(theirs.names(), " "), whole.name(), fmt::join(ours.names(), " ")));
     }
 }
 

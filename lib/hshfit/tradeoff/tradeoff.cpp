@@ -6,6 +6,7 @@
 #include <hshfit/representation/split.h>
 #include <hshfit/tradeoff/front.h>
 #include <hshfit/tradeoff/projection_cache.h>
+#include <hshfit/wording.h>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -238,13 +239,20 @@ void findFronts(Tradeoff& trade, const TradeoffOptions& options) {
 
 std::vector<Form> formsFor(const Brdf& brdf, const TradeoffOptions& options) {
     if (!options.timing && options.byTime) {
-        throw UsageError("--by-time needs the times that --no-timing leaves out");
+        throw UsageError(fmt::format("{} needs the times that {} leaves out",
+                                     Setting{"TradeoffOptions::byTime"},
+                                     Setting{"TradeoffOptions::timing", "false"}));
     }
     if (!options.byTime && std::isfinite(options.maxNanoseconds)) {
-        throw UsageError("--max-ns lets times decide: add --by-time");
+        throw UsageError(fmt::format("{} lets times decide: add {}",
+                                     Setting{"TradeoffOptions::maxNanoseconds"},
+                                     Setting{"TradeoffOptions::byTime"}));
     }
     const auto chosen = selectMetrics(options.metric);
-    if (chosen.size() != 1) throw UsageError("--metric takes one name: hshfit list metrics");
+    if (chosen.size() != 1) {
+        throw UsageError(fmt::format("{} takes one name: {}", Setting{"TradeoffOptions::metric"},
+                                     Call{.function = "metricCatalog"}));
+    }
     std::vector<Form> forms = formsOf(options.sweep, brdf);
     if (forms.empty()) {
         throw UsageError(
@@ -304,7 +312,9 @@ Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& opti
     if (trade.forms.empty()) {
         throw NumericError(fmt::format(
             "{}: no form is left: {}", brdf.name(),
-            trade.leftOut.empty() ? "all take more than --max-bytes" : trade.leftOut[0].reason));
+            trade.leftOut.empty()
+                ? fmt::format("all take more than {}", Setting{"TradeoffOptions::maxBytes"})
+                : trade.leftOut[0].reason));
     }
     if (options.timing) timeForms(trade, maker, open, steps);
     findFronts(trade, options);

@@ -30,7 +30,7 @@ struct TradeoffOptions {
 /// One form of one BRDF.
 struct Measured {
     Form form;
-    std::string options;  ///< of `hshfit project`
+    std::string options;  ///< optionsOf(form)
     std::size_t bytes = 0, entropyBytes = 0, numbers = 0;
     std::vector<RepresentationStep> steps;
     PairErrors errors;

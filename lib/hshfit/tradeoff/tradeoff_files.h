@@ -18,7 +18,7 @@ namespace hshfit::tradeoff {
 void writeTradeoffs(std::span<const Tradeoff> trades, const std::string& folder);
 
 /// The document of tradeoff.json (docs/schemas/tradeoff.schema.json), with a line feed at the end.
-/// With `timing`, that of timing.json is its member "timing", as `tradeoff --json` prints it.
+/// With `timing`, that of timing.json is its member "timing", for a single document.
 std::string tradeoffJson(std::span<const Tradeoff> trades, bool timing = false);
 std::string timingJson(std::span<const Tradeoff> trades);
 
@@ -43,7 +43,7 @@ std::string timingPage(std::span<const Tradeoff> trades, const std::vector<std::
 /// What the program prints: the front of one BRDF, its knee and what was left out.
 std::string tradeoffText(const Tradeoff& trade, bool byTime);
 
-/// "hshfit project SPEC … -o OUT.json", quoted for a shell.
+/// The call that makes the form, as messages name it (wording.h).
 std::string commandOf(const Tradeoff& trade, std::size_t form);
 
 /// The groups in which figures show forms, from 1: "outgoing", "outgoing, factored", "basis",

@@ -1,4 +1,5 @@
 #include <hshfit/tradeoff/tradeoff_files.h>
+#include <hshfit/wording.h>
 
 #include <fmt/format.h>
 
@@ -26,23 +27,6 @@ std::string quoted(const std::string& text) {
 
 std::string cell(std::optional<double> value) {
     return value && std::isfinite(*value) ? fmt::format("{}", *value) : std::string();
-}
-
-std::string forShell(const std::string& text) {
-    const auto plain = [](char c) {
-        return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
-               std::string_view("._-/:=,+@%").find(c) != std::string_view::npos;
-    };
-    if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
-    std::string out = "'";
-    for (const char c : text) {
-        if (c == '\'') {
-            out += "'\\''";
-        } else {
-            out += c;
-        }
-    }
-    return out + "'";
 }
 
 std::vector<bool> marked(const std::vector<std::size_t>& front, std::size_t count) {
@@ -99,10 +83,15 @@ std::size_t seriesOf(const Form& form) {
 }
 
 std::string commandOf(const Tradeoff& trade, std::size_t form) {
-    const std::string tolerance =
-        trade.tolerance > 0 ? fmt::format(" --tolerance {}", trade.tolerance) : std::string();
-    return fmt::format("hshfit project {} -o OUT.json {}{}", forShell(trade.brdf),
-                       trade.forms[form].options, tolerance);
+    Call call{.function = "writeRepresentation",
+              .subject = trade.brdf,
+              .settings = settingsOf(trade.forms[form].form),
+              .output = "OUT.json"};
+    if (trade.tolerance > 0) {
+        call.settings.push_back(
+            {"ProjectionOptions::tolerance", fmt::format("{}", trade.tolerance)});
+    }
+    return fmt::format("{}", call);
 }
 
 std::optional<std::size_t> bestWithin(const Tradeoff& trade, Kind kind, std::size_t bytes) {
@@ -190,7 +179,8 @@ std::string tradeoffText(const Tradeoff& trade, bool byTime) {
         text += fmt::format("  left out: {} ({}): {}\n", line.forms, line.example, line.reason);
     }
     if (trade.beyondBytes > 0) {
-        text += fmt::format("  left out: {} forms larger than --max-bytes\n", trade.beyondBytes);
+        text += fmt::format("  left out: {} forms larger than {}\n", trade.beyondBytes,
+                            Setting{"TradeoffOptions::maxBytes"});
     }
     if (const auto knee = byTime ? trade.timeKnee : trade.byteKnee) {
         text += fmt::format("  the front bends at: {}\n", commandOf(trade, *knee));

@@ -199,7 +199,7 @@ TEST(Containers, ExistingFilesStayWithoutForce) {
         ADD_FAILURE() << "written";
     } catch (const OutputError& error) {
         EXPECT_NE(std::string(error.what()).find("sample_test.json"), std::string::npos);
-        EXPECT_NE(std::string(error.what()).find("--force"), std::string::npos);
+        EXPECT_NE(std::string(error.what()).find("FileSet::force"), std::string::npos);
     }
     EXPECT_EQ(samples::contentOf(folder / "sample_test.json"), "mine");
     EXPECT_FALSE(std::filesystem::exists(folder / "sample.hsh.json"));

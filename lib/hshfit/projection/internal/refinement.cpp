@@ -1,6 +1,7 @@
 #include <hshfit/projection/internal/refinement.h>
 
 #include <hshfit/error.h>
+#include <hshfit/wording.h>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -222,9 +223,10 @@ private:
     [[noreturn]] void giveUp() const {
         throw NumericError(fmt::format(
             "{}: not converged at theta_o = {:.6g}, phi_o = {:.6g} degrees: relative change {:.2g} "
-            "after {} evaluations, {:.2g} asked; raise --tolerance or --max-evaluations",
+            "after {} evaluations, {:.2g} asked; raise {} or {}",
             brdf_.name(), degrees(polarAngle(wo_)), degrees(azimuth(wo_)), result_.error,
-            result_.evaluations, options_.tolerance));
+            result_.evaluations, options_.tolerance, Setting{"ProjectionOptions::tolerance"},
+            Setting{"ProjectionOptions::maxEvaluations"}));
     }
 
     const Brdf& brdf_;

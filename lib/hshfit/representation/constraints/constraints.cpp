@@ -7,6 +7,9 @@
 #include <hshfit/representation/constraints/constraints_both.h>
 #include <hshfit/representation/constraints/constraints_cone.h>
 #include <hshfit/representation/split.h>
+#include <hshfit/wording.h>
+
+#include <fmt/format.h>
 
 #include <tbb/parallel_for.h>
 
@@ -18,10 +21,10 @@ namespace {
 
 constexpr const char* nonNegativeStep = "non-negative";
 
-void requirePlain(const Representation& representation, const char* option) {
+void requirePlain(const Representation& representation, const Setting& setting) {
     if (representation.has("coefficients") || representation.has("matrix")) return;
-    throw UsageError(std::string(option) +
-                     " is for coefficients of the forms outgoing and basis, not factored");
+    throw UsageError(fmt::format(
+        "{} is for coefficients of the forms outgoing and basis, not factored", setting));
 }
 
 std::unique_ptr<Basis> basisOf(const Representation& representation) {
@@ -120,7 +123,7 @@ bool isNonNegative(const Representation& representation) {
 }  // namespace
 
 Representation madeNonNegative(Representation representation, const Brdf* added) {
-    requirePlain(representation, "--non-negative");
+    requirePlain(representation, {"Form::nonNegative"});
     const Representation before = representation;
     if (representation.kind == Representation::Kind::outgoing) {
         liftRows(representation, added);
@@ -132,7 +135,7 @@ Representation madeNonNegative(Representation representation, const Brdf* added)
 }
 
 Representation madeEnergyPreserving(Representation representation, const Brdf& source) {
-    requirePlain(representation, "--energy-preserving");
+    requirePlain(representation, {"Form::energyPreserving"});
     const Representation before = representation;
     const bool nonNegative = isNonNegative(representation);
     if (representation.kind == Representation::Kind::outgoing) {

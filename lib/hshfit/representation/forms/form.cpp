@@ -93,6 +93,26 @@ void quantise(Representation& representation, Precision precision) {
     addStep(representation, before, std::string(precisionName(precision)));
 }
 
+/// What is asked of ln(1 + f), which keeps f and is not linear in it.
+void requireConsistentHalfway(const Form& form, const Laws& laws) {
+    const Setting halfway{"Form::kind", std::string(kindName(Kind::halfway))};
+    if (form.quantity == Quantity::brdfCosine) {
+        throw UsageError(
+            fmt::format("{} keeps f: no {}", halfway, Setting{"Form::quantity", "brdf_cosine"}));
+    }
+    if (form.window != Window::none || form.rank > 0 || form.rankError > 0 || form.nonNegative ||
+        form.energyPreserving) {
+        throw UsageError(fmt::format("{}, {}, {} and {} are for linear forms, not for {}",
+                                     Setting{"Form::window"}, Setting{"Form::rank"},
+                                     Setting{"Form::nonNegative"},
+                                     Setting{"Form::energyPreserving"}, halfway));
+    }
+    if (!form.split.empty() && !laws.nonNegative) {
+        throw UsageError(fmt::format("{} with {} needs a remainder that is nowhere negative",
+                                     Setting{"Form::split"}, halfway));
+    }
+}
+
 }  // namespace
 
 Representation::Kind parseKind(std::string_view name) {
@@ -111,38 +131,44 @@ HalfwayOrders parseHalfway(std::string_view text) {
         const auto read = at ? std::from_chars(at, end, *parts[k]) : std::from_chars_result{};
         const bool good = at && read.ec == std::errc() && *parts[k] >= 1 && *parts[k] <= 256;
         if (!good || (k == 2 && read.ptr != end)) {
-            throw UsageError(fmt::format(
-                "--halfway '{}': give three numbers of functions from 1 to 256, as 12,6,3", text));
+            throw UsageError(
+                fmt::format("{} '{}': give three numbers of functions from 1 to 256, as 12,6,3",
+                            Setting{"Form::halfway"}, text));
         }
         at = read.ptr;
     }
     return orders;
 }
 
-std::string optionsOf(const Form& form) {
-    std::string out;
-    const auto add = [&](bool given, const std::string& text) {
-        if (given) out += (out.empty() ? "" : " ") + text;
+std::vector<Setting> settingsOf(const Form& form) {
+    std::vector<Setting> out;
+    const auto add = [&](bool given, std::string_view member, std::string value = {}) {
+        if (given) out.push_back({member, std::move(value)});
     };
     const bool halfway = form.kind == Kind::halfway;
-    add(form.kind != Kind::outgoing, fmt::format("--form {}", kindName(form.kind)));
-    add(!halfway, fmt::format("--basis {} --order {}", form.basis, form.order));
-    add(halfway, fmt::format("--halfway {},{},{}", form.halfway.half, form.halfway.difference,
-                             form.halfway.azimuth));
-    add(form.quantity == Quantity::brdfCosine, "--cosine");
-    add(form.condonShortley, "--condon-shortley");
-    add(!form.outgoing.empty(), "--outgoing " + form.outgoing);
-    add(form.reciprocal, "--reciprocal");
-    add(!form.split.empty(), fmt::format("--split '{}'", form.split));
-    add(form.window != Window::none, fmt::format("--window {}", windowName(form.window)));
-    add(form.nonNegative, "--non-negative");
-    add(form.energyPreserving, "--energy-preserving");
-    add(form.rank > 0, fmt::format("--rank {}", form.rank));
-    add(form.rankError > 0, fmt::format("--rank-error {}", form.rankError));
-    add(form.nonNegativeFactors, "--non-negative-factors");
-    add(form.keep > 0, fmt::format("--keep {}", form.keep));
-    add(true, fmt::format("--precision {}", precisionName(form.precision)));
+    add(form.kind != Kind::outgoing, "Form::kind", std::string(kindName(form.kind)));
+    add(!halfway, "Form::basis", form.basis);
+    add(!halfway, "Form::order", fmt::format("{}", form.order));
+    add(halfway, "Form::halfway",
+        fmt::format("{},{},{}", form.halfway.half, form.halfway.difference, form.halfway.azimuth));
+    add(form.quantity == Quantity::brdfCosine, "Form::quantity", quantityName(form.quantity));
+    add(form.condonShortley, "Form::condonShortley");
+    add(!form.outgoing.empty(), "Form::outgoing", form.outgoing);
+    add(form.reciprocal, "Form::reciprocal");
+    add(!form.split.empty(), "Form::split", form.split);
+    add(form.window != Window::none, "Form::window", std::string(windowName(form.window)));
+    add(form.nonNegative, "Form::nonNegative");
+    add(form.energyPreserving, "Form::energyPreserving");
+    add(form.rank > 0, "Form::rank", fmt::format("{}", form.rank));
+    add(form.rankError > 0, "Form::rankError", fmt::format("{}", form.rankError));
+    add(form.nonNegativeFactors, "Form::nonNegativeFactors");
+    add(form.keep > 0, "Form::keep", fmt::format("{}", form.keep));
+    add(true, "Form::precision", std::string(precisionName(form.precision)));
     return out;
+}
+
+std::string optionsOf(const Form& form) {
+    return fmt::format("{}", fmt::join(settingsOf(form), " "));
 }
 
 OutgoingSet outgoingOf(const Form& form) {
@@ -151,32 +177,28 @@ OutgoingSet outgoingOf(const Form& form) {
 }
 
 void requireConsistent(const Form& form, const Laws& laws) {
-    const auto refuse = [](const char* text) { throw UsageError(text); };
+    const Setting reciprocal{"Form::reciprocal"}, outgoing{"Form::outgoing"},
+        cosine{"Form::quantity", "brdf_cosine"}, rank{"Form::rank"},
+        factors{"Form::nonNegativeFactors"};
+    const auto kind = [](Kind k) { return Setting{"Form::kind", std::string(kindName(k))}; };
     if (form.kind != Kind::outgoing && !form.outgoing.empty()) {
-        refuse("--outgoing belongs to --form outgoing: the other forms need no set of directions");
+        throw UsageError(fmt::format("{} belongs to {}: the other forms need no set of directions",
+                                     outgoing, kind(Kind::outgoing)));
     }
     if (form.reciprocal && form.kind == Kind::outgoing) {
-        refuse("--reciprocal needs --form basis, which treats both directions alike");
+        throw UsageError(fmt::format("{} needs {}, which treats both directions alike", reciprocal,
+                                     kind(Kind::basis)));
     }
     if (form.reciprocal && form.quantity == Quantity::brdfCosine) {
-        refuse("f cos(theta_i) is not symmetric: leave out --cosine or --reciprocal");
+        throw UsageError(
+            fmt::format("f cos(theta_i) is not symmetric: leave out {} or {}", cosine, reciprocal));
     }
-    if (form.kind == Kind::halfway) {
-        if (form.quantity == Quantity::brdfCosine) refuse("--form halfway keeps f: no --cosine");
-        if (form.window != Window::none || form.rank > 0 || form.rankError > 0 ||
-            form.nonNegative || form.energyPreserving) {
-            refuse(
-                "--window, --rank, --non-negative and --energy-preserving are for linear forms, "
-                "not "
-                "for --form halfway");
-        }
-        if (!form.split.empty() && !laws.nonNegative) {
-            refuse("--split with --form halfway needs a remainder that is nowhere negative");
-        }
+    if (form.kind == Kind::halfway) requireConsistentHalfway(form, laws);
+    if (form.rank > 0 && form.rankError > 0) {
+        throw UsageError(fmt::format("give {} or {}, not both", rank, Setting{"Form::rankError"}));
     }
-    if (form.rank > 0 && form.rankError > 0) refuse("give --rank or --rank-error, not both");
     if (form.nonNegativeFactors && form.rank == 0) {
-        refuse("--non-negative-factors needs --rank");
+        throw UsageError(fmt::format("{} needs {}", factors, rank));
     }
 }
 

@@ -3,10 +3,12 @@
 #include <hshfit/projection/projection.h>
 #include <hshfit/representation/constraints/constraints.h>
 #include <hshfit/representation/representation.h>
+#include <hshfit/wording.h>
 
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace hshfit::inline representation::inline forms {
 
@@ -14,28 +16,30 @@ namespace hshfit::inline representation::inline forms {
 Representation::Kind parseKind(std::string_view name);
 HalfwayOrders parseHalfway(std::string_view text);
 
-/// Everything that may be asked of a representation: the options of `project`, one for one.
-/// Applied in the order of the members, from `split` on.
+/// Everything that may be asked of a representation, applied in the order of the members, from
+/// `split` on.
 struct Form {
-    Representation::Kind kind = Representation::Kind::outgoing;  ///< --form
+    Representation::Kind kind = Representation::Kind::outgoing;
     std::string basis = "hsh";
     int order = 7;
-    Quantity quantity = Quantity::brdf;  ///< --cosine
+    Quantity quantity = Quantity::brdf;
     bool condonShortley = false;
-    std::string outgoing;          ///< --outgoing; empty: 32x32
-    HalfwayOrders halfway = {};    ///< --halfway H,D,A
-    bool reciprocal = false;       ///< --reciprocal
-    std::string split;             ///< --split: "", "diffuse", or a BRDF specification
-    Window window = Window::none;  ///< --window
+    std::string outgoing;  ///< OutgoingSet::parse; empty: 32x32
+    HalfwayOrders halfway = {};
+    bool reciprocal = false;  ///< the symmetric half only
+    std::string split;        ///< "", "diffuse", or a BRDF specification
+    Window window = Window::none;
     bool nonNegative = false, energyPreserving = false;
-    int rank = 0;          ///< --rank; 0: not factored
-    double rankError = 0;  ///< --rank-error: the least rank within this relative change
+    int rank = 0;          ///< 0: not factored
+    double rankError = 0;  ///< the least rank within this relative change
     bool nonNegativeFactors = false;
-    std::size_t keep = 0;  ///< --keep: numbers of each array to keep; 0: all
+    std::size_t keep = 0;  ///< numbers of each array to keep; 0: all
     Precision precision = Precision::float32;
 };
 
-/// As options of `project`: "--basis zernike --order 6 --outgoing 16 --rank 3 --precision half".
+/// The members that differ from plain coefficients, and the basis, order and precision of all.
+std::vector<Setting> settingsOf(const Form& form);
+/// The same as messages name them (wording.h).
 std::string optionsOf(const Form& form);
 
 /// Where the projections that a form starts from come from. The default projects; a caller that
@@ -60,7 +64,7 @@ Representation represent(const Brdf& brdf, const Form& form, const BrdfOpener& o
 /// From projections that are at hand. What `split` took out of the BRDF stands in `added`.
 Representation represent(ProjectionSource& source, const Form& form, const std::string& added = {});
 
-/// The set that the form names; 32x32, as in `project`, where it names none.
+/// The set that the form names; 32x32 where it names none.
 OutgoingSet outgoingOf(const Form& form);
 
 /// Throws UsageError for options that contradict each other or the BRDF's laws.

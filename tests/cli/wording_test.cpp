@@ -1,0 +1,83 @@
+// Messages of lib and jobs name settings and functions; the program knows each as an option or a
+// command of its own.
+
+#include <cli/wording.h>
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <set>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The first group of every match in the sources of lib and jobs.
+std::set<std::string> foundInSources(const std::string& pattern) {
+    const std::regex expression(pattern);
+    std::set<std::string> found;
+    for (const char* folder : {"/lib", "/jobs"}) {
+        for (const auto& entry :
+             fs::recursive_directory_iterator(HSHFIT_SOURCE + std::string(folder))) {
+            if (entry.path().extension() != ".cpp") continue;
+            std::ifstream file(entry.path());
+            const std::string text((std::istreambuf_iterator<char>(file)), {});
+            for (std::sregex_iterator at(text.begin(), text.end(), expression), end; at != end;
+                 ++at)
+                found.insert((*at)[1]);
+        }
+    }
+    return found;
+}
+
+TEST(Wording, EverySettingInMessagesIsAnOption) {
+    const auto members = foundInSources("\"([A-Z][A-Za-z]*::[A-Za-z]+)\"");
+    EXPECT_GE(members.size(), 25u);
+    for (const std::string& member : members) {
+        const std::string option = hshfit::cli::optionWording().setting({member});
+        EXPECT_TRUE(option.starts_with("--")) << member << " -> " << option;
+    }
+}
+
+TEST(Wording, EveryFunctionInMessagesIsACommandOrAnOption) {
+    const auto functions = foundInSources("\\.function = \"([A-Za-z]+)\"");
+    EXPECT_GE(functions.size(), 6u);
+    for (const std::string& function : functions) {
+        const std::string command = hshfit::cli::optionWording().call({.function = function});
+        EXPECT_TRUE(command.starts_with("hshfit ") || command.starts_with("--"))
+            << function << " -> " << command;
+    }
+}
+
+TEST(Wording, LibraryNamesItsOwnInterface) {
+    const hshfit::Setting rank{"Form::rank", "3"};
+    EXPECT_EQ(fmt::format("{} and {}", rank, hshfit::Setting{"Form::reciprocal"}),
+              "Form::rank = 3 and Form::reciprocal");
+    EXPECT_EQ(fmt::format("{}", hshfit::Call{.function = "represent",
+                                             .subject = "lambert",
+                                             .settings = {rank},
+                                             .output = "l.json"}),
+              "represent(lambert, Form::rank = 3, l.json)");
+}
+
+TEST(Wording, ValuesAreQuotedForAShell) {
+    const hshfit::Wording wording = hshfit::cli::optionWording();
+    EXPECT_EQ(wording.setting({"Form::split", "a b"}), "--split 'a b'");
+    EXPECT_EQ(wording.setting({"Form::quantity", "brdf_cosine"}), "--cosine");
+    EXPECT_EQ(wording.call({.function = "represent",
+                            .subject = "it's",
+                            .settings = {{"Form::rank", "3"}},
+                            .output = "o.json"}),
+              "hshfit project 'it'\\''s' --rank 3 -o o.json");
+    EXPECT_EQ(wording.call({.function = "writeRepresentation",
+                            .subject = "ggx:alpha=.2",
+                            .settings = {{"Form::rank", "3"}},
+                            .output = "OUT.json"}),
+              "hshfit project ggx:alpha=.2 -o OUT.json --rank 3");
+}
+
+}  // namespace
