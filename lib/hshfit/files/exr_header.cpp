@@ -1,3 +1,4 @@
+#include <hshfit/byte_cursor.h>
 #include <hshfit/error.h>
 #include <hshfit/files/exr_header.h>
 #include <hshfit/files/printable.h>
@@ -5,7 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -43,52 +43,18 @@ constexpr TypeSize typeSizes[] = {
     {"v3i", 12},
 };
 
-/// Reads forward through bytes; nothing when they end too early.
-class Cursor {
-public:
-    explicit Cursor(std::string_view bytes) : bytes_(bytes) {}
-
-    template <class Integer>
-    std::optional<Integer> integer() {
-        const auto raw = take(sizeof(Integer));
-        if (!raw) return std::nullopt;
-        Integer value;
-        std::memcpy(&value, raw->data(), sizeof value);
-        return value;
-    }
-    std::optional<std::string_view> word() {
-        const auto end = bytes_.find('\0');
-        if (end == std::string_view::npos || end > maxName) return std::nullopt;
-        const auto result = bytes_.substr(0, end);
-        bytes_.remove_prefix(end + 1);
-        return result;
-    }
-    std::optional<std::string_view> take(std::size_t count) {
-        if (count > bytes_.size()) return std::nullopt;
-        const auto result = bytes_.substr(0, count);
-        bytes_.remove_prefix(count);
-        return result;
-    }
-
-    bool atEnd() const { return bytes_.empty(); }
-    bool startsWith(char c) const { return !bytes_.empty() && bytes_.front() == c; }
-
-private:
-    std::string_view bytes_;
-};
-
 struct Attribute {
     std::string_view name, type, value;
 };
 
 /// The next attribute; an empty name at the end of the header, nothing where the file breaks off.
-std::optional<Attribute> nextAttribute(Cursor& cursor) {
-    const auto name = cursor.word();
+std::optional<Attribute> nextAttribute(ByteCursor& cursor) {
+    const auto name = cursor.word(maxName);
     if (!name) return std::nullopt;
     if (name->empty()) return Attribute{};
-    const auto type = cursor.word();
+    const auto type = cursor.word(maxName);
     if (!type) return std::nullopt;
-    const auto size = cursor.integer<std::int32_t>();
+    const auto size = cursor.number<std::int32_t>();
     if (!size || *size < 0) return std::nullopt;
     const auto value = cursor.take(static_cast<std::size_t>(*size));
     if (!value) return std::nullopt;
@@ -101,7 +67,7 @@ public:
         : bytes_(bytes), file_(file), rules_(rules) {}
 
     ExrHeader check() {
-        Cursor cursor(bytes_);
+        ByteCursor cursor(bytes_);
         cursor.take(magic.size());
         checkFlags(cursor, false);
         const ExrHeader header = checkHeader(cursor, false);
@@ -110,7 +76,7 @@ public:
     }
 
     std::vector<ExrHeader> checkParts(std::size_t most) {
-        Cursor cursor(bytes_);
+        ByteCursor cursor(bytes_);
         cursor.take(magic.size());
         checkFlags(cursor, true);
         std::vector<ExrHeader> headers;
@@ -128,7 +94,7 @@ private:
         throw InputError(fmt::format("{}: invalid OpenEXR data: {}", file_, printable(what)));
     }
 
-    ExrHeader checkHeader(Cursor& cursor, bool ofSeveral) {
+    ExrHeader checkHeader(ByteCursor& cursor, bool ofSeveral) {
         header_ = {};
         chunks_ = compression_ = 0;
         std::set<std::string_view> seen;
@@ -145,7 +111,7 @@ private:
             if (attribute->name == "dataWindow") measure(attribute->value);
             if (attribute->name == "compression") checkCompression(attribute->value);
             if (attribute->name == "chunkCount") {
-                chunks_ = Cursor(attribute->value).integer<std::int32_t>().value_or(0);
+                chunks_ = ByteCursor(attribute->value).number<std::int32_t>().value_or(0);
             }
             if (ofSeveral && attribute->name == "type" && attribute->value != "scanlineimage") {
                 fail(fmt::format("a part is no scan-line image; {} have these", rules_.files));
@@ -177,8 +143,8 @@ private:
         }
     }
 
-    void checkFlags(Cursor& cursor, bool severalParts) const {
-        const auto version = cursor.integer<std::uint32_t>();
+    void checkFlags(ByteCursor& cursor, bool severalParts) const {
+        const auto version = cursor.number<std::uint32_t>();
         if (!version) fail("the header breaks off");
         if (!severalParts && (*version & multiPart) != 0)
             fail(fmt::format("it has several parts; {} have one", rules_.files));
@@ -208,17 +174,17 @@ private:
     }
 
     void countChannels(std::string_view list) {
-        Cursor cursor(list);
+        ByteCursor cursor(list);
         for (;;) {
-            const auto name = cursor.word();
+            const auto name = cursor.word(maxName);
             if (!name) fail("the channel list breaks off");
             if (name->empty()) {
-                if (!cursor.atEnd()) fail("the channel list ends before its stated size");
+                if (cursor.left() > 0) fail("the channel list ends before its stated size");
                 return;
             }
-            const auto type = cursor.integer<std::int32_t>();
+            const auto type = cursor.number<std::int32_t>();
             cursor.take(4);
-            const auto x = cursor.integer<std::int32_t>(), y = cursor.integer<std::int32_t>();
+            const auto x = cursor.number<std::int32_t>(), y = cursor.number<std::int32_t>();
             if (!type || !x || !y) fail("the channel list breaks off");
             if (*type != floatPixels && !(rules_.picture && *type == halfPixels)) {
                 fail(fmt::format("channel '{}' is not of type {}", name->substr(0, 40),
@@ -232,9 +198,9 @@ private:
     }
 
     void measure(std::string_view box) {
-        Cursor cursor(box);
-        const auto left = cursor.integer<std::int32_t>(), top = cursor.integer<std::int32_t>();
-        const auto right = cursor.integer<std::int32_t>(), bottom = cursor.integer<std::int32_t>();
+        ByteCursor cursor(box);
+        const auto left = cursor.number<std::int32_t>(), top = cursor.number<std::int32_t>();
+        const auto right = cursor.number<std::int32_t>(), bottom = cursor.number<std::int32_t>();
         if (!bottom) fail("the data window breaks off");
         if (*left != 0 || *top != 0 || *right < 0 || *bottom < 0 || *right >= maxSide ||
             *bottom >= maxSide) {
@@ -248,7 +214,7 @@ private:
     }
 
     void checkCompression(std::string_view value) {
-        const auto method = Cursor(value).integer<std::uint8_t>();
+        const auto method = ByteCursor(value).number<std::uint8_t>();
         if (!method || *method > (rules_.picture ? pizCompression : zipCompression)) {
             fail(fmt::format("the compression has to be none, RLE, ZIPS{}",
                              rules_.picture ? ", ZIP or PIZ" : " or ZIP"));
@@ -289,14 +255,14 @@ std::vector<ExrHeader> checkExrParts(std::string_view bytes, const std::string& 
 }
 
 bool exrHasParts(std::string_view bytes) {
-    Cursor cursor(bytes);
+    ByteCursor cursor(bytes);
     cursor.take(magic.size());
-    return hasExrMagic(bytes) && (cursor.integer<std::uint32_t>().value_or(0) & multiPart) != 0;
+    return hasExrMagic(bytes) && (cursor.number<std::uint32_t>().value_or(0) & multiPart) != 0;
 }
 
 bool exrHasAttribute(std::string_view bytes, std::string_view name) {
     if (!hasExrMagic(bytes)) return false;
-    Cursor cursor(bytes);
+    ByteCursor cursor(bytes);
     cursor.take(magic.size() + sizeof(std::uint32_t));
     for (;;) {
         const auto attribute = nextAttribute(cursor);
@@ -311,15 +277,15 @@ bool exrSaysCoefficients(std::string_view bytes) {
 
 bool exrSaysSize(std::string_view bytes, std::int32_t width, std::int32_t height) {
     if (!hasExrMagic(bytes)) return false;
-    Cursor cursor(bytes);
+    ByteCursor cursor(bytes);
     cursor.take(magic.size() + sizeof(std::uint32_t));
     for (;;) {
         const auto attribute = nextAttribute(cursor);
         if (!attribute || attribute->name.empty()) return false;
         if (attribute->name != "dataWindow") continue;
-        Cursor box(attribute->value);
-        const auto left = box.integer<std::int32_t>(), top = box.integer<std::int32_t>();
-        const auto right = box.integer<std::int32_t>(), bottom = box.integer<std::int32_t>();
+        ByteCursor box(attribute->value);
+        const auto left = box.number<std::int32_t>(), top = box.number<std::int32_t>();
+        const auto right = box.number<std::int32_t>(), bottom = box.number<std::int32_t>();
         return bottom && *left == 0 && *top == 0 && *right == width - 1 && *bottom == height - 1;
     }
 }

@@ -1,3 +1,4 @@
+#include <hshfit/byte_cursor.h>
 #include <hshfit/error.h>
 #include <hshfit/files/tensor_file.h>
 
@@ -38,37 +39,34 @@ std::size_t bytesOf(TensorFile::Type type) {
     return types[static_cast<std::size_t>(type)].second;
 }
 
-/// Takes values off the front of the table of contents.
-class Cursor {
+/// The table of contents, with messages that name what the file breaks off within.
+class Contents {
 public:
-    Cursor(std::span<const unsigned char> bytes, const std::string& source)
-        : bytes_(bytes), source_(source) {}
+    Contents(std::span<const unsigned char> bytes, const std::string& source)
+        : cursor_(std::as_bytes(bytes)), size_(bytes.size()), source_(source) {}
 
     template <class Value>
     Value take(std::string_view what) {
-        Value value;
-        std::memcpy(&value, advance(sizeof value, what), sizeof value);
-        return value;
+        if (const auto value = cursor_.number<Value>()) return *value;
+        fail(sizeof(Value), what);
     }
     std::string_view takeText(std::size_t length, std::string_view what) {
-        return {reinterpret_cast<const char*>(advance(length, what)), length};
+        if (const auto text = cursor_.take(length)) return *text;
+        fail(length, what);
     }
-    std::size_t position() const { return position_; }
+    std::size_t position() const { return cursor_.position(); }
 
 private:
-    const unsigned char* advance(std::size_t length, std::string_view what) {
-        if (length > bytes_.size() - position_) {
-            throw InputError(
-                fmt::format("{}: the file ends at byte {} within {} (offset {}, {} "
-                            "bytes)",
-                            source_, bytes_.size(), what, position_, length));
-        }
-        return bytes_.data() + std::exchange(position_, position_ + length);
+    [[noreturn]] void fail(std::size_t length, std::string_view what) const {
+        throw InputError(
+            fmt::format("{}: the file ends at byte {} within {} (offset {}, {} "
+                        "bytes)",
+                        source_, size_, what, cursor_.position(), length));
     }
 
-    std::span<const unsigned char> bytes_;
+    ByteCursor cursor_;
+    std::size_t size_;
     const std::string& source_;
-    std::size_t position_ = 0;
 };
 
 /// The product of the sizes; none if it overflows.
@@ -81,18 +79,18 @@ bool multiply(std::span<const std::uint64_t> shape, std::uint64_t& product) {
     return !overflow;
 }
 
-TensorFile::Field takeField(Cursor& cursor, const std::string& source, std::uint32_t index) {
+TensorFile::Field takeField(Contents& contents, const std::string& source, std::uint32_t index) {
     const std::string label = fmt::format("the table of contents, field {}", index);
     TensorFile::Field field;
-    const std::size_t at = cursor.position();
-    const auto length = cursor.take<std::uint16_t>(label);
+    const std::size_t at = contents.position();
+    const auto length = contents.take<std::uint16_t>(label);
     if (length > maxNameLength) {
         throw InputError(
             fmt::format("{}: the name of field {} (offset {}) has {} characters, at "
                         "most {} are read",
                         source, index, at, length, maxNameLength));
     }
-    field.name = cursor.takeText(length, label);
+    field.name = contents.takeText(length, label);
     const bool printable =
         std::ranges::all_of(field.name, [](char c) { return c > ' ' && c < 127; });
     if (field.name.empty() || !printable) {
@@ -101,14 +99,14 @@ TensorFile::Field takeField(Cursor& cursor, const std::string& source, std::uint
                         "printable characters",
                         source, index, at, field.name.empty() ? "empty" : "not printable"));
     }
-    const auto dimensions = cursor.take<std::uint16_t>(label);
+    const auto dimensions = contents.take<std::uint16_t>(label);
     if (dimensions > maxDimensions) {
         throw InputError(
             fmt::format("{}: field {} (offset {}) has {} dimensions, at most {} are "
                         "read",
                         source, field.name, at, dimensions, maxDimensions));
     }
-    const auto type = cursor.take<std::uint8_t>(label);
+    const auto type = contents.take<std::uint8_t>(label);
     if (type < 1 || type >= types.size()) {
         throw InputError(
             fmt::format("{}: field {} (offset {}) has the type {}, expected 1 (u8) to "
@@ -116,9 +114,9 @@ TensorFile::Field takeField(Cursor& cursor, const std::string& source, std::uint
                         source, field.name, at, type));
     }
     field.type = static_cast<TensorFile::Type>(type);
-    field.offset = cursor.take<std::uint64_t>(label);
+    field.offset = contents.take<std::uint64_t>(label);
     for (std::uint16_t i = 0; i < dimensions; ++i) {
-        field.shape.push_back(cursor.take<std::uint64_t>(label));
+        field.shape.push_back(contents.take<std::uint64_t>(label));
     }
     return field;
 }
@@ -140,20 +138,20 @@ std::string shapeText(std::span<const std::uint64_t> shape) {
 
 TensorFile::TensorFile(std::span<const unsigned char> bytes, std::string source)
     : bytes_(bytes), source_(std::move(source)) {
-    Cursor cursor(bytes_, source_);
-    if (cursor.takeText(magic.size(), "the magic word") != magic) {
+    Contents contents(bytes_, source_);
+    if (contents.takeText(magic.size(), "the magic word") != magic) {
         throw InputError(source_ + ": does not start with \"tensor_file\"");
     }
-    const auto major = cursor.take<std::uint8_t>("the version");
-    const auto minor = cursor.take<std::uint8_t>("the version");
+    const auto major = contents.take<std::uint8_t>("the version");
+    const auto minor = contents.take<std::uint8_t>("the version");
     if (major != 1 || minor != 0) {
         throw InputError(
             fmt::format("{}: tensor file version {}.{}, expected 1.0", source_, major, minor));
     }
-    const auto number = cursor.take<std::uint32_t>("the number of fields");
+    const auto number = contents.take<std::uint32_t>("the number of fields");
     std::unordered_set<std::string_view> names;
     for (std::uint32_t i = 0; i < number; ++i) {
-        fields_.push_back(takeField(cursor, source_, i));
+        fields_.push_back(takeField(contents, source_, i));
     }
     for (Field& field : fields_) {
         if (!names.insert(field.name).second) fail(field, "a second field of that name");
@@ -164,9 +162,9 @@ TensorFile::TensorFile(std::span<const unsigned char> bytes, std::string source)
             fail(field, fmt::format("{} values of type {} do not fit into the {} bytes of the file",
                                     shapeText(field.shape), typeName(field.type), bytes_.size()));
         }
-        if (size > 0 && field.offset < cursor.position()) {
+        if (size > 0 && field.offset < contents.position()) {
             fail(field, fmt::format("the data overlaps the table of contents, which ends at {}",
-                                    cursor.position()));
+                                    contents.position()));
         }
     }
 }

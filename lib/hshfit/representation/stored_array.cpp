@@ -1,5 +1,6 @@
 #include <hshfit/representation/stored_array.h>
 
+#include <hshfit/byte_cursor.h>
 #include <hshfit/error.h>
 
 #include <Imath/half.h>
@@ -10,7 +11,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numeric>
 
@@ -86,39 +86,24 @@ void append(std::vector<std::byte>& bytes, Stored value) {
     bytes.insert(bytes.end(), from, from + sizeof(Stored));
 }
 
-/// Takes numbers off the front of packed bytes, whose length has been checked.
-class Cursor {
-public:
-    explicit Cursor(std::span<const std::byte> bytes) : bytes_(bytes) {}
-    template <class Stored>
-    Stored take() {
-        Stored value;
-        std::memcpy(&value, bytes_.data(), sizeof(Stored));
-        bytes_ = bytes_.subspan(sizeof(Stored));
-        return value;
-    }
-
-private:
-    std::span<const std::byte> bytes_;
-};
-
-double takeNumber(Cursor& cursor, Precision precision) {
+/// The length has been checked.
+double takeNumber(ByteCursor& cursor, Precision precision) {
     switch (precision) {
         case Precision::float64:
-            return cursor.take<double>();
+            return *cursor.number<double>();
         case Precision::float32:
-            return static_cast<double>(cursor.take<float>());
+            return static_cast<double>(*cursor.number<float>());
         case Precision::half: {
             Imath::half value;
-            value.setBits(cursor.take<std::uint16_t>());
+            value.setBits(*cursor.number<std::uint16_t>());
             return static_cast<double>(static_cast<float>(value));
         }
         case Precision::unorm16:
-            return cursor.take<std::uint16_t>();
+            return *cursor.number<std::uint16_t>();
         case Precision::unorm8:
             break;
     }
-    return cursor.take<std::uint8_t>();
+    return *cursor.number<std::uint8_t>();
 }
 
 void appendNumber(std::vector<std::byte>& bytes, const StoredArray& array, std::size_t i) {
@@ -262,15 +247,15 @@ void unpackInto(StoredArray& array, std::span<const std::byte> bytes, bool maske
             fmt::format("{}: has {} bytes; its shape needs {}", where, bytes.size(), length));
     };
     if (bytes.size() < head) requireLength(head);
-    Cursor cursor(bytes);
+    ByteCursor cursor(bytes);
     if (row.steps > 0) {
         array.scales.resize(array.groups());
         array.offsets.resize(array.groups());
-        for (float& scale : array.scales) scale = cursor.take<float>();
-        for (float& offset : array.offsets) offset = cursor.take<float>();
+        for (float& scale : array.scales) scale = *cursor.number<float>();
+        for (float& offset : array.offsets) offset = *cursor.number<float>();
     }
     for (std::size_t i = 0; masked && i < count; i += 8) {
-        const unsigned bits = cursor.take<std::uint8_t>();
+        const unsigned bits = *cursor.number<std::uint8_t>();
         for (std::size_t b = 0; b < 8 && i + b < count; ++b) array.kept[i + b] = bits >> b & 1;
     }
     requireLength(head + keptCount(array) * row.bytes);

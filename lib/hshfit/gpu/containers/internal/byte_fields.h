@@ -1,11 +1,11 @@
 #pragma once
 
+#include <hshfit/byte_cursor.h>
 #include <hshfit/error.h>
 #include <hshfit/gpu/texels.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,16 +25,13 @@ public:
     }
     template <class Integer>
     Integer get(std::size_t offset, std::string_view field) const {
-        Integer value;
-        std::memcpy(&value, part(offset, sizeof value, field).data(), sizeof value);
-        return value;
+        return *ByteCursor(part(offset, sizeof(Integer), field)).number<Integer>();
     }
     std::string_view part(std::uint64_t offset, std::uint64_t count, std::string_view field) const {
-        if (offset > bytes_.size() || count > bytes_.size() - offset) {
-            fail(field, offset,
-                 fmt::format("has {} bytes; the file ends at {}", count, bytes_.size()));
-        }
-        return bytes_.substr(offset, count);
+        ByteCursor cursor(bytes_);
+        const auto bytes = cursor.seek(offset) ? cursor.take(count) : std::nullopt;
+        if (bytes) return *bytes;
+        fail(field, offset, fmt::format("has {} bytes; the file ends at {}", count, bytes_.size()));
     }
     /// Throws unless the field is `wanted`.
     void require(std::size_t offset, std::uint32_t wanted, std::string_view field) const {
