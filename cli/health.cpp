@@ -3,6 +3,7 @@
 
 #include <brdfs/measured/measured_brdf.h>
 #include <brdfs/repair.h>
+#include <hshfit/files/json_fields.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,15 +17,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json finite(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json censusJson(const brdfs::Census& census) {
-    return {{"values", census.values},       {"below_horizon", census.belowHorizon},
-            {"invalid", census.invalid},     {"negative", census.negative},
-            {"nan", census.notANumber},      {"infinite", census.infinite},
-            {"least", finite(census.least)}, {"greatest", finite(census.greatest)}};
+    return {{"values", census.values},
+            {"below_horizon", census.belowHorizon},
+            {"invalid", census.invalid},
+            {"negative", census.negative},
+            {"nan", census.notANumber},
+            {"infinite", census.infinite},
+            {"least", finiteOrNull(census.least)},
+            {"greatest", finiteOrNull(census.greatest)}};
 }
 
 Json axesJson(const std::vector<brdfs::Axis>& axes) {
@@ -33,9 +34,9 @@ Json axesJson(const std::vector<brdfs::Axis>& axes) {
         rows.push_back({{"name", axis.name},
                         {"unit", axis.unit},
                         {"count", axis.count},
-                        {"first", finite(axis.first)},
-                        {"last", finite(axis.last)},
-                        {"largest_gap", finite(axis.largestGap)}});
+                        {"first", finiteOrNull(axis.first)},
+                        {"last", finiteOrNull(axis.last)},
+                        {"largest_gap", finiteOrNull(axis.largestGap)}});
     }
     return rows;
 }

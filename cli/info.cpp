@@ -4,6 +4,7 @@
 #include "health.h"
 
 #include <hshfit/coefficients/reconstruction.h>
+#include <hshfit/files/json_fields.h>
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/quadrature/quadrature.h>
 #include <hshfit/representation/forms/represented_brdf.h>
@@ -50,8 +51,7 @@ Json rangeJson(const Brdf& brdf) {
             }
         }
     }
-    return {{"min", std::isfinite(low) ? Json(low) : Json(nullptr)},
-            {"max", std::isfinite(high) ? Json(high) : Json(nullptr)}};
+    return {{"min", finiteOrNull(low)}, {"max", finiteOrNull(high)}};
 }
 
 Json factsJson(const std::vector<Fact>& facts) {

@@ -4,6 +4,7 @@
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
+#include <hshfit/files/json_fields.h>
 #include <hshfit/gpu/containers/targets.h>
 
 #include <brdfs/catalog.h>
@@ -17,16 +18,11 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace hshfit::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json limitJson(double limit) {
-    return std::isfinite(limit) ? Json(limit) : Json(nullptr);
-}
 
 Json parameterJson(const brdfs::Parameter& parameter) {
     using Kind = brdfs::Parameter::Kind;
@@ -41,8 +37,8 @@ Json parameterJson(const brdfs::Parameter& parameter) {
     const auto fallback = parameter.fallback;
     const bool stated = fallback && *fallback >= parameter.min && *fallback <= parameter.max;
     json["default"] = stated ? Json(*fallback) : Json(nullptr);
-    json["min"] = limitJson(parameter.min);
-    json["max"] = limitJson(parameter.max);
+    json["min"] = finiteOrNull(parameter.min);
+    json["max"] = finiteOrNull(parameter.max);
     return json;
 }
 

@@ -31,10 +31,6 @@ std::string text(const Ordered& value) {
     return value.dump(-1, ' ', false, Ordered::error_handler_t::replace);
 }
 
-Json finiteOrNull(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 /// 51.99999999999999 is what 52 degrees come back as from a unit vector.
 double tidyDegrees(double angle) {
     const double rounded = std::round(degrees(angle) * 1e10) / 1e10;

@@ -46,8 +46,7 @@ Ordered describe(const Representation& r) {
     out["entropy_bytes"] = r.entropyBytes();
     Ordered steps = Ordered::array();
     for (const RepresentationStep& step : r.steps) {
-        const bool known = std::isfinite(step.change);
-        steps.push_back({{"what", step.what}, {"change", known ? Ordered(step.change) : nullptr}});
+        steps.push_back({{"what", step.what}, {"change", finiteOrNull(step.change)}});
     }
     out["steps"] = steps;
     out["arrays"] = Ordered::array();

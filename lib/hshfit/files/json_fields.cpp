@@ -11,6 +11,11 @@ namespace hshfit::inline files {
 
 using Json = nlohmann::json;
 
+nlohmann::ordered_json finiteOrNull(std::optional<double> value) {
+    if (!value || !std::isfinite(*value)) return nullptr;
+    return *value;
+}
+
 Json parseJson(std::string_view text, const std::string& file, int maxDepth) {
     std::vector<std::set<std::string>> keys;
     const auto check = [&](int depth, Json::parse_event_t event, Json& parsed) {

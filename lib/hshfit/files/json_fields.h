@@ -1,6 +1,7 @@
 #pragma once
 
-// Checked access to JSON that somebody else wrote. Only for sources that use nlohmann-json.
+// Numbers into JSON, and checked access to JSON that somebody else wrote. Only for sources that use
+// nlohmann-json.
 
 #include <optional>
 #include <string>
@@ -10,6 +11,9 @@
 #include <nlohmann/json.hpp>
 
 namespace hshfit::inline files {
+
+/// A number as JSON can hold it: null where there is none or it is not finite.
+nlohmann::ordered_json finiteOrNull(std::optional<double> value);
 
 /// Throws InputError that starts with `file` for what is no JSON, is nested more deeply than
 /// `maxDepth`, or holds a key twice in one object.

@@ -1,4 +1,5 @@
 #include <hshfit/bases/catalog.h>
+#include <hshfit/files/json_fields.h>
 #include <hshfit/pages/report.h>
 #include <hshfit/version.h>
 
@@ -12,10 +13,6 @@ namespace hshfit::inline pages {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json finiteOrNull(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 
 Json outgoingJson(const OutgoingSet& set) {
     switch (set.map) {
@@ -48,7 +45,7 @@ Json curveJson(const ReportCurve& curve) {
         points.push_back({{"order", point.order},
                           {"coefficients", point.coefficients},
                           {"slots", point.slots},
-                          {"accuracy", point.accuracy ? Json(*point.accuracy) : Json(nullptr)}});
+                          {"accuracy", finiteOrNull(point.accuracy)}});
     }
     Json json = {{"basis", curve.basis}};
     if (curve.energy) {

@@ -1,18 +1,13 @@
+#include <hshfit/files/json_fields.h>
 #include <hshfit/plan/plan_files.h>
 #include <hshfit/version.h>
 
 #include <nlohmann/json.hpp>
 
-#include <cmath>
-
 namespace hshfit::plan {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json numberOrNull(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 
 Json rangeJson(double from, double to) {
     return {degrees(from), degrees(to)};
@@ -23,7 +18,7 @@ Json choiceJson(const Choice& choice, const std::string& file) {
                  {"options", optionsOf(choice.form)},
                  {"command", commandOf(choice, file)},
                  {"bytes", choice.bytes},
-                 {"error", numberOrNull(choice.error)}};
+                 {"error", finiteOrNull(choice.error)}};
     if (choice.nanoseconds) json["nanoseconds"] = *choice.nanoseconds;
     return json;
 }
@@ -39,7 +34,7 @@ Json acceptedJson(const Accepted& accepted, const std::string& file) {
     Json rows = Json::array();
     for (std::size_t k = 0; k < accepted.thetas.size(); ++k) {
         rows.push_back(
-            {{"theta", degrees(accepted.thetas[k])}, {"error", numberOrNull(accepted.errors[k])}});
+            {{"theta", degrees(accepted.thetas[k])}, {"error", finiteOrNull(accepted.errors[k])}});
     }
     json["error_by_elevation"] = rows;
     return json;
@@ -66,7 +61,7 @@ Json materialJson(const MaterialPlan& plan) {
     json["rules"] = plan.rules;
     json["light"] = {{"band_power", plan.lightPower},
                      {"samples", plan.lightSamples},
-                     {"sampling_error", numberOrNull(plan.referenceError)}};
+                     {"sampling_error", finiteOrNull(plan.referenceError)}};
     json["views"] = plan.views;
     json["forms"] = {{"listed", plan.rungs}, {"tried", plan.tried}};
     return json;

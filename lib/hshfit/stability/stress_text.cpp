@@ -1,4 +1,5 @@
 #include <hshfit/files/file_set.h>
+#include <hshfit/files/json_fields.h>
 #include <hshfit/stability/stress.h>
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@ Json degreesJson(const std::vector<DegreeErrors>& rows) {
     Json list = Json::array();
     for (const DegreeErrors& row : rows) {
         Json errors = Json::array();
-        for (double e : row.error) errors.push_back(std::isnan(e) ? Json(nullptr) : Json(e));
+        for (double e : row.error) errors.push_back(finiteOrNull(e));
         Json good = Json::object();
         for (double bound : bounds) good[fmt::format("{:g}", bound)] = row.goodUntil(bound);
         list.push_back({{"basis", row.basis},
@@ -98,12 +99,10 @@ std::string projectionTable(const std::vector<LobeProjection>& rows, const Cell&
 std::string stressJson(const StressReport& report) {
     Json gram = Json::array(), projection = Json::array();
     for (const GramPoint& point : report.gram) {
-        gram.push_back(
-            {{"order", point.order},
-             {"condition",
-              std::isinf(point.gram.condition) ? Json(nullptr) : Json(point.gram.condition)},
-             {"kept", point.gram.kept},
-             {"functions", point.order * point.order}});
+        gram.push_back({{"order", point.order},
+                        {"condition", finiteOrNull(point.gram.condition)},
+                        {"kept", point.gram.kept},
+                        {"functions", point.order * point.order}});
     }
     for (const LobeProjection& row : report.projection) {
         Json line = {

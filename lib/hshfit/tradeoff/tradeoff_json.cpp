@@ -1,24 +1,19 @@
+#include <hshfit/files/json_fields.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <cmath>
-
 namespace hshfit::tradeoff {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json numberOrNull(std::optional<double> value) {
-    return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
-}
-
 Json metricsJson(const PairErrors& errors) {
     Json json = Json::object();
     for (std::size_t m = 0; m < errors.values.size(); ++m) {
-        json[std::string(metricCatalog()[m].name)] = numberOrNull(errors.values[m]);
+        json[std::string(metricCatalog()[m].name)] = finiteOrNull(errors.values[m]);
     }
     return json;
 }
@@ -27,17 +22,17 @@ Json formJson(const Tradeoff& trade, std::size_t k) {
     const Measured& form = trade.forms[k];
     Json bands = Json::array(), steps = Json::array();
     for (std::size_t b = 0; b < bandCount; ++b)
-        bands.push_back(numberOrNull(trade.bandErrorOf(k, b)));
+        bands.push_back(finiteOrNull(trade.bandErrorOf(k, b)));
     for (const RepresentationStep& step : form.steps) {
-        steps.push_back({{"what", step.what}, {"change", numberOrNull(step.change)}});
+        steps.push_back({{"what", step.what}, {"change", finiteOrNull(step.change)}});
     }
     return {{"options", form.options},
             {"kind", kindName(form.form.kind)},
             {"bytes", form.bytes},
             {"entropy_bytes", form.entropyBytes},
             {"numbers", form.numbers},
-            {"error", numberOrNull(trade.errorOf(k))},
-            {"uncertainty", numberOrNull(trade.uncertaintyOf(k))},
+            {"error", finiteOrNull(trade.errorOf(k))},
+            {"uncertainty", finiteOrNull(trade.uncertaintyOf(k))},
             {"band_errors", bands},
             {"metrics", metricsJson(form.errors)},
             {"steps", steps}};
