@@ -70,15 +70,16 @@ std::span<const Preset> presets() {
 }
 
 PresetContent parsePreset(std::string_view text, const std::string& where) {
-    const Json preset = parsePresetJson(text, "hshfit-preset", where);
+    const Json json = parsePresetJson(text, "hshfit-preset", where);
+    const JsonFields preset(json, "", where);
     PresetContent content;
-    if (preset.contains("source")) content.source = stringField(preset, "source", where);
-    if (preset.contains("spec")) {
-        content.spec = stringField(preset, "spec", where);
+    if (preset.has("source")) content.source = preset.word("source");
+    if (preset.has("spec")) {
+        content.spec = preset.word("spec");
         return content;
     }
-    const std::string model = modelField(preset, where);
-    content.spec = presetSpec(model, objectField(preset, "parameters", where), where);
+    const std::string model = modelField(preset);
+    content.spec = presetSpec(model, preset.object("parameters").json(), where);
     return content;
 }
 

@@ -32,28 +32,12 @@ struct ChannelScale {
     }
 };
 
-ChannelScale parseScale(const Json& collection, const std::string& where) {
-    const auto found = collection.find("channel_scale");
-    if (found == collection.end()) return {};
-    const auto wrong = [&] {
-        return InputError(
-            fmt::format("{}: 'channel_scale' has to hold 'factors', three numbers, "
-                        "and 'parameters', a list of names",
-                        where));
-    };
-    if (!found->is_object() || !found->contains("factors") || !found->contains("parameters"))
-        throw wrong();
-    const Json &factors = (*found)["factors"], &names = (*found)["parameters"];
-    if (!factors.is_array() || factors.size() != 3 || !names.is_array()) throw wrong();
+ChannelScale parseScale(const JsonFields& collection) {
+    if (!collection.has("channel_scale")) return {};
+    const JsonFields fields = collection.object("channel_scale");
     ChannelScale scale;
-    for (std::size_t c = 0; c < 3; ++c) {
-        if (!factors[c].is_number()) throw wrong();
-        scale.factors[c] = factors[c].get<double>();
-    }
-    for (const Json& name : names) {
-        if (!name.is_string()) throw wrong();
-        scale.parameters.push_back(name.get<std::string>());
-    }
+    std::ranges::copy(fields.numbers("factors", 3), scale.factors.begin());
+    scale.parameters = fields.words("parameters");
     return scale;
 }
 
@@ -120,15 +104,16 @@ bool isPresetCollection(std::string_view text) {
 PresetCollection parsePresetCollection(std::string_view text, const std::string& where) {
     const Json json = parsePresetJson(text, std::string(collectionFormat), where);
     PresetCollection collection;
-    collection.model = modelField(json, where);
+    const JsonFields fields(json, "", where);
+    collection.model = modelField(fields);
     for (const auto& [name, field] :
          {std::pair{"help", &collection.help}, std::pair{"source", &collection.source},
           std::pair{"correction", &collection.correction}})
-        if (json.contains(name)) *field = stringField(json, name, where);
+        if (fields.has(name)) *field = fields.word(name);
     Json common = Json::object();
-    if (json.contains("parameters")) common = objectField(json, "parameters", where);
-    const ChannelScale scale = parseScale(json, where);
-    for (const auto& [name, material] : objectField(json, "materials", where).items()) {
+    if (fields.has("parameters")) common = fields.object("parameters").json();
+    const ChannelScale scale = parseScale(fields);
+    for (const auto& [name, material] : fields.object("materials").json().items()) {
         if (name.empty()) throw InputError(where + ": a material without a name");
         collection.materials.push_back(
             {name, materialSpec(collection, common, material, scale, where + "/" + name)});

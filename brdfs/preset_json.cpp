@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 namespace hshfit::brdfs {
 namespace {
 
@@ -24,20 +26,12 @@ std::string specValue(const Json& value, const std::string& key, const std::stri
         where, key));
 }
 
-Json parseText(std::string_view text, const std::string& where) {
-    try {
-        return Json::parse(text);
-    } catch (const Json::parse_error& error) {
-        throw InputError(fmt::format("{}: not valid JSON (byte {})", where, error.byte));
-    } catch (const Json::exception&) {
-        throw InputError(fmt::format("{}: not valid JSON (a number too large)", where));
-    }
-}
+constexpr int deepest = std::numeric_limits<int>::max();  // the sizes of presets are bounded
 
 }  // namespace
 
 Json parsePresetJson(std::string_view text, const std::string& format, const std::string& where) {
-    Json json = parseText(text, where);
+    Json json = parseJson(text, where, deepest);
     if (!json.is_object() || json.value("format", Json()) != format)
         throw InputError(
             fmt::format("{}: not a preset; \"format\" has to be \"{}\"", where, format));
@@ -46,24 +40,10 @@ Json parsePresetJson(std::string_view text, const std::string& format, const std
     return json;
 }
 
-std::string stringField(const Json& json, const char* name, const std::string& where) {
-    const auto found = json.find(name);
-    if (found == json.end() || !found->is_string())
-        throw InputError(fmt::format("{}: '{}' has to be a string", where, name));
-    return found->get<std::string>();
-}
-
-const Json& objectField(const Json& json, const char* name, const std::string& where) {
-    const auto found = json.find(name);
-    if (found == json.end() || !found->is_object())
-        throw InputError(fmt::format("{}: '{}' has to be an object", where, name));
-    return *found;
-}
-
-std::string modelField(const Json& json, const std::string& where) {
-    const std::string model = stringField(json, "model", where);
+std::string modelField(const JsonFields& preset) {
+    const std::string model = preset.word("model");
     if (model.find(':') != std::string::npos)
-        throw InputError(fmt::format("{}: unknown model '{}'", where, model));
+        preset.fail(fmt::format("is the unknown model '{}'", model), "model");
     return model;
 }
 

@@ -2,7 +2,7 @@
 
 // The JSON of presets: for the sources that read them, not for headers.
 
-#include <nlohmann/json.hpp>
+#include <hshfit/files/json_fields.h>
 
 #include <string>
 #include <string_view>
@@ -15,10 +15,8 @@ using Json = nlohmann::json;
 /// Throws InputError, as do the others.
 Json parsePresetJson(std::string_view text, const std::string& format, const std::string& where);
 
-std::string stringField(const Json& json, const char* name, const std::string& where);
-const Json& objectField(const Json& json, const char* name, const std::string& where);
 /// "model": a bare name, for a ':' would begin parameters.
-std::string modelField(const Json& json, const std::string& where);
+std::string modelField(const JsonFields& preset);
 
 /// "model:key=value,…" from an object of numbers, triples of numbers, booleans and words.
 std::string presetSpec(const std::string& model, const Json& parameters, const std::string& where);

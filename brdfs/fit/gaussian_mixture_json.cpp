@@ -1,12 +1,12 @@
 #include <brdfs/fit/gaussian_mixture_json.h>
 
 #include <brdfs/preset_json.h>
-#include <hshfit/error.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 namespace hshfit::brdfs {
 namespace {
@@ -29,102 +29,77 @@ nlohmann::ordered_json lobeJson(GaussianKind kind, const GaussianLobe& lobe) {
     return json;
 }
 
-/// Reads fields, each with its place for messages.
-class Reader {
-public:
-    explicit Reader(std::string where) : where_(std::move(where)) {}
+constexpr double mostNumber = 1e12;  // keeps sums of lobes finite
 
-    double number(const Json& json, const char* name, double least, double most) const {
-        const auto found = json.find(name);
-        if (found != json.end() && found->is_number()) {
-            const double value = found->get<double>();
-            if (value >= least && value <= most) return value;
-        }
-        throw InputError(
-            fmt::format("{}: '{}' has to be a number from {} to {}", where_, name, least, most));
+/// `count` numbers from 0.
+std::vector<double> magnitudes(const JsonFields& fields, const char* key, std::size_t count) {
+    std::vector<double> values = fields.numbers(key, count);
+    for (const double value : values)
+        if (!(value >= 0 && value <= mostNumber))
+            fields.fail(fmt::format("holds {:g}; it has to be from 0 to {:g}", value, mostNumber),
+                        key);
+    return values;
+}
+
+std::vector<JsonFields> someObjects(const JsonFields& fields, const char* key, std::size_t most) {
+    std::vector<JsonFields> objects = fields.objects(key);
+    if (objects.empty() || objects.size() > most)
+        fields.fail(fmt::format("has to be an array of 1 to {} objects", most), key);
+    return objects;
+}
+
+Channels readChannels(const JsonFields& fields) {
+    const Json& value = fields.at("channels");
+    if (value == "grey") return Channels::grey();
+    if (value == "rgb") return Channels::rgb();
+    constexpr std::size_t most = 10000;
+    if (value.is_array() && !value.empty() && value.size() <= most) {
+        const std::vector<double> wavelengths = magnitudes(fields, "channels", value.size());
+        if (std::ranges::adjacent_find(wavelengths, std::greater_equal()) == wavelengths.end())
+            return Channels::spectral(wavelengths);
     }
+    fields.fail("has to be 'grey', 'rgb' or wavelengths that ascend", "channels");
+}
 
-    std::vector<double> numbers(const Json& json, const char* name, std::size_t count) const {
-        const auto found = json.find(name);
-        std::vector<double> values;
-        constexpr double most = 1e12;  // keeps sums of lobes finite
-        if (found != json.end() && found->is_array() && found->size() == count)
-            for (const Json& value : *found)
-                if (value.is_number() && value.get<double>() >= 0 && value.get<double>() <= most)
-                    values.push_back(value.get<double>());
-        if (values.size() == count) return values;
-        throw InputError(fmt::format("{}: '{}' has to be an array of {} numbers from 0 to {}",
-                                     where_, name, count, most));
+GaussianLobe readLobe(const JsonFields& fields, GaussianKind kind, std::size_t channels) {
+    GaussianLobe lobe{.tilt = radians(fields.number("tilt", -180, 180)),
+                      .sharpness = fields.number("sharpness", 0, mostNumber)};
+    lobe.across =
+        kind == GaussianKind::anisotropic ? fields.number("across", 0, mostNumber) : lobe.sharpness;
+    lobe.amplitude = magnitudes(fields, "amplitude", channels);
+    return lobe;
+}
+
+GaussianElevation readElevation(const JsonFields& fields, GaussianKind kind, std::size_t channels) {
+    GaussianElevation result{.theta = radians(fields.number("theta", 0, 90))};
+    for (const JsonFields& lobe : someObjects(fields, "lobes", 1000))
+        result.lobes.push_back(readLobe(lobe, kind, channels));
+    constexpr double most = 1e300;
+    result.error = fields.number("error", 0, most);
+    result.albedo = fields.number("albedo", 0, most);
+    result.fittedAlbedo = fields.number("fitted_albedo", 0, most);
+    result.converged = fields.has("converged") && fields.at("converged") == true;
+    return result;
+}
+
+GaussianKind readKind(const JsonFields& fields) {
+    const std::string name = fields.word("kind");
+    for (const GaussianKind kind : {GaussianKind::spherical, GaussianKind::anisotropic})
+        if (name == kindName(kind)) return kind;
+    fields.fail("has to be 'sg' or 'asg'", "kind");
+}
+
+/// Elevations ascend and have equally many lobes.
+void requireRegular(const JsonFields& root, const std::vector<GaussianElevation>& elevations) {
+    for (std::size_t k = 1; k < elevations.size(); ++k) {
+        if (!(elevations[k].theta > elevations[k - 1].theta))
+            root.fail("does not ascend", fmt::format("elevations[{}].theta", k));
+        if (elevations[k].lobes.size() != elevations[0].lobes.size())
+            root.fail(fmt::format("has {} lobes, the first has {}", elevations[k].lobes.size(),
+                                  elevations[0].lobes.size()),
+                      fmt::format("elevations[{}]", k));
     }
-
-    /// A non-empty array of objects.
-    const Json& objects(const Json& json, const char* name, std::size_t most) const {
-        const auto found = json.find(name);
-        if (found == json.end() || !found->is_array() || found->empty() || found->size() > most ||
-            !std::ranges::all_of(*found, [](const Json& entry) { return entry.is_object(); }))
-            throw InputError(
-                fmt::format("{}: '{}' has to be an array of 1 to {} objects", where_, name, most));
-        return *found;
-    }
-
-    Channels channels(const Json& json) const {
-        const Json value = json.value("channels", Json());
-        if (value == "grey") return Channels::grey();
-        if (value == "rgb") return Channels::rgb();
-        constexpr std::size_t most = 10000;
-        if (value.is_array() && !value.empty() && value.size() <= most) {
-            const std::vector<double> wavelengths = numbers(json, "channels", value.size());
-            if (std::ranges::adjacent_find(wavelengths, std::greater_equal()) == wavelengths.end())
-                return Channels::spectral(wavelengths);
-        }
-        throw InputError(fmt::format(
-            "{}: 'channels' has to be \"grey\", \"rgb\" or wavelengths that ascend", where_));
-    }
-
-    GaussianLobe lobe(const Json& json, GaussianKind kind, std::size_t channels) const {
-        constexpr double least = 0, most = 1e12;
-        GaussianLobe lobe{.tilt = radians(number(json, "tilt", -180, 180)),
-                          .sharpness = number(json, "sharpness", least, most)};
-        lobe.across = kind == GaussianKind::anisotropic ? number(json, "across", least, most)
-                                                        : lobe.sharpness;
-        lobe.amplitude = numbers(json, "amplitude", channels);
-        return lobe;
-    }
-
-    GaussianElevation elevation(const Json& json, GaussianKind kind, std::size_t channels) const {
-        GaussianElevation result{.theta = radians(number(json, "theta", 0, 90))};
-        for (const Json& entry : objects(json, "lobes", 1000))
-            result.lobes.push_back(lobe(entry, kind, channels));
-        constexpr double most = 1e300;
-        result.error = number(json, "error", 0, most);
-        result.albedo = number(json, "albedo", 0, most);
-        result.fittedAlbedo = number(json, "fitted_albedo", 0, most);
-        result.converged = json.value("converged", Json()) == true;
-        return result;
-    }
-
-    GaussianKind kind(const Json& json) const {
-        for (const GaussianKind kind : {GaussianKind::spherical, GaussianKind::anisotropic})
-            if (json.value("kind", Json()) == kindName(kind)) return kind;
-        throw InputError(fmt::format("{}: 'kind' has to be \"sg\" or \"asg\"", where_));
-    }
-
-    /// Elevations ascend and have equally many lobes.
-    void requireRegular(const std::vector<GaussianElevation>& elevations) const {
-        for (std::size_t k = 1; k < elevations.size(); ++k) {
-            if (!(elevations[k].theta > elevations[k - 1].theta))
-                throw InputError(
-                    fmt::format("{}: 'theta' of elevation {} does not ascend", where_, k + 1));
-            if (elevations[k].lobes.size() != elevations[0].lobes.size())
-                throw InputError(fmt::format("{}: elevation {} has {} lobes, the first has {}",
-                                             where_, k + 1, elevations[k].lobes.size(),
-                                             elevations[0].lobes.size()));
-        }
-    }
-
-private:
-    std::string where_;
-};
+}
 
 }  // namespace
 
@@ -159,15 +134,15 @@ bool isGaussianMixture(std::string_view text) {
 std::unique_ptr<GaussianMixture> openGaussianMixture(std::string_view text,
                                                      const std::string& where) {
     const Json json = parsePresetJson(text, format, where);
-    const Reader reader(where);
+    const JsonFields root(json, "", where);
     GaussianMixture::Content content{.name = where,
-                                     .source = stringField(json, "brdf", where),
-                                     .kind = reader.kind(json),
-                                     .channels = reader.channels(json)};
-    for (const Json& entry : reader.objects(json, "elevations", 100000))
+                                     .source = root.word("brdf"),
+                                     .kind = readKind(root),
+                                     .channels = readChannels(root)};
+    for (const JsonFields& elevation : someObjects(root, "elevations", 100000))
         content.elevations.push_back(
-            reader.elevation(entry, content.kind, content.channels.count()));
-    reader.requireRegular(content.elevations);
+            readElevation(elevation, content.kind, content.channels.count()));
+    requireRegular(root, content.elevations);
     return std::make_unique<GaussianMixture>(std::move(content));
 }
 

@@ -2,6 +2,7 @@
 #include <hshfit/files/json_fields.h>
 #include <hshfit/files/printable.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -16,7 +17,8 @@ nlohmann::ordered_json finiteOrNull(std::optional<double> value) {
     return *value;
 }
 
-Json parseJson(std::string_view text, const std::string& file, int maxDepth) {
+Json parseJson(std::string_view text, const std::string& file, int maxDepth,
+               const JsonFilter& filter) {
     std::vector<std::set<std::string>> keys;
     const auto check = [&](int depth, Json::parse_event_t event, Json& parsed) {
         using Event = Json::parse_event_t;
@@ -27,7 +29,7 @@ Json parseJson(std::string_view text, const std::string& file, int maxDepth) {
             throw InputError(fmt::format("{}: the key '{}' appears twice", file,
                                          printable(parsed.get<std::string>().substr(0, 40))));
         }
-        return true;
+        return !filter || filter(depth, event, parsed);
     };
     try {
         return Json::parse(text, check);
@@ -77,6 +79,14 @@ std::string JsonFields::word(const char* key) const {
     return at(key).get<std::string>();
 }
 
+std::vector<std::string> JsonFields::words(const char* key) const {
+    const auto isWord = [](const Json& element) { return element.is_string(); };
+    if (!at(key).is_array() || !std::all_of(at(key).begin(), at(key).end(), isWord)) {
+        fail("has to be an array of strings", key);
+    }
+    return at(key).get<std::vector<std::string>>();
+}
+
 bool JsonFields::flag(const char* key) const {
     if (!at(key).is_boolean()) fail("has to be true or false", key);
     return at(key).get<bool>();
@@ -85,6 +95,14 @@ bool JsonFields::flag(const char* key) const {
 double JsonFields::number(const char* key) const {
     if (!at(key).is_number()) fail("has to be a number", key);
     return finite(at(key), key);
+}
+
+double JsonFields::number(const char* key, double min, double max) const {
+    const double value = number(key);
+    if (!(value >= min && value <= max)) {
+        fail(fmt::format("is {:g}; it has to be from {:g} to {:g}", value, min, max), key);
+    }
+    return value;
 }
 
 std::optional<double> JsonFields::numberOrNull(const char* key) const {

@@ -3,6 +3,7 @@
 // Numbers into JSON, and checked access to JSON that somebody else wrote. Only for sources that use
 // nlohmann-json.
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,12 +16,17 @@ namespace hshfit::inline files {
 /// A number as JSON can hold it: null where there is none or it is not finite.
 nlohmann::ordered_json finiteOrNull(std::optional<double> value);
 
+/// Sees what the parser finds, after the checks of `parseJson`; false drops a value from the tree.
+using JsonFilter =
+    std::function<bool(int depth, nlohmann::json::parse_event_t event, nlohmann::json& parsed)>;
+
 /// Throws InputError that starts with `file` for what is no JSON, is nested more deeply than
 /// `maxDepth`, or holds a key twice in one object.
-nlohmann::json parseJson(std::string_view text, const std::string& file, int maxDepth);
+nlohmann::json parseJson(std::string_view text, const std::string& file, int maxDepth,
+                         const JsonFilter& filter = {});
 
-/// One object of a file, with messages that name the field: every member but `has` throws
-/// InputError. Numbers are finite.
+/// One object of a file, with messages that name the field: every member but `has` and `json`
+/// throws InputError. Numbers are finite.
 class JsonFields {
 public:
     /// `path` is what leads to the object, "" for the root; both references have to outlive this.
@@ -28,13 +34,16 @@ public:
 
     [[noreturn]] void fail(std::string_view what, std::string_view key = {}) const;
     bool has(const char* key) const { return object_.contains(key); }
+    const nlohmann::json& json() const { return object_; }
     const nlohmann::json& at(const char* key) const;
     JsonFields object(const char* key) const;
     /// Each element of an array of objects.
     std::vector<JsonFields> objects(const char* key) const;
     std::string word(const char* key) const;
+    std::vector<std::string> words(const char* key) const;
     bool flag(const char* key) const;
     double number(const char* key) const;
+    double number(const char* key, double min, double max) const;
     std::optional<double> numberOrNull(const char* key) const;
     int integer(const char* key, int min, int max) const;
     std::vector<double> numbers(const char* key) const;
