@@ -1,5 +1,7 @@
 #include <brdfs/fit/normal_equations.h>
 
+#include <hshfit/error.h>
+
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -49,7 +51,8 @@ std::vector<double> solveBounded(std::span<const double> a, std::span<const doub
     std::vector<char> isFree(static_cast<std::size_t>(n), 0);
     const double tolerance =
         1e-14 * std::max(right.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
-    for (int step = 0; step < 20 * n + 20; ++step) {
+    constexpr double rounding = 1e-8;  // gains that a variable sent back to its bound may leave
+    for (Eigen::Index step = 0;; ++step) {
         const Eigen::VectorXd gradient = right - scaled * x;
         Eigen::Index enter = -1;
         double most = tolerance;
@@ -59,6 +62,11 @@ std::vector<double> solveBounded(std::span<const double> a, std::span<const doub
             if (gain > most) most = gain, enter = i;
         }
         if (enter < 0) break;
+        if (step == 20 * n + 20) {
+            if (most <= rounding * right.cwiseAbs().maxCoeff()) break;
+            throw NumericError(
+                "the linear parameters were not found within their bounds: the active set cycles");
+        }
         isFree[enter] = 1;
         for (int inner = 0; inner <= n; ++inner) {
             std::vector<Eigen::Index> free;

@@ -70,7 +70,8 @@ private:
 };
 
 /// The minimum of x^T A x / 2 - b^T x for lower <= x <= upper, A positive semidefinite [n * n]:
-/// bounded-variable active sets (Stark & Parker 1995). Columns of norm 0 stay at `lower`.
+/// bounded-variable active sets (Stark & Parker 1995). Columns of norm 0 stay at `lower`. Throws
+/// NumericError where the sets go round in a circle with more to gain than rounding.
 std::vector<double> solveBounded(std::span<const double> a, std::span<const double> b,
                                  std::span<const double> lower, std::span<const double> upper);
 
