@@ -21,11 +21,11 @@ struct ExportArguments {
 
 Json describe(const gpu::Payload& payload) {
     const gpu::Texels& texels = payload.coefficients;
-    Json document = {{"brdf", payload.source},
-                     {"basis", payload.basis},
-                     {"order", payload.order},
-                     {"quantity", quantityName(payload.quantity)},
-                     {"outgoing", payload.outgoing.spec()},
+    Json document = {{"brdf", payload.head.source},
+                     {"basis", payload.head.basis},
+                     {"order", payload.head.order},
+                     {"quantity", quantityName(payload.head.quantity)},
+                     {"outgoing", payload.head.outgoing.spec()},
                      {"number", gpu::numberName(texels.number)},
                      {"packing", gpu::packingName(payload.packing)},
                      {"stored_channels", Json::array()},

@@ -62,7 +62,7 @@ Json factsJson(const std::vector<Fact>& facts) {
     return json;
 }
 
-void describeCoefficients(const Coefficients& c, Json& document) {
+void describeCoefficients(const CoefficientHead& c, Json& document) {
     document["symmetry"] = {
         {"isotropic", c.isotropic}, {"bilateral", c.bilateral}, {"reciprocal", c.reciprocal}};
     document["facts"] = {{"basis", c.basis},

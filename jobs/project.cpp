@@ -80,7 +80,7 @@ public:
         if (form_) {
             result.kept = represent(*brdf, *form_, sourceOpener(), how);
             writeRepresentation(*result.kept, output);
-            result.projection.coefficients = result.kept->head;
+            result.projection.coefficients = {result.kept->head};
             return result;
         }
         const Basis* const one[] = {basis_.get()};

@@ -129,7 +129,6 @@ void formFiles(const std::filesystem::path& folder) {
     Representation both;
     both.kind = Representation::Kind::basis;
     both.head = c;
-    both.head.values.clear();
     both.head.outgoing = {};
     both.head.isotropic = both.head.reciprocal = true;
     const auto terms = productTermCount(*bases::make("hsh", 2), symmetryOf(both));

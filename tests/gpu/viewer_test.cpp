@@ -151,7 +151,7 @@ TEST(Viewer, ProjectsTheOtherBasis) {
             samples::asymmetric(given, 3, OutgoingSet::elevations(4), Channels::grey(), 1), {});
         const ViewerInput input = viewerInput(payload, brdf.get());
         ASSERT_EQ(input.payloads.size(), 2u);
-        EXPECT_EQ(input.payloads[1].basis, other);
+        EXPECT_EQ(input.payloads[1].head.basis, other);
         EXPECT_EQ(input.payloads[1].order, 3);
         EXPECT_TRUE(input.reference.has_value());
         EXPECT_EQ(viewerInput(payload, nullptr).payloads.size(), 1u);

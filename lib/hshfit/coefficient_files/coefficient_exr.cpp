@@ -3,6 +3,7 @@
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/exr_header.h>
 #include <hshfit/files/exr_stream.h>
+#include <hshfit/files/json_fields.h>
 #include <hshfit/files/printable.h>
 
 #include <algorithm>
@@ -114,7 +115,8 @@ Coefficients readChecked(std::string_view bytes, const ExrHeader& size, const st
     ExrFromMemory stream(bytes);
     Imf::InputFile input(stream, 0);
     const std::size_t count = size.width * size.height;
-    Coefficients c = coefficientsFromMetadata(metadataText(input.header(), file), count, file);
+    const auto metadata = parseJson(metadataText(input.header(), file), file, deepestJson);
+    Coefficients c{readHead(JsonFields(metadata, "", file), count)};
     if (static_cast<std::size_t>(c.outgoing.width) != size.width) {
         throw InputError(fmt::format("{}: is {} x {} pixels; its outgoing directions are {} x {}",
                                      file, size.width, size.height, c.outgoing.width,

@@ -11,18 +11,28 @@
 #include <utility>
 #include <vector>
 
+namespace hshfit::inline files {
+class JsonFields;
+}
+
 namespace hshfit::inline coefficient_files {
 
-/// Everything but the coefficients as (key, JSON text), in the order in which it is written.
+/// No form of a coefficient file nests its JSON more deeply.
+inline constexpr int deepestJson = 8;
+
+/// The head as (key, JSON text), in the order in which it is written.
 using CoefficientMetadata = std::vector<std::pair<std::string, std::string>>;
 
-CoefficientMetadata metadataOf(const Coefficients& coefficients);
+CoefficientMetadata metadataOf(const CoefficientHead& head);
 
-/// `text` is one JSON object; keys that this version does not know are ignored. The result has
-/// every field but `values`, and outgoing directions only if they number `outgoingCount`, which the
-/// caller has counted in the file. Throws InputError that starts with `file`.
-Coefficients coefficientsFromMetadata(std::string_view text, std::size_t outgoingCount,
-                                      const std::string& file);
+/// The head of a coefficient file from its root object; keys that this version does not know are
+/// ignored. It has outgoing directions only if they number `outgoingCount`, which the caller has
+/// counted in the file. Throws InputError that names the file and the field.
+CoefficientHead readHead(const JsonFields& root, std::size_t outgoingCount);
+
+/// The part of it that sidecars of texels hold as well: no format, version, tolerance and least
+/// squares.
+CoefficientHead readSharedHead(const JsonFields& root, std::size_t outgoingCount);
 
 /// Throws NumericError at the first coefficient that is not finite.
 void requireFinite(const Coefficients& coefficients);

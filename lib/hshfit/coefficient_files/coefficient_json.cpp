@@ -1,9 +1,10 @@
 #include <hshfit/coefficient_files/coefficient_formats.h>
 #include <hshfit/error.h>
+#include <hshfit/files/json_fields.h>
 #include <hshfit/files/printable.h>
 
 #include <cmath>
-#include <set>
+#include <functional>
 
 #include <fmt/compile.h>
 #include <fmt/format.h>
@@ -15,25 +16,23 @@ namespace {
 using Json = nlohmann::json;
 
 /// Takes the coefficients out of the parser's stream, so that they never become a tree of JSON
-/// values, and holds their shape, nesting and keys to the rules as they come.
+/// values, and holds their shape to the rules as they come.
 class Collector {
 public:
     explicit Collector(const std::string& file) : file_(file) {}
 
-    /// nlohmann's parser callback; false drops the value from the tree.
+    /// A JsonFilter; false drops the value from the tree.
     bool operator()(int depth, Json::parse_event_t event, Json& parsed) {
         using Event = Json::parse_event_t;
-        if (depth > maxDepth) fail("is nested too deeply");
         switch (event) {
             case Event::object_start:
                 if (level_ > 0 || awaited_) failShape();
-                keys_.emplace_back();
                 return true;
             case Event::object_end:
-                keys_.pop_back();
                 return true;
             case Event::key:
-                return takeKey(depth, parsed.get_ref<const std::string&>());
+                if (depth == 1 && parsed == "coefficients") awaited_ = true;
+                return true;
             case Event::array_start:
                 if (level_ == 0 && !awaited_) return true;
                 awaited_ = false;
@@ -73,8 +72,6 @@ public:
     std::size_t outgoing() const { return outgoing_; }
 
 private:
-    static constexpr int maxDepth = 8;
-
     [[noreturn]] void fail(std::string_view what) const {
         throw InputError(fmt::format("{}: {}", file_, printable(what)));
     }
@@ -83,14 +80,6 @@ private:
     }
     std::string position() const {
         return fmt::format("coefficients[{}][{}][{}]", outgoing_, rows_, countInRow_);
-    }
-
-    bool takeKey(int depth, const std::string& key) {
-        if (!keys_.back().insert(key).second) {
-            fail(fmt::format("the key '{}' appears twice", key.substr(0, 40)));
-        }
-        if (depth == 1 && key == "coefficients") awaited_ = true;
-        return true;
     }
 
     /// Rows and channels have to be as many everywhere as in the first place.
@@ -116,7 +105,6 @@ private:
     }
 
     const std::string& file_;
-    std::vector<std::set<std::string>> keys_;
     bool awaited_ = false;
     int level_ = 0;
     std::size_t outgoing_ = 0, rows_ = 0, countInRow_ = 0, channels_ = 0, slots_ = 0;
@@ -130,14 +118,6 @@ Coefficients decodedOrRefused(std::string_view text, const std::string& file) {
         "{}: holds the form '{}'{}, not coefficients per outgoing direction alone; project it to a "
         "file of its own first",
         file, kindName(r.kind), r.added.empty() ? "" : fmt::format(" with {} added", r.added)));
-}
-
-/// "[json.exception.parse_error.101] parse error at line 1, …" without the bracket and in bounds.
-std::string reasonOf(const Json::exception& error) {
-    std::string reason = error.what();
-    if (const auto end = reason.find("] "); end != std::string::npos) reason.erase(0, end + 2);
-    if (reason.size() > 160) reason = reason.substr(0, 160) + "…";
-    return reason;
 }
 
 constexpr std::size_t longestNumber = sizeof("-1.7976931348623157e+308");  // and the comma
@@ -185,15 +165,9 @@ std::string coefficientsToJson(const Coefficients& c) {
 
 Coefficients coefficientsFromJson(std::string_view text, const std::string& file) {
     Collector collector(file);
-    Json tree;
-    try {
-        tree = Json::parse(text.begin(), text.end(), std::ref(collector));
-    } catch (const Json::exception& error) {
-        throw InputError(fmt::format("{}: not valid JSON: {}", file, printable(reasonOf(error))));
-    }
-    const std::string metadata = tree.dump(-1, ' ', false, Json::error_handler_t::replace);
+    const Json tree = parseJson(text, file, deepestJson, std::ref(collector));
     if (tree.contains("representation")) return decodedOrRefused(text, file);
-    Coefficients result = coefficientsFromMetadata(metadata, collector.outgoing(), file);
+    Coefficients result{readHead(JsonFields(tree, "", file), collector.outgoing())};
     if (collector.outgoing() == 0) collector.refuseMissing();
     collector.requireShape(result);
     result.values = std::move(collector.values);

@@ -25,7 +25,7 @@ constexpr const char* slotRule = "l*(l+1)+m";
 constexpr int insetTexels = 1;
 constexpr double horizonRingDegrees = 1;
 constexpr int maxMapSide = 1 << 16;
-constexpr int maxDepth = 8;
+constexpr double none = std::numeric_limits<double>::quiet_NaN();  // null in files
 
 std::string text(const Ordered& value) {
     return value.dump(-1, ' ', false, Ordered::error_handler_t::replace);
@@ -88,7 +88,7 @@ void checkVersion(const Fields& root) {
     }
 }
 
-void readBasis(const Fields& basis, Coefficients& result) {
+void readBasis(const Fields& basis, CoefficientHead& result) {
     result.basis = basis.word("name");
     const auto known = bases::catalog();
     const auto entry = std::find_if(known.begin(), known.end(), [&](const bases::Entry& candidate) {
@@ -195,7 +195,6 @@ OutgoingSet readOutgoing(const Fields& fields, std::size_t present) {
 }
 
 Energy readEnergy(const Fields& root) {
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
     Energy energy;
     const auto value = root.numberOrNull("energy");
     energy.finite = value.has_value();
@@ -207,7 +206,7 @@ Energy readEnergy(const Fields& root) {
 
 }  // namespace
 
-CoefficientMetadata metadataOf(const Coefficients& c) {
+CoefficientMetadata metadataOf(const CoefficientHead& c) {
     CoefficientMetadata metadata;
     const auto add = [&](const char* key, const Ordered& value) {
         metadata.emplace_back(key, text(value));
@@ -247,13 +246,8 @@ CoefficientMetadata metadataOf(const Coefficients& c) {
     return metadata;
 }
 
-Coefficients coefficientsFromMetadata(std::string_view text, std::size_t outgoingCount,
-                                      const std::string& file) {
-    const Json json = parseJson(text, file, maxDepth);
-    const Fields root(json, "", file);
-    checkVersion(root);
-    Coefficients result;
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+CoefficientHead readSharedHead(const Fields& root, std::size_t outgoingCount) {
+    CoefficientHead result;
     result.generator = root.word("generator");
     result.source = root.object("source").word("brdf");
     // Without coefficients per outgoing direction there may be no basis.
@@ -272,6 +266,12 @@ Coefficients coefficientsFromMetadata(std::string_view text, std::size_t outgoin
     result.reciprocal = symmetry.flag("reciprocal");
     result.energy = readEnergy(root);
     result.error = root.numberOrNull("error").value_or(none);
+    return result;
+}
+
+CoefficientHead readHead(const Fields& root, std::size_t outgoingCount) {
+    checkVersion(root);
+    CoefficientHead result = readSharedHead(root, outgoingCount);
     result.tolerance = root.numberOrNull("tolerance").value_or(none);
     if (root.has("least_squares")) {
         const Fields fit = root.object("least_squares");

@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 using Ordered = nlohmann::ordered_json;
 using Kind = Representation::Kind;
 
-constexpr int maxSide = 1 << 28, maxDepth = 8;
+constexpr int maxSide = 1 << 28;
 
 Ordered describe(const StoredArray& array) {
     const std::vector<std::byte> bytes = packed(array);
@@ -183,7 +183,7 @@ bool hasRepresentation(std::string_view text) {
 }
 
 Representation representationFromJson(std::string_view text, const std::string& file) {
-    const Json root = parseJson(text, file, maxDepth);
+    const Json root = parseJson(text, file, deepestJson);
     const JsonFields fields(root, "", file);
     const JsonFields part = fields.object("representation");
     Representation r;
@@ -193,8 +193,7 @@ Representation representationFromJson(std::string_view text, const std::string& 
                                     [&](Kind candidate) { return kindName(candidate) == kind; });
     if (known == kinds.end()) part.fail("has to be 'outgoing', 'basis' or 'halfway'", "kind");
     r.kind = *known;
-    r.head =
-        coefficientsFromMetadata(text, r.kind == Kind::outgoing ? directionsIn(root) : 0, file);
+    r.head = readHead(fields, r.kind == Kind::outgoing ? directionsIn(root) : 0);
     if (part.has("added")) r.added = part.word("added");
     for (const JsonFields& array : part.objects("arrays"))
         r.arrays.push_back(readArray(array, file));

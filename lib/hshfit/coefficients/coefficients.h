@@ -33,8 +33,9 @@ struct LeastSquaresNote {
     std::size_t samples = 0;
 };
 
-/// Basis coefficients of one BRDF for a set of outgoing directions: what a coefficient file holds.
-struct Coefficients {
+/// Everything that coefficients say of themselves but their values. Coefficients, compressed
+/// representations and texels carry one and hand it on as a whole.
+struct CoefficientHead {
     std::string basis;
     int order = 0;
     bool condonShortley = false;
@@ -43,8 +44,6 @@ struct Coefficients {
     OutgoingSet outgoing;
     bool isotropic = false, bilateral = false, reciprocal = false;
 
-    /// [outgoing][channel][slot]; slot l(l+1)+m, order^2 of them.
-    std::vector<double> values;
     /// Energy in the inner product of the basis, summed over channels and, with their solid angles,
     /// over the outgoing directions (Eq. 15's denominator).
     Energy energy;
@@ -59,6 +58,13 @@ struct Coefficients {
     std::optional<LeastSquaresNote> leastSquares = {};
 
     std::size_t slots() const { return static_cast<std::size_t>(order) * order; }
+};
+
+/// Basis coefficients of one BRDF for a set of outgoing directions: what a coefficient file holds.
+struct Coefficients : CoefficientHead {
+    /// [outgoing][channel][slot]; slot l(l+1)+m, order^2 of them.
+    std::vector<double> values = {};
+
     const double* at(std::size_t outgoingIndex, std::size_t channel) const {
         return values.data() + (outgoingIndex * channels.count() + channel) * slots();
     }

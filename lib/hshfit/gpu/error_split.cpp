@@ -122,8 +122,8 @@ ErrorSplit splitError(const Brdf& f, const Coefficients& coefficients, const Pay
 std::optional<BasisTextureError> basisTextureError(const Payload& payload) {
     if (!payload.basisTexels) return std::nullopt;
     const Texels& texture = *payload.basisTexels;
-    const auto basis =
-        bases::make(payload.basis, payload.order, {.condonShortley = payload.condonShortley});
+    const auto basis = bases::make(payload.head.basis, payload.head.order,
+                                   {.condonShortley = payload.head.condonShortley});
     const OutgoingSet map = OutgoingSet::parabolic(texture.width, texture.height);
     const std::vector<double> values = decode(texture);
     const std::size_t pixels = map.size();

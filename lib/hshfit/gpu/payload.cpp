@@ -60,11 +60,11 @@ std::vector<StoredChannel> storedChannels(const Payload& payload, const PackOpti
     std::size_t layer = 0;
     const std::vector<std::string> names = options.luminanceChroma
                                                ? std::vector<std::string>{"Y", "Co", "Cg"}
-                                               : payload.channels.names();
+                                               : payload.head.channels.names();
     for (std::size_t c = 0; c < names.size(); ++c) {
         const bool cut = options.luminanceChroma && c > 0 && options.chromaOrder > 0;
-        const int end =
-            cut ? options.chromaOrder * options.chromaOrder : payload.order * payload.order;
+        const int end = cut ? options.chromaOrder * options.chromaOrder
+                            : payload.head.order * payload.head.order;
         const auto kept = std::lower_bound(payload.slots.begin(), payload.slots.end(), end) -
                           payload.slots.begin();
         stored.push_back({names[c], static_cast<std::size_t>(kept),
@@ -168,27 +168,16 @@ std::string packingName(Packing packing) {
 }
 
 bool Payload::marked() const {
-    return outgoing.map == OutgoingSet::Map::parabolic && outgoing.width >= 8 &&
-           outgoing.height >= 8 && !isNormalised(coefficients.number);
+    const OutgoingSet& set = head.outgoing;
+    return set.map == OutgoingSet::Map::parabolic && set.width >= 8 && set.height >= 8 &&
+           !isNormalised(coefficients.number);
 }
 
 Payload pack(const Coefficients& c, const PackOptions& options) {
     checkOptions(c, options);
     const auto basis = bases::make(c.basis, c.order, {.condonShortley = c.condonShortley});
     Payload payload;
-    payload.basis = c.basis;
-    payload.order = c.order;
-    payload.condonShortley = c.condonShortley;
-    payload.quantity = c.quantity;
-    payload.channels = c.channels;
-    payload.isotropic = c.isotropic;
-    payload.bilateral = c.bilateral;
-    payload.reciprocal = c.reciprocal;
-    payload.outgoing = c.outgoing;
-    payload.energy = c.energy;
-    payload.error = c.error;
-    payload.source = c.source;
-    payload.generator = c.generator;
+    payload.head = c;
     payload.packing = options.packing;
     payload.slots = storedSlots(c, *basis);
     payload.stored = storedChannels(payload, options);
@@ -211,25 +200,8 @@ Payload pack(const Coefficients& c, const PackOptions& options) {
     return payload;
 }
 
-Coefficients headOf(const Payload& payload) {
-    return {.basis = payload.basis,
-            .order = payload.order,
-            .condonShortley = payload.condonShortley,
-            .quantity = payload.quantity,
-            .channels = payload.channels,
-            .outgoing = payload.outgoing,
-            .isotropic = payload.isotropic,
-            .bilateral = payload.bilateral,
-            .reciprocal = payload.reciprocal,
-            .values = {},
-            .energy = payload.energy,
-            .error = payload.error,
-            .source = payload.source,
-            .generator = payload.generator};
-}
-
 Coefficients unpack(const Payload& payload) {
-    Coefficients c = headOf(payload);
+    Coefficients c{payload.head};
     std::vector<double> texels = decode(payload.coefficients);
     const std::size_t pixels = c.outgoing.size(),
                       width = static_cast<std::size_t>(c.outgoing.width);

@@ -46,16 +46,7 @@ struct StoredChannel {
 ///     elevations  r = |p|;  u = (r (N - 1/2) + 1/2)/N, v = 1/2
 ///     direction   one texel
 struct Payload {
-    std::string basis;
-    int order = 0;
-    bool condonShortley = false;
-    Quantity quantity = Quantity::brdf;
-    Channels channels;
-    bool isotropic = false, bilateral = false, reciprocal = false;
-    OutgoingSet outgoing;
-    Energy energy;
-    double error = 0;  ///< of the projection
-    std::string source, generator;
+    CoefficientHead head;
 
     Packing packing = Packing::coef4;
     /// Slots l(l+1)+m that are stored, ascending. Functions that the basis lacks are left out, and
@@ -84,9 +75,6 @@ constexpr std::size_t maxLayers = 256;
 /// anything but RGB, `rgb` packing of more than four channels; NumericError for a coefficient that
 /// is not finite or beyond the range of the number type.
 Payload pack(const Coefficients& coefficients, const PackOptions& options);
-
-/// What the payload says of its coefficients, without their values.
-Coefficients headOf(const Payload& payload);
 
 /// The coefficients as a GPU reads them (after rounding), in all slots and in the original
 /// channels. Marked corner texels take the value of the texel diagonally inside.

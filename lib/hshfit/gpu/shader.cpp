@@ -168,8 +168,8 @@ void setMap(const OutgoingSet& set, data& page) {
 }
 
 void setWords(const Words& words, const Payload& payload, const std::string& prefix, data& page) {
-    const bool grey = payload.channels.kind == Channels::Kind::grey;
-    const bool spectral = payload.channels.kind == Channels::Kind::spectral;
+    const bool grey = payload.head.channels.kind == Channels::Kind::grey;
+    const bool spectral = payload.head.channels.kind == Channels::Kind::spectral;
     page.set("grey", grey);
     page.set("colour", !grey && !spectral);
     page.set("spectral", spectral);
@@ -200,21 +200,21 @@ void setWords(const Words& words, const Payload& payload, const std::string& pre
 }
 
 void setHeader(const Payload& payload, int environmentOrder, data& page) {
-    page.set("generator", commentText(payload.generator));
-    page.set("source", commentText(payload.source));
-    page.set("basis", payload.basis);
-    page.set("order", std::to_string(payload.order));
+    page.set("generator", commentText(payload.head.generator));
+    page.set("source", commentText(payload.head.source));
+    page.set("basis", payload.head.basis);
+    page.set("order", std::to_string(payload.head.order));
     page.set("functionCount", std::to_string(payload.slots.size()));
-    page.set("condonShortley", payload.condonShortley);
-    page.set("channelCount", std::to_string(payload.channels.count()));
-    page.set("channelNames", fmt::format("{}", fmt::join(payload.channels.names(), " ")));
+    page.set("condonShortley", payload.head.condonShortley);
+    page.set("channelCount", std::to_string(payload.head.channels.count()));
+    page.set("channelNames", fmt::format("{}", fmt::join(payload.head.channels.names(), " ")));
     page.set("packing", packingName(payload.packing));
     page.set("layers", std::to_string(payload.coefficients.layers));
     page.set("number", numberName(payload.coefficients.number));
-    page.set("cosine", payload.quantity == Quantity::brdfCosine);
+    page.set("cosine", payload.head.quantity == Quantity::brdfCosine);
     const auto slots = static_cast<std::size_t>(environmentOrder * environmentOrder);
     page.set("environmentCount", std::to_string(slots));
-    page.set("environmentNumbers", std::to_string(slots * payload.channels.count()));
+    page.set("environmentNumbers", std::to_string(slots * payload.head.channels.count()));
 }
 
 void setCost(const std::string& name, const ShaderCost& cost, data& page) {
@@ -272,12 +272,12 @@ std::string shaderSource(Language language, const Payload& payload, const Shader
     checkOptions(options);
     checkPayload(language, payload);
     const Words words = wordsOf(language, options.prefix);
-    const auto basis =
-        bases::make(payload.basis, payload.order, {.condonShortley = payload.condonShortley});
+    const auto basis = bases::make(payload.head.basis, payload.head.order,
+                                   {.condonShortley = payload.head.condonShortley});
     data page;
     setWords(words, payload, options.prefix, page);
     setHeader(payload, options.environmentOrder, page);
-    setMap(payload.outgoing, page);
+    setMap(payload.head.outgoing, page);
     ShaderCost eval, shade;
     setBasis(payload, *basis, page, eval);
     setEvaluation(payload, page, eval);

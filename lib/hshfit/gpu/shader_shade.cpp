@@ -23,7 +23,7 @@ using Weights = std::map<std::size_t, std::vector<EnvironmentElement>>;
 
 Weights weightsOf(const Payload& payload, const Basis& basis, int environmentOrder) {
     Weights weights;
-    for (const auto& element : environmentMatrix(basis, environmentOrder, payload.quantity)) {
+    for (const auto& element : environmentMatrix(basis, environmentOrder, payload.head.quantity)) {
         const auto at = std::lower_bound(payload.slots.begin(), payload.slots.end(), element.slot);
         if (at == payload.slots.end() || *at != element.slot) continue;
         weights[static_cast<std::size_t>(at - payload.slots.begin())].push_back(element);
@@ -39,7 +39,7 @@ data environmentData(const Payload& payload, const Weights& weights, std::size_t
     std::set<int> needed;
     for (const auto& [j, elements] : weights)
         for (const EnvironmentElement& element : elements) needed.insert(element.environment);
-    const bool elevations = payload.outgoing.map == OutgoingSet::Map::elevations;
+    const bool elevations = payload.head.outgoing.map == OutgoingSet::Map::elevations;
     data rows = list();
     for (const int slot : needed) {
         const int m = bandOf(slot).m;
@@ -162,8 +162,8 @@ data rgbLookups(const Payload& payload, const Weights& weights, const Pass& pass
 void setShading(const Payload& payload, const Basis& basis, int environmentOrder, bool flat,
                 data& page, ShaderCost& cost) {
     const Weights weights = weightsOf(payload, basis, environmentOrder);
-    const bool colours = payload.channels.kind != Channels::Kind::spectral;
-    const std::size_t lights = colours ? 3 : payload.channels.count();
+    const bool colours = payload.head.channels.kind != Channels::Kind::spectral;
+    const std::size_t lights = colours ? 3 : payload.head.channels.count();
     data passes = list();
     for (std::size_t first = 0; first < lights; first += colours ? 3 : 1) {
         Pass pass{{first}, colours};
@@ -199,8 +199,8 @@ void setShading(const Payload& payload, const Basis& basis, int environmentOrder
     page.set("shadeSums", sums);
     page.set("shadeOutputs", outputs);
     data turns = list();
-    if (payload.outgoing.map == OutgoingSet::Map::elevations) {
-        for (int m = 2; m < std::min(payload.order, environmentOrder); ++m) {
+    if (payload.head.outgoing.map == OutgoingSet::Map::elevations) {
+        for (int m = 2; m < std::min(payload.head.order, environmentOrder); ++m) {
             data turn;
             turn.set("m", std::to_string(m));
             turn.set("before", std::to_string(m - 1));

@@ -34,7 +34,7 @@ using kainjow::mustache::data;
 constexpr int exactSamples = 32;
 
 std::string paneName(const Payload& payload) {
-    std::string name = payload.basis;
+    std::string name = payload.head.basis;
     std::transform(name.begin(), name.end(), name.begin(),
                    [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
     return name;
@@ -56,7 +56,7 @@ Payload shownPayload(Payload payload) {
 
 /// The band of every lane; one beyond all orders for lanes that hold nothing.
 std::vector<int> bandsOf(const Payload& payload) {
-    std::vector<int> bands(payload.coefficients.layers * 4, payload.order);
+    std::vector<int> bands(payload.coefficients.layers * 4, payload.head.order);
     for (std::size_t c = 0; c < payload.stored.size(); ++c) {
         for (std::size_t j = 0; j < payload.stored[c].slots; ++j) {
             const auto [layer, lane] = payload.place(c, j);
@@ -70,13 +70,13 @@ Json fitJson(const Payload& given, std::size_t index, int environmentOrder) {
     const Payload payload = shownPayload(given);
     const std::string prefix = fmt::format("fit{}", index + 1);
     return {{"name", paneName(payload)},
-            {"order", payload.order},
+            {"order", payload.head.order},
             {"width", payload.coefficients.width},
             {"height", payload.coefficients.height},
             {"layers", payload.coefficients.layers},
             {"bands", bandsOf(payload)},
-            {"hasCosine", payload.quantity == Quantity::brdfCosine},
-            {"oddSign", payload.condonShortley ? -1 : 1},
+            {"hasCosine", payload.head.quantity == Quantity::brdfCosine},
+            {"oddSign", payload.head.condonShortley ? -1 : 1},
             {"prefix", prefix},
             {"sampler", prefix + "_coefficients"},
             {"shader", shaderSource(Language::glslEs, payload,
@@ -136,8 +136,9 @@ data notesOf(const ViewerInput& input) {
     notes.push_back(fmt::format(
         "{} of {}, outgoing directions {}; half floats, and the shader as it is exported. No "
         "shadows and no light from one part to another.",
-        first.quantity == Quantity::brdf ? "f" : "f cos θi",
-        first.source.empty() ? "an unnamed source" : first.source, first.outgoing.spec()));
+        first.head.quantity == Quantity::brdf ? "f" : "f cos θi",
+        first.head.source.empty() ? "an unnamed source" : first.head.source,
+        first.head.outgoing.spec()));
     return notes;
 }
 
@@ -147,10 +148,10 @@ void check(const ViewerInput& input) {
                                      input.payloads.size()));
     }
     for (const Payload& payload : input.payloads) {
-        if (payload.channels.kind != Channels::Kind::spectral) continue;
+        if (payload.head.channels.kind != Channels::Kind::spectral) continue;
         throw UsageError(
             fmt::format("{}: the viewer shows grey or RGB; project the spectral BRDF with {}",
-                        payload.source, Call{.function = "asRgb"}));
+                        payload.head.source, Call{.function = "asRgb"}));
     }
     if (input.environmentOrder < 2 || input.environmentOrder > 10) {
         throw UsageError(fmt::format("an environment of {} bands; the viewer takes 2 to 10",
@@ -163,12 +164,12 @@ void check(const ViewerInput& input) {
 std::string viewerPage(const ViewerInput& input) {
     check(input);
     const Payload& first = input.payloads.front();
-    Json document = {{"order", first.order}, {"skyOrder", input.environmentOrder}};
+    Json document = {{"order", first.head.order}, {"skyOrder", input.environmentOrder}};
     std::string names;
     for (std::size_t i = 0; i < input.payloads.size(); ++i) {
         document["fits"].push_back(fitJson(input.payloads[i], i, input.environmentOrder));
         names += (i > 0 ? " and " : "") + paneName(input.payloads[i]);
-        document["order"] = std::max(document["order"].get<int>(), input.payloads[i].order);
+        document["order"] = std::max(document["order"].get<int>(), input.payloads[i].head.order);
     }
     document["exact"] = exactJson(input);
     document["shaders"] = shadersJson();
@@ -181,8 +182,8 @@ std::string viewerPage(const ViewerInput& input) {
     data page;
     page.set("title", input.title);
     page.set("names", names);
-    page.set("summary",
-             fmt::format("{} up to order {}, next to the material itself", names, first.order));
+    page.set("summary", fmt::format("{} up to order {}, next to the material itself", names,
+                                    first.head.order));
     page.set("generator", std::string("hshfit ") + version);
     page.set("order", std::to_string(document["order"].get<int>()));
     page.set("style", std::string(embedded::viewer_style));

@@ -13,13 +13,13 @@ namespace {
 /// SH, or HSH where SH are given, as far as the basis goes.
 Payload inOtherBasis(const Payload& payload, const Brdf& source,
                      std::function<void(std::size_t, std::size_t)> progress) {
-    const char* name = payload.basis == "sh" ? "hsh" : "sh";
-    const int order = std::min(payload.order, bases::find(name).maxOrder);
-    const auto basis = bases::make(name, order, {.condonShortley = payload.condonShortley});
+    const char* name = payload.head.basis == "sh" ? "hsh" : "sh";
+    const int order = std::min(payload.head.order, bases::find(name).maxOrder);
+    const auto basis = bases::make(name, order, {.condonShortley = payload.head.condonShortley});
     const Basis* const one[] = {basis.get()};
     const auto projections =
-        project(source, one, payload.outgoing,
-                {.quantity = payload.quantity, .progress = std::move(progress)});
+        project(source, one, payload.head.outgoing,
+                {.quantity = payload.head.quantity, .progress = std::move(progress)});
     return pack(projections[0].coefficients, {});
 }
 
@@ -28,7 +28,7 @@ Payload inOtherBasis(const Payload& payload, const Brdf& source,
 ViewerInput viewerInput(Payload payload, const Brdf* source,
                         std::function<void(std::size_t, std::size_t)> progress) {
     ViewerInput input;
-    input.title = payload.source.empty() ? "Coefficients" : payload.source;
+    input.title = payload.head.source.empty() ? "Coefficients" : payload.head.source;
     input.payloads.push_back(std::move(payload));
     if (!source) return input;
     try {

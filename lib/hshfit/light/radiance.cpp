@@ -73,7 +73,7 @@ Radiance fromRows(const Coefficients& rows, const BasisLight& light, const Views
 }
 
 Radiance fromMatrix(const Representation& matrix, const BasisLight& light, const Views& views) {
-    const Coefficients& head = matrix.head;
+    const CoefficientHead& head = matrix.head;
     const auto basis = bases::make(head.basis, head.order, {.condonShortley = head.condonShortley});
     const ProductSymmetry symmetry = symmetryOf(matrix);
     const std::vector<ProductTerm> terms = productTerms(*basis, symmetry);

@@ -46,7 +46,6 @@ Representation gathered(const Coefficients& c, const Basis& basis, bool reciproc
     Representation result;
     result.kind = Representation::Kind::basis;
     result.head = c;
-    result.head.values.clear();
     result.head.outgoing = {};
     result.head.reciprocal = reciprocal;
     const ProductSymmetry symmetry = symmetryOf(result);

@@ -171,8 +171,8 @@ void gather(const Coefficients& c, const Basis& basis, const std::vector<Product
 }
 
 /// What the rings have in common, with their energies added up.
-Coefficients headOf(const std::vector<Projection>& rings) {
-    Coefficients head = rings[0].coefficients;
+CoefficientHead headOf(const std::vector<Projection>& rings) {
+    CoefficientHead head = rings[0].coefficients;
     for (std::size_t r = 1; r < rings.size(); ++r) {
         const Coefficients& c = rings[r].coefficients;
         head.energy.value += c.energy.value;
@@ -183,7 +183,6 @@ Coefficients headOf(const std::vector<Projection>& rings) {
         }
         head.error = std::max(head.error, c.error);
     }
-    head.values.clear();
     head.outgoing = {};
     return head;
 }
@@ -311,7 +310,7 @@ Representation projectBoth(const Brdf& brdf, const Basis& basis, bool reciprocal
 
 std::vector<double> matrixValues(const Representation& matrix) {
     if (matrix.has("matrix")) return matrix.array("matrix").values;
-    const Coefficients& head = matrix.head;
+    const CoefficientHead& head = matrix.head;
     const auto basis = bases::make(head.basis, head.order, {.condonShortley = head.condonShortley});
     return multipliedOut(matrix, productTerms(*basis, symmetryOf(matrix)));
 }

@@ -13,7 +13,7 @@ namespace {
 
 /// In slots, as many rows as there are, with the L2 norm over the hemisphere as Euclidean norm.
 void whitenRows(const Representation& representation, std::vector<double>& rows) {
-    const Coefficients& head = representation.head;
+    const CoefficientHead& head = representation.head;
     const auto basis = bases::make(head.basis, head.order, {.condonShortley = head.condonShortley});
     const HemisphereGram gram(*basis);
     if (gram.identity()) return;
@@ -22,7 +22,7 @@ void whitenRows(const Representation& representation, std::vector<double>& rows)
 
 /// Terms as a matrix of slots for wo and wi, whitened on both sides.
 std::vector<double> whitenedTerms(const Representation& representation) {
-    const Coefficients& head = representation.head;
+    const CoefficientHead& head = representation.head;
     const auto basis = bases::make(head.basis, head.order, {.condonShortley = head.condonShortley});
     const HemisphereGram gram(*basis);
     std::vector<double> values = matrixValues(representation);
@@ -73,7 +73,7 @@ std::vector<double> changeWeights(const Representation& representation) {
     if (representation.kind != Representation::Kind::outgoing) {
         return std::vector<double>(valuesOf(representation).size(), 1.0);
     }
-    const Coefficients& head = representation.head;
+    const CoefficientHead& head = representation.head;
     const std::size_t perDirection = head.channels.count() * head.slots();
     std::vector<double> weights(head.outgoing.size() * perDirection);
     for (std::size_t i = 0; i < weights.size(); ++i) {

@@ -108,7 +108,6 @@ std::string_view kindName(Representation::Kind kind) {
 Representation fromCoefficients(const Coefficients& c) {
     Representation result;
     result.head = c;
-    result.head.values.clear();
     result.slots = usedSlots(c);
     StoredArray array{.name = "coefficients",
                       .shape = {c.outgoing.size(), c.channels.count(), result.slots.size()},
@@ -127,7 +126,7 @@ Coefficients decoded(const Representation& representation) {
                         "direction; project it anew",
                         representation.head.source, kindName(representation.kind)));
     }
-    Coefficients result = representation.head;
+    Coefficients result{representation.head};
     const bool whole = representation.has("coefficients");
     const std::vector<double> values =
         whole ? representation.array("coefficients").values

@@ -40,9 +40,8 @@ struct Representation {
     enum class Kind { outgoing, basis, halfway };
 
     Kind kind = Kind::outgoing;
-    /// Everything but `values`. `outgoing` is empty unless the kind is `outgoing`; `quantity` is
-    /// brdf for halfway.
-    Coefficients head;
+    /// `outgoing` is empty unless the kind is `outgoing`; `quantity` is brdf for halfway.
+    CoefficientHead head;
     std::vector<int> slots;  ///< the stored slots, ascending (kind outgoing)
     HalfwayOrders halfway = {};
     std::string added;

@@ -101,7 +101,7 @@ TEST(IndependentReaders, NumpyEvaluatesTheTestsFromBinAndSidecar) {
         std::string sidecars;
         std::size_t count = 0;
         for (std::size_t i = 0; i < exported.samples.size(); ++i) {
-            if (exported.samples[i].payload.basis != "hsh") continue;
+            if (exported.samples[i].payload.head.basis != "hsh") continue;
             sidecars += fmt::format(" '{}'", exported.folder / (exported.names[i] + ".hsh.json"));
             ++count;
         }
@@ -222,7 +222,8 @@ TEST(IndependentReaders, JavaScriptImportsTheModule) {
         exported.expectTexelsIn(".raw");
         const auto said = documents(answer.out, exported.samples.size());
         for (std::size_t i = 0; i < said.size(); ++i) {
-            EXPECT_EQ(said[i]["metadata"]["source"]["brdf"], exported.samples[i].payload.source);
+            EXPECT_EQ(said[i]["metadata"]["source"]["brdf"],
+                      exported.samples[i].payload.head.source);
             EXPECT_EQ(said[i]["type"], types[static_cast<int>(number)]);
         }
     }

@@ -34,27 +34,27 @@ void expectSameTexels(const Texels& a, const Texels& b) {
 }
 
 void expectSame(const Payload& a, const Payload& b) {
-    EXPECT_EQ(a.basis, b.basis);
-    EXPECT_EQ(a.order, b.order);
-    EXPECT_EQ(a.condonShortley, b.condonShortley);
-    EXPECT_EQ(a.quantity, b.quantity);
-    EXPECT_EQ(a.channels.kind, b.channels.kind);
-    EXPECT_EQ(a.channels.wavelengths, b.channels.wavelengths);
-    EXPECT_EQ(a.isotropic, b.isotropic);
-    EXPECT_EQ(a.bilateral, b.bilateral);
-    EXPECT_EQ(a.reciprocal, b.reciprocal);
-    EXPECT_EQ(a.outgoing.map, b.outgoing.map);
-    ASSERT_EQ(a.outgoing.size(), b.outgoing.size());
-    for (std::size_t i = 0; i < a.outgoing.size(); ++i) {
-        EXPECT_EQ(a.outgoing.directions[i].x, b.outgoing.directions[i].x);
-        EXPECT_EQ(a.outgoing.directions[i].y, b.outgoing.directions[i].y);
-        EXPECT_EQ(a.outgoing.directions[i].z, b.outgoing.directions[i].z);
+    EXPECT_EQ(a.head.basis, b.head.basis);
+    EXPECT_EQ(a.head.order, b.head.order);
+    EXPECT_EQ(a.head.condonShortley, b.head.condonShortley);
+    EXPECT_EQ(a.head.quantity, b.head.quantity);
+    EXPECT_EQ(a.head.channels.kind, b.head.channels.kind);
+    EXPECT_EQ(a.head.channels.wavelengths, b.head.channels.wavelengths);
+    EXPECT_EQ(a.head.isotropic, b.head.isotropic);
+    EXPECT_EQ(a.head.bilateral, b.head.bilateral);
+    EXPECT_EQ(a.head.reciprocal, b.head.reciprocal);
+    EXPECT_EQ(a.head.outgoing.map, b.head.outgoing.map);
+    ASSERT_EQ(a.head.outgoing.size(), b.head.outgoing.size());
+    for (std::size_t i = 0; i < a.head.outgoing.size(); ++i) {
+        EXPECT_EQ(a.head.outgoing.directions[i].x, b.head.outgoing.directions[i].x);
+        EXPECT_EQ(a.head.outgoing.directions[i].y, b.head.outgoing.directions[i].y);
+        EXPECT_EQ(a.head.outgoing.directions[i].z, b.head.outgoing.directions[i].z);
     }
-    EXPECT_EQ(a.energy.finite, b.energy.finite);
-    EXPECT_EQ(a.energy.reason, b.energy.reason);
-    EXPECT_EQ(a.error, b.error);
-    EXPECT_EQ(a.source, b.source);
-    EXPECT_EQ(a.generator, b.generator);
+    EXPECT_EQ(a.head.energy.finite, b.head.energy.finite);
+    EXPECT_EQ(a.head.energy.reason, b.head.energy.reason);
+    EXPECT_EQ(a.head.error, b.head.error);
+    EXPECT_EQ(a.head.source, b.head.source);
+    EXPECT_EQ(a.head.generator, b.head.generator);
     EXPECT_EQ(a.packing, b.packing);
     EXPECT_EQ(a.slots, b.slots);
     EXPECT_EQ(a.toChannels, b.toChannels);

@@ -41,13 +41,14 @@ struct Grid {
 /// Light times weight times, if f was projected, the cosine: [colour][node].
 std::vector<double> lightOn(const Grid& grid, const ShaderJob& job) {
     const int order = job.environment.order;
-    const auto harmonics = bases::make("sh", order, {.condonShortley = job.payload.condonShortley});
+    const auto harmonics =
+        bases::make("sh", order, {.condonShortley = job.payload.head.condonShortley});
     const std::size_t slots = static_cast<std::size_t>(order * order), count = grid.x.size();
     std::vector<double> values(count * slots), light(job.lights() * count, 0.0);
     harmonics->evaluate(grid.batch(), values.data());
     for (std::size_t k = 0; k < count; ++k) {
         const double factor =
-            grid.weight[k] * (job.payload.quantity == Quantity::brdf ? grid.z[k] : 1);
+            grid.weight[k] * (job.payload.head.quantity == Quantity::brdf ? grid.z[k] : 1);
         for (std::size_t i = 0; i < job.lights(); ++i) {
             for (std::size_t j = 0; j < slots; ++j) {
                 light[i * count + k] +=
@@ -66,7 +67,8 @@ std::vector<double> tabulatedBasis(const gpu::Payload& payload, const std::vecto
     const double px = position(wi.x), py = position(wi.y);
     const int x = std::clamp(static_cast<int>(px), 0, side - 2);
     const int y = std::clamp(static_cast<int>(py), 0, side - 2);
-    std::vector<double> values(static_cast<std::size_t>(payload.order * payload.order), 0.0);
+    std::vector<double> values(static_cast<std::size_t>(payload.head.order * payload.head.order),
+                               0.0);
     for (std::size_t j = 0; j < payload.slots.size(); ++j) {
         const auto at = [&](int i, int k) {
             const std::size_t layer = j / 4, s = static_cast<std::size_t>(side);
@@ -122,14 +124,14 @@ Environment randomEnvironment(int order, std::size_t colours) {
 }
 
 ShaderJob makeJob(gpu::Payload payload, int environmentOrder) {
-    const bool spectral = payload.channels.kind == Channels::Kind::spectral;
-    const std::size_t colours = spectral ? payload.channels.count() : 3;
+    const bool spectral = payload.head.channels.kind == Channels::Kind::spectral;
+    const std::size_t colours = spectral ? payload.head.channels.count() : 3;
     return {std::move(payload), directionPairs(), randomEnvironment(environmentOrder, colours)};
 }
 
 std::vector<double> reference(const ShaderJob& job) {
     const Reconstruction sums(gpu::unpack(job.payload));
-    const Grid grid(job.payload.order + job.environment.order);
+    const Grid grid(job.payload.head.order + job.environment.order);
     const std::vector<double> light = lightOn(grid, job);
     const std::size_t nodes = grid.x.size(), channels = job.channels();
     std::vector<double> texels;

@@ -34,7 +34,7 @@ struct ShaderJob {
     Pairs pairs;
     Environment environment;
 
-    std::size_t channels() const { return payload.channels.count(); }
+    std::size_t channels() const { return payload.head.channels.count(); }
     std::size_t lights() const { return environment.colours; }
     /// Per pair: evalRaw and eval for every channel, shade for every colour.
     std::size_t outputs() const { return 2 * channels() + lights(); }

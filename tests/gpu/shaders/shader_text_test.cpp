@@ -105,8 +105,8 @@ TEST(ShaderText, PrefixesKeepSnippetsApart) {
 
 TEST(ShaderText, NamesFromFilesCannotLeaveTheComment) {
     Payload payload = small();
-    payload.source = "a\nint broken;\r\n\\\n*/ \xe2\x80\xa8 end \\";
-    payload.generator = "x\\\ny";
+    payload.head.source = "a\nint broken;\r\n\\\n*/ \xe2\x80\xa8 end \\";
+    payload.head.generator = "x\\\ny";
     for (const gpu::LanguageEntry& entry : gpu::languages()) {
         const std::string text = shaderSource(entry.language, payload, {});
         const std::string first = text.substr(0, text.find('\n'));

@@ -142,8 +142,8 @@ std::vector<float> inputNumbers(const ShaderJob& job) {
 
 std::string wrapped(gpu::Language language, const ShaderJob& job, const std::string& snippet) {
     using kainjow::mustache::data;
-    const bool grey = job.payload.channels.kind == Channels::Kind::grey;
-    const bool spectral = job.payload.channels.kind == Channels::Kind::spectral;
+    const bool grey = job.payload.head.channels.kind == Channels::Kind::grey;
+    const bool spectral = job.payload.head.channels.kind == Channels::Kind::spectral;
     const Types types = typesOf(language);
     data page;
     page.set("snippet", snippet);

@@ -53,7 +53,7 @@ Pairs makePairs(std::size_t count) {
     return pairs;
 }
 
-void describe(Coefficients& head, const char* basis, int order, Quantity quantity) {
+void describe(CoefficientHead& head, const char* basis, int order, Quantity quantity) {
     head.basis = basis;
     head.order = order;
     head.quantity = quantity;

@@ -34,36 +34,17 @@ void checkVersion(const Fields& root) {
     }
 }
 
-/// What sidecars and coefficient files have in common is checked as in these.
-void readHead(const Json& document, Payload& payload, const std::string& file) {
-    Json common = {{"format", "hshfit-coefficients"}, {"version", 1}, {"tolerance", nullptr}};
-    for (const char* key :
-         {"generator", "source", "basis", "quantity", "channels", "channel_kind", "wavelengths_nm",
-          "outgoing", "symmetry", "energy", "energy_error", "energy_reason", "error"}) {
-        if (document.contains(key)) common[key] = document[key];
-    }
-    const int width = payload.coefficients.width, height = payload.coefficients.height;
-    const Coefficients head = coefficientsFromMetadata(
-        common.dump(-1, ' ', false, Json::error_handler_t::replace),
-        static_cast<std::size_t>(width) * static_cast<std::size_t>(height), file);
+/// The head, checked as in coefficient files, and against the size of the texels.
+CoefficientHead readHeadOf(const Texels& texels, const Fields& root, const std::string& file) {
+    const int width = texels.width, height = texels.height;
+    CoefficientHead head =
+        readSharedHead(root, static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     if (head.outgoing.width != width || head.outgoing.height != height) {
         throw InputError(fmt::format("{}: 'data' is {} x {}; the outgoing directions are {} x {}",
                                      file, width, height, head.outgoing.width,
                                      head.outgoing.height));
     }
-    payload.basis = head.basis;
-    payload.order = head.order;
-    payload.condonShortley = head.condonShortley;
-    payload.quantity = head.quantity;
-    payload.channels = head.channels;
-    payload.isotropic = head.isotropic;
-    payload.bilateral = head.bilateral;
-    payload.reciprocal = head.reciprocal;
-    payload.outgoing = head.outgoing;
-    payload.energy = head.energy;
-    payload.error = head.error;
-    payload.source = head.source;
-    payload.generator = head.generator;
+    return head;
 }
 
 Role readRole(const Fields& fields, const char* key) {
@@ -116,11 +97,11 @@ Texels readTexels(const Fields& data) {
 
 /// All functions of the basis, or those with m >= 0.
 void readSlots(const Fields& root, Payload& payload) {
-    const auto basis = bases::make(payload.basis, payload.order);
+    const auto basis = bases::make(payload.head.basis, payload.head.order);
     const std::vector<double> stated = root.numbers("slots");
     for (const bool sines : {true, false}) {
         payload.slots.clear();
-        for (int l = 0; l < payload.order; ++l) {
+        for (int l = 0; l < payload.head.order; ++l) {
             for (int m = sines ? -l : 0; m <= l; ++m) {
                 if (basis->has(l, m)) payload.slots.push_back(slotOf(l, m));
             }
@@ -136,15 +117,15 @@ void readSlots(const Fields& root, Payload& payload) {
 void readStored(const Fields& root, Payload& payload) {
     const std::vector<Fields> rows = root.objects("stored");
     const bool rgb = payload.packing == Packing::rgb;
-    if (rows.size() != payload.channels.count() || (rgb && rows.size() > 4)) {
-        root.fail(
-            fmt::format("has {} channels, 'channels' {}", rows.size(), payload.channels.count()),
-            "stored");
+    if (rows.size() != payload.head.channels.count() || (rgb && rows.size() > 4)) {
+        root.fail(fmt::format("has {} channels, 'channels' {}", rows.size(),
+                              payload.head.channels.count()),
+                  "stored");
     }
     const int all = static_cast<int>(payload.slots.size());
     std::size_t layer = 0;
     for (const Fields& row : rows) {
-        const bool cut = !rgb && payload.channels.kind == Channels::Kind::rgb && layer > 0;
+        const bool cut = !rgb && payload.head.channels.kind == Channels::Kind::rgb && layer > 0;
         const auto slots = static_cast<std::size_t>(row.integer("slots", cut ? 1 : all, all));
         const int first = static_cast<int>(rgb ? 0 : layer);
         row.integer("first_layer", first, first);
@@ -236,7 +217,7 @@ Payload parseSidecar(std::string_view text, const std::string& file, SidecarInde
     const Fields root(document, "", file);
     Payload payload;
     payload.coefficients = std::move(index.coefficients);
-    readHead(document, payload, file);
+    payload.head = readHeadOf(payload.coefficients, root, file);
     const Fields data = root.object("data");
     payload.packing = readPacking(data);
     readSlots(root, payload);
@@ -249,7 +230,7 @@ Payload parseSidecar(std::string_view text, const std::string& file, SidecarInde
         }
         payload.basisTexels = std::move(index.basisTexels);
     }
-    tests = readTests(root, payload.channels.count());
+    tests = readTests(root, payload.head.channels.count());
     return payload;
 }
 

@@ -38,17 +38,18 @@ std::string readable(const Json& document) {
 }
 
 Json basisJson(const Payload& payload) {
-    const bases::Entry& entry = bases::find(payload.basis);
-    const auto basis = entry.make(payload.order, {.condonShortley = payload.condonShortley});
+    const bases::Entry& entry = bases::find(payload.head.basis);
+    const auto basis =
+        entry.make(payload.head.order, {.condonShortley = payload.head.condonShortley});
     std::vector<int> skipped;
-    for (int l = 0; l < payload.order; ++l) {
+    for (int l = 0; l < payload.head.order; ++l) {
         for (int m = -l; m <= l; ++m) {
             if (!basis->has(l, m)) skipped.push_back(slotOf(l, m));
         }
     }
-    return {{"name", payload.basis},
-            {"order", payload.order},
-            {"condon_shortley", payload.condonShortley},
+    return {{"name", payload.head.basis},
+            {"order", payload.head.order},
+            {"condon_shortley", payload.head.condonShortley},
             {"index", "l*(l+1)+m"},
             {"definition", entry.help},
             {"paper", entry.source},
@@ -78,7 +79,7 @@ Json parabolicJson(int width, int height, const char* fill) {
 }
 
 Json mapJson(const Payload& payload) {
-    const OutgoingSet& set = payload.outgoing;
+    const OutgoingSet& set = payload.head.outgoing;
     switch (set.map) {
         case OutgoingSet::Map::parabolic: {
             Json map = parabolicJson(
@@ -181,8 +182,9 @@ Json testsJson(std::span<const TestTriple> tests) {
 
 /// Keys that say what the numbers are, taken over from the coefficient file word for word.
 void addCoefficientKeys(const Payload& payload, Json& document) {
-    for (const auto& [key, text] : metadataOf(headOf(payload))) {
+    for (const auto& [key, text] : metadataOf(payload.head)) {
         if (key == "format" || key == "version" || key == "tolerance") continue;
+        if (key == "least_squares") continue;
         document[key] = key == "basis" ? basisJson(payload) : Json::parse(text);
     }
 }
@@ -195,9 +197,9 @@ std::string sidecarText(const Payload& payload, std::span<const ExportedFile> fi
     Json document = {{"format", "hshfit-gpu"}, {"version", 1}};
     if (holds) document["holds"] = roleName(*holds);
     addCoefficientKeys(payload, document);
-    const bool rgb = payload.channels.kind == Channels::Kind::rgb;
+    const bool rgb = payload.head.channels.kind == Channels::Kind::rgb;
     document["colorspace"] = rgb ? Json("lin_rec709") : Json(nullptr);
-    document["cos_included"] = payload.quantity == Quantity::brdfCosine;
+    document["cos_included"] = payload.head.quantity == Quantity::brdfCosine;
     document["unit"] = "1/sr";
     document["lobe"] = "wo looks up the coefficients, wi goes into the basis";
     document["frame"] = {
@@ -233,24 +235,24 @@ std::string sidecarText(const Payload& payload, std::span<const ExportedFile> fi
 std::string testText(const Payload& payload, std::span<const TestTriple> tests) {
     return readable({{"format", "hshfit-gpu-test"},
                      {"version", 1},
-                     {"source", {{"brdf", payload.source}}},
-                     {"quantity", quantityName(payload.quantity)},
-                     {"channels", payload.channels.names()},
+                     {"source", {{"brdf", payload.head.source}}},
+                     {"quantity", quantityName(payload.head.quantity)},
+                     {"channels", payload.head.channels.names()},
                      {"value", "the sum before it is clamped, in double precision, analytic basis"},
                      {"tests", testsJson(tests)}});
 }
 
 std::vector<std::pair<std::string, std::string>> payloadFacts(const Payload& payload) {
-    return {{"basis", payload.basis},
-            {"order", std::to_string(payload.order)},
+    return {{"basis", payload.head.basis},
+            {"order", std::to_string(payload.head.order)},
             {"coefficients", std::to_string(payload.slots.size())},
             {"layout", packingName(payload.packing)},
             {"layers", std::to_string(payload.coefficients.layers)},
             {"map", mapJson(payload)["type"].get<std::string>()},
-            {"outgoing", payload.outgoing.spec()},
-            {"quantity", quantityName(payload.quantity)},
-            {"channels", fmt::format("{}", fmt::join(payload.channels.names(), " "))},
-            {"source", payload.source}};
+            {"outgoing", payload.head.outgoing.spec()},
+            {"quantity", quantityName(payload.head.quantity)},
+            {"channels", fmt::format("{}", fmt::join(payload.head.channels.names(), " "))},
+            {"source", payload.head.source}};
 }
 
 }  // namespace hshfit::gpu::inline containers

@@ -57,8 +57,8 @@ std::vector<TestTriple> testTriples(const Payload& payload) {
     const Reconstruction sum(unpack(payload));
     std::vector<TestTriple> triples = pairs();
     for (TestTriple& triple : triples) {
-        if (payload.outgoing.map == OutgoingSet::Map::direction) {
-            const Direction& d = payload.outgoing.directions[0];
+        if (payload.head.outgoing.map == OutgoingSet::Map::direction) {
+            const Direction& d = payload.head.outgoing.directions[0];
             triple.wo = {static_cast<double>(static_cast<float>(d.x)),
                          static_cast<double>(static_cast<float>(d.y)),
                          static_cast<double>(static_cast<float>(d.z))};

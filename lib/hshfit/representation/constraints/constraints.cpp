@@ -28,7 +28,7 @@ void requirePlain(const Representation& representation, const Setting& setting) 
 }
 
 std::unique_ptr<Basis> basisOf(const Representation& representation) {
-    const Coefficients& head = representation.head;
+    const CoefficientHead& head = representation.head;
     return bases::make(head.basis, head.order, {.condonShortley = head.condonShortley});
 }
 

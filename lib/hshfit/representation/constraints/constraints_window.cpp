@@ -40,7 +40,7 @@ std::vector<BandedNumber> numbersOfOutgoing(Representation& representation) {
 }
 
 std::vector<BandedNumber> numbersOfMatrix(Representation& representation) {
-    const Coefficients& head = representation.head;
+    const CoefficientHead& head = representation.head;
     const auto basis = bases::make(head.basis, head.order, {.condonShortley = head.condonShortley});
     const std::vector<ProductTerm> terms = productTerms(*basis, symmetryOf(representation));
     StoredArray& array = representation.arrays[0];

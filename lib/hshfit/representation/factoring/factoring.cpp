@@ -220,7 +220,7 @@ std::vector<Index> ranksOf(const std::vector<FactoredBlock>& blocks, const Facto
 }
 
 Representation factoredMatrix(Representation result, const FactorOptions& options) {
-    const Coefficients& head = result.head;
+    const CoefficientHead& head = result.head;
     const auto basis = bases::make(head.basis, head.order, {.condonShortley = head.condonShortley});
     const std::vector<ProductTerm> terms = productTerms(*basis, symmetryOf(result));
     const std::vector<TermBlock> parts = termBlocks(terms, symmetryOf(result));

@@ -69,7 +69,7 @@ Representation projected(ProjectionSource& source, const Form& form) {
 /// Weights of an array's values in the norm of `relativeChange`, where they stand one for one.
 std::vector<double> arrayWeights(const Representation& representation, const StoredArray& array) {
     if (array.name != "coefficients") return {};
-    const Coefficients& head = representation.head;
+    const CoefficientHead& head = representation.head;
     const std::size_t perDirection = array.values.size() / head.outgoing.size();
     std::vector<double> weights(array.values.size());
     for (std::size_t i = 0; i < weights.size(); ++i) {

@@ -17,7 +17,7 @@ std::size_t paddedTo(std::size_t count) {
     return (count + pairPadding - 1) / pairPadding * pairPadding;
 }
 
-std::unique_ptr<Basis> basisOf(const Coefficients& head) {
+std::unique_ptr<Basis> basisOf(const CoefficientHead& head) {
     return bases::make(head.basis, head.order, {.condonShortley = head.condonShortley});
 }
 
@@ -66,7 +66,7 @@ std::size_t blockFor(std::size_t slots, std::size_t pairs) {
 
 class Linear : public PairEvaluator {
 public:
-    explicit Linear(const Coefficients& head)
+    explicit Linear(const CoefficientHead& head)
         : basis_(basisOf(head)),
           channels_(head.channels.count()),
           cosine_(head.quantity == Quantity::brdfCosine) {}

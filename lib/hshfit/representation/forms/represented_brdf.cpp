@@ -18,7 +18,7 @@ class Represented : public RepresentedBrdf {
 public:
     Represented(Representation representation, const BrdfOpener& open)
         : representation_(std::move(representation)) {
-        const Coefficients& head = representation_.head;
+        const CoefficientHead& head = representation_.head;
         laws_.isotropic = head.isotropic;
         laws_.mirrorSymmetric = head.bilateral;
         laws_.reciprocal = representation_.kind != Representation::Kind::outgoing &&

@@ -21,8 +21,8 @@ constexpr double settled = 0.02;
 /// Of the mean of the diagonal, where orders are ranked.
 constexpr double rankRegularisation = 1e-6;
 
-Coefficients headFor(const Brdf& brdf, bool reciprocal) {
-    Coefficients head;
+CoefficientHead headFor(const Brdf& brdf, bool reciprocal) {
+    CoefficientHead head;
     head.channels = brdf.channels();
     head.isotropic = brdf.laws().isotropic;
     head.bilateral = brdf.laws().mirrorSymmetric || (reciprocal && brdf.laws().isotropic);
@@ -143,7 +143,7 @@ double halfwayError(const Brdf& brdf, const Representation& representation) {
 
 HalfwayOrders chooseHalfwayOrders(const Brdf& brdf, std::size_t bytes, Precision precision,
                                   const ProjectionOptions& options, bool reciprocal) {
-    const Coefficients head = headFor(brdf, reciprocal);
+    const CoefficientHead head = headFor(brdf, reciprocal);
     const HalfwaySymmetry symmetry = halfwaySymmetryOf(head);
     const std::size_t channels = head.channels.count();
     std::size_t most = 0;

@@ -146,7 +146,7 @@ void HalfwayTerms::evaluate(const HalfwayPoint& point, double* out) const {
     }
 }
 
-HalfwaySymmetry halfwaySymmetryOf(const Coefficients& head) {
+HalfwaySymmetry halfwaySymmetryOf(const CoefficientHead& head) {
     return {head.isotropic, head.bilateral, head.reciprocal};
 }
 

@@ -74,6 +74,6 @@ private:
 };
 
 /// What a representation of kind halfway leaves out by its head.
-HalfwaySymmetry halfwaySymmetryOf(const Coefficients& head);
+HalfwaySymmetry halfwaySymmetryOf(const CoefficientHead& head);
 
 }  // namespace hshfit::inline representation::inline halfway
