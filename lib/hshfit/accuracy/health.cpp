@@ -56,7 +56,7 @@ bool isCovered(const Brdf& brdf, const Direction& wi, const Direction& wo) {
     return covered != 0;
 }
 
-/// What one pair contributes; summed in order afterwards.
+/// Contribution of one pair; summed in order afterwards.
 struct PairResult {
     bool used = false, covered = false;
     std::uint64_t negative = 0, notFinite = 0;

@@ -9,8 +9,8 @@
 
 namespace hshfit::inline accuracy {
 
-/// What is right and wrong with a BRDF, from evaluating it. Deterministic: the same for any number
-/// of threads.
+/// The health of a BRDF, measured by evaluating it. Deterministic: the same for any number of
+/// threads.
 struct Health {
     /// Direction pairs evaluated: half of them uniform over both hemispheres, half by half and
     /// difference angles with theta_h crowded towards 0, where lobes are.

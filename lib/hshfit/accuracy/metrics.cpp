@@ -22,8 +22,8 @@ struct Sample {
     double clamped() const { return std::max(g, 0.0); }
 };
 
-/// How a metric comes about: the ratio of two sums over samples, then `finish`. Metrics that are
-/// not of this form (maximum, albedo, reciprocity) have no `term` and are computed apart.
+/// A metric as the ratio of two sums over samples, then `finish`. Metrics that are not of this form
+/// (maximum, albedo, reciprocity) have no `term` and are computed apart.
 struct Formula {
     Metric metric;
     double (*term)(const Sample&);
@@ -175,7 +175,7 @@ Sums sumOver(const PairEvaluator& pair, const Direction& wo, const HemisphereGri
     return sums;
 }
 
-/// Reciprocity is a matter of g alone: pairs of 24 directions spread over the hemisphere.
+/// Reciprocity depends on g alone: pairs of 24 directions spread over the hemisphere.
 double reciprocityDefect(const Brdf& g) {
     constexpr int count = 24;
     std::vector<Direction> directions;
@@ -255,7 +255,7 @@ LevelValues valuesAt(const Brdf& f, const Brdf& g, const PairEvaluator& pair,
     return result;
 }
 
-/// Why integrals of f^2 and g^2 without a cosine do not exist, or empty.
+/// The reason why integrals of f^2 and g^2 without a cosine do not exist, or empty.
 std::string whyNoSquares(const Brdf& f, const Brdf& g, const OutgoingSet& outgoing) {
     for (const Brdf* brdf : {&f, &g}) {
         for (std::size_t k = 0; k < outgoing.size(); ++k) {

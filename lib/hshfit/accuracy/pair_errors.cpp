@@ -21,7 +21,7 @@ std::size_t rowOf(std::string_view name) {
     return static_cast<std::size_t>(row - catalog.begin());
 }
 
-/// Why integrals of f^2 without a cosine do not exist, from the wo of a few groups.
+/// The reason why integrals of f^2 without a cosine do not exist, from the wo of a few groups.
 std::string whyNoSquares(const Brdf& brdf, const PairSample& pairs) {
     constexpr std::size_t looks = 8;
     const std::size_t step = std::max<std::size_t>(1, pairs.wo.size() / looks);

@@ -12,7 +12,7 @@ namespace hshfit::inline accuracy {
 /// A value for each row of metricCatalog(), in its order; none where it does not exist.
 struct PairErrors {
     std::vector<std::optional<double>> values;
-    /// Standard error of the value, from the replicates; none where it says nothing (maximum,
+    /// Standard error of the value, from the replicates; none where it has no meaning (maximum,
     /// albedo, reciprocity).
     std::vector<std::optional<double>> uncertainty;
 };
@@ -40,7 +40,7 @@ public:
     };
     /// Errors of `g`, which has as many channels. On one thread.
     Result errorsOf(const Brdf& g) const;
-    /// Of values at the pairs, as from evaluateOn; albedo as far as the pairs say.
+    /// Of values at the pairs, as from evaluateOn; albedo as far as the pairs determine it.
     Result errorsOf(std::span<const double> g) const;
 
 private:

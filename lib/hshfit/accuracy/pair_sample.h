@@ -23,8 +23,8 @@ struct PairSample {
     std::vector<std::size_t> first;  ///< [group], and the number of pairs: where a group begins
     std::vector<double> x, y, z;     ///< wi of every pair
     std::vector<double> weights;
-    /// Which of `replicates` independent estimates a pair belongs to: their scatter tells how
-    /// well the mean over all pairs is known.
+    /// The number of the independent estimate, below `replicates`, that a pair belongs to. The
+    /// scatter of the estimates gives the standard error of the mean.
     std::vector<unsigned char> replicate;
     int replicates = 1;
     /// Per group, the stratum of cos(theta_o) over which albedo is integrated; empty where the

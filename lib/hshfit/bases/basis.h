@@ -46,7 +46,7 @@ public:
 
     /// Theta parts T_l^m, l = m .. order-1, for one m >= 0 at `points.size()` elevations:
     /// out[(l - m) * points.size() + p]. Functions that the basis lacks are written as 0.
-    /// Values below the smallest normal number are flushed to 0; nothing overflows.
+    /// Values below the smallest normal number are flushed to 0; there is no overflow.
     virtual void theta(int m, std::span<const Elevation<double>> points, double* out) const = 0;
     virtual void theta(int m, std::span<const Elevation<float>> points, float* out) const = 0;
 
@@ -61,7 +61,7 @@ public:
     virtual void coefficientsFromMoments(const double* moments, int order, double* out) const;
 
     /// Squared norm of the projection of f onto the first `order` bands: the sum of the squared
-    /// moments, less what a truncated Gram solve cannot hold.
+    /// moments, less the part that a truncated Gram solve drops.
     virtual double capturedEnergy(const double* moments, int order) const;
 
     /// Where a batch puts slot i at direction k.
@@ -69,8 +69,8 @@ public:
         byDirection,  ///< out[k * slots() + i]
         bySlot,       ///< out[i * directions.count + k]
     };
-    /// All functions at many directions. What a direction gets depends neither on its place in the
-    /// batch nor on the batch's size. Float: single precision throughout.
+    /// All functions at many directions. The values of a direction depend neither on its place in
+    /// the batch nor on the batch's size. Float: single precision throughout.
     virtual void tabulate(DirectionBatch directions, Layout layout, double* out) const;
     virtual void tabulate(DirectionBatch directions, Layout layout, float* out) const;
 

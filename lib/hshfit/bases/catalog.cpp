@@ -18,8 +18,8 @@ namespace hshfit::bases {
 
 namespace {
 
-/// Degree 2800: as far as values were compared with 100 digits (bases_kernels_test). The tables of
-/// the recurrence grow as the square and take 190 MB there.
+/// Degree 2800 is the highest at which values were compared with 100 digits (bases_kernels_test).
+/// The recurrence's tables grow as the square and take 190 MB there.
 constexpr int jacobiOrders = 2801;
 
 constexpr std::array table{

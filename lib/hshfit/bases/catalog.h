@@ -15,7 +15,7 @@ struct Entry {
     std::string_view name;    ///< as on the command line
     std::string_view help;    ///< one line
     std::string_view source;  ///< where the definition was published
-    int maxOrder;             ///< 2801, or less where the set is finite or the solve is
+    int maxOrder;             ///< 2801; less for a finite set or a costly solve
     bool orthonormal;         ///< in the inner product that the basis names
     std::unique_ptr<Basis> (*make)(int order, BasisOptions options);
 };

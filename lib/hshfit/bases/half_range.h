@@ -20,8 +20,7 @@ struct HalfRangeRecurrence {
 std::vector<HalfRangeRecurrence> halfRangeRecurrences(int order);
 
 /// (1 - mu^2)^{m/2} q_k(mu), k < count, to out[k * points.size() + p]; 0 below the horizon.
-/// (sin theta)^m is not rescued from underflow, which matters to no value above 1e-290 while
-/// m + count <= 200.
+/// (sin theta)^m may underflow, which changes no value above 1e-290 while m + count <= 200.
 void halfRangeTheta(const HalfRangeRecurrence& q, int m, int count,
                     std::span<const Elevation<double>> points, double* out);
 

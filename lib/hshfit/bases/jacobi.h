@@ -12,7 +12,7 @@
 
 namespace hshfit::bases {
 
-/// What tells one member of the Jacobi family from another:
+/// Parameters of a member of the Jacobi family:
 ///     T_l^m = c_m F^m W p_k(t) / p_0,  p_k orthonormal for (1-t)^alpha (1+t)^beta on [-1, 1],
 ///     l = m + k bandStep,  with F the factor below and W = sqrt(mu) or 1.
 struct JacobiFamily {
@@ -46,8 +46,8 @@ struct JacobiFamily {
 
 /// HSH, SH, ESH, Zernike and Makhotkin, by one three-term recurrence in k at fixed m.
 ///
-/// Vector kernels (kernels/) do the work: up to order 10 the plain recurrence for a few directions
-/// at once in registers, beyond it what follows.
+/// Vector kernels (bases/internal/) do the work: up to order 10 the plain recurrence for a few
+/// directions at once in registers, above it the recurrence described here.
 ///
 /// The recurrence runs in differences from the nearer end of [-1, 1] (Reinsch's form; Gentleman
 /// 1969) and takes 1 - mu or mu itself as the distance to that end, so that its rounding errors do
@@ -66,8 +66,8 @@ public:
     void tabulate(DirectionBatch directions, Layout layout, double* out) const override;
     void tabulate(DirectionBatch directions, Layout layout, float* out) const override;
 
-    /// `theta` one value at a time, without vector instructions: what the kernels are tested
-    /// against.
+    /// `theta` one value at a time, without vector instructions: the reference of the kernels'
+    /// tests.
     void thetaScalar(int m, std::span<const Elevation<double>> points, double* out) const;
     void thetaScalar(int m, std::span<const Elevation<float>> points, float* out) const;
 

@@ -13,7 +13,7 @@ using Step = JacobiBasis::Step;
 
 constexpr std::size_t blockSize = 64;
 
-/// What a point brings into the recurrence.
+/// Inputs of the recurrence for one point.
 struct Place {
     double base;    ///< F^2
     double weight;  ///< W

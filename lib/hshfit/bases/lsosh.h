@@ -12,10 +12,10 @@ namespace hshfit::bases {
 /// The functions are not orthogonal there (condition of G: 14 at order 2, 1e11 at 9), so f is
 /// analysed by polynomials in mu that are orthonormal for (1 - mu^2)^m on [0, 1] and span the same
 /// space band by band; coefficients follow from R c = moments, R_kj = <q_k, Y_j>, whose condition
-/// is the square root of that of G. Directions that the hemisphere hardly sees, with singular
-/// values of R below 1e-11 of the largest, are left out: evaluation in double leaves noise of
-/// eps/sigma there. That happens from about order 16 on; what is kept is the Slepian basis.
-/// Order at most 100: a solve costs order^4 operations.
+/// is the square root of that of G. Directions of hardly any weight on the hemisphere, with
+/// singular values of R below 1e-11 of the largest, are left out: evaluation in double leaves noise
+/// of eps/sigma there. That happens from about order 16 on; the rest is the Slepian basis. Order at
+/// most 100: a solve costs order^4 operations.
 std::unique_ptr<Basis> makeLsosh(int order, BasisOptions options);
 
 /// How well the systems of one order can be solved.

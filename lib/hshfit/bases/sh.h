@@ -11,8 +11,8 @@ namespace hshfit::bases {
 std::unique_ptr<Basis> makeSh(int order, BasisOptions options);
 
 /// Even spherical harmonics: sqrt(2) times the spherical harmonics with l + m even, orthonormal
-/// over the hemisphere; what SH make of a function that is mirrored at the horizon.
-/// n(n+1)/2 functions in n bands.
+/// over the hemisphere: the SH of a function that is mirrored at the horizon. n(n+1)/2 functions in
+/// n bands.
 std::unique_ptr<Basis> makeEsh(int order, BasisOptions options);
 
 }  // namespace hshfit::bases

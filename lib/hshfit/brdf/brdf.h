@@ -13,8 +13,8 @@
 
 namespace hshfit::inline brdf {
 
-/// What a BRDF promises. Tests hold every catalog entry to its promises, and the projector relies
-/// on isotropy and mirror symmetry to leave work out.
+/// The laws that a BRDF promises to keep. Tests hold every catalog entry to its promises, and the
+/// projector skips work by isotropy and mirror symmetry.
 struct Laws {
     bool nonNegative = false;
     bool reciprocal = false;        ///< f(wi, wo) = f(wo, wi)
@@ -72,10 +72,10 @@ public:
     virtual std::vector<double> kinks(const Direction& wo) const;
 
     /// The relative quadrature tolerance to ask for by default. Interpolated tables have kinks in
-    /// their values, and far larger measurement errors, so that 1e-6 would buy nothing there.
+    /// their values, and far larger measurement errors, so that 1e-6 would not improve them.
     virtual double defaultTolerance() const { return 1e-6; }
 
-    /// What `info` adds about this BRDF: dimensions, invalid cells, provenance, ….
+    /// Further lines of `info` about this BRDF: dimensions, invalid cells, provenance, ….
     virtual std::vector<Fact> facts() const { return {}; }
 
     /// Throws InputError if the data behind this BRDF was lost since it was opened

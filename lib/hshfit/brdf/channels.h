@@ -5,8 +5,8 @@
 
 namespace hshfit::inline brdf {
 
-/// What the values of a BRDF or of coefficients are sampled over.
-/// grey: one value that holds for every colour; rgb: linear Rec. 709; spectral: one per wavelength.
+/// The colours or wavelengths that the values of a BRDF or of coefficients are for. grey: one value
+/// that holds for every colour; rgb: linear Rec. 709; spectral: one per wavelength.
 struct Channels {
     enum class Kind { grey, rgb, spectral };
 

@@ -18,8 +18,8 @@
 namespace hshfit::inline files {
 namespace {
 
-// Paths that a signal handler is to unlink. Whoever swaps a pointer out of its slot owns it: the
-// handler, which unlinks and never frees, or removePath, which frees.
+// Paths that a signal handler is to unlink. The function that swaps a pointer out of its slot owns
+// it: the handler unlinks and never frees, removePath frees.
 std::array<std::atomic<char*>, 64> temporaries{};
 static_assert(std::atomic<char*>::is_always_lock_free);
 

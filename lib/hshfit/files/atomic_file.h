@@ -11,9 +11,10 @@ namespace hshfit::inline files {
 /// A file that appears under its name only once it is complete.
 ///
 /// The bytes go to a temporary name in the same folder; commit() renames it. Without a commit the
-/// destructor removes the temporary, and whatever stood at `path` is as it was. A symbolic link is
-/// followed; a device or a pipe (/dev/stdout, /dev/null) is written to directly. New files get the
-/// permissions 0666 less the umask. Nothing is synced to the disk: a power cut may lose the file.
+/// destructor removes the temporary, and an earlier file at `path` stays as it was. A symbolic link
+/// is followed; a device or a pipe (/dev/stdout, /dev/null) is written to directly. New files get
+/// the permissions 0666 less the umask. The file is not synced to the disk: a power cut may lose
+/// it.
 ///
 /// Every member but the destructor throws OutputError, with the path and the system's reason.
 class AtomicFile {
@@ -30,11 +31,11 @@ public:
 
     /// The open stream, for writers that seek. Close it only through commit().
     std::FILE* stream() { return stream_; }
-    /// What another program may write to before commit(); `path` itself for a device.
+    /// The name for another program to write to before commit(); `path` itself for a device.
     const std::string& temporaryPath() const { return temporary_; }
 
-    /// Flushes and closes: every byte is in the temporary, or this throws. Nothing after it but
-    /// commit().
+    /// Flushes and closes: every byte is in the temporary, or this throws. Only commit() may
+    /// follow.
     void finish();
     /// finish(), unless that was called, and the rename.
     void commit();

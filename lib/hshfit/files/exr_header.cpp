@@ -27,7 +27,7 @@ constexpr std::uint64_t maxInflation = 1032;
 constexpr std::size_t maxName = 255;
 
 /// Bytes of the attribute types that are let through, besides string and chlist. OpenEXR reads as
-/// many as the type has, whatever the file states, and so would lose its place.
+/// many as the type has, even if the file states another size, and would then lose its place.
 struct TypeSize {
     std::string_view type;
     std::size_t bytes;

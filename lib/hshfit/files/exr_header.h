@@ -8,12 +8,12 @@
 
 namespace hshfit::inline files {
 
-/// What the header of an EXR file says about its size.
+/// The size of an EXR file according to its header.
 struct ExrHeader {
     std::size_t width = 0, height = 0, channels = 0;
 };
 
-/// What kind of EXR file a header is checked for.
+/// The kind of EXR file that a header is checked for.
 struct ExrRules {
     std::string_view files = "coefficient files";  ///< for messages
     bool picture = false;  ///< HALF channels and PIZ compression pass as well

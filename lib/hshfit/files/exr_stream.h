@@ -1,6 +1,6 @@
 #pragma once
 
-// OpenEXR's way to our files and from bytes in memory. Only for sources that use OpenEXR.
+// Streams for OpenEXR: to our files and from bytes in memory. Only for sources that use OpenEXR.
 
 #include <hshfit/files/atomic_file.h>
 

@@ -74,7 +74,7 @@ void FileSet::takeBack() noexcept {
         }
     }
     members_.clear();
-    // Only what is empty: a folder that somebody else has put a file into stays.
+    // Only empty folders: one that somebody else has put a file into stays.
     for (auto at = made_.rbegin(); at != made_.rend(); ++at) ::rmdir(at->c_str());
     made_.clear();
 }

@@ -14,8 +14,8 @@ namespace hshfit::inline files {
 ///
 /// Each is an AtomicFile; commit() first completes all of them, where a full disk shows, and then
 /// renames them. Should a rename fail, those before it are taken back: new files are removed, and
-/// what had stood there returns from a hard link made beforehand (where the file system has them).
-/// A signal between two renames leaves the set incomplete.
+/// earlier files return from hard links made beforehand (where the file system has them). A signal
+/// between two renames leaves the set incomplete.
 ///
 /// Every member but the destructor throws OutputError, which names the file.
 class FileSet {

@@ -17,8 +17,8 @@
 namespace hshfit::inline files {
 namespace {
 
-// What the signal handler may look at. A slot is claimed by setting `begin`, becomes visible to the
-// handler once `end` is set, and is released by clearing `end`, then `begin`.
+// The registry that the signal handler reads. A slot is claimed by setting `begin`, becomes visible
+// to the handler once `end` is set, and is released by clearing `end`, then `begin`.
 struct Region {
     std::atomic<std::uintptr_t> begin{0};
     std::atomic<std::uintptr_t> end{0};

@@ -14,7 +14,7 @@ namespace {
 /// Light samples evaluated at a time: a batch and its values stay in the cache.
 constexpr std::size_t batchSize = 1024;
 
-/// Adds what one batch of f, [channel][k], gives under the light samples from `first` on.
+/// Adds the radiance of one batch of f, [channel][k], under the light samples from `first` on.
 template <class Real>
 void addBatch(const LightSamples& light, std::size_t first, std::size_t count, const Real* f,
               std::size_t channels, Rgb& sum) {

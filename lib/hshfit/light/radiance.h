@@ -20,8 +20,8 @@ Radiance outgoingRadiance(const Brdf& brdf, const LightSamples& light, const Vie
 Radiance outgoingRadiance(const PairEvaluator& evaluator, std::size_t channels,
                           const LightSamples& light, const Views& views);
 
-/// Lighting in one basis: what turns coefficients over wi into outgoing radiance without a sum over
-/// light samples. The same sum as `outgoingRadiance` in another order:
+/// Lighting in one basis, which turns coefficients over wi into outgoing radiance without a sum
+/// over light samples. The same sum as `outgoingRadiance` in another order:
 ///     L(wo) = sum over l, m of c_{l,m}(wo) E_{l,m},   E = sum over k of flux[k] w_k B_{l,m}(wi_k)
 /// with w = cos(theta_k) for coefficients of f, 1 for those of f cos(theta_i).
 class BasisLight {
@@ -40,8 +40,8 @@ private:
     std::array<std::vector<double>, 3> slots_;
 };
 
-/// What a representation's coefficients give under light in its basis, without `added`.
-/// Not for the halfway form, which is no linear one.
+/// Radiance from a representation's coefficients under light in its basis, without `added`. Not for
+/// the halfway form, which is not linear.
 Radiance linearRadiance(const Representation& representation, const BasisLight& light,
                         const Views& views);
 

@@ -8,8 +8,9 @@
 
 namespace hshfit::inline light {
 
-/// How a surface lies in the world, where +z is up: its normal, and the turn of its tangent about
-/// it. Without a turn the tangent is +x, carried along as +z goes to the normal on a great circle.
+/// Orientation of a surface in the world, where +z is up: its normal, and the turn of its tangent
+/// about it. Without a turn the tangent is +x, carried along as +z goes to the normal on a great
+/// circle.
 struct Orientation {
     double theta = 0, phi = 0, turn = 0;  ///< radians
 };
@@ -22,9 +23,9 @@ struct ViewRange {
     bool anyTangent = false;
 };
 
-/// How far outgoing radiance may be off, over views (by solid angle), orientations and channels.
-/// relativeL2  root of the sum of (L' - L)^2 over that of L^2
-/// log         mean |ln(max(L', 0) + e) - ln(L + e)|, e = 1/100 of the mean of L: what the eye sees
+/// The allowed error of outgoing radiance, over views (by solid angle), orientations and channels.
+/// relativeL2  root of the sum of (L' - L)^2 over that of L^2 log         mean |ln(max(L', 0) + e)
+/// - ln(L + e)|, e = 1/100 of the mean of L: what the eye sees
 struct Budget {
     enum class Metric { relativeL2, log };
     Metric metric = Metric::relativeL2;

@@ -81,7 +81,7 @@ private:
     std::vector<double> values_;
 };
 
-/// The two BRDFs with what they are sampled for.
+/// The two BRDFs with the comparison that they are sampled for.
 struct Both {
     const Brdf &reference, &approximation;
     const std::vector<std::size_t>& drawn;

@@ -23,13 +23,13 @@ struct ComparisonOptions {
 /// f of both along one line: [channel][angle], the drawn channels. Angles are in degrees.
 struct ComparisonCurve {
     double azimuth = 0;  ///< of the outgoing direction, or of the half vector
-    double slice = 0;    ///< what is fixed: theta_o or theta_d; 0 for albedos
+    double slice = 0;    ///< the fixed angle, theta_o or theta_d; 0 for albedos
     std::vector<double> angles;
     std::vector<std::vector<double>> reference, approximation;
 };
 
 /// log10(approximation / reference), means over channels, at phi_d = 90 degrees, where both
-/// directions are above the horizon whatever theta_h and theta_d.
+/// directions are above the horizon for all theta_h and theta_d.
 struct ResidualMap {
     double azimuth = 0;             ///< phi_h in degrees
     std::vector<double> thetaHalf;  ///< degrees; the squares of equispaced numbers
@@ -66,8 +66,8 @@ struct Comparison {
     double amplification = 1;  ///< of the difference that is shown
 };
 
-/// Samples both and computes what has to be. A grey BRDF compares with any channels; otherwise the
-/// channels have to agree (UsageError).
+/// Samples both and computes everything that the page shows. A grey BRDF compares with any
+/// channels; otherwise the channels have to agree (UsageError).
 Comparison makeComparison(const Brdf& reference, const Brdf& approximation,
                           const ComparisonOptions& options = {});
 

@@ -73,7 +73,7 @@ double roundedUp(double value) {
     return 10 * power;
 }
 
-/// The ratio at the ends of the colour bar: what 98 % of the cells keep to.
+/// The ratio at the ends of the colour bar, which 98 % of the cells keep to.
 double largestRatio(const Comparison& comparison) {
     const double most = std::pow(10, std::min(2.0, residualShares(comparison).most));
     for (const double ratio : {1.02, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0}) {

@@ -27,7 +27,7 @@ using Scratch = std::unique_ptr<std::FILE, Close>;
     throw OutputError(fmt::format("the figures could not be drawn: {}", why));
 }
 
-/// A nameless file that takes what the child prints, however much it is.
+/// A nameless file for the output of the child, of any length.
 Scratch scratch() {
     Scratch file(std::tmpfile());
     if (!file) fail(std::generic_category().message(errno));

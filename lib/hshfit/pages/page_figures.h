@@ -1,6 +1,6 @@
 #pragma once
 
-// What the pages have in common: their folder, their style and the figures in them.
+// The common parts of pages: their folder, their style and the figures in them.
 
 #include <string>
 #include <string_view>
@@ -16,7 +16,7 @@ std::string fileContent(const std::string& path);
 /// An SVG document as part of a page: no prologue, no fixed size, names that no other `index` has.
 std::string inlinedFigure(std::string svg, std::size_t index);
 
-/// "gnuplot 5.4 patchlevel 4", as the SVG document says; else "gnuplot".
+/// "gnuplot 5.4 patchlevel 4", from the SVG document; else "gnuplot".
 std::string plotterOf(const std::string& svg);
 
 /// The style sheet of every page.

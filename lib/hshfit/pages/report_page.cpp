@@ -25,7 +25,7 @@ std::string percent(double fraction) {
     return fmt::format("{:g} %", 100 * fraction);
 }
 
-/// Enough digits to see what is missing: 98.7 %, 99.9987 %; never rounded up to 100 %.
+/// Enough digits to show the missing part: 98.7 %, 99.9987 %; never rounded up to 100 %.
 std::string accuracyText(const std::optional<double>& accuracy) {
     if (!accuracy) return "–";
     const double missing = 1 - *accuracy;

@@ -56,8 +56,8 @@ std::vector<std::string> basesOf(const Report& report) {
     return names;
 }
 
-/// Where the axis of what is missing ends: below the best point at 50 %, 20 % or a power of ten,
-/// but not below 1e-6, which is as much as the default tolerance of a projection says.
+/// The end of the axis of the missing share: below the best point at 50 %, 20 % or a power of ten,
+/// but not below 1e-6, the default tolerance of a projection.
 double leastMissing(const ReportEntry& entry) {
     double least = 1;
     for (const auto& curve : entry.curves) {
@@ -189,7 +189,7 @@ std::string reportCsv(const Report& report) {
     std::string out = "report,basis,order,coefficients,slots,accuracy,quantity,outgoing,brdf\n";
     for (std::size_t i = 0; i < report.reports.size(); ++i) {
         const ReportEntry& entry = report.reports[i];
-        // The texts come last: gnuplot finds the columns before them whatever they hold.
+        // The texts come last, so that gnuplot finds the columns before them for any text.
         const std::string texts = fmt::format("{},{},{}", quantityName(entry.quantity),
                                               quoted(entry.outgoing.spec()), quoted(entry.brdf));
         for (const auto& curve : entry.curves) {

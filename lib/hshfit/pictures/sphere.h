@@ -18,7 +18,7 @@ struct SphereLight {
     double strength = 1;
 };
 
-/// What lights the spheres.
+/// The lights of the spheres.
 struct SphereRig {
     /// The key light from the upper left at 45 degrees to the line of sight, which shows highlights
     /// in front; the fill light from the lower right at 75 degrees, which shows grazing ones.

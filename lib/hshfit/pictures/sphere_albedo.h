@@ -9,7 +9,7 @@
 namespace hshfit::inline pictures {
 
 /// Directional albedo, the integral of f(wi, wo) cos(theta_i) d omega_i, tabulated over outgoing
-/// directions: what a surface under a dome of radiance 1 sends towards the viewer.
+/// directions: the radiance of a surface under a dome of radiance 1.
 ///
 /// Isotropic: every degree from 0 to 89. Otherwise every 5 degrees to 85 and 89, times 32 azimuths,
 /// or 9 over the first quadrant under mirror symmetry. Linear in between, constant past 89 degrees.

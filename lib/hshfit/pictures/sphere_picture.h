@@ -26,7 +26,7 @@ SpherePicture amplified(const SpherePicture& difference, double factor);
 double amplificationFor(const SpherePicture& difference, double stops);
 
 /// A PNG file of the spheres side by side, sRGB, 8 bits, transparent around them. `stops` doubles
-/// the radiance that often; what is then outside of [0, 1] is clamped. All of the same size.
+/// the radiance that often; values outside of [0, 1] are then clamped. All of the same size.
 std::string spheresPng(std::span<const SpherePicture> spheres, double stops);
 
 /// Writes the spheres side by side to `path`, a .png as spheresPng does or an .exr: channels

@@ -106,7 +106,7 @@ bool Analysis::findParity(const std::vector<double>& whole) const {
     }
     for (std::size_t r = 0; r < rings; ++r)
         worst = std::max(worst, std::abs(grid_.weights[r] - grid_.weights[rings - 1 - r]));
-    // Rounding, which grows with the order, and nothing else.
+    // Tolerance of rounding, which grows with the order.
     return worst <= 1e-14 * order_ * largest;
 }
 

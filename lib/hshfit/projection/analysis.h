@@ -36,7 +36,7 @@ public:
     Analysis(const Basis& basis, AnalysisGrid grid);
 
     const AnalysisGrid& grid() const { return grid_; }
-    /// Whether the theta functions were found even or odd about the middle ring.
+    /// Whether the theta functions are even or odd about the middle ring.
     bool folded() const { return folded_; }
 
     /// samples [function][ring][azimuth] to out [function][slot].

@@ -21,7 +21,7 @@ struct HorizonBehaviour {
 /// is found wherever q is above zero in double precision; the tolerance on a is 0.01.
 HorizonBehaviour horizonBehaviour(const Brdf& brdf, const Direction& wo, Quantity quantity);
 
-/// Why an energy does not exist, for reports: names the law and what to do.
+/// The reason why an energy does not exist, for reports: the law, and the remedy.
 std::string divergenceReason(const HorizonBehaviour& behaviour, const Direction& wo,
                              Quantity quantity);
 

@@ -175,7 +175,7 @@ Solution solve(const System& system, double regularisation) {
     const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(triangle).singularValues();
     Solution solution;
     const double least = singular(count - 1);
-    // Below rounding there is nothing to tell.
+    // Singular values below rounding carry no information.
     const double smallest = singular(0) * std::numeric_limits<double>::epsilon();
     solution.condition = singular(0) / std::max(least, smallest);
     if (regularisation > 0) {

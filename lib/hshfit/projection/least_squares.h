@@ -11,7 +11,7 @@
 
 namespace hshfit::inline projection {
 
-/// Measured values of f for pairs of directions, and the pairs for which each stands, too.
+/// Measured values of f for pairs of directions, and the symmetric pairs for which each stands.
 struct DirectionSamples {
     std::span<const Direction> wi, wo;
     std::span<const double> values;  ///< 1/sr, [sample * channels.count() + channel]

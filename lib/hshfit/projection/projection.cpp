@@ -139,7 +139,7 @@ Coefficients describe(const Brdf& brdf, const Basis& basis, const OutgoingSet& o
     return c;
 }
 
-/// Of an orthonormal basis every band adds its own squares; others are asked for every order.
+/// In an orthonormal basis every band adds its own squares; others are evaluated for every order.
 void addCaptured(const Basis& basis, const double* moments, double solidAngle,
                  std::vector<double>& captured) {
     const bool orthonormal = bases::find(basis.name()).orthonormal;

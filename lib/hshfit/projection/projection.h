@@ -36,7 +36,7 @@ struct Projection {
 /// (Gautron et al. 2004, Eq. 17), in the inner product of each basis.
 ///
 /// The grid has Gauss-Legendre nodes in u = sqrt(cos theta), graded towards the BRDF's lobes, times
-/// azimuths that crowd about narrow ones (azimuth_spread.h); it is refined until the error that its
+/// azimuths clustered about narrow ones (azimuth_spread.h); it is refined until the error that its
 /// levels show is within the tolerance (refinement.h). One azimuth transform serves all bases.
 /// Isotropy and mirror symmetry leave out outgoing directions and sine terms. Runs on all threads
 /// that oneTBB has; results do not depend on their number.

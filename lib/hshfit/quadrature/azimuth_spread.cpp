@@ -42,7 +42,7 @@ void AzimuthPeaks::add(double x, double y, double scale) {
 }
 
 /// On the ring (s, mu): acosh(1 + q/2), where q is the squared distance in the plane of incidence
-/// over s s'; none at the pole, where nothing depends on phi.
+/// over s s'; none at the pole, where f does not depend on phi.
 void AzimuthPeaks::addLobe(const Lobe& lobe, const Direction& wo, double s, double mu) {
     const auto acosh1 = [](double q) { return 2 * std::asinh(std::sqrt(q) / 2); };
     if (lobe.about == Lobe::About::axis) {
@@ -76,7 +76,7 @@ void AzimuthPeaks::addRoot(double re, double im) {
 /// A half-vector lobe of widths w along x and v along y is singular where
 ///     ((s cos phi + x_o) / w)^2 + ((s sin phi + y_o) / v)^2 + (mu + mu_o)^2 = 0,
 /// times z^2 a polynomial of degree 4 in z = exp(i phi) with two roots inside of the unit circle,
-/// and their mirror images outside. One by Newton's method, the other from what is left.
+/// and their mirror images outside. One is found by Newton's method, the other from the quotient.
 bool AzimuthPeaks::addAnisotropic(const Lobe& lobe, const Direction& wo, double s, double mu) {
     const bool wideX = std::abs(lobe.axis.x) > std::abs(lobe.axis.y);
     const double w = wideX ? lobe.spread : lobe.width, v = wideX ? lobe.width : lobe.spread;
@@ -123,7 +123,7 @@ const AzimuthPeaks::Peak* AzimuthPeaks::narrowest(bool even) const {
 }
 
 double AzimuthPeaks::scale() const {
-    double least = 1.25;  // what a BRDF without lobes is taken to need
+    double least = 1.25;  // assumed for a BRDF without lobes
     for (const Peak& peak : peaks_) least = std::min(least, peak.scale);
     return least;
 }
@@ -163,7 +163,7 @@ AzimuthSpread spreadAzimuths(const AzimuthPeaks& peaks, const SpreadOptions& opt
     const AzimuthPeaks::Peak* centre = options.squeezed ? peaks.narrowest(options.even) : nullptr;
     if (centre) {
         constexpr int maxSqueeze = 24;
-        constexpr double worthIt = 0.9;  // sums of squeezed rings cost a little more
+        constexpr double worthIt = 0.9;  // sums over clustered azimuths cost a little more
         double least = worthIt * count;
         for (int squeeze = 1; squeeze <= maxSqueeze; ++squeeze) {
             const double kappa = std::ldexp(1.0, -squeeze);

@@ -8,19 +8,19 @@
 
 namespace hshfit::inline quadrature {
 
-/// How a ring's azimuths are spread. Without a squeeze they are equispaced: phi_j = t_j = (j + 1/2)
-/// 2 pi / azimuths. With one they crowd about a centre, where a lobe is narrow:
+/// The azimuths of a ring. With squeeze = 0 they are equispaced: phi_j = t_j = (j + 1/2) 2 pi /
+/// azimuths. Otherwise they cluster about a centre, where a lobe is narrow:
 ///     tan((phi_j - centre) / 2) = kappa tan(t_j / 2),   kappa = 2^-squeeze,
-/// a map of the unit circle onto itself, so that periodic functions stay periodic and what is
-/// analytic stays so: a singularity that lies i delta off the centre moves away to i delta / kappa,
-/// and lobes of width w need of the order of w^-1/2 azimuths, not w^-1.
+/// a map of the unit circle onto itself, which keeps functions periodic and analytic. A singularity
+/// that lies i delta off the centre moves away to i delta / kappa, and lobes of width w need of the
+/// order of w^-1/2 azimuths, not w^-1.
 struct AzimuthSpacing {
     std::size_t azimuths = 0;  ///< a multiple of 4
     int squeeze = 0;
     double kappa() const { return std::ldexp(1.0, -squeeze); }
 };
 
-/// The spacing and, where it is squeezed, the cosine and sine of its centre.
+/// The spacing and, for clustered azimuths, the cosine and sine of their centre.
 struct AzimuthSpread {
     AzimuthSpacing spacing = {};
     double centreX = 1, centreY = 0;
@@ -34,14 +34,14 @@ SpreadAzimuth spreadAzimuth(double t, const AzimuthSpacing& spacing);
 
 struct SpreadOptions {
     int order = 7;          ///< azimuth functions that have to be resolved exactly
-    double refinement = 1;  ///< how many times as many azimuths as where lobes are just seen
-    bool squeezed = false;  ///< whether they may be
+    double refinement = 1;  ///< number of azimuths, relative to that which just resolves lobes
+    bool squeezed = false;  ///< whether azimuths may be clustered
     bool even = false;      ///< only about a centre on the x axis
 };
 
-/// Where along phi a BRDF with these lobes is not smooth, on rings with u = sqrt(cos theta) in
-/// [a, b]: singularities of f in the complex plane of phi, `scale` off the real axis, at azimuths
-/// given by cosine and sine.
+/// Singularities along phi of a BRDF with these lobes, on rings with u = sqrt(cos theta) in [a, b]:
+/// points in the complex plane of phi, `scale` off the real axis, at azimuths given by cosine and
+/// sine.
 class AzimuthPeaks {
 public:
     struct Peak {
@@ -52,9 +52,9 @@ public:
 
     /// None where there are no lobes, or with `even`, none on the x axis.
     const Peak* narrowest(bool even) const;
-    /// The least of the scales; at most what a BRDF without lobes is taken to need.
+    /// The least of the scales; at most that assumed for a BRDF without lobes.
     double scale() const;
-    /// What that becomes where azimuths are squeezed about `centre`.
+    /// The least scale for azimuths clustered about `centre`, in t.
     double scaleAbout(const Peak& centre, double kappa) const;
 
 private:
@@ -67,8 +67,8 @@ private:
 };
 
 /// Azimuths for rings with these peaks. Trapezoid sums over t converge like exp(-azimuths *
-/// distance), where a lobe is a singularity at that distance from the real axis: the squeeze is the
-/// one that takes fewest azimuths, and leaves nowhere fewer than a BRDF without lobes would get.
+/// distance), where a lobe is a singularity at that distance from the real axis. The squeeze is the
+/// one with the fewest azimuths among those that are nowhere sparser than without lobes.
 AzimuthSpread spreadAzimuths(const AzimuthPeaks& peaks, const SpreadOptions& options);
 
 }  // namespace hshfit::inline quadrature

@@ -58,7 +58,7 @@ void AzimuthTable::fill(int order, const AzimuthSpacing& spacing, std::size_t fi
 
 namespace {
 
-/// Azimuths and values of one table, values of all that are kept.
+/// Azimuths and values of one table; values of all cached tables.
 constexpr std::size_t mostAzimuths = 4096;
 constexpr std::size_t mostValues = std::size_t{1} << 18, mostKept = std::size_t{1} << 23;
 
@@ -73,7 +73,7 @@ struct AzimuthTables::Kept {
     tbb::concurrent_unordered_map<std::size_t, std::unique_ptr<Slot>> slots;
     std::atomic<std::size_t> values = 0;
 
-    /// None where there is no room left.
+    /// None where the cache is full.
     Slot* find(const AzimuthSpacing& spacing, std::size_t size) {
         const std::size_t key = spacing.azimuths * 64 + static_cast<std::size_t>(spacing.squeeze);
         if (const auto found = slots.find(key); found != slots.end()) return found->second.get();

@@ -34,12 +34,12 @@ private:
 };
 
 /// The azimuth functions at some of a ring's azimuths, relative to its centre: equispaced ones on a
-/// part of a quadrant, squeezed ones on a part of the half circle above 0. The rest of the ring
+/// part of a quadrant, clustered ones on a part of the half circle above 0. The rest of the ring
 /// follows by symmetry (ring_kernels.h).
 struct AzimuthTable {
     std::size_t count = 0;
     std::vector<double> cosine, sine;  ///< of phi_j
-    std::vector<double> weights;       ///< d phi / dt where squeezed
+    std::vector<double> weights;       ///< d phi / dt where clustered
     /// [count][column], az_m without the Condon-Shortley sign, times the weight, columns as in
     /// AzimuthColumns: cos(m phi) for m = 0, 2, …, for m = 1, 3, …, then sin(m phi) for m = 1, 3,
     /// …, for m = 2, 4, …; 0 in columns that only fill a group.
@@ -49,23 +49,23 @@ struct AzimuthTable {
     void fill(int order, const AzimuthSpacing& spacing, std::size_t first, std::size_t howMany);
 };
 
-/// Azimuths that a table has: a quadrant, or half of the circle where squeezed.
+/// Number of azimuths in a table: those of a quadrant or, if clustered, of half of the circle.
 inline std::size_t tableSize(const AzimuthSpacing& spacing) {
     return spacing.azimuths / (spacing.squeeze > 0 ? 2 : 4);
 }
 
-/// Whole tables, kept for all outgoing directions of a projection. Safe to use from
-/// many threads.
+/// A cache of whole tables for all outgoing directions of a projection. Safe to use from many
+/// threads.
 class AzimuthTables {
 public:
     explicit AzimuthTables(int order);
     ~AzimuthTables();
 
     int order() const { return order_; }
-    /// None where it alone would take too much room (2 MB, 4096 azimuths): whoever needs it fills
-    /// it piece by piece. What is kept takes 64 MB at most; beyond, tables are made for the caller.
-    /// Which of these it is does not change a bit of a sum. The table lives as long as both the
-    /// pointer and this object.
+    /// None for a table beyond 2 MB (4096 azimuths), which the caller fills piece by piece. The
+    /// cache holds at most 64 MB; further tables belong to the caller. Results are bitwise
+    /// identical whether or not a table was cached. A table lives as long as both the pointer and
+    /// this object.
     std::shared_ptr<const AzimuthTable> find(const AzimuthSpacing& spacing) const;
 
 private:

@@ -33,7 +33,7 @@ struct HemisphereGrid {
     std::vector<Panel> panels;
 
     std::size_t points() const;
-    void clear();  ///< keeps the room
+    void clear();  ///< keeps the allocated memory
 };
 
 struct GridOptions {
@@ -42,7 +42,7 @@ struct GridOptions {
     /// right to about 1e-3 at level 0 and to 1e-6 at level 2, long and narrow ones two levels
     /// later.
     int level = 0;
-    /// Whether azimuths may be squeezed; if not, all panels have equispaced ones.
+    /// Whether azimuths may be clustered; if not, all panels have equispaced ones.
     bool squeezed = false;
     bool even = false;  ///< only about a centre on the x axis
 };
@@ -54,10 +54,9 @@ struct GridOptions {
 std::vector<double> panelBreaks(const std::vector<Lobe>& lobes, const Direction& wo,
                                 const std::vector<double>& kinks = {});
 
-/// Adds the panel [a, b] in u: Gauss-Legendre rings times azimuths, whose number follows from the
-/// same singularities seen along phi, and so does their squeeze: the one that takes fewest, with
-/// nowhere fewer than a BRDF without lobes would get. In u, functions that behave like sqrt(cos
-/// theta) at the horizon are smooth.
+/// Adds the panel [a, b] in u: Gauss-Legendre rings times azimuths, whose number and clustering
+/// follow from the singularities along phi (azimuth_spread.h). In u, functions that behave like
+/// sqrt(cos theta) at the horizon are smooth.
 void appendPanel(HemisphereGrid& grid, double a, double b, const AzimuthPeaks& peaks,
                  const GridOptions& options);
 

@@ -8,8 +8,8 @@
 
 namespace hshfit::inline quadrature {
 
-/// The points of a grid, ring by ring, for whoever needs values one by one and not their azimuth
-/// transform (rings.h). Of a ring, the points go once around from the panel's centre, so that the
+/// The points of a grid, ring by ring, for callers that need single values and not their azimuth
+/// transform (rings.h). The points of a ring go once around from the panel's centre, so that the
 /// first half of them is one side of it.
 class RingPoints {
 public:

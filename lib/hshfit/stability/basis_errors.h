@@ -10,7 +10,7 @@ namespace hshfit::stability {
 enum class Precision { single, twice };
 std::string precisionName(Precision precision);  ///< "float", "double"
 
-/// How far off a computation is, by degree: what `stress` measures.
+/// The error of a computation by degree, as `stress` reports it.
 struct DegreeErrors {
     std::string basis;
     Precision precision = Precision::twice;

@@ -28,7 +28,7 @@ struct GramPoint {
     bases::LsoshGram gram;
 };
 
-/// What `hshfit stress` measures: where each computation of the program stops being good.
+/// The accuracy of each computation by degree, order and width, as `hshfit stress` reports it.
 struct StressReport {
     int maxOrder = 0;
     std::vector<DegreeErrors> evaluation = {}, orthonormality = {};

@@ -50,7 +50,7 @@ std::string degreesTable(const std::vector<DegreeErrors>& rows) {
     for (const DegreeErrors& row : rows) {
         text += fmt::format("| {} | {} |", row.basis, precisionName(row.precision));
         for (std::size_t l : degrees) {
-            // A basis that lacks functions of some degrees has none of it at a single one.
+            // A basis without functions of some degrees has no number for those.
             const double error = row.error[l];
             text += std::isnan(error) ? " |" : fmt::format(" {:.1e} |", error);
         }

@@ -18,7 +18,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace hshfit::bases::kernels::HWY_NAMESPACE {
 
-/// Lanes that have grown come nearer to exponent 0.
+/// Rescales lanes that have grown, towards exponent 0.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void wakeUp(D tag, V& p, V& d, V& e) {
     using T = hn::TFromD<D>;

@@ -21,7 +21,7 @@ HWY_BEFORE_NAMESPACE();
 namespace hshfit::bases::kernels::HWY_NAMESPACE {
 namespace {
 
-/// Directions that run together, because they share the loads of the steps.
+/// Directions evaluated together, which share the loads of the steps.
 constexpr std::size_t together = 4;
 
 /// Where the state of a team lies: for every vector of n columns and every direction the arrays p,
@@ -182,7 +182,7 @@ public:
             placeAll<Single<double>>(directions, first, count);
         else
             placeAll<Wide<double>>(directions, first, count);
-        // Those that start from the same end and stay in range alike run together.
+        // Directions with the same starting end and range are evaluated together.
         std::size_t members[4][chunk], counts[4] = {0, 0, 0, 0};
         for (std::size_t k = 0; k < count; ++k) {
             const std::size_t kind = (awake[k] > 0 ? 0 : 2) + (far[k] > 0 ? 1 : 0);

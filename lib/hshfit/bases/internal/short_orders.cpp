@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace hshfit::bases::kernels::HWY_NAMESPACE {
 namespace {
 
-/// What a block of directions, one per lane, brings into the recurrences.
+/// Inputs of the recurrences for a block of directions, one per lane.
 template <class V>
 struct Place {
     V s, u, x, y;
@@ -42,8 +42,8 @@ HWY_INLINE Place<V> placeOf(D d, Front front, const double* x, const double* y, 
     return {s, u, hn::Mul(px, w), hn::Mul(py, w)};
 }
 
-/// Takes the slots of a block in their order: transposes and stores them as soon as there is one
-/// for every lane. `valid` lanes are written.
+/// Takes the slots of a block in their order, and transposes and stores them once there is one for
+/// every lane. `valid` lanes are written.
 template <class D, bool bySlot>
 struct Sink {
     using T = hn::TFromD<D>;
@@ -163,7 +163,7 @@ struct Rows {
     }
 };
 
-/// What `valid` directions from `first` on bring; lanes beyond repeat the last one.
+/// The inputs of `valid` directions from `first` on; lanes beyond repeat the last one.
 template <class D, class T = hn::TFromD<D>>
 HWY_INLINE Place<hn::Vec<D>> placeOfSome(const ShortJob<T>& job, std::size_t first,
                                          std::size_t valid) {

@@ -84,8 +84,8 @@ HWY_INLINE void storeReal(D d, hn::Vec<D> v, Real* to) {
         hn::StoreU(hn::DemoteTo(hn::Rebind<float, D>(), v), hn::Rebind<float, D>(), to);
 }
 
-/// What one direction a lane brings into the recurrences: the distance y from the nearer end, `far`
-/// 1 where that is t = -1, F, W, and the azimuth. In double for either type: F^m multiplies the
+/// Inputs of the recurrences, one direction a lane: the distance y from the nearer end, `far` 1
+/// where that is t = -1, F, W, and the azimuth. In double for either type: F^m multiplies the
 /// rounding of F by m.
 template <class D>
 struct Place {
@@ -130,8 +130,8 @@ HWY_INLINE Place<D> placeAt(D d, const Recurrences<Real>& r, V px, V py, V mu) {
     return place;
 }
 
-/// Where no power F^m W, m < order, leaves the range of Real, so that exponents can be left out.
-/// The quarter of the range that is kept back is for differences: y >= F^2 / 4.
+/// Whether every power F^m W, m < order, stays in the range of Real, so that exponents can be left
+/// out. A quarter of the range is kept back for differences: y >= F^2 / 4.
 template <class Real, class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> staysInRange(D d, V factor, V weight, int order) {
     const V tiny = hn::Set(d, std::numeric_limits<double>::min()), one = hn::Set(d, 1);
@@ -178,7 +178,7 @@ public:
         if (scaled) startScaled();
     }
 
-    /// Columns m .. m + 3, for m = 0, 4, 8, ... in turn; those from `order` on mean nothing.
+    /// Columns m .. m + 3, for m = 0, 4, 8, ... in turn; those from `order` on are unused.
     HWY_INLINE void next(int m) {
         for (int i = 0; i < 4; ++i) {
             const V c = hn::Set(d, r.starts[m + i < r.order ? m + i : 0]);
@@ -199,7 +199,7 @@ public:
         if (m == 0) a[0] = b[0] = hn::Set(d, 1 / std::sqrt(2 * hshfit::pi));
     }
 
-    /// What stands for columns beyond the last.
+    /// Placeholder for columns beyond the last.
     HWY_INLINE void end() {
         for (int i = 0; i < 4; ++i) p[i] = e[i] = a[i] = b[i] = hn::Zero(d);
     }

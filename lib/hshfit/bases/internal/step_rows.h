@@ -10,11 +10,11 @@ namespace hshfit::bases::kernels {
 template <class Real>
 struct Recurrences;
 
-/// The steps of all columns, row by row: what takes every column m from function l - 1 to l at
-/// once. Columns come in blocks, so that the state of a block stays in the first-level cache. Row r
-/// of block b, l = b columns + r, is `width(b)` slopes, then as many ratios and carries; entries
-/// with m >= l hold the start (0, 1, 0). With bands two apart row r serves both rows 2 r and
-/// 2 r + 1, since each column has a function in one of them only.
+/// The steps of all columns, row by row: row l takes every column m from function l - 1 to l.
+/// Columns come in blocks, so that the state of a block stays in the first-level cache. Row r of
+/// block b, l = b columns + r, is `width(b)` slopes, then as many ratios and carries; entries with
+/// m >= l hold the start (0, 1, 0). With bands two apart row r serves both rows 2 r and 2 r + 1,
+/// since each column has a function in one of them only.
 template <class Real>
 class StepRows {
 public:

@@ -14,7 +14,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::ScalableTag<double>;
 
-/// What one tile multiplies: rows that each start somewhere, by columns side by side.
+/// Operands of one tile: rows at arbitrary places, and columns side by side.
 struct Factors {
     const double* const* rows;
     std::size_t step;
@@ -22,8 +22,8 @@ struct Factors {
     std::size_t stride, depth;
 };
 
-/// I rows by J vectors: 4 x 3 keep 12 sums, and what is multiplied, in 16 registers. Few sums would
-/// each wait for the one before: then there are several of each, for every so-many-th k.
+/// I rows by J vectors: 4 x 3 keep 12 sums, and their operands, in 16 registers. With few sums,
+/// each addition would wait for the last: each sum is then split into several, over every n-th k.
 template <std::size_t I, std::size_t J, class D>
 HWY_INLINE void tile(D d, const Factors& factors, std::size_t column, double* HWY_RESTRICT out,
                      std::size_t outStride) {
@@ -58,7 +58,7 @@ HWY_INLINE void tile(D d, const Factors& factors, std::size_t column, double* HW
         }
 }
 
-/// I rows by all columns: three vectors at a time, then what is left, in groups at the end where
+/// I rows by all columns: three vectors at a time, then the rest, in groups at the end where
 /// vectors are longer than that.
 template <std::size_t I>
 HWY_INLINE void rowsOf(const Factors& factors, std::size_t columns, double* out,

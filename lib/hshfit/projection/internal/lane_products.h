@@ -32,7 +32,7 @@ struct ThetaSums {
 };
 /// out += sums over the rings, for each m: [cosine, sine][channel][l - m], whole groups of l.
 void addThetaSums(const ThetaSums& sums, double* out);
-/// Room that one m takes for each channel, of cosines and of sines, and for each ring of theta.
+/// Values of one m for each channel, of cosines and of sines, and for each ring of theta.
 constexpr std::size_t thetaLanes(int order, int m) {
     return (static_cast<std::size_t>(order - m) + laneGroup - 1) / laneGroup * laneGroup;
 }

@@ -18,7 +18,7 @@ using Inner = Basis::Inner;
 constexpr int maxLevel = 20;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// How a quantity has moved from level to level, and what that says of the error that is left.
+/// Changes of a quantity from level to level, and the error estimated from them.
 struct Change {
     double last = infinity, before = infinity, earlier = infinity;
 
@@ -28,10 +28,10 @@ struct Change {
         last = change;
     }
 
-    /// Levels grow by 1.4, and what converges exponentially gains more with every one: then the
-    /// next change, and with it the error, is at most last (last / before). Kinks gain a factor of
-    /// 2 or 3 a level, with accidents: without two steps that were faster than that (or one that
-    /// was far faster), the last change itself is what is known.
+    /// Levels grow by 1.4, and exponential convergence gains more with every one: then the next
+    /// change, and with it the error, is at most last (last / before). Kinks gain a factor of 2 or
+    /// 3 a level, with accidents: without two steps that were faster than that (or one that was far
+    /// faster), the last change itself is the estimate.
     double error() const {
         constexpr double fast = 0.2, fastBefore = 0.35, fastAtOnce = 0.1, safety = 3;
         if (last == 0 || before == infinity) return last;
@@ -42,7 +42,7 @@ struct Change {
     }
 };
 
-/// What one elevation panel holds at its present level.
+/// State of one elevation panel at its present level.
 struct Panel {
     double a, b;  ///< ends in u
     AzimuthPeaks peaks;

@@ -33,7 +33,7 @@ struct RefinementOptions {
     std::size_t maxEvaluations = std::size_t{1} << 26;
 };
 
-/// What all outgoing directions of a projection share. At least one basis.
+/// Inputs common to all outgoing directions of a projection. At least one basis.
 struct ProjectionTables {
     explicit ProjectionTables(std::span<const Basis* const> bases);
     AzimuthTables azimuths;
@@ -44,8 +44,8 @@ struct ProjectionTables {
 /// its own until the errors of all panels add up to no more than the tolerance, relative to the
 /// norm of each basis' moments and to each energy that exists: panels that hold next to nothing
 /// stay coarse. A panel's error is its last change, or, where its changes shrink as fast as those
-/// of a smooth f, what the next change would be. The sum is above the true error for a smooth f,
-/// and within a factor of 3 of it where f has kinks that no panel ends at.
+/// of a smooth f, the expected next change. The sum is above the true error for a smooth f, and
+/// within a factor of 3 of it where f has kinks that no panel ends at.
 ///
 /// Throws NumericError where the moments do not exist, do not converge within the evaluations
 /// allowed, or q is not finite.

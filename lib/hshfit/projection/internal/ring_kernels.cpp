@@ -35,7 +35,7 @@ constexpr bool byFours = false;
 HWY_INLINE void turnFour(const double*, std::size_t, double*) {}
 #endif
 
-/// A full cache line of every row at a time. The rows of the next ring are on their way meanwhile.
+/// A full cache line of every row at a time. The rows of the next ring are prefetched meanwhile.
 void interleave(const double* rows, std::size_t functions, std::size_t stride, std::size_t count,
                 const double* next, double* out) {
     constexpr std::size_t line = 8;

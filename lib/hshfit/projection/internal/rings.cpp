@@ -129,7 +129,7 @@ private:
     }
 
     /// Ring by ring from number `offset`: phi, pi - phi, and unless even -phi, pi + phi; about the
-    /// centre of squeezed rings phi, and unless even -phi.
+    /// centre of clustered azimuths phi, and unless even -phi.
     void fillDirections(const Run& run, const AzimuthTable& table, std::size_t offset,
                         Workspace& w) const {
         const std::size_t ring = copies(run) * table.count, points = run.rings * ring;
@@ -195,7 +195,7 @@ private:
         return foldSqueezedRing(values, weights, table.count, to, even_ ? nullptr : to + part);
     }
 
-    /// Squares overflow before values do: only the values tell.
+    /// Squares overflow before values do, so that the values are checked.
     void requireFinite(const Workspace& w, std::size_t points) const {
         const double* end = w.values.data() + result_.channels * points;
         const double* bad = std::find_if_not(static_cast<const double*>(w.values.data()), end,
@@ -253,8 +253,8 @@ private:
     RingSpectrum& result_;
 };
 
-/// As many rings, of neighbouring panels too, as make a block. Rings whose table is too large stand
-/// alone.
+/// Groups of rings, across neighbouring panels, that make a block. A ring whose table is too large
+/// is a group of its own.
 Blocks blocksOf(const HemisphereGrid& grid, const AzimuthTables& tables, std::size_t channels,
                 bool even) {
     Blocks result;

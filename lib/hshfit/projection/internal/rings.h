@@ -11,7 +11,7 @@ namespace hshfit::inline projection {
 
 /// The azimuth transform of q = f or f cos(theta_i) on every ring of a grid, for one wo:
 ///     integral over phi of q_c(theta_ring, phi) az_m(phi) d phi.
-/// It is what every basis shares; only the theta functions differ between them.
+/// The transform serves every basis; only the theta functions differ between them.
 struct RingSpectrum {
     AzimuthColumns columns{1};
     std::size_t channels = 0, rings = 0;
@@ -26,11 +26,10 @@ struct RingSpectrum {
 };
 
 /// Samples q on the grid and transforms it for |m| < tables.order(), block by block of points that
-/// fit into the nearest caches; only `result` is stored, in the room that it has. With `even`, q is
-/// taken to be even in phi, only half of each ring is evaluated, and the parts of sines are not
-/// to be read. Parallel over blocks; the
-/// result does not depend on the number of threads. Throws NumericError with the directions where q
-/// is not finite.
+/// fit into the nearest caches; only `result` is stored, in memory that it reuses. With `even`, q
+/// is taken to be even in phi, only half of each ring is evaluated, and the parts of sines are
+/// undefined. Parallel over blocks; the result does not depend on the number of threads. Throws
+/// NumericError with the directions where q is not finite.
 void sampleRings(const Brdf& brdf, const Direction& wo, const HemisphereGrid& grid,
                  Quantity quantity, const AzimuthTables& tables, bool even, RingSpectrum& result);
 

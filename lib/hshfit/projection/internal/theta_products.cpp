@@ -43,9 +43,9 @@ std::size_t lanesOf(const Basis& basis) {
     return lanes;
 }
 
-/// Theta functions of one m, l = m .. order-1, times the weights of the rings, what the inner
-/// product adds to them and the sign of the azimuth functions: [ring][l - m], whole groups of l.
-/// `rows` is room to work in.
+/// Theta functions of one m, l = m .. order-1, times the weights of the rings and of the inner
+/// product and the sign of the azimuth functions: [ring][l - m], whole groups of l. `rows` is
+/// scratch memory.
 void weightedTheta(const Basis& basis, int m, const HemisphereGrid& grid,
                    const HemisphereGrid::Panel& panel, std::vector<double>& rows, double* out) {
     const std::span<const Elevation<double>> points(grid.elevations.data() + panel.firstRing,
@@ -78,7 +78,7 @@ struct ThetaProducts::Kept {
     tbb::concurrent_unordered_map<Key, std::unique_ptr<std::vector<double>>, KeyHash> tables;
     std::atomic<std::size_t> values = 0;
 
-    /// None where there is no room.
+    /// None where the cache is full.
     const std::vector<double>* find(const ThetaProducts& products, const HemisphereGrid& grid,
                                     const HemisphereGrid::Panel& panel, double a, double b);
 };

@@ -14,7 +14,7 @@ namespace hshfit::inline projection {
 /// The second half of the transform: from the azimuth transform on a panel's rings to the moments
 /// against the analysis functions of every basis. Theta functions times quadrature weights are kept
 /// for all outgoing directions where panels recur (those from halving do), up to 64 MB in all. Safe
-/// to use from many threads; what is kept does not change a result.
+/// to use from many threads; results are bitwise identical with and without the cache.
 class ThetaProducts {
 public:
     explicit ThetaProducts(std::span<const Basis* const> bases);
@@ -29,7 +29,7 @@ public:
     /// those of sines are left alone.
     void addMoments(const HemisphereGrid& grid, std::size_t panel, double a, double b,
                     const RingSpectrum& spectrum, bool even, double* out) const;
-    /// What `addMoments` wrote for one basis as [channel][slot].
+    /// The output of `addMoments` for one basis as [channel][slot].
     std::vector<double> toSlots(std::size_t basis, std::size_t channels, const double* from) const;
 
 private:
