@@ -12,7 +12,7 @@ namespace hshfit::brdfs {
 
 /// atan(t) for 0 <= t <= 1, absolute error below 1e-12, relative error below 4e-11, from
 ///     atan t = 2 sum_k (-1)^k (sqrt2 - 1)^(2k+1) / (2k+1) T_{2k+1}(t)
-/// (T: Chebyshev polynomials), cut after `atanTerms` terms: what is left out is below
+/// (T: Chebyshev polynomials), cut after `atanTerms` terms: the remainder is below
 /// 2 (sqrt2 - 1)^(2n+1) / (2n+1) (1 + 0.17 + ...), n = atanTerms.
 inline constexpr int atanTerms = 14;
 

@@ -9,7 +9,7 @@
 
 namespace hshfit::brdfs {
 
-/// What the stored values of a file are like, counted one by one (a channel of a cell is a value).
+/// Statistics of the stored values of a file (a channel of a cell is a value).
 struct Census {
     std::uint64_t values = 0;        ///< stored in the file
     std::uint64_t belowHorizon = 0;  ///< of cells with a direction below the horizon
@@ -34,16 +34,16 @@ struct Axis {
     double largestGap = 0;  ///< between neighbouring nodes
 };
 
-/// A BRDF behind which stand stored values.
+/// A BRDF made of stored values.
 class MeasuredBrdf : public Brdf {
 public:
     /// Reads all stored values.
     virtual Census census() const = 0;
-    /// The coordinates of a table; for scattered samples, what the samples span.
+    /// The coordinates of a table; for scattered samples, the range of the samples.
     virtual std::vector<Axis> axes() const = 0;
 
-    /// As checkIntact(), but takes stored values that are no numbers for missing ones. For whoever
-    /// reports on them or fills them in.
+    /// As checkIntact(), but takes stored values that are no numbers for missing ones: for callers
+    /// that report on them or fill them in.
     virtual void checkReadable() const { checkIntact(); }
 };
 

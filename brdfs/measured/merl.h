@@ -18,8 +18,8 @@ enum class MerlInterpolation {
     nearest,  ///< the node whose indices are nearest
 };
 
-/// A measured isotropic BRDF in a MERL `.binary` file (see merl_layout.h), read from the map: only
-/// the pages whose cells are asked for are touched.
+/// A measured isotropic BRDF in a MERL `.binary` file (see merl_layout.h), read from the mapped
+/// file: only pages whose cells are evaluated are loaded.
 ///
 /// Beyond the last node (theta_h > 88.01 deg, theta_d > 89 deg) the table is continued constantly.
 /// Where none of the cells is valid, f is 0. A cell that is NaN or infinite is taken as invalid and
@@ -51,7 +51,7 @@ public:
     std::vector<Axis> axes() const override;
 
     const MerlLayout& layout() const { return layout_; }
-    /// What the file says, times merlScale: f at a node in 1/sr if it is valid.
+    /// The stored value times merlScale: f at a node in 1/sr if it is valid.
     double stored(std::size_t channel, std::size_t cell) const;
 
 private:

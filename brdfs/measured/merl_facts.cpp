@@ -1,4 +1,4 @@
-// What `info` and the quadrature want to know about a MERL table.
+// Facts about a MERL table for `info` and the quadrature.
 
 #include <brdfs/measured/merl.h>
 

@@ -6,7 +6,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-// Either the dimensions or the size: a file that lost one of them is told what is wrong with it.
+// Decides by the dimensions or the size, so that the reader can report which of the two is wrong.
 bool looksLikeMerl(std::span<const unsigned char> head, std::uint64_t fileSize) {
     if (fileSize == MerlLayout{.azimuthCount = 180}.fileBytes() ||
         fileSize == MerlLayout{.azimuthCount = 360}.fileBytes()) {

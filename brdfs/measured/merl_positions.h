@@ -9,8 +9,8 @@
 namespace hshfit::brdfs {
 
 /// Fractional indices (h, d, p) of a block of direction pairs in a MERL table (merl_layout.h),
-/// within 1e-9. At most `size` directions; arrays are written in whole registers, so that what lies
-/// behind `count` is of no meaning.
+/// within 1e-9. At most `size` directions; arrays are written in whole registers, so that entries
+/// beyond `count` are undefined.
 struct MerlIndices {
     static constexpr std::size_t size = 64;
 
@@ -31,9 +31,9 @@ struct MerlCorners {
     void set(const MerlIndices& at, std::size_t count, const MerlLayout& layout);
 
     /// Interpolates f at `count` positions, to out[channel * stride + k], or 0 where z[k] <= 0, in
-    /// registers that hold two rows. `cells` is where those of a file start. Returns which are left
-    /// to do otherwise, one bit each: where a cell is not a value or the azimuth wraps around, or
-    /// all, without such registers.
+    /// registers that hold two rows. `cells` is where those of a file start. Returns one bit for
+    /// each position that needs another path: where a cell is not a value or the azimuth wraps
+    /// around, or all, without such registers.
     std::uint64_t blend(const unsigned char* cells, const MerlLayout& layout, const double* z,
                         std::size_t count, double* out, std::size_t stride) const;
 };

@@ -147,7 +147,7 @@ std::unique_ptr<PbsdfBrdf> PbsdfBrdf::open(const std::string& path) {
         file.checkIntact();
         return brdf;
     } catch (const InputError&) {
-        file.checkIntact();  // says so if the file was lost, and was not invalid to begin with
+        file.checkIntact();  // reports a file that was lost meanwhile as such
         throw;
     }
 }

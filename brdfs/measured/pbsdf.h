@@ -14,7 +14,7 @@ namespace hshfit::brdfs {
 /// Polarimetric Reflectance", ACM TOG 39(4)) in a tensor file (tensor_file.h): Mueller matrices
 /// M[phi_d][theta_d][theta_h][wavelength][4][4], f32, and the nodes phi_d, theta_d, theta_h (f32,
 /// radians, 1 x n) and wvls (u16, nm). Read is M00, the reflectance of unpolarised light in 1/sr;
-/// the other 15 elements, what polarisation does, are ignored. Isotropic, spectral.
+/// the other 15 elements, which describe polarisation, are ignored. Isotropic, spectral.
 ///
 /// theta_h, theta_d and phi_d are Rusinkiewicz's, with wi towards the light and phi_d = 0 where it
 /// leans away from the normal. Between the nodes f is linear in the angles, beyond them constant.

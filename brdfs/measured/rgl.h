@@ -12,7 +12,7 @@
 
 namespace hshfit::brdfs {
 
-/// What an RGL file holds, checked.
+/// The contents of an RGL file, checked.
 struct RglTables {
     std::string description;
     IncidentGrid incident;
@@ -31,7 +31,7 @@ struct RglTables {
     /// Throws InputError naming the field and its offset.
     static RglTables load(const TensorFile& file);
 
-    /// What a vertex of a colour slice stands for: f(wi, wo) wo.z = value * factor. Where wo is not
+    /// The meaning of a vertex of a colour slice: f(wi, wo) wo.z = value * factor. Where wo is not
     /// above the horizon the value only takes part in the interpolation.
     struct Node {
         Direction wi, wo;
@@ -65,12 +65,12 @@ public:
     const Channels& channels() const override { return tables_.channels; }
     const Laws& laws() const override { return laws_; }
     void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
-    /// The same without vector instructions of a run-time choice: what eval is held against for
-    /// RGB, and what it does for spectra.
+    /// The same without vector instructions chosen at run time: the reference for RGB, and the path
+    /// of eval for spectra.
     void evalScalar(const Direction& wo, DirectionBatch wi, double* out) const;
 
     /// Covered are incident directions between the file's first and last: beyond them the table is
-    /// continued constantly. Which of the vertices were measured the files do not tell reliably.
+    /// continued constantly. The files do not tell reliably which of the vertices were measured.
     void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
 
     /// One lobe about the half vector, as wide as the distribution of normals.

@@ -1,7 +1,7 @@
 // RglBrdf::eval for RGB, included by rgl.cpp once for each instruction set. Angles are computed for
-// as many directions as a register holds; what is read from the tables for one direction lies
-// side by side there and is taken up by one register as well: density and integral of two vertices,
-// the sums of two rows, a colour.
+// as many directions as a register holds. Table entries for one direction lie side by side and are
+// loaded into one register as well: density and integral of two vertices, the sums of two rows, a
+// colour.
 
 #include <brdfs/measured/rgl_place_lanes.h>
 
@@ -54,7 +54,7 @@ HWY_INLINE VisibleNormals::Point invert(const VisibleNormals::View& normals, dou
 }
 
 /// Spectra::at for three channels. Of two neighbours the second is read from one float before its
-/// red on, so that nothing behind the table is touched.
+/// red on, so that no read goes beyond the table.
 template <int count>
 HWY_INLINE void colourAt(const Spectra& spectra, const VisibleNormals::Point& point,
                          const Slices& slices, double factor, double* out, std::size_t stride) {

@@ -1,4 +1,4 @@
-// What `info` wants to know about an RGL file.
+// Facts about an RGL file for `info`.
 
 #include <brdfs/measured/rgl.h>
 

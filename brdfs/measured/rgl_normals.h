@@ -31,8 +31,8 @@ struct NormalsGrid {
 /// integral over D: D is the first eigenvector, found by power iteration. Averaged:
 /// D(h) = 4 f cos(theta_i) cos(theta_o), mean over difference angles above the horizon.
 ///
-/// f is the luminance of RGB, the mean of wavelengths. Returns an empty plane where f gives no D
-/// (black where it is looked at).
+/// f is the luminance of RGB, the mean of wavelengths. Returns an empty plane where f gives no D (f
+/// is 0 wherever it is sampled).
 Plane estimateNormals(const Brdf& brdf, NormalsFrom from, NormalsGrid grid, double floor);
 
 /// sigma(w), the integral of D(h) max(0, h . w) over the hemisphere, on a grid over (u, v) of w.
@@ -48,7 +48,7 @@ std::vector<float> visibleNormals(const Plane& ndf, const Direction& wi, double 
 /// Solid angle of normals per du dv.
 double normalsJacobian(double u);
 
-/// What a renderer samples by and what is worth looking at: luminance, or the mean of wavelengths.
+/// The weight by which renderers sample: luminance, or the mean of wavelengths.
 double brightness(const Channels& channels, const double* values);
 
 }  // namespace hshfit::brdfs

@@ -55,7 +55,7 @@ HWY_INLINE Lanes floorOf(Lanes x) {
     return Lanes(hn::Floor(x.v));
 }
 
-/// What is the same for all directions of a call.
+/// Parameters common to all directions of a call.
 struct RglCall {
     const RglTables& tables;
     VisibleNormals::View normals;

@@ -59,7 +59,7 @@ struct IncidentGrid {
 };
 
 /// The distributions of visible normals, one per incident direction, and their cumulative
-/// distributions: what turns a half vector into the place in the unit square where its colour is
+/// distributions, which map a half vector to the point of the unit square at which its colour is
 /// stored. Between incident directions the normalised densities are interpolated.
 class VisibleNormals {
 public:

@@ -28,8 +28,8 @@ std::vector<float> byChannel(const Spectra& spectra) {
     return values;
 }
 
-/// What renderers sample by: f cos(theta_o) per area of the square, not negative, and nowhere all
-/// 0, which could not be normalised.
+/// The luminance that renderers sample by: f cos(theta_o) per area of the square, not negative, and
+/// nowhere all 0, which could not be normalised.
 std::vector<float> luminances(const RglTables& tables) {
     const Spectra& spectra = tables.spectra;
     const std::size_t n = spectra.channels, square = spectra.rows * spectra.columns;

@@ -10,8 +10,8 @@
 
 namespace hshfit::brdfs {
 
-/// How finely an RGL file samples. What is left out becomes what the source has, if that is an RGL
-/// file and nothing but the wavelengths is chosen; else the defaults below.
+/// The resolution of an RGL file. Options left out are those of the source, if that is an RGL file
+/// and only wavelengths are chosen; else the defaults below.
 struct RglResolution {
     std::size_t theta = 32;     ///< incident elevations
     std::size_t phi = 9;        ///< incident azimuths of a quarter circle; isotropic: 1
@@ -29,7 +29,7 @@ struct RglResolution {
 /// f sampled at the vertices of the RGL layout (rgl.h), so that the layout evaluates to f there.
 /// Incident elevations are at 89 (k / (n - 1))^0.6 degrees. Vertices without an outgoing direction
 /// hold a linear continuation of f cos(theta_o) below the horizon, negative where f is finite at
-/// it: what is interpolated then falls to 0 at the horizon, and not within a cell above it. An
+/// it: interpolated values then fall to 0 at the horizon, and not within a cell above it. An
 /// anisotropic BRDF gets the whole circle of azimuths, or a quarter if it is mirror symmetric.
 ///
 /// Throws NumericError where a value is not finite or overflows a float.

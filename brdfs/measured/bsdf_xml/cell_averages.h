@@ -45,8 +45,8 @@ CellAverages averageOverCells(const Brdf& brdf, const std::vector<double>& weigh
                               const CellSet& incident, const CellSet& outgoing,
                               const CellAverageOptions& options);
 
-/// Weights that make luminance (Rec. 709) of the channels; what that alters goes to `alterations`.
-/// Throws UsageError for spectra that do not cover the visible range.
+/// Weights that make luminance (Rec. 709) of the channels; a sentence on the loss goes to
+/// `alterations`. Throws UsageError for spectra that do not cover the visible range.
 std::vector<double> luminanceWeights(const Brdf& brdf, std::vector<std::string>& alterations);
 
 }  // namespace hshfit::brdfs

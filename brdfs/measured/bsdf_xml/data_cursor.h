@@ -17,7 +17,7 @@ public:
 
     /// The character that comes next, behind blanks; 0 at the end.
     char next();
-    /// What comes next, for messages.
+    /// The text that comes next, for messages.
     std::string found();
     void skip() { rest_.remove_prefix(1); }
     void skipComma() {

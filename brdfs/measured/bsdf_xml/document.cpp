@@ -11,7 +11,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-/// What messages quote of a text: a piece without control characters.
+/// A quotation for messages: a piece of the text without control characters.
 std::string quoted(std::string_view text) {
     constexpr std::size_t most = 40;
     std::string piece(text.substr(0, most));

@@ -38,7 +38,7 @@ public:
     static constexpr std::size_t maxRings = 90, maxPatches = 2048;
 
     /// `where` (a path) starts every message. `bytes` may go afterwards. Throws InputError with the
-    /// line for whatever is missing or wrong; ScatteringData is not read yet.
+    /// line for every missing or wrong element; ScatteringData is not read yet.
     BsdfDocument(std::span<const unsigned char> bytes, std::string where);
     ~BsdfDocument();
     BsdfDocument(const BsdfDocument&) = delete;
@@ -50,7 +50,7 @@ public:
     const std::vector<AngleBasis>& bases() const { return bases_; }
     const std::vector<BsdfBlock>& blocks() const { return blocks_; }
     std::size_t layers() const { return layers_; }
-    /// Name and manufacturer of the material; empty if the file does not say.
+    /// Name and manufacturer of the material; empty if the file has none.
     const std::string& material() const { return material_; }
     const std::string& manufacturer() const { return manufacturer_; }
     const std::string& where() const { return where_; }

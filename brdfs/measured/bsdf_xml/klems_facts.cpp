@@ -1,4 +1,4 @@
-// What a matrix is like: laws, reflectances, spacing.
+// Properties of a matrix: laws, reflectances, spacing.
 
 #include <brdfs/measured/bsdf_xml/klems_brdf.h>
 

@@ -11,7 +11,8 @@ namespace hshfit::brdfs {
 namespace {
 
 /// Gauss-Legendre in cos(theta), with weight cos(theta), and in azimuth; the pole's patch is a disc
-/// and has equispaced azimuths. `sign`: -1 for wi, whose patch is that of where the light goes.
+/// and has equispaced azimuths. `sign`: -1 for wi, whose patch is that of the direction in which
+/// the light goes.
 CellNodes patchNodes(const AngleBasis& basis, std::size_t patch, int points, BsdfSide side,
                      int sign) {
     const AngleBasis::Ring& ring = basis.rings()[basis.ringOf(patch)];

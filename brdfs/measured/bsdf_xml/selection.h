@@ -10,12 +10,11 @@
 
 namespace hshfit::brdfs {
 
-/// What the file calls the sides. Radiance turns the words round: its front, towards +z and the
+/// The sides as the file names them. Radiance exchanges the words: its front, towards +z and the
 /// room, is the file's back.
 enum class BsdfSide { front, back };
 
-/// The blocks of a document that one BRDF is made of, and what stays the same for all kinds of
-/// them.
+/// The blocks of a document that one BRDF is made of, and the facts that all kinds of blocks share.
 ///
 /// Directions. Files have one frame for both sides: x and y along the surface, z out of the back.
 /// Local frames are right-handed with +z out of the surface: (x, y, z) on the back, and turned
@@ -28,8 +27,8 @@ struct BsdfSelection {
     /// CIE-X and CIE-Z for a matrix, CIE-u and CIE-v for a tree; null: grey.
     std::array<const BsdfBlock*, 2> colour{};
     double tolerance = 1e-2;  ///< of quadrature: f is a step function
-    std::vector<Fact> facts;  ///< format, side, what was not used, …
-    std::string corrupt;      ///< what checkIntact() throws; empty: nothing
+    std::vector<Fact> facts;  ///< format, side, unused blocks, …
+    std::string corrupt;      ///< message of checkIntact(); empty: none
 
     /// Once they are read: the document may go.
     void forgetBlocks() {
@@ -49,14 +48,14 @@ struct BsdfSelection {
 BsdfSelection selectBlocks(const BsdfDocument& document, BsdfSide side,
                            std::string_view wavelength);
 
-/// Linear RGB of CIE XYZ with the primaries of Rec. 709 and the white of equal energy, which is
-/// what these files mean by a neutral surface: X = Y = Z gives R = G = B. Negative components,
-/// outside of the gamut, are kept.
+/// Linear RGB of CIE XYZ with the primaries of Rec. 709 and the white of equal energy, which these
+/// files use for a neutral surface: X = Y = Z gives R = G = B. Negative components, outside of the
+/// gamut, are kept.
 std::array<double, 3> rgbOfXyz(double x, double y, double z);
 /// The same of luminance and CIE 1976 (u', v'), taken as at most 1; neutral for v' below 1e-3.
 std::array<double, 3> rgbOfYuv(double y, double u, double v);
 
-/// What stands for a value in `eval`: 0 for one that is negative or NaN.
+/// The value that `eval` uses: 0 in place of a negative one or NaN.
 inline double asReflectance(double value) {
     return value > 0 ? value : 0;
 }

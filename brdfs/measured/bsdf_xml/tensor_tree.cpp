@@ -180,7 +180,7 @@ double TensorTree::asymmetry(const std::array<int, 4>& from,
     return integral > 0 ? difference(root_, root_, from, flipped) / integral : 0;
 }
 
-/// Of two cubes, as a share of their volume.
+/// The integral of the absolute difference of two cubes, over their volume.
 double TensorTree::difference(Reference a, Reference b, const std::array<int, 4>& from,
                               const std::array<bool, 4>& flipped) const {
     if (a < 0 && b < 0) return std::abs(values_[-1 - a] - values_[-1 - b]);

@@ -29,10 +29,10 @@ public:
 
     int rank() const { return rank_; }
     int levels() const { return levels_; }  ///< the finest leaf is 2^-levels wide
-    /// What the leaves hold, in no particular order; grids are taken apart into leaves.
+    /// The values of the leaves, in no particular order; grids are split into leaves.
     const std::vector<double>& values() const { return values_; }
     std::vector<double>& values() { return values_; }
-    /// Of a value that is NaN or infinite, in the file; 0 if all are finite.
+    /// Offset in the file of a value that is NaN or infinite; 0 if all are finite.
     std::size_t corruptOffset() const { return corruptOffset_; }
 
     /// Coordinates are clamped to [0, 1).
@@ -55,9 +55,9 @@ public:
     std::vector<double> averagesOverLast(int over) const;
     std::vector<double> averagesOverFirst(int over) const;
 
-    /// How far the function is from staying the same when dimension i takes the place of `from[i]`
-    /// and is turned round (u -> 1 - u) where `flipped[i]`: the integral of the absolute difference
-    /// over that of the function. 0: it stays exactly the same.
+    /// The asymmetry of the function when dimension i takes the place of `from[i]` and is reversed
+    /// (u -> 1 - u) where `flipped[i]`: the integral of the absolute difference over that of the
+    /// function. 0: it is exactly symmetric.
     double asymmetry(const std::array<int, 4>& from, const std::array<bool, 4>& flipped) const;
 
 private:

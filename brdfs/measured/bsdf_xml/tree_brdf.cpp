@@ -44,7 +44,7 @@ void TreeBrdf::addTree(const BsdfDocument& document, const BsdfBlock& block) {
     tree.forEachLeaf([&](const TensorTree::Leaf& leaf) {
         double& value = tree.values()[leaf.value];
         const bool unused = rank == 3 && leaf.corner[0] >= 0.5;
-        // The half that stands for no direction.
+        // The half without directions.
         if (unused) {
             ++census_.belowHorizon;
         } else {
@@ -88,7 +88,7 @@ void TreeBrdf::findLaws() {
 }
 
 TensorTree::Point TreeBrdf::pointFor(const Direction& wo, double x, double y) const {
-    // Where the light goes.
+    // The direction in which the light goes.
     const double fromX = -selection_.fileX(x), fromY = -y;
     const double toX = selection_.fileX(wo.x), toY = wo.y;
     if (trees_[0].rank() == 4) {

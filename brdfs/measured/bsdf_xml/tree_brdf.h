@@ -14,7 +14,7 @@ namespace hshfit::brdfs {
 /// (x, y) in the file's plane (see BsdfSelection):
 ///     rank 4:  (u, v) of (-x, -y) of wi, (u, v) of (x, y) of wo;
 ///     rank 3:  (1 - sin(theta_i)) / 2, (u, v) of (x, y) of wo turned so that -wi has azimuth 0.
-/// Half of the cube of rank 3 stands for nothing. A mirror lies on the diagonal of rank 4.
+/// Half of the cube of rank 3 has no directions. A mirror lies on the diagonal of rank 4.
 ///
 /// A negative value is taken as 0, as Radiance does; so is one that is NaN or infinite, and
 /// checkIntact() throws InputError if there is any. With trees for CIE u' and v' the BRDF is RGB.
@@ -39,7 +39,7 @@ public:
     Census census() const override { return census_; }
     std::vector<Axis> axes() const override;
 
-    /// Of f, or of luminance.
+    /// The tree of f, or of luminance.
     const TensorTree& tree() const { return trees_[0]; }
     /// Directional-hemispherical reflectances as the file defines them: pi times the average over
     /// the outgoing square, for each cell of the finest grid of incident coordinates, first

@@ -77,7 +77,7 @@ private:
         if (rank_ == 4) {
             return values_[(cell[2] + steps * cell[3]) * steps * steps + cell[0] + steps * cell[1]];
         }
-        // The upper half of the first coordinate stands for nothing.
+        // The upper half of the first coordinate has no directions.
         if (cell[0] >= steps / 2) return 0;
         return values_[(cell[1] + steps * cell[2]) * (steps / 2) + cell[0]];
     }

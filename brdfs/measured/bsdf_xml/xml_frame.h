@@ -11,7 +11,7 @@
 
 namespace hshfit::brdfs {
 
-/// What goes into a BSDF XML file with one block of reflection.
+/// The contents of a BSDF XML file with one block of reflection.
 struct BsdfXmlContent {
     std::string material;  ///< name of the material
     BsdfSide side = BsdfSide::front;

@@ -35,10 +35,10 @@ struct MitLayout {
 
 /// A measured anisotropic BRDF in such a file, read from the map.
 ///
-/// What the description leaves open, and is taken to be: a value stands for the centre of its bin,
-/// theta_in and phi_in are those of wi, phi_diff = phi_out - phi_in, and azimuths count from +x
-/// towards +y. With header[9] = 1, f beyond phi_diff = pi is that with wi and wo exchanged. The
-/// values times `scale` are f in 1/sr.
+/// Assumptions where the description is silent: a value stands for the centre of its bin, theta_in
+/// and phi_in are those of wi, phi_diff = phi_out - phi_in, and azimuths count from +x towards +y.
+/// With header[9] = 1, f beyond phi_diff = pi is that with wi and wo exchanged. The values times
+/// `scale` are f in 1/sr.
 ///
 /// Multilinear between the centres, over the valid bins among the sixteen, azimuths going round;
 /// constant within half a bin of theta = 0 and 90 deg, and of the ends of a half phi_diff. Where no

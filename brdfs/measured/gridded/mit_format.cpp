@@ -1,4 +1,4 @@
-// The header of an MIT file, and what is told about its values.
+// The header of an MIT file, and the facts about its values.
 
 #include <brdfs/measured/gridded/mit.h>
 #include <hshfit/error.h>
@@ -68,7 +68,7 @@ MitLayout checkedLayout(std::span<const unsigned char> bytes, const std::string&
     return layout;
 }
 
-// By the fields that have one meaning only: what is wrong elsewhere is told by the reader.
+// Decides by the fields that have a single meaning; errors in others are reported by the reader.
 bool looksLikeMit(std::span<const unsigned char> head, std::uint64_t) {
     if (head.size() < MitLayout::headerBytes) return false;
     const Header header = headerOf(head);

@@ -18,7 +18,7 @@ struct SliceLayout {
     bool rootHalf = false;
     double shift = 0.5;       ///< 0: a value stands for the start of its bin
     std::vector<double> phi;  ///< phi_d in degrees, ascending, from 0 to below `period`
-    double period = 180;      ///< 180, or 360 for what is not reciprocal
+    double period = 180;      ///< 180, or 360 without reciprocity
 
     double thetaHalf(double i) const;        ///< radians
     double thetaDifference(double i) const;  ///< radians
@@ -31,9 +31,9 @@ struct SliceLayout {
 /// round. Linear in the indices of theta_h and theta_d, constant beyond the first and last nodes.
 ///
 /// A negative value is invalid, as is a node with a direction below the horizon; interpolation
-/// leaves these out, and f is 0 where nothing is left. Values that are no numbers are taken as
-/// invalid, and checkIntact() throws InputError naming the first. Covered is where valid nodes
-/// stand, and with one slice only where the difference direction is within half a degree of it.
+/// leaves these out, and f is 0 where no node is left. Values that are no numbers are taken as
+/// invalid, and checkIntact() throws InputError naming the first. Directions with valid nodes
+/// around them are covered, with one slice only within half a degree of its difference azimuth.
 class SliceBrdf : public MeasuredBrdf {
 public:
     /// `stored`: [phi][theta_d][theta_h][channel]. `kind`: the format's name, for info.
@@ -70,7 +70,7 @@ private:
     std::string name_, kind_;
     Laws laws_{.nonNegative = true, .isotropic = true};
     Census census_;
-    std::string damage_;  ///< what checkIntact() throws
+    std::string damage_;  ///< message of checkIntact()
 };
 
 /// A `.slice` file of exactly 97,200 bytes: float32 [theta_d 90][theta_h 90][R, G, B], the cells of
@@ -80,10 +80,10 @@ std::unique_ptr<SliceBrdf> readMerlSlice(std::span<const unsigned char> bytes,
 
 /// A picture with theta_h from 0 deg at the left to 90 at the right and theta_d from 0 at the
 /// bottom to 90 at the top, a value standing for the middle of its pixel, in 1/sr. Channels R, G, B
-/// or Y or wavelengths ("550nm") for phi_d = 90 deg. What slice_writer.h writes says so in
-/// attributes, has further slices in layers ("phi045.R") and may have 90 x^2 for theta_h; pictures
-/// without the attributes are taken as above.
-/// Both throw InputError if the bytes are not that.
+/// or Y or wavelengths ("550nm") for phi_d = 90 deg. Files of slice_writer.h carry attributes that
+/// name the axes, have further slices in layers ("phi045.R") and may have 90 x^2 for theta_h;
+/// pictures without the attributes are taken as above. Both throw InputError if the bytes are not
+/// that.
 std::unique_ptr<SliceBrdf> readSlicePicture(std::span<const unsigned char> bytes,
                                             const std::string& name);
 

@@ -212,7 +212,7 @@ std::unique_ptr<Brdf> openSlice(const std::string& path, const Parameters&) {
         file.checkIntact();
         return brdf;
     } catch (const InputError&) {
-        file.checkIntact();  // says so if the file was lost, and was not invalid to begin with
+        file.checkIntact();  // reports a file that was lost meanwhile as such
         throw;
     }
 }

@@ -21,10 +21,10 @@ struct SliceOptions {
 
 /// Writes slices of a BRDF as an OpenEXR picture of the form that readSlicePicture (slice.h)
 /// describes: over theta_h and theta_d as in Burley 2012, f in 1/sr, channels R, G, B or Y or
-/// wavelengths, further phi_d in layers. Attributes `hshfit:…` say what the axes are.
-/// Returns what the picture leaves out. Throws NumericError where f is negative, not finite or too
-/// large for the pixels, OutputError if the file cannot be written or stands and is not to be
-/// replaced, UsageError if there would be more than 2^26 values.
+/// wavelengths, further phi_d in layers. Attributes `hshfit:…` name the axes. Returns a sentence
+/// for each loss. Throws NumericError where f is negative, not finite or too large for the pixels,
+/// OutputError if the file cannot be written or stands and is not to be replaced, UsageError if
+/// there would be more than 2^26 values.
 std::vector<std::string> writeSlices(const Brdf& brdf, const std::string& path,
                                      const SliceOptions& slices, const WriteOptions& options);
 

@@ -15,7 +15,7 @@ namespace {
 constexpr double thetaStep = 15, phiStep = 7.5;  // degrees
 constexpr double lastTheta = 75;
 
-/// 0 for what is negative or, after an overflow, no number.
+/// 0 for values that are negative or, after an overflow, no number.
 double clamped(double value) {
     return value > 0 ? std::min(value, std::numeric_limits<double>::max()) : 0;
 }

@@ -14,7 +14,8 @@ struct UtiaOptions {
     /// Between 75 deg, the last node, and the horizon. linear: by the last two nodes, as the
     /// database's own programs do. constant: as at 75 deg.
     enum class Beyond { linear, constant };
-    /// What the three planes are: linear Rec. 709, the same with the sRGB curve, or CIE XYZ (D65).
+    /// The colour space of the three planes: linear Rec. 709, the same with the sRGB curve, or CIE
+    /// XYZ (D65).
     enum class Colours { rgb, srgb, xyz };
     Beyond beyond = Beyond::linear;
     Colours colours = Colours::rgb;
@@ -31,8 +32,8 @@ struct UtiaOptions {
 /// Multilinear in the four angles, azimuths going round; below 0 it becomes 0. The 48 values that
 /// stand for one and the same direction at theta = 0 are replaced by their mean, which makes f
 /// single-valued at the normal. Values that are no numbers are taken from the nearest azimuth of
-/// view that has one, and checkIntact() throws InputError naming the first. Past 75 deg nothing is
-/// covered. The table is copied: the file may go. No symmetry is promised.
+/// view that has one, and checkIntact() throws InputError naming the first. Directions past 75 deg
+/// are not covered. The table is copied: the file may go. No symmetry is promised.
 class UtiaBrdf : public MeasuredBrdf {
 public:
     static constexpr std::size_t thetas = 6, phis = 48, nodes = thetas * phis;

@@ -4,7 +4,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-// A picture of that size, unless it says that it is something else of ours.
+// A picture of that size, unless its attributes name another of our formats.
 bool looksLikeUtia(std::span<const unsigned char> head, std::uint64_t fileSize) {
     const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
     if (!hasExrMagic(text)) return fileSize == UtiaBrdf::fileBytes;

@@ -98,7 +98,7 @@ std::unique_ptr<UtiaBrdf> UtiaBrdf::open(const std::string& path, const UtiaOpti
         file.checkIntact();
         return brdf;
     } catch (const InputError&) {
-        file.checkIntact();  // says so if the file was lost, and was not invalid to begin with
+        file.checkIntact();  // reports a file that was lost meanwhile as such
         throw;
     }
 }
@@ -170,8 +170,8 @@ void UtiaBrdf::averageAtNormal() {
     }
 }
 
-/// Of the values that linear extrapolation to theta = 90 deg gives, for one of the directions or
-/// both.
+/// The number of negative values after linear extrapolation to theta = 90 deg, for one of the
+/// directions or both.
 std::uint64_t UtiaBrdf::negativeBeyond() const {
     std::uint64_t negative = 0;
     const auto at = [this](std::size_t ti, std::size_t pi, std::size_t tv, std::size_t pv, int c) {

@@ -158,7 +158,7 @@ void addRow(const Header& header, const AltaParameters& parameters, std::vector<
     const std::span<double> f = std::span(row).subspan(header.in, header.out);
     if (header.output == "XYZ_COLOR") toRgb(f.data());
     if (header.output == "INV_STERADIAN_COSINE_FACTOR" && wo.z > 0) {
-        // On the horizon f cos says nothing of f.
+        // On the horizon f cos does not determine f.
         if (wo.z < 1e-9) return;
         for (double& value : f) value /= wo.z;
     }

@@ -15,7 +15,7 @@ namespace hshfit::brdfs {
 /// #END_STREAM, #SAMPLE_COUNT rows of them, #ENDIAN little or big.
 /// Values are 1/sr; INV_STERADIAN_COSINE_FACTOR is divided by the cosine of the view direction;
 /// XYZ_COLOR becomes linear Rec. 709. One value is grey, three are R, G, B.
-/// Throws InputError, with `where` and the line or the sample, for what is not so.
+/// Throws InputError, with `where` and the line or the sample, for any other content.
 Samples readAlta(std::string_view text, const std::string& where);
 
 /// Reads a function that ALTA fitted (#ALTA FUNC HEADER): sums of nonlinear_function_diffuse,

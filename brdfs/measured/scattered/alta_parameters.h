@@ -15,7 +15,7 @@ namespace hshfit::brdfs {
 struct AltaParameters {
     std::string_view name;
     std::size_t count;  ///< numbers in a row
-    Chart chart;        ///< what a row says; Chart::isotropic: a pair but for its azimuth
+    Chart chart;        ///< of a row; Chart::isotropic: a pair but for its azimuth
     /// The pair of a row, or one of the pairs that it stands for. False where there is none.
     bool (*directions)(const double* x, Direction& wi, Direction& wo);
     std::span<const char> kinds;  ///< of each number: a polar angle, an azimuth, a cosine, a length

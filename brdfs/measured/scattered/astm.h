@@ -9,13 +9,13 @@
 namespace hshfit::brdfs {
 
 /// Reads ASTM E1392 ("Standard Practice for Angle Resolved Optical Scatter Measurements"): lines of
-/// a keyword and what it says, up to
+/// a keyword and its value, up to
 ///     VARS theta_i,phi_i,theta_s,phi_s,NAME...
 /// and rows of as many numbers, between commas. NUM_POINTS, where it is given, has to be right.
 /// Angles are in radians (`inDegrees`: degrees) and may be negative; an azimuth that is not listed
 /// is 0. Each other NAME is a channel of f in 1/sr: wavelengths ("400nm"), R,G,B or Red,Green,Blue
 /// (and nothing else), or a single one of any name.
-/// Throws InputError, with `where` and the line, for what is not so.
+/// Throws InputError, with `where` and the line, for any other content.
 Samples readAstm(std::string_view text, const std::string& where, bool inDegrees = false);
 
 /// The row of the table of formats.

@@ -11,8 +11,8 @@ namespace hshfit::brdfs {
 /// A position in a chart; coordinates past the chart's dimensions are 0.
 using Point = std::array<double, 4>;
 
-/// The coordinates in which scattered samples are neighbours: what f is taken to depend on, and how
-/// far apart two pairs of directions are.
+/// The coordinates in which scattered samples are neighbours: the arguments of f, and the distance
+/// of two pairs of directions.
 ///
 /// Pairs. With p = sqrt(2) sin(theta/2) (cos phi, sin phi), the equal-area disc, s = p_i + p_o and
 /// d = p_i - p_o: s = 0 is the mirror configuration and d = 0 the retro-reflecting one.
@@ -46,7 +46,7 @@ std::string_view chartName(Chart chart);
 /// wi and wo above the horizon.
 Point chartPoint(Chart chart, const Direction& wi, const Direction& wo);
 
-/// Which configurations are taken to have the same f, for the two charts of pairs.
+/// The configurations that are taken to have the same f, for the two charts of pairs.
 struct Folding {
     bool exchange = false;  ///< wi and wo exchanged
     bool mirror = false;    ///< isotropic: mirrored at the plane of incidence; else at both axes
@@ -55,7 +55,7 @@ struct Folding {
 /// The signs that take a point to its images, the identity first.
 std::vector<Point> images(Chart chart, const Folding& folding);
 
-/// One and the same of the images of a point.
+/// The canonical one of the images of a point.
 Point folded(const Point& point, const std::vector<Point>& images);
 
 double distance(const Point& a, const Point& b);

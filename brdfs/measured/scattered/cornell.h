@@ -12,7 +12,7 @@ namespace hshfit::brdfs {
 /// number of wavelengths, that many wavelengths in nm, ascending, and rows
 ///     theta_i phi_i theta_s phi_s f[wavelength]...
 /// in radians and 1/sr. Both directions point away from the surface: the mirror direction is at
-/// phi_s = phi_i + pi. Throws InputError, with `where` and the line, for what is not so.
+/// phi_s = phi_i + pi. Throws InputError, with `where` and the line, for any other content.
 Samples readCornell(std::string_view text, const std::string& where);
 
 /// The row of the table of formats.

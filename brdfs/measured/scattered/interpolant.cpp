@@ -14,7 +14,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-/// 0.011 degrees: below what goniometers resolve, and above the rounding of angles in files.
+/// 0.011 degrees: below the resolution of goniometers, and above the rounding of angles in files.
 constexpr double sameNode = 2e-4;
 constexpr double onNode = 1e-12;
 constexpr std::size_t mostNeighbours = 40;
@@ -24,7 +24,7 @@ constexpr std::size_t weighed[] = {0, 3, 7, 12, 20};
 constexpr std::size_t fitted[] = {0, 4, 10, 20, 36};
 static_assert(weighed[4] + 1 <= mostNeighbours && fitted[4] + 2 <= mostNeighbours);
 
-/// What nanoflann asks of a set of points.
+/// The interface that nanoflann requires of a set of points.
 struct Cloud {
     std::vector<Point> points;
 

@@ -17,10 +17,10 @@ namespace hshfit::brdfs {
 /// neighbours, and it is held between the least and the greatest value among them.
 ///
 /// So f takes the nodes' values there, is continuous, never leaves the range of the values near by,
-/// and reproduces linear data but for what that limit cuts off: below 1 % of the data's range
-/// between random nodes, nothing between even ones (scattered_test). It does not depend on the
-/// number of threads. Points within 2e-4 of each other become one, with the mean of their values.
-/// Building takes O(n log n), an evaluation O(log n) plus the sum.
+/// and reproduces linear data but for the effect of that limit: below 1 % of the data's range
+/// between random nodes, 0 between even ones (scattered_test). It does not depend on the number of
+/// threads. Points within 2e-4 of each other become one, with the mean of their values. Building
+/// takes O(n log n), an evaluation O(log n) plus the sum.
 class ScatterInterpolant {
 public:
     /// values[point * channels + channel]. At least one point, every coordinate and value finite.

@@ -16,7 +16,8 @@ namespace {
 constexpr std::string_view beginning = "lambda,thetai,phi";
 constexpr std::size_t columnCount = 21;
 
-/// Polar and azimuth angles of both directions in degrees, rounded to what instruments resolve.
+/// Polar and azimuth angles of both directions in degrees, rounded to the resolution of
+/// instruments.
 using Geometry = std::array<double, 4>;
 
 struct Reading {

@@ -15,7 +15,7 @@ namespace hshfit::brdfs {
 /// other 15 elements, relative to it, are not read. A negative theta is on the other side of the
 /// normal. Every wavelength becomes a channel; pairs of directions that were not measured at all of
 /// them are left out and counted.
-/// Throws InputError, with `where` and the line, for what is not so.
+/// Throws InputError, with `where` and the line, for any other content.
 Samples readNist(std::string_view text, const std::string& where);
 
 /// The row of the table of formats.

@@ -28,12 +28,12 @@ struct Samples {
     std::vector<double> values;  ///< [sample * channels.count() + channel]
     Channels channels;
     /// For data that were reduced to fewer coordinates than a pair has: each sample then stands
-    /// for all pairs with the coordinates of its own. Chart::anisotropic says nothing of the kind.
+    /// for all pairs with the coordinates of its own. Chart::anisotropic stands for full pairs.
     Chart chart = Chart::anisotropic;
     bool isotropic = false;  ///< the file says so
     Census census;
-    std::vector<Fact> facts;           ///< the format and what its header says
-    std::vector<std::string> leftOut;  ///< what the file holds and is not read
+    std::vector<Fact> facts;           ///< the format and the facts of its header
+    std::vector<std::string> leftOut;  ///< parts of the file that are not read
 
     std::size_t size() const { return wi.size(); }
 

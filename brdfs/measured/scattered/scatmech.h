@@ -53,7 +53,7 @@ private:
 /// of other Mueller elements than i = j = 1 are checked and left out. `wavelength` in nm; 0: grey
 /// where no row depends on it, else 351, 532, 633 and 1064 nm, at which PTFE was measured. Every a
 /// is multiplied by `scale`.
-/// Throws InputError, with `where` and the line, for what is not so.
+/// Throws InputError, with `where` and the line, for any other content.
 ZernikeExpansion readScatmech(std::string_view text, const std::string& where, std::string name,
                               double wavelength = 0, double scale = 1);
 

@@ -31,7 +31,7 @@ Chart chartOf(const Samples& samples, const ScatteredOptions& options) {
     return isotropic ? Chart::isotropic : Chart::anisotropic;
 }
 
-/// All samples on one side of the plane of incidence: the third Hopf coordinate tells.
+/// Whether all samples lie on one side of the plane of incidence, by the third Hopf coordinate.
 bool oneSided(const Samples& samples) {
     bool left = false, right = false;
     for (std::size_t k = 0; k < samples.size(); ++k) {

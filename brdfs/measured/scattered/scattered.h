@@ -13,14 +13,14 @@
 
 namespace hshfit::brdfs {
 
-/// What scattered samples are taken to be. None: what the file says, or else what its directions
-/// imply: isotropic if all incident or all outgoing directions have one azimuth, mirrored if the
-/// samples are isotropic and all on one side of the plane of incidence.
+/// The symmetries that scattered samples are taken to have. None: those that the file states or
+/// else its directions imply: isotropic if all incident or all outgoing directions have one
+/// azimuth, mirrored if the samples are isotropic and all on one side of the plane of incidence.
 struct ScatteredOptions {
     std::optional<bool> isotropic = {};
     std::optional<bool> mirror = {};
     bool exchange = true;        ///< f(wi, wo) = f(wo, wi): a sample stands for the exchanged pair
-    double reach = radians(10);  ///< how far from a sample f still rests on it
+    double reach = radians(10);  ///< distance from a sample within which f rests on it
 };
 
 /// The options `isotropic`, `mirror`, `exchange` and `reach` of every scattered format, followed by
