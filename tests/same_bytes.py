@@ -92,7 +92,8 @@ def check(old, pattern):
                    "SAME_BYTES_WORK": str(work), "SAME_BYTES_FOLDERS": f"{temporary}:{TOP / 'out'}"}
     # A new file in place of the program, so that a running copy is not written over.
     PROGRAM.unlink()
-    PROGRAM.write_text(f'#!/bin/sh\nexec /usr/bin/python3 "{Path(__file__).resolve()}" --shim "$@"\n')
+    script = Path(__file__).resolve()
+    PROGRAM.write_text(f'#!/bin/sh\nexec /usr/bin/python3 "{script}" --shim "$@"\n')
     PROGRAM.chmod(0o755)
     try:
         subprocess.run([TOP / "examples/demo.sh"], env=environment, check=False,
@@ -107,9 +108,9 @@ def check(old, pattern):
         for part in row["differ"]:
             print(f"differs: {part}: hshfit {' '.join(row['command'])}")
     different = sum(bool(row["differ"]) for row in rows)
-    print(f"same_bytes: {len(rows)} commands, {sum(row['parts'] for row in rows)} parts (exit codes,"
-          f" outputs, files); {sum(len(row['vary']) for row in rows)} parts vary in OLD itself;"
-          f" {different} commands differ")
+    print(f"same_bytes: {len(rows)} commands, {sum(row['parts'] for row in rows)} parts (exit"
+          f" codes, outputs, files); {sum(len(row['vary']) for row in rows)} parts vary in OLD"
+          f" itself; {different} commands differ")
     shutil.rmtree(work)
     return 1 if different or not rows else 0
 
