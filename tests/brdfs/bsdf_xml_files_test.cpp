@@ -86,7 +86,7 @@ void expectKlems(const std::string& spec, const std::string& path, int block) {
     EXPECT_EQ(brdf->laws().reciprocal, defect == 0);
 }
 
-TEST(BsdfXmlFiles, Window) {
+TEST(BsdfXmlFiles, WindowFilesHaveTheReflectancesOfTheirNumbers) {
     NEEDS("2011-SA1.xml");
     const std::string path = shared("2011-SA1.xml");
     expectKlems(path, path, 2);
@@ -96,7 +96,7 @@ TEST(BsdfXmlFiles, Window) {
     EXPECT_TRUE(brdfs::open(path)->laws().isotropic);
 }
 
-TEST(BsdfXmlFiles, RadianceKlems) {
+TEST(BsdfXmlFiles, RadianceMatricesHaveTheReflectancesOfTheirNumbers) {
     NEEDS("klems_aniso_high.xml");
     const std::string path = shared("klems_aniso_high.xml");
     expectKlems(path + ":side=back", path, 2);
@@ -133,7 +133,7 @@ double meanReflectance(const std::string& path, int nth) {
     return pi * sum;
 }
 
-TEST(BsdfXmlFiles, TensorTree) {
+TEST(BsdfXmlFiles, TensorTreesHaveTheReflectancesOfTheirNumbers) {
     NEEDS("blinds_20deg_t45.xml");
     const std::string path = shared("blinds_20deg_t45.xml");
     for (const bool back : {true, false}) {

@@ -124,7 +124,7 @@ TEST(Klems, BeyondABasisThatEndsEarlyNothingIsCovered) {
     EXPECT_GT(valueOf(*brdf, inside, inside), 0);
 }
 
-TEST(Klems, ColoursAndParts) {
+TEST(Klems, ColoursAndPartsOfTheSpectrumAreRead) {
     const auto block = [](const char* wavelength, double value) {
         return blockXml("Reflection Front", matrixText(41, [value](int, int) { return value; }),
                         "LBNL/Klems Quarter", wavelength);

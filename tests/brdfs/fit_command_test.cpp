@@ -47,7 +47,7 @@ TEST_F(Fit, ThreadsDoNotChangeABit) {
     EXPECT_EQ(read(path("1")), read(path("3")));
 }
 
-TEST_F(Fit, WhatDidNotConvergeIsNoResultUnlessAccepted) {
+TEST_F(Fit, UnconvergedFitsAreNoResultUnlessAccepted) {
     const std::string line = "fit '" + data +
                              "' --model abc:variant=microfacet --samples 800 --starts 1 "
                              "--iterations 1 -o " +

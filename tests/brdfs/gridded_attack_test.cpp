@@ -146,7 +146,7 @@ TEST(GriddedAttack, corruptedPicturesAreRefusedOrRead) {
     EXPECT_GT(refused, 1000);
 }
 
-TEST(GriddedAttack, picturesThatAreSomethingElse) {
+TEST(GriddedAttack, picturesOfAnotherKindAreRefused) {
     const auto refuse = [](const std::string& bytes, const std::vector<std::string>& parts) {
         expectInputError([&] { brdfs::readSlicePicture(bytesOf(bytes), "input"); }, parts);
     };

@@ -80,7 +80,7 @@ TEST(Ltc, SamplesFollowTheDensity) {
     }
 }
 
-TEST(Ltc, TurningTurnsTheLobe) {
+TEST(Ltc, TurnedMatrixHasTheTurnedLobe) {
     std::mt19937 random(3);
     const Ltc ltc = randomLtc(random);
     for (const double angle : {-1.0, -0.2, 0.7}) {

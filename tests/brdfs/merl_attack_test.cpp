@@ -57,7 +57,7 @@ TEST(MerlAttack, everyDimensionIsChecked) {
     expectInputError([&] { MerlBrdf{file.path()}; }, {"dimension 0", "is 180"});
 }
 
-TEST(MerlAttack, whatIsNotAFileIsRefused) {
+TEST(MerlAttack, pathsThatAreNoFilesAreRefused) {
     const TemporaryFile empty;
     expectInputError([&] { MerlBrdf{empty.path()}; }, {empty.path(), "empty"});
     expectInputError([] { MerlBrdf{"/tmp"}; }, {"/tmp: is a directory"});

@@ -243,7 +243,7 @@ TEST(Merl, batchesEqualSingleEvaluations) {
     EXPECT_EQ(evaluate(table.brdf, {0, 0, 1}, {0.6, 0, -0.8}), std::vector<double>(3, 0.0));
 }
 
-TEST(Merl, censusCountsWhatIsInTheFile) {
+TEST(Merl, censusCountsTheStoredValues) {
     const Table table([](int c, int h, int d, int p) {
         if (c == 0 && h == 10 && d == 10) return p < 5 ? std::nan("") : p < 8 ? INFINITY : 7.0;
         if (c == 1 && h == 11 && d == 10) return p < 4 ? -1.0 : p < 10 ? -0.5 : 6.0;

@@ -52,7 +52,7 @@ std::string specOf(const Shape& s) {
                        s.alpha, s.p, s.lambda, s.c, s.k, s.theta0, s.f0, s.f1);
 }
 
-TEST(Sgd, AsPrinted) {
+TEST(Sgd, AgreesWithThePrintedEquations) {
     for (const Shape& s : shapes) {
         SCOPED_TRACE(specOf(s));
         const auto brdf = open(specOf(s));
@@ -113,7 +113,7 @@ TEST(He, SeriesFromThinToRough) {
         EXPECT_NEAR(heSeries(g, 0) * g * g, 1 + 1 / g, 3 / g / g + 1e-7 * sqrt(g / 1e14) + 1e-9);
 }
 
-TEST(He, LambertW) {
+TEST(He, LambertWAgreesWithBoost) {
     for (const double x : {0., 1e-300, 1e-9, .01, .5, 1., 3., 9.99, 10.01, 1e3, 1e10, 1e100, 1e300})
         EXPECT_NEAR(lambertW(x), boost::math::lambert_w0(x),
                     1e-15 * (1 + boost::math::lambert_w0(x)));
@@ -166,7 +166,7 @@ double printed(const Pair& pair, double sigma0, double tau, double ior) {
            (pi * cos(a.thetaI) * cos(a.thetaO));
 }
 
-TEST(He, AsPrinted) {
+TEST(He, AgreesWithThePrintedEquations) {
     struct Surface {
         double sigma, tau, ior;
     };

@@ -94,7 +94,7 @@ double diffuseAlbedo(const Brdf& brdf, const Direction& wo) {
 }
 
 // A white furnace: with kd = 1 nothing is lost and nothing won, in every direction.
-TEST(Formulas, EonLosesNothing) {
+TEST(Formulas, EonOfWhiteFacetsHasAlbedoOne) {
     for (const double r : {0., .1, .5, 1.})
         for (const double theta : {0., 20., 45., 60., 75., 85., 89.}) {
             const Direction wo = directionFromAngles(radians(theta), .3);
@@ -106,7 +106,7 @@ TEST(Formulas, EonLosesNothing) {
 }
 
 // Which is why albedo=approximate does not claim to keep the energy.
-TEST(Formulas, EonApproximateWinsALittle) {
+TEST(Formulas, EonApproximateAlbedoExceedsTheExactOneSlightly) {
     const Direction wo = directionFromAngles(radians(82), .3);
     const auto exact = open("eon:roughness=1"), fast = open("eon:roughness=1,albedo=approximate");
     EXPECT_TRUE(exact->laws().energyConserving);

@@ -38,7 +38,7 @@ TEST(Fresnel, FollowsSnellsLaw) {
             }
 }
 
-TEST(Fresnel, NormalIncidence) {
+TEST(Fresnel, NormalIncidenceIsTheClosedForm) {
     for (const double n : {.5, 1., 1.33, 1.5, 2.42}) {
         const double expected = (n - 1) / (n + 1) * ((n - 1) / (n + 1));
         EXPECT_NEAR(dielectricReflectance(1, n), expected, 1e-15);

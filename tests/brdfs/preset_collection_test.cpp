@@ -110,7 +110,7 @@ TEST(Collections, NameOpensTheSameBrdf) {
     }
 }
 
-TEST(Collections, AreParsedOnceByWhateverThread) {
+TEST(Collections, AreParsedOnceByAnyThread) {
     std::vector<const PresetCollection*> seen(8);
     std::vector<std::thread> threads;
     for (auto& slot : seen) threads.emplace_back([&slot] { slot = &presetCollection(3); });
@@ -311,7 +311,7 @@ TEST_F(CollectionFile, OpensOneMaterial) {
     expectError<UsageError>([&] { open(path + ":onw"); }, {"no material 'onw'", "nearest: 'one'"});
 }
 
-TEST_F(CollectionFile, Wrong) {
+TEST_F(CollectionFile, InvalidOnesAreRefused) {
     const auto expectBad = [&](const std::string& text, const std::vector<std::string>& parts) {
         std::vector<std::string> all{"here"};
         all.insert(all.end(), parts.begin(), parts.end());

@@ -27,7 +27,7 @@ Projection projectOne(const char* spec, const char* basisName, int order, double
     return project(*brdf, one, OutgoingSet::direction(radians(thetaDegrees), 0), options)[0];
 }
 
-TEST(Limits, LambertIsOneFunction) {
+TEST(Limits, LambertHasOneCoefficient) {
     const Projection p = projectOne("lambert", "hsh", 12, 40);
     EXPECT_NEAR(p.coefficients.energy.value, 2 / pi, 1e-14);
     EXPECT_NEAR(p.coefficients.at(0, 0)[0], std::sqrt(2 / pi), 1e-14);
@@ -116,7 +116,7 @@ TEST(Limits, TheNarrowestLobesAreMirrors) {
 }
 
 /// The levels of a grid are as good as quadrature.h says, squeezed or not.
-TEST(Limits, LevelsHoldWhatTheyClaim) {
+TEST(Limits, QuadratureLevelsReachTheirStatedAccuracy) {
     struct Case {
         const char* spec;
         int later;

@@ -60,7 +60,7 @@ TEST(Repair, missingContinuesAlongThetaDifference) {
     EXPECT_GT(changed, 0u);
 }
 
-TEST(Repair, whatCannotBeFilledIsCounted) {
+TEST(Repair, cellsThatCannotBeFilledAreCounted) {
     const auto brdf = repairedFormula(
         "missing", [](auto&, auto&) { return 3.0; }, [](auto&, auto&) { return false; });
     EXPECT_EQ(evaluate(*brdf, {0, 0.6, 0.8}, {0, 0, 1})[0], 3);

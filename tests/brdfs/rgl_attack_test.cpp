@@ -60,7 +60,7 @@ TEST(RglAttack, everyTruncationIsRefused) {
     expectRefused("", {"ends at byte 0 within the magic word"});
 }
 
-TEST(RglAttack, magicAndVersion) {
+TEST(RglAttack, magicAndVersionAreChecked) {
     std::string bytes = test::tensorFile(test::rglFields({}));
     bytes[3] = 'X';
     expectRefused(bytes, {"does not start with \"tensor_file\""});
@@ -124,7 +124,7 @@ TEST(RglAttack, sizesAndOffsetsAreNotTrusted) {
     }
 }
 
-TEST(RglAttack, missingAndDoubledFields) {
+TEST(RglAttack, missingAndDoubledFieldsAreRefused) {
     for (const auto& field : test::rglFields({.channels = 4})) {
         if (field.name == "description") continue;
         auto fields = test::rglFields({.channels = 4});
@@ -137,7 +137,7 @@ TEST(RglAttack, missingAndDoubledFields) {
     }
 }
 
-TEST(RglAttack, typesAndShapesOfEveryUsedField) {
+TEST(RglAttack, typesAndShapesOfEveryUsedFieldAreChecked) {
     for (const auto& field : test::rglFields({.channels = 4})) {
         if (field.name == "description") continue;
         const RglShape shape{.channels = 4};
@@ -175,7 +175,7 @@ TEST(RglAttack, typesAndShapesOfEveryUsedField) {
     }
 }
 
-TEST(RglAttack, valuesThatAreNotFiniteInEveryUsedField) {
+TEST(RglAttack, valuesThatAreNotFiniteAreRefusedInEveryUsedField) {
     const RglShape shape{.channels = 4};
     for (const auto& field : test::rglFields(shape)) {
         if (field.type != 10) continue;
@@ -191,7 +191,7 @@ TEST(RglAttack, valuesThatAreNotFiniteInEveryUsedField) {
     }
 }
 
-TEST(RglAttack, valuesOutOfRange) {
+TEST(RglAttack, valuesOutOfRangeAreRefused) {
     const auto changed = [](const std::string& name, std::size_t index, float value,
                             const RglShape& shape = {}) {
         return with(
@@ -213,7 +213,7 @@ TEST(RglAttack, valuesOutOfRange) {
     expectRefused(with("jacobian", [](TensorField& f) { f.data[0] = 2; }), {"jacobian", "0 or 1"});
 }
 
-TEST(RglAttack, distributionsThatCannotBeNormalised) {
+TEST(RglAttack, distributionsThatCannotBeNormalisedAreRefused) {
     const std::size_t square = 7 * 6;
     expectRefused(with("vndf",
                        [&](TensorField& f) {
@@ -268,7 +268,7 @@ TEST(RglAttack, randomDamageNeverReadsOutOfBounds) {
     EXPECT_GT(refused, 10000);
 }
 
-TEST(RglAttack, filesOnDisk) {
+TEST(RglAttack, unreadableFilesAreNamed) {
     const TemporaryFile empty("", ".bsdf");
     expectInputError([&] { RglBrdf::open(empty.path()); }, {empty.path(), "is empty"});
     expectInputError([] { RglBrdf::open("/tmp"); }, {"/tmp: is a directory"});

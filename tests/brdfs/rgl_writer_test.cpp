@@ -226,7 +226,7 @@ TEST(RglWriter, spectraKeepTheirWavelengths) {
     EXPECT_THROW(write(brdf, file.path(), "first_nm=700"), UsageError);
 }
 
-TEST(RglWriter, saysWhatItAlters) {
+TEST(RglWriter, listsItsAlterations) {
     const TemporaryFile file("", ".bsdf");
     const std::string small = "theta=3,slice=6,normals=12";
     EXPECT_TRUE(mentions(write(*brdfs::open("lambert"), file.path(), small), "three equal"));

@@ -50,7 +50,7 @@ const Reader scatmech = exact([](std::string_view t) { readScatmech(t, "f", "f")
 const Reader alta = exact([](std::string_view t) { readAlta(t, "f"); });
 const Reader function = exact([](std::string_view t) { readAltaFunction(t, "f"); });
 
-TEST(CornellAttack, fields) {
+TEST(CornellAttack, fieldsAreChecked) {
     cutEverywhere(cornell, "# x\n2\n400 500\n0.1 0 0.2 0.3 1 2\n0.1 0 0.2 0.4 1 2\n");
     refused(cornell, "", {"number of wavelengths"});
     refused(cornell, "# only\n", {"number of wavelengths"});
@@ -71,7 +71,7 @@ TEST(CornellAttack, fields) {
     refused(cornell, "1\n400\n0.1 0 0.2 180 1\n", {"phi_s is 180", "degrees?"});
 }
 
-TEST(AstmAttack, fields) {
+TEST(AstmAttack, fieldsAreChecked) {
     const std::string names = "VARS theta_i,phi_i,theta_s,phi_s,a\n";
     cutEverywhere(astm, "LAB_NAME x\nNUM_POINTS 1\n" + names + "0.1,0,0.2,0,1\n");
     refused(astm, "", {"VARS"});
@@ -90,7 +90,7 @@ TEST(AstmAttack, fields) {
     refused(astm, names + "0.1,nan,0.2,0,1\n", {"phi_i is nan"});
 }
 
-TEST(NistAttack, fields) {
+TEST(NistAttack, fieldsAreChecked) {
     std::string row = "0.633,-30,0,45,10,0.3";
     for (int k = 0; k < 15; ++k) row += ",0";
     const std::string names = "lambda,thetai,phi,thetar,phir\n";
@@ -107,7 +107,7 @@ TEST(NistAttack, fields) {
     refused(nist, names + "0.633,nan" + row.substr(9) + "\n", {"thetai is nan"});
 }
 
-TEST(ScatmechAttack, fields) {
+TEST(ScatmechAttack, fieldsAreChecked) {
     cutEverywhere(scatmech, "1, 1, 2, 0, 0, 0, 0, 0.5\n2, 2, 1, 1, -1, 1, 0, 3\n");
     refused(scatmech, "", {"no row"});
     refused(scatmech, "2,2,0,0,0,0,0,1\n", {"no row of Mueller element 11"});
@@ -129,7 +129,7 @@ std::string stream(const std::string& count, std::size_t bytes, const std::strin
            std::string(bytes, '\0') + end;
 }
 
-TEST(AltaAttack, text) {
+TEST(AltaAttack, textIsChecked) {
     cutEverywhere(alta, altaHead + "#VS 2\n0.1 0 0.2 0 1 0.9 1.1\n0.1 0 0.2 0 1 0.9 1.1\n");
     refused(alta, "", {"no line #DIM"});
     refused(alta, "#PARAM_IN COS_TH\n0.5 1\n", {"line 2", "no line #DIM"});
@@ -152,7 +152,7 @@ TEST(AltaAttack, text) {
     refused(alta, "#DIM 2 1\n#PARAM_IN STARK_2D\n1 1 1\n", {"no pair of unit vectors"});
 }
 
-TEST(AltaAttack, binary) {
+TEST(AltaAttack, binaryStreamsAreChecked) {
     const std::string whole = stream("2", 80, "\n#END_STREAM\n");
     cutEverywhere(alta, whole);
     for (std::size_t size = altaHead.size() + 16; size + 1 < whole.size(); ++size) {
@@ -176,7 +176,7 @@ TEST(AltaAttack, binary) {
     refused(alta, bad, {"sample 1", "coordinate 1 is nan"});
 }
 
-TEST(AltaAttack, functions) {
+TEST(AltaAttack, functionsAreChecked) {
     const std::string head = "#ALTA FUNC HEADER\n#DIM 6 1\n";
     cutEverywhere(function, head +
                                 "#FUNC nonlinear_function_blinn\nKs 1\nN 5\n#FUNC "

@@ -311,7 +311,7 @@ TEST(Alta, binaryStreamsOfBothByteOrdersAreRead) {
     }
 }
 
-TEST(Alta, segmentsCosinesAndColours) {
+TEST(Alta, segmentsCosinesAndColoursAreRead) {
     const Samples bounded = readAlta(
         "#DIM 4 1\n#VS 2\n#PARAM_IN SPHERICAL_TL_PL_TV_PV\n"
         "#PARAM_OUT INV_STERADIAN_COSINE_FACTOR\n0.1 0 0.3 0 2 1.5 2.5\n",

@@ -95,7 +95,7 @@ TEST(Spec, RgbEqualsGreyPerChannel) {
     }
 }
 
-TEST(Spec, EmptyOrUnknownModel) {
+TEST(Spec, EmptyOrUnknownModelsAreRefused) {
     expectError<UsageError>("", {"empty", "lambert", "ggx"});
     expectError<UsageError>("gxx",
                             {"unknown model 'gxx'", "did you mean 'ggx'", "known: ", "ward"});
@@ -113,7 +113,7 @@ TEST(Spec, UnknownKeyListsTheValidOnes) {
     expectError<UsageError>("lambert:KD=1", {"'KD'", "valid: kd"});
 }
 
-TEST(Spec, MalformedItems) {
+TEST(Spec, MalformedItemsAreRefused) {
     for (const std::string item :
          {"exponent", "exponent=", "=3", ",", "exponent=3,", ",exponent=3"})
         expectError<UsageError>("phong:" + item, {"phong", "key=value"});
@@ -186,7 +186,7 @@ TEST(Catalog, TableLinesAreComplete) {
     }
 }
 
-TEST_F(Files, ThatAreNoBrdf) {
+TEST_F(Files, AbsentFilesFoldersAndUnknownFormatsAreRefused) {
     expectError<InputError>((folder_ / "absent.binary").string(),
                             {"absent.binary", "no such file"});
     expectError<InputError>("absent.bsdf", {"no such file"});
@@ -217,7 +217,7 @@ TEST_F(Files, ModelNamesGoFirst) {
     fs::current_path(before);
 }
 
-TEST_F(Files, BadPresets) {
+TEST_F(Files, InvalidPresetsAreRefused) {
     const std::string where = "bad.json";
     const auto expectBad = [&](const std::string& text, const std::vector<std::string>& parts) {
         std::vector<std::string> all{where};

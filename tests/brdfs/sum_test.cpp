@@ -130,7 +130,7 @@ Sum sumOf(Stub first, Stub second) {
     return Sum(std::move(terms));
 }
 
-TEST(Sum, CombinesWhatItsTermsSay) {
+TEST(Sum, CombinesChannelsLobesKinksAndCoverageOfItsTerms) {
     const Channels spectrum = Channels::spectral({400, 500, 600});
     const Sum sum = sumOf({"a", spectrum, 1, 1e-3}, {"b", Channels::grey(), 4, 1e-6});
     EXPECT_EQ(sum.channels().wavelengths, spectrum.wavelengths);

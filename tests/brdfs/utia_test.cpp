@@ -200,7 +200,7 @@ TEST(Utia, halvesWithPizAreReadAsWell) {
                 1e-6);
 }
 
-TEST(Utia, censusCountsWhatIsInTheFile) {
+TEST(Utia, censusCountsTheStoredValues) {
     const UtiaBrdf brdf = table([](int c, int ti, int pi, int tv, int pv) {
         if (c == 1 && ti == 2 && tv == 2 && pi == 4) return pv < 3 ? std::nan("") : 1.0;
         if (c == 2 && ti == 2 && tv == 2 && pi == 5) return pv < 4 ? INFINITY : 1.0;

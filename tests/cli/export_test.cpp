@@ -28,7 +28,7 @@ protected:
     }
 };
 
-TEST_F(Export, EveryTargetIsWrittenAndSaid) {
+TEST_F(Export, EveryTargetIsWrittenAndListed) {
     const Answer answer =
         run("export " + path("ward.json") + " -o " + path("all") + " --target all --json");
     ASSERT_EQ(answer.code, 0) << answer.err;
@@ -94,7 +94,7 @@ TEST_F(Export, NothingIsHalfWritten) {
     EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 1) << message;
 }
 
-TEST_F(Export, WhatCannotBeExportedIsSaid) {
+TEST_F(Export, ImpossibleExportsAreReported) {
     const std::string job = "export " + path("ward.json") + " -o " + path("out");
     expectError(job + " --target vrml", 2, "known: all, bin", 1);
     expectError(job + " --number float8", 2, "float16", 1);
@@ -105,7 +105,7 @@ TEST_F(Export, WhatCannotBeExportedIsSaid) {
     expectError("export " + path("absent.json") + " -o " + path("out"), 3, "absent.json", 1);
 }
 
-TEST_F(Export, AllLeavesOutWhatIsImpossibleAndSaysSo) {
+TEST_F(Export, AllLeavesOutImpossibleTargetsAndReportsThem) {
     const Answer answer = run("export " + path("ward.json") + " --no-error --target all --json " +
                               "--number unorm8 --basis-textures 8 -o " + path("out"));
     ASSERT_EQ(answer.code, 0) << answer.err;
@@ -130,7 +130,7 @@ TEST_F(Export, ErrorsAreSplitAndFollowThePrecision) {
     EXPECT_GT(byte["quantisation"].get<double>(), 5 * half["quantisation"].get<double>());
 }
 
-TEST_F(Export, ASourceThatIsGoneIsSaid) {
+TEST_F(Export, AMissingSourceIsReported) {
     Json document = Json::parse(read(path("ward.json")));
     document["source"]["brdf"] = "gone.binary";
     write("gone.json", document.dump());

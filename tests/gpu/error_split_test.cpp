@@ -36,7 +36,7 @@ ErrorSplit split(const Exported& e, Number number) {
     return splitError(*e.brdf, e.coefficients, pack(e.coefficients, {.number = number}));
 }
 
-TEST(ErrorSplit, WhatTheBasisHoldsIsOnlyRounded) {
+TEST(ErrorSplit, FunctionsWithinTheBasisHaveRoundingErrorsOnly) {
     const Exported e = exported("lambert:kd=0.37", OutgoingSet::parabolic(8, 8), 3);
     const ErrorSplit half = split(e, Number::float16);
     EXPECT_LE(half.truncation, 1e-9);

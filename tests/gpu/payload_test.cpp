@@ -150,7 +150,7 @@ TEST(Payload, BasisTexturesHoldTheBasis) {
     }
 }
 
-TEST(Payload, WhatCannotBePackedIsSaid) {
+TEST(Payload, UnpackablePayloadsAreRefused) {
     const Coefficients big = asymmetric("hsh", 20, maps[1], Channels::rgb(), 1);
     EXPECT_THROW(pack(big, {}), UsageError);
     const Coefficients grey = asymmetric("hsh", 3, maps[0], Channels::grey(), 1);

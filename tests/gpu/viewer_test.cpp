@@ -112,7 +112,7 @@ TEST(Viewer, PageIsSelfContainedAndTheSameAgain) {
     EXPECT_EQ(ends, 2u);
 }
 
-TEST(Viewer, TakesOtherNumbers) {
+TEST(Viewer, TakesEveryTypeOfNumber) {
     for (const Number number : {Number::float32, Number::unorm16, Number::unorm8}) {
         const ViewerInput input{.title = "numbers",
                                 .payloads = {payloadOf(Channels::rgb(), {.number = number})}};

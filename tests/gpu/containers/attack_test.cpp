@@ -58,7 +58,7 @@ protected:
 
 const char* const selfContained[] = {"exr", "exr-parts", "ktx2", "js", "h", "tensor"};
 
-TEST_F(ContainerAttack, EveryTruncation) {
+TEST_F(ContainerAttack, EveryTruncationIsRefused) {
     for (const Container& container : containers::catalog()) {
         const std::string path = exported(std::string(container.name).c_str());
         const std::string good = contentOf(path);
@@ -77,7 +77,7 @@ TEST_F(ContainerAttack, EveryTruncation) {
     }
 }
 
-TEST_F(ContainerAttack, EveryByteChanged) {
+TEST_F(ContainerAttack, EveryChangedByteIsRefusedOrHarmless) {
     // A change is refused, or it is one that means nothing (padding, a compressor's choice): then
     // the texels are the same, because their SHA-256 is checked.
     const Payload payload = smallPayload();
@@ -108,7 +108,7 @@ std::string patched(std::string bytes, std::size_t offset, std::uint32_t value) 
     return bytes;
 }
 
-TEST_F(ContainerAttack, Ktx2Fields) {
+TEST_F(ContainerAttack, Ktx2FieldsAreChecked) {
     const std::string path = exported("ktx2"), good = contentOf(path);
     const struct {
         std::size_t offset;
@@ -144,7 +144,7 @@ TEST_F(ContainerAttack, Ktx2Fields) {
     expectRefused(path, renamed, "have no key 'hshfit:sidecar'");
 }
 
-TEST_F(ContainerAttack, ZstandardFrames) {
+TEST_F(ContainerAttack, ZstandardFramesAreChecked) {
     const Payload payload =
         pack(samples::asymmetric("hsh", 3, OutgoingSet::parabolic(16, 16), Channels::rgb(), 1), {});
     exportTo(folder.path(), payload, {"ktx2"}, {.zstd = true});
@@ -166,7 +166,7 @@ TEST_F(ContainerAttack, ZstandardFrames) {
     expectRefused(path, patched(good, 44, 0), "byteLength");
 }
 
-TEST_F(ContainerAttack, DdsFields) {
+TEST_F(ContainerAttack, DdsFieldsAreChecked) {
     const std::string path = exported("dds"), sidecar = folder / "sample.hsh.json";
     const std::string good = contentOf(path);
     const Json said = Json::parse(contentOf(sidecar));
@@ -205,7 +205,7 @@ TEST_F(ContainerAttack, DdsFields) {
     EXPECT_NE(refusal(path).find("needs its sidecar"), std::string::npos);
 }
 
-TEST_F(ContainerAttack, BareNumbers) {
+TEST_F(ContainerAttack, RawFilesAreCheckedAgainstTheirSidecar) {
     const std::string path = exported("bin"), good = contentOf(path);
     expectRefused(path, good + "xx", "has");
     std::string bad = good;
@@ -233,7 +233,7 @@ protected:
     Json good;
 };
 
-TEST_F(SidecarAttack, EveryKeyMissingOrOfAnotherType) {
+TEST_F(SidecarAttack, EveryKeyMissingOrOfAnotherTypeIsRefused) {
     // what readers of ours derive themselves
     const std::vector<std::string> unread = {
         "colorspace", "cos_included", "unit",           "lobe",      "frame",     "sum",
@@ -262,7 +262,7 @@ TEST_F(SidecarAttack, EveryKeyMissingOrOfAnotherType) {
     }
 }
 
-TEST_F(SidecarAttack, SizesThatDoNotFit) {
+TEST_F(SidecarAttack, SizesThatDoNotFitAreRefused) {
     const auto data = [&](const char* key, const Json& value, const std::string& fragment) {
         expectEdited(fragment, [&](Json& document) { document["data"][key] = value; });
     };
@@ -294,7 +294,7 @@ TEST_F(SidecarAttack, SizesThatDoNotFit) {
     });
 }
 
-TEST_F(SidecarAttack, MeaningsThatDoNotFit) {
+TEST_F(SidecarAttack, InconsistentFieldsAreRefused) {
     expectEdited("slots", [](Json& d) { d["basis"]["order"] = 4; });
     expectEdited("order", [](Json& d) { d["basis"]["order"] = 100000; });
     expectEdited("slots", [](Json& d) { std::swap(d["slots"][0], d["slots"][1]); });
@@ -318,7 +318,7 @@ TEST_F(SidecarAttack, MeaningsThatDoNotFit) {
     expectEdited("value", [](Json& d) { d["tests"][3]["value"] = {1}; });
 }
 
-TEST_F(SidecarAttack, FilesThatAreNotOurs) {
+TEST_F(SidecarAttack, FileEntriesAreChecked) {
     const auto file = [&](const char* key, const Json& value, const std::string& fragment) {
         expectEdited(fragment, [&](Json& document) { document["files"][0][key] = value; });
     };
@@ -337,7 +337,7 @@ TEST_F(SidecarAttack, FilesThatAreNotOurs) {
     expectEdited("none of its files", [](Json& d) { d["files"] = Json::array(); });
 }
 
-TEST_F(ContainerAttack, NumbersThatAreNotFinite) {
+TEST_F(ContainerAttack, NumbersThatAreNotFiniteAreRefused) {
     const std::string path = exported("bin"), sidecar = folder / "sample.hsh.json";
     for (const int bits : {0x7c00, 0xfc00, 0x7e00}) {
         const auto half = static_cast<std::uint16_t>(bits);
@@ -350,7 +350,7 @@ TEST_F(ContainerAttack, NumbersThatAreNotFinite) {
     }
 }
 
-TEST_F(ContainerAttack, ScalesOfNormalisedNumbers) {
+TEST_F(ContainerAttack, ScalesOfNormalisedNumbersAreChecked) {
     exported("bin", {}, Number::unorm8);
     const std::string sidecar = folder / "sample.hsh.json";
     const Json good = Json::parse(contentOf(sidecar));
@@ -368,7 +368,7 @@ TEST_F(ContainerAttack, ScalesOfNormalisedNumbers) {
     expectRefused(sidecar, bad.dump(), "");
 }
 
-TEST_F(ContainerAttack, NestingAndDoubleKeys) {
+TEST_F(ContainerAttack, NestingAndDoubleKeysAreRefused) {
     const std::string path = folder / "x.hsh.json";
     expectRefused(path, R"({"format":"hshfit-gpu","version":1,"a":)" + std::string(5000, '['),
                   "nested");
@@ -377,7 +377,7 @@ TEST_F(ContainerAttack, NestingAndDoubleKeys) {
     expectRefused(path, "{\"format\":\"hshfit-gpu\",\xff}", "JSON");
 }
 
-TEST_F(ContainerAttack, TextsThatSomebodyHasEdited) {
+TEST_F(ContainerAttack, EditedTextsAreReadOrRefused) {
     const std::string header = exported("h"), good = contentOf(header);
     const std::size_t array = good.find("_coef[] = {\n") + 12;
     std::string bad = good;
@@ -399,7 +399,7 @@ TEST_F(ContainerAttack, TextsThatSomebodyHasEdited) {
     expectRefused(module, bad, "characters of base64");
 }
 
-TEST_F(ContainerAttack, OtherFiles) {
+TEST_F(ContainerAttack, OtherFilesAreRefused) {
     const std::string path = folder / "other";
     for (const char* text : {"", "{", "{}", "PNG", "tensor_file", "DDS ", "\x76\x2f\x31\x01",
                              "// hshfit-gpu 1: ", "/* hshfit-gpu 1\n"}) {

@@ -118,7 +118,7 @@ TEST(ShaderText, NamesFromFilesCannotLeaveTheComment) {
     }
 }
 
-TEST(ShaderText, WhatALanguageCannotTakeIsSaid) {
+TEST(ShaderText, UnsupportedPayloadsAndOrdersAreRefused) {
     const Coefficients c = coefficients("hsh", 3);
     EXPECT_THROW(shaderSource(Language::osl, pack(c, {.number = Number::unorm8}), {}), UsageError);
     EXPECT_THROW(shaderSource(Language::osl, pack(c, {.basisSize = 16}), {}), UsageError);
@@ -126,7 +126,7 @@ TEST(ShaderText, WhatALanguageCannotTakeIsSaid) {
     EXPECT_THROW(shaderSource(Language::glsl, small(), {.environmentOrder = -1}), UsageError);
 }
 
-TEST(ShaderText, TheSameTwice) {
+TEST(ShaderText, SourceIsTheSameOnASecondRun) {
     for (const gpu::LanguageEntry& entry : gpu::languages())
         EXPECT_EQ(shaderSource(entry.language, small(), {}),
                   shaderSource(entry.language, small(), {}));

@@ -166,18 +166,18 @@ void expectAlive(const bases::Entry& entry, int order) {
     }
 }
 
-TEST_P(BasisPrecision, FiniteAndAliveInDouble) {
+TEST_P(BasisPrecision, IsFiniteAndDoesNotVanishInDouble) {
     for (const int order : {1, 2, 3, 7, 100, 1000})
         if (order <= GetParam()->maxOrder) expectAlive<double>(*GetParam(), order);
 }
 
-TEST_P(BasisPrecision, FiniteAndAliveInFloat) {
+TEST_P(BasisPrecision, IsFiniteAndDoesNotVanishInFloat) {
     for (const int order : {1, 2, 3, 7, 100, 1000})
         if (order <= GetParam()->maxOrder) expectAlive<float>(*GetParam(), order);
 }
 
 // At the pole only m = 0 is left, and the value is known: sqrt(2l+1) P_l(1) and the like.
-TEST(BasisPrecisionAtTheEnds, PoleAndHorizon) {
+TEST(BasisPrecisionAtTheEnds, ValuesAtPoleAndHorizonAreTheClosedForms) {
     const Elevation<double> pole{1, 0}, horizon{0, 1};
     const auto at = [](std::string_view name, const Elevation<double>& e) {
         std::vector<double> parts(1000);

@@ -113,7 +113,7 @@ TEST(BasisValues, MakhotkinClosedForms) {
 }
 
 // c_00 sqrt(pi) is the irradiance and no other function carries flux.
-TEST(BasisValues, MakhotkinFlux) {
+TEST(BasisValues, MakhotkinFluxIsInTheFirstFunctionAlone) {
     const auto basis = bases::make("makhotkin-flux", 20);
     const quadrature::Rule rule = quadrature::gauss(20, 0, 1);
     Eigen::VectorXd cosine = rule.weights;

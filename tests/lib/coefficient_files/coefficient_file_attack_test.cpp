@@ -84,7 +84,7 @@ protected:
     }
 };
 
-TEST_F(CoefficientFileAttack, NotAFileOfOurs) {
+TEST_F(CoefficientFileAttack, FilesOfOtherFormatsAreRefused) {
     expectRefused(folder / "none.json", "no such file");
     expectRefused(folder.path().string(), "is not a regular file");
     for (const std::string name : {"c.json", "c.exr", "c.bin"}) {
@@ -104,7 +104,7 @@ TEST_F(CoefficientFileAttack, NotAFileOfOurs) {
     EXPECT_FALSE(looksLikeCoefficients(folder / "none.json"));
 }
 
-TEST_F(CoefficientFileAttack, TruncatedAnywhere) {
+TEST_F(CoefficientFileAttack, EveryTruncationIsRefused) {
     writeCoefficients(sample(), json);
     writeCoefficients(sample(), exr);
     for (const auto& [refuse, path] : {std::pair(&refusalOfJson, json), {&refusalOfExr, exr}}) {
@@ -135,7 +135,7 @@ TEST_F(CoefficientFileAttack, FlippedBytesNeverEscapeAsAnotherError) {
     }
 }
 
-TEST_F(CoefficientFileAttack, EveryMissingKey) {
+TEST_F(CoefficientFileAttack, EveryMissingKeyIsRefused) {
     const Json good = written();
     for (const auto& [key, value] : good.items()) {
         Json bad = good;
@@ -150,7 +150,7 @@ TEST_F(CoefficientFileAttack, EveryMissingKey) {
     }
 }
 
-TEST_F(CoefficientFileAttack, EveryWrongType) {
+TEST_F(CoefficientFileAttack, EveryWrongTypeIsRefused) {
     const Json good = written();
     const Json kinds[] = {nullptr, true, "word", 12345, Json::array({1}), Json::object()};
     const std::set<std::string> nullable{"energy", "energy_error", "error", "tolerance"};
@@ -165,7 +165,7 @@ TEST_F(CoefficientFileAttack, EveryWrongType) {
     }
 }
 
-TEST_F(CoefficientFileAttack, WrongValues) {
+TEST_F(CoefficientFileAttack, WrongValuesAreRefused) {
     const Json good = written();
     const struct {
         const char* pointer;
@@ -216,7 +216,7 @@ TEST_F(CoefficientFileAttack, WrongValues) {
     }
 }
 
-TEST_F(CoefficientFileAttack, JsonBeyondJson) {
+TEST_F(CoefficientFileAttack, InvalidJsonIsRefused) {
     written();
     const std::string good = samples::contentOf(json);
     const auto with = [&](const std::string& from, const std::string& to) {
@@ -242,7 +242,7 @@ TEST_F(CoefficientFileAttack, JsonBeyondJson) {
     EXPECT_EQ(refusal(json), "") << "keys of later versions are passed over";
 }
 
-TEST_F(CoefficientFileAttack, SpectralAndDirectionFields) {
+TEST_F(CoefficientFileAttack, SpectralAndDirectionFieldsAreChecked) {
     writeCoefficients(samples::make(OutgoingSet::direction(1, 2), Channels::spectral({400, 500}),
                                     Quantity::brdf, 2, 3),
                       json);
@@ -342,7 +342,7 @@ TEST_F(CoefficientFileAttack, AnExrOfAnotherProgramIsRead) {
     EXPECT_TRUE(looksLikeCoefficients(exr));
 }
 
-TEST_F(CoefficientFileAttack, ExrHeaders) {
+TEST_F(CoefficientFileAttack, ExrHeadersAreChecked) {
     const Plan plan = planOf(exr);
     const std::function<void(Imf::Header&)> none = [](Imf::Header&) {};
     const auto change = [&](const char* fragment, const std::function<void(Imf::Header&)>& edit,
@@ -406,7 +406,7 @@ TEST_F(CoefficientFileAttack, ExrHeaders) {
 
 // OpenEXR reads as many bytes as a type has and not as many as the file states, and then takes what
 // follows for the next attribute, with a size of its own.
-TEST_F(CoefficientFileAttack, ExrAttributesThatDoNotFillTheirSize) {
+TEST_F(CoefficientFileAttack, ExrAttributesOfAnotherSizeAreRefused) {
     const Plan plan = planOf(exr);
     save(plan.header, exr);
     const std::string good = samples::contentOf(exr);
@@ -434,7 +434,7 @@ TEST_F(CoefficientFileAttack, ExrAttributesThatDoNotFillTheirSize) {
     expectRefused(exr, "'remark' has a type that coefficient files do not use");
 }
 
-TEST_F(CoefficientFileAttack, ExrKindsThatWeDoNotWrite) {
+TEST_F(CoefficientFileAttack, OtherKindsOfExrAreRefused) {
     const Plan plan = planOf(exr);
     {
         Imf::Header header = plan.header;
@@ -452,7 +452,7 @@ TEST_F(CoefficientFileAttack, ExrKindsThatWeDoNotWrite) {
     expectRefused(exr, "several parts");
 }
 
-TEST_F(CoefficientFileAttack, ExrGiantSizes) {
+TEST_F(CoefficientFileAttack, GiantSizesInExrHeadersAreRefused) {
     writeCoefficients(sample(), exr);
     const std::string good = samples::contentOf(exr);
     const auto patched = [&](const char* name, std::size_t field, std::int32_t value) {

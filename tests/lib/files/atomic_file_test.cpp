@@ -125,7 +125,7 @@ TEST_F(AtomicFileTest, FollowsLinksAndKeepsThem) {
     EXPECT_EQ(content(path), "after");
 }
 
-TEST_F(AtomicFileTest, SaysWhatCannotBeWritten) {
+TEST_F(AtomicFileTest, NamesTheFileThatCannotBeWritten) {
     EXPECT_EQ(messageOf(folder, "x"), "cannot write '" + folder.string() + "': Is a directory");
     EXPECT_NE(messageOf(folder / "none" / "a", "x").find("No such file"), std::string::npos);
     EXPECT_NE(messageOf(folder / "none/", "x").find("Is a directory"), std::string::npos);

@@ -47,7 +47,7 @@ TEST(FileSet, LeavesNothingWithoutCommit) {
     EXPECT_TRUE(fs::exists(folder / "stays"));
 }
 
-TEST(FileSet, RefusesWhatStands) {
+TEST(FileSet, RefusesExistingFiles) {
     const Folder folder;
     put(folder / "one", "before");
     FileSet files(folder.path(), false);
@@ -76,7 +76,7 @@ TEST(FileSet, TakesBackWhenAFileTurnsUpInTheMeantime) {
     EXPECT_EQ(entries(folder.path()), 1);
 }
 
-TEST(FileSet, TakesBackWhatItReplaced) {
+TEST(FileSet, RestoresReplacedFiles) {
     const Folder folder;
     put(folder / "one", "before");
     fs::create_symlink("one", folder / "link");
@@ -97,7 +97,7 @@ TEST(FileSet, TakesBackWhatItReplaced) {
     EXPECT_EQ(entries(folder.path()), 4) << "one, link, three, two";
 }
 
-TEST(FileSet, LeavesNoLinksToWhatItReplaced) {
+TEST(FileSet, LeavesNoLinksToReplacedFiles) {
     const Folder folder;
     put(folder / "one", "before");
     FileSet files(folder.path(), true);

@@ -226,7 +226,7 @@ TEST_F(ComparisonFiles, NamesAreText) {
     EXPECT_FALSE(std::filesystem::exists(folder / "a/pwned"));
 }
 
-TEST(ComparisonFailures, FoldersThatCannotBe) {
+TEST(ComparisonFailures, ImpossibleFoldersAreRefused) {
     const Folder folder;
     samples::put(folder / "file", "x");
     for (const std::string name : {"file", "none/a", "file/a"}) {
@@ -258,7 +258,7 @@ TEST(ComparisonFailures, WithoutGnuplotTheRestIsComplete) {
     EXPECT_NE(contentOf(folder / "a/comparison.html").find("No figures"), std::string::npos);
 }
 
-TEST(PageFigures, Base64) {
+TEST(PageFigures, Base64AgreesWithRfc4648) {
     // The vectors of RFC 4648, section 10.
     const std::pair<const char*, const char*> vectors[] = {{"", ""},
                                                            {"f", "Zg=="},

@@ -271,7 +271,7 @@ TEST(ReportFailures, WithoutGnuplotTheRestIsComplete) {
     expectRest("gnuplot failed");
 }
 
-TEST(ReportFailures, FoldersThatCannotBe) {
+TEST(ReportFailures, ImpossibleFoldersAreRefused) {
     const Folder folder;
     samples::put(folder / "file", "x");
     for (const std::string name : {"file", "none/a", "file/a"}) {

@@ -58,7 +58,7 @@ TEST_F(Schemas, CoefficientFiles) {
     EXPECT_EQ(validate("coefficients", paths), 0);
 }
 
-TEST_F(Schemas, CoefficientFilesThatAreNot) {
+TEST_F(Schemas, InvalidCoefficientFilesAreRefused) {
     const auto c =
         samples::make(OutgoingSet::direction(1, 2), Channels::rgb(), Quantity::brdf, 2, 1);
     writeCoefficients(c, folder / "c.json");

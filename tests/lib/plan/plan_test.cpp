@@ -323,7 +323,7 @@ TEST(Plan, SmoothLightBoundsTheOrder) {
     EXPECT_LE(plan.materials[0].accepted->choice.form.order, 2);
 }
 
-TEST(Plan, AMirrorHasNoPlanAndSaysWhatToUse) {
+TEST(Plan, AMirrorHasNoPlanAndAlternativesAreNamed) {
     // A wall sees the edge between sky and ground.
     const SkyLight sky{SkyLight::Model::overcast, grey(1), grey(0.1)};
     Scene scene = smallScene("ggx:alpha=0.0001", sky, 0.05);

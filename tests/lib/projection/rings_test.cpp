@@ -59,7 +59,7 @@ struct Case {
     AzimuthSpacing spacing;
 };
 
-TEST(Rings, SqueezedOnesTransformAPoleExactly) {
+TEST(Rings, ClusteredAzimuthsTransformAPoleExactly) {
     // Errors fall as exp(-azimuths * distance): enough azimuths for 1e-15.
     const std::vector<Case> cases = {{0.5, 0.7, {128, 0}},      {0.5, 0.7, {160, 1}},
                                      {1e-2, -2.4, {512, 3}},    {1e-4, 1.1, {4096, 6}},
@@ -89,7 +89,7 @@ TEST(Rings, SqueezedOnesTransformAPoleExactly) {
     }
 }
 
-TEST(Rings, HalfOfAnEvenOneIsEnough) {
+TEST(Rings, HalfOfAnEvenRingGivesTheSameTransform) {
     constexpr int order = 9;
     const AzimuthTables tables(order);
     for (const double azimuth : {0.0, pi}) {
@@ -133,7 +133,7 @@ TEST(Rings, PointsAreThoseOfTheTransform) {
 }
 
 /// More tables than there is room for: those that are not kept are the same.
-TEST(Rings, TablesBeyondTheRoomAreTheSame) {
+TEST(Rings, TablesBeyondTheCacheAreBitwiseIdentical) {
     constexpr int order = 200;  // 400 columns, and 8 M values in 40 or so of the largest tables
     const AzimuthTables tables(order);
     for (std::size_t k = 0; k < 60; ++k) {
@@ -170,7 +170,7 @@ TEST(Rings, AzimuthsGrowWithTheRootOfTheWidth) {
 
 /// Nowhere fewer azimuths than a BRDF without lobes gets: something that no lobe announces is seen
 /// as well as without a squeeze.
-TEST(Rings, TheFarSideKeepsItsAzimuths) {
+TEST(Rings, ClusteredAzimuthsAreNowhereSparserThanWithoutLobes) {
     const Direction wo = directionFromAngles(radians(70), 0);
     for (const double width : {0.3, 0.1, 1e-2, 1e-3})
         for (const int order : {1, 7, 30})

@@ -174,7 +174,7 @@ private:
     Laws laws_;
 };
 
-TEST(ProjectBoth, ReturnsTheCoefficientsOfWhatLiesInItsSpan) {
+TEST(ProjectBoth, ReturnsTheCoefficientsOfFunctionsInItsSpan) {
     for (const char* name : {"hsh", "zernike", "makhotkin", "makhotkin-flux", "esh", "h-basis"}) {
         const auto basis = bases::make(name, 3);
         for (const ProductSymmetry& symmetry : symmetries) {

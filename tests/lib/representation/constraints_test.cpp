@@ -239,7 +239,7 @@ TEST(NonNegative, OfBothDirectionsHoldsEverywhere) {
     }
 }
 
-TEST(NonNegative, CountsWhatIsAdded) {
+TEST(NonNegative, IncludesTheAddedBrdf) {
     const FormulaBrdf brdf = glossy(60, 0.3);
     const auto open = [](const std::string&) {
         return std::make_unique<FormulaBrdf>(

@@ -269,7 +269,7 @@ TEST(Halfway, FastPathHasTheValuesOfTheSlowOne) {
     }
 }
 
-TEST(Halfway, FitFindsWhatLiesInItsSpan) {
+TEST(Halfway, FitRecoversFunctionsInItsSpan) {
     for (const HalfwaySymmetry& s : symmetries) {
         const HalfwayOrders orders = s.isotropic ? HalfwayOrders{6, 3, 3} : HalfwayOrders{4, 3, 3};
         const auto brdf = asBrdf(inSpan(orders, s, 1));

@@ -52,7 +52,7 @@ TEST(StabilityReference, IsRightToTheAccuracyThatItClaims) {
     }
 }
 
-TEST(StabilityErrors, MetersReadWhatRoundingMustLeave) {
+TEST(StabilityErrors, AreOfTheSizeOfRounding) {
     for (const bases::Entry* entry : jacobiEntries()) {
         const auto basis = entry->make(65, {});
         for (const auto& errors : {evaluationErrors(asJacobi(*basis), Precision::twice),
@@ -69,7 +69,7 @@ TEST(StabilityErrors, MetersReadWhatRoundingMustLeave) {
     }
 }
 
-TEST(StabilityErrors, GoodUntilTheFirstThatIsNot) {
+TEST(StabilityErrors, GoodUntilEndsBeforeTheFirstErrorAboveTheBound) {
     const double none = std::numeric_limits<double>::quiet_NaN();
     const DegreeErrors errors{"x", Precision::twice, {1e-16, none, 1e-9, 1e-4, 1e-16}};
     EXPECT_EQ(errors.goodUntil(1e-3), 4);

@@ -69,7 +69,7 @@ Sweep smallSweep() {
     return sweep;
 }
 
-TEST(Front, HoldsExactlyWhatNoOtherBeats) {
+TEST(Front, HoldsExactlyTheFormsThatNoOtherBeats) {
     std::mt19937 random(5);
     std::uniform_int_distribution<int> some(1, 12);
     for (int trial = 0; trial < 200; ++trial) {
@@ -96,13 +96,13 @@ TEST(Front, HoldsExactlyWhatNoOtherBeats) {
     }
 }
 
-TEST(Front, PassesOverWhatIsNoNumber) {
+TEST(Front, IgnoresFormsWhoseErrorIsNoNumber) {
     const std::vector<double> costs{1, NAN, 2, INFINITY}, errors{NAN, 1, 3, 1};
     EXPECT_EQ(paretoFront(costs, errors), (std::vector<std::size_t>{2}));
     EXPECT_FALSE(kneeOf({}, costs, errors));
 }
 
-TEST(Front, BendsWhereTheSlopeChanges) {
+TEST(Front, KneeIsWhereTheSlopeChanges) {
     // Straight on logarithmic axes from (1, 1) to (8, 1e-3), and from there to (1000, 5e-4).
     std::vector<double> costs, errors;
     for (int k = 0; k <= 6; ++k) {
@@ -141,7 +141,7 @@ TEST(Pairs, AreUnitVectorsAboveTheHorizonWhoseWeightsAddUp) {
 
 /// Means whose values are known: over both hemispheres, of powers of the cosines and of lobes of
 /// the half vector, of which a fixed wo at the pole has closed forms.
-TEST(Pairs, IntegrateWhatIsKnown) {
+TEST(Pairs, IntegrateProductsOfCosines) {
     const PairSample pairs = spreadPairs();
     const auto mean = [&](auto f) {
         double sum = 0;
@@ -228,7 +228,7 @@ TEST(Pairs, GivenOnesKeepTheirWeights) {
 }
 
 /// f = a and g = b everywhere: every metric has a closed form.
-TEST(Errors, OfConstantsAreWhatTheIntegralsSay) {
+TEST(Errors, OfConstantsAreTheirClosedForms) {
     const double a = 0.5 / pi, b = 0.6 / pi;
     const PairReference reference(constant(a), spreadPairs());
     const auto errors = reference.errorsOf(constant(b));
@@ -292,7 +292,7 @@ TEST(Errors, RefuseAReferenceThatIsNotFinite) {
     EXPECT_THROW(PairReference(f, spreadPairs()), NumericError);
 }
 
-TEST(Cache, DerivesWhatDirectProjectionGives) {
+TEST(Cache, DerivedFormsEqualDirectProjections) {
     const FormulaBrdf f = lobe();
     std::vector<Form> forms;
     for (const bases::Entry& entry : bases::catalog()) {
@@ -379,7 +379,7 @@ TEST_F(Measured, IsTheSameOnAnyNumberOfThreads) {
 }
 
 /// Size and error of each form, from the form itself and nothing else.
-TEST_F(Measured, IsWhatItsOptionsMake) {
+TEST_F(Measured, BytesAndErrorsAreThoseOfTheFormMadeByItsOptions) {
     const FormulaBrdf f = lobe();
     const Tradeoff made = trade(2);
     const PairSample pairs = spreadPairs({.incoming = 64});
@@ -415,7 +415,7 @@ TEST_F(Measured, FrontNamesFormsThatNoOtherBeats) {
     EXPECT_TRUE(made.byteKnee);
 }
 
-TEST_F(Measured, LeavesOutWhatIsTooLarge) {
+TEST_F(Measured, LeavesOutFormsThatAreTooLarge) {
     TradeoffOptions options;
     options.sweep = smallSweep();
     options.timing = false;
@@ -429,7 +429,7 @@ TEST_F(Measured, LeavesOutWhatIsTooLarge) {
                  NumericError);
 }
 
-TEST_F(Measured, LeavesOutWhatDoesNotExistAndSaysWhy) {
+TEST_F(Measured, LeavesOutFormsThatDoNotExistWithTheReason) {
     TradeoffOptions options;
     options.sweep = smallSweep();
     options.sweep.bases = {"hsh", "lsosh"};
@@ -456,7 +456,7 @@ TEST_F(Measured, TimesEveryForm) {
     EXPECT_FALSE(made.timeFront.empty());
 }
 
-TEST_F(Measured, RefusesWhatMakesNoSense) {
+TEST_F(Measured, RefusesContradictoryOptions) {
     TradeoffOptions options;
     options.sweep = smallSweep();
     const auto refuses = [&] {
