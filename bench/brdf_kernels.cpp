@@ -1,4 +1,4 @@
-// What a value of each analytic model costs, on one thread: by vectors (Brdf::eval), and one
+// The time for a value of each analytic model, on one thread: by vectors (Brdf::eval), and one
 // direction at a time with the C++ library's functions (TermBrdf::evalScalar), which is what the
 // former are held against. Batches of 4096 incoming directions over the hemisphere, whose values
 // stay in the cache; the floor is writing as many. `difference`: the largest relative difference of

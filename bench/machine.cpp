@@ -1,4 +1,4 @@
-// What the machine can do on one core: the floors that docs/performance.md measures the library
+// The limits of the machine on one core: the floors that docs/performance.md measures the library
 // against.
 //     fma      independent chains of a x + b in registers, on each instruction set: items are
 //              floating-point operations, two for each lane and step

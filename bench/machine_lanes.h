@@ -1,5 +1,5 @@
-// What a core can compute and read, in vectors. Included by machine.cpp once for each instruction
-// set.
+// The rates at which a core computes and reads, in vectors. Included by machine.cpp once for each
+// instruction set.
 
 #include <hwy/highway.h>
 

@@ -1,7 +1,7 @@
-// What one RGB value of a measured BRDF costs, on one thread: batches of one outgoing direction and
-// a grid over all incoming ones, for 110 outgoing elevations. The MERL file is a GGX lobe; the RGL
-// files are synthetic, of the sizes of the isotropic RGL files, and of an anisotropic one with five
-// azimuths of a quarter of the circle. `rglScalar` is RglBrdf::evalScalar, without vectors.
+// The time for one RGB value of a measured BRDF, on one thread: batches of one outgoing direction
+// and a grid over all incoming ones, for 110 outgoing elevations. The MERL file is a GGX lobe; the
+// RGL files are synthetic, of the sizes of the isotropic RGL files, and of an anisotropic one with
+// five azimuths of a quarter of the circle. `rglScalar` is RglBrdf::evalScalar, without vectors.
 
 #include "bench_folder.h"
 

@@ -63,7 +63,7 @@ private:
     std::unique_ptr<Brdf> brdf_;
 };
 
-/// What asking the clock twice takes, to be left out.
+/// The time for reading the clock twice, to be subtracted.
 double clockSeconds() {
     constexpr int many = 2000;
     const double start = threadSeconds();
@@ -138,7 +138,7 @@ void measure(benchmark::State& state, const Job& job) {
     state.counters["error"] = error;
 }
 
-/// What each evaluation costs, in the BRDF, in the product alone, and in all but the BRDF.
+/// The time for each evaluation, in the BRDF, in the product alone, and in all but the BRDF.
 void floorShare(benchmark::State& state, const Job& job) {
     const tbb::global_control oneThread(tbb::global_control::max_allowed_parallelism, 1);
     const Timed brdf(job.spec);
@@ -169,9 +169,9 @@ void floorShare(benchmark::State& state, const Job& job) {
 
 constexpr const char* ward = "ward:kd=0,ks=1,ax=0.2,ay=0.5";
 
-/// What a projection on a fixed grid takes at the least: the bare BRDF at 10,000 directions for
-/// each of 1024 outgoing ones, and the product of these values with 49 functions, each alone, from
-/// the caches.
+/// The least time for a projection on a fixed grid: the bare BRDF at 10,000 directions for each of
+/// 1024 outgoing ones, and the product of these values with 49 functions, each alone, from the
+/// caches.
 void fixedGrid(benchmark::State& state, const std::string& spec) {
     constexpr std::size_t outgoing = 1024, points = 10000, functions = 49, together = 8;
     constexpr std::size_t columns = (functions + laneGroup - 1) / laneGroup * laneGroup;

@@ -123,7 +123,7 @@ void textbookMonteCarlo(const Direction& wo, std::mt19937_64& random, double* co
     }
 }
 
-/// What Monte Carlo takes for all outgoing directions, and the error it then has.
+/// The time of Monte Carlo for all outgoing directions, and its error then.
 struct MonteCarlo {
     double seconds = 0, error = 0;
     /// Seconds to an error, by 1/sqrt(N).
@@ -204,7 +204,7 @@ void projection(benchmark::State& state, double tolerance) {
     state.counters["textbook_ratio_asked"] = textbook().secondsTo(tolerance) / seconds;
     state.counters["shared_ratio_reached"] = shared().secondsTo(error.value()) / seconds;
     state.counters["shared_ratio_asked"] = shared().secondsTo(tolerance) / seconds;
-    // The same directions with 10,000 samples each, whatever the error.
+    // The same directions with 10,000 samples each, for any error.
     constexpr double usual = 10000;
     state.counters["textbook_ratio_usual"] = textbook().seconds * (usual / samples) / seconds;
     state.counters["textbook_error_usual"] = textbook().error * std::sqrt(samples / usual);

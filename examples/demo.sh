@@ -1,5 +1,5 @@
 #!/bin/sh
-# What `./run demo` does once the program is built: three BRDFs to coefficients and reports in out/.
+# The steps of `./run demo` after the build: three BRDFs to coefficients and reports in out/.
 set -eu
 cd "$(dirname "$0")/.."
 hshfit=build/hshfit

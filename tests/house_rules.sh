@@ -58,8 +58,15 @@ tests/room_graph.py | rule 'rooms of lib: arrows only go down, namespace = folde
 [ "$(sed -n 's/^add_subdirectory(hshfit\/\(.*\))$/\1/p' lib/CMakeLists.txt)" = \
     "$(sed -n 's/^| `\([a-z_/]*\)` | .*/\1/p' docs/rooms.md)" ] ||
     echo docs/rooms.md | rule 'the page has the rooms of lib/CMakeLists.txt in their order'
-matches '(^|[.:;] |[*][*]|^[|] *|^[-*] )(What|Whoever|Which|Whatever|Whichever) [^?]*$' '*.md' |
-    rule 'sentences have a noun for a subject'
+openings='(What|Whoever|Which|Whatever|Whichever) [^?]*$'
+{
+    matches "(^|[.:;] |[*][*]|^[|] *|^[-*] )$openings" '*.md'
+    for room in files brdf quadrature bases projection accuracy light pictures pages stability; do
+        matches "(//[/<]* |[.:;] )$openings" "lib/hshfit/$room/*.h" "lib/hshfit/$room/*.cpp"
+    done
+    matches "(//[/<]* |[.:;] )$openings" 'brdfs/measured/*.h' 'brdfs/measured/*.cpp' bench \
+        'tests/*.h' 'tests/*.cpp' ':!tests/brdfs/fit_formula_test.cpp'
+} | rule 'sentences have a noun for a subject'
 matches '#include *[<"](brdfs|cli|jobs)/' lib | rule 'lib includes nothing from brdfs, jobs or cli'
 matches '"([^"]*[^-[:alnum:]"])?--[a-z]|"[^"]*hshfit [a-z]+ ' 'lib/*.cpp' 'lib/*.h' jobs |
     rule 'options and commands of the program are named in cli only (wording.h)'

@@ -3,7 +3,7 @@
 
 usage: docs/figures/performance.py [FOLDER = out/bench]
 
-Replaces what stands between `<!-- NAME -->` and `<!-- /NAME -->` in docs/performance.md and draws
+Replaces the text between `<!-- NAME -->` and `<!-- /NAME -->` in docs/performance.md and draws
 docs/figures/performance-*.svg with gnuplot. Sections whose benchmark was not run stay as they are.
 """
 import pathlib

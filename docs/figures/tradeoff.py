@@ -17,7 +17,7 @@ import subprocess
 import sys
 import tempfile
 
-# What is tried of each material: little enough for a minute.
+# The forms tried for each material: few enough for a minute.
 SWEEP = ("--forms outgoing,halfway --bases hsh --orders 3,5,7 --ranks 0,2 "
          "--precisions float32,half,unorm16,unorm8 --tolerance 1e-2 --no-timing").split()
 ISOTROPIC = "--outgoing 8".split()

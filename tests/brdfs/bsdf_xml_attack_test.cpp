@@ -139,7 +139,7 @@ TEST(BsdfXmlAttack, ElementsAndWordsAreChecked) {
     expectRefused(bsdfXml("Columns", basisXml("Two", two), block + block), {"a second block"});
     expectRefused(bsdfXml("Columns", basisXml("Two", two), ""), {"no WavelengthDataBlock"});
     expectRefused(replaced(klems(), "</Optical>", "</Optica>"), {"not valid XML"});
-    // What is quoted stays one short line.
+    // A quotation stays one short line.
     expectRefused(replaced(klems(), ">Columns<", ">a\nb" + std::string(5000, 'x') + "<"), {"a b"});
 }
 

@@ -163,7 +163,7 @@ TEST(BsdfXmlFiles, TensorTreesHaveTheReflectancesOfTheirNumbers) {
             // Radiance stores symmetric reflection; large values have four digits.
             ASSERT_NEAR(there, here, 6e-4 * there);
         }
-        // The narrow bright cells are not missed, whatever the outgoing cell.
+        // The narrow bright cells are not missed, for any outgoing cell.
         const std::vector<double> albedos = tree.tree().averagesOverFirst(2);
         for (int k = 0; k < 6; ++k) {
             const Direction wo = randomDirection(random, 0.2);

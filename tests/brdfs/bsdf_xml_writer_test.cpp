@@ -1,4 +1,4 @@
-// What is written, read back: averages over cells, reflectances, orientation.
+// Written files, read back: averages over cells, reflectances, orientation.
 
 #include <brdfs/catalog.h>
 #include <brdfs/spec.h>

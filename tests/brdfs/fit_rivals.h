@@ -38,8 +38,8 @@ inline constexpr std::array rivals{
     Rival{"low-cook-torrance-e2", "ggx", Loss::Kind::log},
 };
 
-/// What both sides are measured on: the cells of a slice with both directions within 80 degrees of
-/// the normal (Ngan et al. 2005 leave out the rest), weighted by solid angle.
+/// The samples that both sides are measured on: the cells of a slice with both directions within 80
+/// degrees of the normal (Ngan et al. 2005 leave out the rest), weighted by solid angle.
 inline FitSamples samplesOfSlice(const std::string& path, double grazingCut = 80) {
     return gatherSamples(*open(path),
                          {.weights = SampleWeights::solidAngle, .grazingCut = grazingCut});

@@ -44,7 +44,7 @@ protected:
     void TearDown() override { fs::remove_all(folder_); }
     std::string path(const std::string& name) const { return folder_ / name; }
 
-    /// What a texel has to be, derived from the table.
+    /// The expected texel, derived from the table.
     static double expected(const LtcTable& table, int picture, int row, int column, int channel) {
         const LtcLobe& lobe = table.cell(row, column);
         const Ltc& ltc = lobe.ltc;

@@ -195,7 +195,7 @@ TEST(Albedo, SumsExceedOneWhereTheyDoNotClaim) {
     }
 }
 
-// What the docs say of the raw Ward lobes: both albedos grow without bound towards grazing.
+// The raw Ward lobes as docs/brdfs.md has them: both albedos grow without bound towards grazing.
 TEST(Albedo, RawWardGrowsWithoutBound) {
     for (const std::string variant : {"1992", "duer"}) {
         const auto brdf = open("ward:ax=.2,ay=.2,variant=" + variant);

@@ -257,7 +257,7 @@ struct Exact {
     }
 };
 
-// Sharp lobes in 50 digits. What is left is that the inputs are unit to 1e-16 only.
+// Sharp lobes in 50 digits. The remaining difference is that inputs are unit vectors to 1e-16 only.
 TEST(Sharp, PhongKeepsItsDigits) {
     Directions directions(31);
     for (const std::string exponent : {"100", "1e4", "1e6"}) {

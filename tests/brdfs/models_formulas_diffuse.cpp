@@ -105,7 +105,7 @@ TEST(Formulas, EonOfWhiteFacetsHasAlbedoOne) {
         }
 }
 
-// Which is why albedo=approximate does not claim to keep the energy.
+// For this reason albedo=approximate does not claim to keep the energy.
 TEST(Formulas, EonApproximateAlbedoExceedsTheExactOneSlightly) {
     const Direction wo = directionFromAngles(radians(82), .3);
     const auto exact = open("eon:roughness=1"), fast = open("eon:roughness=1,albedo=approximate");

@@ -95,7 +95,7 @@ TEST(Fresnel, FiniteAtEveryEnd) {
     EXPECT_EQ(schlickReflectance(0, .04), 1);
 }
 
-// What the header says of Schlick's approximation.
+// The error of Schlick's approximation that the header states.
 TEST(Fresnel, SchlickIsWithinItsStatedError) {
     double worst = 0;
     for (int n = 120; n <= 220; n += 5)

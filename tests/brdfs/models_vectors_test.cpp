@@ -48,7 +48,7 @@ Points extremePoints() {
 
 /// A value above 1e-30 of the largest is exp(-69) of it at least: the 20 or so roundings in an
 /// exponent, of either side, become up to 69 x 20 x 1.1e-16 of the value, and a power's logarithm
-/// adds 3 units of the last place, 69 x 3.3e-16. What multiplies the exponential errs by 3e-15.
+/// adds 3 units of the last place, 69 x 3.3e-16. The factor of the exponential errs by 3e-15.
 constexpr double bound = 2e-13;
 
 /// Where a sum of terms cancels, errors are relative to the terms: of these models they are about
@@ -155,8 +155,8 @@ TEST(ModelVectors, AgreeWithDoubleAtRandomParameters) {
     }
 }
 
-// A direction has the same bits wherever it stands in a batch, and whatever the batch's size; what
-// lies behind the batch is not written.
+// A direction has the same bits at every place in a batch of any size; what lies behind the batch
+// is not written.
 TEST(ModelVectors, ValuesDoNotDependOnTheBatch) {
     constexpr std::size_t count = 4097;
     constexpr double untouched = -7;

@@ -337,7 +337,7 @@ TEST_F(CollectionFile, InvalidOnesAreRefused) {
           R"({"factors":[1,2,"3"],"parameters":[]})", R"({"factors":[1,2,3],"parameters":"ks"})",
           R"({"factors":[1,2,3],"parameters":[1]})"})
         expectBad(ward + R"("channel_scale":)" + scale + "," + none + "}", {"channel_scale"});
-    // What only the model knows shows on opening, with the material named.
+    // An error that only the model can find shows on opening, with the material named.
     const std::string path =
         write(ward + R"("materials":{"a":{"ax":1},"b":{"ax":1,"ay":99},"c":{"az":1}}})");
     expectError<InputError>([&] { open(path + ":a"); }, {"mine.json/a", "ay has to be given"});

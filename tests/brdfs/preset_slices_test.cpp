@@ -56,7 +56,8 @@ TEST(Slices, PresetsFollowTheMeasurements) {
     }
 }
 
-// What the tables do not say, and other sources say otherwise, as they are read and as not.
+// Conventions that the tables do not state and other sources contradict: our reading and the
+// others.
 TEST(Slices, OtherReadingsAreFurtherOff) {
     if (!std::filesystem::exists(slices)) GTEST_SKIP() << slices << " is absent";
     struct Reading {

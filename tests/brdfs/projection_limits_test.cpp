@@ -115,7 +115,8 @@ TEST(Limits, TheNarrowestLobesAreMirrors) {
     }
 }
 
-/// The levels of a grid are as good as quadrature.h says, squeezed or not.
+/// The levels of a grid are as accurate as quadrature.h says, with clustered and equispaced
+/// azimuths.
 TEST(Limits, QuadratureLevelsReachTheirStatedAccuracy) {
     struct Case {
         const char* spec;

@@ -32,7 +32,7 @@ void refused(const Reader& read, const std::string& text, const std::vector<std:
     test::expectInputError([&] { read(text); }, parts);
 }
 
-/// Whatever is cut off: either the reader takes the rest or it throws InputError.
+/// For every truncation, either the reader takes the rest or it throws InputError.
 void cutEverywhere(const Reader& read, const std::string& text) {
     EXPECT_NO_THROW(read(text));
     for (std::size_t size = 0; size < text.size(); ++size) {

@@ -1,4 +1,4 @@
-// What the readers of scattered samples make of files: written here byte by byte, and real ones.
+// The readers of scattered samples, on files written here byte by byte and on real ones.
 
 #include <brdfs/catalog.h>
 #include <brdfs/measured/scattered/alta.h>

@@ -52,7 +52,7 @@ TEST(Chart, symmetriesActBySigns) {
     }
 }
 
-// What the header promises: a small turn of one direction near the mirror configuration moves the
+// The promise of the header: a small turn of one direction near the mirror configuration moves the
 // point by about that angle.
 TEST(Chart, distancesAreAnglesNearTheMirrorConfiguration) {
     const double step = radians(1);

@@ -164,7 +164,7 @@ TEST(SlicePicture, aPictureByAltaShowsTheSliceOfTheSameMaterial) {
     std::printf("equal within half precision: %d of %d pixels\n", equal, pixels);
 }
 
-/// What OpenEXR reads, without the library.
+/// The picture as OpenEXR reads it, without the library.
 struct Picture {
     explicit Picture(const std::string& path) : file(path.c_str(), 0) {
         const auto box = file.header().dataWindow();

@@ -37,7 +37,7 @@ TEST_F(Cli, PresetsAreFoundByAnyPartOfTheirNames) {
     const Json json = Json::parse(run("list presets bagher-sgd/brass --json").out);
     ASSERT_EQ(json["presets"].size(), 1u);
     EXPECT_EQ(json["presets"][0]["name"], "bagher-sgd/brass");
-    // What is listed opens.
+    // Every listed name opens.
     const std::string spec = json["presets"][0]["spec"];
     EXPECT_EQ(run("eval '" + spec + "' --wi 20,0 --wo 30,180").out,
               run("eval preset:bagher-sgd/brass --wi 20,0 --wo 30,180").out);

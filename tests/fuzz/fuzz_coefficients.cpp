@@ -1,6 +1,6 @@
 // The bytes are a coefficient file: EXR if they start with its magic number, else JSON, in plain
-// coefficients or another form. What reads is also written and read again, and has to be the same;
-// forms are evaluated besides.
+// coefficients or another form. A file that reads is also written and read again, and has to be the
+// same; forms are evaluated besides.
 
 #include <hshfit/coefficient_files/coefficient_formats.h>
 #include <hshfit/error.h>

@@ -1,4 +1,4 @@
-// The bytes are a mixture of Gaussians. What parses is evaluated and written again.
+// The bytes are a mixture of Gaussians. A file that parses is evaluated and written again.
 
 #include <brdfs/fit/gaussian_mixture_json.h>
 #include <hshfit/error.h>
@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (a.size() != b.size() || a[0].lobes.size() != b[0].lobes.size()) std::abort();
     } catch (const InputError& error) {
         if (std::strchr(error.what(), '\n')) std::abort();
-        // What was written has to be read.
+        // The written file has to be read.
         if (std::strncmp(error.what(), "again", 5) == 0) std::abort();
     }
     return 0;

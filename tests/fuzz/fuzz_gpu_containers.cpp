@@ -13,7 +13,8 @@ namespace {
 
 using namespace hshfit::gpu;
 
-/// What reads has the sizes that it says, and its tests agree (readTexelFile throws otherwise).
+/// A file that reads has the sizes that it states, and its tests agree (readTexelFile throws
+/// otherwise).
 void check(const Payload& payload) {
     if (payload.coefficients.bytes.size() !=
         payload.coefficients.count() * numberBytes(payload.coefficients.number)) {

@@ -1,5 +1,5 @@
-// The bytes are a preset or a collection of them. What parses is opened; f has to be finite and not
-// negative, and the name to open the same again.
+// The bytes are a preset or a collection of them. A preset that parses is opened; f has to be
+// finite and not negative, and the name to open the same again.
 
 #include <brdfs/catalog.h>
 #include <brdfs/preset.h>

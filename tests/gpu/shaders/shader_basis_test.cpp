@@ -17,7 +17,7 @@
 namespace hshfit::gpu {
 namespace {
 
-/// What the snippets do, in single precision: every function of `order`^2 slots.
+/// The steps of the snippets, in single precision: every function of `order`^2 slots.
 std::vector<float> evaluateSteps(const BasisSteps& steps, int order, const Direction& d) {
     const auto x = static_cast<float>(d.x), y = static_cast<float>(d.y),
                z = static_cast<float>(d.z);

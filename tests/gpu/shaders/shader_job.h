@@ -28,7 +28,7 @@ struct Environment {
 };
 Environment randomEnvironment(int order, std::size_t colours);
 
-/// What a snippet has to be run on.
+/// The inputs that a snippet is run on.
 struct ShaderJob {
     gpu::Payload payload;
     Pairs pairs;

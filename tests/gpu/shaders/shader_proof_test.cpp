@@ -39,7 +39,7 @@ void prove(Language language, Run runner = {}) {
         };
     }
     for (Variant& variant : variants()) {
-        // What OSL does not take.
+        // Payloads that OSL does not take.
         if (language == Language::osl &&
             (variant.payload.basisTexels || isNormalised(variant.payload.coefficients.number)))
             continue;
@@ -84,7 +84,7 @@ TEST(ShaderProof, OslAsCpp) {
 }
 
 /// kd / pi is one coefficient of HSH, kd / pi sqrt(2 pi); a constant light is one of SH, sqrt(4 pi)
-/// times its radiance. What comes back is kd times the radiance, in every direction.
+/// times its radiance. The result is kd times the radiance, in every direction.
 TEST(ShaderProof, LambertUnderAConstantLight) {
     constexpr double kd[] = {0.75, 0.5, 0.25};
     Coefficients c;

@@ -81,7 +81,7 @@ void append(std::string& bytes, const T* values, std::size_t count) {
     bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
 }
 
-/// What the GPU samples: decoded, but neither scaled nor offset.
+/// The texels that the GPU samples: decoded, but neither scaled nor offset.
 void appendArray(std::string& bytes, gpu::Texels texels) {
     for (gpu::LaneScale& scale : texels.scales) scale = {};
     const std::vector<double> values = gpu::decode(texels);

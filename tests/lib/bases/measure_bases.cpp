@@ -119,7 +119,8 @@ void printFloat() {
         passing);
 }
 
-/// What noise of unit size in every moment keeps of its energy: the rank of the solve over n^2.
+/// The share of energy that noise of unit size in every moment keeps: the rank of the solve over
+/// n^2.
 void printRank() {
     const auto basis = bases::make("lsosh", 64);
     fmt::print("\nlsosh order | functions | kept by the solve\n--|--|--\n");

@@ -1,4 +1,4 @@
-// What is written comes back, from our reader and from independent ones.
+// Written files come back, from our reader and from independent ones.
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/coefficient_files/coefficient_file.h>
@@ -70,7 +70,7 @@ std::vector<Coefficients> everyKind() {
     return all;
 }
 
-/// What a shell command prints.
+/// The output of a shell command.
 std::string printed(const std::string& command) {
     std::FILE* pipe = ::popen(command.c_str(), "r");
     std::string out;

@@ -206,7 +206,7 @@ TEST_F(ReportFiles, ThePageEscapesAndIsWellFormed) {
     // Nothing is fetched; the names of XML vocabularies are the only addresses.
     const std::regex address(R"re((src|href)\s*=\s*["'](https?:|//))re");
     EXPECT_FALSE(std::regex_search(page, address));
-    // Whatever has an end tag is closed in order, and no id appears twice.
+    // Every element with an end tag is closed in order, and no id appears twice.
     static const std::regex tag(
         R"re(<(/?)([A-Za-z][A-Za-z0-9]*)((?:"[^"]*"|'[^']*'|[^>"'])*?)(/?)>)re");
     std::vector<std::string> open;

@@ -1,4 +1,4 @@
-// What the library writes is what docs/schemas says, as judged by python3-jsonschema.
+// Files of the library keep docs/schemas, as judged by python3-jsonschema.
 
 #include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/pages/report.h>

@@ -349,7 +349,7 @@ TEST(Grey, IsTheWeightedMeanAndHasASpecification) {
     EXPECT_THROW(open("grey="), UsageError);
 }
 
-/// What stands in a scene file and has to be named when it is wrong.
+/// A replacement in a scene file that makes it wrong, and the name that the error has to contain.
 struct BadScene {
     const char *from, *to, *named;
 };

@@ -1,4 +1,4 @@
-// Squeezed rings against functions whose azimuth transforms are known in closed form.
+// Rings of clustered azimuths against functions whose azimuth transforms are known in closed form.
 
 #include <hshfit/brdf/directions.h>
 #include <hshfit/projection/internal/rings.h>
@@ -169,7 +169,7 @@ TEST(Rings, AzimuthsGrowWithTheRootOfTheWidth) {
 }
 
 /// Nowhere fewer azimuths than a BRDF without lobes gets: something that no lobe announces is seen
-/// as well as without a squeeze.
+/// as well as with equispaced azimuths.
 TEST(Rings, ClusteredAzimuthsAreNowhereSparserThanWithoutLobes) {
     const Direction wo = directionFromAngles(radians(70), 0);
     for (const double width : {0.3, 0.1, 1e-2, 1e-3})

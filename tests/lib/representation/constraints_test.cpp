@@ -189,7 +189,7 @@ TEST(NonNegative, HoldsEverywhereAndCostsWhatIsMeasured) {
             }
             EXPECT_NEAR(after.steps.at(0).change, measuredChange(before, after), 1e-7)
                 << entry.name << isotropic;
-            // What is non-negative already stays as it is.
+            // Coefficients that are non-negative already stay as they are.
             EXPECT_LT(madeNonNegative(after).steps.at(1).change, 1e-5) << entry.name;
         }
     }

@@ -29,7 +29,8 @@ const bases::JacobiBasis& asJacobi(const Basis& basis) {
 }
 
 TEST(StabilityReference, IsRightToTheAccuracyThatItClaims) {
-    // What is between the reference and explicit sums in 1200 digits, at the vectors as they are.
+    // The difference between the reference and explicit sums in 1200 digits, at the vectors as they
+    // are.
     ASSERT_GE(jacobiEntries().size(), 6U);
     for (const bases::Entry* entry : jacobiEntries()) {
         const auto basis = entry->make(1000, {});

@@ -1,8 +1,8 @@
 #pragma once
 
-// What the Metal and OSL stubs share: a job read from a file, texture arrays with a bilinear
-// filter, and a main that evaluates every pair. No header of the C++ library: each costs half a
-// second.
+// The common parts of the Metal and OSL stubs: a job read from a file, texture arrays with a
+// bilinear filter, and a main that evaluates every pair. No header of the C++ library: each costs
+// half a second.
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -54,8 +54,8 @@ inline void readArray(FILE* file, Array& array) {
     read(file, array.texels, count);
 }
 
-/// evaluate(k, out) for every pair, of the job in `from`; results to `to`. What is allocated stays
-/// to the end of the process.
+/// evaluate(k, out) for every pair, of the job in `from`; results to `to`. Allocations stay to the
+/// end of the process.
 template <class Evaluate>
 int runAll(const char* from, const char* to, Evaluate evaluate) {
     FILE* file = fopen(from, "rb");
