@@ -29,7 +29,7 @@ nlohmann::json parseJson(std::string_view text, const std::string& file, int max
 /// throws InputError. Numbers are finite.
 class JsonFields {
 public:
-    /// `path` leads to the object, "" for the root; both references have to outlive this.
+    /// `path` is what leads to the object, "" for the root; both references have to outlive this.
     JsonFields(const nlohmann::json& object, std::string path, const std::string& file);
 
     [[noreturn]] void fail(std::string_view what, std::string_view key = {}) const;
