@@ -54,6 +54,13 @@ done
 
 matches 'file *\( *GLOB' '*.cmake' '*CMakeLists.txt' | rule 'sources are listed, never globbed'
 tests/room_graph.py | rule 'rooms of lib: arrows only go down, namespace = folder' || true
+matches '#include *[<"](brdfs|cli|jobs)/' lib | rule 'lib includes nothing from brdfs, jobs or cli'
+matches 'hshfit::brdfs|hshfit_brdfs' 'lib/**CMakeLists.txt' | rule 'lib links nothing from brdfs'
+matches '#include *[<"]cli/' brdfs | rule 'brdfs includes nothing from cli'
+# files/json_fields.h and files/exr_stream.h wrap a library for the rooms above them.
+matches '#include *[<"](Eigen|OpenEXR|Imf|Imath|nlohmann)' 'lib/*.h' ':!lib/**/internal/*.h' \
+    ':!lib/hshfit/files/json_fields.h' ':!lib/hshfit/files/exr_stream.h' |
+    rule 'third-party headers stay out of public headers'
 # shellcheck disable=SC2016  # back-quotes of Markdown
 [ "$(sed -n 's/^add_subdirectory(hshfit\/\(.*\))$/\1/p' lib/CMakeLists.txt)" = \
     "$(sed -n 's/^| `\([a-z_/]*\)` | .*/\1/p' docs/rooms.md)" ] ||
