@@ -80,7 +80,7 @@ matches '"([^"]*[^-[:alnum:]"])?--[a-z]|"[^"]*hshfit [a-z]+ ' 'lib/*.cpp' 'lib/*
 matches 'hshfit::brdfs|hshfit_brdfs' 'lib/**CMakeLists.txt' | rule 'lib links nothing from brdfs'
 matches '#include *[<"](jobs|cli)/' brdfs | rule 'brdfs includes nothing from jobs or cli'
 matches '#include *[<"](cli|CLI)/' jobs | rule 'jobs includes nothing from cli, nor CLI11'
-# files/json_fields.h and files/exr_stream.h wrap a library for the rooms above; nobody installs them.
+# files/json_fields.h and files/exr_stream.h wrap a library for the rooms above them.
 matches '#include *[<"](Eigen|OpenEXR|Imf|Imath|nlohmann)' 'lib/*.h' ':!lib/**/internal/*.h' \
     ':!lib/hshfit/files/json_fields.h' ':!lib/hshfit/files/exr_stream.h' |
     rule 'third-party headers stay out of public headers'

@@ -1,4 +1,4 @@
-// What the table of commands promises: every command has a one-line help, a source, a place in the
+// Laws of the table of commands: every command has a one-line help, a source, a place in the
 // docs and in the completion of shells, and an example that works as it is printed.
 
 #include <cli/command_table.h>
