@@ -1,12 +1,12 @@
 #include <hshfit/error.h>
 #include <hshfit/files/mapped_file.h>
 
-#include <brdfs/measured_files.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <temporary_file.h>
 
 #include <memory>
 #include <numeric>

@@ -1,0 +1,39 @@
+#!/bin/sh
+# Holds that the parts math and files of the library stand by themselves: copies the tracked files
+# less the folders that a part has no business with, builds the part there, and runs its tests. The
+# part math comes first; the folders of files are then added, so that nothing is built twice.
+set -eu
+cd "$(dirname "$0")/.."
+top=$PWD
+copy=$top/build/parts/alone
+
+# The rooms of lib/hshfit that a part of lib/CMakeLists.txt adds, and those before it.
+roomsUpTo() {
+    sed -n "1,/^hshfit_part($1 /p" lib/CMakeLists.txt |
+        sed -n 's/^add_subdirectory(\(hshfit\/.*\))$/lib\/\1/p'
+}
+
+# Copies tracked files under PATH….
+copyTracked() {
+    git ls-files -z -- "$@" | xargs -0 cp --parents --update --target-directory="$copy"
+}
+
+mkdir -p "$copy"
+ln -sfn "$top/../shared" "$top/build/parts/shared"
+find "$copy" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf {} +
+copyTracked CMakeLists.txt CMakePresets.json cmake lib/CMakeLists.txt 'lib/hshfit/*.h*' \
+    tests/CMakeLists.txt 'tests/*.h' tests/lib docs/figures docs/schemas tests/validate_schema.py
+rm -rf "$copy/lib/hshfit/"*/
+for part in math files; do
+    for room in $(roomsUpTo "$part"); do copyTracked "$room"; done
+    echo "parts_alone: $part with $(roomsUpTo "$part" | wc -l) rooms"
+    (
+        cd "$copy"
+        cmake --preset release --log-level=WARNING -DHSHFIT_PARTS=$part -DHSHFIT_EXAMPLES=OFF \
+            >/dev/null
+        cmake --build --preset release --parallel "$(nproc)"
+        ctest --preset release --parallel "$(nproc)" --output-junit tests.xml \
+            >"$copy/build/$part.log" || { cat "$copy/build/$part.log"; exit 1; }
+        tail -n 3 "$copy/build/$part.log"
+    ) || { echo "parts_alone: $part does not stand by itself" >&2; exit 1; }
+done
