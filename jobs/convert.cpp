@@ -50,7 +50,7 @@ brdfs::Parameters writerParameters(const brdfs::Writer& writer, const std::strin
                                   colon == std::string::npos ? "" : format.substr(colon + 1));
 }
 
-/// What was written, read back and compared with what it was written from.
+/// The file, read back and compared with the BRDF that it was written from.
 ConversionLoss measureLoss(const Brdf& input, const brdfs::Writer& writer,
                            const std::string& output, const ConvertOptions& options,
                            const Listener& listener) {

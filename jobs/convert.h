@@ -22,7 +22,7 @@ struct ConvertOptions {
     bool force = false;  ///< replace a file that stands
 };
 
-/// What the file, read back, has lost.
+/// Errors of the file, read back, against the BRDF that it was written from.
 struct ConversionLoss {
     std::string outgoing;
     std::vector<MetricValue> metrics;

@@ -26,7 +26,7 @@ namespace {
 using gpu::Target;
 using Targets = std::vector<const Target*>;
 
-/// What the coefficients came from, if it can still be opened.
+/// The BRDF that the coefficients came from, if it can still be opened.
 struct Source {
     std::unique_ptr<Brdf> brdf;
     std::string reason;  ///< why there is none

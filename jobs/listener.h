@@ -6,10 +6,10 @@
 
 namespace hshfit::jobs {
 
-/// How much of a part of the work is done, and of how much. May be called from any thread.
+/// Takes the amount done of a part of the work, and the whole. May be called from any thread.
 using ProgressCall = std::function<void(std::size_t done, std::size_t total)>;
 
-/// What a job tells its caller while it works. Members that are left out are not called.
+/// The caller of a job hears of its progress here. Members that are left out are not called.
 struct Listener {
     /// A part of the work begins. Its progress goes to the function returned, whose last copy is
     /// destroyed when the part ends.

@@ -59,7 +59,7 @@ Projection projectSamples(const Brdf& brdf, const Basis& basis, const OutgoingSe
     return {.coefficients = std::move(fit.coefficients), .captured = {}, .evaluations = 0};
 }
 
-/// What all inputs share.
+/// The basis, outgoing set and form that all inputs share.
 class Projector {
 public:
     explicit Projector(const ProjectOptions& options)

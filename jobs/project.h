@@ -31,7 +31,7 @@ struct ProjectOptions {
     std::optional<Form> form = {};
 };
 
-/// A projection and, where a form was asked for, what the file keeps of it.
+/// A projection and, where a form was asked for, its representation in the file.
 struct Projected {
     Projection projection;
     std::optional<Representation> kept = {};

@@ -4,9 +4,19 @@
 #include <cli/command_table.h>
 #include <cli/program.h>
 
+#include <ostream>
 #include <set>
 #include <string_view>
 #include <vector>
+
+namespace hshfit::cli {
+
+/// The name of a case of a law.
+void PrintTo(const Command& command, std::ostream* out) {
+    *out << command.name;
+}
+
+}  // namespace hshfit::cli
 
 namespace {
 
@@ -29,7 +39,7 @@ bool reads(const Command& user, const Command& maker) {
     const auto made = wordsOf(maker.example), used = wordsOf(user.example);
     for (std::size_t m = 1; m < made.size(); ++m) {
         if (made[m - 1] != "-o") continue;
-        for (std::size_t u = 1; u < used.size(); ++u)
+        for (std::size_t u = 2; u < used.size(); ++u)
             if (used[u - 1] != "-o" && used[u].starts_with(made[m])) return true;
     }
     return false;

@@ -6,7 +6,7 @@
 
 namespace hshfit::gpu::inline containers {
 
-/// What an export can be asked for: a container, a shader language, the viewer, or the set of
+/// A choice of an export: a container, a shader language, the viewer, or the set of
 /// them that suits one renderer.
 struct Target {
     enum class Kind { container, shader, viewer, renderer };

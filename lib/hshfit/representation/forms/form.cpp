@@ -93,7 +93,7 @@ void quantise(Representation& representation, Precision precision) {
     addStep(representation, before, std::string(precisionName(precision)));
 }
 
-/// What is asked of ln(1 + f), which keeps f and is not linear in it.
+/// Holds options to the form halfway: ln(1 + f) keeps f and is not linear in it.
 void requireConsistentHalfway(const Form& form, const Laws& laws) {
     const Setting halfway{"Form::kind", std::string(kindName(Kind::halfway))};
     if (form.quantity == Quantity::brdfCosine) {
