@@ -24,7 +24,7 @@ FitSamples someSamples() {
     return gatherSamples(*open("lambert:kd=.5"), {}).drawn(700, 3);
 }
 
-TEST_P(Formulas, AreTheCatalogs) {
+TEST_P(Formulas, DerivativesMatchFiniteDifferencesOfCatalogModels) {
     const ParametricSum sum(GetParam(), true);
     ParametricSum slow(GetParam(), true);
     slow.forgetFormulas();
@@ -108,9 +108,9 @@ std::string colouredSpec(const Model& model) {
     return spec;
 }
 
-// What the problem takes for f, from columns and linear parameters, is what the fit's specification
-// opens as, in every channel; and every model has something to fit.
-TEST(Columns, AddUpToTheCatalogsModel) {
+// The sum of columns times linear parameters is f of the specification that the fit writes, in
+// every channel, and every model has parameters to fit.
+TEST(Columns, SumToTheCatalogModel) {
     std::mt19937_64 random(11);
     for (const Model& model : models()) {
         const FitSamples samples = gatherSamples(*open(colouredSpec(model)), {}).drawn(300, 3);
