@@ -17,10 +17,10 @@ namespace hshfit::jobs {
 
 struct ExportOptions {
     std::string targets = "bin,glsl-es";  ///< gpu::selectTargets
-    std::string name;                     ///< of the files; empty: that of the coefficient file
+    std::string name = {};                ///< of the files; empty: that of the coefficient file
     /// The BRDF that the error is measured against; empty: the one that the coefficients name.
-    std::string source;
-    std::string outgoing;       ///< set of the textures; empty: that of the coefficients
+    std::string source = {};
+    std::string outgoing = {};  ///< set of the textures; empty: that of the coefficients
     std::string basis = "hsh";  ///< for the form halfway
     int order = 7;              ///< for the form halfway
     gpu::PackOptions pack = {};

@@ -4,7 +4,9 @@
 #include <cli/command_table.h>
 #include <cli/program.h>
 
+#include <fmt/format.h>
 #include <ostream>
+
 #include <set>
 #include <string_view>
 #include <vector>
@@ -107,8 +109,8 @@ INSTANTIATE_TEST_SUITE_P(Every, CommandTable, testing::ValuesIn(commands()),
 TEST_F(Cli, HelpOfTheProgramListsEveryCommandUnderItsGroup) {
     const std::string help = run("--help").out;
     for (const Command& command : commands()) {
-        const std::size_t group = help.find("\n" + std::string(command.group) + ":\n");
-        const std::size_t line = help.find("\n  " + std::string(command.name) + " ");
+        const std::size_t group = help.find(fmt::format("\n{}:\n", command.group));
+        const std::size_t line = help.find(fmt::format("\n  {} ", command.name));
         ASSERT_NE(group, std::string::npos) << command.group;
         ASSERT_NE(line, std::string::npos) << command.name;
         EXPECT_EQ(help.find("\n\n", group + 1) > line, group < line) << command.name;

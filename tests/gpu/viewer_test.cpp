@@ -152,7 +152,7 @@ TEST(Viewer, ProjectsTheOtherBasis) {
         const ViewerInput input = viewerInput(payload, brdf.get());
         ASSERT_EQ(input.payloads.size(), 2u);
         EXPECT_EQ(input.payloads[1].head.basis, other);
-        EXPECT_EQ(input.payloads[1].order, 3);
+        EXPECT_EQ(input.payloads[1].head.order, 3);
         EXPECT_TRUE(input.reference.has_value());
         EXPECT_EQ(viewerInput(payload, nullptr).payloads.size(), 1u);
     }

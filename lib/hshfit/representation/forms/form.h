@@ -24,10 +24,10 @@ struct Form {
     int order = 7;
     Quantity quantity = Quantity::brdf;
     bool condonShortley = false;
-    std::string outgoing;  ///< OutgoingSet::parse; empty: 32x32
+    std::string outgoing = {};  ///< OutgoingSet::parse; empty: 32x32
     HalfwayOrders halfway = {};
     bool reciprocal = false;  ///< the symmetric half only
-    std::string split;        ///< "", "diffuse", or a BRDF specification
+    std::string split = {};   ///< "", "diffuse", or a BRDF specification
     Window window = Window::none;
     bool nonNegative = false, energyPreserving = false;
     int rank = 0;          ///< 0: not factored
