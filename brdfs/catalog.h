@@ -60,6 +60,9 @@ public:
     std::string text;
 };
 
+class ModelColumns;
+struct ColumnRequest;
+
 /// One row of the table of analytic models.
 struct Model {
     std::string_view name;
@@ -70,6 +73,8 @@ struct Model {
     /// (Ward with ax = ay is isotropic), never less.
     Laws laws;
     std::unique_ptr<Brdf> (*make)(const Parameters& parameters);
+    /// What fits are made of (brdfs/analytic/model_columns.h), from the formula of `make`.
+    std::unique_ptr<ModelColumns> (*columns)(const ColumnRequest& request) = nullptr;
 };
 
 /// One row of the table of measured formats.

@@ -7,8 +7,9 @@
 
 namespace hshfit::brdfs {
 
+template <class N>
 struct AbcShape {
-    double b, c, ior;
+    N b, c, ior;
     bool smooth;
 };
 
@@ -20,7 +21,10 @@ struct AbcShape {
 namespace hshfit::brdfs {
 namespace {
 
+using namespace HWY_NAMESPACE;
+
 HWY_EXPORT(evalAbc);
+HWY_EXPORT(abcColumns);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
@@ -38,8 +42,8 @@ Laws lawsOf(const Parameters& p) {
 class Abc final : public TermBrdf {
 public:
     explicit Abc(const Parameters& p)
-        : TermBrdf(abcModel(), p, lawsOf(p), overPi(p.colour("kd")), {p.colour("A")}),
-          shape_{p.number("B"), p.number("C"), p.number("ior"), p.choice("variant") == "smooth"} {}
+        : TermBrdf(abcModel(), p, lawsOf(p), channelWeights<AbcFormula>(p)),
+          shape_(AbcFormula::shape(Values<double>(p, 0))) {}
 
     /// Near the mirror direction |D| is the slope times 2 cos(theta_o) and 1 - h.z half its square;
     /// the powers are singular where these reach -1 / B.
@@ -57,15 +61,19 @@ protected:
         HWY_DYNAMIC_DISPATCH(evalAbc)(shape_, batch);
     }
     void evalBatchScalar(const TermBatch& batch) const override {
-        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::AbcTerms>(shape_, batch);
+        evalAll<double, AbcTerms>(shape_, batch);
     }
 
 private:
-    AbcShape shape_;
+    AbcShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     return std::make_unique<Abc>(p);
+}
+
+std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(abcColumns)(request);
 }
 
 }  // namespace
@@ -104,7 +112,8 @@ const Model& abcModel() {
                         .kind = Parameter::Kind::choice,
                         .choices = {"smooth", "microfacet"}}},
         .laws = claims,
-        .make = make};
+        .make = make,
+        .columns = columns};
     return model;
 }
 

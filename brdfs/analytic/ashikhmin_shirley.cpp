@@ -1,18 +1,17 @@
 #include <brdfs/analytic/ashikhmin_shirley.h>
 
-#include <brdfs/analytic/fresnel.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 #include <hshfit/error.h>
 
 #include <cmath>
-#include <functional>
 
 namespace hshfit::brdfs {
 
+template <class N>
 struct AshikhminShirleyShape {
-    double nu, nv;
-    double ior;  ///< 0: Schlick's approximation from Rs
+    N nu, nv;
+    N ior;  ///< 0: Schlick's approximation from Rs
 };
 
 }  // namespace hshfit::brdfs
@@ -23,7 +22,10 @@ struct AshikhminShirleyShape {
 namespace hshfit::brdfs {
 namespace {
 
+using namespace HWY_NAMESPACE;
+
 HWY_EXPORT(evalAshikhminShirley);
+HWY_EXPORT(ashikhminShirleyColumns);
 
 constexpr Laws claims{.nonNegative = true, .reciprocal = true, .mirrorSymmetric = true};
 
@@ -34,29 +36,17 @@ Laws lawsOf(const Parameters& p) {
     return result;
 }
 
-/// Rs, or that of the index given instead.
-Colour normalReflectances(const Parameters& p) {
-    const double ior = p.number("ior");
-    if (ior == 0) return p.colour("Rs");
-    if (p.colour("Rs") != Colour{1.0})
+void checkKeys(const Parameters& p) {
+    if (p.number("ior") != 0 && p.colour("Rs") != Colour{1.0})
         throw UsageError("ashikhmin-shirley: give either Rs or ior, not both");
-    return {normalReflectance(ior)};
-}
-
-/// Of lobe times F0 and lobe times Schlick's weight, or of lobe times F and nothing; of diffuse.
-std::vector<Colour> weightsOf(const Parameters& p) {
-    const Colour ks = p.colour("ks"), rs = normalReflectances(p);
-    const Colour first = p.number("ior") == 0 ? mapped(ks, rs, std::multiplies<double>()) : ks;
-    const Colour diffuse = mapped(
-        p.colour("Rd"), rs, [](double rd, double f0) { return 28 * rd / (23 * pi) * (1 - f0); });
-    return {first, ks, diffuse};
 }
 
 class AshikhminShirley final : public TermBrdf {
 public:
     explicit AshikhminShirley(const Parameters& p)
-        : TermBrdf(ashikhminShirleyModel(), p, lawsOf(p), overPi(p.colour("kd")), weightsOf(p)),
-          shape_{p.number("nu"), p.number("nv"), p.number("ior")} {}
+        : TermBrdf(ashikhminShirleyModel(), p, lawsOf(p),
+                   channelWeights<AshikhminShirleyFormula>(p)),
+          shape_(AshikhminShirleyFormula::shape(Values<double>(p, 0))) {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
         const auto width = [](double n) { return std::min(1.0, 2.5 / std::sqrt(n + 1)); };
@@ -71,15 +61,20 @@ protected:
         HWY_DYNAMIC_DISPATCH(evalAshikhminShirley)(shape_, batch);
     }
     void evalBatchScalar(const TermBatch& batch) const override {
-        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::AshikhminShirleyTerms>(shape_, batch);
+        evalAll<double, AshikhminShirleyTerms>(shape_, batch);
     }
 
 private:
-    AshikhminShirleyShape shape_;
+    AshikhminShirleyShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
+    checkKeys(p);
     return std::make_unique<AshikhminShirley>(p);
+}
+
+std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(ashikhminShirleyColumns)(request);
 }
 
 Parameter reflectance(std::string_view name, std::string_view help, double fallback) {
@@ -112,7 +107,8 @@ const Model& ashikhminShirleyModel() {
                        kdParameter(0, 1e6),
                        ksParameter("scale of the lobe")},
         .laws = claims,
-        .make = make};
+        .make = make,
+        .columns = columns};
     return model;
 }
 

@@ -8,12 +8,13 @@
 
 namespace hshfit::brdfs {
 
+template <class N>
 struct BeckmannShape {
-    Roughness r;
+    RoughnessOf<N> r;
 
     /// exp(-(t / alpha)^2) has a standard deviation of alpha / sqrt(2).
-    double widthX() const { return 2.5 / std::numbers::sqrt2 * r.ax; }
-    double widthY() const { return 2.5 / std::numbers::sqrt2 * r.ay; }
+    N widthX() const { return 2.5 / std::numbers::sqrt2 * r.ax; }
+    N widthY() const { return 2.5 / std::numbers::sqrt2 * r.ay; }
 };
 
 }  // namespace hshfit::brdfs
@@ -25,8 +26,9 @@ namespace hshfit::brdfs {
 namespace {
 
 HWY_EXPORT(evalBeckmann);
+HWY_EXPORT(beckmannColumns);
 
-class Beckmann final : public Microfacet<BeckmannShape> {
+class Beckmann final : public Microfacet<BeckmannShape<double>> {
 public:
     using Microfacet::Microfacet;
 
@@ -42,7 +44,11 @@ protected:
 std::unique_ptr<Brdf> make(const Parameters& p) {
     const Roughness roughness = roughnessOf(beckmannModel(), p);
     return std::make_unique<Beckmann>(beckmannModel(), p, microfacetLaws(p, roughness),
-                                      BeckmannShape{roughness});
+                                      BeckmannShape<double>{roughness});
+}
+
+std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(beckmannColumns)(request);
 }
 
 }  // namespace
@@ -56,7 +62,8 @@ const Model& beckmannModel() {
             "Heitz 2014, JCGT 3(2)",
         .parameters = microfacetParameters(),
         .laws = microfacetClaims,
-        .make = make};
+        .make = make,
+        .columns = columns};
     return model;
 }
 

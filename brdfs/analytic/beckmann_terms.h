@@ -7,32 +7,52 @@ namespace hshfit::brdfs::HWY_NAMESPACE {
 
 template <class T>
 class BeckmannFacets {
+    using R = RealOf<T>;
+
 public:
-    explicit HWY_INLINE BeckmannFacets(const BeckmannShape& shape)
-        : ax_(shape.r.ax), ay_(shape.r.ay), inverseX_(1 / ax_), inverseY_(1 / ay_) {
-        peak_ = inverseX_ * inverseY_ / pi;
+    explicit HWY_INLINE BeckmannFacets(const BeckmannShape<ParameterOf<T>>& shape)
+        : ax_(shape.r.ax), ay_(shape.r.ay), inverseX_(1 / shape.r.ax), inverseY_(1 / shape.r.ay) {
+        peak_ = 1 / shape.r.ax * (1 / shape.r.ay) / pi;
     }
 
-    HWY_INLINE T density(const HalfVector<T>& h) const {
-        const T x = h.x * inverseX_, y = h.y * inverseY_, inverse = 1.0 / (h.z * h.z);
-        const T rise = h.squaredLength() * inverse;
+    HWY_INLINE T density(const HalfVector<R>& h) const {
+        const T x = h.x * inverseX_, y = h.y * inverseY_;
+        const R inverse = 1.0 / (h.z * h.z), rise = h.squaredLength() * inverse;
         return exp(-(x * x + y * y) * inverse) * rise * rise * peak_;
     }
 
-    HWY_INLINE T scaledLambda(const Incoming<T>& w) const {
-        const T x = w.x * ax_, y = w.y * ay_, s = sqrt(x * x + y * y);
+    HWY_INLINE T scaledLambda(const Incoming<R>& w) const {
+        // The least s keeps w.z / s finite along the normal.
+        const T x = w.x * ax_, y = w.y * ay_, s = max(sqrt(x * x + y * y), T(1e-290));
         return 0.5 * s * ierfc(w.z / s);
     }
 
 private:
-    double ax_, ay_, inverseX_, inverseY_, peak_;
+    T ax_, ay_, inverseX_, inverseY_, peak_;
 };
 
 template <class T>
 using BeckmannTerms = FacetTerms<T, BeckmannFacets, BeckmannShape>;
 
-void evalBeckmann(const FacetShape<BeckmannShape>& shape, const TermBatch& batch) {
+struct BeckmannFormula {
+    template <class T>
+    using Terms = BeckmannTerms<T>;
+
+    template <class N>
+    static auto shape(const Values<N>& p) {
+        return facetShape(p, BeckmannShape<N>{facetRoughness(p)});
+    }
+    template <class N>
+    static Weights<N> weights(const Values<N>& p) {
+        return facetWeights(p);
+    }
+};
+
+void evalBeckmann(const FacetShape<BeckmannShape<double>>& shape, const TermBatch& batch) {
     evalLanes<BeckmannTerms>(shape, batch);
+}
+std::unique_ptr<ModelColumns> beckmannColumns(const ColumnRequest& request) {
+    return columnsOf<BeckmannFormula, 2>(request);
 }
 
 }  // namespace hshfit::brdfs::HWY_NAMESPACE

@@ -7,8 +7,9 @@
 
 namespace hshfit::brdfs {
 
+template <class N>
 struct BlinnPhongShape {
-    double exponent;
+    N exponent;
 };
 
 }  // namespace hshfit::brdfs
@@ -19,26 +20,20 @@ struct BlinnPhongShape {
 namespace hshfit::brdfs {
 namespace {
 
+using namespace HWY_NAMESPACE;
+
 HWY_EXPORT(evalBlinnPhong);
+HWY_EXPORT(blinnPhongColumns);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
 
-/// The factor that gives the lobe an albedo of 1 at normal incidence.
-double exactFactor(double n) {
-    return (n + 2) * (n + 4) / (8 * pi * (std::exp2(-n / 2) + n));
-}
-
-double normalisation(const Parameters& p) {
-    const std::string normalized = p.choice("normalized");
-    if (normalized == "true") return exactFactor(p.number("exponent"));
-    return normalized == "phong" ? (p.number("exponent") + 2) / (2 * pi) : 1.0;
-}
-
 /// The albedo is largest at normal incidence.
 Laws lawsOf(const Parameters& p) {
     Laws result = claims;
-    const double lobe = normalisation(p) / exactFactor(p.number("exponent"));
+    const Values<double> values(p, 0);
+    const double lobe =
+        BlinnPhongFormula::scale(values) / BlinnPhongFormula::exactFactor(values("exponent"));
     const Colour albedo = mapped(p.colour("kd"), p.colour("ks"),
                                  [&](double kd, double ks) { return kd + ks * lobe; });
     result.energyConserving = largest(albedo) <= 1;
@@ -48,9 +43,8 @@ Laws lawsOf(const Parameters& p) {
 class BlinnPhong final : public TermBrdf {
 public:
     explicit BlinnPhong(const Parameters& p)
-        : TermBrdf(blinnPhongModel(), p, lawsOf(p), overPi(p.colour("kd")),
-                   {mapped(p.colour("ks"), [&](double ks) { return ks * normalisation(p); })}),
-          shape_{p.number("exponent")} {}
+        : TermBrdf(blinnPhongModel(), p, lawsOf(p), channelWeights<BlinnPhongFormula>(p)),
+          shape_(BlinnPhongFormula::shape(Values<double>(p, 0))) {}
 
     /// In the slope t the lobe is (1 + t^2)^(-n/2): nearly Gaussian, and singular at t = i.
     std::vector<Lobe> lobes(const Direction&) const override {
@@ -62,15 +56,19 @@ protected:
         HWY_DYNAMIC_DISPATCH(evalBlinnPhong)(shape_, batch);
     }
     void evalBatchScalar(const TermBatch& batch) const override {
-        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::BlinnPhongTerms>(shape_, batch);
+        evalAll<double, BlinnPhongTerms>(shape_, batch);
     }
 
 private:
-    BlinnPhongShape shape_;
+    BlinnPhongShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     return std::make_unique<BlinnPhong>(p);
+}
+
+std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(blinnPhongColumns)(request);
 }
 
 }  // namespace
@@ -88,7 +86,8 @@ const Model& blinnPhongModel() {
                         .kind = Parameter::Kind::choice,
                         .choices = {"false", "true", "phong"}}},
         .laws = claims,
-        .make = make};
+        .make = make,
+        .columns = columns};
     return model;
 }
 

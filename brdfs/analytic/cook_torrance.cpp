@@ -1,6 +1,5 @@
 #include <brdfs/analytic/cook_torrance.h>
 
-#include <brdfs/analytic/fresnel.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 #include <hshfit/error.h>
@@ -11,14 +10,16 @@
 
 namespace hshfit::brdfs {
 
+/// What one channel reflects by: F0, or the index given instead.
+template <class N>
+struct CookTorranceSurface {
+    N f0, inverse;  ///< 1 / eta
+    N ior, k;       ///< 0: not given
+};
+template <class N>
 struct CookTorranceShape {
-    /// What one channel reflects by: F0, or the index given instead.
-    struct Surface {
-        double f0, inverse;  ///< 1 / eta
-        double ior = 0, k = 0;
-    };
-    double m, peak;
-    std::vector<Surface> surfaces;
+    N m, peak;
+    std::vector<CookTorranceSurface<N>> surfaces;
     bool schlick;
 };
 
@@ -30,16 +31,13 @@ struct CookTorranceShape {
 namespace hshfit::brdfs {
 namespace {
 
+using namespace HWY_NAMESPACE;
+
 HWY_EXPORT(evalCookTorrance);
+HWY_EXPORT(cookTorranceColumns);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
-
-/// N of the header.
-double normOf(const Parameters& p) {
-    const std::string norm = p.choice("norm");
-    return norm == "4" ? 4 * pi : norm == "pi" ? pi : pi * pi;
-}
 
 void checkFresnelKeys(const Parameters& p) {
     const bool conductor = p.choice("fresnel") == "conductor";
@@ -51,22 +49,15 @@ void checkFresnelKeys(const Parameters& p) {
         throw UsageError("cook-torrance: k is for fresnel=conductor alone");
 }
 
-using Surface = CookTorranceShape::Surface;
-
-std::vector<Surface> surfacesOf(const Parameters& p) {
+CookTorranceShape<double> shapeOf(const Parameters& p) {
     checkFresnelKeys(p);
-    std::vector<Surface> surfaces;
-    if (!p.given("ior")) {
-        for (const double f0 : p.colour("F0"))
-            surfaces.push_back({f0, (1 - std::sqrt(f0)) / (1 + std::sqrt(f0))});
-        return surfaces;
-    }
-    const Colour ior = p.colour("ior"), k = p.given("k") ? p.colour("k") : Colour{0.0};
-    for (std::size_t c = 0; c < std::max(ior.size(), k.size()); ++c) {
-        const double n = ior[ior.size() == 1 ? 0 : c], extinction = k[k.size() == 1 ? 0 : c];
-        surfaces.push_back({normalReflectance(n, extinction), 1 / n, n, extinction});
-    }
-    return surfaces;
+    std::size_t surfaces = 1;
+    for (const char* name : {"F0", "ior", "k"})
+        surfaces = std::max(surfaces, p.colour(name).size());
+    CookTorranceShape<double> shape = CookTorranceFormula::shape(Values<double>(p, 0));
+    for (std::size_t c = 1; c < surfaces; ++c)
+        shape.surfaces.push_back(CookTorranceFormula::surface(Values<double>(p, c)));
+    return shape;
 }
 
 Laws lawsOf(const Parameters& p) {
@@ -80,11 +71,10 @@ Laws lawsOf(const Parameters& p) {
 
 class CookTorrance final : public TermBrdf {
 public:
-    explicit CookTorrance(const Parameters& p)
+    CookTorrance(const Parameters& p, const CookTorranceShape<double>& shape)
         : TermBrdf(cookTorranceModel(), p, lawsOf(p), overPi(p.colour("kd")),
-                   eachInItsChannel(p.colour("ks"), surfacesOf(p).size())),
-          shape_{p.number("m"), 1 / (normOf(p) * p.number("m") * p.number("m")), surfacesOf(p),
-                 p.choice("fresnel") == "schlick"} {}
+                   eachInItsChannel(p.colour("ks"), shape.surfaces.size())),
+          shape_(shape) {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
         return {{Lobe::About::halfway, 2.5 / std::numbers::sqrt2 * shape_.m, {}}};
@@ -99,15 +89,19 @@ protected:
         HWY_DYNAMIC_DISPATCH(evalCookTorrance)(shape_, batch);
     }
     void evalBatchScalar(const TermBatch& batch) const override {
-        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::CookTorranceTerms>(shape_, batch);
+        evalAll<double, CookTorranceTerms>(shape_, batch);
     }
 
 private:
-    CookTorranceShape shape_;
+    CookTorranceShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
-    return std::make_unique<CookTorrance>(p);
+    return std::make_unique<CookTorrance>(p, shapeOf(p));
+}
+
+std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(cookTorranceColumns)(request);
 }
 
 }  // namespace
@@ -148,7 +142,8 @@ const Model& cookTorranceModel() {
               .kind = Parameter::Kind::choice,
               .choices = {"exact", "schlick", "conductor"}}},
         .laws = claims,
-        .make = make};
+        .make = make,
+        .columns = columns};
     return model;
 }
 

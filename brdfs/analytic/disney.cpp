@@ -8,12 +8,14 @@
 
 namespace hshfit::brdfs {
 
+template <class N>
+struct DisneyAxes {
+    N ax, ay;
+};
+template <class N>
 struct DisneyShape {
-    struct Axes {
-        double ax, ay;
-    };
-    double roughness, subsurface, clearcoat, gloss;
-    Axes axes, masking;
+    N roughness, subsurface, clearcoat, gloss;
+    DisneyAxes<N> axes, masking;
 };
 
 }  // namespace hshfit::brdfs
@@ -24,24 +26,18 @@ struct DisneyShape {
 namespace hshfit::brdfs {
 namespace {
 
+using namespace HWY_NAMESPACE;
+
 HWY_EXPORT(evalDisney);
+HWY_EXPORT(disneyColumns);
 
 constexpr Laws claims{.nonNegative = true, .reciprocal = true, .mirrorSymmetric = true};
-
-double mix(double a, double b, double share) {
-    return a + (b - a) * share;
-}
-
-DisneyShape::Axes axesOf(const Parameters& p) {
-    const double aspect = std::sqrt(1 - 0.9 * p.number("anisotropic"));
-    const double alpha = p.number("roughness") * p.number("roughness");
-    return {std::max(0.001, alpha / aspect), std::max(0.001, alpha * aspect)};
-}
 
 /// Only the metallic lobe alone keeps the energy for certain: F <= 1 and masking that fits Ds.
 Laws lawsOf(const Parameters& p) {
     Laws laws = claims;
-    laws.isotropic = axesOf(p).ax == axesOf(p).ay;
+    const DisneyAxes<double> axes = DisneyFormula::axes(Values<double>(p, 0));
+    laws.isotropic = axes.ax == axes.ay;
     laws.energyConserving =
         p.number("metallic") == 1 && p.number("clearcoat") == 0 && p.choice("masking") == "2014";
     return laws;
@@ -55,39 +51,21 @@ Colour tintOf(const Colour& base) {
     return mapped(base, [&](double value) { return value / luminance; });
 }
 
-Colour tinted(const Parameters& p, const char* share, double scale) {
-    return mapped(tintOf(p.colour("baseColor")),
-                  [&](double tint) { return scale * mix(1, tint, p.number(share)); });
-}
-
-/// Of: the diffuse part, sheen, 1 - F of the metallic or dielectric lobe, and all that is white.
-std::vector<Colour> weightsOf(const Parameters& p) {
-    const double metallic = p.number("metallic");
-    const Colour base = p.colour("baseColor");
-    const Colour c0 = mapped(tinted(p, "specularTint", 0.08 * p.number("specular")), base,
-                             [&](double c, double value) { return mix(c, value, metallic); });
-    return {mapped(base, [&](double value) { return (1 - metallic) * value / pi; }),
-            tinted(p, "sheenTint", (1 - metallic) * p.number("sheen")),
-            c0,
-            {1.0}};
-}
-
-DisneyShape shapeOf(const Parameters& p) {
-    const double roughness = p.number("roughness");
-    const double old = (0.5 + roughness / 2) * (0.5 + roughness / 2);
-    const bool revised = p.choice("masking") == "2014";
-    return {.roughness = roughness,
-            .subsurface = p.number("subsurface"),
-            .clearcoat = 0.25 * p.number("clearcoat"),
-            .gloss = mix(0.1, 0.001, p.number("clearcoatGloss")),
-            .axes = axesOf(p),
-            .masking = revised ? axesOf(p) : DisneyShape::Axes{old, old}};
+TermWeights weightsOf(const Parameters& p) {
+    const Colour tint = tintOf(p.colour("baseColor"));
+    TermWeights all = channelWeights<DisneyFormula>(p);
+    for (std::size_t c = 0; c < tint.size(); ++c) {
+        const Weights<double> own = DisneyFormula::weights(Values<double>(p, c), tint[c]);
+        for (std::size_t t = 0; t < own.count; ++t) all.terms[t][c] = own.term[t];
+    }
+    return all;
 }
 
 class Disney final : public TermBrdf {
 public:
     explicit Disney(const Parameters& p)
-        : TermBrdf(disneyModel(), p, lawsOf(p), {0.0}, weightsOf(p)), shape_(shapeOf(p)) {}
+        : TermBrdf(disneyModel(), p, lawsOf(p), weightsOf(p)),
+          shape_(DisneyFormula::shape(Values<double>(p, 0))) {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
         std::vector<Lobe> lobes{halfwayLobe(shape_.axes.ax, shape_.axes.ay)};
@@ -100,15 +78,19 @@ protected:
         HWY_DYNAMIC_DISPATCH(evalDisney)(shape_, batch);
     }
     void evalBatchScalar(const TermBatch& batch) const override {
-        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::DisneyTerms>(shape_, batch);
+        evalAll<double, DisneyTerms>(shape_, batch);
     }
 
 private:
-    DisneyShape shape_;
+    DisneyShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     return std::make_unique<Disney>(p);
+}
+
+std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(disneyColumns)(request);
 }
 
 Parameter unitParameter(std::string_view name, std::string_view help, double fallback) {
@@ -158,7 +140,8 @@ const Model& disneyModel() {
               .kind = Parameter::Kind::choice,
               .choices = {"2014", "2012"}}},
         .laws = claims,
-        .make = make};
+        .make = make,
+        .columns = columns};
     return model;
 }
 

@@ -2,7 +2,7 @@
 
 #include <brdfs/analytic/term_brdf.h>
 
-#include <span>
+#include <vector>
 
 namespace hshfit::brdfs {
 
@@ -13,6 +13,12 @@ namespace hshfit::brdfs {
 /// Each of F0, ior and k is one value or r/g/b.
 std::vector<Parameter> facetFresnelParameters();
 
+/// Index of refraction ior + i k.
+template <class N>
+struct FacetIndex {
+    N ior, k;
+};
+
 /// F as a sum of terms that all channels share, for TermBrdf: sum_t weight_{t,c} F_t(cos).
 class FacetFresnel {
 public:
@@ -22,14 +28,11 @@ public:
     /// Of each term, at most three; times a scale per channel.
     std::vector<Colour> weights(const Colour& scale) const;
 
-    /// What of it varies with the angle: facet_terms.h.
-    struct Index {
-        double ior, k;
-    };
-    std::span<const Index> indices() const { return indices_; }  ///< empty for Schlick's form
+    /// What of it varies with the angle: facet_terms.h. Empty for Schlick's form.
+    const std::vector<FacetIndex<double>>& indices() const { return indices_; }
 
 private:
-    std::vector<Index> indices_;
+    std::vector<FacetIndex<double>> indices_;
     std::vector<Colour> weights_;
 };
 

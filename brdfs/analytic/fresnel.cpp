@@ -6,7 +6,7 @@
 
 namespace hshfit::brdfs {
 double conductorReflectance(double cosine, double eta, double k) {
-    return HWY_NAMESPACE::reflectanceOf(cosine, eta, k);
+    return HWY_NAMESPACE::reflectanceOf<double>(cosine, eta, k);
 }
 
 double dielectricReflectance(double cosine, double eta) {
@@ -14,7 +14,7 @@ double dielectricReflectance(double cosine, double eta) {
 }
 
 double normalReflectance(double eta, double k) {
-    return ((eta - 1) * (eta - 1) + k * k) / ((eta + 1) * (eta + 1) + k * k);
+    return HWY_NAMESPACE::normalReflectanceOf(eta, k);
 }
 
 double iorOfReflectance(double f0) {

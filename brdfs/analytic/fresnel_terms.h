@@ -29,8 +29,8 @@ HWY_INLINE ComplexOf<T> squareRoot(T real, T imaginary, T length) {
     return {select(right, larger, smaller), select(right, smaller, larger)};
 }
 
-template <class T>
-HWY_INLINE T reflectanceOfRoot(T c, T squaredSine, const ComplexOf<T>& g) {
+template <class T, class R>
+HWY_INLINE T reflectanceOfRoot(R c, R squaredSine, const ComplexOf<T>& g) {
     const ComplexOf<T> s1{c - g.real, g.imaginary}, s2{c + g.real, g.imaginary};
     const ComplexOf<T> p1{c * g.real - squaredSine, c * g.imaginary};
     const ComplexOf<T> p2{c * g.real + squaredSine, c * g.imaginary};
@@ -39,22 +39,28 @@ HWY_INLINE T reflectanceOfRoot(T c, T squaredSine, const ComplexOf<T>& g) {
     return min(T(1.0), 0.5 * across * (1.0 + ratio));
 }
 
-template <class T>
-HWY_INLINE T reflectanceOf(T cosine, double eta, double k) {
+/// N is double, or the number that T has for parameters.
+template <class T, class R, class N>
+HWY_INLINE T reflectanceOf(R cosine, const N& eta, const N& k) {
     // Below 1e-75 the square of its square underflows; the reflectance has long been that of the
     // horizon.
-    const T c = min(max(cosine, T(1e-75)), T(1.0));
-    const T squaredSine = (1.0 - c) * (1.0 + c);
+    const R c = min(max(cosine, R(1e-75)), R(1.0));
+    const R squaredSine = (1.0 - c) * (1.0 + c);
     const T real = c * c + T((eta - 1) * (eta + 1) - k * k);
     if (k == 0) {
         const T root = sqrt(abs(real));
         const auto right = real >= T(0.0);
-        return reflectanceOfRoot(c, squaredSine,
-                                 {select(right, root, T(0.0)), select(right, T(0.0), root)});
+        const ComplexOf<T> g{select(right, root, T(0.0)), select(right, T(0.0), root)};
+        return reflectanceOfRoot(c, squaredSine, g);
     }
     const T imaginary = 2 * eta * k;
     return reflectanceOfRoot(
         c, squaredSine, squareRoot(real, imaginary, sqrt(real * real + imaginary * imaginary)));
+}
+
+template <class N>
+HWY_INLINE N normalReflectanceOf(const N& eta, const N& k) {
+    return ((eta - 1) * (eta - 1) + k * k) / ((eta + 1) * (eta + 1) + k * k);
 }
 
 template <class T>
@@ -64,9 +70,9 @@ HWY_INLINE T schlickWeightOf(T cosine) {
     return squared * squared * rest;
 }
 
-template <class T>
-HWY_INLINE T schlickReflectanceOf(T cosine, double f0) {
-    return f0 + (1 - f0) * schlickWeightOf(cosine);
+template <class T, class R, class N>
+HWY_INLINE T schlickReflectanceOf(R cosine, const N& f0) {
+    return T(f0) + T(1 - f0) * schlickWeightOf(cosine);
 }
 
 }  // namespace hshfit::brdfs::HWY_NAMESPACE

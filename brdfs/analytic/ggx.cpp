@@ -7,12 +7,13 @@
 
 namespace hshfit::brdfs {
 
+template <class N>
 struct GgxShape {
-    Roughness r;
+    RoughnessOf<N> r;
 
     /// D has a pole at the slope i alpha.
-    double widthX() const { return r.ax; }
-    double widthY() const { return r.ay; }
+    N widthX() const { return r.ax; }
+    N widthY() const { return r.ay; }
 };
 
 }  // namespace hshfit::brdfs
@@ -24,8 +25,9 @@ namespace hshfit::brdfs {
 namespace {
 
 HWY_EXPORT(evalGgx);
+HWY_EXPORT(ggxColumns);
 
-class Ggx final : public Microfacet<GgxShape> {
+class Ggx final : public Microfacet<GgxShape<double>> {
 public:
     using Microfacet::Microfacet;
 
@@ -40,7 +42,12 @@ protected:
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     const Roughness roughness = roughnessOf(ggxModel(), p);
-    return std::make_unique<Ggx>(ggxModel(), p, microfacetLaws(p, roughness), GgxShape{roughness});
+    return std::make_unique<Ggx>(ggxModel(), p, microfacetLaws(p, roughness),
+                                 GgxShape<double>{roughness});
+}
+
+std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(ggxColumns)(request);
 }
 
 }  // namespace
@@ -54,7 +61,8 @@ const Model& ggxModel() {
             "Heitz 2014, JCGT 3(2)",
         .parameters = microfacetParameters(),
         .laws = microfacetClaims,
-        .make = make};
+        .make = make,
+        .columns = columns};
     return model;
 }
 

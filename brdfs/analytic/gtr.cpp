@@ -17,12 +17,13 @@ struct LambdaTable {
     std::vector<double> values;  ///< at low + k step
 };
 
+template <class N>
 struct GtrShape {
-    double alpha, gamma, peak;
+    N alpha, gamma, peak;
     std::shared_ptr<const LambdaTable> table;
 
-    double widthX() const { return std::min(1.0, alpha); }
-    double widthY() const { return widthX(); }
+    N widthX() const { return std::min(1.0, alpha); }
+    N widthY() const { return widthX(); }
 };
 
 }  // namespace hshfit::brdfs
@@ -84,12 +85,12 @@ std::shared_ptr<const LambdaTable> lambdaTable(double alpha, double gamma, doubl
     return table;
 }
 
-GtrShape shapeOf(double alpha, double gamma) {
+GtrShape<double> shapeOf(double alpha, double gamma) {
     const double peak = peakOf(alpha, gamma);
     return {alpha, gamma, peak, lambdaTable(alpha, gamma, peak)};
 }
 
-class Gtr final : public Microfacet<GtrShape> {
+class Gtr final : public Microfacet<GtrShape<double>> {
 public:
     using Microfacet::Microfacet;
 

@@ -8,7 +8,7 @@ namespace hshfit::brdfs::HWY_NAMESPACE {
 template <class T>
 class GtrFacets {
 public:
-    explicit HWY_INLINE GtrFacets(const GtrShape& shape)
+    explicit HWY_INLINE GtrFacets(const GtrShape<double>& shape)
         : squaredAlpha_(shape.alpha * shape.alpha),
           gamma_(shape.gamma),
           peak_(shape.peak),
@@ -45,7 +45,7 @@ private:
 template <class T>
 using GtrTerms = FacetTerms<T, GtrFacets, GtrShape>;
 
-void evalGtr(const FacetShape<GtrShape>& shape, const TermBatch& batch) {
+void evalGtr(const FacetShape<GtrShape<double>>& shape, const TermBatch& batch) {
     evalLanes<GtrTerms>(shape, batch);
 }
 

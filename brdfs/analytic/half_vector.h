@@ -24,7 +24,8 @@ struct HalfVector {
     /// meet exp(-slope^2) stay finite.
     static constexpr double leastZ = 1e-70;
 
-    HWY_INLINE HalfVector(const Direction& wo, const Incoming<T>& wi)
+    template <class Outgoing>
+    HWY_INLINE HalfVector(const Outgoing& wo, const Incoming<T>& wi)
         : x(wi.x + T(wo.x)), y(wi.y + T(wo.y)), z(wi.z + T(wo.z)), scale(1.0) {
         const T largest = max(max(abs(x), abs(y)), z);
         const auto isShort = largest < T(1e-30);
@@ -40,7 +41,8 @@ struct HalfVector {
     HWY_INLINE T squaredSlope() const { return (x * x + y * y) / (z * z); }
     /// Cosine of the angle to either direction: half the length of wi + wo. At most 1.
     HWY_INLINE T dotOutgoing() const { return min(T(1.0), 0.5 * scale * sqrt(squaredLength())); }
-    HWY_INLINE T overSquaredScale(T value) const {
+    template <class V>
+    HWY_INLINE V overSquaredScale(const V& value) const {
         return anyOf(scale < T(1.0)) ? value / scale / scale : value;
     }
 };

@@ -149,7 +149,7 @@ public:
         const T scale = tall * tall * pi * shrunk;
         const T length = h.squaredLength() * h.scale * h.scale;
         const T visible = bounded(incoming.visibility * outgoing_.visibility);
-        term[0] = reflectanceOf(h.dotOutgoing(), ior, 0) * length * length *
+        term[0] = reflectanceOf<T>(h.dotOutgoing(), ior, 0.0) * length * length *
                   bounded(scale * series * visible);
     }
 

@@ -8,9 +8,10 @@
 
 namespace hshfit::brdfs {
 
+template <class N>
 struct LafortuneShape {
-    Direction c;  ///< the diagonal of C
-    double exponent;
+    N x, y, z;  ///< the diagonal of C
+    N exponent;
 };
 
 }  // namespace hshfit::brdfs
@@ -21,26 +22,12 @@ struct LafortuneShape {
 namespace hshfit::brdfs {
 namespace {
 
+using namespace HWY_NAMESPACE;
+
 HWY_EXPORT(evalLafortune);
+HWY_EXPORT(lafortuneColumns);
 
 constexpr Laws claims{.nonNegative = true, .reciprocal = true, .mirrorSymmetric = true};
-
-bool normalized(const Parameters& p) {
-    return p.choice("normalized") == "true";
-}
-
-/// The diagonal of C, its largest component made 1 if normalized.
-Direction diagonal(const Parameters& p) {
-    const Direction c{p.number("Cx"), p.number("Cy"), p.number("Cz")};
-    const double most = std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)});
-    if (!normalized(p) || most == 0) return c;
-    return {c.x / most, c.y / most, c.z / most};
-}
-
-Colour weightOf(const Parameters& p) {
-    const double factor = normalized(p) ? (p.number("exponent") + 2) / (2 * pi) : 1;
-    return mapped(p.colour("ks"), [&](double ks) { return factor * ks; });
-}
 
 /// For |wo| = 1 the lobe is at most (max |C| cos)^exponent about some axis, whose albedo is at most
 /// that of a lobe about the normal: ks max |C|^exponent 2 pi / (exponent + 2).
@@ -48,10 +35,10 @@ Laws lawsOf(const Parameters& p) {
     Laws result = claims;
     result.isotropic = p.number("Cx") == p.number("Cy");
     const double exponent = p.number("exponent");
-    const Direction c = diagonal(p);
+    const LafortuneShape<double> c = LafortuneFormula::shape(Values<double>(p, 0));
     const double reach = std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)});
     const double lobe = atMostLargest(std::pow(reach, exponent)) * 2 * pi / (exponent + 2);
-    const Colour albedo = mapped(p.colour("kd"), weightOf(p),
+    const Colour albedo = mapped(p.colour("kd"), channelWeights<LafortuneFormula>(p).terms[0],
                                  [&](double kd, double weight) { return kd + weight * lobe; });
     result.energyConserving = largest(albedo) <= 1;
     return result;
@@ -60,11 +47,11 @@ Laws lawsOf(const Parameters& p) {
 class Lafortune final : public TermBrdf {
 public:
     explicit Lafortune(const Parameters& p)
-        : TermBrdf(lafortuneModel(), p, lawsOf(p), overPi(p.colour("kd")), {weightOf(p)}),
-          shape_{diagonal(p), p.number("exponent")} {}
+        : TermBrdf(lafortuneModel(), p, lawsOf(p), channelWeights<LafortuneFormula>(p)),
+          shape_(LafortuneFormula::shape(Values<double>(p, 0))) {}
 
     std::vector<Lobe> lobes(const Direction& wo) const override {
-        const Direction a{shape_.c.x * wo.x, shape_.c.y * wo.y, shape_.c.z * wo.z};
+        const Direction a{shape_.x * wo.x, shape_.y * wo.y, shape_.z * wo.z};
         const double length = std::sqrt(dot(a, a));
         if (!(length > 0)) return {};
         return {{Lobe::About::axis,
@@ -77,15 +64,19 @@ protected:
         HWY_DYNAMIC_DISPATCH(evalLafortune)(shape_, batch);
     }
     void evalBatchScalar(const TermBatch& batch) const override {
-        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::LafortuneTerms>(shape_, batch);
+        evalAll<double, LafortuneTerms>(shape_, batch);
     }
 
 private:
-    LafortuneShape shape_;
+    LafortuneShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     return std::make_unique<Lafortune>(p);
+}
+
+std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(lafortuneColumns)(request);
 }
 
 Parameter weightParameter(std::string_view name, double fallback) {
@@ -112,7 +103,8 @@ const Model& lafortuneModel() {
                                          {.low = 1, .high = 1e3}),
                        switchParameter("normalized", "scale the lobe to a largest albedo of ks")},
         .laws = claims,
-        .make = make};
+        .make = make,
+        .columns = columns};
     return model;
 }
 

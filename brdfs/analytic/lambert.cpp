@@ -15,7 +15,10 @@ struct LambertShape {};
 namespace hshfit::brdfs {
 namespace {
 
+using namespace HWY_NAMESPACE;
+
 HWY_EXPORT(evalLambert);
+HWY_EXPORT(lambertColumns);
 
 constexpr Laws claims{.nonNegative = true,
                       .reciprocal = true,
@@ -26,14 +29,14 @@ constexpr Laws claims{.nonNegative = true,
 class Lambert final : public TermBrdf {
 public:
     explicit Lambert(const Parameters& p)
-        : TermBrdf(lambertModel(), p, claims, overPi(p.colour("kd")), {}) {}
+        : TermBrdf(lambertModel(), p, claims, channelWeights<LambertFormula>(p)) {}
 
 protected:
     void evalBatch(const TermBatch& batch) const override {
         HWY_DYNAMIC_DISPATCH(evalLambert)(shape_, batch);
     }
     void evalBatchScalar(const TermBatch& batch) const override {
-        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::LambertTerms>(shape_, batch);
+        evalAll<double, LambertTerms>(shape_, batch);
     }
 
 private:
@@ -44,6 +47,10 @@ std::unique_ptr<Brdf> make(const Parameters& p) {
     return std::make_unique<Lambert>(p);
 }
 
+std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(lambertColumns)(request);
+}
+
 }  // namespace
 
 const Model& lambertModel() {
@@ -52,7 +59,8 @@ const Model& lambertModel() {
                              .source = "Lambert 1760, Photometria",
                              .parameters = {kdParameter(1, 1)},
                              .laws = claims,
-                             .make = make};
+                             .make = make,
+                             .columns = columns};
     return model;
 }
 

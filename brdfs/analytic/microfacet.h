@@ -3,14 +3,16 @@
 #include <brdfs/analytic/facet_fresnel.h>
 #include <brdfs/analytic/term_brdf.h>
 
-#include <utility>
+#include <vector>
 
 namespace hshfit::brdfs {
 
 /// Roughness along the two axes: both equal to `alpha`, or `ax` and `ay`.
-struct Roughness {
-    double ax, ay;
+template <class N>
+struct RoughnessOf {
+    N ax, ay;
 };
+using Roughness = RoughnessOf<double>;
 
 /// kd, ks, F0 | ior, k (facet_fresnel.h), alpha | ax, ay, and masking: what the microfacet models
 /// have in common.
@@ -23,11 +25,11 @@ Laws microfacetLaws(const Parameters& parameters, const Roughness& roughness);
 inline constexpr Laws microfacetClaims{
     .nonNegative = true, .reciprocal = true, .mirrorSymmetric = true};
 
-/// What the terms of a microfacet model are computed from (facet_terms.h).
-template <class Shape>
+/// What the terms of a microfacet model are computed from (facet_terms.h), in numbers N.
+template <class Shape, class N = double>
 struct FacetShape {
     Shape distribution;
-    FacetFresnel fresnel;
+    std::vector<FacetIndex<N>> indices;  ///< empty for Schlick's form
     bool correlated;
 };
 
@@ -42,9 +44,7 @@ template <class Shape>
 class Microfacet : public TermBrdf {
 public:
     Microfacet(const Model& model, const Parameters& p, const Laws& laws, const Shape& distribution)
-        : Microfacet(model, p, laws,
-                     FacetShape<Shape>{distribution, FacetFresnel(model, p),
-                                       p.choice("masking") == "correlated"}) {}
+        : Microfacet(model, p, laws, FacetFresnel(model, p), distribution) {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
         return {halfwayLobe(shape_.distribution.widthX(), shape_.distribution.widthY())};
@@ -54,9 +54,10 @@ protected:
     const FacetShape<Shape>& shape() const { return shape_; }
 
 private:
-    Microfacet(const Model& model, const Parameters& p, const Laws& laws, FacetShape<Shape> shape)
-        : TermBrdf(model, p, laws, overPi(p.colour("kd")), shape.fresnel.weights(p.colour("ks"))),
-          shape_(std::move(shape)) {}
+    Microfacet(const Model& model, const Parameters& p, const Laws& laws,
+               const FacetFresnel& fresnel, const Shape& distribution)
+        : TermBrdf(model, p, laws, overPi(p.colour("kd")), fresnel.weights(p.colour("ks"))),
+          shape_{distribution, fresnel.indices(), p.choice("masking") == "correlated"} {}
 
     FacetShape<Shape> shape_;
 };

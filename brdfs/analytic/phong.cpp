@@ -7,8 +7,9 @@
 
 namespace hshfit::brdfs {
 
+template <class N>
 struct PhongShape {
-    double exponent;
+    N exponent;
 };
 
 }  // namespace hshfit::brdfs
@@ -19,19 +20,19 @@ struct PhongShape {
 namespace hshfit::brdfs {
 namespace {
 
+using namespace HWY_NAMESPACE;
+
 HWY_EXPORT(evalPhong);
+HWY_EXPORT(phongColumns);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
 
-double normalisation(const Parameters& p) {
-    return p.choice("normalized") == "true" ? (p.number("exponent") + 2) / (2 * pi) : 1.0;
-}
-
 /// The albedo is largest at normal incidence: kd + ks N 2 pi / (exponent + 2).
 Laws lawsOf(const Parameters& p) {
     Laws result = claims;
-    const double lobe = normalisation(p) * 2 * pi / (p.number("exponent") + 2);
+    const double lobe =
+        PhongFormula::scale(Values<double>(p, 0)) * 2 * pi / (p.number("exponent") + 2);
     const Colour albedo = mapped(p.colour("kd"), p.colour("ks"),
                                  [&](double kd, double ks) { return kd + ks * lobe; });
     result.energyConserving = largest(albedo) <= 1;
@@ -41,9 +42,8 @@ Laws lawsOf(const Parameters& p) {
 class Phong final : public TermBrdf {
 public:
     explicit Phong(const Parameters& p)
-        : TermBrdf(phongModel(), p, lawsOf(p), overPi(p.colour("kd")),
-                   {mapped(p.colour("ks"), [&](double ks) { return ks * normalisation(p); })}),
-          shape_{p.number("exponent")} {}
+        : TermBrdf(phongModel(), p, lawsOf(p), channelWeights<PhongFormula>(p)),
+          shape_(PhongFormula::shape(Values<double>(p, 0))) {}
 
     std::vector<Lobe> lobes(const Direction& wo) const override {
         return {{Lobe::About::axis, 2.5 / std::sqrt(shape_.exponent + 1), mirrored(wo)}};
@@ -54,15 +54,19 @@ protected:
         HWY_DYNAMIC_DISPATCH(evalPhong)(shape_, batch);
     }
     void evalBatchScalar(const TermBatch& batch) const override {
-        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::PhongTerms>(shape_, batch);
+        evalAll<double, PhongTerms>(shape_, batch);
     }
 
 private:
-    PhongShape shape_;
+    PhongShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     return std::make_unique<Phong>(p);
+}
+
+std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(phongColumns)(request);
 }
 
 }  // namespace
@@ -77,7 +81,8 @@ const Model& phongModel() {
                        exponentParameter("exponent", "of cos(alpha)", {.low = 1, .high = 3e3}),
                        switchParameter("normalized", "multiply ks by (exponent + 2) / (2 pi)")},
         .laws = claims,
-        .make = make};
+        .make = make,
+        .columns = columns};
     return model;
 }
 

@@ -7,8 +7,9 @@
 
 namespace hshfit::brdfs {
 
+template <class N>
 struct SphericalGaussianShape {
-    double sharpness;
+    N sharpness;
     bool aboutNormal;
 };
 
@@ -20,29 +21,21 @@ struct SphericalGaussianShape {
 namespace hshfit::brdfs {
 namespace {
 
+using namespace HWY_NAMESPACE;
+
 HWY_EXPORT(evalSphericalGaussian);
+HWY_EXPORT(sphericalGaussianColumns);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
 
-/// The factor that makes the integral over the sphere 1.
-double sphereFactor(double sharpness) {
-    return sharpness > 0 ? sharpness / (-2 * pi * std::expm1(-2 * sharpness)) : 1 / (4 * pi);
-}
-
-bool aboutNormal(const Parameters& p) {
-    return p.choice("axis") == "normal";
-}
-
-double scaleOf(const Parameters& p) {
-    if (p.choice("normalized") == "false") return 1;
-    return sphereFactor(p.number("sharpness")) / (aboutNormal(p) ? 4 : 1);
-}
-
 /// cos_i <= 1 and d omega_i <= 4 d omega_h bound the albedo by the integral over the sphere.
 Laws lawsOf(const Parameters& p) {
     Laws result = claims;
-    const double lobe = scaleOf(p) * (aboutNormal(p) ? 4 : 1) / sphereFactor(p.number("sharpness"));
+    const Values<double> values(p, 0);
+    const double lobe = SphericalGaussianFormula::scale(values) *
+                        (p.choice("axis") == "normal" ? 4 : 1) /
+                        SphericalGaussianFormula::sphereFactor(values("sharpness"));
     const Colour bound = mapped(p.colour("kd"), p.colour("ks"),
                                 [&](double kd, double ks) { return kd + ks * lobe; });
     result.energyConserving = largest(bound) <= 1;
@@ -52,9 +45,8 @@ Laws lawsOf(const Parameters& p) {
 class SphericalGaussian final : public TermBrdf {
 public:
     explicit SphericalGaussian(const Parameters& p)
-        : TermBrdf(sgModel(), p, lawsOf(p), overPi(p.colour("kd")),
-                   {mapped(p.colour("ks"), [&](double ks) { return ks * scaleOf(p); })}),
-          shape_{p.number("sharpness"), aboutNormal(p)} {}
+        : TermBrdf(sgModel(), p, lawsOf(p), channelWeights<SphericalGaussianFormula>(p)),
+          shape_(SphericalGaussianFormula::shape(Values<double>(p, 0))) {}
 
     /// Standard deviation 1 / sqrt(lambda), of the angle or of the slope.
     std::vector<Lobe> lobes(const Direction& wo) const override {
@@ -68,15 +60,19 @@ protected:
         HWY_DYNAMIC_DISPATCH(evalSphericalGaussian)(shape_, batch);
     }
     void evalBatchScalar(const TermBatch& batch) const override {
-        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::SphericalGaussianTerms>(shape_, batch);
+        evalAll<double, SphericalGaussianTerms>(shape_, batch);
     }
 
 private:
-    SphericalGaussianShape shape_;
+    SphericalGaussianShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     return std::make_unique<SphericalGaussian>(p);
+}
+
+std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(sphericalGaussianColumns)(request);
 }
 
 }  // namespace
@@ -96,7 +92,8 @@ const Model& sgModel() {
                         .choices = {"mirror", "normal"}},
                        switchParameter("normalized", "scale the lobe to an albedo of up to ks")},
         .laws = claims,
-        .make = make};
+        .make = make,
+        .columns = columns};
     return model;
 }
 

@@ -10,13 +10,15 @@
 namespace hshfit::brdfs {
 
 /// The lobe of one channel.
+template <class N>
 struct ShiftedGamma {
-    double alpha, p, lambda, c, k, theta0, f0, f1;
-    double peak;  ///< K / pi^2
+    N alpha, p, lambda, c, k, theta0, f0, f1;
+    N peak;  ///< K / pi^2
 };
 
+template <class N>
 struct SgdShape {
-    std::vector<ShiftedGamma> lobes;
+    std::vector<ShiftedGamma<N>> lobes;
 };
 
 }  // namespace hshfit::brdfs
@@ -27,7 +29,10 @@ struct SgdShape {
 namespace hshfit::brdfs {
 namespace {
 
+using namespace HWY_NAMESPACE;
+
 HWY_EXPORT(evalSgd);
+HWY_EXPORT(sgdColumns);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
@@ -47,51 +52,19 @@ std::size_t lobeCount(const Parameters& p) {
     return count;
 }
 
-/// Gamma(1 - p, alpha), the integral of exp(-u) u^-p from alpha on: Simpson's rule over log u,
-/// whose integrand exp((1 - p) v - e^v) has vanished at u = 750. For p to 3 it errs by 1e-9.
-double upperGamma(double p, double alpha) {
-    constexpr int steps = 2000;
-    const double low = std::log(alpha), step = (std::log(750.0) - low) / steps;
-    const auto integrand = [&](int i) {
-        const double v = low + i * step;
-        return std::exp((1 - p) * v - std::exp(v));
-    };
-    double sum = integrand(0) + integrand(steps);
-    for (int i = 1; i < steps; ++i) sum += (i % 2 ? 4 : 2) * integrand(i);
-    return sum * step / 3;
-}
-
-ShiftedGamma lobeOf(const Parameters& p, std::size_t channel) {
-    const auto value = [&](const char* name) {
-        const Colour colour = p.colour(name);
-        return colour[colour.size() == 1 ? 0 : channel];
-    };
-    ShiftedGamma lobe{.alpha = value("alpha"),
-                      .p = value("p"),
-                      .lambda = value("Lambda"),
-                      .c = value("c"),
-                      .k = value("k"),
-                      .theta0 = value("theta0"),
-                      .f0 = value("F0"),
-                      .f1 = value("F1"),
-                      .peak = value("K")};
-    if (lobe.peak < 0) lobe.peak = 1 / (lobe.alpha * upperGamma(lobe.p, lobe.alpha));
-    lobe.peak /= pi * pi;
-    return lobe;
-}
-
 class Sgd final : public TermBrdf {
 public:
     explicit Sgd(const Parameters& p)
         : TermBrdf(sgdModel(), p, lawsOf(p), overPi(p.colour("kd")),
                    eachInItsChannel(p.colour("ks"), lobeCount(p))) {
-        for (std::size_t c = 0; c < lobeCount(p); ++c) shape_.lobes.push_back(lobeOf(p, c));
+        for (std::size_t c = 0; c < lobeCount(p); ++c)
+            shape_.lobes.push_back(SgdFormula::lobe(Values<double>(p, c)));
     }
 
     /// u^-p is singular at t = i alpha, exp(-u) has a standard deviation of sqrt(alpha / 2).
     std::vector<Lobe> lobes(const Direction&) const override {
         double width = 1;
-        for (const ShiftedGamma& lobe : shape_.lobes) width = std::min(width, lobe.alpha);
+        for (const ShiftedGamma<double>& lobe : shape_.lobes) width = std::min(width, lobe.alpha);
         return {{Lobe::About::halfway, width, {}}};
     }
 
@@ -100,15 +73,19 @@ protected:
         HWY_DYNAMIC_DISPATCH(evalSgd)(shape_, batch);
     }
     void evalBatchScalar(const TermBatch& batch) const override {
-        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::SgdTerms>(shape_, batch);
+        evalAll<double, SgdTerms>(shape_, batch);
     }
 
 private:
-    SgdShape shape_;
+    SgdShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     return std::make_unique<Sgd>(p);
+}
+
+std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(sgdColumns)(request);
 }
 
 Parameter shape(std::string_view name, std::string_view help, std::optional<double> fallback,
@@ -149,7 +126,8 @@ const Model& sgdModel() {
                        shape("F1", "what is taken off it, times the cosine", 0, -1000, 1000,
                              {{.low = -0.2, .high = 0.2}})},
         .laws = claims,
-        .make = make};
+        .make = make,
+        .columns = columns};
     return model;
 }
 

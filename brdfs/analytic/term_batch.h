@@ -16,6 +16,7 @@
 #include <brdfs/analytic/term_brdf.h>
 #include <brdfs/lanes/lanes.h>
 #include <brdfs/lanes/lanes_math.h>
+#include <brdfs/lanes/lanes_slopes_math.h>
 
 #include <algorithm>
 
@@ -29,6 +30,29 @@ template <class T>
 struct Incoming {
     T x, y, z;
 };
+
+/// The numbers that go with a formula's T: of directions, of what follows from parameters alone,
+/// and the outgoing direction, of which an evaluation has one and a fit one in each lane.
+template <class T>
+struct Numbers {
+    using Real = T;
+    using Parameter = double;
+    using Outgoing = Direction;
+};
+template <int n>
+struct Numbers<Slopes<Lanes, n>> {
+    using Real = Lanes;
+    using Parameter = Slopes<double, n>;
+    using Outgoing = Incoming<Lanes>;
+};
+template <class T>
+using RealOf = typename Numbers<T>::Real;
+template <class T>
+using ParameterOf = typename Numbers<T>::Parameter;
+template <class T>
+using OutgoingOf = typename Numbers<T>::Outgoing;
+template <class T>
+using HeightOf = decltype(OutgoingOf<T>::z);
 
 /// f of as many directions as a T holds, to values[channel * stride].
 template <class T, class Terms>

@@ -19,6 +19,12 @@ Colour overPi(const Colour& a);
 /// `colour` itself.
 std::vector<Colour> eachInItsChannel(const Colour& colour, std::size_t count);
 
+/// Of a TermBrdf: the constant, and a weight of each term, for every channel.
+struct TermWeights {
+    Colour constant;
+    std::vector<Colour> terms;
+};
+
 /// +inf becomes the largest double.
 double atMostLargest(double value);
 
@@ -60,6 +66,9 @@ protected:
     /// weights.
     TermBrdf(const Model& model, const Parameters& parameters, Laws laws, const Colour& constant,
              const std::vector<Colour>& weights);
+    TermBrdf(const Model& model, const Parameters& parameters, Laws laws,
+             const TermWeights& weights)
+        : TermBrdf(model, parameters, laws, weights.constant, weights.terms) {}
 
     /// Fill `batch.out`: by vectors, and by double.
     virtual void evalBatch(const TermBatch& batch) const = 0;

@@ -32,6 +32,7 @@ private:
     };
     struct Term {
         std::unique_ptr<LobeColumns> formula;
+        std::unique_ptr<ModelColumns> model;
         std::vector<double> slopes;  ///< derivatives of these by u
         Columns columns;
         std::vector<Difference> differences;

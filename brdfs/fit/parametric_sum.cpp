@@ -130,6 +130,8 @@ ParametricSum::ParametricSum(std::string_view spec, bool isotropic) {
                   .stated = colon == std::string::npos ? "" : part.substr(colon + 1),
                   .shapes = {},
                   .linears = {},
+                  .shapeKeys = {},
+                  .linearKeys = {},
                   .formula = {}};
         Parameters stated = statedParameters(model, term.stated);
         append(term.stated, heldParameters(model, stated, isotropic));
@@ -157,12 +159,13 @@ ParametricSum::ParametricSum(std::string_view spec, bool isotropic) {
         // What turned out to be linear leaves the shapes.
         shapes_.resize(firstShape);
         addShapes();
-        std::vector<std::string> keys;
         for (const std::size_t k : term.linears) {
             linears_[k].name = nameOf(linears_[k].key);
-            keys.push_back(linears_[k].key);
+            term.linearKeys.push_back(linears_[k].key);
         }
-        term.formula = makeLobeFormula(model, stated, free, keys);
+        for (const FreeParameter& parameter : free) term.shapeKeys.push_back(parameter.keys);
+        term.byFormula = model.columns != nullptr;
+        if (!term.byFormula) term.formula = makeLobeFormula(model, stated, free, term.linearKeys);
         spec_ += (spec_.empty() ? "" : " + ") + part;
         terms_.push_back(std::move(term));
     }
@@ -184,7 +187,19 @@ const std::vector<std::size_t>& ParametricSum::linearsOfTerm(std::size_t term) c
 }
 
 void ParametricSum::forgetFormulas() {
-    for (Term& term : terms_) term.formula.reset();
+    for (Term& term : terms_) term.formula.reset(), term.byFormula = false;
+}
+
+std::unique_ptr<ModelColumns> ParametricSum::formulaColumns(std::size_t term,
+                                                            std::span<const double> shapes,
+                                                            bool derivatives) const {
+    const Term& own = terms_[term];
+    if (!own.byFormula) return nullptr;
+    const Parameters values =
+        parseParameters(own.model->name, own.model->parameters, shapeText(own, shapes));
+    ColumnRequest request{.values = values, .linears = own.linearKeys};
+    if (derivatives) request.shapes = own.shapeKeys;
+    return own.model->columns(request);
 }
 
 std::string ParametricSum::shapeText(const Term& term, std::span<const double> shapes) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <brdfs/analytic/model_columns.h>
 #include <brdfs/fit/free_parameters.h>
 #include <brdfs/fit/lobe_formula.h>
 #include <hshfit/brdf/brdf.h>
@@ -75,7 +76,13 @@ public:
     /// Indices of the shapes of a term, consecutive, and of its linear parameters, likewise.
     const std::vector<std::size_t>& shapesOfTerm(std::size_t term) const;
     const std::vector<std::size_t>& linearsOfTerm(std::size_t term) const;
-    /// Null: by differences of Brdf::eval.
+    /// Of one term, at values (not u) of all shapes, by its model's formula, with derivatives by
+    /// its shapes if asked for. Null: by differences of Brdf::eval.
+    std::unique_ptr<ModelColumns> formulaColumns(std::size_t term, std::span<const double> shapes,
+                                                 bool derivatives) const;
+    bool byFormula(std::size_t term) const {
+        return terms_[term].byFormula || terms_[term].formula;
+    }
     const LobeFormula* formulaOfTerm(std::size_t term) const { return terms_[term].formula.get(); }
     /// For tests: everything through Brdf::eval.
     void forgetFormulas();
@@ -97,6 +104,9 @@ private:
         std::string stated;                ///< as given
         std::vector<std::size_t> shapes;   ///< indices
         std::vector<std::size_t> linears;  ///< indices
+        std::vector<std::vector<std::string>> shapeKeys;
+        std::vector<std::string> linearKeys;
+        bool byFormula = false;
         std::shared_ptr<const LobeFormula> formula;
     };
     std::string shapeText(const Term& term, std::span<const double> shapes) const;

@@ -1,0 +1,125 @@
+// How the formula of a model becomes the columns of a fit (model_columns.h), several pairs of
+// directions at a time. Compiled once for each instruction set.
+//
+// `Formula` has what an evaluation takes as well: the terms, `Formula::Terms<T>`, what they are
+// computed from, `Formula::shape(Values<N>)`, and `Formula::weights(Values<N>)`, in which the
+// linear parameters are.
+
+#if defined(BRDFS_ANALYTIC_TERM_COLUMNS_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BRDFS_ANALYTIC_TERM_COLUMNS_H
+#undef BRDFS_ANALYTIC_TERM_COLUMNS_H
+#else
+#define BRDFS_ANALYTIC_TERM_COLUMNS_H
+#endif
+
+#include <brdfs/analytic/model_columns.h>
+#include <brdfs/analytic/term_values.h>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+HWY_BEFORE_NAMESPACE();
+namespace hshfit::brdfs::HWY_NAMESPACE {
+
+/// Pairs k and on, as many as a vector holds; past the end the last one again.
+struct LanePairs {
+    Incoming<Lanes> wi, wo;
+
+    HWY_INLINE LanePairs(const PairBatch& pairs, std::size_t k) {
+        constexpr std::size_t most = HWY_MAX_BYTES / sizeof(double);
+        double all[6][most];
+        for (std::size_t i = 0; i < lanesIn<Lanes>(); ++i) {
+            const std::size_t at = std::min(k + i, pairs.wi.count - 1);
+            all[0][i] = pairs.wi.x[at], all[1][i] = pairs.wi.y[at], all[2][i] = pairs.wi.z[at];
+            all[3][i] = pairs.wo[at].x, all[4][i] = pairs.wo[at].y, all[5][i] = pairs.wo[at].z;
+        }
+        load(all[0], wi.x), load(all[1], wi.y), load(all[2], wi.z);
+        load(all[3], wo.x), load(all[4], wo.y), load(all[5], wo.z);
+    }
+};
+
+/// Derivatives by `n` shapes at a time.
+template <class Formula, int n>
+class ColumnsOf final : public ModelColumns {
+public:
+    explicit ColumnsOf(const ColumnRequest& request)
+        : shapes_(request.shapes.size()), linears_(request.linears.size()) {
+        for (std::size_t first = 0; first == 0 || first < shapes_; first += std::max(n, 1))
+            passes_.emplace_back(request, first);
+    }
+
+    HWY_ATTR void fill(const PairBatch& pairs, double* base, double* linear,
+                       double* slopes) const override {
+        const std::size_t count = pairs.wi.count, columns = 1 + linears_;
+        for (std::size_t k = 0; k < count; k += lanesIn<Lanes>()) {
+            const std::size_t size = std::min(lanesIn<Lanes>(), count - k);
+            const LanePairs in(pairs, k);
+            for (std::size_t p = 0; p < passes_.size(); ++p) {
+                const Pass& pass = passes_[p];
+                const typename Formula::template Terms<T> terms(pass.shape, in.wo);
+                T term[TermBatch::maxTerms];
+                terms(in.wi, term);
+                const std::size_t first = p * std::max(n, 1);
+                for (std::size_t c = 0; c < columns; ++c) {
+                    const T sum = pass.weighted(c, term);
+                    if (p == 0)
+                        put(sum.value, size, c == 0,
+                            c == 0 ? base + k : linear + (c - 1) * count + k);
+                    for (std::size_t i = 0; i < std::size_t(n) && first + i < shapes_; ++i)
+                        put(sum.by[i], size, false,
+                            slopes + ((first + i) * columns + c) * count + k);
+                }
+            }
+        }
+    }
+
+private:
+    using N = Slopes<double, n>;
+    using T = Slopes<Lanes, n>;
+
+    struct Pass {
+        decltype(Formula::shape(std::declval<Values<N>>())) shape;
+        std::vector<Weights<N>> weights;  ///< of each column
+
+        Pass(const ColumnRequest& request, std::size_t first)
+            : shape(Formula::shape(Values<N>(request, {}, first))) {
+            const Weights<N> least = Formula::weights(Values<N>(request, {}, first));
+            weights.push_back(least);
+            for (const std::string& key : request.linears) {
+                Weights<N> unit = Formula::weights(Values<N>(request, key, first));
+                unit.constant = unit.constant - least.constant;
+                for (std::size_t t = 0; t < unit.count; ++t)
+                    unit.term[t] = unit.term[t] - least.term[t];
+                weights.push_back(unit);
+            }
+        }
+        HWY_INLINE T weighted(std::size_t column, const T* term) const {
+            const Weights<N>& w = weights[column];
+            T sum(w.constant);
+            for (std::size_t t = 0; t < w.count; ++t)
+                if (!isZero(w.term[t])) sum = sum + T(w.term[t]) * bounded(term[t]);
+            return sum;
+        }
+    };
+
+    static HWY_INLINE void put(Lanes value, std::size_t size, bool added, double* to) {
+        double buffer[HWY_MAX_BYTES / sizeof(double)];
+        store(value, buffer);
+        for (std::size_t i = 0; i < size; ++i) to[i] = added ? to[i] + buffer[i] : buffer[i];
+    }
+
+    std::size_t shapes_, linears_;
+    std::vector<Pass> passes_;
+};
+
+template <class Formula, int n>
+std::unique_ptr<ModelColumns> columnsOf(const ColumnRequest& request) {
+    if (request.shapes.empty()) return std::make_unique<ColumnsOf<Formula, 0>>(request);
+    return std::make_unique<ColumnsOf<Formula, n>>(request);
+}
+
+}  // namespace hshfit::brdfs::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
