@@ -4,11 +4,9 @@
 
 #include <brdfs/catalog.h>
 #include <gtest/gtest.h>
-#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -37,20 +35,6 @@ public:
             if (name == material) return network;
         }
         return std::nullopt;
-    }
-
-    /// Pairs as columns of six inputs, by Eigen in single precision.
-    Eigen::MatrixXf batch(const Eigen::MatrixXf& in) const {
-        using Map = Eigen::Map<const Eigen::MatrixXf>;
-        const auto at = [&](int first, int rows, int columns) {
-            return Map(w_.data() + first, rows, columns);
-        };
-        Eigen::MatrixXf a = (at(0, 21, 6) * in).colwise() + at(126, 21, 1).col(0);
-        a = a.cwiseMax(0.0F);
-        Eigen::MatrixXf b = (at(147, 21, 21) * a).colwise() + at(588, 21, 1).col(0);
-        b = b.cwiseMax(0.0F);
-        const Eigen::MatrixXf y = (at(609, 3, 21) * b).colwise() + at(672, 3, 1).col(0);
-        return (y.array().exp() - 1).cwiseMax(0.0F);
     }
 
     std::array<double, 3> operator()(const Direction& wi, const Direction& wo) const {
@@ -205,53 +189,6 @@ TEST(HalfwayMaterials, PlanesOfMerlBesideNetworks) {
         if (ours < theirs) ++closer;
     }
     EXPECT_GE(closer, 9);
-}
-
-TEST(HalfwayMaterials, PairsTakeLessTimeThanANetwork) {
-    const auto network = Network::read("rgl-isotropic", "paper_white_rgb");
-    if (!network) GTEST_SKIP() << data << "/nbrdf is absent";
-    const auto brdf = brdfs::open("ggx:alpha=0.2,kd=0.1/0.2/0.3");
-    const Representation r = projectHalfway(*brdf, {10, 5, 3}, {.maxEvaluations = 1 << 14});
-    const auto evaluator = halfwayPairEvaluator(r);
-    constexpr std::size_t count = 4096;
-    std::mt19937_64 random(1);
-    std::normal_distribution<double> normal;
-    std::vector<double> d[6];
-    Eigen::MatrixXf in(6, count);
-    for (std::size_t k = 0; k < count; ++k) {
-        for (int first : {0, 3}) {
-            const double x = normal(random), y = normal(random), z = std::abs(normal(random));
-            const double length = std::sqrt(x * x + y * y + z * z);
-            d[first].push_back(x / length);
-            d[first + 1].push_back(y / length);
-            d[first + 2].push_back(z / length);
-        }
-        for (int c = 0; c < 6; ++c) in(c, static_cast<Eigen::Index>(k)) = float(d[c][k]);
-    }
-    std::vector<float> out(3 * count);
-    std::vector<double> ours, theirs;
-    float sum = 0;
-    const auto seconds = [](auto&& work) {
-        const auto start = std::chrono::steady_clock::now();
-        work();
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
-    for (int n = 0; n < 51; ++n) {
-        ours.push_back(seconds([&] {
-            evaluator->evaluate({d[0].data(), d[1].data(), d[2].data(), count},
-                                {d[3].data(), d[4].data(), d[5].data(), count}, out.data());
-        }));
-        // The inputs of the network, angles of h and d, are not counted.
-        theirs.push_back(seconds([&] { sum += network->batch(in).sum(); }));
-    }
-    const auto median = [](std::vector<double>& times) {
-        std::nth_element(times.begin(), times.begin() + 25, times.end());
-        return times[25] / count * 1e9;
-    };
-    const double mine = median(ours), other = median(theirs);
-    std::printf("%zu terms a channel, RGB: %.1f ns a pair; network: %.1f ns (%g)\n",
-                r.arrays[0].columns(), mine, other, double(sum));
-    EXPECT_LT(mine, other);
 }
 
 TEST(HalfwayMaterials, LobesConvergeWithOrder) {
