@@ -1,5 +1,5 @@
 # The first functions of every basis as lobes |B_l^m|: orange where positive, blue where negative.
-# From the root of the project, after building the target sample_basis:
+# From the root of the project, after `./run figures`:
 #     gnuplot -c docs/figures/bases.gp build/docs/sample_basis
 # writes docs/figures/bases-NAME.png.
 

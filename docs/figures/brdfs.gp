@@ -1,5 +1,5 @@
 # Lobes of the analytic models in the plane of incidence, each scaled to the same largest radius.
-# From the root of the project, after building the target sample_brdf:
+# From the root of the project, after `./run figures`:
 #     gnuplot -c docs/figures/brdfs.gp build/docs/sample_brdf
 # writes docs/figures/brdfs.png.
 

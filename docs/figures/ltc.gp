@@ -1,5 +1,5 @@
 # Lobes of GGX and their linearly transformed cosines in the plane of incidence.
-# From the root of the project, after building the target sample_ltc:
+# From the root of the project, after `./run figures`:
 #     gnuplot -c docs/figures/ltc.gp build/docs/sample_ltc
 # writes docs/figures/ltc.png.
 

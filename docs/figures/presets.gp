@@ -1,5 +1,5 @@
 # One material as measured and as the published fits have it, green channel at a difference angle of
-# 30 degrees. From the root of the project, after building the target preset_slices:
+# 30 degrees. From the root of the project, after `./run figures`:
 #     gnuplot -c docs/figures/presets.gp build/docs/preset_slices FOLDER
 # with the folder of MERL slices writes docs/figures/presets.png.
 

@@ -1,5 +1,5 @@
 # Samples of a goniometer in the plane of incidence and the interpolation between them.
-# From the root of the project, after building the target sample_scattered:
+# From the root of the project, after `./run figures`:
 #     gnuplot -c docs/figures/scattered.gp build/docs/sample_scattered FILE CHANNEL
 # writes docs/figures/scattered.png. The figure in the page: garnet_red.brdf, channel 25 (650 nm).
 

@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include "quadrature.h"
+#include "lib/bases/quadrature.h"
 
 namespace {
 
