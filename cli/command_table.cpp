@@ -113,7 +113,7 @@ constexpr Command table[] = {
      .help = "The least that a scene needs: the cheapest coefficient file for each material, "
              "checked in the scene's own light",
      .file = "plan.cpp",
-     .example = "hshfit plan examples/scenes/car_paint.json -o out/plan",
+     .example = "hshfit plan examples/scenes/car_paint.json -o plan",
      .add = addPlan},
     {.name = "stress",
      .group = studies,

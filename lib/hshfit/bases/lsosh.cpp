@@ -2,14 +2,13 @@
 
 #include <hshfit/bases/half_range.h>
 #include <hshfit/bases/sh.h>
+#include <hshfit/linear_algebra/decompositions.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <mutex>
-
-#include <Eigen/Dense>
 
 namespace hshfit::bases {
 

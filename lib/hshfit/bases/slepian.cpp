@@ -1,14 +1,13 @@
 #include <hshfit/bases/slepian.h>
 
 #include <hshfit/bases/sh.h>
+#include <hshfit/linear_algebra/decompositions.h>
 #include <hshfit/quadrature/quadrature.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <mutex>
-
-#include <Eigen/Dense>
 
 namespace hshfit::bases {
 

@@ -1,11 +1,11 @@
 #include <hshfit/projection/least_squares.h>
 
 #include <hshfit/error.h>
+#include <hshfit/linear_algebra/decompositions.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
-#include <Eigen/Dense>
 
 #include <algorithm>
 #include <atomic>

@@ -1,8 +1,7 @@
 #include <hshfit/representation/hemisphere_gram.h>
 
+#include <hshfit/linear_algebra/decompositions.h>
 #include <hshfit/quadrature/quadrature.h>
-
-#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +9,7 @@
 namespace hshfit::inline representation {
 namespace {
 
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Matrix = linear_algebra::RowMajor;
 
 std::vector<int> bandsOf(const Basis& basis, int m) {
     std::vector<int> bands;

@@ -2,6 +2,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
+#include <hshfit/linear_algebra/decompositions.h>
 #include <hshfit/representation/basis_matrix.h>
 #include <hshfit/representation/change.h>
 #include <hshfit/representation/constraints/constraints_cone.h>
@@ -10,7 +11,6 @@
 #include <hshfit/representation/hemisphere_gram.h>
 
 #include <fmt/format.h>
-#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>

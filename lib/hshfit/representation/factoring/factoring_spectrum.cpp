@@ -1,9 +1,9 @@
 #include <hshfit/representation/factoring/factoring.h>
 
+#include <hshfit/linear_algebra/decompositions.h>
 #include <hshfit/quadrature/quadrature.h>
 
 #include <tbb/parallel_for.h>
-#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
