@@ -39,23 +39,18 @@ ColumnBlocks::ColumnBlocks(const FitSamples& samples, const ParametricSum& sum,
     std::size_t firstLinear = 1;
     for (std::size_t t = 0; t < sum.termCount(); ++t) {
         Term term;
-        std::vector<double> own;
-        for (const std::size_t j : sum.shapesOfTerm(t)) own.push_back(values[j]);
-        term.shapes = own.size();
-        term.model = sum.formulaColumns(t, values, derivatives);
-        if (const LobeFormula* formula = sum.formulaOfTerm(t))
-            term.formula = formula->at(own, derivatives);
+        term.formula = sum.formulaColumns(t, values, derivatives);
         term.linears = sum.linearsOfTerm(t).size();
         term.firstLinear = firstLinear;
         term.firstSlope = count_;
         firstLinear += term.linears;
-        if (!term.formula && !term.model) term.columns = sum.columnsOf(t, values);
+        if (!term.formula) term.columns = sum.columnsOf(t, values);
         for (const std::size_t j : sum.shapesOfTerm(t)) {
             if (!derivatives) continue;
             term.slopes.push_back(shapes[j].slope(values[j]));
             first_.push_back(count_);
             count_ += 1 + term.linears;
-            if (term.formula || term.model) continue;
+            if (term.formula) continue;
             // One-sided at a bound.
             const double low = std::max(u[j] - shapes[j].step(), shapes[j].lower());
             const double high = std::min(u[j] + shapes[j].step(), shapes[j].upper());
@@ -74,7 +69,7 @@ ColumnBlocks::ColumnBlocks(const FitSamples& samples, const ParametricSum& sum,
 void ColumnBlocks::fill(std::size_t begin, std::size_t size, double* out) const {
     std::fill_n(out, size, 0.0);
     for (const Term& term : terms_) {
-        if (term.formula || term.model)
+        if (term.formula)
             fillByFormula(term, begin, size, out);
         else
             fillByDifferences(term, begin, size, out);
@@ -84,13 +79,10 @@ void ColumnBlocks::fill(std::size_t begin, std::size_t size, double* out) const 
 void ColumnBlocks::fillByFormula(const Term& term, std::size_t begin, std::size_t size,
                                  double* out) const {
     double* slopes = out + term.firstSlope * size;
-    if (term.model)
-        term.model->fill({.wi = {samples_.wiX.data() + begin, samples_.wiY.data() + begin,
+    const PairBatch pairs{.wi = {samples_.wiX.data() + begin, samples_.wiY.data() + begin,
                                  samples_.wiZ.data() + begin, size},
-                          .wo = samples_.wo.data() + begin},
-                         out, out + term.firstLinear * size, slopes);
-    else
-        term.formula->fill(samples_, begin, size, out, out + term.firstLinear * size, slopes);
+                          .wo = samples_.wo.data() + begin};
+    term.formula->fill(pairs, out, out + term.firstLinear * size, slopes);
     const std::size_t rows = (1 + term.linears) * size;
     for (std::size_t j = 0; j < term.slopes.size(); ++j)
         for (std::size_t k = 0; k < rows; ++k) slopes[j * rows + k] *= term.slopes[j];

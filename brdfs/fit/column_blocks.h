@@ -10,8 +10,8 @@ namespace hshfit::brdfs {
 
 /// The columns of a parametric sum at samples, and their derivatives by the shapes' u, for one u:
 /// column 0 and the linear ones, then for each shape j its derivative of column 0 and of the linear
-/// ones of its term. By a LobeFormula where the term has one, else through Brdf::eval with central
-/// differences.
+/// ones of its term. By the model's formula where it has columns, else through Brdf::eval with
+/// central differences.
 class ColumnBlocks {
 public:
     ColumnBlocks(const FitSamples& samples, const ParametricSum& sum, std::span<const double> u,
@@ -31,12 +31,11 @@ private:
         double inverse = 0;
     };
     struct Term {
-        std::unique_ptr<LobeColumns> formula;
-        std::unique_ptr<ModelColumns> model;
+        std::unique_ptr<ModelColumns> formula;
         std::vector<double> slopes;  ///< derivatives of these by u
         Columns columns;
         std::vector<Difference> differences;
-        std::size_t linears = 0, shapes = 0, firstLinear = 0, firstSlope = 0;
+        std::size_t linears = 0, firstLinear = 0, firstSlope = 0;
     };
     void fillByFormula(const Term& term, std::size_t begin, std::size_t size, double* out) const;
     void fillByDifferences(const Term& term, std::size_t begin, std::size_t size,

@@ -131,8 +131,7 @@ ParametricSum::ParametricSum(std::string_view spec, bool isotropic) {
                   .shapes = {},
                   .linears = {},
                   .shapeKeys = {},
-                  .linearKeys = {},
-                  .formula = {}};
+                  .linearKeys = {}};
         Parameters stated = statedParameters(model, term.stated);
         append(term.stated, heldParameters(model, stated, isotropic));
         stated = statedParameters(model, term.stated);
@@ -165,7 +164,6 @@ ParametricSum::ParametricSum(std::string_view spec, bool isotropic) {
         }
         for (const FreeParameter& parameter : free) term.shapeKeys.push_back(parameter.keys);
         term.byFormula = model.columns != nullptr;
-        if (!term.byFormula) term.formula = makeLobeFormula(model, stated, free, term.linearKeys);
         spec_ += (spec_.empty() ? "" : " + ") + part;
         terms_.push_back(std::move(term));
     }
@@ -187,7 +185,7 @@ const std::vector<std::size_t>& ParametricSum::linearsOfTerm(std::size_t term) c
 }
 
 void ParametricSum::forgetFormulas() {
-    for (Term& term : terms_) term.formula.reset(), term.byFormula = false;
+    for (Term& term : terms_) term.byFormula = false;
 }
 
 std::unique_ptr<ModelColumns> ParametricSum::formulaColumns(std::size_t term,

@@ -2,7 +2,6 @@
 
 #include <brdfs/analytic/model_columns.h>
 #include <brdfs/fit/free_parameters.h>
-#include <brdfs/fit/lobe_formula.h>
 #include <hshfit/brdf/brdf.h>
 
 #include <memory>
@@ -80,10 +79,7 @@ public:
     /// its shapes if asked for. Null: by differences of Brdf::eval.
     std::unique_ptr<ModelColumns> formulaColumns(std::size_t term, std::span<const double> shapes,
                                                  bool derivatives) const;
-    bool byFormula(std::size_t term) const {
-        return terms_[term].byFormula || terms_[term].formula;
-    }
-    const LobeFormula* formulaOfTerm(std::size_t term) const { return terms_[term].formula.get(); }
+    bool byFormula(std::size_t term) const { return terms_[term].byFormula; }
     /// For tests: everything through Brdf::eval.
     void forgetFormulas();
     /// Whether every term vanishes where its linear parameters are 0.
@@ -107,7 +103,6 @@ private:
         std::vector<std::vector<std::string>> shapeKeys;
         std::vector<std::string> linearKeys;
         bool byFormula = false;
-        std::shared_ptr<const LobeFormula> formula;
     };
     std::string shapeText(const Term& term, std::span<const double> shapes) const;
     std::unique_ptr<Brdf> make(const Term& term, std::span<const double> shapes,

@@ -89,6 +89,15 @@ HWY_INLINE Slopes<V, n> ierfc(const Slopes<V, n>& a) {
     return Slopes<V, n>::chained(ierfc(a.value), -erfc(a.value), a);
 }
 
+template <int n>
+HWY_INLINE Slopes<Lanes, n> gather(const Slopes<double, n>* table, Lanes index) {
+    const Lanes at = index * static_cast<double>(sizeof(*table) / sizeof(double));
+    Slopes<Lanes, n> result;
+    result.value = gather(&table->value, at);
+    for (int i = 0; i < n; ++i) result.by[i] = gather(table->by + i, at);
+    return result;
+}
+
 /// Whether a parameter is 0 and stays so.
 HWY_INLINE bool isZero(double a) {
     return a == 0;
