@@ -9,6 +9,7 @@ function(hshfit_embed target name file)
             -DOUTPUT=${source} -P ${PROJECT_SOURCE_DIR}/cmake/embed_file.cmake
     DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${file} ${PROJECT_SOURCE_DIR}/cmake/embed_file.cmake
     VERBATIM)
+  set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
   # Rules belong to a folder: this target carries them to one that was added elsewhere.
   add_custom_target(embed_${name} DEPENDS ${source})
   add_dependencies(${target} embed_${name})

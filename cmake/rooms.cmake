@@ -1,3 +1,17 @@
+# hshfit_precompiled(TARGET): the headers that most files of lib/ and brdfs/ include, parsed once for
+# all of them. A file still includes what it uses: the preset `sanitize` builds without this.
+function(hshfit_precompiled target)
+  if(NOT TARGET hshfit_headers)
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/headers.cpp CONTENT "")
+    add_library(hshfit_headers OBJECT ${PROJECT_BINARY_DIR}/headers.cpp)
+    target_link_libraries(hshfit_headers PRIVATE hshfit_flags fmt::fmt nlohmann_json::nlohmann_json)
+    target_precompile_headers(hshfit_headers PRIVATE
+      <fmt/format.h> <nlohmann/json.hpp> <algorithm> <array> <cmath> <filesystem> <fstream>
+      <functional> <memory> <optional> <span> <string> <vector>)
+  endif()
+  target_precompile_headers(${target} REUSE_FROM hshfit_headers)
+endfunction()
+
 # hshfit_room(NAME SOURCES… [NEEDS ROOM…] [LINKS LIBRARY…]): a folder of lib/hshfit as a static
 # library, hshfit_room_NAME. NEEDS lists the rooms whose headers it includes, all of them lower;
 # tests/house_rules.sh holds that to the includes. LINKS are libraries that no header shows.
@@ -8,6 +22,7 @@ function(hshfit_room name)
   list(TRANSFORM ARG_NEEDS PREPEND hshfit_room_)
   target_link_libraries(${target} PUBLIC hshfit_front_door fmt::fmt ${ARG_NEEDS}
                         PRIVATE hshfit_flags ${ARG_LINKS})
+  hshfit_precompiled(${target})
 endfunction()
 
 # hshfit_part(NAME ROOM…): several rooms under one public name, hshfit::NAME.
