@@ -4,9 +4,14 @@ function(hshfit_precompiled target)
   if(NOT TARGET hshfit_headers)
     file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/headers.cpp CONTENT "")
     add_library(hshfit_headers OBJECT ${PROJECT_BINARY_DIR}/headers.cpp)
-    target_link_libraries(hshfit_headers PRIVATE hshfit_flags fmt::fmt nlohmann_json::nlohmann_json)
+    target_link_libraries(hshfit_headers PRIVATE hshfit_flags fmt::fmt)
+    # The part math does without JSON.
+    if(TARGET nlohmann_json::nlohmann_json)
+      target_link_libraries(hshfit_headers PRIVATE nlohmann_json::nlohmann_json)
+      target_precompile_headers(hshfit_headers PRIVATE <nlohmann/json.hpp>)
+    endif()
     target_precompile_headers(hshfit_headers PRIVATE
-      <fmt/format.h> <nlohmann/json.hpp> <algorithm> <array> <cmath> <filesystem> <fstream>
+      <fmt/format.h> <algorithm> <array> <cmath> <filesystem> <fstream>
       <functional> <memory> <optional> <span> <string> <vector>)
   endif()
   target_precompile_headers(${target} REUSE_FROM hshfit_headers)

@@ -1,8 +1,7 @@
 #include <brdfs/fit/normal_equations.h>
 
 #include <hshfit/error.h>
-
-#include <Eigen/Dense>
+#include <hshfit/linear_algebra/decompositions.h>
 
 #include <algorithm>
 #include <cmath>

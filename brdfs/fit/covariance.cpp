@@ -1,6 +1,6 @@
 #include <brdfs/fit/covariance.h>
 
-#include <Eigen/Dense>
+#include <hshfit/linear_algebra/decompositions.h>
 
 #include <cmath>
 

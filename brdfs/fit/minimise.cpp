@@ -1,7 +1,8 @@
 #include <brdfs/fit/minimise.h>
 
+#include <hshfit/linear_algebra/decompositions.h>
+
 #include <ceres/ceres.h>
-#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
