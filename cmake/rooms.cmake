@@ -1,5 +1,5 @@
-# hshfit_precompiled(TARGET): the headers that most files of lib/ and brdfs/ include, parsed once for
-# all of them. A file still includes what it uses: the preset `sanitize` builds without this.
+# hshfit_precompiled(TARGET): the headers that most files of lib/ and brdfs/ include, parsed once
+# for all of them. A file still includes what it uses: the preset `sanitize` builds without this.
 function(hshfit_precompiled target)
   if(NOT TARGET hshfit_headers)
     file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/headers.cpp CONTENT "")

@@ -4,8 +4,8 @@
 # Nothing is built. Ends with 1 where a command does not configure, and names it; ends with 0,
 # saying so, where a root cannot be made (no root rights, no debootstrap, no mirror).
 #   tests/bare_configure.sh ['COMMAND…'…]    each argument has a root of its own
-# By default these are the commands that build. Those of one argument share a root and are configured
-# in their order, so that each is checked with the packages of those before it.
+# By default these are the commands that build. Those of one argument share a root and are
+# configured in their order, so that each is checked with the packages of those before it.
 set -eu
 cd "$(dirname "$0")/.."
 [ $# -gt 0 ] || set -- 'demo figures' bench 'test dev' 'sanitize threads' lint
