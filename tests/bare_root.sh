@@ -5,6 +5,9 @@
 # The root is made under ${BARE_ROOT:-a temporary folder} and reused if it is there already.
 # This machine's apt sources, keys, host table and certificates are copied into it when it is
 # made, so that it finds the same mirror; none of that is part of the repository.
+# With BARE_CCACHE=FOLDER the root uses that folder of ccache, and the copy of the project lies at
+# the same path as here. Objects that were compiled here are then taken from the cache; a header that
+# the root lacks is still noticed, because ccache compares every header with the root's own.
 set -eu
 
 keep=no
@@ -17,6 +20,8 @@ fi
 command -v debootstrap >/dev/null || { echo "bare_root: debootstrap is not installed" >&2; exit 2; }
 
 project=$(cd "$(dirname "$0")/.." && pwd)
+place=/src/hshfit
+[ -z "${BARE_CCACHE:-}" ] || place=$project
 root=${BARE_ROOT:-$(mktemp -d "${TMPDIR:-/tmp}/bare_root.XXXXXX")}
 
 # Copies PATH… into the root, keeping their places; what is absent here is left out.
@@ -45,11 +50,11 @@ if [ ! -e "$root/etc/debian_version" ]; then
 fi
 
 echo "bare_root: copying the committed tree $(git -C "$project" rev-parse --short HEAD)"
-rm -rf "$root/src/hshfit"
-mkdir -p "$root/src/hshfit"
-git -C "$project" archive HEAD | tar -x -C "$root/src/hshfit"
-if [ -d "$project/../shared" ] && [ ! -d "$root/src/shared" ]; then
-    cp -r "$project/../shared" "$root/src/shared"
+rm -rf "${root:?}$place"
+mkdir -p "$root$place"
+git -C "$project" archive HEAD | tar -x -C "$root$place"
+if [ -d "$project/../shared" ] && [ ! -d "$root$place/../shared" ]; then
+    cp -rL "$project/../shared" "$root$place/../shared"
 fi
 
 # A mount namespace of its own, so that /proc and /dev vanish with the command.
@@ -57,15 +62,20 @@ code=0
 start=$(date +%s)
 # shellcheck disable=SC2016  # expanded by the inner shell
 unshare --mount sh -c '
-    root=$1
-    shift
+    root=$1 place=$2
+    shift 2
     mount -t proc proc "$root/proc"
     mount --rbind /dev "$root/dev"
+    if [ -n "${BARE_CCACHE:-}" ]; then
+        mkdir -p "$root/var/cache/ccache"
+        mount --bind "$BARE_CCACHE" "$root/var/cache/ccache"
+    fi
     exec chroot "$root" /usr/bin/env -i HOME=/root LANG=C.UTF-8 HSHFIT_BARE_ROOT=yes \
         ${NODE_EXTRA_CA_CERTS:+NODE_EXTRA_CA_CERTS="$NODE_EXTRA_CA_CERTS"} \
+        ${BARE_CCACHE:+CCACHE_DIR=/var/cache/ccache} \
         PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
-        sh -c "cd /src/hshfit && exec \"\$@\"" sh "$@"
-' sh "$root" "$@" || code=$?
+        sh -c "cd \"\$1\" && shift && exec \"\$@\"" sh "$place" "$@"
+' sh "$root" "$place" "$@" || code=$?
 echo "bare_root: '$*' ended with $code after $(($(date +%s) - start)) s"
 
 if [ "$keep" = no ] && [ -z "${BARE_ROOT:-}" ]; then
