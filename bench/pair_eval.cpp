@@ -102,7 +102,7 @@ void network(benchmark::State& state) {
 }
 
 /// Isotropic, RGB; orders 7 unless the name says otherwise.
-std::map<std::string, Form> forms() {
+std::map<std::string, Form> formsTimed() {
     Form sets;
     sets.outgoing = "16";
     Form both;
@@ -130,7 +130,7 @@ int main(int argc, char** argv) {
     for (const int block : {64, 256, 1024, 4096}) {
         benchmark::RegisterBenchmark("network", network)->Arg(block);
     }
-    for (const auto& [name, form] : forms()) {
+    for (const auto& [name, form] : formsTimed()) {
         benchmark::RegisterBenchmark(("batch/" + name).c_str(), batch, form);
         benchmark::RegisterBenchmark(("single/" + name).c_str(), single, form);
     }

@@ -1,4 +1,4 @@
-# hshfit_precompiled(TARGET): the headers that most files of lib/ and brdfs/ include, parsed once
+# hshfit_precompiled(TARGET): the headers that most files of lib/ include, parsed once
 # for all of them. A file still includes what it uses: the preset `sanitize` builds without this.
 function(hshfit_precompiled target)
   if(NOT TARGET hshfit_headers)

@@ -6,8 +6,8 @@
 # This machine's apt sources, keys, host table and certificates are copied into it when it is
 # made, so that it finds the same mirror; none of that is part of the repository.
 # With BARE_CCACHE=FOLDER the root uses that folder of ccache, and the copy of the project lies at
-# the same path as here. Objects that were compiled here are then taken from the cache; a header that
-# the root lacks is still noticed, because ccache compares every header with the root's own.
+# the same path as here. Objects that were compiled here are then taken from the cache; a header
+# that the root lacks is still noticed, because ccache compares every header with the root's own.
 set -eu
 
 keep=no
