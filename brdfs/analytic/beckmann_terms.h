@@ -22,8 +22,8 @@ public:
     }
 
     HWY_INLINE T scaledLambda(const Incoming<R>& w) const {
-        // The least s keeps w.z / s finite along the normal.
-        const T x = w.x * ax_, y = w.y * ay_, s = max(sqrt(x * x + y * y), T(1e-290));
+        // The least s keeps w.z / s and its derivative, w.z / s^2, finite along the normal.
+        const T x = w.x * ax_, y = w.y * ay_, s = max(sqrt(x * x + y * y), T(1e-140));
         return 0.5 * s * ierfc(w.z / s);
     }
 

@@ -1,5 +1,4 @@
-// The lobes written a second time for automatic differentiation are those of the catalog, and their
-// derivatives those of its differences.
+// The columns of fits are the catalog's values, and their derivatives are those of its differences.
 #include <brdfs/catalog.h>
 #include <brdfs/fit/column_blocks.h>
 #include <brdfs/fit/normal_equations.h>
@@ -73,6 +72,50 @@ TEST_P(Formulas, DerivativesMatchFiniteDifferencesOfCatalogModels) {
             // A difference across a kink (masking that sets in) is none of a derivative.
             EXPECT_LE(wrong, derivative ? samples.size() / 100 : 0u)
                 << GetParam() << " trial " << trial << " column " << column;
+        }
+    }
+}
+
+/// Pairs at the edges of the hemisphere: the normal itself, mirrors, the same direction twice, and
+/// 89.99 degrees.
+FitSamples edgeSamples() {
+    const double grazing = 89.99;
+    std::vector<DirectionPair> pairs;
+    for (const double i : {0.0, 1e-9, 45.0, grazing}) {
+        for (const double o : {0.0, 1e-9, 45.0, grazing}) {
+            for (const double phi : {0.0, 90.0, 180.0})
+                pairs.push_back({directionFromAngles(radians(i), radians(phi)),
+                                 directionFromAngles(radians(o), 0)});
+        }
+    }
+    std::vector<std::size_t> indices(pairs.size());
+    for (std::size_t k = 0; k < pairs.size(); ++k) indices[k] = k;
+    FitSamples samples = someSamples().subset(indices);
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        samples.wiX[k] = pairs[k].wi.x;
+        samples.wiY[k] = pairs[k].wi.y;
+        samples.wiZ[k] = pairs[k].wi.z;
+        samples.wo[k] = pairs[k].wo;
+    }
+    return samples;
+}
+
+TEST_P(Formulas, ColumnsAreFiniteAtTheEdgesOfTheHemisphere) {
+    const ParametricSum sum(GetParam(), true);
+    const FitSamples samples = edgeSamples();
+    for (const double share : {0.0, 0.5, 1.0}) {
+        std::vector<double> u;
+        for (const ShapeParameter& shape : sum.shapes()) {
+            const double low = shape.toScale(shape.free.startLow),
+                         high = shape.toScale(shape.free.startHigh);
+            u.push_back(low + share * (high - low));
+        }
+        const ColumnBlocks columns(samples, sum, u, true);
+        std::vector<double> values(columns.count() * samples.size());
+        columns.fill(0, samples.size(), values.data());
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            EXPECT_TRUE(std::isfinite(values[i]))
+                << GetParam() << " column " << i / samples.size() << " pair " << i % samples.size();
         }
     }
 }
