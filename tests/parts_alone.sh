@@ -29,8 +29,9 @@ for part in math files; do
     echo "parts_alone: $part with $(roomsUpTo "$part" | wc -l) rooms"
     (
         cd "$copy"
+        # The precompiled header has JSON in one part only: without it, objects of math are kept.
         cmake --preset release --log-level=WARNING -DHSHFIT_PARTS=$part -DHSHFIT_EXAMPLES=OFF \
-            >/dev/null
+            -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
         cmake --build --preset release --parallel "$(nproc)"
         ctest --preset release --parallel "$(nproc)" --output-junit tests.xml \
             >"$copy/build/$part.log" || { cat "$copy/build/$part.log"; exit 1; }

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <hshfit/error.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -343,6 +344,21 @@ TEST_F(CollectionFile, InvalidOnesAreRefused) {
     expectError<InputError>([&] { open(path + ":a"); }, {"mine.json/a", "ay has to be given"});
     expectError<InputError>([&] { open(path + ":b"); }, {"mine.json/b", "ay=99", "range"});
     expectError<InputError>([&] { open(path + ":c"); }, {"mine.json/c", "'az'"});
+}
+
+TEST(PresetFiles, KeepTheirSchemas) {
+    if (std::system("/usr/bin/python3 -c 'import jsonschema' 2>/dev/null") != 0)
+        GTEST_SKIP() << "python3-jsonschema is not installed";
+    const std::string source = HSHFIT_SOURCE;
+    const auto validate = [&](const std::string& schema, const std::string& files) {
+        return std::system(("/usr/bin/python3 " + source + "/tests/validate_schema.py " + source +
+                            "/docs/schemas/" + schema + ".schema.json " + source +
+                            "/brdfs/presets/" + files + "-*.json")
+                               .c_str());
+    };
+    EXPECT_EQ(validate("preset", "hsh"), 0);
+    for (const std::string origin : {"ngan", "low", "bagher"})
+        EXPECT_EQ(validate("presets", origin), 0) << origin;
 }
 
 }  // namespace

@@ -90,11 +90,4 @@ TEST_F(Schemas, Reports) {
     EXPECT_EQ(validate("report", "'" + folder / "report.json" + "'"), 0);
 }
 
-TEST_F(Schemas, Presets) {
-    const std::string presets = "'" HSHFIT_SOURCE "'/brdfs/presets/";
-    EXPECT_EQ(validate("preset", presets + "hsh-*.json"), 0);
-    for (const std::string origin : {"ngan", "low", "bagher"})
-        EXPECT_EQ(validate("presets", presets + origin + "-*.json"), 0) << origin;
-}
-
 }  // namespace
