@@ -44,7 +44,7 @@ if [ ! -e "$root/etc/debian_version" ]; then
     rm -rf "$root/etc/apt/sources.list"
     carry /etc/apt/sources.list /etc/apt/sources.list.d /etc/apt/apt.conf.d /etc/apt/trusted.gpg.d \
         /etc/apt/keyrings /usr/share/keyrings /etc/hosts /etc/resolv.conf \
-        /etc/ssl/certs/ca-certificates.crt "${NODE_EXTRA_CA_CERTS:-}" /root/.npmrc
+        /etc/ssl/certs/ca-certificates.crt /root/.npmrc
     # Hooks of packages that the bare root does not have.
     rm -f "$root"/etc/apt/apt.conf.d/20packagekit "$root"/etc/apt/apt.conf.d/50appstream
 fi
@@ -56,6 +56,9 @@ git -C "$project" archive HEAD | tar -x -C "$root$place"
 if [ -d "$project/../shared" ] && [ ! -d "$root$place/../shared" ]; then
     cp -rL "$project/../shared" "$root$place/../shared"
 fi
+
+# npm's certificates, at a place that the package ca-certificates does not write over.
+if [ -n "${NODE_EXTRA_CA_CERTS:-}" ]; then cp -L "$NODE_EXTRA_CA_CERTS" "$root/root/node_ca.crt"; fi
 
 # A mount namespace of its own, so that /proc and /dev vanish with the command.
 code=0
@@ -71,7 +74,7 @@ unshare --mount sh -c '
         mount --bind "$BARE_CCACHE" "$root/var/cache/ccache"
     fi
     exec chroot "$root" /usr/bin/env -i HOME=/root LANG=C.UTF-8 HSHFIT_BARE_ROOT=yes \
-        ${NODE_EXTRA_CA_CERTS:+NODE_EXTRA_CA_CERTS="$NODE_EXTRA_CA_CERTS"} \
+        ${NODE_EXTRA_CA_CERTS:+NODE_EXTRA_CA_CERTS=/root/node_ca.crt} \
         ${BARE_CCACHE:+CCACHE_DIR=/var/cache/ccache} \
         PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
         sh -c "cd \"\$1\" && shift && exec \"\$@\"" sh "$place" "$@"
