@@ -42,7 +42,7 @@ echo "$parts" | while IFS= read -r row; do
         apt-get -q -y remove "$part" >"$log" 2>&1
     fi
     code=0
-    { cmake --preset release --log-level=WARNING && cmake --build --preset release &&
+    { cmake --fresh --preset release --log-level=WARNING && cmake --build --preset release &&
         ctest --preset release -R "$pattern" --verbose; } >"$log" 2>&1 || code=$?
     skipped=$(grep -c '\*\*\*Skipped' "$log" || true)
     said=$(grep -cF "$text" "$log" || true)
