@@ -73,7 +73,7 @@ struct Model {
     /// (Ward with ax = ay is isotropic), never less.
     Laws laws;
     std::unique_ptr<Brdf> (*make)(const Parameters& parameters);
-    /// What fits are made of (brdfs/analytic/model_columns.h), from the formula of `make`.
+    /// The columns of fits (brdfs/analytic/model_columns.h), from the formula of `make`.
     std::unique_ptr<ModelColumns> (*columns)(const ColumnRequest& request) = nullptr;
 };
 

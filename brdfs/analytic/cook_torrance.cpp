@@ -10,7 +10,7 @@
 
 namespace hshfit::brdfs {
 
-/// What one channel reflects by: F0, or the index given instead.
+/// The reflectance of one channel: F0, or the index given instead.
 template <class N>
 struct CookTorranceSurface {
     N f0, inverse;  ///< 1 / eta

@@ -28,7 +28,7 @@ public:
     /// Of each term, at most three; times a scale per channel.
     std::vector<Colour> weights(const Colour& scale) const;
 
-    /// What of it varies with the angle: facet_terms.h. Empty for Schlick's form.
+    /// The part of it that varies with the angle: facet_terms.h. Empty for Schlick's form.
     const std::vector<FacetIndex<double>>& indices() const { return indices_; }
 
 private:

@@ -25,7 +25,7 @@ Laws microfacetLaws(const Parameters& parameters, const Roughness& roughness);
 inline constexpr Laws microfacetClaims{
     .nonNegative = true, .reciprocal = true, .mirrorSymmetric = true};
 
-/// What the terms of a microfacet model are computed from (facet_terms.h), in numbers N.
+/// The inputs of the terms of a microfacet model (facet_terms.h), in numbers N.
 template <class Shape, class N = double>
 struct FacetShape {
     Shape distribution;

@@ -14,7 +14,7 @@ struct PairBatch {
     const Direction* wo;  ///< [wi.count]
 };
 
-/// What a fit asks of a model: the functions of which f is a sum in one channel,
+/// The columns that a fit asks of a model: the functions of which f is a sum in one channel,
 ///     f = column_0 + sum_k linear_k column_k,
 /// with derivatives by parameters that f is not linear in.
 struct ColumnRequest {
