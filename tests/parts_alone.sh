@@ -24,17 +24,24 @@ find "$copy" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf {} +
 copyTracked CMakeLists.txt CMakePresets.json cmake lib/CMakeLists.txt 'lib/hshfit/*.h*' \
     tests/CMakeLists.txt 'tests/*.h' tests/lib docs/figures docs/schemas tests/validate_schema.py
 rm -rf "$copy/lib/hshfit/"*/
+
+# Steps are joined by &&, because the shell ignores `set -e` in a function that is tested.
+standsAlone() {
+    cd "$copy" &&
+        cmake --preset release --log-level=WARNING -DHSHFIT_PARTS="$1" -DHSHFIT_EXAMPLES=OFF \
+            -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null &&
+        cmake --build --preset release --parallel "$(nproc)" &&
+        ctest --preset release --parallel "$(nproc)" --no-tests=error >"$copy/build/$1.log"
+}
+
+# The precompiled header has JSON in one part only: without it, objects of math are kept for files.
 for part in math files; do
     for room in $(roomsUpTo "$part"); do copyTracked "$room"; done
     echo "parts_alone: $part with $(roomsUpTo "$part" | wc -l) rooms"
-    (
-        cd "$copy"
-        # The precompiled header has JSON in one part only: without it, objects of math are kept.
-        cmake --preset release --log-level=WARNING -DHSHFIT_PARTS=$part -DHSHFIT_EXAMPLES=OFF \
-            -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
-        cmake --build --preset release --parallel "$(nproc)"
-        ctest --preset release --parallel "$(nproc)" --output-junit tests.xml \
-            >"$copy/build/$part.log" || { cat "$copy/build/$part.log"; exit 1; }
-        tail -n 3 "$copy/build/$part.log"
-    ) || { echo "parts_alone: $part does not stand by itself" >&2; exit 1; }
+    if ! (standsAlone "$part"); then
+        [ ! -e "$copy/build/$part.log" ] || cat "$copy/build/$part.log"
+        echo "parts_alone: $part does not stand by itself" >&2
+        exit 1
+    fi
+    grep -E 'tests passed|^Total' "$copy/build/$part.log"
 done
