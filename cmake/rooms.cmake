@@ -1,20 +1,25 @@
-# hshfit_precompiled(TARGET): the headers that most files of lib/ include, parsed once
-# for all of them. A file still includes what it uses: the preset `sanitize` builds without this.
+# hshfit_precompiled(TARGET [JSON]): the headers that most files of lib/ include, parsed once for
+# all of them; with JSON also those of nlohmann-json, which the rooms of the part math do without.
+# A file still includes what it uses: the preset `sanitize` builds without this.
 function(hshfit_precompiled target)
-  if(NOT TARGET hshfit_headers)
-    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/headers.cpp CONTENT "")
-    add_library(hshfit_headers OBJECT ${PROJECT_BINARY_DIR}/headers.cpp)
-    target_link_libraries(hshfit_headers PRIVATE hshfit_flags fmt::fmt)
-    # The part math does without JSON.
-    if(TARGET nlohmann_json::nlohmann_json)
-      target_link_libraries(hshfit_headers PRIVATE nlohmann_json::nlohmann_json)
-      target_precompile_headers(hshfit_headers PRIVATE <nlohmann/json.hpp>)
+  cmake_parse_arguments(ARG "JSON" "" "" ${ARGN})
+  set(headers hshfit_headers)
+  if(ARG_JSON)
+    set(headers hshfit_json_headers)
+  endif()
+  if(NOT TARGET ${headers})
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/${headers}.cpp CONTENT "")
+    add_library(${headers} OBJECT ${PROJECT_BINARY_DIR}/${headers}.cpp)
+    target_link_libraries(${headers} PRIVATE hshfit_flags fmt::fmt)
+    if(ARG_JSON)
+      target_link_libraries(${headers} PRIVATE nlohmann_json::nlohmann_json)
+      target_precompile_headers(${headers} PRIVATE <nlohmann/json.hpp>)
     endif()
-    target_precompile_headers(hshfit_headers PRIVATE
+    target_precompile_headers(${headers} PRIVATE
       <fmt/format.h> <algorithm> <array> <cmath> <filesystem> <fstream>
       <functional> <memory> <optional> <span> <string> <vector>)
   endif()
-  target_precompile_headers(${target} REUSE_FROM hshfit_headers)
+  target_precompile_headers(${target} REUSE_FROM ${headers})
 endfunction()
 
 # hshfit_room(NAME SOURCES… [NEEDS ROOM…] [LINKS LIBRARY…]): a folder of lib/hshfit as a static
@@ -27,7 +32,7 @@ function(hshfit_room name)
   list(TRANSFORM ARG_NEEDS PREPEND hshfit_room_)
   target_link_libraries(${target} PUBLIC hshfit_front_door fmt::fmt ${ARG_NEEDS}
                         PRIVATE hshfit_flags ${ARG_LINKS})
-  hshfit_precompiled(${target})
+  hshfit_precompiled(${target} ${HSHFIT_ROOM_HEADERS})
 endfunction()
 
 # hshfit_part(NAME ROOM…): several rooms under one public name, hshfit::NAME.

@@ -22,19 +22,20 @@ mkdir -p "$copy"
 ln -sfn "$top/../shared" "$top/build/parts/shared"
 find "$copy" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf {} +
 copyTracked CMakeLists.txt CMakePresets.json cmake lib/CMakeLists.txt 'lib/hshfit/*.h*' \
-    tests/CMakeLists.txt 'tests/*.h' tests/lib docs/figures docs/schemas tests/validate_schema.py
+    tests/CMakeLists.txt 'tests/*.h' tests/places.cpp tests/lib tests/validate_schema.py \
+    docs/figures docs/schemas
 rm -rf "$copy/lib/hshfit/"*/
 
 # Steps are joined by &&, because the shell ignores `set -e` in a function that is tested.
 standsAlone() {
     cd "$copy" &&
         cmake --preset release --log-level=WARNING -DHSHFIT_PARTS="$1" -DHSHFIT_EXAMPLES=OFF \
-            -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null &&
+            >/dev/null &&
         cmake --build --preset release --parallel "$(nproc)" &&
         ctest --preset release --parallel "$(nproc)" --no-tests=error >"$copy/build/$1.log"
 }
 
-# The precompiled header has JSON in one part only: without it, objects of math are kept for files.
+# The objects are those of the whole project: the compiler cache has them if it was built before.
 for part in math files; do
     for room in $(roomsUpTo "$part"); do copyTracked "$room"; done
     echo "parts_alone: $part with $(roomsUpTo "$part" | wc -l) rooms"

@@ -5,6 +5,7 @@
 #include <hshfit/projection/albedo.h>
 
 #include "bsdf_xml_files.h"
+#include "places.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -18,7 +19,7 @@ using brdfs::KlemsBrdf;
 using brdfs::TreeBrdf;
 
 std::string shared(const std::string& name) {
-    return std::string(HSHFIT_SHARED) + "/data/bsdf_xml/" + name;
+    return test::sharedFolder() + "/data/bsdf_xml/" + name;
 }
 
 #define NEEDS(name) \

@@ -1,5 +1,7 @@
 // The felt sample of ALTA: kd / pi + ks (cos theta_h)^n per channel, kd, ks, n >= 0, all 90 rows
 // alike.
+#include "places.h"
+
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit.h>
 
@@ -17,7 +19,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-const std::string path = HSHFIT_SHARED "/data/alta/pink-felt-1d.alta";
+const std::string path = test::sharedFolder() + "/data/alta/pink-felt-1d.alta";
 
 /// Rows of the file as they stand there: cos(theta_h), then R, G, B.
 std::vector<std::array<double, 4>> rowsOfFile() {

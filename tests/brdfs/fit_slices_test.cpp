@@ -2,6 +2,7 @@
 // minimised, the optimum is at most the loss of the published point.
 
 #include "fit_rivals.h"
+#include "places.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-const std::string slices = HSHFIT_SHARED "/data/merl_slices";
+const std::string slices = test::sharedFolder() + "/data/merl_slices";
 
 TEST(FitSlices, NeverWorseThanPublished) {
     if (!std::filesystem::exists(slices)) GTEST_SKIP() << slices << " is absent";

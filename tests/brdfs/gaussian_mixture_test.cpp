@@ -1,3 +1,5 @@
+#include "places.h"
+
 #include <brdfs/catalog.h>
 #include <brdfs/fit/gaussian_mixture_fit.h>
 #include <brdfs/fit/gaussian_mixture_json.h>
@@ -211,7 +213,7 @@ TEST(GaussianMixtureFile, FollowsItsSchema) {
         GTEST_SKIP() << "python3-jsonschema is not installed";
     const test::TemporaryFile file(
         gaussianMixtureJson(synthetic(GaussianKind::anisotropic, Channels::rgb())), ".json");
-    const std::string source = HSHFIT_SOURCE;
+    const std::string source = test::sourceFolder();
     EXPECT_EQ(std::system(("/usr/bin/python3 " + source + "/tests/validate_schema.py " + source +
                            "/docs/schemas/gaussians.schema.json " + file.path())
                               .c_str()),

@@ -1,3 +1,5 @@
+#include "places.h"
+
 #include <brdfs/fit/ltc_files.h>
 #include <hshfit/error.h>
 #include <hshfit/files/exr_picture.h>
@@ -107,7 +109,7 @@ TEST_F(LtcFiles, JsonHoldsTheTable) {
                           static_cast<float>(expected(table, 1, row, column, c)));
             }
         }
-    const std::string source = HSHFIT_SOURCE;
+    const std::string source = test::sourceFolder();
     if (std::system("/usr/bin/python3 -c 'import jsonschema' 2>/dev/null") == 0) {
         const std::string check = "/usr/bin/python3 " + source + "/tests/validate_schema.py " +
                                   source + "/docs/schemas/ltc.schema.json " + path("t.json");

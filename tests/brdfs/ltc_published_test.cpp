@@ -1,5 +1,7 @@
 // Our table against the published one of GGX. 22 x 22 cells are every third of 64 x 64.
 
+#include "places.h"
+
 #include <brdfs/catalog.h>
 #include <brdfs/fit/ltc_files.h>
 
@@ -12,7 +14,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-const std::string folder = HSHFIT_SHARED "/data/tables/ltc";
+const std::string folder = test::sharedFolder() + "/data/tables/ltc";
 
 class LtcPublished : public testing::Test {
 protected:

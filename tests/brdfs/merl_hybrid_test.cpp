@@ -1,6 +1,8 @@
 // Full-size files put together from measured samples on the plane phi_d = 90 deg (float32, scales
 // applied) and a fit elsewhere.
 
+#include "places.h"
+
 #include <brdfs/measured/merl.h>
 
 #include <brdfs/measured_files.h>
@@ -15,7 +17,8 @@ namespace {
 using brdfs::MerlBrdf;
 
 std::vector<float> sliceOf(const std::string& material) {
-    std::ifstream file(HSHFIT_SHARED "/data/merl_slices/" + material + ".slice", std::ios::binary);
+    std::ifstream file(test::sharedFolder() + "/data/merl_slices/" + material + ".slice",
+                       std::ios::binary);
     std::vector<float> values(90 * 90 * 3);
     file.read(reinterpret_cast<char*>(values.data()),
               static_cast<std::streamsize>(values.size() * sizeof(float)));
@@ -27,7 +30,7 @@ class MerlHybrid : public testing::TestWithParam<const char*> {};
 
 TEST_P(MerlHybrid, theMeasuredPlaneIsReproduced) {
     const std::string material = GetParam();
-    const std::string tool = HSHFIT_SHARED "/tools/merl_hybrid.py";
+    const std::string tool = test::sharedFolder() + "/tools/merl_hybrid.py";
     if (!std::filesystem::exists(tool)) GTEST_SKIP() << "no " << tool;
     if (std::system("/usr/bin/python3 -c 'import numpy' 2>/dev/null") != 0) {
         GTEST_SKIP() << "python3-numpy is not installed";

@@ -1,3 +1,5 @@
+#include "places.h"
+
 #include <brdfs/catalog.h>
 #include <brdfs/measured/pbsdf.h>
 #include <hshfit/projection/albedo.h>
@@ -137,7 +139,7 @@ TEST(Pbsdf, isToldFromRglByContent) {
 }
 
 TEST(Pbsdf, spectralonIsWhiteAndNearlyLambertian) {
-    const std::string path = HSHFIT_SHARED "/data/rgl/spectralon_lowres.pbsdf";
+    const std::string path = test::sharedFolder() + "/data/rgl/spectralon_lowres.pbsdf";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
     const auto brdf = brdfs::open(path);
     EXPECT_EQ(brdf->channels().wavelengths, (std::vector<double>{450, 500, 550, 600, 650}));

@@ -2,6 +2,7 @@
 // published ones, and what is said about wrong names and files.
 
 #include "models_grid.h"
+#include "places.h"
 
 #include <brdfs/preset.h>
 #include <brdfs/preset_collection.h>
@@ -226,7 +227,7 @@ std::vector<double> valuesOf(const std::string& spec, const std::string& key) {
 }
 
 TEST(Collections, HoldThePublishedNumbers) {
-    const fs::path folder = fs::path(HSHFIT_SHARED) / "data/tables/bbm_fits";
+    const fs::path folder = fs::path(test::sharedFolder()) / "data/tables/bbm_fits";
     if (!fs::exists(folder)) GTEST_SKIP() << folder << " is absent";
     ASSERT_EQ(tables.size(), presetCollections().size());
     const double scale[3] = {1, 1.15, 1.66};
@@ -349,7 +350,7 @@ TEST_F(CollectionFile, InvalidOnesAreRefused) {
 TEST(PresetFiles, KeepTheirSchemas) {
     if (std::system("/usr/bin/python3 -c 'import jsonschema' 2>/dev/null") != 0)
         GTEST_SKIP() << "python3-jsonschema is not installed";
-    const std::string source = HSHFIT_SOURCE;
+    const std::string source = test::sourceFolder();
     const auto validate = [&](const std::string& schema, const std::string& files) {
         return std::system(("/usr/bin/python3 " + source + "/tests/validate_schema.py " + source +
                             "/docs/schemas/" + schema + ".schema.json " + source +

@@ -2,6 +2,7 @@
 // convention or a channel scaled wrongly, they would miss these by factors.
 
 #include "merl_slice.h"
+#include "places.h"
 
 #include <brdfs/catalog.h>
 #include <brdfs/preset_collection.h>
@@ -13,7 +14,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-const std::string slices = HSHFIT_SHARED "/data/merl_slices";
+const std::string slices = test::sharedFolder() + "/data/merl_slices";
 
 /// Of the materials of a collection of which there is a slice, the medians.
 struct Agreement {

@@ -1,3 +1,5 @@
+#include "places.h"
+
 #include <brdfs/catalog.h>
 #include <brdfs/measured/rgl.h>
 
@@ -286,7 +288,7 @@ struct OracleRow {
 };
 
 std::vector<OracleRow> oracleRows() {
-    std::ifstream file(HSHFIT_SHARED "/oracles/rgl_eval.csv");
+    std::ifstream file(test::sharedFolder() + "/oracles/rgl_eval.csv");
     std::vector<OracleRow> rows;
     std::string line;
     std::getline(file, line);
@@ -305,7 +307,7 @@ std::vector<OracleRow> oracleRows() {
 // The reference loader's values are f cos(theta_o), with its wi as the incident direction of the
 // tables. It computes with 32-bit floats: all 160 rows agree to 1e-4, none has to be explained.
 TEST(Rgl, agreesWithTheReferenceLoaderOnMeasuredFiles) {
-    const std::string folder = HSHFIT_SHARED "/data/rgl/";
+    const std::string folder = test::sharedFolder() + "/data/rgl/";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
     const std::vector<OracleRow> rows = oracleRows();
     ASSERT_EQ(rows.size(), 160u);
@@ -333,7 +335,7 @@ TEST(Rgl, agreesWithTheReferenceLoaderOnMeasuredFiles) {
 }
 
 TEST(Rgl, polarimetricFilesAreRefusedByName) {
-    const std::string path = HSHFIT_SHARED "/data/rgl/spectralon_lowres.pbsdf";
+    const std::string path = test::sharedFolder() + "/data/rgl/spectralon_lowres.pbsdf";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
     test::expectInputError([&] { RglBrdf::open(path); },
                            {path, "field M", "Mueller", "22 x 9 x 9 x 5 x 4 x 4"});

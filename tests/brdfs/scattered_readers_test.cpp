@@ -1,5 +1,7 @@
 // The readers of scattered samples, on files written here byte by byte and on real ones.
 
+#include "places.h"
+
 #include <brdfs/catalog.h>
 #include <brdfs/measured/scattered/alta.h>
 #include <brdfs/measured/scattered/alta_parameters.h>
@@ -379,7 +381,7 @@ TEST(Scatmech, evaluatesItsTerms) {
 }
 
 std::string shared(const std::string& name) {
-    return std::string(HSHFIT_SHARED) + "/data/" + name;
+    return test::sharedFolder() + "/data/" + name;
 }
 
 #define SKIP_WITHOUT(path) \

@@ -1,3 +1,5 @@
+#include "places.h"
+
 #include <brdfs/catalog.h>
 #include <brdfs/measured/gridded/slice.h>
 #include <brdfs/measured/gridded/slice_writer.h>
@@ -24,7 +26,7 @@ using brdfs::SliceBrdf;
 using brdfs::writeSlices;
 using test::TemporaryFile;
 
-const std::string merlSlices = HSHFIT_SHARED "/data/merl_slices";
+const std::string merlSlices = test::sharedFolder() + "/data/merl_slices";
 
 std::string contentOf(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
@@ -139,7 +141,7 @@ TEST(MerlSlice, everyRealSliceLoads) {
 // A picture that ALTA made of the MERL table red-fabric, cell by cell without interpolation,
 // against the `.slice` of that table, which comes from elsewhere: both readings of the axes agree.
 TEST(SlicePicture, aPictureByAltaShowsTheSliceOfTheSameMaterial) {
-    const std::string path = HSHFIT_SHARED "/data/alta/data-example-01.exr";
+    const std::string path = test::sharedFolder() + "/data/alta/data-example-01.exr";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent";
     const auto brdf = brdfs::open(path);
     ASSERT_NE(dynamic_cast<const SliceBrdf*>(brdf.get()), nullptr);

@@ -1,3 +1,4 @@
+#include "places.h"
 #include "program.h"
 
 #include <nlohmann/json.hpp>
@@ -85,9 +86,9 @@ TEST_F(Export, NothingIsHalfWritten) {
     expectError("export " + path("ward.json") + " -o " + path("file"), 5, "file", 2);
     expectError("export " + path("ward.json") + " -o /dev/null/folder", 5, "/dev/null", 2);
     // A limit of 8 blocks of 512 bytes stands for a full disk.
-    const std::string job = "ulimit -f 8; " + std::string(HSHFIT_PROGRAM) + " export " +
-                            path("ward.json") + " --no-error --target bin,exr,glsl -o " +
-                            path("full") + " 2>" + path("message");
+    const std::string job = "ulimit -f 8; " + test::program() + " export " + path("ward.json") +
+                            " --no-error --target bin,exr,glsl -o " + path("full") + " 2>" +
+                            path("message");
     EXPECT_EQ(WEXITSTATUS(std::system(job.c_str())), 5);
     EXPECT_FALSE(fs::exists(path("full"))) << "the folder was made for these files alone";
     const std::string message = read(path("message"));

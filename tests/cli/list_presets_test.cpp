@@ -1,5 +1,6 @@
 // `list presets`: a line per collection, search by name, what is said when nothing matches.
 
+#include "places.h"
 #include "program.h"
 
 #include <nlohmann/json.hpp>
@@ -55,7 +56,7 @@ TEST_F(Cli, ListsOfPresetsKeepTheirSchema) {
         GTEST_SKIP() << "python3-jsonschema is not installed";
     for (const std::string arguments : {"", " --all", " acrylic"}) {
         write("answer.json", run("list presets --json" + arguments).out);
-        const std::string source = HSHFIT_SOURCE;
+        const std::string source = test::sourceFolder();
         const std::string check = "/usr/bin/python3 " + source + "/tests/validate_schema.py " +
                                   source + "/docs/schemas/list.schema.json " + path("answer.json");
         EXPECT_EQ(std::system(check.c_str()), 0) << arguments;

@@ -1,6 +1,7 @@
 // The plans of the example scenes, checked by an integration of their own: nothing here comes from
 // the planner but the files that it wrote.
 
+#include "places.h"
 #include "program.h"
 
 #include <hshfit/coefficient_files/representation_file.h>
@@ -20,7 +21,7 @@ namespace {
 using Json = nlohmann::json;
 using Rgb = std::array<double, 3>;
 
-const std::string scenes = std::string(HSHFIT_SOURCE) + "/examples/scenes/";
+const std::string scenes = test::sourceFolder() + "/examples/scenes/";
 
 double angle(const Json& json, const char* key) {
     return radians(json.value(key, 0.0));

@@ -2,6 +2,8 @@
 
 // Runs the program in a folder of its own.
 
+#include "places.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,8 +39,7 @@ protected:
 
     Answer run(const std::string& arguments) const {
         const std::string err = path("stderr");
-        std::FILE* pipe =
-            popen((std::string(HSHFIT_PROGRAM) + " " + arguments + " 2>" + err).c_str(), "r");
+        std::FILE* pipe = popen((test::program() + " " + arguments + " 2>" + err).c_str(), "r");
         Answer answer{};
         std::array<char, 4096> buffer;
         while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
@@ -78,7 +79,7 @@ protected:
             return true;
         }
         write("answer.json", document);
-        const std::string source = HSHFIT_SOURCE;
+        const std::string source = test::sourceFolder();
         const std::string check = "/usr/bin/python3 " + source + "/tests/validate_schema.py " +
                                   source + "/docs/schemas/" + name + ".schema.json " +
                                   path("answer.json");

@@ -1,6 +1,8 @@
 // Every real file of the shared data from the command line: info, report, and there and back in a
 // format that holds it.
 
+#include "places.h"
+
 #include <cli/program.h>
 
 #include <nlohmann/json.hpp>
@@ -32,7 +34,7 @@ class RealFiles : public Cli, public testing::WithParamInterface<RealFile> {
 protected:
     void SetUp() override {
         Cli::SetUp();
-        source_ = std::string(HSHFIT_SHARED) + "/data/" + GetParam().path;
+        source_ = test::sharedFolder() + "/data/" + GetParam().path;
         if (!fs::exists(source_)) GTEST_SKIP() << source_ << " is not there";
     }
     std::string source_;

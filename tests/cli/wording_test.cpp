@@ -1,6 +1,8 @@
 // Messages of lib and jobs name settings and functions; the program knows each as an option or a
 // command of its own.
 
+#include "places.h"
+
 #include <cli/wording.h>
 
 #include <gtest/gtest.h>
@@ -22,7 +24,7 @@ std::set<std::string> foundInSources(const std::string& pattern) {
     std::set<std::string> found;
     for (const char* folder : {"/lib", "/jobs"}) {
         for (const auto& entry :
-             fs::recursive_directory_iterator(HSHFIT_SOURCE + std::string(folder))) {
+             fs::recursive_directory_iterator(test::sourceFolder() + std::string(folder))) {
             if (entry.path().extension() != ".cpp") continue;
             std::ifstream file(entry.path());
             const std::string text((std::istreambuf_iterator<char>(file)), {});

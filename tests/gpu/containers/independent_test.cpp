@@ -3,6 +3,7 @@
 // absent.
 
 #include "container_samples.h"
+#include "places.h"
 
 #include <hshfit/files/checksum.h>
 
@@ -25,7 +26,7 @@ using test::exportTo;
 using test::Sample;
 using test::samplePayloads;
 
-const std::string here = HSHFIT_SOURCE "/tests/gpu/containers/";
+const std::string here = test::sourceFolder() + "/tests/gpu/containers/";
 
 struct Answer {
     int code = -1;
@@ -177,7 +178,7 @@ TEST(IndependentReaders, ExrheaderSaysWhatWasWritten) {
 
 TEST(IndependentReaders, KtxParseReadsEveryKtx2) {
     if (!have("node --version")) GTEST_SKIP() << "no node (package nodejs)";
-    if (!have("test -d " HSHFIT_SOURCE "/tests/gpu/node_modules/ktx-parse")) {
+    if (!have("test -d " + test::sourceFolder() + "/tests/gpu/node_modules/ktx-parse")) {
         GTEST_SKIP() << "no ktx-parse (npm ci in tests/gpu)";
     }
     for (const Number number : test::numbers) {

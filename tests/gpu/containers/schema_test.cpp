@@ -1,6 +1,7 @@
 // Every sidecar and test file, beside the files and within them, is what docs/schemas says.
 
 #include "container_samples.h"
+#include "places.h"
 
 #include <cstdlib>
 
@@ -18,7 +19,7 @@ using samples::Folder;
 int validate(const std::string& schema, const std::string& files) {
     const int status = std::system(fmt::format("/usr/bin/python3 '{0}/tests/validate_schema.py' "
                                                "'{0}/docs/schemas/{1}.schema.json' {2}",
-                                               HSHFIT_SOURCE, schema, files)
+                                               test::sourceFolder(), schema, files)
                                        .c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }

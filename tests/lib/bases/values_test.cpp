@@ -7,13 +7,14 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "places.h"
 #include "quadrature.h"
 #include "reference.h"
 
 namespace hshfit {
 namespace {
 
-const std::filesystem::path oracle = std::string(HSHFIT_SHARED) + "/oracles/basis_values.json";
+const std::filesystem::path oracle = test::sharedFolder() + "/oracles/basis_values.json";
 
 nlohmann::json readOracle() {
     std::ifstream in(oracle);

@@ -4,6 +4,7 @@
 #include <hshfit/pages/report.h>
 
 #include "lib/coefficient_files/coefficient_samples.h"
+#include "places.h"
 
 #include <cstdlib>
 #include <limits>
@@ -21,7 +22,7 @@ constexpr int missing = 77;
 
 /// Exit code of tests/validate_schema.py, which prints what is wrong.
 int validate(const std::string& schema, const std::string& files) {
-    const std::string source = HSHFIT_SOURCE;
+    const std::string source = test::sourceFolder();
     const int status = std::system(("/usr/bin/python3 '" + source + "/tests/validate_schema.py' '" +
                                     source + "/docs/schemas/" + schema + ".schema.json' " + files)
                                        .c_str());

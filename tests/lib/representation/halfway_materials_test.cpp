@@ -1,4 +1,6 @@
 // The halfway form on models and on measured materials, beside the published networks.
+#include "places.h"
+
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/representation/halfway/halfway.h>
 
@@ -18,7 +20,7 @@
 namespace hshfit {
 namespace {
 
-const std::string data = std::string(HSHFIT_SHARED) + "/data";
+const std::string data = test::sharedFolder() + "/data";
 
 /// A network of Sztrajman et al. 2021 ("Neural BRDF Representation and Importance Sampling"):
 /// 6-21-21-3, ReLU, h and d as Cartesian vectors in (h in the plane phi_h = 0), f = exp(y) - 1.

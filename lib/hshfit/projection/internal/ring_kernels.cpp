@@ -17,7 +17,7 @@ using Tag = hn::ScalableTag<double>;
 using Vec = hn::Vec<Tag>;
 
 /// Four functions by four values: rows of values become rows of functions.
-#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_SSE4 && HWY_TARGET != HWY_NEON
+#if HWY_CAP_GE256
 constexpr bool byFours = true;
 HWY_INLINE void turnFour(const double* rows, std::size_t stride, double* out) {
     const hn::FixedTag<double, 4> d;

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace hshfit::test {
+
+std::string sharedFolder();  ///< the shared inputs beside the project; may be absent
+std::string sourceFolder();  ///< the top of the project
+std::string program();       ///< the path of the program hshfit
+
+}  // namespace hshfit::test
