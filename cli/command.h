@@ -43,8 +43,8 @@ void printJson(const nlohmann::ordered_json& document);
 /// Prints text to standard output, likewise.
 void printText(std::string_view text);
 
-/// A progress line on standard error, only on a terminal and unless --quiet: what is done, how much
-/// of it, how fast, and the time left. Empty where nothing would be shown.
+/// A progress line on standard error: the task, the share done, the rate and the time left.
+/// Nothing is shown with --quiet or if standard error is no terminal.
 class Progress {
 public:
     Progress(const Globals& globals, std::string what);
@@ -52,7 +52,7 @@ public:
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// For the options of library calls; may be called from any thread.
+    /// A callback for the options of library calls, thread-safe; empty if no line is shown.
     jobs::ProgressCall callback();
 
 private:
@@ -66,8 +66,8 @@ void note(const Globals& globals, std::string_view message);
 /// Progress lines and notes of a job; none with --quiet.
 jobs::Listener listenerFor(const Globals& globals);
 
-/// One line for each failure on standard error, whatever --quiet says, and the exit code: 3, or 4
-/// if all of them are of numbers.
+/// Prints one line for each failure to standard error, with --quiet too, and sets the exit
+/// code: 4 if all failures are numerical, else 3.
 void reportFailures(const std::vector<jobs::InputFailure>& failures, std::size_t inputs,
                     Globals& globals);
 

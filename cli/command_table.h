@@ -10,15 +10,15 @@ namespace hshfit::cli {
 
 struct Globals;
 
-/// A command. The help, the completion of shells, the index in docs/commands.md and the law tests
+/// A command. The help, the shell completion, the index in docs/commands.md and the law tests
 /// all come from its row.
 struct Command {
     const char* name;
     const char* group;    ///< heading in the help of the program
     const char* help;     ///< one line
     const char* file;     ///< the source in this folder
-    const char* example;  ///< works in a folder where the examples that write its inputs have run
-    /// Adds the options and what is done with them.
+    const char* example;  ///< runs in a folder after the examples that write its inputs
+    /// Adds the options and the function that runs the command.
     void (*add)(CLI::App& command, Globals& globals);
 };
 

@@ -38,7 +38,7 @@ OutgoingSet outgoingOf(const CompareArguments& arguments, const Brdf& a, const B
     return jobs::outgoingOrDefault(arguments.outgoing, a.laws().isotropic ? b : a);
 }
 
-/// The page; its table holds every metric, whatever was asked to be printed.
+/// Writes the page. Its table holds every metric, including those that are not printed.
 std::vector<std::string> writePage(const Brdf& a, const Brdf& b, const OutgoingSet& outgoing,
                                    const std::vector<MetricValue>& results,
                                    const CompareArguments& arguments, const Globals& globals) {
@@ -80,7 +80,7 @@ void runCompare(const CompareArguments& arguments, Globals& globals) {
     } else {
         printText(text);
     }
-    // Asked for by name, a metric that does not exist is an error; among all of them it is a row.
+    // A metric without a value is an error if it was named, and a row of the table otherwise.
     const bool named = arguments.metrics != "all";
     for (const MetricValue& result : results) {
         if (named && !result.value) globals.exitCode = 4;

@@ -17,7 +17,7 @@ std::string directionText(const Direction& d);
 nlohmann::ordered_json lawsJson(const Laws& laws);
 
 nlohmann::ordered_json metricJson(const MetricValue& result);
-/// A line, indented and ended.
+/// An indented line with its line feed.
 std::string metricText(const MetricValue& result);
 
 }  // namespace hshfit::cli

@@ -13,13 +13,13 @@ class App;
 
 namespace hshfit::cli {
 
-/// The options of `project` that say in which form coefficients are kept.
+/// The options of `project` that choose the form in which coefficients are stored.
 class FormOptions {
 public:
     void addTo(CLI::App& command);
 
-    /// The form asked for, without basis, order, quantity and outgoing set; none where no option
-    /// was given: plain coefficients. Throws UsageError.
+    /// The requested form, without basis, order, quantity and outgoing set. No option means
+    /// plain coefficients and gives none. Throws UsageError.
     std::optional<Form> build() const;
 
 private:

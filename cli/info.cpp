@@ -77,7 +77,7 @@ void describeCoefficients(const CoefficientHead& c, Json& document) {
                          {"generator", c.generator}};
 }
 
-/// What the file around exported coefficients is; nothing for other files.
+/// Adds the facts of the container of exported coefficients; nothing for other files.
 void describeContainer(const std::string& path, Json& facts) {
     if (!gpu::looksLikePayload(path)) return;
     const gpu::ImportedPayload read = gpu::readPayload(path);
@@ -150,7 +150,7 @@ void addInfo(CLI::App& command, Globals& globals) {
         const auto brdf = jobs::openSource(options->spec, options->rgb);
         Json document = describe(*brdf, globals);
         describeContainer(options->spec, document["facts"]);
-        jobs::requireReadable(*brdf);  // what is no number has been counted
+        jobs::requireReadable(*brdf);  // NaN values are in the census
         if (globals.json) {
             printJson(document);
         } else {

@@ -101,7 +101,7 @@ Json metricsJson() {
     return rows;
 }
 
-/// Presets that stand by themselves.
+/// Presets that belong to no collection.
 Json presetsJson() {
     Json rows = Json::array();
     for (const auto& preset : brdfs::presets()) {
@@ -129,7 +129,7 @@ Json collectionsJson() {
     return rows;
 }
 
-/// Those by themselves and every material of every collection, COLLECTION/MATERIAL.
+/// Presets of no collection, and every material of every collection as COLLECTION/MATERIAL.
 Json allPresetsJson() {
     Json rows = presetsJson();
     for (std::size_t i = 0; i < brdfs::presetCollections().size(); ++i) {
@@ -150,8 +150,8 @@ std::string lowered(std::string text) {
     return text;
 }
 
-/// The presets whose name holds `text`, in whatever case. Throws UsageError, naming the nearest, if
-/// there is none.
+/// The presets whose name contains `text`, ignoring case. Throws UsageError with the nearest
+/// names if there is none.
 Json foundPresetsJson(const std::string& text) {
     Json found = Json::array();
     std::vector<std::string> names;
@@ -160,7 +160,7 @@ Json foundPresetsJson(const std::string& text) {
         if (lowered(names.back()).find(lowered(text)) != std::string::npos) found.push_back(row);
     }
     if (!found.empty()) return found;
-    // The same material is in many collections: the nearest of them, without these.
+    // Many collections have the same material: names are compared without the collection.
     std::vector<std::string> words;
     for (const std::string& name : names) {
         const std::string word = name.substr(name.find('/') + 1);
@@ -186,7 +186,7 @@ Json targetsJson() {
 struct Section {
     const char* name;
     Json (*rows)();
-    std::string_view sums = {};  ///< what is said of sums of the rows
+    std::string_view sums = {};  ///< help on sums of the rows
 };
 constexpr Section sections[] = {{"models", modelsJson, brdfs::sumHelp},
                                 {"formats", formatsJson},
@@ -245,7 +245,7 @@ void printSection(const char* name, const Json& rows, std::string_view sums = {}
     printText(text + "\n");
 }
 
-/// Without a text and unless all are asked for: a line per collection.
+/// Lists one line per collection if `text` is empty and `all` is false.
 void listPresets(const std::string& text, bool all, bool json, Json& document) {
     const bool summary = text.empty() && !all;
     const Json rows = summary         ? presetsJson()

@@ -24,8 +24,8 @@ namespace {
 
 using namespace hshfit;
 
-/// The name of what was mistyped, with the nearest that exists: an unknown command, or an unknown
-/// option of a known one. "" where the error is another.
+/// The unknown command, or the unknown option of a known command, with the nearest existing
+/// name. "" for other errors.
 std::string unknownWord(const CLI::App& app, int argc, char** argv) {
     const auto nearest = [](const std::string& word, const std::vector<std::string>& names) {
         const std::vector<std::string_view> known(names.begin(), names.end());

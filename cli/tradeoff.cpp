@@ -38,7 +38,7 @@ struct TradeoffArguments {
     bool cosine = false, noTiming = false, byTime = false, rgb = false;
 };
 
-/// Replaces what the sweep tries by default with what was asked for, if anything was.
+/// Replaces the sweep's default values with those on the command line, if there are any.
 template <class Value, class Parse>
 void choose(const std::vector<std::string>& names, std::vector<Value>& into, Parse parse) {
     if (names.empty()) return;
@@ -46,7 +46,7 @@ void choose(const std::vector<std::string>& names, std::vector<Value>& into, Par
     for (const std::string& name : names) into.push_back(parse(name));
 }
 
-/// "none" as the absence of a split.
+/// Turns "none" into the empty text, which means no split.
 std::string parseSplit(const std::string& text) {
     return text == "none" ? std::string() : text;
 }
@@ -143,7 +143,7 @@ PairSample pairsFor(const TradeoffArguments& arguments) {
     return spreadPairs(spread);
 }
 
-/// The pairs with their weights and the values of one BRDF, so that others can be measured on them.
+/// Writes the pairs, their weights and the values of one BRDF, for measurements of other models.
 void writePairs(const PairSample& pairs, const Brdf& brdf, const std::string& path) {
     const std::vector<double> values = evaluateOn(brdf, pairs);
     std::string csv = "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,weight";
@@ -163,7 +163,7 @@ void writePairs(const PairSample& pairs, const Brdf& brdf, const std::string& pa
     writeFile(path, csv);
 }
 
-/// The trades of all inputs, in their order; one after the other, so that times can be compared.
+/// The trade-offs of all inputs, in their order. They run one at a time to keep times comparable.
 std::vector<Tradeoff> measureAll(const TradeoffArguments& arguments,
                                  const std::vector<std::string>& specs, const Globals& globals,
                                  std::vector<jobs::InputFailure>& failures) {

@@ -74,7 +74,7 @@ std::string quoted(const std::string& text) {
     return out + "'";
 }
 
-/// Quoted where a shell would take it for something else.
+/// The text, in quotes if it contains characters that are special to a shell.
 std::string forShell(const std::string& text) {
     const auto plain = [](char c) {
         return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
