@@ -61,7 +61,7 @@ std::vector<std::string> measuredFiles(const std::string& folder) {
     return files;
 }
 
-/// The path of a file specification: without its options; none for anything but a file.
+/// The path of a file specification, without its options; none if it names no file.
 std::optional<fs::path> pathOf(const std::string& spec) {
     std::error_code ignored;
     if (fs::exists(spec, ignored)) return fs::path(spec);
@@ -82,8 +82,8 @@ std::string nameFor(const std::string& spec) {
     return name;
 }
 
-/// Outgoing directions done, over all inputs. How many an input has is known once it has been
-/// opened; the others are taken to have as many on average.
+/// Counts finished outgoing directions over all inputs. The number of an input is known once it
+/// has been opened; unopened inputs count with the average of the others.
 class TotalProgress {
 public:
     TotalProgress(std::size_t inputs, ProgressCall show) : parts_(inputs), show_(std::move(show)) {}
@@ -168,8 +168,8 @@ std::vector<InputFailure> forEachInput(const std::vector<std::string>& specs,
         }
         progress.finish(i);
     };
-    // Isolated: a thread that waits within one input must not begin another, or all of them would
-    // be open at once.
+    // Task isolation keeps a thread that waits within one input from starting another; without
+    // it all inputs would be open at once.
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, specs.size(), 1),
         [&](const tbb::blocked_range<std::size_t>& range) {

@@ -27,7 +27,7 @@ std::string writableFormats() {
     return text;
 }
 
-/// The one asked for, else the first one in the table that has the file's extension.
+/// The requested writer, else the first in the table that has the file's extension.
 const brdfs::Writer& chooseWriter(const std::string& format, const std::string& output) {
     const std::string name = format.substr(0, format.find(':'));
     const std::string extension = std::filesystem::path(output).extension().string();
@@ -50,7 +50,7 @@ brdfs::Parameters writerParameters(const brdfs::Writer& writer, const std::strin
                                   colon == std::string::npos ? "" : format.substr(colon + 1));
 }
 
-/// The file, read back and compared with the BRDF that it was written from.
+/// Reads the file back and compares it with the BRDF that it was written from.
 ConversionLoss measureLoss(const Brdf& input, const brdfs::Writer& writer,
                            const std::string& output, const ConvertOptions& options,
                            const Listener& listener) {

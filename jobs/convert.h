@@ -19,10 +19,10 @@ struct ConvertOptions {
     std::string outgoing;  ///< of the loss, as in outgoingOrDefault
     bool rgb = false;      ///< wavelengths as linear Rec. 709
     bool measureLoss = false;
-    bool force = false;  ///< replace a file that stands
+    bool force = false;  ///< replace an existing file
 };
 
-/// Errors of the file, read back, against the BRDF that it was written from.
+/// Errors of the file as read back, against the BRDF that it was written from.
 struct ConversionLoss {
     std::string outgoing;
     std::vector<MetricValue> metrics;
@@ -42,9 +42,9 @@ struct Converted {
     std::optional<ConversionLoss> loss;
 };
 
-/// A BRDF or a coefficient file in the format of another program, to the file `output`. Throws
-/// UsageError for a format that does not exist or cannot hold it, InputError, NumericError and
-/// OutputError.
+/// Writes a BRDF or a coefficient file to `output` in the format of another program. Throws
+/// UsageError for a format that is unknown or cannot hold the data, InputError, NumericError
+/// and OutputError.
 Converted convert(const std::string& input, const std::string& output,
                   const ConvertOptions& options, const Listener& listener = {});
 

@@ -43,7 +43,7 @@ Source openSourceOf(const ExportOptions& options, const Coefficients& coefficien
 }
 
 /// Coefficients per outgoing direction. Other forms, and files with a BRDF added, are projected
-/// anew, and what that costs is part of the error that the export states.
+/// anew. The stated error of the export includes the loss of that projection.
 Coefficients coefficientsOf(const std::string& path, const ExportOptions& options,
                             const Listener& listener) {
     const Representation stored = readRepresentation(path);
@@ -60,7 +60,7 @@ Coefficients coefficientsOf(const std::string& path, const ExportOptions& option
     return expand(stored, sourceOpener(), expansion);
 }
 
-/// The error, or why there is none. A source that was named has to do.
+/// The error, or the reason why there is none. A failure of an explicitly named source is thrown.
 ExportError errorOf(const Source& source, const Coefficients& coefficients,
                     const gpu::Payload& payload, const ExportOptions& options,
                     const Listener& listener) {
@@ -76,7 +76,7 @@ ExportError errorOf(const Source& source, const Coefficients& coefficients,
     }
 }
 
-/// Before the error is measured; every file is looked at again when it is written.
+/// An early check, before the error is measured. Writing checks every file again.
 void refuseToReplace(const std::string& folder, const std::string& sidecar, bool force) {
     const auto path = std::filesystem::path(folder) / sidecar;
     std::error_code ignored;

@@ -27,7 +27,7 @@ struct ExportOptions {
     gpu::ShaderOptions shader = {};
     bool measureError = true;
     bool zstd = false;   ///< compress KTX2
-    bool force = false;  ///< replace files that stand
+    bool force = false;  ///< replace existing files
 };
 
 /// The error of what was exported, or why it is not known.
@@ -52,11 +52,11 @@ struct Exported {
     std::vector<ExportedText> texts;
 };
 
-/// A coefficient file as textures, shaders and a viewer, with the error that they have, to
-/// `folder`: all files or none. Forms other than coefficients per outgoing direction are projected
-/// anew. With the targets "all", those that cannot hold the coefficients are left out, with a note.
-/// Throws UsageError for options that contradict each other, InputError, NumericError and
-/// OutputError; an error that cannot be measured is thrown only where `source` is named.
+/// Exports a coefficient file to `folder` as textures, shaders and a viewer with their error:
+/// all files or none. Forms other than coefficients per outgoing direction are projected anew.
+/// With the targets "all", those that cannot hold the coefficients are left out, with a note.
+/// Throws UsageError for contradictory options, InputError, NumericError and OutputError. A
+/// failed measurement of the error is thrown only if `source` is given.
 Exported exportCoefficients(const std::string& coefficients, const std::string& folder,
                             const ExportOptions& options, const Listener& listener = {});
 

@@ -39,7 +39,7 @@ brdfs::FitSamples samplesOf(const FitOptions& options, const std::string& data) 
     return samples;
 }
 
-/// Data and fit side by side in the folder where the fit is; the number of files.
+/// Writes a page that compares data and fit into the fit's folder. Returns the number of files.
 std::size_t writePage(const std::string& data, const std::string& spec, const std::string& folder,
                       bool rgb, const Listener& listener) {
     const auto measured = openSource(data, rgb);

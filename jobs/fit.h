@@ -17,19 +17,19 @@
 namespace hshfit::jobs {
 
 struct FitOptions {
-    /// MODEL[:key=value,…][+MODEL…]; parameters that are given are not fitted.
+    /// MODEL[:key=value,…][+MODEL…]; parameters with a value are held fixed.
     std::string model;
     std::string loss = "cosine";   ///< brdfs::findLoss
     std::string robust = "none";   ///< brdfs::findRobust
     std::string weights = "auto";  ///< brdfs::findSampleWeights
     double robustScale = 0;        ///< residual at which `robust` sets in; 0: from their spread
-    bool perChannel = false;       ///< shapes of their own for each channel
+    bool perChannel = false;       ///< separate shape parameters for each channel
     int starts = 16;               ///< local searches
     int iterations = 200;          ///< at most, in the last search
     std::uint64_t seed = 1;        ///< of starts and drawn samples
     double grazingCut = brdfs::SampleOptions{}.grazingCut;
     std::size_t samples = 0;  ///< to draw; 0: all
-    bool accept = false;      ///< take a fit that did not converge
+    bool accept = false;      ///< accept a fit that did not converge
     bool rgb = false;         ///< wavelengths as linear Rec. 709
 };
 
@@ -39,20 +39,20 @@ struct Fitted {
     std::size_t pageFiles = 0;      ///< of the page, where one was asked for
 };
 
-/// Whether a fit to `output` is a preset, and no folder with a preset and a page.
+/// Whether `output` is a preset file rather than a folder with a preset and a page.
 bool isPresetPath(const std::string& output);
 
-/// A model fitted to a BRDF or a coefficient file. The preset goes to `output` (.json), or with a
-/// page that compares fit and data to the folder `output`; nowhere if it is empty. Throws
-/// NumericError for a fit that did not converge, unless it is accepted.
+/// Fits a model to a BRDF or a coefficient file. `output` is a preset (.json), a folder for the
+/// preset and a page that compares fit and data, or empty for no file. Throws NumericError for
+/// a fit that did not converge, unless it is accepted.
 Fitted fit(const std::string& data, const std::string& output, const FitOptions& options,
            const Listener& listener = {});
 
-/// Every file of a folder, each to RESULTS/NAME.EXTENSION.json; those that stand are kept.
+/// Fits every file of a folder, each to RESULTS/NAME.EXTENSION.json. Existing results are kept.
 BatchOutcome fitAll(const std::string& folder, const std::string& results,
                     const FitOptions& options, const Listener& listener = {});
 
-/// Every model fitted to the same data, ranked by directions that the fit did not see.
+/// Fits every model to the same data and ranks them by error at held-out directions.
 std::vector<brdfs::ModelRank> rankModels(const std::string& data,
                                          const std::vector<std::string>& models,
                                          const FitOptions& options);

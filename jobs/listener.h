@@ -6,13 +6,13 @@
 
 namespace hshfit::jobs {
 
-/// Takes the amount done of a part of the work, and the whole. May be called from any thread.
+/// Receives the finished and the total amount of a part of the work. Has to be thread-safe.
 using ProgressCall = std::function<void(std::size_t done, std::size_t total)>;
 
-/// The caller of a job hears of its progress here. Members that are left out are not called.
+/// Callbacks through which a job reports its progress. Empty members are not called.
 struct Listener {
-    /// A part of the work begins. Its progress goes to the function returned, whose last copy is
-    /// destroyed when the part ends.
+    /// Called at the start of a part of the work. The returned function receives the part's
+    /// progress; its last copy is destroyed when the part ends.
     std::function<ProgressCall(const std::string& part)> begin = {};
     /// A remark; the job goes on.
     std::function<void(const std::string& remark)> note = {};

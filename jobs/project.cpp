@@ -42,7 +42,7 @@ std::optional<Form> formOf(const ProjectOptions& options) {
     return form;
 }
 
-/// Scattered samples straight to coefficients, without interpolating between them.
+/// Projects scattered samples by least squares, without interpolating between them.
 Projection projectSamples(const Brdf& brdf, const Basis& basis, const OutgoingSet& outgoing,
                           const ProjectOptions& options, ProgressCall progress) {
     const auto* scattered = dynamic_cast<const brdfs::Scattered*>(&brdf);
@@ -123,7 +123,7 @@ ManyProjected projectMany(const std::vector<std::string>& specs, const std::stri
     many.failures = forEachInput(
         many.specs, listener, "project", [&](std::size_t i, const ProgressCall& progress) {
             Projected result = projector.run(many.specs[i], outputs[i], progress);
-            result.projection.coefficients.values = {};  // they are in the file
+            result.projection.coefficients.values = {};  // the values are in the file
             many.results[i] = std::move(result);
         });
     return many;

@@ -22,12 +22,12 @@ struct ProjectOptions {
     bool rgb = false;      ///< wavelengths as linear Rec. 709
     double tolerance = 0;  ///< as in ProjectionOptions
     std::size_t maxEvaluations = ProjectionOptions{}.maxEvaluations;
-    /// The samples of a scattered measurement themselves, without interpolating between them.
+    /// Least squares over the samples of a scattered measurement, without interpolation.
     bool leastSquares = false;
-    double regularise = 1e-3;  ///< Tikhonov weight of that fit
-    double kernel = 20;        ///< degrees about an outgoing direction that count in it
-    /// The form that coefficients are kept in; none: plain, in float64. Its basis, order, quantity,
-    /// sign and outgoing set are those above.
+    double regularise = 1e-3;  ///< Tikhonov weight of least squares
+    double kernel = 20;        ///< degrees about an outgoing direction that least squares uses
+    /// The form in which coefficients are stored; none: plain, in float64. Its basis, order,
+    /// quantity, sign and outgoing set are those above.
     std::optional<Form> form = {};
 };
 
@@ -38,8 +38,8 @@ struct Projected {
     std::string output;
 };
 
-/// The coefficients of one BRDF, to the file `output`, .json or .exr. Throws UsageError for options
-/// that contradict each other or the BRDF, InputError, NumericError and OutputError.
+/// Writes the coefficients of one BRDF to `output`, .json or .exr. Throws UsageError for
+/// options that contradict each other or the BRDF, InputError, NumericError and OutputError.
 Projected project(const std::string& spec, const std::string& output, const ProjectOptions& options,
                   const Listener& listener = {});
 
@@ -50,8 +50,8 @@ struct ManyProjected {
     std::vector<InputFailure> failures;
 };
 
-/// Several BRDFs and folders of them, each to FOLDER/NAME.json or .exr (`extension`, with the dot).
-/// The folder is made if it is absent. One that fails does not stop the others.
+/// Projects several BRDFs and folders, each to FOLDER/NAME.json or .exr (`extension`, with the
+/// dot). The folder is created if it is absent. A failed BRDF does not stop the others.
 ManyProjected projectMany(const std::vector<std::string>& specs, const std::string& folder,
                           const std::string& extension, const ProjectOptions& options,
                           const Listener& listener = {});

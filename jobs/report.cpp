@@ -24,7 +24,7 @@ std::vector<std::unique_ptr<Basis>> makeBases(const ReportOptions& options) {
     return made;
 }
 
-/// The projections of a BRDF whose coefficients do not exist or did not converge.
+/// Empty projections of a BRDF whose coefficients do not exist or did not converge.
 std::vector<Projection> withoutNumbers(const Brdf& brdf, std::span<const Basis* const> bases,
                                        const OutgoingSet& outgoing, Quantity quantity,
                                        const std::string& reason) {

@@ -28,8 +28,8 @@ struct Reported {
     std::vector<InputFailure> failures;
 };
 
-/// Captured energy by order of every basis, for each BRDF; a BRDF without finite energy has an
-/// entry that says why. Of one SPEC, an error is thrown; of several, those that fail are in
+/// Captured energy by order of every basis, for each BRDF. A BRDF without finite energy has an
+/// entry with the reason. The error of a single SPEC is thrown; those of several are in
 /// `failures`.
 Reported report(const std::vector<std::string>& specs, const ReportOptions& options,
                 const Listener& listener = {});

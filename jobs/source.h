@@ -9,19 +9,19 @@
 
 namespace hshfit::jobs {
 
-/// A BRDF specification (docs/brdfs.md). With `rgb`, a spectral one as linear Rec. 709; others stay
-/// as they are.
+/// Opens a BRDF specification (docs/brdfs.md). `rgb` converts a spectral BRDF to linear Rec.
+/// 709 and leaves others unchanged.
 std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb = false);
 
-/// A BRDF specification, a coefficient file, or a file of an export (a sidecar or a container that
-/// holds one), as a BRDF; `rgb` likewise.
+/// Opens a BRDF specification, a coefficient file, or a file of an export (a sidecar or a
+/// container with one) as a BRDF; `rgb` as above.
 std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb = false);
 
-/// `openSource` for what representations add.
+/// `openSource` as the opener of BRDFs that representations add.
 BrdfOpener sourceOpener();
 
-/// Throws what `brdf` has found wrong with its data while it was evaluated; of measured files that
-/// hold invalid values only that they could not be read.
+/// Throws the data error that `brdf` recorded during evaluation. Invalid stored values of a
+/// measured file are no error here; a failed read is.
 void requireReadable(const Brdf& brdf);
 
 /// The set that `text` names (OutgoingSet::parse); if it is empty, 16 elevations for an isotropic
