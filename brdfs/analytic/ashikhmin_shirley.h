@@ -9,9 +9,10 @@ namespace hshfit::brdfs {
 ///     specular  sqrt((nu + 1)(nv + 1)) / (8 pi) (h.z)^((nu h.x^2 + nv h.y^2) / (1 - h.z^2))
 ///               F / (h.wo max(cos_i, cos_o)),   F = Rs + (1 - Rs)(1 - h.wo)^5
 ///     diffuse   28 Rd / (23 pi) (1 - Rs) (1 - (1 - cos_i/2)^5) (1 - (1 - cos_o/2)^5)
-/// The lobe is scaled by ks and kd / pi added, which the paper has not; published fits use a plain
-/// Lambert term. `ior` in place of Rs makes F the exact reflectance of a dielectric.
-/// nu along x (the paper's u), nv along y. There is no masking: at grazing the lobe is too bright.
+/// Unlike the paper, this model scales the lobe by ks and adds kd / pi, because published fits
+/// use a plain Lambert term. `ior` in place of Rs makes F the exact reflectance of a dielectric.
+/// nu along x (the paper's u), nv along y. The model has no masking, so that the lobe is too bright
+/// at grazing angles.
 const Model& ashikhminShirleyModel();
 
 }  // namespace hshfit::brdfs

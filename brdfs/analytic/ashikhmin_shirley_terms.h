@@ -68,8 +68,8 @@ struct AshikhminShirleyFormula {
     static AshikhminShirleyShape<N> shape(const Values<N>& p) {
         return {p("nu"), p("nv"), p("ior")};
     }
-    /// Of lobe times F0 and lobe times Schlick's weight, or of lobe times F and nothing; of
-    /// diffuse.
+    /// Weights of lobe times F0, lobe times Schlick's weight and diffuse; with `ior`, of lobe
+    /// times F, 0 and diffuse.
     template <class N>
     static Weights<N> weights(const Values<N>& p) {
         const N ior = p("ior"), ks = p("ks");

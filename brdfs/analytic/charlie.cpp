@@ -51,12 +51,13 @@ public:
     explicit Charlie(const Parameters& p)
         : TermBrdf(charlieModel(), p, lawsOf(p), {0.0}, {p.colour("ks")}), shape_(shapeOf(p)) {}
 
-    /// sin^(1/r) is singular at the normal, and levels off within one unit of slope.
+    /// sin^(1/r) is singular at the normal and nearly constant beyond a slope of 1.
     std::vector<Lobe> lobes(const Direction&) const override {
         return {{Lobe::About::halfway, 0.5, {}}};
     }
 
-    /// The fit has a kink at 60 degrees, and no closed form to be accurate against.
+    /// The authors' fit of Lambda has a kink at 60 degrees and is itself
+    /// approximate.
     std::vector<double> kinks(const Direction&) const override { return {0.5}; }
     double defaultTolerance() const override { return 1e-5; }
 

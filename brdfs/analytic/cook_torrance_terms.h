@@ -7,11 +7,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace hshfit::brdfs::HWY_NAMESPACE {
 
-/// Fresnel's reflectance for unpolarised light; `inverse` is 1 / eta, so that a perfect mirror
-/// (eta = infinity) is nothing special. Cook & Torrance's formula, times inverse throughout.
+/// Fresnel's reflectance for unpolarised light. `inverse` is 1 / eta, so that a perfect mirror
+/// (eta = infinity) needs no branch. Cook & Torrance's formula, times inverse throughout.
 template <class T, class R, class N>
 HWY_INLINE T fresnel(const N& inverse, R cosine) {
-    // Below 1e-150 its square underflows; F has long been 1 (or 0 for eta = 1).
+    // The square of a cosine below 1e-150 underflows; F is 1 there (or 0 for eta = 1).
     const R c = max(cosine, R(1e-150));
     const T ec = T(inverse) * c;
     const T g = sqrt(T((1 - inverse) * (1 + inverse)) + ec * ec);

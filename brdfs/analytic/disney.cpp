@@ -33,7 +33,7 @@ HWY_EXPORT(disneyColumns);
 
 constexpr Laws claims{.nonNegative = true, .reciprocal = true, .mirrorSymmetric = true};
 
-/// Only the metallic lobe alone keeps the energy for certain: F <= 1 and masking that fits Ds.
+/// Energy conservation is known for the metallic lobe alone: F <= 1 and masking that fits Ds.
 Laws lawsOf(const Parameters& p) {
     Laws laws = claims;
     const DisneyAxes<double> axes = DisneyFormula::axes(Values<double>(p, 0));
@@ -130,7 +130,7 @@ const Model& disneyModel() {
              unitParameter("anisotropic", "stretches the lobe along x, to 10:1 or so", 0,
                            {.low = 0.1, .high = 0.9, .data = FitRange::Data::anisotropic}),
              unitParameter("sheen", "added towards grazing angles", 0, {.low = 0.1, .high = 0.9}),
-             // Held at 0, where f is linear in baseColor.
+             // Fits hold it at 0, which makes f linear in baseColor.
              unitParameter("sheenTint", "of the sheen towards baseColor's hue", 0.5, FitRange{}),
              unitParameter("clearcoat", "strength of a second, white lobe", 0,
                            {.low = 0.1, .high = 0.9}),

@@ -18,9 +18,9 @@ namespace hshfit::brdfs {
 ///     Dc: gtr with gamma 1, alpha = mix(0.1, 0.001, clearcoatGloss); Gc: Smith GGX of alpha 0.25
 ///     Gs: separable Smith, with ax and ay (2014), or of alpha (1/2 + roughness/2)^2 (2012);
 ///         G here includes 1/(cos_i cos_o)
-/// baseColor is linear (the BRDF Explorer's is a monitor value, to the power of 2.2). The lobes are
-/// added up, so that the albedo may pass 1; flat is unbounded where both directions graze. The
-/// transmission, thin surface and diffusion of Burley's 2015 BSDF are no BRDF and left out.
+/// baseColor is linear (the BRDF Explorer's is a monitor value, to the power of 2.2). The sum
+/// of the lobes may have an albedo above 1; flat is unbounded where both directions graze. The
+/// transmission, thin surface and diffusion of Burley's 2015 BSDF are left out.
 const Model& disneyModel();
 
 }  // namespace hshfit::brdfs

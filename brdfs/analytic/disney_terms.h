@@ -109,8 +109,8 @@ struct DisneyFormula {
         const N alpha = p("roughness") * p("roughness");
         return {max(N(0.001), alpha / aspect), max(N(0.001), alpha * aspect)};
     }
-    /// Of: the diffuse part, sheen, 1 - F of the metallic or dielectric lobe, and all that is
-    /// white. `tint`: baseColor over its luminance, 1 for grey.
+    /// Weights of the diffuse part, sheen, 1 - F of the metallic or dielectric lobe, and the
+    /// white part. `tint`: baseColor over its luminance, 1 for grey.
     template <class N>
     static Weights<N> weights(const Values<N>& p, double tint = 1) {
         const N metallic = p("metallic"), base = p("baseColor");

@@ -35,13 +35,13 @@ struct Settings {
     double mean() const { return single() * (1 + (2. / 3 - 28 / (15 * pi)) * roughness); }
 };
 
-/// Of light that a facet reflects, the part that others reflect after it.
+/// The weight of multiple scattering between facets.
 Colour multiple(const Colour& kd, double mean) {
     return mapped(
         kd, [&](double value) { return value * value * mean / (1 - value * (1 - mean)) / pi; });
 }
 
-/// The polynomial lets the albedo pass kd by up to 1.5e-4 of it.
+/// The polynomial's albedo exceeds kd by up to 1.5e-4 of kd.
 Laws lawsOf(const Colour& kd, const Settings& settings) {
     Laws laws = claims;
     laws.energyConserving = settings.exact || largest(kd) <= 0.9998 || settings.roughness == 0;
@@ -56,7 +56,7 @@ public:
           shape_{settings.roughness, settings.exact, settings.single(),
                  settings.roughness > 0 ? 1 / (1 - settings.mean()) : 0} {}
 
-    /// The larger height changes sides.
+    /// The kink at equal heights, where max(cos_i, cos_o) changes branches.
     std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
 
     /// The kink where s changes sign runs along a curve that no panel can end at.

@@ -18,7 +18,7 @@ namespace hshfit::brdfs {
 const Model& eonModel();
 
 /// eon under OpenPBR Surface's names (ASWF, version 1.1): kd = base_weight base_color,
-/// r = base_diffuse_roughness. The diffuse slab alone, without what a specular layer takes off.
+/// r = base_diffuse_roughness. The diffuse slab alone, without the attenuation by a specular layer.
 const Model& openpbrDiffuseModel();
 
 }  // namespace hshfit::brdfs

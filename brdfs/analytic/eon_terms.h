@@ -26,7 +26,7 @@ public:
     }
 
 private:
-    /// 1 - E: what leaves no facet at once.
+    /// 1 - E: the light that single scattering does not reflect.
     HWY_INLINE T missing(const Incoming<T>& w) const {
         const T g = shape_.exact ? exactG(sqrt(w.x * w.x + w.y * w.y), w.z) : approximateG(w.z);
         return max(T(0.0), 1.0 - shape_.single * (1.0 + shape_.roughness / pi * g));

@@ -11,7 +11,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-/// Which keys a form takes; the first table entry is the default.
+/// The keys that a form takes; the first table entry is the default.
 struct Form {
     std::string_view name;
     bool f0, ior, k;

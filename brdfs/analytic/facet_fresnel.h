@@ -6,7 +6,7 @@
 
 namespace hshfit::brdfs {
 
-/// F0, fresnel, ior and k: how the facets of a microfacet model reflect.
+/// F0, fresnel, ior and k: the reflectance of a microfacet model's facets.
 ///     schlick     F0 + (1 - F0)(1 - cos)^5
 ///     dielectric  Fresnel's equations for the index ior; below 1, with total reflection
 ///     conductor   the same for ior + i k
@@ -22,13 +22,13 @@ struct FacetIndex {
 /// F as a sum of terms that all channels share, for TermBrdf: sum_t weight_{t,c} F_t(cos).
 class FacetFresnel {
 public:
-    /// Throws UsageError for a key that the chosen form does not use, or that it lacks.
+    /// Throws UsageError for a key that the chosen form does not use, and for a missing key.
     FacetFresnel(const Model& model, const Parameters& parameters);
 
-    /// Of each term, at most three; times a scale per channel.
+    /// The weights of the terms, at most three of them, times a scale per channel.
     std::vector<Colour> weights(const Colour& scale) const;
 
-    /// The part of it that varies with the angle: facet_terms.h. Empty for Schlick's form.
+    /// The indices of the terms F_t (facet_terms.h). Empty for Schlick's form.
     const std::vector<FacetIndex<double>>& indices() const { return indices_; }
 
 private:

@@ -64,7 +64,7 @@ private:
     bool correlated_;
 };
 
-/// The formula of a microfacet model for fits; `Distribution::shape` is what D is computed from.
+/// The formula of a microfacet model for fits; `Distribution::shape` gives the parameters of D.
 template <class N>
 Weights<N> facetWeights(const Values<N>& p) {
     const N constant = p("kd") / pi, ks = p("ks");

@@ -19,8 +19,8 @@ struct ComplexOf {
     HWY_INLINE T squaredLength() const { return real * real + imaginary * imaginary; }
 };
 
-/// The root in the first quadrant, for imaginary >= 0; neither part from a difference. `length` is
-/// the absolute value.
+/// The root in the first quadrant, for imaginary >= 0, without cancellation in either part.
+/// `length` is the absolute value.
 template <class T>
 HWY_INLINE ComplexOf<T> squareRoot(T real, T imaginary, T length) {
     const T larger = sqrt(0.5 * (length + abs(real)));
@@ -39,11 +39,11 @@ HWY_INLINE T reflectanceOfRoot(R c, R squaredSine, const ComplexOf<T>& g) {
     return min(T(1.0), 0.5 * across * (1.0 + ratio));
 }
 
-/// N is double, or the number that T has for parameters.
+/// N is double or ParameterOf<T>.
 template <class T, class R, class N>
 HWY_INLINE T reflectanceOf(R cosine, const N& eta, const N& k) {
-    // Below 1e-75 the square of its square underflows; the reflectance has long been that of the
-    // horizon.
+    // The fourth power of a cosine below 1e-75 underflows; the reflectance is that of the
+    // horizon there.
     const R c = min(max(cosine, R(1e-75)), R(1.0));
     const R squaredSine = (1.0 - c) * (1.0 + c);
     const T real = c * c + T((eta - 1) * (eta + 1) - k * k);

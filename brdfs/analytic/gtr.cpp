@@ -9,8 +9,8 @@
 
 namespace hshfit::brdfs {
 
-/// Lambda over that of GGX, whose logarithm is tabulated over the logarithm of the cotangent: it is
-/// smooth there, and constant beyond both ends.
+/// The ratio of Lambda to GGX's. Its logarithm is tabulated over the logarithm of the
+/// cotangent, where it is smooth; it is constant beyond both ends.
 template <class N>
 struct LambdaTable {
     static constexpr double step = 0.04, high = 12;

@@ -26,7 +26,7 @@ HWY_INLINE Slopes<Lanes, n> hypotenuse(const Slopes<Lanes, n>& a, const Slopes<L
     return sqrt(a * a + b * b);
 }
 
-/// The angle with this sine and cosine, up to their scale, both positive.
+/// The angle whose sine and cosine are proportional to these positive numbers.
 HWY_INLINE double angleOf(double sine, double cosine) {
     return std::atan2(sine, cosine);
 }
@@ -72,7 +72,7 @@ HWY_INLINE X integratedLambda(const X& alpha, const X& gamma, const X& peak, con
     return 2.0 * peak * sum * step;
 }
 
-/// The number in which nodes of a table are computed: those of a fit several at a time.
+/// The number type in which nodes of a table are computed; a fit computes several at a time.
 template <class N>
 struct Node {
     using Value = double;

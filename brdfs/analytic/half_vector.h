@@ -12,16 +12,16 @@
 HWY_BEFORE_NAMESPACE();
 namespace hshfit::brdfs::HWY_NAMESPACE {
 
-/// The half vector wi + wo, not normalised and never formed from angles: its x and y, the
-/// differences that carry a sharp lobe, keep all their digits. If it is very short (both directions
-/// at the horizon, opposite) it is divided by its largest component, so that no square underflows.
+/// The half vector wi + wo, not normalised. It is formed from vectors rather than angles, so
+/// that x and y, which determine a sharp lobe, keep all their digits. A very short one (opposite
+/// directions at the horizon) is divided by its largest component, so that no square underflows.
 template <class T>
 struct HalfVector {
     T x, y, z;  ///< z at least `leastZ`
     T scale;    ///< wi + wo = scale (x, y, z)
 
-    /// Slopes are cut at 2e70, where every lobe has long vanished, so that powers of them that
-    /// meet exp(-slope^2) stay finite.
+    /// Slopes are cut at 2e70, where every lobe is 0, so that their powers times exp(-slope^2)
+    /// stay finite.
     static constexpr double leastZ = 1e-70;
 
     template <class Outgoing>
@@ -56,8 +56,9 @@ HWY_INLINE T slopeVersine(T squaredSlope) {
 
 /// G / (cos_i cos_o) with the masking of V-shaped grooves,
 ///     G = min(1, 2 h.z cos_o / (h.wo), 2 h.z cos_i / (h.wo)),   h normalised,
-/// the cosines divided out term by term. May be infinite where both directions graze. Torrance &
-/// Sparrow 1967, 10.1364/JOSA.57.001105. Has kinks where the minimum changes sides.
+/// the cosines divided out term by term. The result may be infinite where both directions graze.
+/// Torrance & Sparrow 1967, 10.1364/JOSA.57.001105. It has kinks where the minimum changes
+/// branches.
 template <class T>
 HWY_INLINE T vGrooveVisibility(const HalfVector<T>& h, T cosI, T cosO) {
     const T open = 1.0 / (cosI * cosO);

@@ -13,7 +13,7 @@ struct HeShape {
     double ior, height, length, slope;
 };
 
-/// What leads from g^(m - 2) exp(-g) / ((m - 1)! (m - 1)) to the next m besides g, and 1 / m.
+/// The ratio of the factor g^(m - 1) exp(-g) / (m! m) to that of m - 1, without g; and 1 / m.
 struct HeFactors {
     static constexpr std::size_t last = 150;
     std::array<double, last + 1> growth{}, inverse{};

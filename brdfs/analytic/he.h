@@ -16,13 +16,13 @@ namespace hshfit::brdfs {
 /// `wavelength`). |h|^4 / h.z^2 is the paper's factor G (Eq. 76), whose dot products are |h x k|.
 /// F: exact, dielectric of index `ior`.
 ///
-/// The mirror spike, exp(-g) of the light, is a delta distribution and left out, as in Ngan et al.
+/// The mirror spike, a delta distribution with exp(-g) of the light, is left out, as in Ngan et al.
 /// 2005: for sigma0 << 1 most of the energy is missing. The paper's uniform-diffuse part is kd.
 /// For g >> 1 this is Beckmann's model of slope parameter 2 sigma / tau.
 const Model& heModel();
 
 /// sum_{m >= 1} g^(m - 1) exp(-g) / (m! m) exp(-b / m) for g, b >= 0, to 1e-12 of its value as long
-/// as that exceeds 1e-280. Takes at most 150 exponentials for any g.
+/// as that exceeds 1e-280. The cost is at most 150 exponentials for any g.
 double heSeries(double g, double b);
 
 /// The principal branch of Lambert's W, W exp(W) = x, for x >= 0.

@@ -14,8 +14,8 @@ HWY_INLINE T lambertWNear(T x) {
     return l - l * log1p(l) / (2.0 + l);
 }
 
-/// By the steps of Fritsch, Shafer & Crowley (1973, 10.1145/361952.361970), whose relative error is
-/// that of the last to the fourth power; the first leaves 3e-9.
+/// Lambert's W by the steps of Fritsch, Shafer & Crowley (1973, 10.1145/361952.361970). Each
+/// raises the relative error to the fourth power; the first leaves 3e-9.
 template <class T>
 HWY_INLINE T lambertWOf(T x) {
     const T positive = max(x, T(1e-300));
@@ -38,8 +38,8 @@ HWY_INLINE T entropy(T x) {
     return select(far, (1.0 + x) * log1p(x) - x, sum * x * x);
 }
 
-/// g^m exp(-g) / m! for m > 20, whose digits do not suffer from g and m being large: Stirling's
-/// series, and g log(m / g) + g - m as a function of (m - g) / g (Loader 2000); times exp(-b / m).
+/// g^m exp(-g) / m! times exp(-b / m) for m > 20, accurate for large g and m: Stirling's
+/// series, and g log(m / g) + g - m as a function of (m - g) / g (Loader 2000).
 template <class T>
 HWY_INLINE T dampedPoisson(T m, T g, T b) {
     const T inverse = 1.0 / m, squared = inverse * inverse;
@@ -47,21 +47,21 @@ HWY_INLINE T dampedPoisson(T m, T g, T b) {
     return exp(-g * entropy((m - g) / g) - series - b * inverse) / sqrt((2 * pi) * m);
 }
 
-/// The series of he.h: its terms rise to a peak and fall ever faster after it, so that a sum ends
-/// where a term no longer changes it. Every lane goes on until the last of them has ended.
+/// The series of he.h. Its terms rise to a peak and then fall ever faster, so that a sum ends
+/// once a term no longer changes it. All lanes continue until the last has ended.
 template <class T>
 class HeSeries {
 public:
     HWY_INLINE HeSeries(T g, T b) : g_(max(g, T(1e-300))), b_(b) {
-        // Where the terms are largest, to some per cent: the root of log(m / g) = b / m^2, at
+        // The m of the largest term, to some per cent: the root of log(m / g) = b / m^2, at
         // least 1.
         const T w = lambertWNear(min(2.0 * b_ / g_ / g_, T(1e300)));
         peak_ = max(g_ * exp(0.5 * w), T(1.0));
     }
 
     HWY_INLINE T sum() const {
-        // The logarithm of the terms falls at least like that of a Gaussian of the deviation
-        // sqrt(peak) about the peak, more slowly only like a Poisson distribution's.
+        // The terms fall about the peak at least as fast as a Gaussian of standard deviation
+        // sqrt(peak), but for the slower upper tail of a Poisson distribution.
         const T longer = peak_ + 9.0 * sqrt(peak_) + 12.0 - static_cast<double>(HeFactors::last);
         const auto many = longer > T(0.0);
         if (!anyOf(many)) return dense(longer);
@@ -73,7 +73,7 @@ private:
     static constexpr double negligible = 1e-18;
     static constexpr int mostSamples = 75;
 
-    /// From m = 1 on, one by one; for the lanes with longer < 0.
+    /// The sum of all terms from m = 1 on, for the lanes with longer < 0.
     HWY_INLINE T dense(T longer) const {
         T factor = exp(-g_), sum = factor * exp(-b_);
         for (std::size_t m = 2; m <= HeFactors::last; ++m) {
@@ -86,8 +86,9 @@ private:
         return sum;
     }
 
-    /// So many terms of a smooth bell of the deviation s sum up to its integral, and so do samples
-    /// of it at a distance of 0.6 s: they err by exp(-2 (pi s / distance)^2). For the others.
+    /// The sum for the other lanes, from terms a step apart. For a smooth bell of
+    /// deviation s both sums are its integral; samples 0.6 s apart err by exp(-2 (pi s /
+    /// distance)^2).
     HWY_INLINE T sampled(T longer) const {
         const T curvature = 1.0 / peak_ + 2.0 * b_ / (peak_ * peak_ * peak_);
         const T step = max(T(1.0), truncated(0.6 / sqrt(curvature)));
@@ -110,7 +111,7 @@ private:
     T g_, b_, peak_;
 };
 
-/// What depends on one direction of height z: S / z, and K = tan(theta) erfc(a).
+/// The quantities of one direction of height z: S / z, and K = tan(theta) erfc(a).
 template <class T>
 struct Roughened {
     T visibility, hidden;
@@ -133,18 +134,18 @@ public:
 
     HWY_INLINE void operator()(const Incoming<T>& wi, T* term) const {
         const auto& [ior, height, correlation, slope] = shape_;
-        // Below the horizon, where the result is ignored, the series is to end as well.
+        // The series has to end below the horizon too, although the result is ignored there.
         const Incoming<T> above{wi.x, wi.y, max(wi.z, T(5e-324))};
         const HalfVector<T> h(wo_, above);
         const Roughened<T> incoming(above.z, slope);
         const T shading = (incoming.hidden + outgoing_.hidden) * (1 / std::sqrt(8 * pi));
-        // sigma / sigma0, twice: g = height^2 h.z^2 / (1 + W)
+        // (sigma / sigma0)^2: g = (2 pi height h.z)^2 / (1 + W)
         const T shrunk = 1.0 / (1.0 + lambertWOf(min(shading * shading, T(1e300))));
         const T heights = 2 * pi * height * (above.z + T(wo_.z));
         const T across = pi * correlation * h.scale;
         const T slopes = h.x * h.x + h.y * h.y;
         const T series = HeSeries<T>(heights * heights * shrunk, across * across * slopes).sum();
-        // (pi tau)^2 / 4 (2 pi sigma)^2 / pi: the g that the series lacks, over h.z^2.
+        // (pi tau)^2 / 4 (2 pi sigma)^2 / pi: the factor g that the series lacks, over h.z^2.
         const double tall = pi * correlation * height;
         const T scale = tall * tall * pi * shrunk;
         const T length = h.squaredLength() * h.scale * h.scale;

@@ -11,8 +11,8 @@ namespace hshfit::brdfs {
 /// (2 pi), so that its albedo is at most ks. Ngan et al. 2005 fitted this form.
 ///
 /// Cx = Cy = -1, Cz = 1 is Phong's lobe; Cz < |Cx| leans it towards grazing (off-specular peaks),
-/// Cx > 0 makes it retroreflective, Cx != Cy anisotropic. With |C| > 1 and a large exponent values
-/// exceed the largest double and are cut to it.
+/// Cx > 0 makes it retroreflective, Cx != Cy anisotropic. Values beyond the largest double (|C|
+/// > 1 and a large exponent) are cut to it.
 const Model& lafortuneModel();
 
 }  // namespace hshfit::brdfs

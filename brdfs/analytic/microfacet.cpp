@@ -42,7 +42,7 @@ Roughness roughnessOf(const Model& model, const Parameters& p) {
         fmt::format("{}: give either alpha or both ax and ay; valid: {}", model.name, valid));
 }
 
-/// The facets reflect at most ks F <= 1 of the light; a diffuse term comes on top of that.
+/// The facets reflect at most ks F <= 1 of the light; a diffuse term adds to that.
 Laws microfacetLaws(const Parameters& p, const Roughness& roughness) {
     Laws laws = microfacetClaims;
     laws.isotropic = roughness.ax == roughness.ay;

@@ -14,8 +14,8 @@ struct RoughnessOf {
 };
 using Roughness = RoughnessOf<double>;
 
-/// kd, ks, F0 | ior, k (facet_fresnel.h), alpha | ax, ay, and masking: what the microfacet models
-/// have in common.
+/// The parameters that all microfacet models have: kd, ks, F0 | ior, k (facet_fresnel.h), alpha
+/// | ax, ay, and masking.
 std::vector<Parameter> microfacetParameters();
 Parameter facetScaleParameter();
 Parameter maskingParameter();
@@ -38,8 +38,8 @@ struct FacetShape {
 ///     correlated  G = 1 / (1 + Lambda_i + Lambda_o)   (heights of both directions correlated)
 ///     separable   G = 1 / ((1 + Lambda_i)(1 + Lambda_o))
 ///
-/// `Shape` is what D is computed from, and says how wide its peak is in units of slope, along x and
-/// along y.
+/// `Shape` holds the parameters of D and gives the width of its peak along x and along y, in
+/// units of slope.
 template <class Shape>
 class Microfacet : public TermBrdf {
 public:

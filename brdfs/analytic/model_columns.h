@@ -14,17 +14,17 @@ struct PairBatch {
     const Direction* wo;  ///< [wi.count]
 };
 
-/// The columns that a fit asks of a model: the functions of which f is a sum in one channel,
+/// The columns that a fit requests of a model: the functions whose sum is f in one channel,
 ///     f = column_0 + sum_k linear_k column_k,
-/// with derivatives by parameters that f is not linear in.
+/// with derivatives by the parameters in which f is not linear.
 struct ColumnRequest {
     const Parameters& values;                   ///< colours grey; those of `linears` do not count
-    std::span<const std::string> linears = {};  ///< parameters that f is linear in, jointly
-    /// Parameters that derivatives are taken by; the keys of a group have one value. Empty: none.
+    std::span<const std::string> linears = {};  ///< parameters in which f is jointly linear
+    /// Parameters of the derivatives; the keys of a group share one value. Empty: no derivatives.
     std::span<const std::vector<std::string>> shapes = {};
 };
 
-/// These columns at the values of the request. Thread-safe.
+/// The columns at the values of a request. Thread-safe.
 class ModelColumns {
 public:
     virtual ~ModelColumns() = default;

@@ -54,7 +54,7 @@ public:
               {mapped(p.colour("kd"), [&](double kd) { return kd / pi * shapeOf(p).sameSide; })}),
           shape_(shapeOf(p)) {}
 
-    /// The larger and the smaller of the two polar angles change places.
+    /// The kink at equal heights, where alpha and beta exchange the directions.
     std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
 
 protected:

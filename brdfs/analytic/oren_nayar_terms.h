@@ -48,7 +48,8 @@ public:
         const Polar<T> i(wi);
         const T cosine =
             min(max(i.azimuthX * o_.azimuthX + i.azimuthY * o_.azimuthY, T(-1.0)), T(1.0));
-        // 1 - |cos D| from the distance between the azimuths, or of one to the other's opposite.
+        // 1 - |cos D| from the distance between the unit vectors of azimuth, or to the opposite
+        // one.
         const T side = select(cosine >= T(0.0), T(1.0), T(-1.0));
         const T dx = i.azimuthX - side * o_.azimuthX, dy = i.azimuthY - side * o_.azimuthY;
         const T aside = 0.5 * (dx * dx + dy * dy);
@@ -61,8 +62,8 @@ public:
         const T bend = 4 / (pi * pi) * ofAlpha(o_.theta, i.theta) * betaTheta;
         const T tilt = 2 / pi * betaTheta;
 
-        // (sin alpha - [cos D < 0] (2 beta/pi)^3) tan beta; the difference is taken between the
-        // distances of both from 1, which tan beta would otherwise blow up at the horizon.
+        // (sin alpha - [cos D < 0] (2 beta/pi)^3) tan beta. The difference is that of the
+        // distances of both from 1, because tan beta amplifies its rounding error at the horizon.
         const T e = 2 / pi * ofBeta(o_.complement, i.complement);
         const T cubeBelowOne = e * (3.0 - 3.0 * e + e * e);
         const T sineBelowOne = alphaCosine / (1.0 + alphaSine) * alphaCosine;

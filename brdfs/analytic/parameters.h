@@ -6,8 +6,8 @@
 
 namespace hshfit::brdfs {
 
-// Parameters that many models have. `most` is 1 where the value is an albedo and a larger one has
-// no meaning, else 1e6: fits to data in other units are to stay representable.
+// Parameters that many models have. `most` is 1 for albedos. Other values may go to 1e6, so
+// that fits to data in other units stay representable.
 
 inline Parameter fitted(Parameter parameter, std::vector<FitRange> fit) {
     parameter.fit = std::move(fit);
@@ -48,8 +48,8 @@ inline Parameter exponentParameter(std::string_view name, std::string_view help,
     return {.name = name, .help = help, .min = 0, .max = 1e7, .fit = {fit}};
 }
 
-/// RMS slope and the like; the lobe of the least one is 0.006 degrees wide. Fits start from the
-/// widths of the materials that Ngan et al. 2005 fitted, and of sharper ones.
+/// RMS slope and the like; the least value gives a lobe 0.006 degrees wide. Fits start from the
+/// widths of the materials of Ngan et al. 2005 and from sharper ones.
 inline Parameter roughnessParameter(std::string_view name, std::string_view help,
                                     FitRange fit = {}) {
     fit.low = 3e-3, fit.high = 0.7, fit.logarithmic = true;

@@ -85,8 +85,9 @@ struct SgdFormula {
     }
 
 private:
-    /// Gamma(1 - p, alpha), the integral of exp(-u) u^-p from alpha on: Simpson's rule over log u,
-    /// whose integrand exp((1 - p) v - e^v) has vanished at u = 750. For p to 3 it errs by 1e-9.
+    /// Gamma(1 - p, alpha), the integral of exp(-u) u^-p from alpha on: Simpson's rule over v = log
+    /// u, where the integrand exp((1 - p) v - e^v) is 0 from u = 750 on. The error is 1e-9 for p up
+    /// to 3.
     template <class N>
     static N upperGamma(const N& p, const N& alpha) {
         constexpr int steps = 2000;

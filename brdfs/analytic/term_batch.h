@@ -1,9 +1,9 @@
-// How the terms of a model, a formula in any number T, become values of f: TermBrdf's sums for
+// Values of f from the terms of a model, a formula in any number type T: TermBrdf's sums for
 // double and for Lanes (lanes.h). Compiled once for each instruction set.
 //
-// `Terms<T>(shape, wo)` holds what depends on wo alone, and `operator()(Incoming<T>, T* term)`
-// writes the terms, `count` of them, or as many as the batch says where that is `someTerms`. What
-// it writes where wi.z <= 0 is ignored; +inf is cut to the largest double; never NaN above the
+// `Terms<T>(shape, wo)` holds the factors that depend on wo alone. `operator()(Incoming<T>, T*
+// term)` writes `count` terms, or the batch's number of terms if `count` is `someTerms`. Terms
+// with wi.z <= 0 are ignored, +inf is cut to the largest double, and NaN never occurs above the
 // horizon.
 
 #if defined(BRDFS_ANALYTIC_TERM_BATCH_H) == defined(HWY_TARGET_TOGGLE)
@@ -23,7 +23,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace hshfit::brdfs::HWY_NAMESPACE {
 
-/// More than one, and not the same number for every member of the model.
+/// A number of terms that varies between members of the model and exceeds one.
 constexpr std::size_t someTerms = TermBatch::maxTerms;
 
 template <class T>
@@ -31,8 +31,8 @@ struct Incoming {
     T x, y, z;
 };
 
-/// The numbers that go with a formula's T: of directions, of what follows from parameters alone,
-/// and the outgoing direction, of which an evaluation has one and a fit one in each lane.
+/// The types that go with a formula's T: numbers of directions, numbers of parameters, and the
+/// outgoing direction. An evaluation has one outgoing direction, a fit one in each lane.
 template <class T>
 struct Numbers {
     using Real = T;
@@ -106,7 +106,7 @@ HWY_INLINE void evalAll(const Shape& shape, const TermBatch& batch) {
         std::copy_n(values + c * most, rest, batch.out + c * wi.count + k);
 }
 
-/// With all lanes: what HWY_EXPORT makes a table of.
+/// The evaluation with all lanes, for the table of HWY_EXPORT.
 template <template <class> class Terms, class Shape>
 HWY_INLINE void evalLanes(const Shape& shape, const TermBatch& batch) {
     evalAll<Lanes, Terms>(shape, batch);

@@ -9,17 +9,17 @@ namespace hshfit::brdfs {
 /// One value, or three for R, G and B.
 using Colour = std::vector<double>;
 
-/// `f` applied to every value; of two colours, where one is grey it joins each value of the other.
+/// `f` applied to every value; of two colours, a grey one is combined with each value of the other.
 Colour mapped(const Colour& a, const std::function<double(double)>& f);
 Colour mapped(const Colour& a, const Colour& b, const std::function<double(double, double)>& f);
 double largest(const Colour& a);
 /// A diffuse albedo as a BRDF value.
 Colour overPi(const Colour& a);
-/// Weights of `count` terms, each of which has `colour` in its own channel only; of a single term,
-/// `colour` itself.
+/// Weights of `count` terms, each with `colour` in its own channel and 0 elsewhere; for a
+/// single term `colour` itself.
 std::vector<Colour> eachInItsChannel(const Colour& colour, std::size_t count);
 
-/// Of a TermBrdf: the constant, and a weight of each term, for every channel.
+/// The constant of a TermBrdf and the weight of each term, for every channel.
 struct TermWeights {
     Colour constant;
     std::vector<Colour> terms;
@@ -43,34 +43,34 @@ struct TermBatch {
     const double* weights;
 };
 
-/// What the analytic models share: a constant plus terms that all channels have in common,
+/// The base of analytic models: a constant plus terms that all channels have in common,
 ///     f_c(wi, wo) = constant_c + sum_t weight_{t,c} T_t(wi, wo).
-/// Grey if every colour has one value, else rgb. Values beyond the largest double are cut to it,
-/// and to 0 from below, so that f is finite and non-negative for every pair of unit directions.
+/// Grey if every colour has one value, else rgb. Values are clamped to [0, the largest double],
+/// so that f is finite and non-negative for every pair of unit directions.
 ///
-/// A model states its terms as a formula in any number T (term_batch.h). `eval` takes them in
-/// vectors, with the widest instructions of the machine, a single direction as well: f of a
-/// direction has the same bits wherever it stands in a batch.
+/// A model states its terms as a formula in any number type T (term_batch.h). `eval` uses the
+/// widest vector instructions of the machine, for a single direction too: f of a direction has
+/// the same bits at every position in a batch.
 class TermBrdf : public Brdf {
 public:
     std::string name() const override { return name_; }
     const Channels& channels() const override { return channels_; }
     const Laws& laws() const override { return laws_; }
     void eval(const Direction& wo, DirectionBatch wi, double* out) const final;
-    /// The same with double and the C++ library's functions: what vectors are held against.
+    /// The same with double and the C++ library's functions, as a reference for tests of `eval`.
     void evalScalar(const Direction& wo, DirectionBatch wi, double* out) const;
     std::vector<Fact> facts() const override;
 
 protected:
-    /// `laws` of this instance: those of the table line, or more. At most TermBatch::maxTerms
-    /// weights.
+    /// `laws` are those of this instance: the table line's, or more. `weights` has at most
+    /// TermBatch::maxTerms entries.
     TermBrdf(const Model& model, const Parameters& parameters, Laws laws, const Colour& constant,
              const std::vector<Colour>& weights);
     TermBrdf(const Model& model, const Parameters& parameters, Laws laws,
              const TermWeights& weights)
         : TermBrdf(model, parameters, laws, weights.constant, weights.terms) {}
 
-    /// Fill `batch.out`: by vectors, and by double.
+    /// Both fill `batch.out`: with vectors, and with double.
     virtual void evalBatch(const TermBatch& batch) const = 0;
     virtual void evalBatchScalar(const TermBatch& batch) const = 0;
 

@@ -1,9 +1,9 @@
-// How the formula of a model becomes the columns of a fit (model_columns.h), several pairs of
+// The columns of a fit (model_columns.h) from the formula of a model, several pairs of
 // directions at a time. Compiled once for each instruction set.
 //
-// `Formula` has what an evaluation takes as well: the terms, `Formula::Terms<T>`, what they are
-// computed from, `Formula::shape(Values<N>)`, and `Formula::weights(Values<N>)`, in which the
-// linear parameters are.
+// `Formula` is the formula of evaluation too: `Formula::Terms<T>`, the terms;
+// `Formula::shape(Values<N>)`, their parameters; `Formula::weights(Values<N>)`, their weights,
+// which contain the linear parameters.
 
 #if defined(BRDFS_ANALYTIC_TERM_COLUMNS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BRDFS_ANALYTIC_TERM_COLUMNS_H
@@ -22,7 +22,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace hshfit::brdfs::HWY_NAMESPACE {
 
-/// Pairs k and on, as many as a vector holds; past the end the last one again.
+/// One vector of pairs from k on; lanes past the end repeat the last pair.
 struct LanePairs {
     Incoming<Lanes> wi, wo;
 
@@ -39,7 +39,7 @@ struct LanePairs {
     }
 };
 
-/// Derivatives by `n` shapes at a time.
+/// Columns with their derivatives by `n` shapes at a time.
 template <class Formula, int n>
 class ColumnsOf final : public ModelColumns {
 public:

@@ -31,8 +31,8 @@ class Values {
 public:
     Values(const Parameters& parameters, std::size_t channel)
         : parameters_(parameters), channel_(channel) {}
-    /// Of all linear parameters, `unit` alone is 1, the others are 0; derivatives are those by
-    /// shapes `first` and on.
+    /// The linear parameter `unit` is 1 and all others are 0. Derivatives are those by shapes
+    /// from `first` on.
     Values(const ColumnRequest& request, std::string_view unit, std::size_t first)
         : parameters_(request.values), request_(&request), unit_(unit), first_(first) {}
 
