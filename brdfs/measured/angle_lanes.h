@@ -39,7 +39,7 @@ HWY_INLINE Lanes rayAngle(Lanes y, Lanes x) {
 /// atan2(y, x) folded to [0, pi]: a line through the origin, not a ray (period pi).
 HWY_INLINE Lanes lineAngle(Lanes y, Lanes x) {
     const Lanes zero = 0.0, angle = quadrantAngle(abs(y), abs(x));
-    // pi - angle where one of the two is below 0 and the other is not.
+    // The folded angle is pi - angle if exactly one of the two is below 0.
     const Lanes turned = select(x < zero, pi - angle, angle);
     return select(y < zero, select(x < zero, angle, pi - angle), turned);
 }

@@ -44,7 +44,7 @@ constexpr std::array<double, atanTerms> atanPowers() {
 
 inline double atanUnit(double t) {
     constexpr std::array<double, atanTerms> c = atanPowers();
-    // In groups of four (Estrin), so that multiplications do not wait for each other.
+    // Estrin's scheme in groups of four keeps multiplications independent of each other.
     static_assert(atanTerms == 14);
     const double s = t * t, s2 = s * s, s4 = s2 * s2;
     const double g0 = (c[0] + c[1] * s) + (c[2] + c[3] * s) * s2;

@@ -12,7 +12,7 @@ namespace hshfit::brdfs {
 /// Statistics of the stored values of a file (a channel of a cell is a value).
 struct Census {
     std::uint64_t values = 0;        ///< stored in the file
-    std::uint64_t belowHorizon = 0;  ///< of cells with a direction below the horizon
+    std::uint64_t belowHorizon = 0;  ///< in cells with a direction below the horizon
     /// The rest are values above the horizon.
     std::uint64_t invalid = 0;   ///< marked as not measured by the format's own convention
     std::uint64_t negative = 0;  ///< below zero and not such a mark
@@ -25,7 +25,7 @@ struct Census {
     void add(double value);
 };
 
-/// How densely one coordinate is sampled.
+/// The sampling of one coordinate.
 struct Axis {
     std::string name;  ///< "theta_half", "phi_i", "wavelength", …
     std::string unit;  ///< "degrees" or "nm"
@@ -42,8 +42,8 @@ public:
     /// The coordinates of a table; for scattered samples, the range of the samples.
     virtual std::vector<Axis> axes() const = 0;
 
-    /// As checkIntact(), but takes stored values that are no numbers for missing ones: for callers
-    /// that report on them or fill them in.
+    /// As checkIntact(), but stored NaN values count as missing. It serves callers that report
+    /// them or fill them in.
     virtual void checkReadable() const { checkIntact(); }
 };
 

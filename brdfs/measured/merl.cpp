@@ -64,7 +64,7 @@ std::string MerlBrdf::name() const {
                                                         : file_.path();
 }
 
-// The cells follow a 12-byte header, so that they are not aligned.
+// The cells follow a 12-byte header and are therefore not aligned.
 inline double MerlBrdf::raw(std::size_t channel, std::size_t cell) const {
     double value;
     std::memcpy(&value,
@@ -128,7 +128,7 @@ inline void MerlBrdf::interpolateLinear(const MerlCorners& at, std::size_t k, do
             bits |= std::bit_cast<PairBits>(cells);
         }
         double sum = pair[0] + tp * (pair[1] - pair[0]);
-        // A sign bit, NaN or infinity: then only the valid cells count.
+        // A sign bit, NaN or infinity: only the valid cells count.
         if (((bits[0] | bits[1]) < 0) || !isValue(sum)) [[unlikely]] {
             sum = averageOfValid(at, k, across, c);
         }

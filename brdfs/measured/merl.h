@@ -12,7 +12,7 @@
 
 namespace hshfit::brdfs {
 
-/// How a MERL table is read between its nodes.
+/// The interpolation between the nodes of a MERL table.
 enum class MerlInterpolation {
     linear,   ///< trilinear in the indices (h, d, p), over the valid cells among the eight
     nearest,  ///< the node whose indices are nearest
@@ -21,9 +21,9 @@ enum class MerlInterpolation {
 /// A measured isotropic BRDF in a MERL `.binary` file (see merl_layout.h), read from the mapped
 /// file: only pages whose cells are evaluated are loaded.
 ///
-/// Beyond the last node (theta_h > 88.01 deg, theta_d > 89 deg) the table is continued constantly.
-/// Where none of the cells is valid, f is 0. A cell that is NaN or infinite is taken as invalid and
-/// remembered, and checkIntact() throws InputError naming it. Indices are accurate to 1e-9.
+/// f is constant beyond the last node (theta_h > 88.01 deg, theta_d > 89 deg), and 0 where none
+/// of the cells is valid. NaN and infinite cells are taken as invalid, and checkIntact() throws
+/// InputError naming one that was read. Indices are accurate to 1e-9.
 class MerlBrdf : public MeasuredBrdf {
 public:
     /// Throws InputError if the dimensions or the size of the file are not those of a MERL file.
@@ -35,8 +35,9 @@ public:
     const Laws& laws() const override { return laws_; }
     void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
 
-    /// One lobe about the half vector, as wide as the table's: where f at theta_d = theta_o and
-    /// phi_d = 90 deg has fallen from its value at theta_h = 0 half-way to its least.
+    /// One lobe about the half vector. Its width follows from the theta_h at which f, at theta_d =
+    /// theta_o
+    /// and phi_d = 90 deg, is midway between its value at theta_h = 0 and its least value.
     std::vector<Lobe> lobes(const Direction& wo) const override;
     /// 3e-3: the interpolation has a kink at every node, and the measurements err by more.
     double defaultTolerance() const override { return 3e-3; }
@@ -44,9 +45,10 @@ public:
     void checkIntact() const override;
     void checkReadable() const override { file_.checkIntact(); }
 
-    /// Where one of the cells that f is interpolated from is valid in every channel.
+    /// Covered pairs have a cell, among those that f is interpolated from, that is valid in all
+    /// channels.
     void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
-    /// Invalid are the values -1; negative are others below zero, which count as invalid as well.
+    /// The value -1 counts as invalid, other values below zero as negative. Both are left out of f.
     Census census() const override;
     std::vector<Axis> axes() const override;
 

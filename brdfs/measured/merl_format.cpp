@@ -6,7 +6,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-// Decides by the dimensions or the size, so that the reader can report which of the two is wrong.
+// Correct dimensions or a correct size are enough, so that the reader can report the wrong one.
 bool looksLikeMerl(std::span<const unsigned char> head, std::uint64_t fileSize) {
     if (fileSize == MerlLayout{.azimuthCount = 180}.fileBytes() ||
         fileSize == MerlLayout{.azimuthCount = 360}.fileBytes()) {

@@ -22,8 +22,8 @@ HWY_INLINE void indicesOf(const Direction& wo, Lanes x, Lanes y, Lanes z, bool r
     const Lanes u = sqrt(across + sz * sz), v = sqrt(dx * dx + dy * dy + dz * dz);
     store(sqrt(16200 / pi * quadrantAngle(sqrt(across), max(sz, zero))), at.h + k);
     store(180 / pi * quadrantAngle(v, u), at.d + k);
-    // Both are 0 but for rounding where h is the normal or wi = wo: any phi_d is right there, but
-    // it has to be the same one when the pair turns about the normal.
+    // Both arguments are 0 but for rounding where h is the normal or wi = wo. phi_d is
+    // arbitrary there, but must not change when the pair turns about the normal.
     const auto defined = across > Lanes(1e-28);
     const Lanes sine = select(defined, 2.0 * (wo.x * y - x * wo.y), zero);
     const Lanes cosine = select(defined, -dz * u, zero);
@@ -123,8 +123,8 @@ HWY_INLINE void prefetch(const unsigned char* cells, std::size_t plane, const Me
 std::uint64_t merlBlend(const unsigned char* cells, std::size_t plane, const MerlCorners& at,
                         const double* z, std::size_t count, double* out, std::size_t stride) {
 #if HWY_MAX_BYTES >= 32
-    // Evaluations between asking for cells and using them; 4 to 8 are equally good (measured_eval
-    // in bench/), without it an evaluation takes half as long again.
+    // The number of evaluations between prefetching cells and using them. 4 to 8 are equally fast
+    // (measured_eval in bench/); without prefetching an evaluation takes half as long again.
     constexpr std::size_t distance = 6;
     std::uint64_t open = 0;
     for (std::size_t k = 0; k < count; ++k) {

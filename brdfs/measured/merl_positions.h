@@ -30,10 +30,10 @@ struct MerlCorners {
 
     void set(const MerlIndices& at, std::size_t count, const MerlLayout& layout);
 
-    /// Interpolates f at `count` positions, to out[channel * stride + k], or 0 where z[k] <= 0, in
-    /// registers that hold two rows. `cells` is where those of a file start. Returns one bit for
-    /// each position that needs another path: where a cell is not a value or the azimuth wraps
-    /// around, or all, without such registers.
+    /// Interpolates f at `count` positions in registers of two rows, to out[channel * stride +
+    /// k], with 0 where z[k] <= 0. `cells` points to the first cell of the file. Returns one
+    /// bit for each position left to the scalar path: those with an invalid cell or at the wrap
+    /// of the azimuth, or all of them on machines without such registers.
     std::uint64_t blend(const unsigned char* cells, const MerlLayout& layout, const double* z,
                         std::size_t count, double* out, std::size_t stride) const;
 };

@@ -26,7 +26,7 @@ void checkNodes(const TensorFile& file, const Field& field, const std::vector<do
     }
 }
 
-/// The nodes of one angle, which M has `count` of; evenly spaced if the field is empty.
+/// The `count` nodes of one angle of M; evenly spaced if the field is empty.
 std::vector<double> loadAngles(const TensorFile& file, std::string_view name, std::uint64_t count,
                                double least, double most, bool& assumed) {
     const Field& field = file.field(name);
@@ -103,8 +103,8 @@ struct Angles {
         const double v = std::sqrt(vx * vx + vy * vy + vz * vz);
         thetaHalf = std::atan2(std::sqrt(across), uz);
         thetaDifference = std::atan2(v, u);
-        // Undefined where h is the normal or wi = wo; the same when the pair turns about the
-        // normal.
+        // phi_d is undefined where h is the normal or wi = wo, and set to 0
+        // there.
         phiDifference =
             across > 1e-28 && v > 1e-14 ? std::atan2(2 * (wo.x * wi.y - wi.x * wo.y), -u * vz) : 0;
     }
@@ -147,7 +147,7 @@ std::unique_ptr<PbsdfBrdf> PbsdfBrdf::open(const std::string& path) {
         file.checkIntact();
         return brdf;
     } catch (const InputError&) {
-        file.checkIntact();  // reports a file that was lost meanwhile as such
+        file.checkIntact();  // reports a file that was removed or cut while it was read
         throw;
     }
 }
@@ -275,7 +275,7 @@ const Format& pbsdfFormat() {
         .extension = ".pbsdf",
         .recognises =
             [](std::span<const unsigned char> head, std::uint64_t) {
-                // The same container as rgl: told apart by the names in its table of contents.
+                // The container is that of rgl; the names in the table of contents tell them apart.
                 const std::string_view text(reinterpret_cast<const char*>(head.data()),
                                             head.size());
                 return text.starts_with(TensorFile::magic) &&

@@ -13,18 +13,19 @@ namespace hshfit::brdfs {
 /// A measured polarimetric BRDF (Baek et al. 2020, "Image-Based Acquisition and Modeling of
 /// Polarimetric Reflectance", ACM TOG 39(4)) in a tensor file (tensor_file.h): Mueller matrices
 /// M[phi_d][theta_d][theta_h][wavelength][4][4], f32, and the nodes phi_d, theta_d, theta_h (f32,
-/// radians, 1 x n) and wvls (u16, nm). Read is M00, the reflectance of unpolarised light in 1/sr;
-/// the other 15 elements, which describe polarisation, are ignored. Isotropic, spectral.
+/// radians, 1 x n) and wvls (u16, nm). The reader uses M00, the reflectance of unpolarised light in
+/// 1/sr, and ignores the other 15 elements, which describe polarisation. The BRDF is isotropic and
+/// spectral.
 ///
-/// theta_h, theta_d and phi_d are Rusinkiewicz's, with wi towards the light and phi_d = 0 where it
-/// leans away from the normal. Between the nodes f is linear in the angles, beyond them constant.
-/// Files with empty angles (shape 0 x n) are read as evenly spaced: theta from 0 to 90, phi_d from
-/// -180 to 180 degrees. Nodes whose M00 is NaN, or 0 as cells below the horizon are, are left out
-/// of the interpolation; where none of the eight has a value, f is 0. Negative values become 0.
-/// Reciprocity does not hold in measured files.
+/// theta_h, theta_d and phi_d are Rusinkiewicz's angles, with wi towards the light and phi_d =
+/// 0 where wi leans away from the normal. f is linear in the angles between the nodes and
+/// constant beyond. Files with empty angles (shape 0 x n) are read as evenly spaced: theta from
+/// 0 to 90, phi_d from -180 to 180 degrees. Interpolation leaves out nodes whose M00 is NaN, or
+/// 0 as in cells below the horizon; without any of the eight nodes f is 0. Negative values
+/// become 0. Reciprocity does not hold in measured files.
 class PbsdfBrdf : public MeasuredBrdf {
 public:
-    /// `name` is where the bytes come from. Throws InputError naming field and offset.
+    /// `name` is the path of the file. Throws InputError naming field and offset.
     PbsdfBrdf(std::span<const unsigned char> bytes, std::string name);
     static std::unique_ptr<PbsdfBrdf> open(const std::string& path);
 

@@ -18,8 +18,8 @@ HWY_EXPORT(evalRgl);
 
 constexpr std::size_t blockSize = 64;
 
-/// tan(theta_h) where the normals' density, averaged over azimuth, has fallen to half its greatest
-/// value, as the alpha of the GGX distribution that falls to half there.
+/// The alpha of the GGX distribution whose half width at half maximum is that of the normals'
+/// density, averaged over azimuth.
 double widthOf(const Plane& ndf) {
     std::vector<double> profile(ndf.columns, 0.0);
     for (std::size_t i = 0; i < ndf.values.size(); ++i) profile[i % ndf.columns] += ndf.values[i];
@@ -88,7 +88,7 @@ void RglBrdf::Block::set(const RglTables& tables, Direction wo, const DirectionB
         uHalf[k] = std::sqrt(2 / pi * quadrantAngle(sine, hz_[k]));
     }
     if (tables.reduction == 0) {
-        // The azimuth of h as seen from that of wi, which at the normal is any.
+        // The azimuth of h relative to that of wi, which is arbitrary at the normal.
         for (std::size_t k = 0; k < count; ++k) {
             const double sine = ix_[k] * hy_[k] - iy_[k] * hx_[k];
             const double cosine = ix_[k] * hx_[k] + iy_[k] * hy_[k];
@@ -103,7 +103,7 @@ void RglBrdf::Block::set(const RglTables& tables, Direction wo, const DirectionB
         std::fill_n(phiIncident, count, 0.0);
         return;
     }
-    // Into the turn that has the measured azimuths in its middle.
+    // Wraps an azimuth into the full circle around the middle of the measured azimuths.
     const auto& phi = tables.incident.phi;
     const double start = (phi.front() + phi.back()) / 2 - pi;
     for (std::size_t k = 0; k < count; ++k) {
@@ -127,7 +127,7 @@ std::unique_ptr<RglBrdf> RglBrdf::open(const std::string& path) {
         file.checkIntact();
         return brdf;
     } catch (const InputError&) {
-        file.checkIntact();  // reports a file that was lost meanwhile as such
+        file.checkIntact();  // reports a file that was removed or cut while it was read
         throw;
     }
 }

@@ -16,8 +16,8 @@ namespace hshfit::brdfs {
 struct RglTables {
     std::string description;
     IncidentGrid incident;
-    /// How many times the measured azimuths cover the circle by symmetry: 0 isotropic, 1 all
-    /// measured, 2 half of them (turned by 180 deg), 4 a quarter (mirrored at both axes).
+    /// The number of times that the measured azimuths cover the circle by symmetry: 0 isotropic,
+    /// 1 all measured, 2 half of them (turned by 180 deg), 4 a quarter (mirrored at both axes).
     int reduction = 0;
     /// Whether f depends on the azimuth difference alone: `reduction` is 0 and no table, sigma
     /// among them, varies with phi_i.
@@ -31,8 +31,8 @@ struct RglTables {
     /// Throws InputError naming the field and its offset.
     static RglTables load(const TensorFile& file);
 
-    /// The meaning of a vertex of a colour slice: f(wi, wo) wo.z = value * factor. Where wo is not
-    /// above the horizon the value only takes part in the interpolation.
+    /// The meaning of a vertex of a colour slice: f(wi, wo) wo.z = value * factor. A value with
+    /// wo below the horizon only takes part in the interpolation.
     struct Node {
         Direction wi, wo;
         double u = 0, v = 0;  ///< of the half vector
@@ -49,15 +49,16 @@ struct RglTables {
 /// phi_h for isotropic materials:
 ///     f(wi, wo) cos(theta_o) = spectra_wi(x, y) ndf(h) / (4 sigma(wi)),
 ///     (x, y) = P_wi(u(theta_h), v(phi_h)),      P: cumulative distribution of visible normals.
-/// wi is the direction that the file calls incident. eval divides by cos(theta_o), taken as at
-/// least 1e-9: values are finite, but grow without bound as wo nears the horizon, where the tables
-/// do not fall to 0. Negative colours (outside of Rec. 709) become 0 after interpolation. The
-/// tables are copied: the file may go once it is open.
+/// wi is the direction that the file calls incident. eval divides by max(cos(theta_o), 1e-9).
+/// Values are finite, but grow without bound as wo nears the horizon, where the tables do not
+/// fall to 0. Negative colours (outside of Rec. 709) become 0 after interpolation. The tables
+/// are copied, so that the file is not needed later.
 ///
-/// Reciprocity is not built in, and does not hold: the two sides were measured independently.
+/// Reciprocity is not enforced and does not hold: f(wi, wo) and f(wo, wi) were measured
+/// independently.
 class RglBrdf : public MeasuredBrdf {
 public:
-    /// `name` is where the bytes come from, for messages. Throws InputError if they are invalid.
+    /// `name` is the path of the file, for messages. Throws InputError for invalid bytes.
     RglBrdf(std::span<const unsigned char> bytes, std::string name);
     static std::unique_ptr<RglBrdf> open(const std::string& path);
 
@@ -69,8 +70,8 @@ public:
     /// of eval for spectra.
     void evalScalar(const Direction& wo, DirectionBatch wi, double* out) const;
 
-    /// Covered are incident directions between the file's first and last: beyond them the table is
-    /// continued constantly. The files do not tell reliably which of the vertices were measured.
+    /// Incident directions between the file's first and last are covered; beyond them f is
+    /// constant in wi. The files do not reliably mark the vertices that were measured.
     void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
 
     /// One lobe about the half vector, as wide as the distribution of normals.

@@ -1,6 +1,6 @@
 // RglBrdf::eval for RGB, included by rgl.cpp once for each instruction set. Angles are computed for
-// as many directions as a register holds. Table entries for one direction lie side by side and are
-// loaded into one register as well: density and integral of two vertices, the sums of two rows, a
+// as many directions as a register holds. Table entries for one direction are adjacent and
+// loaded into one register too: density and integral of two vertices, the sums of two rows, a
 // colour.
 
 #include <brdfs/measured/rgl_place_lanes.h>
@@ -10,12 +10,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace hshfit::brdfs::HWY_NAMESPACE {
 
-/// Four doubles, and the four floats of a table that they come from; in one register or two.
+/// Four doubles from four floats of a table, in one register or two.
 using Quad [[gnu::vector_size(32)]] = double;
 using FloatQuad [[gnu::vector_size(16)]] = float;
 
 HWY_INLINE void loadQuad(const float* from, Quad& to) {
-#if HWY_MAX_BYTES >= 32  // what the compiler makes of the conversion below goes through memory
+#if HWY_MAX_BYTES >= 32  // the compiler's code for the conversion below goes through memory
     const hn::FixedTag<double, 4> doubles;
     hn::StoreU(hn::PromoteTo(doubles, hn::LoadU(hn::FixedTag<float, 4>(), from)), doubles,
                reinterpret_cast<double*>(&to));
@@ -53,8 +53,8 @@ HWY_INLINE VisibleNormals::Point invert(const VisibleNormals::View& normals, dou
             .y = below + p.b * (rowBelow + 0.5 * p.b * (rowAbove - rowBelow))};
 }
 
-/// Spectra::at for three channels. Of two neighbours the second is read from one float before its
-/// red on, so that no read goes beyond the table.
+/// Spectra::at for three channels. The second of two neighbours is read from one float before
+/// its red on, so that no read goes beyond the table.
 template <int count>
 HWY_INLINE void colourAt(const Spectra& spectra, const VisibleNormals::Point& point,
                          const Slices& slices, double factor, double* out, std::size_t stride) {

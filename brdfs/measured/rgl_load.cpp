@@ -1,4 +1,4 @@
-// From the fields of a tensor file to checked RGL tables.
+// Checked RGL tables from the fields of a tensor file.
 
 #include <brdfs/measured/rgl.h>
 #include <hshfit/error.h>
@@ -71,7 +71,7 @@ int reductionOf(const TensorFile& file, const Field& field, const std::vector<do
     const double span = phi.back() - phi.front();
     for (const int reduction : {1, 2, 4}) {
         if (std::fabs(span * reduction / (2 * pi) - 1) > 0.05) continue;
-        // A quarter is mirrored at the axes, so that it has to lie between two of them.
+        // A quarter is mirrored at the axes and therefore has to lie between two of them.
         const double quarters = phi.front() / (pi / 2);
         if (reduction == 4 && std::fabs(quarters - std::round(quarters)) > 0.05) {
             file.fail(field, fmt::format("starts at {:.4g} degrees, expected a multiple of 90 for "
@@ -102,10 +102,10 @@ std::vector<float> loadDensities(const TensorFile& file, const Field& field) {
 const Field& spectraField(const TensorFile& file) {
     if (const Field* rgb = file.find("rgb")) return *rgb;
     if (const Field* spectra = file.find("spectra")) return *spectra;
-    return file.field("rgb");  // throws, with what there is
+    return file.field("rgb");  // throws, with the fields that exist
 }
 
-/// From [slice][channel][row][column] to [slice][row][column][channel].
+/// Transposes [slice][channel][row][column] to [slice][row][column][channel].
 Spectra loadSpectra(const TensorFile& file, const Field& field) {
     const std::vector<float> values = file.floats(field, 5);
     Spectra spectra{field.shape[2], field.shape[3], field.shape[4],

@@ -9,7 +9,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-// sigma is smooth: it is an integral over half of the hemisphere.
+// sigma is smooth, since it is an integral over half of the hemisphere.
 constexpr std::size_t coarseRows = 33, coarseColumns = 33;
 
 double coordinate(std::size_t i, std::size_t count) {
@@ -72,8 +72,8 @@ private:
     const Brdf& brdf_;
 };
 
-/// Values of a function at the vertices of a grid over (u, v), rows in parallel. The last row is
-/// the first again; of two rows both are.
+/// Values of a function at the vertices of a grid over (u, v), rows in parallel. The last row
+/// is a copy of the first.
 template <class Function>
 Plane tabulate(NormalsGrid grid, const Function& value) {
     Plane plane{grid.rows, grid.columns, std::vector<float>(grid.rows * grid.columns)};
@@ -100,7 +100,7 @@ double averagedAt(const Luminance& f, const Direction& h) {
             const double phi = (j + 0.5) * 2 * pi / azimuths;
             const double dx = across * std::cos(phi), dy = across * std::sin(phi);
             const double dz = std::sqrt(1 - sine2);
-            // From the frame of h: turned about y by theta_h, then about z by phi_h.
+            // A vector of the frame of h, turned about y by theta_h and then about z by phi_h.
             const double ex = h.z * dx + sine * dz, ez = h.z * dz - sine * dx;
             const Direction wi{c * ex - s * dy, s * ex + c * dy, ez};
             const double twice = 2 * dz;

@@ -1,4 +1,4 @@
-// Where directions lie in the tables of an RGL file, as many at a time as a register holds.
+// Positions of directions in the tables of an RGL file, as many at a time as a register holds.
 // Included by rgl_eval_lanes.h once for each instruction set.
 
 #include <brdfs/lanes/lanes_batch.h>
@@ -8,7 +8,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace hshfit::brdfs::HWY_NAMESPACE {
 
-/// Where a block of directions lies in the tables.
+/// The positions of a block of directions in the tables.
 struct RglBlock {
     static constexpr std::size_t size = 64;
 
@@ -84,7 +84,7 @@ HWY_INLINE void place(const RglCall& call, Lanes x, Lanes y, Lanes z, RglBlock& 
     store(sqrt(2 / pi * thetaHalf), block.uHalf + k);
     if (call.elevations)
         locate(tables.incident.theta, thetaIncident, block.thetaNode + k, block.thetaFraction + k);
-    // The azimuth of h, as seen from that of wi where the material is turned with it.
+    // The azimuth of h, relative to that of wi where the tables turn with wi.
     const bool relative = tables.reduction == 0;
     const Lanes sine = relative ? d.ix * d.hy - d.iy * d.hx : d.hy;
     const Lanes cosine = relative ? d.ix * d.hx + d.iy * d.hy : d.hx;

@@ -1,4 +1,4 @@
-// From any BRDF to RGL tables.
+// RGL tables from any BRDF.
 
 #include <brdfs/measured/rgl_writer.h>
 #include <hshfit/error.h>
@@ -15,7 +15,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-/// Where a linear continuation below the horizon starts.
+/// The start of the linear continuation below the horizon.
 constexpr double horizonHeight = 1e-4;
 constexpr double lastElevation = 89;  // degrees
 
@@ -63,7 +63,7 @@ Normals normalsFrom(const Brdf& brdf, NormalsFrom from, NormalsGrid grid, double
     return normals;
 }
 
-/// Retro-reflection unless something else is asked for or fits much better.
+/// Retro-reflection, unless the options name another source or another fits much better.
 Normals chooseNormals(const Brdf& brdf, const RglResolution& resolution, NormalsGrid grid,
                       std::vector<std::string>& alterations) {
     if (resolution.from == NormalsFrom::uniform) return {};
@@ -153,7 +153,8 @@ private:
         for (double& value : values) value *= wo.z / factor;
     }
 
-    /// Linear in the height of wo, from the values at the horizon and as far above it.
+    /// The continuation is linear in the height of wo, from the values at the horizon and as far
+    /// above.
     void continuation(const RglTables::Node& node, std::size_t slice,
                       std::vector<double>& values) const {
         const double height = std::max(-node.wo.z, horizonHeight);

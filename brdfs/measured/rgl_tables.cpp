@@ -10,7 +10,7 @@ double lerp(double t, double from, double to) {
     return from + t * (to - from);
 }
 
-/// Where `value` lies among ascending nodes: the lower node and the weight of the next.
+/// The position of `value` among ascending nodes: the lower node and the weight of the next.
 struct Between {
     std::size_t lower = 0;
     double fraction = 0;
@@ -18,7 +18,7 @@ struct Between {
 
 Between locate(const std::vector<double>& nodes, double value) {
     if (nodes.size() < 2 || !(value > nodes.front())) return {};
-    // A handful of nodes: counting those below beats bisection.
+    // The nodes are few, so that counting those below is faster than bisection.
     std::size_t lower = 0;
     for (std::size_t i = 1; i + 1 < nodes.size(); ++i) lower += nodes[i] <= value ? 1 : 0;
     const double fraction = (value - nodes[lower]) / (nodes[lower + 1] - nodes[lower]);
@@ -66,8 +66,8 @@ VisibleNormals::VisibleNormals(const std::vector<float>& densities, std::size_t 
     }
 }
 
-// All sums over slices are linear, so that the interpolated density and its integrals belong to
-// each other exactly.
+// All sums over slices are linear, so that the interpolated integrals are exactly those of the
+// interpolated density.
 VisibleNormals::Point VisibleNormals::invert(double u, double v, const Slices& slices) const {
     const GridPosition p(u, v, columns_, rows_);
     double low = 0, high = 0, before = 0;          // along the row at v

@@ -50,7 +50,7 @@ struct Slices {
     std::array<double, 4> weight{};
 };
 
-/// The measured incident directions, and where one of them lies between.
+/// The measured incident directions, and positions between them.
 struct IncidentGrid {
     std::vector<double> phi, theta;  ///< ascending, radians
 
@@ -78,7 +78,7 @@ public:
     /// Per du dv, with the integral 1 over the square.
     double density(double u, double v, std::size_t slice) const;
 
-    /// As they were given.
+    /// The densities as passed to the constructor.
     std::vector<float> densities() const;
     std::size_t rows() const { return rows_; }
     std::size_t columns() const { return columns_; }

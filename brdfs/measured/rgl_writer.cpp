@@ -28,8 +28,8 @@ std::vector<float> byChannel(const Spectra& spectra) {
     return values;
 }
 
-/// The luminance that renderers sample by: f cos(theta_o) per area of the square, not negative, and
-/// nowhere all 0, which could not be normalised.
+/// The luminance that renderers sample by: f cos(theta_o) per area of the square, not negative.
+/// No slice is all 0, since it could not be normalised.
 std::vector<float> luminances(const RglTables& tables) {
     const Spectra& spectra = tables.spectra;
     const std::size_t n = spectra.channels, square = spectra.rows * spectra.columns;
@@ -85,7 +85,7 @@ RglTables copyOf(const RglTables& tables) {
     return copy;
 }
 
-/// The wavelengths that `first_nm`, `last_nm` and `every` leave.
+/// The wavelengths that `first_nm`, `last_nm` and `every` select.
 std::vector<std::size_t> keptChannels(const Brdf& brdf, const Parameters& parameters) {
     const double first = parameters.number("first_nm"), last = parameters.number("last_nm");
     const auto every = static_cast<std::size_t>(parameters.number("every"));
@@ -138,7 +138,7 @@ RglResolution resolutionOf(const Brdf& brdf, const Parameters& parameters) {
     return resolution;
 }
 
-/// An RGL source keeps its tables unless other ones are asked for.
+/// An RGL source keeps its tables unless an option changes them.
 RglTables tablesOf(const Brdf& brdf, const Parameters& parameters, const WriteOptions& options,
                    std::vector<std::string>& alterations) {
     const auto* source = dynamic_cast<const RglBrdf*>(&brdf);

@@ -10,27 +10,27 @@
 
 namespace hshfit::brdfs {
 
-/// The resolution of an RGL file. Options left out are those of the source, if that is an RGL file
-/// and only wavelengths are chosen; else the defaults below.
+/// The resolution of an RGL file. The defaults are those below, or those of the source if that
+/// is an RGL file and only wavelengths are chosen.
 struct RglResolution {
     std::size_t theta = 32;     ///< incident elevations
     std::size_t phi = 9;        ///< incident azimuths of a quarter circle; isotropic: 1
     std::size_t slice = 96;     ///< colours per side of the square, per incident direction
-    std::size_t normals = 128;  ///< normals per side of theirs
+    std::size_t normals = 128;  ///< normals per side of their square
     /// The share of a Lambertian distribution in that of the normals.
     double floor = 0.05;
     /// The share of an even distribution in that of the normals seen from an incident direction.
     double share = 0.5;
-    /// None: retro-reflection, or the average where that fits the BRDF better, or uniform where
-    /// the BRDF gives no distribution.
+    /// None: retro-reflection, or the average if that fits the BRDF better, or uniform if the
+    /// BRDF gives no distribution.
     std::optional<NormalsFrom> from = {};
 };
 
 /// f sampled at the vertices of the RGL layout (rgl.h), so that the layout evaluates to f there.
 /// Incident elevations are at 89 (k / (n - 1))^0.6 degrees. Vertices without an outgoing direction
-/// hold a linear continuation of f cos(theta_o) below the horizon, negative where f is finite at
-/// it: interpolated values then fall to 0 at the horizon, and not within a cell above it. An
-/// anisotropic BRDF gets the whole circle of azimuths, or a quarter if it is mirror symmetric.
+/// hold a linear continuation of f cos(theta_o) below the horizon, negative where f is finite
+/// at it, so that interpolated values reach 0 at the horizon and not within a cell above it. An
+/// anisotropic BRDF has the whole circle of azimuths, or a quarter if it is mirror symmetric.
 ///
 /// Throws NumericError where a value is not finite or overflows a float.
 RglTables sampleRgl(const Brdf& brdf, const RglResolution& resolution, const WriteOptions& options,

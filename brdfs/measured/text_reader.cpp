@@ -14,8 +14,8 @@ bool isBlank(char c) {
     return c == ' ' || c == '\t';
 }
 
-/// from_chars tells neither overflow from underflow nor the sign: the exponent's sign does, since
-/// no text in a data file has the 300 digits that would be needed without one.
+/// from_chars reports neither the sign nor whether a number overflowed or underflowed. The
+/// exponent's sign decides, since a number without an exponent would need 300 digits.
 double outOfRange(std::string_view number) {
     const std::size_t exponent = number.find_first_of("eE");
     const bool tiny = exponent != std::string_view::npos && exponent + 1 < number.size() &&
@@ -83,7 +83,7 @@ bool TextReader::next() {
         const void* at = std::memchr(from, c, static_cast<std::size_t>(to - from));
         return at ? static_cast<const char*>(at) : to;
     };
-    // Remembered, so that a file which ends its lines in CR alone is not searched again and again.
+    // The position is kept, so that a file with CR line ends is not searched for LF on every line.
     if (!feed_ || feed_ < begin) feed_ = find(begin, last, '\n');
     const char* const end = find(begin, feed_, '\r');
     line_ = {begin, static_cast<std::size_t>(end - begin)};

@@ -11,8 +11,8 @@ namespace hshfit::brdfs {
 
 /// Reads a text file of numbers line by line, in place. Lines end in LF, CR LF or CR.
 /// Numbers are those of std::from_chars (independent of the locale), with an optional "+", and
-/// "nan" and "inf" in any case. One that overflows a double reads as infinite, one that underflows
-/// as 0.
+/// "nan" and "inf" in any case. A number that overflows a double is read as infinite, one that
+/// underflows as 0.
 class TextReader {
 public:
     /// `text` has to outlive the reader; `where` (a path) starts every message.
@@ -29,7 +29,7 @@ public:
     bool takeNumber(double& value, char separator = 0);
     /// Takes the next word of the line (up to a blank); empty at its end.
     std::string_view takeWord();
-    /// The whole line as numbers, replacing what is in `values`.
+    /// Takes the whole line as numbers, which replace the contents of `values`.
     void takeNumbers(std::vector<double>& values, char separator = 0);
 
     /// "PATH: line N: MESSAGE".

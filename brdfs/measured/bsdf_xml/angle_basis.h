@@ -25,7 +25,7 @@ public:
 
     std::string name;
 
-    /// Adds the next ring. Bounds ascend and join up; the caller has checked that.
+    /// Adds the next ring. The caller has checked that bounds ascend without gaps.
     void add(double upper, std::size_t azimuths);
 
     const std::vector<Ring>& rings() const { return rings_; }
@@ -36,7 +36,7 @@ public:
     /// Over all patches these add up to pi if the last ring ends at the horizon.
     double projectedSolidAngle(std::size_t ring) const { return projected_[ring]; }
 
-    /// The patch that a direction with z > 0 lies in; `none` beyond the last ring.
+    /// The patch of a direction with z > 0; `none` beyond the last ring.
     std::size_t patchOf(double x, double y, double z) const;
 
     /// cos(theta) where rings meet, descending, without the pole and the horizon.
@@ -45,7 +45,7 @@ public:
     /// Whether every patch turned by 180 degrees, or mirrored at the xz or the yz plane, is a
     /// patch.
     bool symmetric() const;
-    /// The patch that this one becomes when azimuths phi become sign * phi + turn * 180 degrees.
+    /// The image of a patch when azimuths phi become sign * phi + turn * 180 degrees.
     std::size_t moved(std::size_t patch, int sign, int turn) const;
 
 private:

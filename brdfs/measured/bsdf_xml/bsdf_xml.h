@@ -12,8 +12,9 @@
 namespace hshfit::brdfs {
 
 /// Opens the reflection of one side from a BSDF XML file: matrices of patch pairs (klems_brdf.h) or
-/// tensor trees (tree_brdf.h). Values are f in 1/sr. The bytes may go once it is open. `wavelength`
-/// is a word of the file: visible, solar, …. Throws InputError with the line for invalid content.
+/// tensor trees (tree_brdf.h). Values are f in 1/sr. The bytes are not needed after opening.
+/// `wavelength` is a word of the file: visible, solar, …. Throws InputError with the line for
+/// invalid content.
 std::unique_ptr<MeasuredBrdf> openBsdfXml(std::span<const unsigned char> bytes, std::string name,
                                           BsdfSide side = BsdfSide::front,
                                           std::string_view wavelength = "visible");

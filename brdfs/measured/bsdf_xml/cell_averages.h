@@ -30,7 +30,7 @@ struct CellAverageOptions {
 
 struct CellAverages {
     std::vector<double> values;  ///< [outgoing][incident], f or luminance in 1/sr
-    std::size_t uncertain = 0;   ///< pairs that did not settle within the tolerance
+    std::size_t uncertain = 0;   ///< pairs that did not converge to the tolerance
     double worstChange = 0;      ///< of these, relative as below
 };
 
@@ -38,14 +38,14 @@ struct CellAverages {
 /// that sums over cells are the directional reflectances of f. Channels are weighted (see
 /// luminanceWeights). Two rules are compared for every pair, and points are doubled until they
 /// agree to the tolerance, relative to the pair's value or, if that is greater, to the average of
-/// the outgoing cell. A lobe that all nodes of the first two rules miss is not seen.
+/// the outgoing cell. A lobe between the nodes of the first two rules is missed.
 ///
 /// Parallel over outgoing cells. Throws NumericError where f is negative or not finite.
 CellAverages averageOverCells(const Brdf& brdf, const std::vector<double>& weights,
                               const CellSet& incident, const CellSet& outgoing,
                               const CellAverageOptions& options);
 
-/// Weights that make luminance (Rec. 709) of the channels; a sentence on the loss goes to
+/// Weights that turn the channels into luminance (Rec. 709). A sentence on the loss goes to
 /// `alterations`. Throws UsageError for spectra that do not cover the visible range.
 std::vector<double> luminanceWeights(const Brdf& brdf, std::vector<std::string>& alterations);
 

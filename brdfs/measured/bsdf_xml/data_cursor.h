@@ -8,8 +8,8 @@
 
 namespace hshfit::brdfs {
 
-/// Goes through the text of a ScatteringData: numbers with blanks, line ends and at most one comma
-/// between them, and braces.
+/// A cursor in the text of a ScatteringData: numbers with blanks, line ends and at most one
+/// comma between them, and braces.
 class DataCursor {
 public:
     DataCursor(const BsdfDocument& document, const BsdfBlock& block)
@@ -24,7 +24,7 @@ public:
         if (next() == ',') skip();
     }
     /// Takes a number and the comma behind it; false at a brace or the end. NaN and infinity are
-    /// numbers, and the first of them is remembered. Throws InputError for words and for finite
+    /// accepted, and the offset of the first is kept. Throws InputError for words and for finite
     /// numbers beyond 1e30, which no BSDF reaches and sums of which could overflow.
     bool take(double& value);
 

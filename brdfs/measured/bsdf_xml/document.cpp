@@ -123,7 +123,7 @@ void BsdfDocument::check(std::span<const unsigned char> bytes) const {
             if (++elements > maxElements) {
                 throw error(at, fmt::format("more than {} elements", maxElements));
             }
-            // An attribute's value may hold '>'; then the depth comes out too high, never too low.
+            // A '>' in an attribute's value can make the counted depth too high, never too low.
             const std::size_t end = text.find('>', at);
             const bool empty = end != std::string_view::npos && text[end - 1] == '/';
             if (!empty && ++depth > maxDepth) {
@@ -195,7 +195,7 @@ void BsdfDocument::readBases() {
                                         basis.name, maxRings, maxPatches));
             }
         }
-        // Without blocks the name alone says which basis it is.
+        // Without blocks the basis is known by its name alone.
         if (!basis.rings().empty()) bases_.push_back(std::move(basis));
     }
 }

@@ -26,9 +26,9 @@ struct BsdfBlock {
 /// The elements of a BSDF XML file (LBNL WINDOW 6 and 7, Radiance) that describe scattering:
 ///     WindowElement / Optical / Layer / DataDefinition / IncidentDataStructure, AngleBasis …
 ///     WindowElement / Optical / Layer / WavelengthData / Wavelength, WavelengthDataBlock …
-/// The first Layer counts. A document type declaration is refused, and with it every entity but the
-/// five of XML; so are more than 32 elements within each other, more than 100,000 elements, and
-/// more than 1 GiB, all before the text is parsed.
+/// Only the first Layer is read. A document type declaration is refused, and with it every
+/// entity but the five of XML; so are more than 32 elements within each other, more than
+/// 100,000 elements, and more than 1 GiB, all before the text is parsed.
 class BsdfDocument {
 public:
     enum class Structure { columns, rows, tree3, tree4 };
@@ -37,8 +37,8 @@ public:
     static constexpr std::size_t maxDepth = 32, maxElements = 100'000;
     static constexpr std::size_t maxRings = 90, maxPatches = 2048;
 
-    /// `where` (a path) starts every message. `bytes` may go afterwards. Throws InputError with the
-    /// line for every missing or wrong element; ScatteringData is not read yet.
+    /// `where` (a path) starts every message. `bytes` are not needed afterwards. Throws InputError
+    /// with the line for every missing or wrong element; ScatteringData is not read yet.
     BsdfDocument(std::span<const unsigned char> bytes, std::string where);
     ~BsdfDocument();
     BsdfDocument(const BsdfDocument&) = delete;

@@ -41,7 +41,7 @@ KlemsBrdf::KlemsBrdf(const BsdfDocument& document, BsdfSelection selection)
     findLaws();
 }
 
-/// One matrix as [outgoing][incident], counted, with 0 in place of values that are no reflectances.
+/// One matrix as [outgoing][incident], with a census of its values and 0 in place of invalid ones.
 std::vector<double> KlemsBrdf::readMatrix(const BsdfDocument& document, const BsdfBlock& block) {
     std::vector<double> read;
     DataCursor cursor(document, block);

@@ -10,17 +10,17 @@
 
 namespace hshfit::brdfs {
 
-/// Reflection in a matrix of patch pairs (Klems 1994): f is constant where wi stays in one patch of
-/// the incident basis and wo in one of the outgoing basis. With (x, y) in the file's plane (see
+/// Reflection in a matrix of patch pairs (Klems 1994): f is constant for wi in one patch of the
+/// incident basis and wo in one of the outgoing basis. With (x, y) in the file's plane (see
 /// BsdfSelection), the outgoing patch is that of (x, y) of wo, and the incident one that of
 /// (-x, -y) of wi, towards which the light goes: a mirror fills the diagonal.
 ///
-/// A negative value is taken as 0, as Radiance does; so is one that is NaN or infinite, and
-/// checkIntact() throws InputError if there is any. f is 0 beyond a basis that ends above the
+/// Negative values are taken as 0, as in Radiance. So are NaN and infinite values, for which
+/// checkIntact() throws InputError. f is 0 beyond a basis that ends above the
 /// horizon. Laws are claimed where the matrix has them exactly.
 class KlemsBrdf : public MeasuredBrdf {
 public:
-    /// Throws InputError for bases that are unknown, matrices of wrong size, words among the
+    /// Throws InputError for unknown bases, matrices of wrong size, and words among the
     /// numbers.
     KlemsBrdf(const BsdfDocument& document, BsdfSelection selection);
 

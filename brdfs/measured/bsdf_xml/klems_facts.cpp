@@ -40,7 +40,7 @@ void appendAxes(std::vector<Axis>& axes, const AngleBasis& basis, const char* su
 
 }  // namespace
 
-/// Whether exchanging the directions, if asked to, and moving azimuths leaves every value as it is.
+/// Whether every value is unchanged when azimuths move and, if asked for, directions are exchanged.
 bool KlemsBrdf::sameUnder(int sign, int turn, bool exchanged) const {
     const std::size_t incidents = incident_.patches(), outgoings = outgoing_.patches();
     for (std::size_t c = 0; c < channels_.count(); ++c) {
@@ -70,8 +70,8 @@ bool KlemsBrdf::dependsOnRingsOnly() const {
     return true;
 }
 
-// Reciprocity, f(wi, wo) = f(wo, wi), exchanges the patches of wo and of -wi; turning both by 180
-// degrees makes that the patches of -wo and wi, which is a transposition with turned patches.
+// Reciprocity, f(wi, wo) = f(wo, wi), exchanges wi and wo. Patches are those of wo and -wi, so
+// that the matrix is transposed and both patches are turned by 180 degrees.
 void KlemsBrdf::findLaws() {
     const bool movable = incident_.symmetric() && outgoing_.symmetric();
     bool sameBasis = incident_.patches() == outgoing_.patches() &&

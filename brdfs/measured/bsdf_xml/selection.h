@@ -20,7 +20,7 @@ enum class BsdfSide { front, back };
 /// Local frames are right-handed with +z out of the surface: (x, y, z) on the back, and turned
 /// about y, (-x, y, -z), on the front.
 struct BsdfSelection {
-    std::string name;  ///< that opens the same BRDF again
+    std::string name;  ///< a specification that opens the same BRDF
     BsdfSide side = BsdfSide::front;
     std::string wavelength;  ///< as the file spells it
     const BsdfBlock* main = nullptr;
@@ -30,7 +30,7 @@ struct BsdfSelection {
     std::vector<Fact> facts;  ///< format, side, unused blocks, …
     std::string corrupt;      ///< message of checkIntact(); empty: none
 
-    /// Once they are read: the document may go.
+    /// Drops the pointers into the document once the blocks are read.
     void forgetBlocks() {
         main = nullptr;
         colour = {};
@@ -44,7 +44,7 @@ struct BsdfSelection {
 };
 
 /// Finds the blocks for the side and the part of the spectrum ("visible": with colours if the file
-/// has them). Throws InputError if the file lacks them, naming what it has, or has them twice.
+/// has them). Throws InputError for missing blocks, naming those in the file, and for duplicates.
 BsdfSelection selectBlocks(const BsdfDocument& document, BsdfSide side,
                            std::string_view wavelength);
 

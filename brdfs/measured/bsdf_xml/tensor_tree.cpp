@@ -135,7 +135,7 @@ double TensorTree::at(const Point& point) const {
 }
 
 // Every leaf adds its share to the grid of its own width; then each grid is added to the next
-// finer one. So a wide leaf costs no more than a narrow one.
+// finer one. A wide leaf therefore costs no more than a narrow one.
 std::vector<double> TensorTree::averages(int firstKept, int kept) const {
     std::vector<std::vector<double>> grids;
     for (int level = 0; level <= levels_; ++level) {

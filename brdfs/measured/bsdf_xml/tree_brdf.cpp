@@ -44,7 +44,7 @@ void TreeBrdf::addTree(const BsdfDocument& document, const BsdfBlock& block) {
     tree.forEachLeaf([&](const TensorTree::Leaf& leaf) {
         double& value = tree.values()[leaf.value];
         const bool unused = rank == 3 && leaf.corner[0] >= 0.5;
-        // The half without directions.
+        // The half of the cube that has no directions.
         if (unused) {
             ++census_.belowHorizon;
         } else {

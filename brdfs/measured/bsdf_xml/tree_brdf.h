@@ -16,10 +16,10 @@ namespace hshfit::brdfs {
 ///     rank 3:  (1 - sin(theta_i)) / 2, (u, v) of (x, y) of wo turned so that -wi has azimuth 0.
 /// Half of the cube of rank 3 has no directions. A mirror lies on the diagonal of rank 4.
 ///
-/// A negative value is taken as 0, as Radiance does; so is one that is NaN or infinite, and
-/// checkIntact() throws InputError if there is any. With trees for CIE u' and v' the BRDF is RGB.
-/// Laws are claimed where the tree has them exactly; rank 3 never claims reciprocity, nor a
-/// coloured tree conservation of energy.
+/// Negative values are taken as 0, as in Radiance. So are NaN and infinite values, for which
+/// checkIntact() throws InputError. With trees for CIE u' and v' the BRDF is RGB. Laws are
+/// claimed if the tree has them exactly. Rank 3 never claims reciprocity, and a coloured tree
+/// never claims conservation of energy.
 class TreeBrdf : public MeasuredBrdf {
 public:
     /// Throws InputError as TensorTree does.
@@ -30,7 +30,7 @@ public:
     const Laws& laws() const override { return laws_; }
     void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
     void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
-    /// The brightest cells, if they are far above the average: narrow ones would be missed.
+    /// The brightest cells, if they are far above the average: quadrature could miss narrow ones.
     std::vector<Lobe> lobes(const Direction& wo) const override;
     double defaultTolerance() const override { return selection_.tolerance; }
     std::vector<Fact> facts() const override;

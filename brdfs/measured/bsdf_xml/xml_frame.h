@@ -29,7 +29,7 @@ void writeBsdfXml(const BsdfXmlContent& content, const std::string& path,
 std::vector<Parameter> commonWriterParameters();
 BsdfSide sideOf(const Parameters& parameters);
 
-/// Appends a sentence if some averages did not settle.
+/// Appends a sentence if some averages did not converge.
 void reportUncertain(const CellAverages& averages, std::vector<std::string>& alterations);
 
 }  // namespace hshfit::brdfs

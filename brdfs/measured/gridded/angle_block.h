@@ -33,7 +33,7 @@ struct AngleBlock {
     void set(const Direction& d) { set({&d.x, &d.y, &d.z, 1}, 0, 1); }
 };
 
-/// Two neighbouring nodes of an axis, and how far from the first to the second.
+/// Two neighbouring nodes of an axis, and the fraction of the way from the first to the second.
 struct Between {
     std::size_t low = 0, high = 0;
     double t = 0;

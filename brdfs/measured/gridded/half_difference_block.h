@@ -13,8 +13,8 @@ namespace hshfit::brdfs {
 /// [0, 360): with u = wi + wo and v = wi - wo,
 ///     theta_h = atan2(|u_xy|, u_z),    theta_d = atan2(|v|, |u|),
 ///     phi_d = atan2((u x v)_z, -|u| v_z),    (u x v)_z = 2 (wo x wi)_z.
-/// Where phi_d does not exist (h is the normal, or wi = wo), it is 90, so that it is the same one
-/// when the pair turns about the normal.
+/// Where phi_d is undefined (h is the normal, or wi = wo), it is set to 90, so that it does not
+/// change when the pair turns about the normal.
 struct HalfDifferenceBlock {
     static constexpr std::size_t size = 64;
     double thetaHalf[size], thetaDifference[size], phiDifference[size];
@@ -34,7 +34,7 @@ struct HalfDifferenceBlock {
             uz[k] = std::max(sz, 0.0);
             u[k] = std::sqrt(across2 + sz * sz);
             v[k] = std::sqrt(dx * dx + dy * dy + dz * dz);
-            // 0 but for rounding at the normal.
+            // across2 is 0 but for rounding where h is the normal.
             const bool defined = across2 > 1e-28;
             sine[k] = defined ? 2 * (wo.x * y[k] - x[k] * wo.y) : 1.0;
             cosine[k] = defined ? -dz * u[k] : 0.0;

@@ -10,7 +10,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-/// Evaluations between asking for bins and using them.
+/// The number of evaluations between prefetching bins and using them.
 constexpr std::size_t prefetchDistance = 4;
 
 /// Whether it is a value: neither negative nor NaN nor infinite.
@@ -18,7 +18,7 @@ bool isValue(float v) {
     return v >= 0 && v <= std::numeric_limits<float>::max();
 }
 
-/// The index of a bin centre is whole: bin i of n over [0, range] is centred at (i + 1/2) range/n.
+/// Bin centres have whole indices: bin i of n over [0, range] is centred at (i + 1/2) range/n.
 double centreIndex(double angle, double range, std::size_t bins) {
     return angle * static_cast<double>(bins) / range - 0.5;
 }

@@ -33,17 +33,18 @@ struct MitLayout {
     std::size_t fileBytes() const { return headerBytes + 3 * cells() * sizeof(float); }
 };
 
-/// A measured anisotropic BRDF in such a file, read from the map.
+/// A measured anisotropic BRDF in such a file, read from the mapped bytes.
 ///
 /// Assumptions where the description is silent: a value stands for the centre of its bin, theta_in
 /// and phi_in are those of wi, phi_diff = phi_out - phi_in, and azimuths count from +x towards +y.
 /// With header[9] = 1, f beyond phi_diff = pi is that with wi and wo exchanged. The values times
 /// `scale` are f in 1/sr.
 ///
-/// Multilinear between the centres, over the valid bins among the sixteen, azimuths going round;
-/// constant within half a bin of theta = 0 and 90 deg, and of the ends of a half phi_diff. Where no
-/// bin is valid, f is 0 and not covered. A value that is NaN or infinite is taken as invalid and
-/// remembered, and checkIntact() throws InputError naming it. No symmetry is promised.
+/// Interpolation is multilinear between the centres, over the valid bins among the sixteen, and
+/// periodic in azimuth. It is constant within half a bin of theta = 0 and 90 deg, and of the ends
+/// of a half phi_diff. Without a valid bin, f is 0 and not covered. NaN and infinite values are
+/// taken as invalid, and checkIntact() throws InputError naming one that was read. No
+/// symmetry is claimed.
 class MitBrdf : public MeasuredBrdf {
 public:
     /// `bytes` have to outlive it. Throws InputError if the header or the size are wrong.
@@ -81,7 +82,7 @@ private:
         return value;
     }
 
-    std::unique_ptr<MappedFile> file_;  ///< none if the bytes are somebody else's
+    std::unique_ptr<MappedFile> file_;  ///< none if the caller owns the bytes
     std::span<const unsigned char> bytes_;
     std::string name_;
     MitLayout layout_;

@@ -68,7 +68,7 @@ MitLayout checkedLayout(std::span<const unsigned char> bytes, const std::string&
     return layout;
 }
 
-// Decides by the fields that have a single meaning; errors in others are reported by the reader.
+// The fields with a single valid value decide; errors in other fields are reported by the reader.
 bool looksLikeMit(std::span<const unsigned char> head, std::uint64_t) {
     if (head.size() < MitLayout::headerBytes) return false;
     const Header header = headerOf(head);

@@ -51,7 +51,7 @@ SliceBrdf::SliceBrdf(SliceLayout layout, Channels channels, std::vector<float> s
     takeStock();
 }
 
-// Counts the stored values and marks those that are none.
+// Counts the stored values and marks the invalid ones.
 void SliceBrdf::takeStock() {
     census_.values = values_.size();
     std::vector<double> cosines, sines;
@@ -132,7 +132,7 @@ inline double SliceBrdf::interpolate(const Corners& at, std::size_t channel, dou
         total += w;
     }
     *weight = total;
-    // Where all are valid, the weights add up to 1 but for rounding.
+    // The weights of valid nodes add up to 1 but for rounding if all are valid.
     return total > 0 ? sum / total : 0;
 }
 

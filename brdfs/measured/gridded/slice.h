@@ -27,13 +27,13 @@ struct SliceLayout {
 
 /// An isotropic BRDF from slices of constant phi_d: one at phi_d = 90 deg, which is the plane of
 /// the figures of Burley 2012 ("Physically Based Shading at Disney", SIGGRAPH course), or several.
-/// One slice is continued constantly in phi_d; between several, f is linear in phi_d, which goes
-/// round. Linear in the indices of theta_h and theta_d, constant beyond the first and last nodes.
+/// A single slice holds for every phi_d; between several, f is linear in phi_d, which is periodic.
+/// f is linear in the indices of theta_h and theta_d, and constant beyond the first and last nodes.
 ///
-/// A negative value is invalid, as is a node with a direction below the horizon; interpolation
-/// leaves these out, and f is 0 where no node is left. Values that are no numbers are taken as
-/// invalid, and checkIntact() throws InputError naming the first. Directions with valid nodes
-/// around them are covered, with one slice only within half a degree of its difference azimuth.
+/// Negative values, NaN, and nodes with a direction below the horizon are invalid.
+/// Interpolation leaves them out, and f is 0 without a valid node. checkIntact() throws
+/// InputError naming the first NaN. Directions with valid nodes around them are covered; a
+/// single slice covers only pairs within half a degree of its difference azimuth.
 class SliceBrdf : public MeasuredBrdf {
 public:
     /// `stored`: [phi][theta_d][theta_h][channel]. `kind`: the format's name, for info.
@@ -45,8 +45,9 @@ public:
     const Laws& laws() const override { return laws_; }
     void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
     void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
-    /// One lobe about the half vector, as wide as the slice nearest phi_d = 90 deg: where f at
-    /// theta_d = theta_o has fallen half-way from its value at the first node to its least.
+    /// One lobe about the half vector. Its width follows from the theta_h at which f of the slice
+    /// nearest
+    /// phi_d = 90 deg, at theta_d = theta_o, is midway between its first and its least value.
     std::vector<Lobe> lobes(const Direction& wo) const override;
     /// 3e-3: the interpolation has a kink at every node, and the measurements err by more.
     double defaultTolerance() const override { return 3e-3; }
@@ -79,11 +80,11 @@ std::unique_ptr<SliceBrdf> readMerlSlice(std::span<const unsigned char> bytes,
                                          const std::string& name);
 
 /// A picture with theta_h from 0 deg at the left to 90 at the right and theta_d from 0 at the
-/// bottom to 90 at the top, a value standing for the middle of its pixel, in 1/sr. Channels R, G, B
+/// bottom to 90 at the top. A value is f in 1/sr at the centre of its pixel. Channels R, G, B
 /// or Y or wavelengths ("550nm") for phi_d = 90 deg. Files of slice_writer.h carry attributes that
 /// name the axes, have further slices in layers ("phi045.R") and may have 90 x^2 for theta_h;
-/// pictures without the attributes are taken as above. Both throw InputError if the bytes are not
-/// that.
+/// pictures without the attributes are read as above. Both functions throw InputError for other
+/// contents.
 std::unique_ptr<SliceBrdf> readSlicePicture(std::span<const unsigned char> bytes,
                                             const std::string& name);
 

@@ -212,7 +212,7 @@ std::unique_ptr<Brdf> openSlice(const std::string& path, const Parameters&) {
         file.checkIntact();
         return brdf;
     } catch (const InputError&) {
-        file.checkIntact();  // reports a file that was lost meanwhile as such
+        file.checkIntact();  // reports a file that was removed or cut while it was read
         throw;
     }
 }

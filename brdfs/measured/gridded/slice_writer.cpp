@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t mostValues = std::size_t{1} << 26;
 constexpr double largestHalf = 65504;
 
-/// 90 degrees first, then the others, going round.
+/// 90 degrees first, then the others in ascending order around the circle.
 std::vector<double> azimuths(std::size_t count, double period) {
     std::vector<double> phi;
     for (std::size_t i = 0; i < count; ++i) {

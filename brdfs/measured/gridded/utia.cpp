@@ -15,14 +15,14 @@ namespace {
 constexpr double thetaStep = 15, phiStep = 7.5;  // degrees
 constexpr double lastTheta = 75;
 
-/// 0 for values that are negative or, after an overflow, no number.
+/// The value, with 0 for negative values and for the NaN of an overflow.
 double clamped(double value) {
     return value > 0 ? std::min(value, std::numeric_limits<double>::max()) : 0;
 }
 
 }  // namespace
 
-/// Where a direction lies among the nodes. t of theta exceeds 1 past the last node.
+/// The position of a direction among the nodes. Its t in theta exceeds 1 past the last node.
 struct UtiaBrdf::Place {
     std::array<std::size_t, 4> node;  ///< (low, low), (low, high), (high, low), (high, high)
     std::array<double, 4> weight;
@@ -50,8 +50,8 @@ inline UtiaBrdf::Value UtiaBrdf::seenFrom(const Place& wo, std::size_t node) con
     return sum;
 }
 
-// wo is the same for the whole batch: for a large one, the table is first interpolated there for
-// every node of wi. Both ways add up the same products in the same order.
+// wo is constant over a batch: for a large batch, the table is first interpolated at wo for
+// every node of wi. Both paths add the same products in the same order.
 void UtiaBrdf::eval(const Direction& wo, DirectionBatch wi, double* out) const {
     if (!(wo.z > 0)) {
         std::fill_n(out, 3 * wi.count, 0.0);

@@ -11,8 +11,8 @@
 namespace hshfit::brdfs {
 
 struct UtiaOptions {
-    /// Between 75 deg, the last node, and the horizon. linear: by the last two nodes, as the
-    /// database's own programs do. constant: as at 75 deg.
+    /// f between 75 deg, the last node, and the horizon. linear: extrapolated from the last two
+    /// nodes, as in the database's own programs. constant: the value at 75 deg.
     enum class Beyond { linear, constant };
     /// The colour space of the three planes: linear Rec. 709, the same with the sRGB curve, or CIE
     /// XYZ (D65).
@@ -29,18 +29,18 @@ struct UtiaOptions {
 /// i = 48 (theta_i / 15) + phi_i / 7.5, and v likewise. `.bin`: three planes of float64,
 /// little-endian; `.exr`: 288 x 288 pixels, row i, column v, channels R, G, B.
 ///
-/// Multilinear in the four angles, azimuths going round; below 0 it becomes 0. The 48 values that
-/// stand for one and the same direction at theta = 0 are replaced by their mean, which makes f
-/// single-valued at the normal. Values that are no numbers are taken from the nearest azimuth of
-/// view that has one, and checkIntact() throws InputError naming the first. Directions past 75 deg
-/// are not covered. The table is copied: the file may go. No symmetry is promised.
+/// Interpolation is multilinear in the four angles and periodic in azimuth; negative results become
+/// 0. The 48 values for the one direction at theta = 0 are replaced by their mean, which makes f
+/// single-valued at the normal. A NaN is replaced by the value at the nearest azimuth of view that
+/// has one, and checkIntact() throws InputError naming the first. Directions past 75 deg are not
+/// covered. The table is copied, so that the file is not needed later. No symmetry is claimed.
 class UtiaBrdf : public MeasuredBrdf {
 public:
     static constexpr std::size_t thetas = 6, phis = 48, nodes = thetas * phis;
     static constexpr std::size_t values = 3 * nodes * nodes;
     static constexpr std::size_t fileBytes = values * sizeof(double);
 
-    /// `bytes` of a file of either form, from `name`. Throws InputError if they are not one.
+    /// `bytes` of a file of either form; `name` is its path. Throws InputError for other contents.
     UtiaBrdf(std::span<const unsigned char> bytes, std::string name, const UtiaOptions& options);
     static std::unique_ptr<UtiaBrdf> open(const std::string& path, const UtiaOptions& options);
 

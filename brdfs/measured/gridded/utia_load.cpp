@@ -1,4 +1,4 @@
-// From the bytes of a UTIA file to its table.
+// The table of a UTIA file from its bytes.
 
 #include <brdfs/measured/gridded/utia.h>
 #include <hshfit/error.h>
@@ -98,7 +98,7 @@ std::unique_ptr<UtiaBrdf> UtiaBrdf::open(const std::string& path, const UtiaOpti
         file.checkIntact();
         return brdf;
     } catch (const InputError&) {
-        file.checkIntact();  // reports a file that was lost meanwhile as such
+        file.checkIntact();  // reports a file that was removed or cut while it was read
         throw;
     }
 }

@@ -11,8 +11,8 @@ namespace hshfit::brdfs {
 /// Reads ALTA's data files: a header of lines #KEY VALUE, of which
 ///     #DIM in out   #PARAM_IN NAME   #PARAM_OUT NAME   #VS k
 /// count (PARAM_IN: alta_parameters.h), then rows of `in` coordinates, `out` values and the bounds
-/// of vertical segments (#VS; not read). Or, with #FORMAT binary, doubles between #BEGIN_STREAM and
-/// #END_STREAM, #SAMPLE_COUNT rows of them, #ENDIAN little or big.
+/// of vertical segments (#VS; not read). With #FORMAT binary the rows are doubles between
+/// #BEGIN_STREAM and #END_STREAM, #SAMPLE_COUNT rows, #ENDIAN little or big.
 /// Values are 1/sr; INV_STERADIAN_COSINE_FACTOR is divided by the cosine of the view direction;
 /// XYZ_COLOR becomes linear Rec. 709. One value is grey, three are R, G, B.
 /// Throws InputError, with `where` and the line or the sample, for any other content.

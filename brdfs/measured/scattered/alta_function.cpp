@@ -49,7 +49,7 @@ public:
             sharpest = std::max(sharpest, *std::ranges::max_element(lobe.exponent));
         }
         if (sharpest < 2) return {};
-        // cos^N is nearly a Gaussian of the slope with variance 1/N.
+        // cos^N is nearly a Gaussian of the slope with a variance of 1/N.
         return {{.about = Lobe::About::halfway, .width = 2.5 / std::sqrt(sharpest), .axis = {}}};
     }
 

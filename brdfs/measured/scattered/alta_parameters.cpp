@@ -18,8 +18,8 @@ constexpr char kind_tjj[] = {'t', 'j', 'j'}, kind_tptp[] = {'t', 'p', 't', 'p'};
 constexpr char kind_xx[] = {'x', 'x'}, kind_xxp[] = {'x', 'x', 'p'}, kind_xxx[] = {'x', 'x', 'x'};
 constexpr char kind_xxxx[] = {'x', 'x', 'x', 'x'}, kind_x6[] = {'x', 'x', 'x', 'x', 'x', 'x'};
 
-/// From the frame of the half vector (Rusinkiewicz 1998): V is the difference vector, tilted by
-/// theta_h in the xz plane and turned by phi_h; L mirrors it at H.
+/// Directions from the frame of the half vector (Rusinkiewicz 1998): V is the difference
+/// vector, tilted by theta_h in the xz plane and turned by phi_h; L is V mirrored at H.
 bool fromHalf(double thetaH, double phiH, double thetaD, double phiD, Direction& wi,
               Direction& wo) {
     const Direction h = directionFromAngles(thetaH, phiH);
@@ -36,7 +36,7 @@ double angleOf(double cosine) {
     return std::acos(std::clamp(cosine, -1.0, 1.0));
 }
 
-/// Some pair whose back vector is k.
+/// One of the pairs whose back vector is k.
 bool fromBack(const Direction& k, Direction& wi, Direction& wo) {
     wo = k;
     wi = mirrored(k);

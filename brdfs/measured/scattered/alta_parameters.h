@@ -16,13 +16,13 @@ struct AltaParameters {
     std::string_view name;
     std::size_t count;  ///< numbers in a row
     Chart chart;        ///< of a row; Chart::isotropic: a pair but for its azimuth
-    /// The pair of a row, or one of the pairs that it stands for. False where there is none.
+    /// Finds the pair of a row, or one of the pairs that it stands for. False if there is none.
     bool (*directions)(const double* x, Direction& wi, Direction& wo);
     std::span<const char> kinds;  ///< of each number: a polar angle, an azimuth, a cosine, a length
 };
 
-/// Null for a name that is not ALTA's, or one that fixes no pair of directions and no angle that f
-/// could be a function of.
+/// Null for a name that is not ALTA's, and for one that gives neither a pair of directions nor
+/// an angle that f could depend on.
 const AltaParameters* altaParameters(std::string_view name);
 
 /// The names that are read, in one line.

@@ -17,7 +17,7 @@ struct Grid {
     double last = 0;  ///< radians
 };
 
-/// The rows of a file under the header that fits them.
+/// The rows of a file and the header for them.
 class Rows {
 public:
     Rows(const Brdf& brdf, AtomicFile& file) : brdf_(brdf), file_(file) {
@@ -73,7 +73,7 @@ void writeGrid(const Brdf& brdf, const Grid& grid, Rows& rows,
     const auto at = [&](std::size_t k) {
         return grid.last * static_cast<double>(k) / static_cast<double>(grid.theta - 1);
     };
-    // Half a circle holds both of its ends.
+    // Half a circle includes both of its ends.
     const std::size_t azimuths = half ? grid.phi / 2 + 1 : grid.phi;
     const auto around = [&](std::size_t k) {
         return 2 * pi * static_cast<double>(k) / static_cast<double>(grid.phi);

@@ -11,16 +11,16 @@ namespace hshfit::brdfs {
 /// A position in a chart; coordinates past the chart's dimensions are 0.
 using Point = std::array<double, 4>;
 
-/// The coordinates in which scattered samples are neighbours: the arguments of f, and the distance
-/// of two pairs of directions.
+/// The coordinates of scattered samples: f is interpolated over them, and distances of pairs of
+/// directions are measured in them.
 ///
 /// Pairs. With p = sqrt(2) sin(theta/2) (cos phi, sin phi), the equal-area disc, s = p_i + p_o and
 /// d = p_i - p_o: s = 0 is the mirror configuration and d = 0 the retro-reflecting one.
 ///   anisotropic  (4 s_x, 4 s_y, d_x, d_y)
 ///   isotropic    the Hopf map of (s, d), which has no seam and is the same for a pair and the pair
 ///                turned about the normal: (|s|^2 - |d|^2, 4 s.d, 4 s x d) / sqrt(|s|^2 + |d|^2)
-/// Distances across a mirror lobe (s) count four times those along it (d), so that neighbours are
-/// sought at the same place of the lobe for other incidences. Both are scaled to radians: turning
+/// Distances across a mirror lobe (s) count four times those along it (d), so that neighbours lie
+/// at the same position in the lobe for other incidences. Both are scaled to radians: turning
 /// one direction by a small angle near the mirror configuration moves the point by that angle.
 ///
 /// The other charts hold data that were reduced to fewer coordinates; angles in radians.
@@ -40,10 +40,10 @@ enum class Chart {
 };
 
 int dimensions(Chart chart);
-/// "pairs of directions", "theta_h", …, as `info` says it.
+/// "pairs of directions", "theta_h", …, as `info` prints it.
 std::string_view chartName(Chart chart);
 
-/// wi and wo above the horizon.
+/// The position of a pair. Both wi and wo are above the horizon.
 Point chartPoint(Chart chart, const Direction& wi, const Direction& wo);
 
 /// The configurations that are taken to have the same f, for the two charts of pairs.

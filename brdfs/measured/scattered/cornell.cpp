@@ -62,7 +62,7 @@ std::vector<double> readWavelengths(TextReader& reader, std::size_t count) {
     return wavelengths;
 }
 
-// Decides by two or three lines of numbers: a lone count, then wavelengths.
+// A file is recognised by two or three lines of numbers: a single count, then wavelengths.
 bool looksLikeCornell(std::span<const unsigned char> head, std::uint64_t) {
     const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
     if (!text.starts_with("#") || text.starts_with("#ALTA") ||

@@ -19,7 +19,7 @@ constexpr double sameNode = 2e-4;
 constexpr double onNode = 1e-12;
 constexpr std::size_t mostNeighbours = 40;
 
-/// Neighbours that an evaluation weighs, and those that a slope is fitted to.
+/// The number of neighbours of an evaluation, and of the fit of a slope.
 constexpr std::size_t weighed[] = {0, 3, 7, 12, 20};
 constexpr std::size_t fitted[] = {0, 4, 10, 20, 36};
 static_assert(weighed[4] + 1 <= mostNeighbours && fitted[4] + 2 <= mostNeighbours);
@@ -117,8 +117,8 @@ struct ScatterInterpolant::Nodes {
     double radius(const Neighbours& found, std::size_t wanted) const;
 };
 
-/// The nodes in lexical order of their coordinates, each with the mean of its values: neither
-/// depends on the order in which the points came.
+/// The nodes in lexicographic order of their coordinates, each with the mean of its values.
+/// Both are independent of the order of the points.
 void ScatterInterpolant::Nodes::merge(const std::vector<Point>& points,
                                       const std::vector<double>& given) {
     std::vector<std::size_t> order(points.size());
@@ -153,7 +153,7 @@ void ScatterInterpolant::Nodes::merge(const std::vector<Point>& points,
     }
 }
 
-/// The distance at which weights vanish: that of the neighbour after the last one that counts.
+/// The distance at which weights vanish: that of the first neighbour without weight.
 double ScatterInterpolant::Nodes::radius(const Neighbours& found, std::size_t wanted) const {
     return found.count > wanted ? found.distance[wanted] : 2 * pi;
 }
@@ -257,7 +257,7 @@ double ScatterInterpolant::evaluate(const Point& x, double limit, double* out,
     const double reach = n.radius(found, wanted);
     double total = 0;
     for (std::size_t k = 0; k < std::min(found.count, wanted); ++k) {
-        // Where many nodes are equally far, all of them at R, they weigh the same.
+        // Equally distant nodes, all of them at R, have equal weights.
         const double weight = std::max(shepardWeight(found.distance[k], reach), 1e-300);
         total += weight;
         const std::size_t node = found.index[k];

@@ -13,12 +13,12 @@ namespace hshfit::brdfs {
 /// 10.1145/45054.45055):
 ///     f(x) = sum_k w_k Q_k(x) / sum_k w_k,      w_k = (max(0, R - d_k) / (R d_k))^2
 /// over the nearest nodes (3, 7, 12 or 20 for 1 to 4 dimensions), d_k their distances and R that of
-/// the next one. Q_k goes through node k; its slope is a weighted least-squares fit to the node's
-/// neighbours, and it is held between the least and the greatest value among them.
+/// the next one. Q_k goes through node k. Its slope is a weighted least-squares fit to the
+/// node's neighbours, and it is clamped between the least and the greatest value among them.
 ///
-/// So f takes the nodes' values there, is continuous, never leaves the range of the values near by,
-/// and reproduces linear data but for the effect of that limit: below 1 % of the data's range
-/// between random nodes, 0 between even ones (scattered_test). It does not depend on the number of
+/// f is continuous, interpolates the nodes, and stays in the range of the neighbours' values. It
+/// reproduces linear data but for the effect of the clamp: below 1 % of the data's range between
+/// random nodes, 0 between even ones (scattered_test). It does not depend on the number of
 /// threads. Points within 2e-4 of each other become one, with the mean of their values. Building
 /// takes O(n log n), an evaluation O(log n) plus the sum.
 class ScatterInterpolant {

@@ -13,7 +13,7 @@
 
 namespace hshfit::brdfs {
 
-/// Where a sample stands in its file, for messages: "PATH: line N: …".
+/// The position of a sample in its file, for messages: "PATH: line N: …".
 struct Row {
     const std::string& where;
     std::string_view unit;  ///< "line" or "sample"
@@ -27,10 +27,10 @@ struct Samples {
     std::vector<Direction> wi, wo;
     std::vector<double> values;  ///< [sample * channels.count() + channel]
     Channels channels;
-    /// For data that were reduced to fewer coordinates than a pair has: each sample then stands
-    /// for all pairs with the coordinates of its own. Chart::anisotropic stands for full pairs.
+    /// The coordinates of data with fewer of them than a pair has. A sample then stands for all
+    /// pairs with its coordinates. Chart::anisotropic stands for full pairs.
     Chart chart = Chart::anisotropic;
-    bool isotropic = false;  ///< the file says so
+    bool isotropic = false;  ///< as stated in the file
     Census census;
     std::vector<Fact> facts;           ///< the format and the facts of its header
     std::vector<std::string> leftOut;  ///< parts of the file that are not read
@@ -43,11 +43,11 @@ struct Samples {
     void add(const Direction& in, const Direction& out, std::span<const double> f, const Row& row);
 };
 
-/// A polar angle in radians as it stands in a file; throws InputError, with the name of the field,
-/// where it is no finite number or exceeds a right angle by more than 1e-3: most likely it is in
-/// degrees. Negative ones are on the other side of the normal.
+/// Checks a polar angle of a file, in radians. Throws InputError, with the name of the field,
+/// for NaN, infinity, and angles more than 1e-3 above pi/2, which are most likely in degrees.
+/// Negative angles are on the other side of the normal.
 double checkedPolarAngle(double theta, const Row& row, std::string_view field);
-/// Likewise for azimuths, which stay within two turns.
+/// Checks an azimuth in the same way, with a limit of two turns.
 double checkedAzimuth(double phi, const Row& row, std::string_view field);
 
 }  // namespace hshfit::brdfs

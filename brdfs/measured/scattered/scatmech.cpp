@@ -14,7 +14,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-/// Keeps radial polynomials exact to rounding; published tables end at 8.
+/// The limit keeps radial polynomials exact to rounding; published tables end at 8.
 constexpr int mostOrder = 40;
 constexpr int mostPower = 8;
 
@@ -76,7 +76,7 @@ bool looksLikeScatmech(std::span<const unsigned char> head, std::uint64_t fileSi
     try {
         int rows = 0;
         while (rows < 3 && reader.next()) {
-            // The last line may be cut off.
+            // The last line of the head may be incomplete.
             const auto end = static_cast<std::size_t>(reader.line().end() - text.begin());
             if (end == text.size() && fileSize > text.size()) break;
             if (reader.blank()) continue;

@@ -13,14 +13,14 @@
 
 namespace hshfit::brdfs {
 
-/// The symmetries that scattered samples are taken to have. None: those that the file states or
-/// else its directions imply: isotropic if all incident or all outgoing directions have one
-/// azimuth, mirrored if the samples are isotropic and all on one side of the plane of incidence.
+/// The assumed symmetries of scattered samples. None: those stated in the file or else implied
+/// by its directions. Samples are isotropic if all incident or all outgoing directions have one
+/// azimuth, and mirrored if they are isotropic and all on one side of the plane of incidence.
 struct ScatteredOptions {
     std::optional<bool> isotropic = {};
     std::optional<bool> mirror = {};
     bool exchange = true;        ///< f(wi, wo) = f(wo, wi): a sample stands for the exchanged pair
-    double reach = radians(10);  ///< distance from a sample within which f rests on it
+    double reach = radians(10);  ///< largest distance from a sample at which f is interpolated
 };
 
 /// The options `isotropic`, `mirror`, `exchange` and `reach` of every scattered format, followed by
@@ -31,8 +31,8 @@ ScatteredOptions scatteredOptions(const Parameters& parameters);
 /// A BRDF interpolated between scattered samples: `ScatterInterpolant` in the coordinates of
 /// `Chart`. Within `reach` of the nearest sample (or of its image under the symmetries) f is
 /// interpolated and coverage() is 1; from there to 1.5 reach it fades to 0; beyond it is 0.
-/// Values below zero count as 0. Never negative, continuous above the horizon; reciprocal and
-/// mirror symmetric exactly where folded so, isotropic to rounding.
+/// Values below zero count as 0. f is never negative and continuous above the horizon. Assumed
+/// reciprocity and mirror symmetry hold exactly, isotropy to rounding.
 class Scattered : public MeasuredBrdf {
 public:
     /// Throws InputError, starting with `name`, if there are no samples above the horizon.
