@@ -86,7 +86,8 @@ std::vector<unsigned char> readHead(const std::string& path, std::size_t most) {
     return head;
 }
 
-/// By content first, so that a wrong extension does not matter; then by extension.
+/// The format by content or, for unrecognised content, by
+/// extension.
 const Format& formatOf(const std::string& path, std::uint64_t size) {
     constexpr std::size_t headSize = 4096;
     const std::vector<unsigned char> head = readHead(path, headSize);
@@ -131,12 +132,12 @@ bool exists(std::string_view path) {
     return fs::exists(fs::path(path), error);
 }
 
-/// A path, not a misspelt model: it has a folder or an extension.
+/// Whether a text is a path rather than a misspelt model: it has a folder or an extension.
 bool looksLikePath(std::string_view text) {
     return text.find('/') != std::string_view::npos || fs::path(text).has_extension();
 }
 
-/// A file, with or without options after its path.
+/// Whether a specification is an existing file, with or without options after its path.
 bool isFile(std::string_view spec) {
     return exists(spec) ||
            (spec.find(':') != std::string_view::npos && exists(spec.substr(0, spec.rfind(':'))));

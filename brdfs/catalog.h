@@ -14,15 +14,15 @@
 
 namespace hshfit::brdfs {
 
-/// How a fit moves a parameter (docs/fit.md), within the bounds that the parameter has.
+/// The range of a parameter in fits (docs/fit.md), within the parameter's bounds.
 struct FitRange {
     enum class Data { any, isotropic, anisotropic };
-    double low = 0, high = 0;       ///< where starts are drawn; both the same: held there
-    bool logarithmic = false;       ///< moves on a logarithmic scale
-    Data data = Data::any;          ///< moves for such data only
-    std::string_view choice = {};   ///< moves with this choice only, "key=word"; empty: any
-    std::string_view unless = {};   ///< stays out where this parameter is stated in its place
-    std::string_view follows = {};  ///< has the value of this one where the data are isotropic
+    double low = 0, high = 0;       ///< range of starting values; equal: held there
+    bool logarithmic = false;       ///< fitted on a logarithmic scale
+    Data data = Data::any;          ///< fitted to such data only
+    std::string_view choice = {};   ///< fitted with this choice only, "key=word"; empty: any
+    std::string_view unless = {};   ///< not fitted if this parameter is stated instead
+    std::string_view follows = {};  ///< equal to this parameter for isotropic data
 };
 
 /// One parameter of an analytic model, as listed, parsed, checked and documented.
@@ -35,16 +35,16 @@ struct Parameter {
     std::string_view name;
     std::string_view help;
     Kind kind = Kind::number;
-    /// None: the parameter has to be given. Outside [min, max]: what the help says of leaving it
-    /// out.
+    /// None: the parameter has to be given. Outside [min, max]: the default is described in the
+    /// help.
     std::optional<double> fallback = {};
     double min = 0, max = 0;
     std::vector<std::string_view> choices = {};  ///< the first is the default
-    /// The first that applies. None: fits leave it as stated, or at its default.
+    /// The first applicable range counts. None: fits keep the stated value, or the default.
     std::vector<FitRange> fit = {};
 };
 
-/// Checked parameter values, defaults filled in. Asking for an undeclared name is our bug.
+/// Checked parameter values, defaults filled in. A request for an undeclared name is our bug.
 class Parameters {
 public:
     double number(std::string_view name) const;
@@ -69,8 +69,8 @@ struct Model {
     std::string_view help;
     std::string_view source;  ///< author, year, DOI
     std::vector<Parameter> parameters;
-    /// What every member of this model promises; the instance's laws() may promise more
-    /// (Ward with ax = ay is isotropic), never less.
+    /// Laws that every member of this model keeps; the instance's laws() may claim more (Ward
+    /// with ax = ay is isotropic), never less.
     Laws laws;
     std::unique_ptr<Brdf> (*make)(const Parameters& parameters);
     /// The columns of fits (brdfs/analytic/model_columns.h), from the formula of `make`.
@@ -81,7 +81,7 @@ struct Model {
 struct Format {
     std::string_view name;
     std::string_view help;
-    std::string_view extension;  ///< with the dot; used only where the content does not tell
+    std::string_view extension;  ///< with the dot; used only for unrecognised content
     /// Whether the first bytes and the size look like this format.
     bool (*recognises)(std::span<const unsigned char> head, std::uint64_t fileSize);
     std::vector<Parameter> parameters;  ///< options after the path: PATH:key=value
@@ -89,7 +89,7 @@ struct Format {
 };
 
 struct WriteOptions {
-    bool force = false;  ///< replace a file that stands
+    bool force = false;  ///< replace an existing file
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
 
@@ -100,8 +100,8 @@ struct Writer {
     std::string_view extension;         ///< with the dot; `convert` chooses by it
     std::vector<Parameter> parameters;  ///< options: --to NAME:key=value
     /// Samples a BRDF at the nodes of the format and writes them through an AtomicFile. Returns
-    /// what the format leaves out or alters apart from sampling, a sentence each. Throws UsageError
-    /// for a BRDF that the format cannot hold, NumericError for values that it cannot, OutputError.
+    /// a sentence for each loss other than sampling. Throws UsageError for a BRDF that the
+    /// format cannot hold, NumericError for values that it cannot hold, and OutputError.
     std::vector<std::string> (*write)(const Brdf& brdf, const std::string& path,
                                       const Parameters& parameters, const WriteOptions& options);
     bool readBack = true;  ///< `open` opens what was written

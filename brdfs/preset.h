@@ -22,7 +22,7 @@ struct Preset {
 };
 std::span<const Preset> presets();
 
-/// What a preset holds: the specification of its model or models, and where the values come from.
+/// The content of a preset: the specification of its model or models, and the source of its values.
 struct PresetContent {
     std::string spec;
     std::string source;
@@ -32,8 +32,8 @@ struct PresetContent {
 /// Throws InputError: not JSON, another format or version, a field absent or of the wrong type.
 PresetContent parsePreset(std::string_view text, const std::string& where);
 
-/// Opens what a preset names. Fields other than those above are left alone, so that
-/// the result of a fit is a preset too. Throws InputError as above, or for an invalid parameter.
+/// Opens the BRDF of a preset. Other fields than those above are ignored, so that the result of
+/// a fit is a preset too. Throws InputError as above, or for an invalid parameter.
 std::unique_ptr<Brdf> openPreset(std::string_view text, const std::string& where);
 
 /// Opens one material of a collection's JSON. Throws UsageError if `material` is empty or not among
@@ -41,8 +41,8 @@ std::unique_ptr<Brdf> openPreset(std::string_view text, const std::string& where
 std::unique_ptr<Brdf> openMaterial(std::string_view collection, const std::string& where,
                                    std::string_view material);
 
-/// Opens what "preset:NAME" means: a row of the table, or COLLECTION/MATERIAL. Throws UsageError
-/// for an unknown name (naming the nearest).
+/// Opens "preset:NAME": a row of the table, or COLLECTION/MATERIAL. Throws UsageError for an
+/// unknown name (naming the nearest).
 std::unique_ptr<Brdf> openNamedPreset(std::string_view name);
 
 }  // namespace hshfit::brdfs

@@ -46,7 +46,7 @@ Json scaled(const Json& value, const ChannelScale& scale) {
     Json product = Json::array();
     for (std::size_t c = 0; c < 3; ++c) {
         const Json& factor = value.is_array() && value.size() == 3 ? value[c] : value;
-        if (!factor.is_number()) return value;  // left to the check of values
+        if (!factor.is_number()) return value;  // the check of values reports it
         product.push_back(factor.get<double>() * scale.factors[c]);
     }
     return product;

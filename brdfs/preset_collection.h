@@ -27,14 +27,14 @@ struct PresetCollection {
 };
 
 /// `where` (a path or "preset:NAME") starts every message. Throws InputError: not JSON, another
-/// format or version, a field absent or of the wrong type. Whether the model takes the parameters
-/// shows on opening.
+/// format or version, a field absent or of the wrong type. Parameters are checked against the
+/// model on opening.
 PresetCollection parsePresetCollection(std::string_view text, const std::string& where);
 
-/// Whether a JSON text says that it is a collection.
+/// Whether a JSON text has the format of a collection.
 bool isPresetCollection(std::string_view text);
 
-/// Null if there is none of this name.
+/// The material of this name; null if there is none.
 const PresetCollection::Material* findMaterial(const PresetCollection& collection,
                                                std::string_view name);
 
@@ -51,9 +51,9 @@ const PresetCollection& presetCollection(std::size_t index);
 /// The index of the collection of this name.
 std::optional<std::size_t> findPresetCollection(std::string_view name);
 
-/// The names that resemble `word` most, best first, at most `most` of them, in whatever case: those
-/// that hold it; those with all its words (split at '-' and '/') to two edits; those within edits
-/// of a third of its length.
+/// The names most similar to `word`, at most `most` of them, ignoring case. Names that contain
+/// it come first. Others are ranked by edits: at most two over all its words (split at '-' and
+/// '/'), or a third of its length.
 std::vector<std::string> nearestNames(std::string_view word, std::span<const std::string> names,
                                       std::size_t most);
 

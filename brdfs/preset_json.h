@@ -1,6 +1,6 @@
 #pragma once
 
-// The JSON of presets: for the sources that read them, not for headers.
+// The JSON of presets, included by sources only.
 
 #include <hshfit/files/json_fields.h>
 
@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 /// Throws InputError, as do the others.
 Json parsePresetJson(std::string_view text, const std::string& format, const std::string& where);
 
-/// "model": a bare name, for a ':' would begin parameters.
+/// "model": a bare name, because a ':' would start parameters.
 std::string modelField(const JsonFields& preset);
 
 /// "model:key=value,…" from an object of numbers, triples of numbers, booleans and words.

@@ -64,7 +64,7 @@ Chosen parseNames(std::string_view names) {
     return chosen;
 }
 
-/// What it takes to keep albedos at or below 1: 1 / max(1, albedo), by direction and channel.
+/// The factor that keeps albedos at or below 1: 1 / max(1, albedo), by direction and channel.
 class EnergyScale {
 public:
     EnergyScale() = default;
@@ -80,7 +80,7 @@ public:
             const double theta = thetaStep() * static_cast<double>(node / azimuths_);
             const double phi =
                 2 * pi * static_cast<double>(node % azimuths_) / static_cast<double>(azimuths_);
-            // At 90 degrees itself f is 0 by definition; its neighbourhood counts.
+            // f is 0 by definition at 90 degrees, so that the albedo there is that of 89.9 degrees.
             const auto albedo =
                 directionalAlbedo(brdf, directionFromAngles(std::min(theta, radians(89.9)), phi));
             for (std::size_t c = 0; c < channels_; ++c) albedo_[node * channels_ + c] = albedo[c];
@@ -114,7 +114,7 @@ private:
     std::vector<double> albedo_;
 };
 
-/// One pair of directions, or several of the same wo, with the channels of each together.
+/// Evaluates single pairs, or several of the same wo, with the channels of a pair side by side.
 class Repaired : public RepairedBrdf {
 public:
     Repaired(std::unique_ptr<Brdf> brdf, Chosen chosen,
@@ -123,7 +123,7 @@ public:
         laws_.nonNegative |= chosen[negative];
         laws_.reciprocal |= chosen[reciprocity];
         if (!chosen[energy]) return;
-        chosen_[energy] = false;  // the table is of what the other repairs leave
+        chosen_[energy] = false;  // the table holds albedos after the other repairs
         scale_ = EnergyScale(*this, progress);
         chosen_[energy] = true;
         laws_.energyConserving = true;

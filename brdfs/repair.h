@@ -17,20 +17,20 @@ namespace hshfit::brdfs {
 struct Repair {
     std::string_view name;
     std::string_view help;
-    /// Whether the BRDF needs it, and why: "" if not.
+    /// The reason why the BRDF needs the repair; "" if it does not.
     std::string (*reason)(const Brdf& brdf, const Health& health);
 };
 
 std::span<const Repair> repairs();
 
-/// What a repair did while the BRDF was evaluated (a channel of a direction pair is a value).
+/// The effect of a repair during evaluation (a channel of a direction pair is a value).
 struct RepairCount {
     std::string_view name;
     std::uint64_t changed = 0;  ///< values
     std::uint64_t left = 0;     ///< values that it could not repair
 };
 
-/// A BRDF with repairs, each of which changes only what it names:
+/// A BRDF with repairs, each of which corrects one defect:
 ///
 /// missing      where nothing was measured, f is that of the pair with the same half vector, phi_d
 ///              and the largest theta_d below (by whole degrees) that is covered; left as it is if

@@ -189,7 +189,7 @@ std::string suggestion(std::string_view word, std::span<const std::string_view> 
             break;
         }
         const std::size_t distance = editDistance(word, candidate);
-        // Two edits turn any two-letter word into any other: not a resemblance.
+        // Two edits turn any two-letter word into any other and are no sign of similarity.
         if (distance < least && distance < candidate.size()) {
             least = distance;
             best = candidate;

@@ -13,15 +13,15 @@ namespace hshfit::brdfs {
 /// and given once, every value finite and in range, every parameter without a default given. Three
 /// equal colour values become one, so that grey stays grey.
 ///
-/// `owner` ("ward") starts every message. Throws UsageError that names the key, the value and what
-/// would be valid.
+/// `owner` ("ward") starts every message. Throws UsageError that names the key, the value and
+/// the valid values.
 Parameters parseParameters(std::string_view owner, std::span<const Parameter> declared,
                            std::string_view text);
 
-/// What a parameter accepts, for messages and listings: "0 to 1, or r/g/b", "1992|duer".
+/// The valid values of a parameter, for messages and listings: "0 to 1, or r/g/b", "1992|duer".
 std::string validValues(const Parameter& parameter);
 
-/// The least number of characters to insert, delete or replace that makes one the other.
+/// The least number of insertions, deletions and replacements that turns one into the other.
 std::size_t editDistance(std::string_view a, std::string_view b);
 
 /// " (did you mean 'ggx'?)" if one of `known` starts with `word` or is within two edits of it, else

@@ -14,7 +14,7 @@ namespace {
 constexpr std::string_view plus = " + ", times = " * ";
 constexpr double mostWeight = 1e6;
 
-/// "0.5 * SPEC" taken apart; `number` is empty if it does not begin with a number and " * ".
+/// "0.5 * SPEC" in its parts; `number` is empty if it does not begin with a number and " * ".
 struct Factors {
     std::string_view number, rest;
     double weight = 1;
@@ -43,7 +43,7 @@ WeightedSpec parseTerm(std::string_view term) {
     return {factors.weight + 0.0, std::string(factors.rest)};
 }
 
-/// The end of the term that starts at `start`: a " + " unless a longer text stands by itself.
+/// The end of the term that starts at `start`: the next " + ", unless a longer text is a whole.
 std::size_t endOfTerm(std::string_view spec, std::size_t start, bool (*isWhole)(std::string_view)) {
     std::vector<std::size_t> ends;
     for (std::size_t at = spec.find(plus, start); at != std::string_view::npos;

@@ -9,7 +9,7 @@
 
 namespace hshfit::brdfs {
 
-/// What a sum of BRDFs is written as, in one line.
+/// The syntax of a sum of BRDFs, in one line.
 inline constexpr std::string_view sumHelp =
     "any specifications joined by ' + ', each with an optional weight: "
     "'lambert:kd=0.1 + 0.5 * ggx:alpha=0.2'";
@@ -20,9 +20,9 @@ struct WeightedSpec {
     std::string spec;
 };
 
-/// Splits "SPEC + WEIGHT * SPEC + …" at " + ", with the spaces, but not within what `isWhole` says
-/// stands by itself (a path that exists), the longest first. One term of weight 1 if `spec` is no
-/// sum. Throws UsageError for an empty term or a weight out of range.
+/// Splits "SPEC + WEIGHT * SPEC + …" at " + ", with the spaces. A text for which `isWhole` is
+/// true (an existing path) is not split; the longest is tried first. One term of weight 1 if
+/// `spec` is no sum. Throws UsageError for an empty term or a weight out of range.
 std::vector<WeightedSpec> splitSum(std::string_view spec, bool (*isWhole)(std::string_view));
 
 /// sum_t weight_t f_t. Grey terms count for every channel of the others.
@@ -30,7 +30,7 @@ std::vector<WeightedSpec> splitSum(std::string_view spec, bool (*isWhole)(std::s
 ///              most 1, since no more is known of the albedos
 ///   coverage   where all terms are covered
 ///   lobes, kinks, facts   those of all terms; the tolerance is the largest
-/// Throws UsageError if rgb meets spectral, or spectra of different wavelengths each other.
+/// Throws UsageError for rgb with spectral terms and for spectra of different wavelengths.
 class Sum final : public Brdf {
 public:
     struct Term {

@@ -1,5 +1,5 @@
-// Parameters of one channel of a model as numbers N, and the weights of its terms. Compiled once
-// for each instruction set.
+// The parameters of one channel of a model as numbers N, and the weights of its terms. Compiled
+// once for each instruction set.
 
 #if defined(BRDFS_ANALYTIC_TERM_VALUES_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BRDFS_ANALYTIC_TERM_VALUES_H

@@ -1,5 +1,5 @@
-// A number that is a whole vector register, so that a formula written for any number `T` is
-// evaluated for several directions at a time. Compiled once for each instruction set.
+// A number type that fills a vector register: it evaluates a formula written for any number
+// type `T` for several directions at a time. Compiled once for each instruction set.
 
 #if defined(BRDFS_LANES_LANES_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BRDFS_LANES_LANES_H
@@ -46,7 +46,7 @@ struct Lanes {
     friend HWY_INLINE LaneMask operator>=(Lanes a, Lanes b) { return {hn::Ge(a.v, b.v)}; }
 };
 
-/// a where the mask holds, else b; of both, the one that is not taken may be anything.
+/// a where the mask holds, else b. The value that is not selected may be anything, NaN included.
 HWY_INLINE Lanes select(LaneMask mask, Lanes a, Lanes b) {
     return Lanes(hn::IfThenElse(mask.m, a.v, b.v));
 }
@@ -111,7 +111,7 @@ HWY_INLINE T bounded(T value) {
     return min(value, T(std::numeric_limits<double>::max()));
 }
 
-/// How many numbers a T holds, and how it is read from and written to arrays of them.
+/// The count of numbers in a T, and loads and stores of a T.
 template <class T>
 HWY_INLINE std::size_t lanesIn();
 template <>

@@ -24,8 +24,8 @@ HWY_INLINE double atanOfRatio(double y, double x) {
     return std::atan(y / x);
 }
 
-/// The polar angle of a direction above the horizon and what it lacks to a right angle; the smaller
-/// of the two keeps all its digits.
+/// The polar angle of a direction above the horizon and its complement; the smaller of the two
+/// keeps all its digits.
 template <class T>
 struct PolarAngle {
     T theta, complement;

@@ -52,7 +52,7 @@ HWY_INLINE Lanes log(Lanes x) {
     return logOf(parts.exponent - select(small, 54.0, 0.0), parts.fraction);
 }
 
-/// log(value) for normal value > 0, given excess = value - 1 as well, which near 1 has more digits.
+/// log(value) for normal value > 0. excess = value - 1 is given too, with more digits near 1.
 HWY_INLINE Lanes logNearOne(Lanes value, Lanes excess) {
     const LogParts parts(value);
     const auto near = abs(parts.exponent) < Lanes(0.5);

@@ -1,8 +1,8 @@
-// A number with its derivatives by n parameters (forward mode), so that a formula written for any
-// number is differentiated by the lines that evaluate it. Compiled once for each instruction set.
+// A number with its derivatives by n parameters (forward mode): a formula written for any number
+// type is differentiated by the code that evaluates it. Compiled once for each instruction set.
 //
-// `Slopes<double, n>` is a parameter, or what follows from parameters alone; `Slopes<Lanes, n>` is
-// what depends on directions as well. Directions themselves have no slopes and are plain Lanes.
+// `Slopes<double, n>` is a parameter or a function of parameters alone; `Slopes<Lanes, n>` is a
+// function of directions too. Directions themselves have no slopes and are plain Lanes.
 
 #if defined(BRDFS_LANES_LANES_SLOPES_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BRDFS_LANES_LANES_SLOPES_H

@@ -33,7 +33,7 @@ HWY_INLINE Slopes<V, n> abs(const Slopes<V, n>& a) {
     return select(a < 0.0, -a, a);
 }
 
-/// The slope at 0 is cut, so that what does not move there has none.
+/// The infinite slope at 0 is cut, so that a constant 0 has the slope 0.
 template <class V, int n>
 HWY_INLINE Slopes<V, n> sqrt(const Slopes<V, n>& a) {
     const V root = sqrt(a.value);
@@ -69,7 +69,7 @@ template <class V, int n>
 HWY_INLINE Slopes<V, n> logNearOne(const Slopes<V, n>& value, const Slopes<V, n>& excess) {
     return Slopes<V, n>::chained(logNearOne(value.value, excess.value), 1.0 / value.value, value);
 }
-/// Without slopes where x is 0.
+/// The slopes are 0 where x is 0.
 template <class V, int n>
 HWY_INLINE Slopes<V, n> pow(const Slopes<V, n>& x, const Slopes<V, n>& y) {
     const V power = pow(x.value, y.value), byX = power * y.value / x.value,
@@ -98,7 +98,7 @@ HWY_INLINE Slopes<Lanes, n> gather(const Slopes<double, n>* table, Lanes index) 
     return result;
 }
 
-/// Whether a parameter is 0 and stays so.
+/// Whether a parameter is the constant 0.
 HWY_INLINE bool isZero(double a) {
     return a == 0;
 }
@@ -109,7 +109,7 @@ HWY_INLINE bool isZero(const Slopes<double, n>& a) {
     return zero;
 }
 
-/// The number alone.
+/// The number without its slopes.
 template <class T>
 HWY_INLINE T plain(T a) {
     return a;
