@@ -38,7 +38,7 @@ struct BasisSteps {
     std::vector<Column> columns;  ///< m = 0 .. order - 1
 };
 
-/// For every basis of the catalog. Throws UsageError for another that is not of the Jacobi family.
+/// The steps of any basis of the catalog. Throws UsageError for others outside the Jacobi family.
 BasisSteps basisSteps(const Basis& basis);
 
 }  // namespace hshfit::gpu

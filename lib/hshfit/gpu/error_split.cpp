@@ -33,8 +33,8 @@ OutgoingSet measuredAt(const OutgoingSet& stored, std::size_t count) {
     return set;
 }
 
-/// Coefficients without an interpolation between outgoing directions: each direction of the set has
-/// its own, and no other may be asked for.
+/// Coefficients without interpolation between outgoing directions: each direction of the set
+/// has its own, and other directions must not be evaluated.
 class AtDirections : public Brdf {
 public:
     explicit AtDirections(const Coefficients& c) : channels_(c.channels) {
@@ -68,7 +68,7 @@ private:
     std::vector<Reconstruction> each_;
 };
 
-/// 0 with the lobes of another, so that the quadrature resolves what it is compared with.
+/// A BRDF of value 0: the error of another BRDF against it is the norm of that BRDF.
 class Black : public Brdf {
 public:
     explicit Black(Channels channels) : channels_(std::move(channels)) {}

@@ -30,8 +30,8 @@ double largestValue(const Coefficients& c) {
     return largest;
 }
 
-/// Whether the sine terms of elevations at phi = 0 vanish by the mirror symmetry. What is left of
-/// them has to be within the projection's own error.
+/// Whether the sine terms of elevations at phi = 0 vanish by the mirror symmetry. Their residue
+/// has to be within the projection's own error.
 bool sinesVanish(const Coefficients& c) {
     if (c.outgoing.map != OutgoingSet::Map::elevations || !c.isotropic || !c.bilateral)
         return false;

@@ -36,7 +36,7 @@ struct StoredChannel {
     std::size_t firstLayer = 0;
 };
 
-/// Coefficients as a GPU reads them, and what a shader has to know: what every container holds.
+/// Coefficients as a GPU reads them, and the facts that a shader needs: the content of a container.
 ///
 /// A shader looks the texel up for wo (bilinear, LOD 0), sums stored coefficients times basis
 /// functions of wi over j, and multiplies the channels with `toChannels`:
@@ -49,8 +49,8 @@ struct Payload {
     CoefficientHead head;
 
     Packing packing = Packing::coef4;
-    /// Slots l(l+1)+m that are stored, ascending. Functions that the basis lacks are left out, and
-    /// with them sin(m phi) where the BRDF is isotropic and bilateral and the map `elevations`.
+    /// Stored slots l(l+1)+m, ascending. They leave out functions that the basis lacks, and
+    /// sin(m phi) for an isotropic, mirror symmetric BRDF on the map `elevations`.
     std::vector<int> slots;
     std::vector<StoredChannel> stored;
     std::vector<std::vector<double>> toChannels;  ///< [channel][stored channel]
@@ -68,7 +68,7 @@ struct Payload {
     bool marked() const;
 };
 
-/// Layers that every API has room for: the least that WebGPU and WebGL2 promise.
+/// The number of layers that every API supports: the minimum of WebGPU and WebGL2.
 constexpr std::size_t maxLayers = 256;
 
 /// Packs coefficients. Throws UsageError for more than `maxLayers` layers, luminance and chroma of

@@ -36,7 +36,7 @@ constexpr std::array table{
 
 constexpr int maxEnvironmentOrder = 16;
 
-/// How a language calls what the templates share.
+/// The names in a language of constructs that the templates share.
 struct Words {
     std::string let, let2, let3, let4, var;  ///< begin a declaration
     std::string real, vec2, vec3, vec4;      ///< types, which also construct
@@ -110,7 +110,7 @@ Words wordsOf(Language language, const std::string& prefix) {
             .text = embedded::shader_osl};
 }
 
-/// For a comment: printable ASCII on one line, so that nothing can end the comment.
+/// Text for a comment: printable ASCII on one line, so that nothing can end the comment.
 std::string commentText(std::string text) {
     for (char& c : text) {
         const auto code = static_cast<unsigned char>(c);
@@ -235,15 +235,15 @@ void setPartials(data& page) {
         {"glslFunctions", embedded::shader_glsl_functions},
     };
     for (const auto& [name, text] : parts) {
-        // Lines of a template end in a newline each, and so does the line that names a partial.
+        // The last newline is dropped, because the line that names a partial has one of its own.
         std::string body(text);
         if (body.ends_with('\n')) body.pop_back();
         page.set(name, data(partial([body] { return body; })));
     }
 }
 
-/// Sections that are left out leave their blank lines: keeps those before a line that begins at the
-/// margin, one each.
+/// Omitted sections leave blank lines behind. One is kept before each line that starts at the
+/// margin.
 std::string withoutGaps(const std::string& text) {
     std::string result;
     bool gap = false;

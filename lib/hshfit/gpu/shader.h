@@ -20,7 +20,7 @@ struct LanguageEntry {
 std::span<const LanguageEntry> languages();
 
 struct ShaderOptions {
-    /// What every name in the snippet begins with, so that two can live in one program.
+    /// The prefix of every name in the snippet, so that one program can contain two snippets.
     std::string prefix = "hsh";
     /// Bands of the SH environment that `shade` takes; 0: no `shade`.
     int environmentOrder = 5;

@@ -10,7 +10,7 @@ namespace hshfit::gpu {
 /// A number as every shading language writes it: the nearest single-precision value.
 std::string shaderNumber(double value);
 
-/// What a function costs, as emitted.
+/// The cost of a function as emitted.
 struct ShaderCost {
     std::size_t fetches = 0;   ///< of texels, filtered
     std::size_t products = 0;  ///< multiplications, each with its addition

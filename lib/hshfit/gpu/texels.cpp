@@ -56,7 +56,8 @@ std::vector<LaneScale> laneScales(std::span<const double> values, const Texels& 
             low = std::min(low, lane[p * 4]);
             high = std::max(high, lane[p * 4]);
         }
-        // Shaders hold scales in single precision: what is stored is meant for those.
+        // Shaders hold scales in single precision, so that values are encoded with the rounded
+        // scales.
         scales[k] = {static_cast<double>(static_cast<float>(high - low)),
                      static_cast<double>(static_cast<float>(low))};
     }
@@ -89,8 +90,8 @@ void encodeFloating(std::span<const double> values, Texels& texels) {
     }
 }
 
-/// Rounds in two steps (double, float, half), which differs from one by at most half an ulp of
-/// float at a tie.
+/// Rounding in two steps (double, float, half) differs from one step by at most half an ulp of
+/// float, at a tie.
 void checkRange(std::span<const double> values, Number number) {
     const double largest = number == Number::float16 ? 65504.0 : 3.4028234e38;
     for (const double value : values) {

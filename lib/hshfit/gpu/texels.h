@@ -9,7 +9,7 @@
 
 namespace hshfit::gpu {
 
-/// How a number is kept in a texel; little-endian.
+/// The encoding of a number in a texel; little-endian.
 enum class Number {
     float16,  ///< IEEE binary16, nearest even; up to 65504
     float32,

@@ -44,7 +44,7 @@ std::string_view asText(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// float16, without basis textures: what the page uploads.
+/// The payload that the page uploads: float16, without basis textures.
 Payload shownPayload(Payload payload) {
     payload.basisTexels.reset();
     if (payload.coefficients.number == Number::float16) return payload;
@@ -54,7 +54,7 @@ Payload shownPayload(Payload payload) {
     return payload;
 }
 
-/// The band of every lane; one beyond all orders for lanes that hold nothing.
+/// The band of every lane; a band beyond all orders for unused lanes.
 std::vector<int> bandsOf(const Payload& payload) {
     std::vector<int> bands(payload.coefficients.layers * 4, payload.head.order);
     for (std::size_t c = 0; c < payload.stored.size(); ++c) {

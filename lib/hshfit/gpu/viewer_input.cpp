@@ -10,7 +10,7 @@
 namespace hshfit::gpu {
 namespace {
 
-/// SH, or HSH where SH are given, as far as the basis goes.
+/// Coefficients in SH, or in HSH if `payload` is in SH, at its order or the basis' highest.
 Payload inOtherBasis(const Payload& payload, const Brdf& source,
                      std::function<void(std::size_t, std::size_t)> progress) {
     const char* name = payload.head.basis == "sh" ? "hsh" : "sh";
@@ -34,7 +34,7 @@ ViewerInput viewerInput(Payload payload, const Brdf* source,
     try {
         input.payloads.push_back(inOtherBasis(input.payloads[0], *source, std::move(progress)));
     } catch (const NumericError&) {
-        // The pane says that there is one basis only.
+        // The pane shows that there is only one basis.
     }
     input.reference = tabulate(*source);
     return input;

@@ -15,7 +15,7 @@ const double ReferenceTable::lastThetaDifference = radians(89);
 
 namespace {
 
-/// Pairs below this elevation are continued from it: some models have a pole at the horizon.
+/// Below this elevation values are those at it, because some models have a pole at the horizon.
 const double lowest = radians(1);
 
 std::size_t index(int i) {
@@ -36,8 +36,8 @@ Cell between(double x, int count) {
     return {first, first + 1, place - first};
 }
 
-/// What the table has of the circle of azimuths: phi_d -> phi_d + pi is reciprocity; -phi_d is the
-/// mirror image where phi_h does not matter.
+/// The stored part of the circle of azimuths: phi_d -> phi_d + pi is reciprocity; -phi_d is the
+/// mirror image if f does not depend on phi_h.
 struct Arc {
     double range;
     bool mirrored;  ///< ends are mirrors; otherwise the arc repeats
@@ -90,7 +90,7 @@ DirectionPair nodePair(const ReferenceTable& table, int column, int row, int azi
                  ReferenceTable::lastThetaDifference * rest / (table.rest - 1.0), phi - phiHalf);
 }
 
-/// Where a pair lies: columns, rows, azimuths, rest.
+/// The position of a pair: columns, rows, azimuths, rest.
 std::array<Cell, 4> cellsOf(const ReferenceTable& table, const Direction& wi, const Direction& wo) {
     const Direction sum{wi.x + wo.x, wi.y + wo.y, wi.z + wo.z};
     const Direction gap{wi.x - wo.x, wi.y - wo.y, wi.z - wo.z};
@@ -118,7 +118,7 @@ std::array<Cell, 4> cellsOf(const ReferenceTable& table, const Direction& wi, co
             between(thetaD / ReferenceTable::lastThetaDifference, table.rest)};
 }
 
-/// From the hints of where f peaks: GGX's alpha, or half the angle to an axis.
+/// The roughness from the hints of lobes: GGX's alpha, or half the angle to an axis.
 double roughnessOf(const Brdf& brdf) {
     double narrowest = 1;
     for (const Lobe& lobe : brdf.lobes(directionFromAngles(pi / 4, 0))) {

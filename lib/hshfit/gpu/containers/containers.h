@@ -13,11 +13,11 @@
 
 namespace hshfit::gpu::inline containers {
 
-/// What the texels of a file are.
+/// The content of a file's texels.
 enum class Role { coefficients, basis };
 std::string roleName(Role role);  ///< "coef", "basis", as in file names and sidecars
 
-/// One set of texels to be written, with what is written about it.
+/// One set of texels to be written, with its metadata.
 struct TexelFile {
     Role role = Role::coefficients;
     const Texels& texels;
@@ -37,14 +37,14 @@ struct Container {
     std::vector<Number> numbers;  ///< those that it can hold; it can hold every map
     bool holdsSidecar;            ///< can be imported alone
 
-    /// Throws UsageError for what the container cannot hold.
+    /// Throws UsageError for texels that the container cannot hold.
     void (*write)(const TexelFile& file, AtomicFile& out);
     /// Whether these are the bytes of a file that this container's `write` made.
     bool (*recognises)(std::string_view bytes);
     /// The sidecar that a file holds. Throws InputError.
     std::string (*sidecar)(std::string_view bytes, const std::string& file);
-    /// The texels, in the layout of `Texels`: as many as `expected` says. Throws InputError where
-    /// the file says otherwise; allocates no more than can come out of its bytes.
+    /// The texels, in the layout and number of `expected`. Throws InputError for a file that
+    /// differs; allocates no more than its bytes can yield.
     std::vector<std::byte> (*texels)(std::string_view bytes, Role role, const Texels& expected,
                                      const std::string& file);
 
@@ -80,7 +80,7 @@ std::vector<ExportedFile> writeContainers(const Payload& payload,
                                           const std::string& name, const ExportOptions& options,
                                           FileSet& files);
 
-/// What was read, and from where.
+/// The payload that was read, and its files.
 struct ImportedPayload {
     Payload payload;
     std::string container;      ///< name in the table
@@ -99,7 +99,7 @@ ImportedPayload readPayload(const std::string& path);
 ImportedPayload readTexelFile(std::string_view bytes, const Container& container,
                               const std::string& path);
 
-/// Whether readPayload would take the file for one of ours. False for one that cannot be read.
+/// Whether readPayload recognises the file. False for a file that cannot be read.
 bool looksLikePayload(const std::string& path);
 
 }  // namespace hshfit::gpu::inline containers

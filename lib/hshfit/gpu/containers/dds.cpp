@@ -36,7 +36,7 @@ std::uint32_t pitch(const Texels& texels) {
            static_cast<std::uint32_t>(numberBytes(texels.number));
 }
 
-/// Words after the magic one, which readers of ours insist on; reserved ones are 0.
+/// The header words after the magic number, all of which our reader checks; reserved ones are 0.
 std::array<std::uint32_t, 36> headerOf(const Texels& texels) {
     std::array<std::uint32_t, 36> words{};
     words[0] = headerSize;
@@ -77,7 +77,7 @@ std::vector<std::byte> texels(std::string_view bytes, Role, const Texels& expect
                    {32, "resourceDimension"},
                    {34, "arraySize"}};
     for (const auto& [word, name] : checked) fields.require(4 + 4 * word, wanted[word], name);
-    // 0 and 1 both mean that there is the largest level only
+    // 0 and 1 both mean a single level
     if (fields.get<std::uint32_t>(4 + 4 * 6, "dwMipMapCount") > 1) {
         fields.fail("dwMipMapCount", 28, "is more than 1; coefficients have no mip levels");
     }

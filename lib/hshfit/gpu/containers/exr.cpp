@@ -10,7 +10,7 @@
 namespace hshfit::gpu::inline containers {
 namespace {
 
-constexpr std::size_t maxHeight = 1 << 16;  // of what checkExrHeader lets through
+constexpr std::size_t maxHeight = 1 << 16;  // for headers that checkExrHeader accepts
 constexpr ExrRules rules{.files = "strips of texels", .picture = true};
 
 std::size_t stripHeight(const Texels& texels) {

@@ -54,7 +54,7 @@ void write(const TexelFile& file, AtomicFile& out) {
     const Texels& texels = file.texels;
     const std::string name = identifier(file);
     std::string comment = file.sidecar;
-    // The same JSON, in which the comment neither ends nor seems to start again.
+    // Equivalent JSON that contains neither the end nor the start of a comment.
     for (const auto& [mark, harmless] :
          {std::pair{std::string_view("*/"), "*\\/"}, {"/*", "/\\u002a"}}) {
         for (std::size_t at = 0; (at = comment.find(mark, at)) != comment.npos;) {
@@ -95,7 +95,7 @@ std::string sidecar(std::string_view bytes, const std::string& file) {
     return std::string(bytes.substr(magic.size(), end + 1 - magic.size()));
 }
 
-/// Reads numbers as `write` puts them, one after the other.
+/// Reads the numbers that `write` has written, one after the other.
 class Numbers {
 public:
     Numbers(std::string_view text, Number number, const std::string& file)
@@ -149,7 +149,7 @@ std::vector<std::byte> texels(std::string_view bytes, Role role, const Texels& e
         throw InputError(fmt::format("{}: has no array '…_{}'", file, roleName(role)));
     }
     const std::string_view text = bytes.substr(first, end - first);
-    // a digit and a comma each at the least
+    // each takes at least a digit and a comma
     if (expected.count() > text.size() / 2) {
         throw InputError(fmt::format("{}: the array has too few numbers; its sidecar says {}", file,
                                      expected.count()));

@@ -18,8 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view sidecarSuffix = ".hsh.json";
-/// How far a test triple may be off, relative to the largest value: sums of doubles that another
-/// compiler orders differently.
+/// The largest error of a test triple, relative to the largest value, because another compiler
+/// may order sums of doubles differently.
 constexpr double testTolerance = 1e-9;
 
 std::string_view textOf(const MappedFile& file) {
@@ -55,7 +55,7 @@ void checkSum(std::span<const std::byte> bytes, const std::string& wanted,
                                  found.substr(0, 12), wanted.substr(0, 12)));
 }
 
-/// Corners with markers are finite too.
+/// Checks all texels; corners with markers are finite too.
 void checkFinite(const Texels& texels, const std::string& file) {
     const std::vector<double> values = decode(texels);
     const auto bad = std::find_if_not(values.begin(), values.end(),

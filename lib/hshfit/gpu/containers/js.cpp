@@ -45,7 +45,7 @@ void write(const TexelFile& file, AtomicFile& out) {
                           arrayType(file.texels.number)));
 }
 
-/// What stands between two marks.
+/// The text between two marks.
 std::string_view between(std::string_view bytes, std::string_view start, std::string_view end,
                          std::size_t keep, const std::string& file) {
     const std::size_t first = bytes.find(start);

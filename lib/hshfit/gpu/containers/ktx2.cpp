@@ -19,8 +19,8 @@ constexpr std::string_view magic("\xabKTX 20\xbb\r\n\x1a\n", 12);
 constexpr std::string_view sidecarKey = "hshfit:sidecar";
 constexpr std::uint32_t zstdScheme = 2;
 constexpr int zstdLevel = 19;  // the highest that needs no large window
-/// What is shrunk further than this is stored as it is, and readers refuse it: a small file cannot
-/// make them allocate without bounds.
+/// Data that would shrink further are stored uncompressed, and readers refuse such a ratio, so
+/// that a small file cannot make them allocate without bounds.
 constexpr std::uint64_t maxInflation = 1000;
 constexpr std::size_t headerBytes = 80, levelIndexBytes = 24;
 

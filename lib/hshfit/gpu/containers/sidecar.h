@@ -12,28 +12,28 @@
 
 namespace hshfit::gpu::inline containers {
 
-/// What a sidecar says about files: to be known before texels are read.
+/// The facts about files in a sidecar, which are needed before texels are read.
 struct SidecarIndex {
     Texels coefficients;  ///< without bytes
     std::optional<Texels> basisTexels;
     std::string coefficientsSha256, basisSha256;  ///< of the bytes
     std::vector<ExportedFile> files;
-    /// Which texels the file around this sidecar holds; none for a sidecar beside its files.
+    /// The content of the container that has this sidecar; none for a sidecar beside its files.
     std::optional<Role> holds;
 };
 
-/// The sidecar's text, docs/schemas/gpu.schema.json. `files` lists what lies beside it; `holds` is
-/// for one within a container.
+/// The sidecar's text, docs/schemas/gpu.schema.json. `files` lists the files beside it; `holds`
+/// is for a sidecar within a container.
 std::string sidecarText(const Payload& payload, std::span<const ExportedFile> files,
                         std::optional<Role> holds, std::span<const TestTriple> tests,
                         const std::string& fitError);
 
-/// The first step of reading; allocates nothing by the sizes that it finds. Throws InputError that
-/// starts with `file` and names the field.
+/// The first step of reading, which allocates nothing by the stated sizes. Throws InputError
+/// that starts with `file` and names the field.
 SidecarIndex parseSidecarIndex(std::string_view text, const std::string& file);
 
-/// The second step, once the index's texels have their bytes, so that sizes are real ones. Checks
-/// that slots, channels and layers are as pack() makes them; the tests go to `tests`.
+/// The second step, once the index's texels have their bytes and sizes are known to be true.
+/// Checks slots, channels and layers against those of pack(); the tests go to `tests`.
 Payload parseSidecar(std::string_view text, const std::string& file, SidecarIndex index,
                      std::vector<TestTriple>& tests);
 

@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 using Fields = JsonFields;
 
 constexpr int formatVersion = 1, maxDepth = 8;
-constexpr int maxSide = 1 << 14;   // what OutgoingSet takes
+constexpr int maxSide = 1 << 14;   // the limit of OutgoingSet
 constexpr double maxCount = 9e15;  // integers that a double holds
 
 void checkVersion(const Fields& root) {
@@ -113,7 +113,7 @@ void readSlots(const Fields& root, Payload& payload) {
               "slots");
 }
 
-/// As many stored channels as there are, one after the other. Only chroma may be cut.
+/// The stored channels, one after the other. Only chroma may have fewer bands.
 void readStored(const Fields& root, Payload& payload) {
     const std::vector<Fields> rows = root.objects("stored");
     const bool rgb = payload.packing == Packing::rgb;

@@ -20,7 +20,7 @@ std::string compact(const Json& value) {
     return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// One key a line, and one element a line of arrays that hold arrays or objects.
+/// Prints one key per line, and one element per line for arrays of arrays or objects.
 std::string readable(const Json& document) {
     std::string text = "{";
     for (const auto& [key, value] : document.items()) {
@@ -65,7 +65,7 @@ Json basisJson(const Payload& payload) {
             {"skipped_slots", skipped}};
 }
 
-/// How a direction becomes texture coordinates, as payload.h says.
+/// The map from a direction to texture coordinates, as in payload.h.
 Json parabolicJson(int width, int height, const char* fill) {
     const auto scale = [](int n) { return (n - 2) / (2.0 * n); };
     return {{"type", "parabolic"},
@@ -126,7 +126,7 @@ std::pair<double, double> rangeOf(const Texels& texels, bool marked) {
     if (marked) {
         for (const std::size_t texel :
              {std::size_t{0}, width - 1, (height - 1) * width, height * width - 1}) {
-            values[texel * 4] = values[(width + 1) * 4];  // not read there: any value that is
+            values[texel * 4] = values[(width + 1) * 4];  // replaces a marker by any stored value
         }
     }
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
@@ -180,7 +180,7 @@ Json testsJson(std::span<const TestTriple> tests) {
     return rows;
 }
 
-/// Keys that say what the numbers are, taken over from the coefficient file word for word.
+/// Keys that describe the numbers, copied verbatim from the coefficient file.
 void addCoefficientKeys(const Payload& payload, Json& document) {
     for (const auto& [key, text] : metadataOf(payload.head)) {
         if (key == "format" || key == "version" || key == "tolerance") continue;

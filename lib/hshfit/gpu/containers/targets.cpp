@@ -17,7 +17,7 @@ struct Renderer {
     std::vector<std::string> parts;
 };
 
-/// docs/renderers.md says why these.
+/// docs/renderers/ has a page for each.
 const Renderer renderers[] = {
     {"three", "three.js: data for a DataArrayTexture, a GLSL ES snippet", {"bin", "js", "glsl-es"}},
     {"babylon", "Babylon.js: data for a RawTexture2DArray", {"bin", "js", "glsl-es", "wgsl"}},

@@ -7,8 +7,8 @@
 
 namespace hshfit::gpu::inline containers {
 
-/// A pair of directions and what the payload means there, for whoever reads the files to check
-/// himself with.
+/// A pair of directions and the payload's value there, with which a reader of the files can
+/// check itself.
 struct TestTriple {
     Direction wo, wi;           ///< float32-exact, so that shaders start from the same numbers
     std::vector<double> value;  ///< per channel, the sum before it is clamped

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the two EXR containers share. Only for sources that use OpenEXR.
+// The shared parts of the two EXR containers, for sources that use OpenEXR.
 
 #include <hshfit/coefficient_files/coefficient_formats.h>
 #include <hshfit/error.h>
