@@ -61,7 +61,7 @@ public:
                 }
             }
         }
-        // It is no linear form: taking the diffuse part out hardly helps it.
+        // The halfway form is not linear and gains little from a diffuse part taken out.
         if (split_ == "diffuse") return;
         for (const HalfwayOrders& orders : halfwaySizes) {
             Form form;
@@ -108,7 +108,7 @@ private:
             form.outgoing = spec;
             form.rank = 0;
             const OutgoingSet set = OutgoingSet::parse(spec);
-            // Elevations lie at azimuth 0, where mirror symmetry leaves no sines.
+            // Elevations are at azimuth 0, where sines vanish by mirror symmetry.
             const bool even = set.map == OutgoingSet::Map::elevations && laws_.mirrorSymmetric;
             std::size_t slots = 0;
             for (int l = 0; l < form.order; ++l) {

@@ -10,14 +10,14 @@
 
 namespace hshfit::plan {
 
-/// A way to keep a material, before it has been tried.
+/// A candidate form of a material, before it has been tried.
 struct Rung {
     Form form;
     std::size_t source = 0;  ///< which of the material's versions (all channels, one channel)
-    std::size_t bytes = 0;   ///< what the numbers will take; factors of low rank take less
+    std::size_t bytes = 0;   ///< expected size of the numbers; low-rank factors take less
 };
 
-/// One version of a material and what may be taken out of it first.
+/// One version of a material and the parts that may be split off first.
 struct LadderSource {
     const Brdf* brdf = nullptr;
     /// Specifications for Form::split, "" for none, and the numbers that each adds to a file.
@@ -39,7 +39,7 @@ struct LadderOptions {
 /// each in float32, half, unorm16 and unorm8.
 std::vector<Rung> ladder(std::span<const LadderSource> sources, const LadderOptions& options);
 
-/// The same form but for its precision: what is projected once.
+/// The form without its precision: forms that share one projection.
 bool sameNumbers(const Form& a, const Form& b);
 
 }  // namespace hshfit::plan

@@ -16,16 +16,16 @@ namespace hshfit::plan {
 namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
-/// Interpolation rarely mends what truncation breaks: beyond this share of the budget it is not
-/// tried.
+/// Forms whose truncation exceeds this share of the budget are not tried, since interpolation
+/// rarely lowers the error.
 constexpr double floorSlack = 1.25;
 constexpr std::size_t shownCheaper = 3;
-/// How far up a choice with half the error is looked for.
+/// Limits of the search for a dearer choice with half the error.
 constexpr std::size_t farthestDearer = 4;
 constexpr std::size_t mostTriedDearer = 150;
-/// A file's projection agrees this much better than the budget asks.
+/// The ratio of the budget to the tolerance of a file's projection.
 constexpr double fileShare = 100;
-/// Forms that are timed where times decide.
+/// The number of forms that are timed if times decide.
 constexpr std::size_t mostTimed = 12;
 
 std::string keyOf(const Rung& rung) {
@@ -57,7 +57,7 @@ std::vector<Radiance> MaterialSearch::radianceOf(const Representation& represent
         return light_->radianceOf(*pairEvaluator(representation, open_),
                                   representation.head.channels.count());
     }
-    // One table of the light serves all orders: they are its prefixes.
+    // One table of the light serves all orders, which are its prefixes.
     const std::string& basis = representation.head.basis;
     const int order = std::min(options_.maxOrder, bases::find(basis).maxOrder);
     const std::vector<BasisLight>& light = light_->in(basis, order, representation.head.quantity);
@@ -95,7 +95,7 @@ std::optional<double> MaterialSearch::unroundedError(const Rung& rung) {
     return errorOf(unrounded);
 }
 
-/// A hundredth of the budget: projecting more exactly would show nowhere.
+/// A hundredth of the budget, since a finer projection would change no digit that is shown.
 double MaterialSearch::toleranceOf(const Form& form) const {
     if (form.kind == Representation::Kind::halfway) return 0;
     return std::max(versions_.front().brdf->defaultTolerance(),
@@ -193,8 +193,8 @@ void MaterialSearch::takeFastest() {
     }
 }
 
-/// The front of error over bytes below the chosen rung, as far as errors are known or bounded from
-/// below by truncation; then measured. And the first above it with at most half the error.
+/// Finds the front of error over bytes below the chosen rung, by known errors or bounds from
+/// truncation, and measures it. Finds the first rung above with at most half the error.
 void MaterialSearch::findNeighbours(std::size_t chosen) {
     std::vector<std::size_t> front;
     double least = never;

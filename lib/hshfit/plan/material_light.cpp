@@ -9,7 +9,7 @@ namespace {
 
 constexpr int lastLevel = 9;
 constexpr std::size_t mostSamples = 250000;
-/// Degrees between views of the search and of the check, and how far the latter are turned.
+/// Degrees between views of the search and of the check, and the turn of the latter.
 constexpr double searchStep = 7, checkStep = 11, checkShift = 0.37;
 /// Lattice points of the check, over all lights of one orientation.
 constexpr std::size_t checkPoints = 32768;

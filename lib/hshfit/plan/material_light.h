@@ -11,12 +11,12 @@
 
 namespace hshfit::plan {
 
-/// The light on one material, in all of its orientations, sampled so finely that outgoing radiance
-/// does not change any more, and what follows from it.
+/// The light on one material in all of its orientations, with samples refined until outgoing
+/// radiance converges, and quantities that follow from it.
 class MaterialLight {
 public:
-    /// Refines until two levels agree to a twentieth of the budget or a quarter of a million
-    /// samples are reached: `converged` says which.
+    /// Refines until two levels agree to a twentieth of the budget, in which case `converged`
+    /// is true, or a quarter of a million samples are reached.
     MaterialLight(const Scene& scene, const Material& material, const Brdf& brdf);
 
     const Budget& budget() const { return budget_; }
@@ -31,7 +31,7 @@ public:
     /// Flux across a surface, per R, G, B, over all orientations.
     Rgb flux() const;
 
-    /// For each orientation; kept once made.
+    /// The light in a basis for each orientation, cached after the first call.
     const std::vector<BasisLight>& in(const std::string& basis, int order, Quantity quantity);
     /// Outgoing radiance of any BRDF, for each orientation.
     std::vector<Radiance> radianceOf(const Brdf& brdf) const;
@@ -52,8 +52,8 @@ private:
     std::map<std::string, std::vector<BasisLight>> in_;
 };
 
-/// The orientations to try: those stated, each in 8 turns if the tangent may be any and turning
-/// makes a difference.
+/// The orientations to try: the stated ones, each in 8 turns about the normal if the tangent is
+/// free and turns matter.
 std::vector<Frame> framesOf(const Scene& scene, const Material& material, const Brdf& brdf);
 
 /// The error of `approximation` against `truth` by lattice points, at views that lie between those

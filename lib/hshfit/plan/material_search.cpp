@@ -15,12 +15,12 @@
 namespace hshfit::plan {
 namespace {
 
-/// Bands in which the light is described, and the level of light sampling that resolves them: 41
+/// The number of bands of the light, and the level of light sampling that resolves them: 41
 /// Gauss nodes are exact to degree 81.
 constexpr int lightOrder = 24, lightLevel = 4;
 /// Directions for which truncation is measured where the BRDF is not isotropic.
 constexpr std::size_t mostFloorViews = 48;
-/// Projections for choosing agree this much better than the budget asks.
+/// The ratio of the budget to the tolerance of projections for choosing.
 constexpr double projectionShare = 20;
 
 /// A version of one channel may take up to this share of the budget.
@@ -99,7 +99,7 @@ void MaterialSearch::addPart(Version& version, const std::string& split) {
     version.parts.emplace(split, std::move(part));
 }
 
-/// One channel will do if the channels that are lit agree within the budget.
+/// Adds a version of one channel if all lit channels agree within the budget.
 void MaterialSearch::considerOneChannel() {
     const Version& whole = versions_.front();
     const std::size_t channels = whole.brdf->channels().count();
@@ -152,7 +152,7 @@ int MaterialSearch::usefulOrder(double energy, const Views& views,
     return lightOrder;
 }
 
-/// Truncation by itself: coefficients of the views' own directions, cut at every order.
+/// Measures truncation alone: coefficients of the views' own directions, cut at every order.
 void MaterialSearch::measureFloor(Part& part, Quantity quantity) {
     const Brdf& brdf = part.kept->remainder();
     const bool isotropic = brdf.laws().isotropic;

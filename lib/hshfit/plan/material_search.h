@@ -12,7 +12,7 @@
 
 namespace hshfit::plan {
 
-/// All that is tried for one material.
+/// The search for the cheapest form of one material.
 class MaterialSearch {
 public:
     MaterialSearch(const Scene& scene, const Material& material, const BrdfOpener& open,
@@ -22,7 +22,7 @@ public:
     MaterialPlan run();
 
 private:
-    /// The material with one part taken out of it, or none.
+    /// The material with one part split off, or none.
     struct Part {
         std::string added;                ///< as in Representation
         std::unique_ptr<Brdf> remainder;  ///< none: the version itself
@@ -41,34 +41,35 @@ private:
     void addPart(Version& version, const std::string& split);
     void considerOneChannel();
     void describeLight();
-    /// The least order from which on the light's bands change L by less than a quarter of the
-    /// budget, by Cauchy and Schwarz with the energy of f over `views`; the highest if none does.
+    /// The least order beyond which the light's bands change L by less than a quarter of the
+    /// budget, by the Cauchy-Schwarz inequality with the energy of f over `views`; else the
+    /// highest.
     int usefulOrder(double energy, const Views& views, const std::vector<Radiance>& truth) const;
     void measureFloors(Part& part);
     void measureFloor(Part& part, Quantity quantity);
 
     Part& partOf(const Rung& rung) { return versions_[rung.source].parts.at(rung.form.split); }
-    /// For each orientation.
+    /// Outgoing radiance for each orientation.
     std::vector<Radiance> radianceOf(const Representation& representation, const Part& part);
-    /// The error of the rung as tried; none where it cannot be made.
+    /// The error of the rung; none if the rung cannot be computed.
     std::optional<double> errorOf(const Rung& rung);
-    /// Whether it has been tried and could be made.
+    /// Whether the rung has been tried and could be computed.
     bool wasTried(const Rung& rung) const;
-    /// What its truncation alone costs, from a few directions; 0 if not known.
+    /// The error of the rung's truncation alone, from a few directions; 0 if not known.
     double floorOf(const Rung& rung);
-    /// The error that its numbers have before they are rounded.
+    /// The error of the rung before its numbers are rounded.
     std::optional<double> unroundedError(const Rung& rung);
     double toleranceOf(const Form& form) const;
     Choice choiceOf(const Rung& rung, double error) const;
-    /// Projects as the command does and checks by lattice points; none if it does not hold.
+    /// Projects as the command does and verifies by lattice points; none if verification fails.
     std::optional<Accepted> accept(const Rung& rung);
 
     std::optional<std::size_t> firstWithin(std::size_t from);
     void takeCheapest();
     void takeFastest();
-    /// Without an accepted choice: the front of all that was tried.
+    /// Without an accepted choice, finds the front of all tried rungs.
     void findNeighbours(std::size_t chosen);
-    /// The least error that truncation leaves to any linear form.
+    /// The least truncation error of any linear form.
     double leastFloor() const;
     void refuse();
 

@@ -10,35 +10,35 @@
 
 namespace hshfit::plan {
 
-/// One way to keep a material, as tried in the scene's light.
+/// One form of a material and its error in the scene's light.
 struct Choice {
     std::string spec;  ///< the material's specification, or one channel of it ("grey:…")
     Form form;
     double tolerance = 0;  ///< of the projection; 0 where the form has none
     std::size_t bytes = 0;
     double error = 0;                        ///< the budget's measure
-    std::optional<double> nanoseconds = {};  ///< a pair; only where times were asked for
+    std::optional<double> nanoseconds = {};  ///< per pair; only if times are measured
 };
 
-/// An accepted choice: with the numbers that go to the file, and what a second integration says.
+/// An accepted choice with the numbers of its file, verified by a second integration.
 struct Accepted {
     Choice choice;
     Representation representation;
-    /// By lattice points instead of quadrature, at other views, from the representation itself.
+    /// The error by lattice points instead of quadrature, at other views, of the representation.
     double verified = 0;
     std::vector<double> thetas = {}, errors = {};  ///< verified, by elevation (radians)
-    std::size_t raised = 0;  ///< cheaper choices that passed but for this check
+    std::size_t raised = 0;                        ///< cheaper choices that failed only this check
 };
 
 struct MaterialPlan {
     Material material;
     std::optional<Accepted> accepted;
-    /// Cheaper ones nearest to it, each the best for its bytes; where there is no plan, the best.
+    /// The nearest cheaper choices, each the best for its bytes; without a plan, the best ones.
     std::vector<Choice> cheaper;
     std::optional<Choice> dearer;      ///< the first with at most half the error
-    std::string refused;               ///< why there is no plan; empty where there is one
-    std::vector<std::string> instead;  ///< what to use then
-    std::vector<std::string> rules;    ///< what the scene allowed to leave out
+    std::string refused;               ///< reason why there is no plan; empty if there is one
+    std::vector<std::string> instead;  ///< suggestions without a plan
+    std::vector<std::string> rules;    ///< simplifications that the scene allows
     std::vector<double> lightPower;    ///< [l]: share of cos-weighted light in HSH band l
     std::size_t rungs = 0, tried = 0;
     std::size_t lightSamples = 0, views = 0;
@@ -53,24 +53,24 @@ struct Plan {
 struct PlanOptions {
     std::vector<std::string> bases = {"hsh", "zernike", "makhotkin"};
     int maxOrder = 12;
-    bool byTime = false;  ///< measure nanoseconds and take the fastest that fits
+    bool byTime = false;  ///< measure nanoseconds and choose the fastest form within the budget
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
 
-/// The cheapest way to keep every material within its budget in the light of its scene.
+/// The cheapest form of every material within its error budget in the light of its scene.
 ///
-/// Choices are tried from few bytes to many (ladder.h) with outgoing radiance by quadrature that
-/// follows the lights; the first within the budget is projected in full and
-/// checked by `latticeSamples` at other views; if that fails, the search goes on. The same scene
-/// gives the same plan, unless times are asked for. A material without a plan says why.
+/// Choices are tried from few bytes to many (ladder.h) with outgoing radiance by quadrature
+/// that follows the lights. The first within the budget is projected in full and verified by
+/// `latticeSamples` at other views; if that fails, the search goes on. The same scene gives the
+/// same plan, unless times are measured. A material without a plan has a reason.
 /// Throws UsageError for a basis that is not orthonormal or a spectral material, InputError for one
 /// that cannot be opened.
 Plan planScene(const Scene& scene, const BrdfOpener& open, const PlanOptions& options = {});
 
-/// The call that makes the choice's file, as messages name it (wording.h).
+/// The call that writes the choice's file, as messages name it (wording.h).
 std::string commandOf(const Choice& choice, const std::string& file);
 
-/// What HSH of order 10 on a 32 x 32 map takes, RGB in float32.
+/// The size of HSH of order 10 on a 32 x 32 map, RGB in float32.
 constexpr std::size_t baselineBytes = std::size_t{32} * 32 * 3 * 100 * 4;
 
 }  // namespace hshfit::plan

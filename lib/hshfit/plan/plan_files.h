@@ -13,10 +13,10 @@ std::string planJson(const Plan& plan);
 /// the next cheaper and dearer bytes and errors, the command, and why there is no plan.
 std::string planCsv(const Plan& plan);
 
-/// A page for people.
+/// The HTML page of a plan.
 std::string planPage(const Plan& plan);
 
-/// A few lines for the terminal.
+/// The summary for the terminal.
 std::string planText(const Plan& plan);
 
 /// MATERIAL.json for each material that has a plan, then plan.json, plan.csv and plan.html; the

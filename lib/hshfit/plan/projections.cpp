@@ -14,13 +14,13 @@
 namespace hshfit::plan {
 namespace {
 
-/// Of f, per direction, before a projection gives up: this is only a search.
+/// The limit of evaluations of f per direction, which is low because this is only a search.
 constexpr std::size_t mostEvaluations = std::size_t{1} << 22;
 
 /// Order of the matrices of BRDFs that are not isotropic, whose terms grow with its fourth power.
 constexpr int anisotropicOrder = 8;
-/// Outgoing directions closer to the horizon than this cosine are left out here: they stand for a
-/// thousandth of the hemisphere, and lobes are narrowest there.
+/// Outgoing directions below this cosine are left out: they are a thousandth of the hemisphere,
+/// and lobes are narrowest there.
 constexpr double leastCosine = 1e-3;
 
 /// Gauss-Legendre in sqrt(cos theta_o) by equispaced azimuths, for products of `order` bands.
@@ -41,7 +41,7 @@ OutgoingSet outerNodes(int order, bool isotropic) {
     return set;
 }
 
-/// The matrix that has these coefficients over wi at the nodes over wo.
+/// The matrix whose coefficients over wi at the nodes over wo are these.
 Representation gathered(const Coefficients& c, const Basis& basis, bool reciprocal) {
     Representation result;
     result.kind = Representation::Kind::basis;

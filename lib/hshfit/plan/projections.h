@@ -11,9 +11,9 @@
 
 namespace hshfit::plan {
 
-/// Projections of one BRDF that are made once, at the highest order, and cut to what is asked for.
-/// To be used for choosing: cut coefficients agree with those of `project` at that order within the
-/// tolerance, not to the last bit; matrices leave out the last thousandth above the horizon.
+/// Projections of one BRDF that are computed once, at the highest order, and cut to lower
+/// orders. They serve the choice only: cut coefficients agree with those of `project` within the
+/// tolerance, not to the last bit, and matrices leave out the last thousandth above the horizon.
 class KeptProjections : public ProjectionSource {
 public:
     /// `brdf` has to outlive this.
@@ -25,15 +25,15 @@ public:
     Representation halfway(const Form& form) override;
     const Brdf& remainder() const override { return brdf_; }
 
-    /// In every basis of the ladder, at its highest order or at most `order`, for any set of
-    /// directions; not kept.
+    /// Coefficients in every basis of the ladder, at its highest order or at most `order`, for
+    /// any set of directions; not cached.
     std::vector<Coefficients> allBases(const OutgoingSet& set, Quantity quantity, int order = 0);
 
 private:
     ProjectionOptions optionsFor(Quantity quantity) const;
     int highestOrder(const std::string& basis) const;
 
-    /// Calls `make` unless it failed before under this key: then throws the same again.
+    /// Calls `make`. If it failed before under this key, throws the same error again.
     void once(const std::string& key, const std::function<void()>& make);
 
     const Brdf& brdf_;

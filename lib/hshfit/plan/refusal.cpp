@@ -16,7 +16,7 @@ std::optional<double> lobeDegrees(const Brdf& brdf) {
     if (lobes.empty()) return {};
     double width = std::numeric_limits<double>::infinity();
     for (const Lobe& lobe : lobes) {
-        // A slope of the half vector moves wi by twice its angle.
+        // An angle of the half vector moves wi by twice that angle.
         width = std::min(
             width, lobe.about == Lobe::About::halfway ? 2 * std::atan(lobe.width) : lobe.width);
     }

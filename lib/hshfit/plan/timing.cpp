@@ -18,7 +18,7 @@ struct Directions {
     DirectionBatch batch() const { return {x.data(), y.data(), z.data(), x.size()}; }
 };
 
-/// Spread over the hemisphere by multiples of an irrational step.
+/// Directions spread over the hemisphere by multiples of an irrational step.
 Directions directions(double step) {
     Directions result;
     for (std::size_t k = 0; k < pairs; ++k) {
@@ -38,7 +38,7 @@ double nanosecondsPerPair(const Representation& representation, const BrdfOpener
     const auto evaluator = pairEvaluator(representation, open);
     const Directions wi = directions(std::sqrt(2.0));
     Directions wo = directions(std::sqrt(3.0));
-    // Elevations of wo do not follow those of wi.
+    // The shuffle keeps elevations of wo independent of those of wi.
     for (auto* axis : {&wo.x, &wo.y, &wo.z}) {
         std::vector<double> shuffled(pairs);
         for (std::size_t k = 0; k < pairs; ++k) shuffled[k] = (*axis)[k * 1597 % pairs];
