@@ -18,13 +18,13 @@ struct SphereLight {
     double strength = 1;
 };
 
-/// The lights of the spheres.
+/// The lights of the sphere pictures.
 struct SphereRig {
     /// The key light from the upper left at 45 degrees to the line of sight, which shows highlights
     /// in front; the fill light from the lower right at 75 degrees, which shows grazing ones.
     std::vector<SphereLight> lights = {{directionFromAngles(pi / 4, 3 * pi / 4), 1},
                                        {directionFromAngles(75 * pi / 180, -pi / 6), 0.25}};
-    /// Radiance from all around, so that the albedo shows in the shadows too.
+    /// Uniform radiance from all directions, so that the albedo is visible in the shadows too.
     double dome = 0.1;
 };
 
@@ -40,7 +40,7 @@ struct SpherePicture {
     int size = 0;
     std::vector<float> radiance;  ///< [row][column][R, G, B], the mean over the covered samples
     std::vector<float> coverage;  ///< [row][column], the share of samples on the sphere
-    std::string colours;          ///< how the channels became R, G and B
+    std::string colours;          ///< the conversion of channels to R, G and B
     std::size_t notFinite = 0;    ///< values of f that were left out
 };
 
@@ -52,8 +52,8 @@ constexpr double sphereRadius = 0.96;
 /// at the normal n = (x, y, sqrt(1 - x^2 - y^2)) with x = (2 (column + 1/2) / size - 1) /
 /// sphereRadius, y likewise and up. The tangent is horizontal, along (n.z, 0, -n.x), and the
 /// bitangent n x t points up: brushed materials are brushed along the parallels. Spectra become RGB
-/// as in colour.h; where their wavelengths do not suffice, the mean over channels, as grey.
-/// Values below 0 are kept. The same picture for any number of threads.
+/// as in colour.h; spectra with too few wavelengths become the mean over channels, as grey.
+/// Values below 0 are kept. The picture does not depend on the number of threads.
 SpherePicture renderSphere(const Brdf& brdf, const AlbedoTable& albedo,
                            const SphereOptions& options = {});
 SpherePicture renderSphere(const Brdf& brdf, const SphereOptions& options = {});

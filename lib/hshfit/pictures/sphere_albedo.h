@@ -14,8 +14,8 @@ namespace hshfit::inline pictures {
 /// Isotropic: every degree from 0 to 89. Otherwise every 5 degrees to 85 and 89, times 32 azimuths,
 /// or 9 over the first quadrant under mirror symmetry. Linear in between, constant past 89 degrees.
 /// Each entry is integrated with the grid of level 2 (quadrature.h), whose cost does not depend on
-/// the values; values of f that are not finite are left out and counted. The same for any number of
-/// threads.
+/// the values; values of f that are not finite are left out and counted. Results do not depend
+/// on the number of threads.
 class AlbedoTable {
 public:
     explicit AlbedoTable(const Brdf& brdf);

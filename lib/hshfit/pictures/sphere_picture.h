@@ -9,7 +9,7 @@
 namespace hshfit::inline pictures {
 
 /// The exposure, in stops, at which 95 % of the spheres' pixels have their largest channel at or
-/// below 0.8 of white: highlights may burn out, surfaces do not. Rounded to a tenth; 0 for black.
+/// below 0.8 of white: highlights may clip, surfaces do not. Rounded to a tenth; 0 for black.
 double automaticExposure(std::span<const SpherePicture> spheres);
 
 /// approximation - reference, channel by channel. Of the same size.
@@ -18,7 +18,7 @@ SpherePicture sphereDifference(const SpherePicture& reference, const SpherePictu
 /// Mean over the pixels on the sphere and R, G, B of the radiance squared.
 double meanSquare(const SpherePicture& sphere);
 
-/// |radiance| times `factor`, to look at.
+/// |radiance| times `factor`, for display.
 SpherePicture amplified(const SpherePicture& difference, double factor);
 
 /// The largest of 1, 2, 5, 10, … 1000 that keeps 98 % of the amplified difference, at this
@@ -35,7 +35,7 @@ std::string spheresPng(std::span<const SpherePicture> spheres, double stops);
 void writeSpheres(std::span<const SpherePicture> spheres, double stops, const std::string& path,
                   const std::map<std::string, std::string>& attributes = {});
 
-/// Throws the UsageError of writeSpheres, before any work is done.
+/// Checks the extension before any work. Throws the UsageError of writeSpheres.
 void checkSpheresPath(const std::string& path);
 
 }  // namespace hshfit::inline pictures

@@ -26,9 +26,9 @@ struct DegreeErrors {
 /// these vectors, so that the rounding to float counts as an error of float.
 ///
 /// The reference is the textbook three-term recurrence of the orthonormal Jacobi polynomials in
-/// extended precision (long double), with constants from the log-gamma function and not from the
-/// basis. It is right to 3e-14 at degree 1000 where long double has 64 bits. No error is measured
-/// for functions below 1e-250 (1e-30 in float) everywhere.
+/// extended precision (long double), with constants from the log-gamma function and not from
+/// the basis. Its error is 3e-14 at degree 1000 if long double has a 64-bit significand. No
+/// error is measured for functions below 1e-250 (1e-30 in float) everywhere.
 ///
 /// `lsosh` evaluates SH; the H-basis has no degrees. Throws UsageError for these two.
 DegreeErrors evaluationErrors(const bases::JacobiBasis& basis, Precision precision);
@@ -37,7 +37,7 @@ DegreeErrors evaluationErrors(const bases::JacobiBasis& basis, Precision precisi
 /// integrates the products exactly.
 DegreeErrors orthonormalityErrors(const bases::JacobiBasis& basis, Precision precision);
 
-/// The m that are looked at: 0, 1, 2, 5, 10, 20, 50, … and the last two.
+/// The m that are measured: 0, 1, 2, 5, 10, 20, 50, … and the last two.
 std::vector<int> sampledOrders(int order);
 
 }  // namespace hshfit::stability

@@ -8,8 +8,8 @@ namespace {
 using bases::JacobiFamily;
 using Extended = long double;
 
-/// mu and 1 - mu of the unit vector that a rounded one stands for: from the horizontal part near
-/// the pole, from z elsewhere.
+/// mu and 1 - mu of the unit vector that a rounded vector approximates: from its horizontal
+/// part near the pole, from z elsewhere.
 struct Position {
     Extended mu, oneMinusMu;
 };
@@ -94,7 +94,7 @@ std::vector<long double> referenceTheta(const JacobiFamily& family, int m, int o
     for (std::size_t p = 0; p < count; ++p) {
         const Position at = positionOf(directions[p]);
         const Extended t = argumentOf(family.argument, at);
-        // Everything but the polynomial; exp underflows where the function does.
+        // All factors but the polynomial; exp underflows where the function does.
         Extended scale = m == 0 ? start : start * std::exp(m * logFactor(family.factor, at));
         if (family.timesRootCosine) scale *= std::sqrt(at.mu);
         Extended before = 0, now = 1;

@@ -20,7 +20,7 @@ struct LobeProjection {
     double error = 0;     ///< estimated: relative difference of the last two quadrature levels
     double captured = 0;  ///< share of the energy, Eq. 15
     std::size_t evaluations = 0;
-    std::string reason = {};  ///< why it did not converge
+    std::string reason = {};  ///< the reason why it did not converge
 };
 
 struct GramPoint {
@@ -49,7 +49,7 @@ StressReport stress(std::span<const bases::Entry* const> bases, std::span<const 
                     const StressOptions& options = {});
 
 std::string stressJson(const StressReport& report);
-/// Tables for people: docs/stability.md is made of them.
+/// The Markdown tables of docs/stability.md.
 std::string stressMarkdown(const StressReport& report);
 /// degree,basis,quantity,precision,error
 std::string stressCsv(const StressReport& report);

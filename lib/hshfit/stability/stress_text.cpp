@@ -30,7 +30,7 @@ Json degreesJson(const std::vector<DegreeErrors>& rows) {
     return list;
 }
 
-/// Degrees that tables show: those asked for by the paper's uses, and the last.
+/// The degrees in tables: those that the paper's applications use, and the last.
 std::vector<std::size_t> shownDegrees(std::size_t count) {
     std::vector<std::size_t> degrees;
     for (std::size_t l : {6U, 64U, 300U})
@@ -50,7 +50,7 @@ std::string degreesTable(const std::vector<DegreeErrors>& rows) {
     for (const DegreeErrors& row : rows) {
         text += fmt::format("| {} | {} |", row.basis, precisionName(row.precision));
         for (std::size_t l : degrees) {
-            // A basis without functions of some degrees has no number for those.
+            // A basis that lacks functions of a degree has no number there.
             const double error = row.error[l];
             text += std::isnan(error) ? " |" : fmt::format(" {:.1e} |", error);
         }
