@@ -29,8 +29,8 @@ double cpuSeconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-/// Few distinct functions, repeated: what they are does not change the work, but memory traffic
-/// has to be that of 1024.
+/// A few distinct functions, repeated: their values do not change the work, but memory traffic
+/// has to be that of 1024 functions.
 struct Problem {
     std::string basisName;
     std::unique_ptr<Basis> basis;
@@ -98,7 +98,7 @@ struct Problem {
     }
 };
 
-/// libsharp's rings run from the north pole, with azimuths from any phi0: the same as ours, turned.
+/// libsharp's rings run from the north pole, with azimuths from any phi0: our grid, turned.
 struct Sharp {
     sharp_geom_info* geometry = nullptr;
     sharp_alm_info* layout = nullptr;
@@ -130,8 +130,9 @@ struct Sharp {
         return cpuSeconds() - start;
     }
 
-    /// Against the same coefficients. libsharp's first ring is the north pole's, ours the south
-    /// pole's: l + m odd changes sign. a_{l,m} are complex, with the Condon-Shortley phase.
+    /// The error against the same coefficients. libsharp's first ring is at the north pole, ours at
+    /// the south pole: coefficients with odd l + m change sign. a_{l,m} are complex, with the
+    /// Condon-Shortley phase.
     double error(const Problem& problem) const {
         double most = 0, largest = 0;
         for (int m = 0; m <= degree; ++m) {
@@ -152,8 +153,8 @@ struct Sharp {
     }
 };
 
-/// Turn and turn about, so that both see the same machine; the time is ours, `ratio` ours over
-/// libsharp's.
+/// Both run in turns, so that they share the machine's state. The time is ours; `ratio` is ours
+/// over libsharp's.
 void againstSharp(benchmark::State& state, const char* name) {
     const int degree = static_cast<int>(state.range(0));
     Problem problem(name, degree);

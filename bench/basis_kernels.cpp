@@ -1,7 +1,8 @@
 // Whole bases at a batch of directions whose output stays in the cache: vector kernels in double
-// and float and on each instruction set, the scalar path, GSL, libstdc++ and Boost.Math, and
-// writing as many bytes. Runs are interleaved; bench/summary prints medians of CPU time and ratios.
-// `error` is the largest error over the largest magnitude of a function, against 100 digits.
+// and float and on each instruction set, the scalar path, GSL, libstdc++ and Boost.Math, and a
+// write of as many bytes. Runs are interleaved; bench/summary prints medians of CPU time and
+// ratios. `error` is the largest error over the largest magnitude of a function, against 100
+// digits.
 
 #include <hshfit/vector_targets.h>
 
@@ -48,7 +49,7 @@ std::size_t slotsOf(int order) {
     return static_cast<std::size_t>(order * order);
 }
 
-/// As many as keep 256 KiB of doubles, at least 16.
+/// The number of directions whose doubles take 256 KiB, at least 16.
 std::size_t directionCount(int order) {
     return std::max<std::size_t>(16, 32768 / slotsOf(order));
 }
@@ -80,7 +81,7 @@ double errorOf(const std::string& name, int order, const Directions& directions,
     return worst;
 }
 
-/// `fill(directions, out)` over and over.
+/// Times repeated calls of `fill(directions, out)`.
 template <class Real, class Fill>
 void measure(benchmark::State& state, const std::string& name, int order, std::size_t count,
              Fill fill) {

@@ -1,7 +1,7 @@
-// The time for a value of each analytic model, on one thread: by vectors (Brdf::eval), and one
-// direction at a time with the C++ library's functions (TermBrdf::evalScalar), which is what the
-// former are held against. Batches of 4096 incoming directions over the hemisphere, whose values
-// stay in the cache; the floor is writing as many. `difference`: the largest relative difference of
+// The time for a value of each analytic model, on one thread: with vectors (Brdf::eval), and one
+// direction at a time with the C++ library's functions (TermBrdf::evalScalar), the reference of
+// the former. Batches of 4096 incoming directions over the hemisphere, whose values stay in the
+// cache; the floor is a write of as many values. `difference`: the largest relative difference of
 // the two over these directions, of values above 1e-30 of the largest.
 
 #include <brdfs/analytic/term_brdf.h>

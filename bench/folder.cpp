@@ -1,6 +1,6 @@
 // A folder of ten materials through the program itself, `project FOLDER -o DIR`, with one thread
-// and with two: wall time, in turns. MERL-layout files written by the program, of GGX from rough to
-// glossy, so that the last one to finish is not the shortest.
+// and with two: wall time, in turns. The program writes MERL-layout files of GGX from rough to
+// glossy, so that the last file is not the quickest.
 
 #include "bench_folder.h"
 

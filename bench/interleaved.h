@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-/// Runs the registered benchmarks in short repetitions that take turns, so that what else the
-/// machine does falls on all of them, and reports their medians. Flags of the command line come
-/// after, and win.
+/// Runs the registered benchmarks in short repetitions that take turns, so that other load of
+/// the machine affects all of them, and reports their medians. Flags of the command line take
+/// precedence.
 inline void runInterleaved(int argc, char** argv, int repetitions, const std::string& minTime) {
     std::vector<std::string> all{argv[0], "--benchmark_enable_random_interleaving=true",
                                  "--benchmark_repetitions=" + std::to_string(repetitions),

@@ -69,8 +69,8 @@ void product(benchmark::State& state, const Sizes& sizes) {
     state.SetItemsProcessed(state.iterations() * 2 * sizes.rows * sizes.inner * sizes.columns);
 }
 
-/// Bytes of a buffer, two of which leave the cache half free; where the system does not say, those
-/// of common machines.
+/// The size of a buffer, two of which fill half of the cache. If the system does not report its
+/// caches, sizes of common machines are used.
 std::size_t share(int name, std::size_t usual) {
     const long bytes = sysconf(name);
     return (bytes > 0 ? static_cast<std::size_t>(bytes) : usual) / 4;

@@ -13,8 +13,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// More chains than latency times units need (10 on today's cores), fewer than registers.
 constexpr std::size_t chains = 12;
 
-/// Returns the floating-point operations done. Every chain tends to 2, far from slow numbers, and
-/// starts elsewhere, so that no compiler finds two of them equal.
+/// Returns the number of floating-point operations. Every chain tends to 2, far from subnormal
+/// numbers, and has its own start, so that no compiler can merge two of them.
 template <class Real>
 double fmaChains() {
     constexpr std::size_t steps = 4096;
@@ -44,7 +44,7 @@ double fmaChainsFloat() {
     return fmaChains<float>();
 }
 
-/// Of a count that is a multiple of 64.
+/// The sum of `count` numbers, a multiple of 64.
 double sumOf(const double* values, std::size_t count) {
     const hn::ScalableTag<double> tag;
     const std::size_t lanes = hn::Lanes(tag);
@@ -58,7 +58,7 @@ double sumOf(const double* values, std::size_t count) {
     return hn::GetLane(hn::SumOfLanes(tag, hn::Add(hn::Add(a, b), hn::Add(c, d))));
 }
 
-/// As sumOf.
+/// The count is a multiple of 64, as for sumOf.
 void copyOf(const double* from, std::size_t count, double* to) {
     const hn::ScalableTag<double> tag;
     const std::size_t lanes = hn::Lanes(tag);

@@ -9,5 +9,5 @@ void multiply(const double* left, const double* right, std::int64_t rows, std::i
 void multiply(const float* left, const float* right, std::int64_t rows, std::int64_t inner,
               std::int64_t columns, float* out);
 
-/// Whether this machine has what these are compiled for.
+/// Whether this machine has the instructions that the product is compiled for.
 bool productSupported();

@@ -1,7 +1,7 @@
 // From an isotropic MERL-layout file to a coefficient file with the program itself: 32 x 32
 // outgoing directions, or 16 elevations, x RGB, HSH of order 7, one thread. CPU time and peak
-// memory are the kernel's, process start included. The file is made by the program too, and is in
-// the page cache.
+// memory are the kernel's, process start included. The program writes the file, too, which is
+// then in the page cache.
 
 #include <benchmark/benchmark.h>
 #include <spawn.h>
@@ -29,8 +29,8 @@ double seconds(const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-/// Runs the program. The kernel counts this process's own peak for a child, too, until the child
-/// has started: keep this process small.
+/// Runs the program. The kernel counts this process's peak memory for a child too, until the
+/// child has started; this process therefore has to stay small.
 Cost run(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), HSHFIT_PROGRAM);
     std::vector<char*> argv;
@@ -80,7 +80,7 @@ void project(benchmark::State& state, const char* output, std::vector<std::strin
     }
     std::sort(times.begin(), times.end());
     state.counters["median_s"] = times[times.size() / 2];
-    // The program with nothing to do: what of it is loading and linking.
+    // The program without work: the time of loading and linking.
     const Cost start = run({"project", "--help"});
     state.counters["start_s"] = start.cpuSeconds;
     state.counters["peak_mb"] = peak;

@@ -4,14 +4,14 @@
 #include <vector>
 
 /// The network of Sztrajman et al. (2021), "Neural BRDF Representation and Importance Sampling":
-/// 6 inputs, two layers of 21 with max(0, .), three outputs exp(.) - 1. With weights of no meaning:
-/// only its speed counts. Compiled for AVX2 and FMA, as the kernels that it is measured against
-/// choose at run time.
+/// 6 inputs, two layers of 21 with max(0, .), three outputs exp(.) - 1. The weights are
+/// arbitrary, because only the speed matters. Compiled for AVX2 and FMA, as the kernels that it
+/// is measured against choose at run time.
 class Network {
 public:
     static constexpr std::size_t inputs = 6, width = 21, outputs = 3;
 
-    /// `block`: columns that go through all layers at a time, for the sake of the caches.
+    /// `block`: the number of columns that go through all layers at a time, to stay in the cache.
     explicit Network(std::size_t block);
 
     static bool supported();

@@ -23,7 +23,7 @@ namespace {
 using namespace hshfit;
 
 constexpr std::size_t pairCount = 4096;
-/// Coloured and isotropic, as measured materials are.
+/// Coloured and isotropic materials, like most measured ones.
 constexpr const char* material = "phong:kd=.3/.2/.1,ks=.2/.3/.4,exponent=12";
 constexpr std::size_t channels = 3;
 
@@ -54,7 +54,7 @@ const Directions& outgoing() {
     return instance;
 }
 
-/// Made once: repetitions are to repeat the evaluation only.
+/// Evaluators are cached, so that repetitions time the evaluation only.
 const PairEvaluator& evaluatorOf(const Form& form) {
     static std::map<std::string, std::unique_ptr<PairEvaluator>> made;
     std::unique_ptr<PairEvaluator>& evaluator = made[optionsOf(form)];

@@ -1,7 +1,7 @@
-// Where the time of a projection goes and how it grows, on one thread unless said. CPU time of the
-// process. "floor" is the bare BRDF, timed within the projection by a wrapper that passes every
-// call on, plus the product alone: what has to be added to turn values into coefficients, as fast
-// as this library's own matrix product does it.
+// The parts of a projection's time and their growth, on one thread unless stated. CPU time of
+// the process. "floor" is the bare BRDF, timed within the projection by a wrapper that passes
+// every call on, plus the product alone: the sums that turn values into coefficients, at the
+// speed of this library's own matrix product.
 
 #include "bench_folder.h"
 #include "interleaved.h"

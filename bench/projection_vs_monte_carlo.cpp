@@ -28,7 +28,7 @@ using namespace hshfit;
 constexpr int order = 7;
 constexpr int slots = order * order;
 constexpr std::size_t samples = 1 << 16;
-/// Every 17th of the 1024 outgoing directions, so that rows and columns are both covered.
+/// Every 17th of the 1024 outgoing directions, which covers both rows and columns.
 constexpr std::size_t stride = 17;
 
 /// CPU seconds of this process: other programs on the machine do not count.

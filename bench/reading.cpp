@@ -1,7 +1,7 @@
-// How fast binary files are read once they are in the page cache: open one, count every stored
-// value (the census of `info`), close it. The files are synthetic and of the sizes of real ones,
-// but for MIT's, of which a sixth is written. Pictures are inflated: bytes are those of the numbers
-// that come out.
+// The speed of reading binary files from the page cache: open one, count every stored value
+// (the census of `info`), close it. The files are synthetic and of the sizes of real ones, but
+// for MIT's, which has a sixth of the size. Pictures are compressed; their bytes are those of
+// the decompressed numbers.
 
 #include "bench_folder.h"
 

@@ -56,7 +56,7 @@ void streamExtraction(benchmark::State& state) {
     setBytes(state, text);
 }
 
-/// As ALTA reads: lines from a stream, a stream of each line, one extraction per number.
+/// ALTA's way of reading: lines from a stream, a stream of each line, one extraction per number.
 void streamPerLine(benchmark::State& state) {
     const std::string& text = theRows(state);
     for (auto _ : state) {

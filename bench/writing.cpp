@@ -1,7 +1,7 @@
-// Writing and reading back what the default job makes (32x32 outgoing directions, HSH of order 7,
-// f cos) against making it: one thread, CPU time of the process, the steps in turns, medians.
-// `json_write` and the like are seconds; `json_ratio` and `exr_ratio` the time of writing over that
-// of the projection of the same turn.
+// The time to write and read back the result of the default job (32x32 outgoing directions, HSH
+// of order 7, f cos) against that of its projection: one thread, CPU time of the process, the
+// steps in turns, medians. `json_write` and the like are seconds; `json_ratio` and `exr_ratio`
+// the time of writing over that of the projection of the same turn.
 
 #include "bench_folder.h"
 
@@ -41,7 +41,7 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-/// One form of the coefficient file: times of every turn, and how exactly it comes back.
+/// One form of the coefficient file: times of every turn, and the error after reading it back.
 struct FileForm {
     std::string name, path;
     std::vector<double> write = {}, read = {}, ratio = {};
