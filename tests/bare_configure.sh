@@ -1,8 +1,8 @@
 #!/bin/sh
-# Holds that `run` names every package that a build needs: in a minimal Debian 12 of its own for
-# each command, `./run configure COMMAND` installs what COMMAND installs and configures its presets.
-# Nothing is built. Ends with 1 where a command does not configure, and names it; ends with 0,
-# saying so, where a root cannot be made (no root rights, no debootstrap, no mirror).
+# Checks that `run` names every package that a build needs: in a minimal Debian 12 for each
+# command, `./run configure COMMAND` installs the packages of COMMAND and configures its presets.
+# Nothing is built. Ends with 1 and the command's name if a command does not configure. Ends
+# with 0 and a message if no root can be made (no root rights, no debootstrap, no mirror).
 #   tests/bare_configure.sh ['COMMAND…'…]    each argument has a root of its own
 # By default these are the commands that build. Those of one argument share a root and are
 # configured in their order, so that each is checked with the packages of those before it.

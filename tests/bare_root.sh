@@ -1,6 +1,6 @@
 #!/bin/sh
-# Runs `./run test` (or the command given) as root in a fresh, minimal Debian 12: what a new user
-# on a new machine would see. Needs root, debootstrap and an apt mirror.
+# Runs `./run test` (or the command given) as root in a fresh, minimal Debian 12, like a new
+# user on a new machine. Needs root, debootstrap and an apt mirror.
 #   tests/bare_root.sh [-k] [COMMAND…]    -k keeps the root; default command: ./run test
 # The root is made under ${BARE_ROOT:-a temporary folder} and reused if it is there already.
 # This machine's apt sources, keys, host table and certificates are copied into it when it is
@@ -24,7 +24,7 @@ place=/src/hshfit
 [ -z "${BARE_CCACHE:-}" ] || place=$project
 root=${BARE_ROOT:-$(mktemp -d "${TMPDIR:-/tmp}/bare_root.XXXXXX")}
 
-# Copies PATH… into the root, keeping their places; what is absent here is left out.
+# Copies PATH… to the same places in the root; absent paths are left out.
 carry() {
     for path in "$@"; do
         [ -e "$path" ] || continue

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The rules of the house that a machine can check, over the tracked files. Prints every breach as
-# file:line and ends with 1 if there is one; warnings do not count.
+# Checks the house rules that a machine can check, over the tracked files. Prints every breach
+# as file:line and ends with 1 if there is one; warnings do not count.
 set -eu
 cd "$(dirname "$0")/.."
 for tool in git clang-format shellcheck python3; do

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Holds that every optional part may be absent: in a bare root in which `./run test` has passed,
-# takes one package away at a time, configures, builds, runs the tests that use it, and holds that
-# none fails and that the skipped ones name what is missing. It removes packages, so it runs in a
+# Checks that every optional part may be absent. In a bare root in which `./run test` has passed,
+# it removes one package at a time, configures, builds and runs the tests that use it. No test
+# may fail, and skipped ones have to name the missing part. It removes packages, so it runs in a
 # bare root only, after a build there:
 #   tests/bare_root.sh sh -c './run test && tests/optional_parts.sh'
 set -eu

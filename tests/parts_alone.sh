@@ -1,6 +1,6 @@
 #!/bin/sh
-# Holds that the parts math and files of the library stand by themselves: copies the tracked files
-# less the folders that a part has no business with, builds the part there, and runs its tests. The
+# Checks that the parts math and files of the library are self-contained: copies the tracked files
+# without the folders that a part must not use, builds the part there, and runs its tests. The
 # part math comes first; the folders of files are then added, so that nothing is built twice.
 set -eu
 cd "$(dirname "$0")/.."

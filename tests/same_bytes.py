@@ -54,7 +54,7 @@ def shim(arguments):
     """What build/hshfit does while the check runs."""
     new, old = os.environ["SAME_BYTES_NEW"], os.environ["SAME_BYTES_OLD"]
     if resource.getrlimit(resource.RLIMIT_FSIZE)[0] != resource.RLIM_INFINITY:
-        os.execv(new, [new, *arguments])  # no copies could be made under that limit
+        os.execv(new, [new, *arguments])  # copies cannot be made under that limit
     folders = [f for f in os.environ["SAME_BYTES_FOLDERS"].split(":") if os.path.isdir(f)]
     stdin = b""
     with tempfile.TemporaryDirectory(dir=os.environ["SAME_BYTES_WORK"]) as kept:

@@ -16,7 +16,7 @@
 
 namespace hshfit::test {
 
-/// A file in the temporary folder that is gone after the test.
+/// A file in the temporary folder, removed after the test.
 class TemporaryFile {
 public:
     explicit TemporaryFile(std::string_view content = {}, const std::string& suffix = ".bin") {
@@ -44,7 +44,7 @@ private:
     std::string path_;
 };
 
-/// The call throws InputError with one line that contains every one of `parts`.
+/// Checks that the call throws InputError with one line that contains all of `parts`.
 inline void expectInputError(const std::function<void()>& call,
                              const std::vector<std::string>& parts) {
     try {

@@ -19,7 +19,7 @@
 
 namespace hshfit::test {
 
-/// A copy on the heap of exactly the size, so that a sanitizer sees one byte too many.
+/// A copy on the heap of exactly the size, so that a sanitizer detects a read past the end.
 inline std::unique_ptr<brdfs::MeasuredBrdf> openBytes(const std::string& xml,
                                                       brdfs::BsdfSide side = brdfs::BsdfSide::front,
                                                       std::string_view wavelength = "visible") {
@@ -31,12 +31,12 @@ inline double valueOf(const Brdf& brdf, const Direction& wi, const Direction& wo
     return evaluate(brdf, wi, wo)[0];
 }
 
-/// Where the file has x: its front side is seen from behind.
+/// The x of the file's frame: its front side is seen from behind.
 inline double fileX(brdfs::BsdfSide side, double x) {
     return side == brdfs::BsdfSide::front ? -x : x;
 }
 
-/// The concentric map as the paper gives it, by sectors of azimuth.
+/// The concentric map in the paper's form, by sectors of azimuth.
 inline std::pair<double, double> shirleyChiu(double x, double y) {
     const double r = std::hypot(x, y);
     double phi = std::atan2(y, x);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-// Klems patches once more, without the reader.
+// Klems patches, implemented independently of the reader.
 
 namespace hshfit::test {
 

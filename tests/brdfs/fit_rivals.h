@@ -12,7 +12,7 @@
 
 namespace hshfit::brdfs {
 
-/// A collection of published fits, the same model left free, and the loss that both are held to.
+/// A collection of published fits, the same model with free parameters, and the loss of both.
 struct Rival {
     std::string_view collection;
     std::string_view model;
@@ -23,8 +23,8 @@ struct Rival {
 
 /// Ngan et al. 2005 and E1 of Löw et al. 2012 minimise squares of f cos(theta_i), E2 of the latter
 /// those of ln(1 + f cos(theta_i)). Bagher et al. 2012 are held to the former. There are no
-/// published parameters of GGX for these materials: those of Cook and Torrance's model take their
-/// place.
+/// published parameters of GGX for these materials; those of Cook and Torrance's model replace
+/// them.
 inline constexpr std::array rivals{
     Rival{"ngan-ward", "ward:variant=1992", Loss::Kind::cosine},
     Rival{"ngan-ward-duer", "ward:variant=duer", Loss::Kind::cosine},
@@ -53,7 +53,7 @@ struct Duel {
     double ratio() const { return ours / published.value(); }
 };
 
-/// Our loss is evaluated as the published one is: by opening the specification of the fit.
+/// Our loss is evaluated like the published one, by opening the specification of the fit.
 inline Duel duel(const Rival& rival, const std::string& material, const FitSamples& samples) {
     const auto start = std::chrono::steady_clock::now();
     Duel result;

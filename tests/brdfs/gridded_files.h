@@ -1,6 +1,6 @@
 #pragma once
 
-// Files of gridded tables, written by the book and without the library.
+// Files of gridded tables, written from the formats' descriptions and without the library.
 
 #include <brdfs/measured_files.h>
 

@@ -69,7 +69,7 @@ public:
     const double* texel(int picture, int row, int column) const {
         return (picture == 0 ? first_ : second_).data() + 4 * (row * size + column);
     }
-    /// As it stands in the picture (halves), and in the text (six decimals).
+    /// A table as read from the picture (halves), and from the text (six decimals).
     std::array<brdfs::Ltc, 2> matrices(int row, int column) const {
         const double* p = texel(0, row, column);
         const double* m = inverses_.data() + 9 * (row * size + column);

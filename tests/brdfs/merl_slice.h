@@ -12,9 +12,9 @@
 
 namespace hshfit::brdfs {
 
-/// Measured values of one MERL material on the plane of difference azimuth 90 degrees, and how far
-/// a BRDF is from them. float32 [theta_d][theta_h][RGB], 90 bins each, in 1/sr at standard scale;
-/// bin j of theta_h stands for (j / 90)^2 90 degrees, bin i of theta_d for i degrees.
+/// Measured values of one MERL material on the plane of difference azimuth 90 degrees, and the
+/// distance of a BRDF from them. float32 [theta_d][theta_h][RGB], 90 bins each, in 1/sr at standard
+/// scale; bin j of theta_h stands for (j / 90)^2 90 degrees, bin i of theta_d for i degrees.
 class MerlSlice {
 public:
     static std::optional<MerlSlice> read(const std::string& folder, const std::string& material) {

@@ -8,7 +8,7 @@
 
 namespace hshfit::brdfs {
 
-/// A pair of directions as the papers have it: polar angles, azimuths, and those of the half
+/// A pair of directions in the papers' angles: polar angles, azimuths, and those of the half
 /// vector.
 struct Angles {
     double thetaI, phiI, thetaO, phiO, thetaH, phiH;
@@ -35,7 +35,7 @@ inline double square(double x) {
     return x * x;
 }
 
-/// Compares where neither direction grazes: there acos would lose the digits.
+/// Compares pairs away from grazing angles, where acos loses digits.
 inline void expectFormula(const std::string& spec,
                           const std::function<double(const Angles&)>& formula,
                           std::size_t channel = 0) {

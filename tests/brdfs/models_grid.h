@@ -17,7 +17,7 @@ struct Case {
     double sx = 1, sy = 1;
 };
 
-/// Diffuse and sheen models that came after the classic ones.
+/// Diffuse and sheen models that are newer than the classic ones.
 inline void addDiffuse(std::vector<Case>& grid) {
     for (const char* k : {"0", ".3", ".5", "1", "1.7", "100"})
         for (const char* kd : {".6", "1"})
@@ -74,7 +74,7 @@ inline void addLobes(std::vector<Case>& grid) {
     }
 }
 
-/// Sums: of models, of colours, weighted; within and beyond what keeps energy.
+/// Sums of models and of colours, with weights; some conserve energy, others do not.
 inline std::vector<Case> sumGrid() {
     return {{"lambert:kd=.1 + ggx:alpha=.2", .2, .2},
             {"0.5 * lambert + 0.5 * ggx:alpha=.2,F0=.9/.6/.3", .2, .2},
@@ -86,7 +86,7 @@ inline std::vector<Case> sumGrid() {
             {"1e6 * phong:exponent=1e7 + lambert", 1e-3, 1e-3}};
 }
 
-/// Models of which published fits come as presets.
+/// Models with published fits among the presets.
 inline void addFitted(std::vector<Case>& grid) {
     for (const char* b : {"1e-3", "10", "1e4", "1e12"})
         for (const char* c : {"0", ".3", "1", "20"})
@@ -95,7 +95,7 @@ inline void addFitted(std::vector<Case>& grid) {
                 const double width = std::min(1., 1 / std::sqrt(std::stod(b)));
                 grid.push_back({"abc:B=" + std::string(b) + ",C=" + c + rest, width, width});
             }
-    // The last is about what its authors fitted to blue-fabric: F below 0 at normal incidence.
+    // The last is near its authors' fit of blue-fabric: F is below 0 at normal incidence.
     for (const char* shape :
          {"alpha=.1", "alpha=1e-6,p=1.5", "alpha=100,p=3", "alpha=.02/.1/.5,p=.5/1/0,ks=.3/.2/.1",
           "alpha=.3,Lambda=4,c=.05,k=9,theta0=.4,F0=.04",
@@ -112,7 +112,7 @@ inline void addFitted(std::vector<Case>& grid) {
         }
 }
 
-/// Every model of the table, over its parameters and their ends.
+/// Every model of the table, over its parameters and the ends of their ranges.
 inline std::vector<Case> modelGrid() {
     std::vector<Case> grid{{"lambert"}, {"lambert:kd=0"}, {"lambert:kd=.8/.5/.1"}};
     for (const char* kd : {".05", "1"})

@@ -1,7 +1,7 @@
 #pragma once
 
-// Reads a tensor file and evaluates the RGL layout a second time, from the description of the
-// format and the formulas of Dupuy & Jakob 2018, without tables of integrals.
+// An independent reader of tensor files and evaluation of the RGL layout, from the description
+// of the format and the formulas of Dupuy & Jakob 2018, without tables of integrals.
 
 #include <hshfit/brdf/directions.h>
 

@@ -55,7 +55,7 @@ inline std::string tensorFile(const std::vector<TensorField>& fields) {
     return out;
 }
 
-/// A smooth synthetic material. Sizes differ from each other so that mixed-up axes show.
+/// A smooth synthetic material. All sizes differ, so that an exchange of axes fails a test.
 struct RglShape {
     std::vector<float> phi = {0};
     std::vector<float> theta = {0.0F, 0.5F, 1.0F, 1.5707964F};
@@ -101,8 +101,8 @@ inline std::vector<TensorField> rglFields(const RglShape& shape) {
     return fields;
 }
 
-/// Mueller matrices over difference and half angles; every element but M00 is 777. Without angles:
-/// their fields are empty, as in published files.
+/// Mueller matrices over difference and half angles; every element but M00 is 777. Without
+/// `withAngles` their fields are empty, as in published files.
 struct PbsdfShape {
     std::uint64_t azimuths = 7, differences = 5, halves = 4;
     std::vector<std::uint16_t> wavelengths = {450, 650};

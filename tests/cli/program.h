@@ -61,7 +61,8 @@ protected:
         std::ofstream(path(name), std::ios::binary) << text;
     }
 
-    /// Exit code, one line on standard error that contains `part`, and no files but those known.
+    /// Checks the exit code, one line on standard error that contains `part`, and no files but
+    /// those known.
     void expectError(const std::string& arguments, int code, const std::string& part,
                      std::ptrdiff_t files) const {
         const Answer answer = run(arguments);
@@ -71,8 +72,8 @@ protected:
         EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), files) << arguments;
     }
 
-    /// Holds `document` to docs/schemas/NAME.schema.json; true, and
-    /// says so, where python3-jsonschema is missing.
+    /// Validates `document` against docs/schemas/NAME.schema.json. Without python3-jsonschema
+    /// it prints that and returns true.
     bool keepsSchema(const std::string& document, const std::string& name) const {
         if (std::system("/usr/bin/python3 -c 'import jsonschema' 2>/dev/null") != 0) {
             std::printf("%s: not held to its schema, python3-jsonschema is absent\n", name.c_str());

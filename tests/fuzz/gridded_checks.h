@@ -9,7 +9,7 @@
 
 namespace hshfit::fuzz {
 
-/// Everything that a table is asked for; every value has to be finite and not negative.
+/// Calls every function of a table; every value has to be finite and not negative.
 inline void check(const brdfs::MeasuredBrdf& brdf) {
     constexpr double x[] = {0, 0.6, -0.8, 0.28, 1, 0, 0.96};
     constexpr double y[] = {0, 0, 0, -0.96, 0, 0.6, 0};

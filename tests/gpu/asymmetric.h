@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-/// Inputs in which any flip, swap or missing term shows, for tests of what GPUs read.
+/// Asymmetric inputs, on which any flip, swap or missing term changes values that GPUs read.
 namespace hshfit::samples {
 
 /// Random coefficients, falling off with the band, in the slots that the basis has.

@@ -8,8 +8,8 @@
 
 namespace hshfit::test {
 
-/// A BRDF of any formula, covered where `covers` says (everywhere, if it is empty); of two
-/// wavelengths, the second channel is half of the first.
+/// A BRDF of any formula, covered where `covers` is true, or everywhere if it is empty. With
+/// two wavelengths, the second channel is half of the first.
 class FormulaBrdf : public Brdf {
 public:
     using Function = std::function<double(const Direction& wi, const Direction& wo)>;

@@ -1,4 +1,4 @@
-// Chromium as the checks start it, and what they share.
+// Chromium and functions that the checks share.
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
@@ -21,8 +21,8 @@ const drivers = {
   webgpu: ['--enable-unsafe-webgpu', '--enable-unsafe-swiftshader'],
 };
 
-// `use(page)` in a fresh browser with an empty profile; `files` answers http://localhost/ paths and
-// everything else that is asked for over a network fails.
+// `use(page)` in a fresh browser with an empty profile; `files` answers http://localhost/
+// paths, and all other network requests fail.
 export async function withBrowser(
   driver,
   use,
@@ -50,7 +50,7 @@ export async function withBrowser(
     const page = await context.newPage();
     page.setDefaultTimeout(240000);
     page.on('console', (message) => {
-      // Drivers say of a slow readback that it was slow, which is no fault.
+      // A driver's warning about a slow readback is no error.
       const slow = message.text().includes('GL Driver Message (OpenGL, Performance');
       if (['error', 'warning'].includes(message.type()) && !slow) complaints.push(message.text());
     });
@@ -124,7 +124,7 @@ export async function proveCases(folder, driver, page, run) {
   }
 }
 
-// Breaks that a check has to notice: an undeclared name, a swapped channel order in the texels
+// Faults that a check has to detect: an undeclared name, a swapped channel order in the texels
 // (rows from the bottom), and a wrong constant.
 export function brokenCases(folder, language) {
   const job = readJson(join(folder, 'case1.json'));

@@ -45,7 +45,7 @@ function setLoaders() {
     texture.needsUpdate = true;
     return texture;
   };
-  // EXRLoader turns rows round; in a strip that turns the layers round too.
+  // EXRLoader reverses rows; in a strip that reverses the layers too.
   const strip = async (file, shape, unflip) => {
     const { data, width, height } = (await new EXRLoader().loadAsync(file)).image;
     const halves = new Uint16Array(data.length);

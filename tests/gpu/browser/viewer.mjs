@@ -48,7 +48,7 @@ async function provePage(page, complaints) {
     expect(high.numbers[i].relative < 0.5 * low.numbers[i].relative, `${name} does not converge`);
   });
 
-  // The slider, by keyboard, and everything else that can be pressed.
+  // The slider, by keyboard, and all buttons.
   await page.focus('#order');
   pictures.push(await page.screenshot());
   await page.keyboard.press('ArrowRight');
@@ -89,7 +89,7 @@ async function proveEnvironment(page) {
   expect(numbers[0].relative < 0.04, 'shade and quadrature disagree');
 }
 
-// No NaN anywhere, whichever way the light and the shape lie.
+// All numbers are finite on the teapot under both kinds of light.
 async function proveFinite(page) {
   await page.goto('about:blank');
   await page.goto(
@@ -155,7 +155,7 @@ function lookUp(inputs) {
 }
 
 // The tables as GLSL reads them, against the same in C++, above 5 degrees of elevation. Filters
-// place a texel's share to 1/256 or better.
+// weight texels to 1/256 or better.
 async function proveTable(page, name) {
   await page.goto('about:blank');
   await page.goto(`${pathToFileURL(join(folder, `${name}.html`)).href}#frames=1`);

@@ -83,7 +83,7 @@ async function compute(job) {
 }
 
 const [folder] = process.argv.slice(2);
-// WebGPU is there for secure origins only, of which localhost is one.
+// WebGPU exists for secure origins only; localhost is one.
 const files = (path) =>
   path === '/' ? { contentType: 'text/html', body: '<title>check</title>' } : null;
 await finish(() =>

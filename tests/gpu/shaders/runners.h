@@ -10,12 +10,12 @@
 
 namespace hshfit::shaders {
 
-/// A tool, library or device that is not here: the test skips with this reason.
+/// A tool, library or device is missing: the test skips with this reason.
 struct Missing : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// A shader that its compiler or validator refuses, with what that said.
+/// A compiler or validator refused a shader, with its message.
 struct Refused : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -35,7 +35,7 @@ std::vector<float> runOpenGlEs(const ShaderJob& job, const std::string& source);
 /// A C++ program, made from `source` and the stubs in tests/gpu/shaders/metal and osl.
 std::vector<float> runStub(const ShaderJob& job, const std::string& source);
 
-/// Each language on what runs it best: Vulkan; OpenGL ES for GLSL ES; as C++ for Metal and OSL.
+/// The default runner of each language: Vulkan; OpenGL ES for GLSL ES; C++ for Metal and OSL.
 std::vector<float> run(gpu::Language language, const ShaderJob& job, const std::string& source);
 
 /// The snippet with a main around it that evaluates every pair (tests/gpu/shaders/wrappers).

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-/// The same directions through a snippet and through C++.
+/// A job that evaluates the same directions with a snippet and with C++.
 namespace hshfit::shaders {
 
 /// 64 x 64 pairs of directions that single precision holds exactly; a few of them below the

@@ -7,12 +7,12 @@
 
 namespace hshfit::shaders {
 
-/// A payload that exercises something that the others do not.
+/// A payload with a feature that the others lack.
 struct Variant {
     std::string name;
     gpu::Payload payload;
     int environmentOrder = 5;
-    bool noise = false;  ///< neighbouring texels have nothing to do with each other
+    bool noise = false;  ///< neighbouring texels have independent values
 };
 
 /// Every basis, map, packing, kind of number and kind of channels, at orders 3, 7 and 10.

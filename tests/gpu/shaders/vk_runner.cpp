@@ -47,8 +47,8 @@ bool layerPresent(const char* name) {
     return false;
 }
 
-/// An instance, a device with one compute queue, and what the validation layer, if it is here,
-/// says. The device is the software one; with HSHFIT_TEST_GPU set, any other.
+/// An instance, a device with one compute queue, and the messages of the validation layer, if
+/// installed. The device is the software one; with HSHFIT_TEST_GPU set, any other.
 class Device {
 public:
     Device() {
@@ -192,7 +192,7 @@ private:
     std::vector<std::string> messages_;
 };
 
-/// A storage or staging buffer that the host sees.
+/// A storage or staging buffer that the host can map.
 struct Buffer {
     Buffer(Device& owner, std::size_t bytes, VkBufferUsageFlags usage) : device(owner) {
         VkBufferCreateInfo info{};

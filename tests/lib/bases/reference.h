@@ -6,8 +6,9 @@
 
 #include <boost/multiprecision/mpfr.hpp>
 
-// The bases once more, from their published formulas by explicit sums in 1200 digits. The sums of
-// degree 1000 cancel up to some 400 digits. Nothing here is shared with the library.
+// An independent evaluation of the bases from their published formulas, by explicit sums in 1200
+// digits. The sums of degree 1000 cancel up to some 400 digits. Nothing here is shared with the
+// library.
 namespace reference {
 
 using Real = boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<1200>,

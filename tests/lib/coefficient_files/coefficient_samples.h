@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-/// Coefficients with every field set and random values, for tests of what is written and read.
+/// Coefficients with every field set and random values, for tests of writing and reading.
 namespace hshfit::samples {
 
 /// Finite doubles of every magnitude that float32 holds too, zeros of both signs among them.

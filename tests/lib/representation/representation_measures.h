@@ -27,7 +27,7 @@ inline FormulaBrdf glossy(double exponent, double diffuse = 0.1) {
         {}, {.nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true});
 }
 
-/// Wider along x than along y.
+/// An anisotropic lobe, wider along x than along y.
 inline FormulaBrdf brushed() {
     return FormulaBrdf(
         [](const Direction& wi, const Direction& wo) {
@@ -38,8 +38,8 @@ inline FormulaBrdf brushed() {
         {}, {.nonNegative = true, .reciprocal = true, .isotropic = false, .mirrorSymmetric = true});
 }
 
-/// Nodes over the hemisphere for products of two sums over a basis, without any of the library's
-/// weights: weight in the inner product that is asked for.
+/// Nodes over the hemisphere for products of two sums over a basis, independent of the
+/// library's weights; each has the weight of the requested inner product.
 struct HemisphereNodes {
     std::vector<double> x, y, z, weights;
 

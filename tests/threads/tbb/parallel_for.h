@@ -1,10 +1,10 @@
 #pragma once
 
-// Stands in for oneTBB's parallel_for in the preset `threads`. The packaged libtbb is not
-// instrumented: ThreadSanitizer does not see how its scheduler orders tasks, and would report data
-// that one task hands to the next as a race. Here each call starts threads of its own and nothing
-// else orders their work, so that every report is a race of the program. A call from within a call
-// runs in the calling thread.
+// The substitute for oneTBB's parallel_for in the preset `threads`. The packaged libtbb is not
+// instrumented: ThreadSanitizer cannot follow the order of its tasks, and would report data
+// that one task hands to the next as a race. Here each call starts threads of its own whose
+// work nothing else orders, so that every report is a race of the program. A nested call runs
+// in the calling thread.
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/blocked_range2d.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-// As much of OSL as the snippets use, in C++: the arithmetic runs, the grammar is C++'s.
+// The part of OSL that the snippets use, in C++: the arithmetic is tested, the grammar is not.
 
 #include "stub.h"
 
