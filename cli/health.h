@@ -1,6 +1,6 @@
 #pragma once
 
-// What `info` says about the health of a BRDF.
+// The answer of `info` on the health of a BRDF.
 
 #include <hshfit/accuracy/health.h>
 

@@ -1,4 +1,4 @@
-// How far presets are from measured samples, and curves to draw:
+// Errors of presets against measured samples, and curves for figures:
 //     preset_slices FOLDER                        a Markdown row per collection
 //     preset_slices FOLDER curve MATERIAL [D]     theta_h, measured, each collection: green channel
 //                                                 at difference angle D degrees (default 30)

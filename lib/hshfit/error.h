@@ -5,7 +5,7 @@
 
 namespace hshfit {
 
-/// What went wrong, as the process reports it. `main` catches these once and returns the code.
+/// The exit code of a failure. `main` catches all errors once and returns the code.
 enum class ExitCode { done = 0, usage = 2, input = 3, numeric = 4, output = 5 };
 
 /// Bad input, an impossible request or a failed write. The message is one line that says what is

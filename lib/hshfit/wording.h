@@ -1,8 +1,8 @@
 #pragma once
 
-// How messages of the library name its own interface. A message that refers to a setting or a
-// function formats a `Setting` or a `Call`; a front end that knows them by other names, such as the
-// options of a program, says so once (`setWording`), and messages come out in its words.
+// Names of the library's own interface in its messages. A message that refers to a setting or a
+// function formats a `Setting` or a `Call`. A front end with other names, such as the options
+// of a program, registers them once (`setWording`), and messages use them.
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
-// Parameters that made the data come back, within the errors that the fit states, at the rate that
-// these imply; and where they cannot, the fit says so.
+// Fits recover the parameters of synthetic data within the stated errors, at the rate that
+// these imply, or report that the data do not determine them.
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit.h>
 #include <hshfit/error.h>

@@ -123,7 +123,7 @@ TEST(Lanes, Log1pIsWithinItsBound) {
 TEST(Lanes, PowIsWithinItsBound) {
     test::forEveryTarget([&] {
         for (const double power : {-1.27393, -1., .5, 1., 3.7, 50., 850., 1e5}) {
-            // Where the result lies between 1e-300 and 1e300.
+            // Arguments with results between 1e-300 and 1e300.
             const double reach = std::min(690 / std::abs(power), 700.);
             const std::vector<double> x = scales(std::exp(-reach), std::exp(reach), false);
             std::vector<double> y(x.size());

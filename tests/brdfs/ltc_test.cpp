@@ -134,7 +134,7 @@ TEST(Ltc, LambertIsTheCosineItself) {
     }
 }
 
-/// Where nothing lies below the horizon, a transformed cosine is recovered.
+/// A transformed cosine is recovered if no part of it lies below the horizon.
 TEST(Ltc, TransformedCosinesAreRecovered) {
     const Direction wo = directionFromAngles(0.5, 0);
     for (const double width : {1e-3, 0.01, 0.05}) {

@@ -22,7 +22,7 @@ std::string contentOf(const std::string& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Where the layout says that the cell is, without the reader.
+/// The cell at its position in the layout, without the reader.
 double storedAt(const std::string& bytes, std::size_t azimuths, std::size_t c, std::size_t h,
                 std::size_t d, std::size_t p) {
     double value;

@@ -51,7 +51,7 @@ Points extremePoints() {
 /// adds 3 units of the last place, 69 x 3.3e-16. The factor of the exponential errs by 3e-15.
 constexpr double bound = 2e-13;
 
-/// Where a sum of terms cancels, errors are relative to the terms: of these models they are about
+/// If a sum of terms cancels, errors are relative to the terms: of these models they are about
 /// 1/sr, and their rounding is 1e-16 of that, ten times over.
 double slackOf(std::string_view spec) {
     for (const char* model : {"eon", "openpbr-diffuse", "oren-nayar"})

@@ -1,5 +1,5 @@
-// Where numbers do not exist or are hard to get: every case ends in a right number or a clear
-// error.
+// Coefficients that do not exist or converge slowly: every case ends in a right number or a
+// clear error.
 
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/bases/catalog.h>

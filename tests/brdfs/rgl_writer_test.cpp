@@ -152,7 +152,7 @@ TEST(RglWriter, projectedAreasOfALambertianDistribution) {
     }
 }
 
-// Where masking is weak, retro-reflection of GGX with constant Fresnel has D's own shape.
+// If masking is weak, retro-reflection of GGX with constant Fresnel has D's own shape.
 TEST(RglWriter, powerIterationFindsTheDistributionOfNormals) {
     const double alpha = 0.2;
     const brdfs::Plane ndf = brdfs::estimateNormals(

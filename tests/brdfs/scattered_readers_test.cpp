@@ -435,7 +435,7 @@ TEST(Shared, filesLoadAndGiveTheirSamplesBack) {
         const Samples& samples = scattered->samples();
         EXPECT_EQ(samples.size(), count) << name;
         const std::size_t channels = samples.channels.count();
-        // Where several samples are images of each other the mean is given back, so that the
+        // If several samples are images of each other, the mean is returned, so that the
         // comparison is of most samples, and the rest is the file's own defect of reciprocity.
         double missed = 0, total = 0;
         for (std::size_t k = 0; k < samples.size(); ++k) {

@@ -13,7 +13,7 @@ namespace hshfit::brdfs {
 /// [0, 360): with u = wi + wo and v = wi - wo,
 ///     theta_h = atan2(|u_xy|, u_z),    theta_d = atan2(|v|, |u|),
 ///     phi_d = atan2((u x v)_z, -|u| v_z),    (u x v)_z = 2 (wo x wi)_z.
-/// Where phi_d is undefined (h is the normal, or wi = wo), it is set to 90, so that it does not
+/// If phi_d is undefined (h is the normal, or wi = wo), it is set to 90, so that it does not
 /// change when the pair turns about the normal.
 struct HalfDifferenceBlock {
     static constexpr std::size_t size = 64;

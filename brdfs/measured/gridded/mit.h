@@ -35,7 +35,7 @@ struct MitLayout {
 
 /// A measured anisotropic BRDF in such a file, read from the mapped bytes.
 ///
-/// Assumptions where the description is silent: a value stands for the centre of its bin, theta_in
+/// Assumptions where the description is silent: a value is that of the centre of its bin, theta_in
 /// and phi_in are those of wi, phi_diff = phi_out - phi_in, and azimuths count from +x towards +y.
 /// With header[9] = 1, f beyond phi_diff = pi is that with wi and wo exchanged. The values times
 /// `scale` are f in 1/sr.

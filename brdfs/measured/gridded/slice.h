@@ -10,13 +10,13 @@
 
 namespace hshfit::brdfs {
 
-/// Where the values of slices stand in half and difference angles (Rusinkiewicz 1998). Node i of n
+/// The nodes of slices in half and difference angles (Rusinkiewicz 1998). Node i of n
 /// is at x = (i + shift) / n, where
 ///     theta_h = 90 x deg, or 90 x^2 deg if `rootHalf`,     theta_d = 90 x deg.
 struct SliceLayout {
     std::size_t halfCount = 0, differenceCount = 0;
     bool rootHalf = false;
-    double shift = 0.5;       ///< 0: a value stands for the start of its bin
+    double shift = 0.5;       ///< 0: a value is that of the start of its bin
     std::vector<double> phi;  ///< phi_d in degrees, ascending, from 0 to below `period`
     double period = 180;      ///< 180, or 360 without reciprocity
 

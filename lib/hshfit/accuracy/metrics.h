@@ -33,7 +33,7 @@ struct MetricValue {
     std::optional<double> value;  ///< none where it does not exist
     double error = 0;             ///< change between the last two quadrature levels
     std::string reason;           ///< why there is no value
-    /// Where the largest error is (maximum and albedo only).
+    /// The directions of the largest error (maximum and albedo only).
     std::optional<Direction> wi, wo;
 };
 

@@ -64,7 +64,7 @@ public:
     /// moments, less the part that a truncated Gram solve drops.
     virtual double capturedEnergy(const double* moments, int order) const;
 
-    /// Where a batch puts slot i at direction k.
+    /// The position of slot i at direction k in a batch.
     enum class Layout {
         byDirection,  ///< out[k * slots() + i]
         bySlot,       ///< out[i * directions.count + k]

@@ -88,7 +88,7 @@ void multiplyPowers(std::size_t n, double* base, int m, double* start) {
     }
 }
 
-/// Where the values of a recurrence go: row k of column p is out[k * rowStep + p].
+/// The destination of a recurrence's values: row k of column p is out[k * rowStep + p].
 template <class Real>
 struct Rows {
     Real* out;

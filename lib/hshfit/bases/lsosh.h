@@ -18,7 +18,7 @@ namespace hshfit::bases {
 /// most 100: a solve costs order^4 operations.
 std::unique_ptr<Basis> makeLsosh(int order, BasisOptions options);
 
-/// How well the systems of one order can be solved.
+/// The condition of the systems of one order.
 struct LsoshGram {
     /// Of G: the squared condition of R, the largest over m. Infinite beyond 1e30, where singular
     /// values of R are rounding errors.

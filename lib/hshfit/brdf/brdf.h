@@ -64,7 +64,7 @@ public:
     /// absent. A model covers every pair of directions above the horizon.
     virtual void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const;
 
-    /// Where f peaks as a function of wi. None for a BRDF as smooth as Lambert's.
+    /// The peaks of f as a function of wi. None for a BRDF as smooth as Lambert's.
     virtual std::vector<Lobe> lobes(const Direction& wo) const;
 
     /// Heights cos(theta_i) of rings on which f has a kink for this wo, such as max(cos theta_i,

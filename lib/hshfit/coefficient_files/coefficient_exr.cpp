@@ -34,7 +34,7 @@ constexpr std::size_t maxChannels = 100'000;
 constexpr std::array<std::string_view, 5> stringKeys{"format", "generator", "quantity",
                                                      "channel_kind", "energy_reason"};
 
-/// What stands for each colour channel in an EXR channel name: "Y"; "R", "G", "B"; "550,5nm"
+/// The suffix of each colour channel in an EXR channel name: "Y"; "R", "G", "B"; "550,5nm"
 /// (a decimal comma, because a point separates layers).
 std::vector<std::string> suffixes(const Channels& channels) {
     if (channels.kind == Channels::Kind::grey) return {"Y"};

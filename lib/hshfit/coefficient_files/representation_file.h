@@ -6,10 +6,10 @@
 
 namespace hshfit::inline coefficient_files {
 
-/// Writes a coefficient file (coefficient_file.h) in any form. What is neither rounded nor changed
-/// in kind is written as plain coefficients; everything else as JSON with a member
-/// "representation", whose arrays are base64 of what `packed` gives. Throws UsageError for an EXR
-/// of what only JSON can hold, otherwise as `writeCoefficients`.
+/// Writes a coefficient file (coefficient_file.h) in any form. Coefficients that are neither
+/// rounded nor changed in kind are written plain; all others as JSON with a member
+/// "representation", whose arrays are base64 of `packed`. Throws UsageError for an EXR of a
+/// form that only JSON can hold, otherwise as `writeCoefficients`.
 void writeRepresentation(const Representation& representation, const std::string& path);
 
 /// Reads a coefficient file in any form; plain coefficients become the form outgoing in float64

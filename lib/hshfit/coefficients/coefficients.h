@@ -10,7 +10,7 @@
 
 namespace hshfit::inline coefficients {
 
-/// What was projected over wi: f, or f cos(theta_i).
+/// The function that was projected over wi: f, or f cos(theta_i).
 enum class Quantity { brdf, brdfCosine };
 
 /// "brdf" or "brdf_cosine", as in files.
@@ -24,7 +24,7 @@ struct Energy {
     std::string reason;  ///< why it does not exist
 };
 
-/// How coefficients came from scattered samples (least_squares.h).
+/// The least-squares fit of coefficients to scattered samples (least_squares.h).
 struct LeastSquaresNote {
     double regularisation = 0;
     double kernelDegrees = 0;

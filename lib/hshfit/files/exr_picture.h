@@ -25,7 +25,7 @@ struct ExrPicture {
     }
 };
 
-/// How the numbers are stored. half: 11 significant bits, magnitudes up to 65504.
+/// The number type of the pixels. half: 11 significant bits, magnitudes up to 65504.
 enum class ExrPixels { half, single };
 
 /// One scan-line part with ZIP compression. Throws OutputError.

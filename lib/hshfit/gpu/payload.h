@@ -10,7 +10,7 @@
 
 namespace hshfit::gpu {
 
-/// How coefficients share texels.
+/// The arrangement of coefficients in texels.
 enum class Packing {
     coef4,  ///< four consecutive coefficients of one channel; layer = firstLayer + j / 4, lane j %
             ///< 4

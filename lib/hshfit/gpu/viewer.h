@@ -38,7 +38,7 @@ void writeViewer(const std::string& path, const ViewerInput& input, bool force =
 
 /// The viewer of exported coefficients: `payload`; a projection of `source` to SH (to HSH if
 /// `payload` is in SH) with the same outgoing directions, order and quantity; and `source`
-/// tabulated. If the projection fails or `source` is null, the page says so instead.
+/// tabulated. If the projection fails or `source` is null, the page shows a message instead.
 ViewerInput viewerInput(Payload payload, const Brdf* source,
                         std::function<void(std::size_t, std::size_t)> progress = {});
 

@@ -31,7 +31,7 @@ struct Axes {
     Direction pole, down, along;
 };
 
-/// Where a point of the panel's plane, at distance 1, is seen; x and y in units of half the size.
+/// The direction to a point of the panel's plane, at distance 1; x and y in units of half the size.
 struct PanelPoint {
     Direction direction;
     double solidAngle = 0;  ///< per area of [-1, 1]^2

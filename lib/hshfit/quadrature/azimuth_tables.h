@@ -11,7 +11,7 @@ namespace hshfit::inline quadrature {
 /// Columns come in whole groups of this many; those that are missing are filled with zeros.
 constexpr std::size_t laneGroup = 4;
 
-/// How many columns each kind of azimuth function takes, with room for whole groups of `group`.
+/// The number of columns of each kind of azimuth function, rounded up to whole groups of `group`.
 struct AzimuthColumns {
     std::size_t c0, c1, s1, s0;
     explicit AzimuthColumns(int order, std::size_t group = laneGroup)

@@ -1,5 +1,5 @@
 // Exported files as others read them: OpenEXR's and OpenImageIO's tools, ktx-parse, JavaScript, a C
-// compiler, and numpy by the documented layout. Each is skipped, and says so, where its tool is
+// compiler, and numpy by the documented layout. Each is skipped with a message if its tool is
 // absent.
 
 #include "container_samples.h"

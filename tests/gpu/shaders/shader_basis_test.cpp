@@ -136,7 +136,7 @@ TEST(EnvironmentMatrix, AgreesWithQuadratureInBothAngles) {
 }
 
 /// A constant light L has the one coefficient L sqrt(4 pi); a Lambert BRDF kd / pi sends back kd L.
-/// Where the basis holds 1 exactly, that is its function (0, 0) only.
+/// For bases that contain 1, it is their function (0, 0) alone.
 TEST(EnvironmentMatrix, LambertUnderAConstantLight) {
     const double kd = 0.7, light = 3;
     for (const char* name : {"hsh", "sh", "lsosh", "zernike", "h-basis"}) {

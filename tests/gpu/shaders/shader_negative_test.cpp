@@ -14,7 +14,7 @@ using gpu::Language;
 
 using Run = std::function<std::vector<float>(const ShaderJob&, const std::string&)>;
 
-/// Where a language is checked; the name is that of its tests.
+/// A way to check a language; the name is that of its tests.
 struct Way {
     std::string name;
     Language language;
@@ -53,7 +53,7 @@ std::string source(const Way& way, const ShaderJob& job, const std::string& from
     return wrapped(way.language, job, replaced(snippet, from, to));
 }
 
-/// Each way is a test of its own, so that the one whose tool is missing is skipped and says so.
+/// Each way is a test of its own, so that one with a missing tool is skipped with a message.
 class ShaderNegative : public testing::TestWithParam<Way> {
 protected:
     /// The check, skipped with its reason where a tool or a device is missing.

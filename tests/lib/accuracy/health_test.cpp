@@ -50,7 +50,7 @@ TEST(Health, reciprocityDefectIsBetweenZeroAndOne) {
     ASSERT_TRUE(health.worstExchange);
     EXPECT_EQ(health.worstExchange->value, health.worstExchange->wi.z);
     EXPECT_EQ(health.worstExchange->exchanged, health.worstExchange->wo.z);
-    // Where only one of the two is covered, nothing can be said.
+    // Reciprocity is undefined if only one of the two pairs is covered.
     const Formula oneSided([](const Direction& wi, const Direction&) { return wi.z; },
                            [](const Direction& wi, const Direction& wo) { return wi.z > wo.z; });
     EXPECT_EQ(examine(oneSided).reciprocityDefect, 0);

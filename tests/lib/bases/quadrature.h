@@ -58,7 +58,7 @@ inline Table analysisTable(const hshfit::Basis& basis, int m, const Rule& rule) 
     return table;
 }
 
-/// The rule of a basis' own inner product: the sphere for SH, cos(theta) where it says so.
+/// The rule of a basis' own inner product: the sphere for SH, cos(theta) for `makhotkin-flux`.
 inline Rule ruleOf(const hshfit::Basis& basis, std::size_t n) {
     Rule rule = gauss(n, basis.name() == "sh" ? -1 : 0, 1);
     if (basis.inner() == hshfit::Basis::Inner::projectedSolidAngle)

@@ -100,8 +100,8 @@ private:
         }
     }
 
-    /// Where the values of a column go: function k at plus and minus, moved on by `step`, which
-    /// grows by `growth` from function to function.
+    /// The destination of a column's values: function k at plus and minus, moved on by `step`,
+    /// which grows by `growth` from function to function.
     struct Target {
         T *plus, *minus;
         std::size_t step, growth;

@@ -24,16 +24,16 @@ namespace {
 /// Directions evaluated together, which share the loads of the steps.
 constexpr std::size_t together = 4;
 
-/// Where the state of a team lies: for every vector of n columns and every direction the arrays p,
+/// The layout of a team's state: for every vector of n columns and every direction the arrays p,
 /// d, re, im of n values each; then `sparse` re and im for rows of odd l (the first two being for
 /// rows of even l, with 0 where the basis lacks a function), then `careful` the exponents.
 constexpr std::size_t arraysOf(bool sparse, bool careful) {
     return 4 + (sparse ? 2 : 0) + (careful ? 1 : 0);
 }
 
-/// How a team runs. `flipped`: from t = -1 with the steps from t = 1 of a symmetric weight, whence
-/// every step changes sign. `sparse`: functions with odd l - m are 0. `once`: one step serves two
-/// rows. `careful`: columns may start below the range.
+/// The run of a team. `flipped`: from t = -1 with the steps from t = 1 of a symmetric weight,
+/// whence every step changes sign. `sparse`: functions with odd l - m are 0. `once`: one step
+/// serves two rows. `careful`: columns may start below the range.
 template <bool flipped_, bool sparse_, bool once_, bool careful_>
 struct Way {
     static constexpr bool flipped = flipped_, sparse = sparse_, once = once_, careful = careful_;

@@ -10,7 +10,7 @@ namespace hshfit::bases::kernels {
 /// Orders up to this one are evaluated row by row in registers.
 inline constexpr int shortOrders = 10;
 
-/// How (s, X, Y, u) follow from a direction for
+/// The variables (s, X, Y, u) of a direction for
 ///     T_l^m az_m = u p_{l,m}(s) Re or Im (X + i Y)^m.
 enum class Front {
     sphere,         ///< s = z,      X = x,                        u = 1

@@ -1,6 +1,6 @@
-// Where the columns (m) start: places of directions, the scaled numbers that start values are where
-// they leave the range, and powers of sin(theta) and the azimuth; compiled once for every
-// instruction set.
+// The starts of the columns (m): places of directions, scaled numbers for start values beyond
+// the range of the number type, and powers of sin(theta) and the azimuth; compiled once for
+// every instruction set.
 
 #if defined(HSHFIT_BASES_KERNELS_STARTS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HSHFIT_BASES_KERNELS_STARTS_INL_H

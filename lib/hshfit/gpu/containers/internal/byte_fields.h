@@ -60,7 +60,7 @@ inline std::string_view textOf(const std::vector<std::byte>& bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// How many bytes `texels` has to have.
+/// The number of bytes that `texels` has to have.
 inline std::size_t byteCount(const Texels& texels) {
     return texels.count() * numberBytes(texels.number);
 }
