@@ -5,13 +5,13 @@ cd "$(dirname "$0")/.."
 hshfit=build/hshfit
 mkdir -p out
 
-# Runs the program, showing the command as one would type it.
+# Runs the program after printing the command line.
 show() {
     echo "\$ hshfit $*"
     "$hshfit" "$@"
 }
 
-# finding TEXT COMMAND…: a command that is known to end with exit code 4, and what that means.
+# finding TEXT COMMAND…: a command that is known to end with exit code 4, and its meaning.
 finding() {
     text=$1
     shift

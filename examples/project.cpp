@@ -1,4 +1,4 @@
-// The library in one page: open a BRDF, project it, ask how good that is, write it.
+// The library in one page: open a BRDF, project it, measure the error, write the coefficients.
 //     project_example SPEC OUT.json       for example: project_example ward:ax=.2,ay=.5 ward.json
 
 #include <brdfs/catalog.h>

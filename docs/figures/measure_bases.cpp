@@ -1,5 +1,5 @@
-// The tables of docs/bases.md: how well each basis holds up in double and in float.
-// Not a test: it prints what it measures.
+// The tables of docs/bases.md: the errors of each basis in double and in float. It is no test
+// and only prints its measurements.
 
 #include <hshfit/bases/catalog.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 using namespace hshfit;
 
-/// Every m up to order 256; beyond, the first few and every 37th, which keeps it to seconds.
+/// Every m up to order 256; beyond, the first few and every 37th, to limit the time to seconds.
 double orthonormalityError(const bases::Entry& entry, int order, std::size_t nodes) {
     const auto basis = entry.make(order, {});
     const quadrature::Rule rule = quadrature::ruleOf(*basis, nodes);
@@ -50,7 +50,7 @@ void printOrthonormality() {
     }
 }
 
-/// Directions that see every function near its peak: even in theta and crowded at both ends.
+/// Directions near the peak of every function: even in theta and denser at both ends.
 std::vector<Direction> sampleDirections() {
     std::vector<Direction> directions{{0, 0, 1}, {0.6, 0.8, 0}};
     constexpr int even = 320, crowded = 40;

@@ -24,7 +24,7 @@ using namespace hshfit::brdfs;
 
 void printLobe(const std::string& model, double roughness, double theta) {
     const auto brdf = open(fmt::format("{}:alpha={}", model, roughness * roughness));
-    // In small steps from the normal, as a table goes.
+    // The elevations go in small steps from the normal, as in a table.
     Ltc ltc = firstLtc(*brdf, {0, 0, 1});
     LtcLobe lobe;
     Direction wo;
@@ -98,7 +98,7 @@ void printPublished(const std::string& folder) {
             at.add(lobe, best);
         }
     }
-    // Every fourth square, as a shader interpolates in its middle.
+    // Every fourth square, interpolated in its middle as in a shader.
     for (int column = 1; column + 1 < size; column += 2) {
         const double r = (column + 0.5) / (size - 1);
         const auto brdf = open(fmt::format("ggx:alpha={}", r * r));

@@ -22,7 +22,7 @@ SWEEP = ("--forms outgoing,halfway --bases hsh --orders 3,5,7 --ranks 0,2 "
          "--precisions float32,half,unorm16,unorm8 --tolerance 1e-2 --no-timing").split()
 ISOTROPIC = "--outgoing 8".split()
 ANISOTROPIC = "--orders 3,5,7 --outgoing 8x8 --outgoing 16x16 --ranks 0".split()
-# As Gautron et al. (2004) store it: 32 x 32 directions, order 10; 1.2 MB in RGB.
+# The size of Gautron et al. (2004): 32 x 32 directions, order 10; 1.2 MB in RGB.
 PAPER = ("--forms outgoing --bases hsh --orders 10 --outgoing 32x32 --ranks 0 --split none "
          "--precisions float32 --tolerance 1e-2 --no-timing").split()
 BUDGETS = (2700, 3200, 4096, 49152)
