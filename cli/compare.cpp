@@ -30,7 +30,7 @@ OutgoingSet outgoingOf(const CompareArguments& arguments, const Brdf& a, const B
                 return r->coefficients().outgoing;
             }
             const auto* r = dynamic_cast<const RepresentedBrdf*>(brdf);
-            if (r && r->representation().kind == Representation::Kind::outgoing) {
+            if (r && r->representation().kind() == Representation::Kind::outgoing) {
                 return r->representation().head.outgoing;
             }
         }

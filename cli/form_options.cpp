@@ -78,7 +78,7 @@ Json describeForm(const Representation& r) {
         steps.push_back(
             {{"what", step.what}, {"change", known ? Json(step.change) : Json(nullptr)}});
     }
-    Json out = {{"kind", kindName(r.kind)},
+    Json out = {{"kind", kindName(r.kind())},
                 {"numbers", r.numbers()},
                 {"bytes", r.bytes()},
                 {"entropy_bytes", r.entropyBytes()},
@@ -89,10 +89,10 @@ Json describeForm(const Representation& r) {
 
 std::string formLine(const Representation& r) {
     std::string text = fmt::format("  form {}: {} numbers, {} bytes ({} after Zstandard)\n",
-                                   kindName(r.kind), r.numbers(), r.bytes(), r.entropyBytes());
+                                   kindName(r.kind()), r.numbers(), r.bytes(), r.entropyBytes());
     if (!r.added.empty()) text += fmt::format("  added exactly: {}\n", r.added);
     for (const RepresentationStep& step : r.steps) {
-        const bool linear = r.kind != Representation::Kind::halfway;
+        const bool linear = r.kind() != Representation::Kind::halfway;
         text += linear ? fmt::format("  {}: changes it by {:.3g} (relative L2)\n", step.what,
                                      step.change)
                        : fmt::format("  {}: {:.3g}\n", step.what, step.change);

@@ -52,9 +52,9 @@ Coefficients coefficientsOf(const std::string& path, const ExportOptions& option
     if (!options.outgoing.empty()) outgoing = OutgoingSet::parse(options.outgoing);
     if (outgoing) expansion.outgoing = &*outgoing;
     expansion.projection.progress = listener.part("project");
-    if (stored.kind != Representation::Kind::outgoing || !stored.added.empty() || outgoing) {
+    if (stored.kind() != Representation::Kind::outgoing || !stored.added.empty() || outgoing) {
         listener.say(fmt::format("{}: form {}{}; exported as coefficients per outgoing direction",
-                                 path, kindName(stored.kind),
+                                 path, kindName(stored.kind()),
                                  stored.added.empty() ? "" : " with " + stored.added));
     }
     return expand(stored, sourceOpener(), expansion);

@@ -34,7 +34,7 @@ std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb) {
     if (!looksLikeCoefficients(spec)) return openBrdf(spec, rgb);
     Representation representation = readRepresentation(spec);
     const bool plain = representation.steps.empty() && representation.added.empty() &&
-                       representation.has("coefficients");
+                       representation.as<CoefficientArray>();
     if (plain) {
         return seenAsRgb(std::make_unique<Reconstruction>(decoded(representation)), rgb);
     }

@@ -6,6 +6,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/exr_header.h>
 #include <hshfit/representation/forms/represented_brdf.h>
+#include <hshfit/representation/named_arrays.h>
 
 #include <cstdint>
 #include <cstdlib>
@@ -25,9 +26,11 @@ void check(const hshfit::Coefficients& c) {
 
 void check(const hshfit::Representation& r) {
     const auto again = hshfit::representationFromJson(hshfit::representationToJson(r), "again");
-    if (again.arrays.size() != r.arrays.size() || again.bytes() != r.bytes()) std::abort();
-    for (std::size_t i = 0; i < r.arrays.size(); ++i) {
-        if (again.arrays[i].values != r.arrays[i].values) std::abort();
+    const auto before = hshfit::namedArrays(r), after = hshfit::namedArrays(again);
+    if (after.size() != before.size() || again.bytes() != r.bytes()) std::abort();
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        if (after[i].name != before[i].name) std::abort();
+        if (after[i].array->values != before[i].array->values) std::abort();
     }
     const auto brdf = hshfit::reconstruct(r, [](const std::string& spec) {
         throw hshfit::InputError("no models here: " + hshfit::printable(spec));

@@ -6,6 +6,7 @@
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/exr_picture.h>
 #include <hshfit/representation/basis_matrix.h>
+#include <hshfit/representation/named_arrays.h>
 
 #include <brdfs/bsdf_xml_text.h>
 #include <brdfs/tensor_writer.h>
@@ -127,20 +128,22 @@ void formFiles(const std::filesystem::path& folder) {
     using namespace hshfit;
     const auto c = samples::make(OutgoingSet::elevations(3), Channels::rgb(), Quantity::brdf, 2, 1);
     Representation both;
-    both.kind = Representation::Kind::basis;
     both.head = c;
     both.head.outgoing = {};
     both.head.isotropic = both.head.reciprocal = true;
     const auto terms = productTermCount(*bases::make("hsh", 2), symmetryOf(both));
-    both.arrays.push_back({.name = "matrix", .shape = {3, terms}, .values = {}});
-    for (std::size_t i = 0; i < 3 * terms; ++i) both.arrays[0].values.push_back(c.values[i]);
+    StoredArray matrix{.shape = {3, terms}, .values = {}};
+    for (std::size_t i = 0; i < 3 * terms; ++i) matrix.values.push_back(c.values[i]);
+    both.content = MatrixArray{std::move(matrix)};
     int number = 0;
     for (const Representation& form : {fromCoefficients(c), both}) {
         for (Precision precision : {Precision::float32, Precision::unorm16, Precision::unorm8}) {
             for (bool masked : {false, true}) {
                 Representation r = form;
-                if (masked) keepLargest(r.arrays[0], 5);
-                quantise(r.arrays[0], precision);
+                for (const auto& each : namedArrays(r)) {
+                    if (masked) keepLargest(*each.array, 5);
+                    quantise(*each.array, precision);
+                }
                 r.steps.push_back({"rounded", 0.5});
                 writeRepresentation(r, folder / ("form" + std::to_string(number++) + ".json"));
             }

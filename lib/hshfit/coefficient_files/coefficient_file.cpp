@@ -98,10 +98,9 @@ Coefficients readCoefficients(const std::string& path) {
 }
 
 void writeRepresentation(const Representation& representation, const std::string& path) {
-    const bool plain = representation.kind == Representation::Kind::outgoing &&
-                       representation.added.empty() && representation.steps.empty() &&
-                       representation.has("coefficients") &&
-                       representation.array("coefficients").precision == Precision::float64;
+    const auto* whole = representation.as<CoefficientArray>();
+    const bool plain = representation.added.empty() && representation.steps.empty() && whole &&
+                       whole->coefficients.precision == Precision::float64;
     if (plain) return writeCoefficients(decoded(representation), path);
     if (formByExtension(path) != Form::json) {
         throw UsageError(

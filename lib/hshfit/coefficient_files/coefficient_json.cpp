@@ -113,11 +113,11 @@ private:
 /// Coefficients of a file in another form, where it holds those and nothing else.
 Coefficients decodedOrRefused(std::string_view text, const std::string& file) {
     const Representation r = representationFromJson(text, file);
-    if (r.kind == Representation::Kind::outgoing && r.added.empty()) return decoded(r);
+    if (r.kind() == Representation::Kind::outgoing && r.added.empty()) return decoded(r);
     throw InputError(fmt::format(
         "{}: holds the form '{}'{}, not coefficients per outgoing direction alone; project it to a "
         "file of its own first",
-        file, kindName(r.kind), r.added.empty() ? "" : fmt::format(" with {} added", r.added)));
+        file, kindName(r.kind()), r.added.empty() ? "" : fmt::format(" with {} added", r.added)));
 }
 
 constexpr std::size_t longestNumber = sizeof("-1.7976931348623157e+308");  // and the comma

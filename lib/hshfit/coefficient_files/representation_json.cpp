@@ -6,6 +6,7 @@
 #include <hshfit/files/printable.h>
 #include <hshfit/representation/basis_matrix.h>
 #include <hshfit/representation/halfway/halfway.h>
+#include <hshfit/representation/named_arrays.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,9 +24,9 @@ using Kind = Representation::Kind;
 
 constexpr int maxSide = 1 << 28;
 
-Ordered describe(const StoredArray& array) {
+Ordered describe(const std::string& name, const StoredArray& array) {
     const std::vector<std::byte> bytes = packed(array);
-    return {{"name", array.name},
+    return {{"name", name},
             {"shape", array.shape},
             {"precision", precisionName(array.precision)},
             {"masked", !array.kept.empty()},
@@ -34,9 +35,9 @@ Ordered describe(const StoredArray& array) {
 }
 
 Ordered describe(const Representation& r) {
-    Ordered out = {{"kind", kindName(r.kind)}};
-    if (r.kind == Kind::outgoing) out["slots"] = r.slots;
-    if (r.kind == Kind::halfway) {
+    Ordered out = {{"kind", kindName(r.kind())}};
+    if (r.kind() == Kind::outgoing) out["slots"] = r.slots;
+    if (r.kind() == Kind::halfway) {
         out["orders"] = {{"half", r.halfway.half},
                          {"difference", r.halfway.difference},
                          {"azimuth", r.halfway.azimuth}};
@@ -50,13 +51,14 @@ Ordered describe(const Representation& r) {
     }
     out["steps"] = steps;
     out["arrays"] = Ordered::array();
-    for (const StoredArray& array : r.arrays) out["arrays"].push_back(describe(array));
+    for (const auto& [name, array] : namedArrays(r))
+        out["arrays"].push_back(describe(name, *array));
     return out;
 }
 
-StoredArray readArray(const JsonFields& fields, const std::string& file) {
+Named<StoredArray> readArray(const JsonFields& fields, const std::string& file) {
+    const std::string name = fields.word("name");
     StoredArray array;
-    array.name = fields.word("name");
     for (double side : fields.numbers("shape")) {
         if (!(side >= 0) || side > maxSide || side != std::floor(side)) {
             fields.fail("has to hold whole numbers from 0", "shape");
@@ -79,8 +81,8 @@ StoredArray readArray(const JsonFields& fields, const std::string& file) {
         fields.fail(fmt::format("has to be base64 of {} bytes", bytes), "base64");
     }
     unpackInto(array, data, fields.flag("masked"),
-               fmt::format("{}: array '{}'", file, printable(array.name.substr(0, 40))));
-    return array;
+               fmt::format("{}: array '{}'", file, printable(name.substr(0, 40))));
+    return {name, std::move(array)};
 }
 
 /// Rows and columns of the arrays against what kind, basis, channels and slots call for.
@@ -90,13 +92,14 @@ public:
 
     void outgoing(std::size_t directions) const {
         const std::size_t rows = directions * r_.head.channels.count(), columns = r_.slots.size();
-        if (r_.has("coefficients")) {
-            require("coefficients", {directions, r_.head.channels.count(), columns});
+        if (const auto* factors = r_.as<CoefficientFactors>()) {
+            const std::size_t rank = factors->left.columns();
+            require(factors->left, "left", {rows, rank});
+            require(factors->right, "right", {rank, columns});
             return;
         }
-        const std::size_t rank = columnsOf("left");
-        require("left", {rows, rank});
-        require("right", {rank, columns});
+        require(r_.as<CoefficientArray>()->coefficients, "coefficients",
+                {directions, r_.head.channels.count(), columns});
     }
     /// One value for each term and channel; the order alone says how many that are.
     void basis() const {
@@ -104,10 +107,8 @@ public:
         const auto functions = bases::make(r_.head.basis, r_.head.order);
         const std::size_t terms = productTermCount(*functions, symmetryOf(r_));
         const std::size_t channels = r_.head.channels.count();
-        if (r_.has("matrix")) {
-            require("matrix", {channels, terms});
-        } else if (r_.arrays.empty()) {
-            fields_.fail("has no array 'matrix' and no factors", "arrays");
+        if (const auto* whole = r_.as<MatrixArray>()) {
+            require(whole->matrix, "matrix", {channels, terms});
         } else if (terms > most / channels) {
             fields_.fail(fmt::format("are factors of a matrix of {} terms; at most {} are read",
                                      terms, most / channels),
@@ -124,13 +125,9 @@ public:
     }
 
 private:
-    std::size_t columnsOf(const char* name) const {
-        if (!r_.has(name)) fields_.fail(fmt::format("has no array '{}'", name), "arrays");
-        return r_.array(name).columns();
-    }
-    void require(const char* name, const std::vector<std::size_t>& shape) const {
-        columnsOf(name);
-        if (r_.array(name).shape == shape) return;
+    void require(const StoredArray& array, const char* name,
+                 const std::vector<std::size_t>& shape) const {
+        if (array.shape == shape) return;
         std::string text;
         for (std::size_t side : shape) text += fmt::format("{}{}", text.empty() ? "" : " x ", side);
         fields_.fail(fmt::format("'{}' has to be {}", name, text), "arrays");
@@ -140,23 +137,23 @@ private:
     const JsonFields& fields_;
 };
 
-/// Directions that the arrays of the form outgoing speak of; 0 for the other forms.
-std::size_t directionsIn(const Json& root) {
-    const Json& arrays = root.value("/representation/arrays"_json_pointer, Json::array());
-    const std::size_t channels = root.value("channels", Json::array()).size();
-    for (const Json& array : arrays) {
-        if (!array.is_object() || !array.contains("shape") || !array["shape"].is_array() ||
-            array["shape"].empty() || !array["shape"][0].is_number_unsigned()) {
-            continue;
-        }
-        const auto rows = array["shape"][0].get<std::size_t>();
-        const std::string name = array.value("name", Json()).is_string()
-                                     ? array["name"].get<std::string>()
-                                     : std::string();
-        if (name == "coefficients") return rows;
-        if (name == "left" && channels > 0) return rows / channels;
+/// Directions that the content speaks of; 0 for the forms without.
+std::size_t directionsIn(const Content& content, std::size_t channels) {
+    if (const auto* whole = std::get_if<CoefficientArray>(&content)) {
+        return whole->coefficients.shape[0];
     }
-    return 0;
+    const auto* factors = std::get_if<CoefficientFactors>(&content);
+    return factors && channels > 0 ? factors->left.shape[0] / channels : 0;
+}
+
+Content readContent(Kind kind, const JsonFields& part, const std::string& file) {
+    std::vector<Named<StoredArray>> arrays;
+    for (const JsonFields& array : part.objects("arrays")) arrays.push_back(readArray(array, file));
+    try {
+        return contentOf(kind, std::move(arrays));
+    } catch (const InputError& error) {
+        part.fail(printable(error.what()), "arrays");
+    }
 }
 
 }  // namespace
@@ -192,29 +189,28 @@ Representation representationFromJson(std::string_view text, const std::string& 
     const auto known = std::find_if(kinds.begin(), kinds.end(),
                                     [&](Kind candidate) { return kindName(candidate) == kind; });
     if (known == kinds.end()) part.fail("has to be 'outgoing', 'basis' or 'halfway'", "kind");
-    r.kind = *known;
-    r.head = readHead(fields, r.kind == Kind::outgoing ? directionsIn(root) : 0);
+    r.content = readContent(*known, part, file);
+    r.head =
+        readHead(fields, directionsIn(r.content, root.value("channels", Json::array()).size()));
     if (part.has("added")) r.added = part.word("added");
-    for (const JsonFields& array : part.objects("arrays"))
-        r.arrays.push_back(readArray(array, file));
     for (const JsonFields& step : part.objects("steps")) {
         r.steps.push_back({step.word("what"), step.numberOrNull("change").value_or(
                                                   std::numeric_limits<double>::quiet_NaN())});
     }
-    if (r.kind == Kind::outgoing) {
+    if (r.kind() == Kind::outgoing) {
         for (double slot : part.numbers("slots")) r.slots.push_back(static_cast<int>(slot));
         const ShapeCheck check(r, part);
         check.slots();
         check.outgoing(r.head.outgoing.size());
     }
-    if (r.kind == Kind::halfway) {
+    if (r.kind() == Kind::halfway) {
         const JsonFields orders = part.object("orders");
         r.halfway = {.half = orders.integer("half", 1, 256),
                      .difference = orders.integer("difference", 1, 256),
                      .azimuth = orders.integer("azimuth", 1, 256)};
     }
-    if (r.kind != Kind::halfway && r.head.basis.empty()) fields.fail("is missing", "basis");
-    if (r.kind == Kind::basis) ShapeCheck(r, part).basis();
+    if (r.kind() != Kind::halfway && r.head.basis.empty()) fields.fail("is missing", "basis");
+    if (r.kind() == Kind::basis) ShapeCheck(r, part).basis();
     return r;
 }
 

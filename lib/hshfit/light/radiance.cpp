@@ -158,7 +158,7 @@ std::vector<double> BasisLight::bandPower() const {
 
 Radiance linearRadiance(const Representation& representation, const BasisLight& light,
                         const Views& views) {
-    return representation.kind == Representation::Kind::outgoing
+    return representation.kind() == Representation::Kind::outgoing
                ? fromRows(decoded(representation), light, views)
                : fromMatrix(representation, light, views);
 }

@@ -26,7 +26,7 @@ constexpr int leastFactoredOrder = 5;
 constexpr int mostAnisotropicOrder = 8;
 
 std::size_t arrayBytes(std::vector<std::size_t> shape, Precision precision) {
-    StoredArray array{.name = "", .shape = std::move(shape), .precision = precision, .values = {}};
+    StoredArray array{.shape = std::move(shape), .precision = precision, .values = {}};
     std::size_t count = 1;
     for (std::size_t length : array.shape) count *= length;
     array.values.resize(count);

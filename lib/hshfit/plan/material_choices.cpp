@@ -53,7 +53,7 @@ double MaterialSearch::floorOf(const Rung& rung) {
 
 std::vector<Radiance> MaterialSearch::radianceOf(const Representation& representation,
                                                  const Part& part) {
-    if (representation.kind == Representation::Kind::halfway) {
+    if (representation.kind() == Representation::Kind::halfway) {
         return light_->radianceOf(*pairEvaluator(representation, open_),
                                   representation.head.channels.count());
     }

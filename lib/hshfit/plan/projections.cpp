@@ -44,14 +44,13 @@ OutgoingSet outerNodes(int order, bool isotropic) {
 /// The matrix whose coefficients over wi at the nodes over wo are these.
 Representation gathered(const Coefficients& c, const Basis& basis, bool reciprocal) {
     Representation result;
-    result.kind = Representation::Kind::basis;
     result.head = c;
     result.head.outgoing = {};
     result.head.reciprocal = reciprocal;
     const ProductSymmetry symmetry = symmetryOf(result);
     const std::vector<ProductTerm> terms = productTerms(basis, symmetry);
     const std::size_t channels = c.channels.count();
-    StoredArray matrix{.name = "matrix", .shape = {channels, terms.size()}, .values = {}};
+    StoredArray matrix{.shape = {channels, terms.size()}, .values = {}};
     matrix.values.assign(channels * terms.size(), 0.0);
     std::vector<double> atWo(c.slots()), products(terms.size());
     for (std::size_t o = 0; o < c.outgoing.size(); ++o) {
@@ -66,7 +65,7 @@ Representation gathered(const Coefficients& c, const Basis& basis, bool reciproc
             }
         }
     }
-    result.arrays.push_back(std::move(matrix));
+    result.content = MatrixArray{std::move(matrix)};
     return result;
 }
 

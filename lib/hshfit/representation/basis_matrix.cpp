@@ -280,9 +280,7 @@ Representation projectBoth(const Brdf& brdf, const Basis& basis, bool reciprocal
     inner.tolerance = tolerance / 4;
 
     Representation result;
-    result.kind = Representation::Kind::basis;
-    StoredArray matrix{
-        .name = "matrix", .shape = {brdf.channels().count(), terms.size()}, .values = {}};
+    StoredArray matrix{.shape = {brdf.channels().count(), terms.size()}, .values = {}};
     double change = 0;
     for (int level = 0; level <= lastLevel; ++level) {
         const OuterGrid grid = outerGrid(basis, symmetry.isotropic, level);
@@ -298,7 +296,7 @@ Representation projectBoth(const Brdf& brdf, const Basis& basis, bool reciprocal
         result.head.reciprocal = reciprocal;
         result.head.tolerance = tolerance;
         result.head.error = std::max(result.head.error, change);
-        result.arrays.push_back(std::move(matrix));
+        result.content = MatrixArray{std::move(matrix)};
         return result;
     }
     throw NumericError(fmt::format(
@@ -309,7 +307,7 @@ Representation projectBoth(const Brdf& brdf, const Basis& basis, bool reciprocal
 }
 
 std::vector<double> matrixValues(const Representation& matrix) {
-    if (matrix.has("matrix")) return matrix.array("matrix").values;
+    if (const auto* whole = matrix.as<MatrixArray>()) return whole->matrix.values;
     const CoefficientHead& head = matrix.head;
     const auto basis = bases::make(head.basis, head.order, {.condonShortley = head.condonShortley});
     return multipliedOut(matrix, productTerms(*basis, symmetryOf(matrix)));
@@ -325,7 +323,7 @@ Representation truncated(const Representation& matrix, int order) {
         throw UsageError(fmt::format("the functions of {} depend on the order: project anew",
                                      matrix.head.basis));
     }
-    if (!matrix.has("matrix") || order > matrix.head.order) {
+    if (!matrix.as<MatrixArray>() || order > matrix.head.order) {
         throw UsageError(
             fmt::format("a matrix of order {}, not factored, has no prefix of order {}",
                         matrix.head.order, order));
@@ -336,7 +334,7 @@ Representation truncated(const Representation& matrix, int order) {
                       [&](const ProductTerm& t) { return std::max(t.l, t.k) < order; }));
     Representation result = matrix;
     result.head.order = order;
-    StoredArray& array = result.arrays[0];
+    StoredArray& array = result.as<MatrixArray>()->matrix;
     const std::size_t rows = array.rows();
     std::vector<double> values;
     for (std::size_t row = 0; row < rows; ++row) {

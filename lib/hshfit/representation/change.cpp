@@ -53,7 +53,7 @@ std::vector<double> whitenedTerms(const Representation& representation) {
 }
 
 std::vector<double> valuesOf(const Representation& representation) {
-    switch (representation.kind) {
+    switch (representation.kind()) {
         case Representation::Kind::outgoing: {
             std::vector<double> values = decoded(representation).values;
             whitenRows(representation, values);
@@ -64,13 +64,13 @@ std::vector<double> valuesOf(const Representation& representation) {
         case Representation::Kind::halfway:
             break;
     }
-    return representation.array("halfway").values;
+    return std::get<HalfwayArray>(representation.content).halfway.values;
 }
 
 }  // namespace
 
 std::vector<double> changeWeights(const Representation& representation) {
-    if (representation.kind != Representation::Kind::outgoing) {
+    if (representation.kind() != Representation::Kind::outgoing) {
         return std::vector<double>(valuesOf(representation).size(), 1.0);
     }
     const CoefficientHead& head = representation.head;
@@ -85,7 +85,7 @@ std::vector<double> changeWeights(const Representation& representation) {
 double relativeChange(const Representation& before, const Representation& after) {
     const std::vector<double> a = valuesOf(before), b = valuesOf(after);
     std::vector<double> weights = changeWeights(before);
-    if (before.kind == Representation::Kind::basis) weights.assign(a.size(), 1.0);
+    if (before.kind() == Representation::Kind::basis) weights.assign(a.size(), 1.0);
     assert(a.size() == b.size() && a.size() == weights.size());
     double change = 0, norm = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {

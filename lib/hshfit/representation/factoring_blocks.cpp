@@ -27,38 +27,43 @@ void insert(std::vector<int>& slots, int slot) {
     if (at == slots.end() || *at != slot) slots.insert(at, slot);
 }
 
-[[noreturn]] void refuse(const Representation& matrix, const std::string& name,
+[[noreturn]] void refuse(const Representation& matrix, const TermBlock& block,
                          const std::string& what) {
     throw InputError(
-        fmt::format("{}: array '{}' of the form basis {}", matrix.head.source, name, what));
+        fmt::format("{}: block '{}' of the form basis {}", matrix.head.source, block.name, what));
 }
 
-const StoredArray& arrayOf(const Representation& matrix, const std::string& name) {
-    if (!matrix.has(name)) refuse(matrix, name, "is missing");
-    return matrix.array(name);
+void requireShape(const Representation& matrix, const TermBlock& block, const StoredArray& array,
+                  const char* part, std::size_t rows, std::size_t columns) {
+    if (array.shape == std::vector<std::size_t>{rows, columns}) return;
+    refuse(matrix, block, fmt::format("has to have {} x {} {}", rows, columns, part));
 }
 
-/// A block's matrix of one channel, row-major, from its arrays.
+/// A block's matrix of one channel, row-major, from its factors.
 class BlockProduct {
 public:
-    BlockProduct(const Representation& matrix, const TermBlock& block)
-        : block_(block),
-          channels_(matrix.head.channels.count()),
-          right_(arrayOf(matrix, "right " + block.name)),
-          left_(arrayOf(matrix, (block.symmetric ? "core " : "left ") + block.name)) {
-        const std::size_t columns = block.columns.size(), rank = right_.rows();
-        if (right_.shape.size() != 2 || right_.columns() != columns) {
-            refuse(matrix, right_.name, fmt::format("has to have {} columns", columns));
+    BlockProduct(const Representation& matrix, const TermBlock& block, const MatrixBlock& stored)
+        : block_(block) {
+        const auto* product = std::get_if<ProductBlock>(&stored.part);
+        const auto* symmetric = std::get_if<SymmetricBlock>(&stored.part);
+        if (block.symmetric ? !symmetric : !product) {
+            refuse(matrix, block,
+                   fmt::format("is missing '{}' and 'right'", block.symmetric ? "core" : "left"));
         }
-        const std::size_t width = block.symmetric ? rank * (rank + 1) / 2 : rank;
-        const std::size_t rows = block.symmetric ? channels_ : channels_ * block.rows.size();
-        if (left_.shape != std::vector<std::size_t>{rows, width}) {
-            refuse(matrix, left_.name, fmt::format("has to be {} x {}", rows, width));
+        right_ = symmetric ? &symmetric->right : &product->right;
+        left_ = symmetric ? &symmetric->core : &product->left;
+        const std::size_t channels = matrix.head.channels.count(), rank = right_->rows();
+        requireShape(matrix, block, *right_, "right factors", rank, block.columns.size());
+        if (symmetric) {
+            requireShape(matrix, block, *left_, "entries of its core", channels,
+                         rank * (rank + 1) / 2);
+        } else {
+            requireShape(matrix, block, *left_, "left factors", channels * block.rows.size(), rank);
         }
     }
 
     double entry(std::size_t channel, std::size_t row, std::size_t column) const {
-        const std::size_t rank = right_.rows();
+        const std::size_t rank = right_->rows();
         double sum = 0;
         for (std::size_t r = 0; r < rank; ++r) {
             sum += factor(channel, row, r) * right(r, column);
@@ -68,15 +73,15 @@ public:
 
 private:
     double right(std::size_t r, std::size_t column) const {
-        return right_.values[r * block_.columns.size() + column];
+        return right_->values[r * block_.columns.size() + column];
     }
     /// What multiplies right(r, .) in this row.
     double factor(std::size_t channel, std::size_t row, std::size_t r) const {
-        const std::size_t rank = right_.rows();
+        const std::size_t rank = right_->rows();
         if (!block_.symmetric) {
-            return left_.values[(channel * block_.rows.size() + row) * rank + r];
+            return left_->values[(channel * block_.rows.size() + row) * rank + r];
         }
-        const double* core = left_.values.data() + channel * (rank * (rank + 1) / 2);
+        const double* core = left_->values.data() + channel * (rank * (rank + 1) / 2);
         double sum = 0;
         for (std::size_t s = 0; s < rank; ++s) {
             const std::size_t high = std::max(r, s), low = std::min(r, s);
@@ -86,9 +91,8 @@ private:
     }
 
     const TermBlock& block_;
-    std::size_t channels_;
-    const StoredArray& right_;
-    const StoredArray& left_;
+    const StoredArray* right_ = nullptr;
+    const StoredArray* left_ = nullptr;  ///< the core where symmetric
 };
 
 }  // namespace
@@ -132,32 +136,30 @@ std::vector<TermBlock> termBlocks(const std::vector<ProductTerm>& terms,
 
 std::vector<double> multipliedOut(const Representation& matrix,
                                   const std::vector<ProductTerm>& terms) {
+    const std::vector<MatrixBlock>& stored = std::get<MatrixFactors>(matrix.content).blocks;
     const std::size_t channels = matrix.head.channels.count();
     std::vector<double> values(channels * terms.size(), 0.0);
     std::size_t used = 0;
     for (const TermBlock& block : termBlocks(terms, symmetryOf(matrix))) {
-        const bool whole = matrix.has("block " + block.name);
-        if (!whole && !matrix.has("right " + block.name)) continue;
-        used += whole ? 1 : 2;
-        if (whole) {
-            const StoredArray& stack = matrix.array("block " + block.name);
-            std::vector<std::size_t> stored;
+        const auto found = std::ranges::find(stored, block.name, &MatrixBlock::name);
+        if (found == stored.end()) continue;
+        ++used;
+        if (const auto* whole = std::get_if<WholeBlock>(&found->part)) {
+            const StoredArray& stack = whole->terms;
+            std::vector<std::size_t> places;
             for (const TermBlock::Entry& entry : block.entries) {
-                if (stored.empty() || stored.back() != entry.term) stored.push_back(entry.term);
+                if (places.empty() || places.back() != entry.term) places.push_back(entry.term);
             }
-            if (stack.shape != std::vector<std::size_t>{channels, stored.size()}) {
-                refuse(matrix, stack.name,
-                       fmt::format("has to be {} x {}", channels, stored.size()));
-            }
+            requireShape(matrix, block, stack, "terms", channels, places.size());
             for (std::size_t i = 0; i < stack.values.size(); ++i) {
-                values[i / stored.size() * terms.size() + stored[i % stored.size()]] =
+                values[i / places.size() * terms.size() + places[i % places.size()]] =
                     stack.values[i];
             }
             continue;
         }
         // A term is the inner product of its function with the sum: the sum of its entries times
         // their factors.
-        const BlockProduct product(matrix, block);
+        const BlockProduct product(matrix, block, *found);
         for (std::size_t c = 0; c < channels; ++c) {
             for (const TermBlock::Entry& entry : block.entries) {
                 values[c * terms.size() + entry.term] +=
@@ -165,9 +167,9 @@ std::vector<double> multipliedOut(const Representation& matrix,
             }
         }
     }
-    if (used == 0 || used != matrix.arrays.size()) {
-        throw InputError(fmt::format("{}: of {} arrays, {} are factors of blocks of the form basis",
-                                     matrix.head.source, matrix.arrays.size(), used));
+    if (used == 0 || used != stored.size()) {
+        throw InputError(fmt::format("{}: of {} factored blocks, {} are blocks of the form basis",
+                                     matrix.head.source, stored.size(), used));
     }
     return values;
 }

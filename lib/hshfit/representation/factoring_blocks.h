@@ -30,8 +30,8 @@ struct TermBlock {
 std::vector<TermBlock> termBlocks(const std::vector<ProductTerm>& terms,
                                   const ProductSymmetry& symmetry);
 
-/// [channel][term] of a factored matrix, from its arrays (factoring.h); a block without arrays is
-/// 0. Throws InputError if their shapes do not fit the terms, or for arrays of no block.
+/// [channel][term] of a factored matrix; a block that is absent is 0. Throws InputError if shapes
+/// do not fit the terms, or for a block that is none of `termBlocks`.
 std::vector<double> multipliedOut(const Representation& matrix,
                                   const std::vector<ProductTerm>& terms);
 

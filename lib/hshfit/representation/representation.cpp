@@ -1,23 +1,16 @@
 #include <hshfit/representation/representation.h>
 
 #include <hshfit/error.h>
+#include <hshfit/representation/named_arrays.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
 #include <numeric>
-#include <stdexcept>
 
 namespace hshfit::inline representation {
 namespace {
-
-const StoredArray* find(const Representation& representation, std::string_view name) {
-    for (const StoredArray& array : representation.arrays) {
-        if (array.name == name) return &array;
-    }
-    return nullptr;
-}
 
 /// Numbers in a specification: digits that follow no letter, "ggx:alpha=0.2/.3" has two.
 std::size_t countNumbers(std::string_view spec) {
@@ -62,33 +55,29 @@ std::vector<double> product(const StoredArray& left, const StoredArray& right) {
 
 }  // namespace
 
-const StoredArray& Representation::array(std::string_view name) const {
-    if (const StoredArray* found = find(*this, name)) return *found;
-    throw std::out_of_range(fmt::format("no array '{}'", name));
-}
-
-bool Representation::has(std::string_view name) const {
-    return find(*this, name) != nullptr;
+Representation::Kind Representation::kind() const {
+    if (as<HalfwayArray>()) return Kind::halfway;
+    return as<MatrixArray>() || as<MatrixFactors>() ? Kind::basis : Kind::outgoing;
 }
 
 std::size_t Representation::bytes() const {
     std::size_t sum = 4 * countNumbers(added);
-    for (const StoredArray& each : arrays) sum += storedBytes(each);
+    for (const auto& each : namedArrays(*this)) sum += storedBytes(*each.array);
     return sum;
 }
 
 std::size_t Representation::entropyBytes() const {
     std::size_t sum = 4 * countNumbers(added);
-    for (const StoredArray& each : arrays) sum += hshfit::entropyBytes(each);
+    for (const auto& each : namedArrays(*this)) sum += hshfit::entropyBytes(*each.array);
     return sum;
 }
 
 std::size_t Representation::numbers() const {
     std::size_t sum = countNumbers(added);
-    for (const StoredArray& each : arrays) {
-        sum += each.kept.empty()
-                   ? each.values.size()
-                   : static_cast<std::size_t>(std::count(each.kept.begin(), each.kept.end(), true));
+    for (const auto& each : namedArrays(*this)) {
+        const std::vector<bool>& kept = each.array->kept;
+        sum += kept.empty() ? each.array->values.size()
+                            : static_cast<std::size_t>(std::ranges::count(kept, true));
     }
     return sum;
 }
@@ -109,28 +98,27 @@ Representation fromCoefficients(const Coefficients& c) {
     Representation result;
     result.head = c;
     result.slots = usedSlots(c);
-    StoredArray array{.name = "coefficients",
-                      .shape = {c.outgoing.size(), c.channels.count(), result.slots.size()},
+    StoredArray array{.shape = {c.outgoing.size(), c.channels.count(), result.slots.size()},
                       .values = {}};
     for (std::size_t row = 0; row < c.values.size() / c.slots(); ++row) {
         for (int slot : result.slots) array.values.push_back(c.values[row * c.slots() + slot]);
     }
-    result.arrays.push_back(std::move(array));
+    result.content = CoefficientArray{std::move(array)};
     return result;
 }
 
 Coefficients decoded(const Representation& representation) {
-    if (representation.kind != Representation::Kind::outgoing) {
+    if (representation.kind() != Representation::Kind::outgoing) {
         throw UsageError(
             fmt::format("{}: the form '{}' keeps no coefficients per outgoing "
                         "direction; project it anew",
-                        representation.head.source, kindName(representation.kind)));
+                        representation.head.source, kindName(representation.kind())));
     }
     Coefficients result{representation.head};
-    const bool whole = representation.has("coefficients");
+    const auto* factors = representation.as<CoefficientFactors>();
     const std::vector<double> values =
-        whole ? representation.array("coefficients").values
-              : product(representation.array("left"), representation.array("right"));
+        factors ? product(factors->left, factors->right)
+                : std::get<CoefficientArray>(representation.content).coefficients.values;
     const std::size_t stored = representation.slots.size(), slots = result.slots();
     result.values.assign(result.outgoing.size() * result.channels.count() * slots, 0.0);
     for (std::size_t row = 0; row < values.size() / std::max<std::size_t>(stored, 1); ++row) {

@@ -2,7 +2,7 @@
 
 #include <hshfit/brdf/brdf.h>
 #include <hshfit/coefficients/coefficients.h>
-#include <hshfit/representation/stored_array.h>
+#include <hshfit/representation/content.h>
 
 #include <functional>
 #include <memory>
@@ -27,30 +27,35 @@ struct HalfwayOrders {
 /// One way to keep a BRDF, as a coefficient file holds it.
 ///
 /// outgoing  q(wi, wo) = sum_i c_i(wo) B_i(wi), c kept per outgoing direction and interpolated.
-///           "coefficients" [outgoing][channel][slot of `slots`], or, factored,
-///           "left" [outgoing * channels + channel][rank] times "right" [rank][slot of `slots`]
+///           CoefficientArray or CoefficientFactors, with the slots of `slots`
 /// basis     q(wi, wo) = sum_t c_t P_t(wi, wo): both directions in one basis (the "two successive
 ///           transformations" of Gautron et al. 2004); terms as in basis_matrix.h.
-///           "matrix" [channel][term], or, factored, "left M" and "right M" for each block
+///           MatrixArray or MatrixFactors
 /// halfway   ln(1 + f) expanded over the half and the difference vector; see halfway.h.
-///           "halfway" [channel][term]
+///           HalfwayArray
 ///
 /// The BRDF of the specification `added`, if any, is added to f exactly.
 struct Representation {
     enum class Kind { outgoing, basis, halfway };
 
-    Kind kind = Kind::outgoing;
     /// `outgoing` is empty unless the kind is `outgoing`; `quantity` is brdf for halfway.
     CoefficientHead head;
     std::vector<int> slots;  ///< the stored slots, ascending (kind outgoing)
     HalfwayOrders halfway = {};
     std::string added;
-    std::vector<StoredArray> arrays;
+    Content content;
     std::vector<RepresentationStep> steps = {};
 
-    /// Throws std::out_of_range if there is none of that name.
-    const StoredArray& array(std::string_view name) const;
-    bool has(std::string_view name) const;
+    Kind kind() const;  ///< of the content
+    /// The content where it is a `Form`, one of the members of `Content`; nullptr otherwise.
+    template <class Form>
+    const Form* as() const {
+        return std::get_if<Form>(&content);
+    }
+    template <class Form>
+    Form* as() {
+        return std::get_if<Form>(&content);
+    }
 
     /// Length of all arrays as packed, plus four bytes for each number in `added`. Names, shapes
     /// and provenance are not counted, as in the sizes that others publish.

@@ -155,12 +155,12 @@ std::size_t StoredArray::groups() const {
     return (columns() + groupColumns() - 1) / groupColumns();
 }
 
-void quantise(StoredArray& array, Precision precision) {
+void quantise(StoredArray& array, Precision precision, std::string_view name) {
     const Row& row = rowOf(precision);
     for (std::size_t i = 0; i < array.values.size(); ++i) {
         if (std::isfinite(array.values[i]) && std::abs(array.values[i]) <= row.largest) continue;
         throw NumericError(
-            fmt::format("{}: value {} is {}, beyond {}", array.name, i, array.values[i], row.name));
+            fmt::format("{}: value {} is {}, beyond {}", name, i, array.values[i], row.name));
     }
     array.precision = precision;
     array.scales.clear();

@@ -25,7 +25,6 @@ std::size_t numberBytes(Precision precision);
 /// An array as a file keeps it. `values` are what the stored numbers decode to, so that whatever is
 /// computed from them holds for the file.
 struct StoredArray {
-    std::string name;                ///< "coefficients", "left", "matrix", …
     std::vector<std::size_t> shape;  ///< row-major; the last axis counts columns
     Precision precision = Precision::float64;
     std::vector<double> values;
@@ -44,22 +43,23 @@ struct StoredArray {
 };
 
 /// Rounds the values to what `precision` holds. The scale of a group spans its kept values.
-/// Throws NumericError for a value that is not finite or beyond the range of the number type.
-void quantise(StoredArray& array, Precision precision);
+/// Throws NumericError, with the array's `name`, for a value that is not finite or beyond the range
+/// of the number type.
+void quantise(StoredArray& array, Precision precision, std::string_view name = "array");
 
 /// Keeps the `count` values that are largest in `weights` times magnitude, of equal ones the first,
 /// and sets the others to 0. `weights`: one per value, or empty for 1. Call before `quantise`.
 void keepLargest(StoredArray& array, std::size_t count, std::span<const double> weights = {});
 
 /// Scales and offsets, then the mask (one bit per value, the lowest first), then the numbers that
-/// are kept: all that a reader needs besides name, shape and precision.
+/// are kept: all that a reader needs besides shape and precision.
 std::vector<std::byte> packed(const StoredArray& array);
 /// Length of `packed` without making it.
 std::size_t storedBytes(const StoredArray& array);
 /// Length of `packed` after Zstandard at its highest level: what entropy coding leaves.
 std::size_t entropyBytes(const StoredArray& array);
 
-/// The values from `packed`. `array` has name, shape, precision and, in `masked`, whether there is
+/// The values from `packed`. `array` has shape, precision and, in `masked`, whether there is
 /// a mask. Throws InputError that starts with `where` if the length or a number is wrong.
 void unpackInto(StoredArray& array, std::span<const std::byte> bytes, bool masked,
                 const std::string& where);

@@ -16,6 +16,10 @@ const ProductSymmetry symmetries[] = {
     {false, false, false}, {false, false, true}, {false, true, false}, {false, true, true},
     {true, false, false},  {true, false, true},  {true, true, false},  {true, true, true}};
 
+const StoredArray& matrixOf(const Representation& r) {
+    return std::get<MatrixArray>(r.content).matrix;
+}
+
 TEST(ProductTerms, NumberAsThePublishedZernikeForm) {
     // Isotropic, bilateral and reciprocal (Koenderink & van Doorn 1998).
     const std::size_t counts[] = {1, 2, 5, 8, 14, 20, 30, 40, 55, 70, 91, 112, 140};
@@ -180,7 +184,7 @@ TEST(ProjectBoth, ReturnsTheCoefficientsOfFunctionsInItsSpan) {
         for (const ProductSymmetry& symmetry : symmetries) {
             const InSpan brdf(*basis, symmetry, 7);
             const Representation r = projectBoth(brdf, *basis, symmetry.reciprocal);
-            const std::vector<double>& found = r.array("matrix").values;
+            const std::vector<double>& found = matrixOf(r).values;
             ASSERT_EQ(found.size(), brdf.values().size());
             for (std::size_t t = 0; t < found.size(); ++t) {
                 EXPECT_NEAR(found[t], brdf.values()[t], 2e-4) << name << " term " << t;
@@ -202,7 +206,7 @@ TEST(ProjectBoth, ReciprocalIsTheSymmetricPart) {
         basis->evaluate(wo, atWo.data());
         evaluateProducts(terms, half, atWi.data(), atWo.data(), at.data());
         double sum = 0;
-        for (std::size_t t = 0; t < at.size(); ++t) sum += at[t] * r.array("matrix").values[t];
+        for (std::size_t t = 0; t < at.size(); ++t) sum += at[t] * matrixOf(r).values[t];
         EXPECT_NEAR(sum, (evaluate(brdf, wi, wo)[0] + evaluate(brdf, wo, wi)[0]) / 2, 1e-4);
     }
 }
@@ -213,9 +217,9 @@ TEST(ProjectBoth, TruncatesToAPrefix) {
     const Representation whole = projectBoth(brdf, *basis, true);
     const Representation direct = projectBoth(brdf, *lower, true);
     const Representation cut = truncated(whole, 2);
-    ASSERT_EQ(cut.array("matrix").shape, direct.array("matrix").shape);
-    for (std::size_t t = 0; t < cut.array("matrix").values.size(); ++t) {
-        EXPECT_NEAR(cut.array("matrix").values[t], direct.array("matrix").values[t], 1e-4);
+    ASSERT_EQ(matrixOf(cut).shape, matrixOf(direct).shape);
+    for (std::size_t t = 0; t < matrixOf(cut).values.size(); ++t) {
+        EXPECT_NEAR(matrixOf(cut).values[t], matrixOf(direct).values[t], 1e-4);
     }
 }
 

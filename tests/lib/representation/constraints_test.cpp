@@ -67,7 +67,7 @@ TEST(Window, OfBothDirectionsCostsWhatIsMeasured) {
                     const Representation after = windowed(before, window);
                     EXPECT_NEAR(after.steps.at(0).change, measuredChange(before, after), 1e-7)
                         << name << " " << windowName(window);
-                    EXPECT_EQ(after.array("matrix").values[0], before.array("matrix").values[0]);
+                    EXPECT_EQ(matrixValues(after)[0], matrixValues(before)[0]);
                 }
             }
         }
@@ -96,7 +96,7 @@ TEST(Window, BendingHalvesTheSquaredLaplacian) {
 
 TEST(Window, RefusesWhatHasNoBands) {
     Representation halfway;
-    halfway.kind = Representation::Kind::halfway;
+    halfway.content = HalfwayArray{};
     EXPECT_THROW(windowed(halfway, Window::hann), UsageError);
     EXPECT_THROW(madeNonNegative(halfway), UsageError);
 }

@@ -3,6 +3,7 @@
 #include <hshfit/error.h>
 #include <hshfit/representation/change.h>
 #include <hshfit/representation/factoring_blocks.h>
+#include <hshfit/representation/named_arrays.h>
 #include <hshfit/representation/split.h>
 #include <lib/representation/representation_measures.h>
 
@@ -45,6 +46,19 @@ double tailOf(const Eigen::VectorXd& sigma, int rank) {
     return sigma.tail(std::max<Eigen::Index>(sigma.size() - rank, 0)).norm() / sigma.norm();
 }
 
+int rankOf(const Representation& rows) {
+    return static_cast<int>(std::get<CoefficientFactors>(rows.content).left.columns());
+}
+
+/// The block of that name where it is kept as a `Part`.
+template <class Part>
+bool blockOf(const Representation& matrix, const std::string& name) {
+    const auto& blocks = std::get<MatrixFactors>(matrix.content).blocks;
+    return std::ranges::any_of(blocks, [&](const MatrixBlock& block) {
+        return block.name == name && std::holds_alternative<Part>(block.part);
+    });
+}
+
 TEST(Factoring, OfRowsIsTheOptimumForEveryBasis) {
     const FormulaBrdf round = glossy(20), along = brushed();
     for (const auto& entry : bases::catalog()) {
@@ -59,7 +73,7 @@ TEST(Factoring, OfRowsIsTheOptimumForEveryBasis) {
                 const double change = after.steps.at(0).change;
                 EXPECT_NEAR(change, tailOf(sigma, rank), 1e-7) << entry.name << rank;
                 EXPECT_NEAR(change, measuredChange(before, after), 1e-7) << entry.name << rank;
-                EXPECT_LE(after.array("left").columns(), static_cast<std::size_t>(rank));
+                EXPECT_LE(rankOf(after), rank);
             }
         }
     }
@@ -71,7 +85,7 @@ TEST(Factoring, TakesTheLeastRankWithinAnError) {
     const Eigen::VectorXd sigma = denseSpectrum(before);
     for (const double error : {0.3, 0.1, 0.03, 1e-3}) {
         const Representation after = factored(before, {.error = error});
-        const int rank = static_cast<int>(after.array("left").columns());
+        const int rank = rankOf(after);
         EXPECT_LE(after.steps.at(0).change, error);
         EXPECT_GT(tailOf(sigma, rank - 1), error) << rank;
     }
@@ -141,7 +155,7 @@ TEST(Factoring, OfBothDirectionsIsTheOptimumOfEachBlock) {
                     for (const auto& [m, block] : blocks) {
                         // Blocks that are smaller whole stay so.
                         const bool sine = isotropic && m[0] == '-';
-                        if (after.has("block " + m.substr(sine ? 1 : 0))) continue;
+                        if (blockOf<WholeBlock>(after, m.substr(sine ? 1 : 0))) continue;
                         const Eigen::VectorXd sigma =
                             Eigen::JacobiSVD<Eigen::MatrixXd>(block).singularValues();
                         lost += sigma.tail(sigma.size() - rank).squaredNorm();
@@ -173,7 +187,7 @@ TEST(Factoring, OfBothDirectionsKeepsToAnError) {
 TEST(Factoring, KeepsReciprocity) {
     const auto basis = bases::make("zernike", 6);
     const Representation after = factored(bothIn(glossy(15), *basis, true), {.rank = 1});
-    ASSERT_TRUE(after.has("core 0"));
+    ASSERT_TRUE(blockOf<SymmetricBlock>(after, "0"));
     const auto brdf = reconstruct(after, opensNothing);
     std::mt19937 random(3);
     for (int k = 0; k < 1000; ++k) {
@@ -185,21 +199,53 @@ TEST(Factoring, KeepsReciprocity) {
 TEST(Factoring, ReadersOfBlocksRefuseWhatDoesNotFit) {
     const auto basis = bases::make("hsh", 5);
     const Representation good = factored(bothIn(glossy(15), *basis, false), {.rank = 1});
-    ASSERT_TRUE(good.has("left 0"));
+    ASSERT_TRUE(blockOf<ProductBlock>(good, "0"));
     Representation bad = good;
-    bad.arrays.clear();
+    bad.content = MatrixFactors{};
     EXPECT_THROW(matrixValues(bad), InputError);
-    for (std::size_t a = 0; a < good.arrays.size(); ++a) {
-        for (const int change : {0, 1, 2}) {
+    for (std::size_t b = 0; b < std::get<MatrixFactors>(good.content).blocks.size(); ++b) {
+        bad = good;
+        std::get<MatrixFactors>(bad.content).blocks[b].name = "other";
+        EXPECT_THROW(matrixValues(bad), InputError) << b;
+        bad = good;
+        std::get<MatrixFactors>(bad.content).blocks[b].part = SymmetricBlock{};
+        EXPECT_THROW(matrixValues(bad), InputError) << b;
+    }
+    for (std::size_t a = 0; a < namedArrays(good).size(); ++a) {
+        for (const std::size_t side : {0, 1}) {
             bad = good;
-            StoredArray& array = bad.arrays[a];
-            if (change == 0) array.name = "other";
-            if (change == 1)
-                array.values.resize(array.values.size() + array.shape[1]), ++array.shape[0];
-            if (change == 2)
-                array.values.resize(array.values.size() + array.shape[0]), ++array.shape[1];
-            EXPECT_THROW(matrixValues(bad), InputError) << array.name << change;
+            const auto [name, array] = namedArrays(bad)[a];
+            array->values.resize(array->values.size() + array->shape[1 - side]);
+            ++array->shape[side];
+            EXPECT_THROW(matrixValues(bad), InputError) << name << side;
         }
+    }
+}
+
+TEST(Factoring, NamesOfArraysLeadBackToTheirPlaces) {
+    const auto basis = bases::make("hsh", 5);
+    const Representation rows = perOutgoing(glossy(15), *basis, OutgoingSet::elevations(4));
+    for (const Representation& before :
+         {rows, factored(rows, {.rank = 2}), bothIn(glossy(15), *basis, false),
+          factored(bothIn(glossy(15), *basis, false), {.rank = 1}),
+          factored(bothIn(glossy(15), *basis, true), {.rank = 1})}) {
+        std::vector<Named<StoredArray>> arrays;
+        for (const auto& [name, array] : namedArrays(before)) arrays.push_back({name, *array});
+        Representation after = before;
+        after.content = contentOf(before.kind(), arrays);
+        EXPECT_EQ(after.content.index(), before.content.index());
+        const auto found = namedArrays(after);
+        ASSERT_EQ(found.size(), arrays.size());
+        for (std::size_t a = 0; a < arrays.size(); ++a) {
+            EXPECT_EQ(found[a].name, arrays[a].name);
+            EXPECT_EQ(found[a].array->values, arrays[a].array.values);
+        }
+        EXPECT_THROW(contentOf(Representation::Kind::halfway, arrays), InputError);
+        arrays.push_back(arrays.front());
+        EXPECT_THROW(contentOf(before.kind(), arrays), InputError) << "twice";
+        arrays.pop_back();
+        arrays.front().name = "other";
+        EXPECT_THROW(contentOf(before.kind(), arrays), InputError);
     }
 }
 
@@ -216,8 +262,8 @@ TEST(Factoring, NonNegativeFactorsAreNonNegative) {
             EXPECT_GE(change, factored(before, {.rank = rank}).steps.at(0).change - 1e-9);
             EXPECT_LT(change, last) << name << rank;
             last = change;
-            for (const double u : after.array("left").values) EXPECT_GE(u, 0);
-            const StoredArray& right = after.array("right");
+            const auto& [left, right] = std::get<CoefficientFactors>(after.content);
+            for (const double u : left.values) EXPECT_GE(u, 0);
             std::vector<double> row(static_cast<std::size_t>(basis->slots())), at = row;
             std::mt19937 random(5);
             for (std::size_t r = 0; r < right.rows(); ++r) {

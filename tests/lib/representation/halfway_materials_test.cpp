@@ -120,7 +120,7 @@ std::string text(const HalfwayOrders& o) {
 }
 
 Representation stored(Representation r, Precision precision) {
-    quantise(r.arrays[0], precision);
+    quantise(r.as<HalfwayArray>()->halfway, precision);
     return r;
 }
 

@@ -74,17 +74,16 @@ Representation randomRows(const char* basis, int order, const OutgoingSet& set, 
 
 Representation randomMatrix(const char* name, int order, const ProductSymmetry& symmetry) {
     Representation r;
-    r.kind = Representation::Kind::basis;
     describe(r.head, name, order, Quantity::brdf);
     r.head.isotropic = symmetry.isotropic;
     r.head.bilateral = symmetry.bilateral;
     r.head.reciprocal = symmetry.reciprocal;
     const auto terms = productTerms(*bases::make(name, order), symmetry);
-    StoredArray matrix{.name = "matrix", .shape = {3, terms.size()}, .values = {}};
+    StoredArray matrix{.shape = {3, terms.size()}, .values = {}};
     std::mt19937 engine(2);
     std::normal_distribution<double> normal;
     for (std::size_t i = 0; i < 3 * terms.size(); ++i) matrix.values.push_back(normal(engine));
-    r.arrays.push_back(std::move(matrix));
+    r.content = MatrixArray{std::move(matrix)};
     return r;
 }
 
@@ -124,7 +123,7 @@ void expectSame(const Representation& form, const Pairs& pairs) {
                 EXPECT_EQ(values[c * count + k], 0);
             } else {
                 EXPECT_NEAR(values[c * count + k] * cosine, f[c] * cosine, 3e-6 * scale)
-                    << kindName(form.kind) << ' ' << form.head.basis << " pair " << k;
+                    << kindName(form.kind()) << ' ' << form.head.basis << " pair " << k;
             }
         }
     }

@@ -74,7 +74,7 @@ inline double measuredChange(const Representation& a, const Representation& b) {
     const HemisphereNodes nodes(basis->inner());
     std::vector<Direction> outgoing = a.head.outgoing.directions;
     std::vector<double> weights = a.head.outgoing.solidAngles;
-    if (a.kind == Representation::Kind::basis) {
+    if (a.kind() == Representation::Kind::basis) {
         const HemisphereNodes both(basis->inner(), 20, a.head.isotropic ? 1 : 20);
         outgoing.clear();
         weights = both.weights;

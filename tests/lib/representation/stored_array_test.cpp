@@ -17,7 +17,7 @@ const Precision precisions[] = {Precision::float64, Precision::float32, Precisio
                                 Precision::unorm16, Precision::unorm8};
 
 StoredArray randomArray(std::vector<std::size_t> shape, unsigned seed) {
-    StoredArray array{.name = "test", .shape = std::move(shape), .values = {}};
+    StoredArray array{.shape = std::move(shape), .values = {}};
     std::size_t count = 1;
     for (std::size_t side : array.shape) count *= side;
     std::mt19937 engine(seed);
@@ -74,8 +74,7 @@ TEST(StoredArray, PacksToItsLengthAndComesBackToTheBit) {
             quantise(array, precision);
             const std::vector<std::byte> bytes = packed(array);
             EXPECT_EQ(bytes.size(), storedBytes(array));
-            StoredArray back{
-                .name = "test", .shape = array.shape, .precision = precision, .values = {}};
+            StoredArray back{.shape = array.shape, .precision = precision, .values = {}};
             unpackInto(back, bytes, keep > 0, "here");
             EXPECT_EQ(back.values, array.values) << precisionName(precision) << ' ' << keep;
             EXPECT_EQ(back.kept, array.kept);
@@ -118,14 +117,14 @@ TEST(StoredArray, KeepsTheLargest) {
 }
 
 TEST(StoredArray, WeightsDecideWhatIsLarge) {
-    StoredArray array{.name = "test", .shape = {1, 3}, .values = {3, 2, 1}};
+    StoredArray array{.shape = {1, 3}, .values = {3, 2, 1}};
     const double weights[] = {0.1, 1, 4};
     keepLargest(array, 1, weights);
     EXPECT_EQ(array.values, (std::vector<double>{0, 0, 1}));
 }
 
 TEST(StoredArray, EntropyIsAZstandardFrameOfThePackedBytes) {
-    StoredArray array{.name = "test", .shape = {1000, 1}, .values = std::vector<double>(1000, 0.5)};
+    StoredArray array{.shape = {1000, 1}, .values = std::vector<double>(1000, 0.5)};
     quantise(array, Precision::float32);
     const std::vector<std::byte> bytes = packed(array);
     std::vector<std::byte> out(ZSTD_compressBound(bytes.size()));
@@ -138,11 +137,11 @@ TEST(StoredArray, RefusesWhatANumberCannotHold) {
     for (Precision precision : precisions) {
         for (double bad :
              {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-            StoredArray array{.name = "x", .shape = {1, 1}, .values = {bad}};
+            StoredArray array{.shape = {1, 1}, .values = {bad}};
             EXPECT_THROW(quantise(array, precision), NumericError);
         }
     }
-    StoredArray array{.name = "x", .shape = {1, 1}, .values = {65536}};
+    StoredArray array{.shape = {1, 1}, .values = {65536}};
     EXPECT_THROW(quantise(array, Precision::half), NumericError);
     EXPECT_NO_THROW(quantise(array, Precision::unorm8));
 }
@@ -157,11 +156,10 @@ TEST(StoredArray, RefusesBytesOfAnotherLength) {
             if (length == bytes.size()) continue;
             std::vector<std::byte> cut = bytes;
             cut.resize(length);
-            StoredArray back{.name = "x", .shape = {4, 6}, .precision = precision, .values = {}};
+            StoredArray back{.shape = {4, 6}, .precision = precision, .values = {}};
             EXPECT_THROW(unpackInto(back, cut, true, "here"), InputError) << length;
         }
-        StoredArray huge{.name = "x",
-                         .shape = {std::size_t{1} << 40, std::size_t{1} << 40},
+        StoredArray huge{.shape = {std::size_t{1} << 40, std::size_t{1} << 40},
                          .precision = precision,
                          .values = {}};
         EXPECT_THROW(unpackInto(huge, bytes, true, "here"), InputError);

@@ -8,6 +8,7 @@
 #include <hshfit/error.h>
 #include <hshfit/projection/albedo.h>
 #include <hshfit/representation/forms/represented_brdf.h>
+#include <hshfit/representation/named_arrays.h>
 #include <hshfit/tradeoff/front.h>
 #include <hshfit/tradeoff/projection_cache.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
@@ -317,8 +318,9 @@ TEST(Cache, DerivedFormsEqualDirectProjections) {
     for (const Form& form : forms) {
         const Representation direct = represent(f, form, openNothing);
         const Representation derived = represent(cache, form);
-        ASSERT_EQ(derived.arrays.size(), direct.arrays.size()) << optionsOf(form);
-        const auto &a = direct.arrays[0].values, &b = derived.arrays[0].values;
+        ASSERT_EQ(derived.content.index(), direct.content.index()) << optionsOf(form);
+        const auto &a = namedArrays(direct)[0].array->values,
+                   &b = namedArrays(derived)[0].array->values;
         ASSERT_EQ(a.size(), b.size()) << optionsOf(form);
         double change = 0, norm = 0;
         for (std::size_t k = 0; k < a.size(); ++k) {

@@ -22,7 +22,7 @@ namespace {
 constexpr const char* nonNegativeStep = "non-negative";
 
 void requirePlain(const Representation& representation, const Setting& setting) {
-    if (representation.has("coefficients") || representation.has("matrix")) return;
+    if (representation.as<CoefficientArray>() || representation.as<MatrixArray>()) return;
     throw UsageError(fmt::format(
         "{} is for coefficients of the forms outgoing and basis, not factored", setting));
 }
@@ -47,7 +47,7 @@ NonNegativeCone::Added addedAt(const Brdf* added, const Direction& wo, std::size
 void replaceRows(Representation& representation, const Coefficients& c) {
     Representation changed = fromCoefficients(c);
     representation.slots = std::move(changed.slots);
-    representation.arrays = std::move(changed.arrays);
+    representation.content = std::move(changed.content);
 }
 
 void liftRows(Representation& representation, const Brdf* added) {
@@ -125,7 +125,7 @@ bool isNonNegative(const Representation& representation) {
 Representation madeNonNegative(Representation representation, const Brdf* added) {
     requirePlain(representation, {"Form::nonNegative"});
     const Representation before = representation;
-    if (representation.kind == Representation::Kind::outgoing) {
+    if (representation.kind() == Representation::Kind::outgoing) {
         liftRows(representation, added);
     } else {
         constrainBoth(representation, {.nonNegative = true, .added = added});
@@ -138,7 +138,7 @@ Representation madeEnergyPreserving(Representation representation, const Brdf& s
     requirePlain(representation, {"Form::energyPreserving"});
     const Representation before = representation;
     const bool nonNegative = isNonNegative(representation);
-    if (representation.kind == Representation::Kind::outgoing) {
+    if (representation.kind() == Representation::Kind::outgoing) {
         lowerRows(representation, source, nonNegative);
     } else {
         constrainBoth(representation, {.nonNegative = nonNegative,

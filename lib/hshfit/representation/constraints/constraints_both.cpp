@@ -237,7 +237,7 @@ void constrainBoth(Representation& matrix, const BothConstraints& constraints) {
         bounds = albedoBounds(*constraints.albedoSource, nodes);
         for (const Direction& wo : nodes) rows.push_back(scan.albedoRow(wo));
     }
-    StoredArray& array = matrix.arrays[0];
+    StoredArray& array = std::get<MatrixArray>(matrix.content).matrix;
     tbb::parallel_for(std::size_t{0}, channels, [&](std::size_t c) {
         double* from = array.values.data() + c * scan.terms();
         std::vector<double> albedos;

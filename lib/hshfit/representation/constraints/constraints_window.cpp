@@ -28,7 +28,7 @@ struct BandedNumber {
 };
 
 std::vector<BandedNumber> numbersOfOutgoing(Representation& representation) {
-    StoredArray& array = representation.arrays[0];
+    StoredArray& array = representation.as<CoefficientArray>()->coefficients;
     const std::vector<double>& solidAngles = representation.head.outgoing.solidAngles;
     const std::size_t columns = array.columns(), channels = representation.head.channels.count();
     std::vector<BandedNumber> numbers;
@@ -43,7 +43,7 @@ std::vector<BandedNumber> numbersOfMatrix(Representation& representation) {
     const CoefficientHead& head = representation.head;
     const auto basis = bases::make(head.basis, head.order, {.condonShortley = head.condonShortley});
     const std::vector<ProductTerm> terms = productTerms(*basis, symmetryOf(representation));
-    StoredArray& array = representation.arrays[0];
+    StoredArray& array = representation.as<MatrixArray>()->matrix;
     std::vector<BandedNumber> numbers;
     for (std::size_t i = 0; i < array.values.size(); ++i) {
         const ProductTerm& term = terms[i % terms.size()];
@@ -107,8 +107,8 @@ std::vector<double> windowFactors(Window window, int order, double lambda) {
 }
 
 Representation windowed(Representation representation, Window window) {
-    const bool outgoing = representation.has("coefficients");
-    if (!outgoing && !representation.has("matrix")) {
+    const bool outgoing = representation.as<CoefficientArray>() != nullptr;
+    if (!outgoing && !representation.as<MatrixArray>()) {
         throw UsageError(
             "a window is for coefficients per outgoing direction or of both, not factored");
     }

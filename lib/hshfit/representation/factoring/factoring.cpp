@@ -26,9 +26,8 @@ Eigen::Map<const Matrix> mapped(const std::vector<double>& values, std::size_t c
     return {values.data(), static_cast<Index>(values.size()) / n, n};
 }
 
-StoredArray stored(std::string name, const Matrix& values) {
+StoredArray stored(const Matrix& values) {
     StoredArray array{
-        .name = std::move(name),
         .shape = {static_cast<std::size_t>(values.rows()), static_cast<std::size_t>(values.cols())},
         .values = {}};
     array.values.assign(values.data(), values.data() + values.size());
@@ -105,7 +104,8 @@ Representation factoredRows(Representation result, const FactorOptions& options)
                               static_cast<std::size_t>(result.slots[static_cast<std::size_t>(k)])];
         }
     }
-    result.arrays = {stored("left", mapped(factors.left, factors.rank)), stored("right", right)};
+    result.content = CoefficientFactors{.left = stored(mapped(factors.left, factors.rank)),
+                                        .right = stored(right)};
     return result;
 }
 
@@ -114,7 +114,7 @@ class FactoredBlock {
 public:
     FactoredBlock(const TermBlock& block, const Representation& matrix, std::size_t terms)
         : block_(block), channels_(static_cast<Index>(matrix.head.channels.count())) {
-        const std::vector<double>& values = matrix.array("matrix").values;
+        const std::vector<double>& values = std::get<MatrixArray>(matrix.content).matrix.values;
         const auto rows = static_cast<Index>(block.rows.size());
         const auto columns = static_cast<Index>(block.columns.size());
         dense_ = Matrix::Zero(channels_ * rows, columns);
@@ -138,22 +138,21 @@ public:
     Index mostRank() const { return svd_.singularValues().size(); }
     double lost(Index rank) const { return lost_[static_cast<std::size_t>(rank)]; }
 
-    std::vector<StoredArray> arrays(Index rank) const {
+    MatrixBlock at(Index rank) const {
         const Index size = numbersAt(rank);
         const auto entries = static_cast<Index>(whole_.size());
         if (!factors() || size >= entries) {
-            return {stored("block " + block_.name,
-                           mapped(whole_, whole_.size() / static_cast<std::size_t>(channels_)))};
+            const std::size_t terms = whole_.size() / static_cast<std::size_t>(channels_);
+            return {block_.name, WholeBlock{stored(mapped(whole_, terms))}};
         }
+        const Matrix right = svd_.matrixV().leftCols(rank).transpose();
         if (block_.symmetric) {
-            return {
-                stored("core " + block_.name, cores(rank)),
-                stored("right " + block_.name, Matrix(svd_.matrixV().leftCols(rank).transpose()))};
+            return {block_.name,
+                    SymmetricBlock{.core = stored(cores(rank)), .right = stored(right)}};
         }
         const Eigen::VectorXd sigma = svd_.singularValues().head(rank);
-        return {stored("left " + block_.name, Matrix(svd_.matrixU().leftCols(rank))),
-                stored("right " + block_.name,
-                       Matrix(sigma.asDiagonal() * svd_.matrixV().leftCols(rank).transpose()))};
+        return {block_.name, ProductBlock{.left = stored(svd_.matrixU().leftCols(rank)),
+                                          .right = stored(sigma.asDiagonal() * right)}};
     }
 
 private:
@@ -227,16 +226,16 @@ Representation factoredMatrix(Representation result, const FactorOptions& option
     std::vector<FactoredBlock> blocks;
     for (const TermBlock& part : parts) blocks.emplace_back(part, result, terms.size());
     const std::vector<Index> ranks = ranksOf(blocks, options);
-    std::vector<StoredArray> arrays;
+    MatrixFactors factors;
     for (std::size_t b = 0; b < blocks.size(); ++b) {
-        for (StoredArray& array : blocks[b].arrays(ranks[b])) arrays.push_back(std::move(array));
+        factors.blocks.push_back(blocks[b].at(ranks[b]));
     }
-    result.arrays = std::move(arrays);
+    result.content = std::move(factors);
     return result;
 }
 
 void check(const Representation& representation, const FactorOptions& options) {
-    if (!representation.has("coefficients") && !representation.has("matrix")) {
+    if (!representation.as<CoefficientArray>() && !representation.as<MatrixArray>()) {
         throw UsageError(
             "only coefficients of the forms outgoing and basis, not yet factored, can be "
             "factored");
@@ -246,7 +245,7 @@ void check(const Representation& representation, const FactorOptions& options) {
     }
     if (!options.nonNegative) return;
     if (options.rank == 0) throw UsageError("non-negative factors need a rank");
-    if (representation.kind != Representation::Kind::outgoing) {
+    if (representation.kind() != Representation::Kind::outgoing) {
         throw UsageError("non-negative factors are for the form outgoing");
     }
 }
@@ -256,7 +255,7 @@ void check(const Representation& representation, const FactorOptions& options) {
 Representation factored(Representation representation, const FactorOptions& options) {
     check(representation, options);
     const Representation before = representation;
-    Representation result = representation.has("coefficients")
+    Representation result = representation.as<CoefficientArray>()
                                 ? factoredRows(std::move(representation), options)
                                 : factoredMatrix(std::move(representation), options);
     const std::string name = options.nonNegative ? "non-negative rank" : "rank";

@@ -15,20 +15,18 @@ struct FactorOptions {
     bool nonNegative = false;
 };
 
-/// Replaces "coefficients" or "matrix" by factors; adds a step with its cost.
+/// Replaces CoefficientArray or MatrixArray by factors; adds a step with its cost.
 ///
 /// outgoing  The truncated singular value decomposition of the rows [outgoing, channel] of
 ///           coefficients, with the solid angles and the Gram matrix of the basis as weights: no
-///           product of this rank is nearer in L2 (Eckart & Young 1936). "left" has columns of
-///           norm 1 with the solid angles as weights, "right" the singular values. Directions
+///           product of this rank is nearer in L2 (Eckart & Young 1936). `left` has columns of
+///           norm 1 with the solid angles as weights, `right` the singular values. Directions
 ///           without a solid angle get the left part that is nearest to them.
-/// basis     The same for each block of terms (factoring_blocks.h): "left NAME" [channel, function
-///           of wo][rank] times "right NAME" [rank][function of wi]; reciprocal:
-///           right^T core right with "core NAME" [channel][lower triangle], right from the
+/// basis     The same for each block of terms (factoring_blocks.h): ProductBlock, with functions of
+///           wo as rows and those of wi as columns; reciprocal: SymmetricBlock, `right` from the
 ///           decomposition of all channels, which is nearest for one channel and within sqrt 2 of
-///           it for more. Blocks that would not get smaller, and antisymmetric ones, stay whole:
-///           "block NAME" [channel][term]; those of rank 0 have no arrays. In the norm of the
-///           coefficients (for sh: over the sphere).
+///           it for more. Blocks that would not get smaller, and antisymmetric ones, stay whole.
+///           In the norm of the coefficients (for sh: over the sphere).
 /// nonNegative, outgoing only: left >= 0 everywhere and right >= -1e-5 of its root mean square at
 ///           all wi: alternating projections (hierarchical least squares, Cichocki et al. 2007,
 ///           with the cone of functions that are non-negative on the hemisphere in place of

@@ -7,6 +7,7 @@
 #include <hshfit/representation/constraints/constraints.h>
 #include <hshfit/representation/factoring/factoring.h>
 #include <hshfit/representation/halfway/halfway.h>
+#include <hshfit/representation/named_arrays.h>
 #include <hshfit/representation/split.h>
 
 #include <fmt/format.h>
@@ -66,12 +67,14 @@ Representation projected(ProjectionSource& source, const Form& form) {
     return source.halfway(form);
 }
 
-/// Weights of an array's values in the norm of `relativeChange`, where they stand one for one.
-std::vector<double> arrayWeights(const Representation& representation, const StoredArray& array) {
-    if (array.name != "coefficients") return {};
+/// Weights of stored values in the norm of `relativeChange`, where they stand one for one.
+std::vector<double> valueWeights(const Representation& representation) {
+    const auto* content = representation.as<CoefficientArray>();
+    if (!content) return {};
     const CoefficientHead& head = representation.head;
-    const std::size_t perDirection = array.values.size() / head.outgoing.size();
-    std::vector<double> weights(array.values.size());
+    const std::size_t count = content->coefficients.values.size();
+    const std::size_t perDirection = count / head.outgoing.size();
+    std::vector<double> weights(count);
     for (std::size_t i = 0; i < weights.size(); ++i) {
         weights[i] = std::sqrt(head.outgoing.solidAngles[i / perDirection]);
     }
@@ -80,15 +83,16 @@ std::vector<double> arrayWeights(const Representation& representation, const Sto
 
 void keep(Representation& representation, std::size_t count) {
     const Representation before = representation;
-    for (StoredArray& array : representation.arrays) {
-        keepLargest(array, count, arrayWeights(before, array));
-    }
+    const std::vector<double> weights = valueWeights(before);
+    for (const auto& each : namedArrays(representation)) keepLargest(*each.array, count, weights);
     addStep(representation, before, fmt::format("keep {}", count));
 }
 
 void quantise(Representation& representation, Precision precision) {
     const Representation before = representation;
-    for (StoredArray& array : representation.arrays) quantise(array, precision);
+    for (const auto& each : namedArrays(representation)) {
+        quantise(*each.array, precision, each.name);
+    }
     if (precision == Precision::float64) return;
     addStep(representation, before, std::string(precisionName(precision)));
 }

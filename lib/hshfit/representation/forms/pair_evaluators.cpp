@@ -254,7 +254,7 @@ private:
 };
 
 std::unique_ptr<PairEvaluator> withoutAdded(const Representation& r) {
-    switch (r.kind) {
+    switch (r.kind()) {
         case Representation::Kind::outgoing:
             return std::make_unique<PerOutgoing>(r);
         case Representation::Kind::basis:

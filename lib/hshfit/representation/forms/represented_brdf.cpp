@@ -21,7 +21,7 @@ public:
         const CoefficientHead& head = representation_.head;
         laws_.isotropic = head.isotropic;
         laws_.mirrorSymmetric = head.bilateral;
-        laws_.reciprocal = representation_.kind != Representation::Kind::outgoing &&
+        laws_.reciprocal = representation_.kind() != Representation::Kind::outgoing &&
                            head.reciprocal && head.quantity == Quantity::brdf;
         if (representation_.added.empty()) return;
         added_ = opened(open);
@@ -50,7 +50,7 @@ public:
     /// The halfway form has kinks where its roots begin and where it is cut off at 0, on curves
     /// that no panel of a quadrature ends at.
     double defaultTolerance() const override {
-        const double own = representation_.kind == Representation::Kind::halfway ? 1e-2 : 1e-6;
+        const double own = representation_.kind() == Representation::Kind::halfway ? 1e-2 : 1e-6;
         return added_ ? std::max(own, added_->defaultTolerance()) : own;
     }
 
@@ -154,7 +154,8 @@ private:
 };
 
 OutgoingSet defaultSet(const Representation& representation) {
-    if (representation.kind == Representation::Kind::outgoing) return representation.head.outgoing;
+    if (representation.kind() == Representation::Kind::outgoing)
+        return representation.head.outgoing;
     return OutgoingSet::parse(representation.head.isotropic ? "16" : "16x16");
 }
 
@@ -162,7 +163,7 @@ OutgoingSet defaultSet(const Representation& representation) {
 
 std::unique_ptr<RepresentedBrdf> reconstruct(Representation representation,
                                              const BrdfOpener& open) {
-    switch (representation.kind) {
+    switch (representation.kind()) {
         case Representation::Kind::outgoing:
             return std::make_unique<PerOutgoing>(std::move(representation), open);
         case Representation::Kind::basis:
@@ -177,11 +178,11 @@ Coefficients expand(const Representation& representation, const BrdfOpener& open
                     const ExpandOptions& options) {
     const bool own =
         !options.outgoing || options.outgoing->spec() == defaultSet(representation).spec();
-    if (representation.kind == Representation::Kind::outgoing && representation.added.empty() &&
+    if (representation.kind() == Representation::Kind::outgoing && representation.added.empty() &&
         own) {
         return decoded(representation);
     }
-    const bool halfway = representation.kind == Representation::Kind::halfway;
+    const bool halfway = representation.kind() == Representation::Kind::halfway;
     const auto basis = halfway
                            ? bases::make(options.basis, options.order)
                            : bases::make(representation.head.basis, representation.head.order,

@@ -26,8 +26,9 @@ HalfwayExpansion::HalfwayExpansion(const Representation& representation)
     const auto fail = [&](const std::string& what) {
         throw InputError(fmt::format("coefficients of {}: {}", representation.head.source, what));
     };
-    if (!representation.has("halfway")) fail("the array 'halfway' is missing");
-    const StoredArray& array = representation.array("halfway");
+    const auto* content = representation.as<HalfwayArray>();
+    if (!content) fail("the array 'halfway' is missing");
+    const StoredArray& array = content->halfway;
     const std::vector<std::size_t> shape{channels_, terms_.size()};
     if (array.shape != shape || array.values.size() != channels_ * terms_.size()) {
         fail(fmt::format("the array 'halfway' has to be {} channels x {} terms for orders {},{},{}",

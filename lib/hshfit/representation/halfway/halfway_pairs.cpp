@@ -32,7 +32,7 @@ HalfwayLayout layoutOf(const Representation& r, const HalfwayTerms& terms) {
                                static_cast<std::uint16_t>(run.length), t.exchange, t.mirror,
                                t.sine});
     }
-    const std::vector<double>& values = r.array("halfway").values;
+    const std::vector<double>& values = std::get<HalfwayArray>(r.content).halfway.values;
     for (std::size_t first = 0; first < layout.channels; first += 3) {
         const std::size_t last = std::min(layout.channels, first + 3);
         for (const std::size_t t : terms.position()) {

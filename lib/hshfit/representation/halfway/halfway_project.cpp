@@ -94,7 +94,6 @@ double residual(const HalfwayTerms& all, const HalfwayTerms& part,
 Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
                               const ProjectionOptions& options, bool reciprocal) {
     Representation r;
-    r.kind = Representation::Kind::halfway;
     r.head = headFor(brdf, reciprocal);
     r.halfway = orders;
     const HalfwayTerms terms(orders, halfwaySymmetryOf(r.head));
@@ -122,10 +121,9 @@ Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
     }
     if (options.progress) options.progress(most, most);
     r.head.error = error == 0 ? 0 : change;
-    StoredArray array{
-        .name = "halfway", .shape = {r.head.channels.count(), terms.size()}, .values = {}};
+    StoredArray array{.shape = {r.head.channels.count(), terms.size()}, .values = {}};
     array.values.assign(values.data(), values.data() + values.size());
-    r.arrays.push_back(std::move(array));
+    r.content = HalfwayArray{std::move(array)};
     r.steps.push_back({fmt::format("halfway {},{},{}: mean log error over pairs held out",
                                    orders.half, orders.difference, orders.azimuth),
                        error});
@@ -134,7 +132,8 @@ Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
 
 double halfwayError(const Brdf& brdf, const Representation& representation) {
     const HalfwayExpansion checked(representation);
-    const std::vector<double>& stored = representation.array("halfway").values;
+    const std::vector<double>& stored =
+        std::get<HalfwayArray>(representation.content).halfway.values;
     const HalfwayValues values = Eigen::Map<const HalfwayValues>(
         stored.data(), static_cast<Eigen::Index>(checked.terms().size()),
         static_cast<Eigen::Index>(representation.head.channels.count()));
@@ -147,8 +146,7 @@ HalfwayOrders chooseHalfwayOrders(const Brdf& brdf, std::size_t bytes, Precision
     const HalfwaySymmetry symmetry = halfwaySymmetryOf(head);
     const std::size_t channels = head.channels.count();
     std::size_t most = 0;
-    while (storedBytes({.name = "halfway",
-                        .shape = {channels, most + 1},
+    while (storedBytes({.shape = {channels, most + 1},
                         .precision = precision,
                         .values = std::vector<double>(channels * (most + 1))}) <= bytes) {
         ++most;
@@ -183,7 +181,7 @@ HalfwayOrders chooseHalfwayOrders(const Brdf& brdf, std::size_t bytes, Precision
     HalfwayOrders best;
     for (std::size_t n = 0; n < std::min(fitted, ranked.size()); ++n) {
         Representation r = projectHalfway(brdf, ranked[n].second, options, reciprocal);
-        quantise(r.arrays[0], precision);
+        quantise(r.as<HalfwayArray>()->halfway, precision);
         const double error = halfwayError(brdf, r);
         if (error < least) {
             least = error;
