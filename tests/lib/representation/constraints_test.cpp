@@ -3,6 +3,7 @@
 #include <hshfit/error.h>
 #include <hshfit/projection/albedo.h>
 #include <hshfit/representation/constraints/constraints_albedo.h>
+#include <hshfit/representation/constraints/constraints_both.h>
 #include <hshfit/representation/constraints/constraints_cone.h>
 #include <hshfit/representation/constraints/constraints_least_change.h>
 #include <hshfit/representation/split.h>
@@ -236,6 +237,33 @@ TEST(NonNegative, OfBothDirectionsHoldsEverywhere) {
                 EXPECT_NEAR(after.steps.at(0).change, measuredChange(before, after), 1e-7) << name;
             }
         }
+    }
+}
+
+TEST(NonNegative, SearchesThatDoNotSettleAreErrors) {
+    const FormulaBrdf brdf = glossy(60, 0.01);
+    const auto basis = bases::make("hsh", 6);
+    const Coefficients c = decoded(perOutgoing(brdf, *basis, OutgoingSet::elevations(2)));
+    // Two rounds find nothing to add on the coarse and the fine grid; this sum is negative.
+    EXPECT_THROW(NonNegativeCone(*basis, true, true, 2).nearest(c.at(0, 0)), NumericError);
+    EXPECT_NO_THROW(NonNegativeCone(*basis, true).nearest(c.at(0, 0)));
+    Representation both = bothIn(brdf, *basis, true);
+    EXPECT_THROW(constrainBoth(both, {.nonNegative = true, .mostRounds = 2}), NumericError);
+    EXPECT_NO_THROW(constrainBoth(both, {.nonNegative = true}));
+}
+
+TEST(Energy, TargetsThatDoNotSettleAreErrors) {
+    // Two bounds on the same two albedos from either side: each sweep undoes part of the other.
+    const std::vector<double> albedos{1, 1}, solidAngles{1, 1};
+    const auto bound = [](double first, double second, double most) {
+        return InterpolatedBound{{.index = {0, 1}, .weight = {first, second}, .count = 2}, most};
+    };
+    const std::vector<InterpolatedBound> bounds{bound(0.5, 0.5, 0.4), bound(0.9, 0.1, 0.2)};
+    EXPECT_THROW(albedoTargets(albedos, solidAngles, bounds, 1), NumericError);
+    const std::vector<double> targets = albedoTargets(albedos, solidAngles, bounds);
+    for (const InterpolatedBound& each : bounds) {
+        EXPECT_LE(each.lookup.weight[0] * targets[0] + each.lookup.weight[1] * targets[1],
+                  each.most + 1e-9);
     }
 }
 

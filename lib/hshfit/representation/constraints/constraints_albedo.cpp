@@ -1,8 +1,10 @@
 #include <hshfit/representation/constraints/constraints_albedo.h>
 
+#include <hshfit/error.h>
 #include <hshfit/projection/albedo.h>
 #include <hshfit/quadrature/quadrature.h>
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -13,6 +15,7 @@
 namespace hshfit::inline representation::inline constraints {
 namespace {
 
+constexpr double boundAccuracy = 1e-6;
 constexpr double lowestRing = 89 * (pi / 180);  // as far down as outgoing directions are kept
 
 /// The same for directions that the BRDF treats alike, to 1e-12.
@@ -49,7 +52,7 @@ std::vector<double> albedoMoments(const Basis& basis, Quantity quantity) {
 }
 
 std::vector<double> albedoBounds(const Brdf& source, const std::vector<Direction>& directions) {
-    const double tolerance = std::max(1e-6, 0.1 * source.defaultTolerance());
+    const double tolerance = std::max(boundAccuracy, 0.1 * source.defaultTolerance());
     std::map<std::array<long long, 3>, std::size_t> places;
     std::vector<Direction> distinct;
     std::vector<std::size_t> placeOf;
@@ -100,8 +103,7 @@ std::vector<Direction> albedoChecks(const OutgoingSet& set) {
 
 std::vector<double> albedoTargets(const std::vector<double>& albedos,
                                   const std::vector<double>& solidAngles,
-                                  const std::vector<InterpolatedBound>& bounds) {
-    constexpr int mostSweeps = 5000;
+                                  const std::vector<InterpolatedBound>& bounds, int mostSweeps) {
     constexpr double enough = 1e-10;
     // Texels without a solid angle cost a little, so that they do not take all of a correction.
     double mean = 0;
@@ -110,8 +112,9 @@ std::vector<double> albedoTargets(const std::vector<double>& albedos,
     for (const double angle : solidAngles) cost.push_back(std::max(angle, 0.01 * mean));
     std::vector<double> floors = albedos, floorMultipliers(albedos.size(), 0.0);
     for (double& floor : floors) floor = std::min(floor, 0.0);
+    double worst = 0;
     for (int sweep = 0; sweep < mostSweeps; ++sweep) {
-        double worst = 0;
+        worst = 0;
         for (std::size_t p = 0; p < bounds.size(); ++p) {
             const OutgoingLookup& at = bounds[p].lookup;
             double excess = -bounds[p].most, scale = 0;
@@ -131,7 +134,13 @@ std::vector<double> albedoTargets(const std::vector<double>& albedos,
             floorMultipliers[o] += step;
             targets[o] += step / cost[o];
         }
-        if (worst <= enough) break;
+        if (worst <= enough) return targets;
+    }
+    if (worst > boundAccuracy) {
+        throw NumericError(
+            fmt::format("albedos below those of the BRDF were not found in {} sweeps: one is still "
+                        "{:.1e} above its bound",
+                        mostSweeps, worst));
     }
     return targets;
 }

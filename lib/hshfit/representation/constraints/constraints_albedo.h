@@ -19,14 +19,17 @@ std::vector<double> albedoBounds(const Brdf& source, const std::vector<Direction
 
 /// How far the albedos of one channel at the stored directions may go, so that albedos interpolated
 /// between them stay below their bounds as well: the targets a' <= a with the least sum of
-/// solid angle times (a - a')^2, by Hildreth's method (1957).
+/// solid angle times (a - a')^2, by Hildreth's method (1957). Ends when no bound is exceeded by
+/// more than 1e-10, or after `mostSweeps`: then throws NumericError for an excess above 1e-6, which
+/// is what the bounds themselves are known to (`albedoBounds`).
 struct InterpolatedBound {
     OutgoingLookup lookup;  ///< stored directions and their weights
     double most = 0;
 };
 std::vector<double> albedoTargets(const std::vector<double>& albedos,
                                   const std::vector<double>& solidAngles,
-                                  const std::vector<InterpolatedBound>& bounds);
+                                  const std::vector<InterpolatedBound>& bounds,
+                                  int mostSweeps = 5000);
 
 /// The stored directions, the points halfway between neighbours of the map, and the horizon ring.
 std::vector<Direction> albedoChecks(const OutgoingSet& set);

@@ -19,7 +19,6 @@
 namespace hshfit::inline representation::inline constraints {
 namespace {
 
-constexpr int mostRounds = 60;
 constexpr std::size_t mostRefined = 8000;       // of the lowest nodes
 constexpr std::size_t mostPerRound = 400;       // of the lowest minima
 constexpr double lowestRing = 89 * (pi / 180);  // as far down as outgoing directions are kept
@@ -46,6 +45,7 @@ public:
         for (int j = 0; j < around; ++j) azimuths_.push_back(j * azimuthStep_);
     }
 
+    const Basis& basis() const { return *basis_; }
     std::size_t terms() const { return terms_.size(); }
 
     std::vector<double> row(const DirectionPair& at) const {
@@ -194,8 +194,9 @@ std::vector<double> nearestMatrix(const PairScan& scan, std::vector<double> valu
     program.solve(1e-12 * norm);
     values = program.x();
     double lift = 0;
-    bool thorough = false;
-    for (int round = 0; constraints.nonNegative && round < mostRounds; ++round) {
+    bool thorough = false, settled = !constraints.nonNegative;
+    for (int round = 0; !settled; ++round) {
+        if (round == constraints.mostRounds) throw unsettled(scan.basis(), round);
         bool negative = false;
         lift = 0;
         for (const auto& each : scan.minima(values, constraints.added, channel, scale, thorough)) {
@@ -207,11 +208,9 @@ std::vector<double> nearestMatrix(const PairScan& scan, std::vector<double> valu
             program.add(
                 row, constraints.added ? -scan.addedAt(constraints.added, channel, each.pair) : 0);
         }
-        if (!negative) {
-            if (thorough) break;
-            thorough = true;
-            continue;
-        }
+        settled = !negative && thorough;
+        thorough = thorough || !negative;
+        if (!negative) continue;
         program.solve(1e-12 * norm);
         values = program.x();
     }

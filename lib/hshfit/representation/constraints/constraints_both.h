@@ -10,9 +10,11 @@ struct BothConstraints {
     bool nonNegative = false;
     const Brdf* added = nullptr;         ///< q + added >= 0
     const Brdf* albedoSource = nullptr;  ///< albedo nowhere above that of this
+    int mostRounds = 60;                 ///< of adding pairs where the sum is negative
 };
 
 /// The nearest matrix, channel by channel, over all terms at once. See constraints.h.
+/// Throws NumericError where the sum is still negative after the last round.
 void constrainBoth(Representation& matrix, const BothConstraints& constraints);
 
 }  // namespace hshfit::inline representation::inline constraints

@@ -14,8 +14,6 @@
 namespace hshfit::inline representation::inline constraints {
 namespace {
 
-constexpr int mostRounds = 60;
-
 void clearSines(int order, double* slots) {
     for (int l = 1; l < order; ++l) {
         for (int m = 1; m <= l; ++m) slots[slotOf(l, -m)] = 0;
@@ -28,6 +26,13 @@ double product(const std::vector<double>& a, const double* b) {
 
 }  // namespace
 
+NumericError unsettled(const Basis& basis, int rounds) {
+    return NumericError(fmt::format(
+        "non-negative coefficients in {} of order {} were not found in {} rounds: the sum is still "
+        "negative in places; lower the order",
+        basis.name(), basis.order(), rounds));
+}
+
 bool withoutSines(const std::vector<int>& slots) {
     return std::ranges::all_of(slots, [](int slot) {
         const int l = static_cast<int>(std::sqrt(slot + 0.5));
@@ -35,10 +40,11 @@ bool withoutSines(const std::vector<int>& slots) {
     });
 }
 
-NonNegativeCone::NonNegativeCone(const Basis& basis, bool even, bool sure)
+NonNegativeCone::NonNegativeCone(const Basis& basis, bool even, bool sure, int mostRounds)
     : basis_(basis),
       even_(even),
       sure_(sure),
+      mostRounds_(mostRounds),
       coarse_(basis, even),
       fine_(basis, even, HemisphereScan::fine) {
     if (bases::find(basis.name()).orthonormal) return;
@@ -109,8 +115,9 @@ std::vector<double> NonNegativeCone::nearest(const double* c, const Added& added
     };
     if (limit) solve();
     double lift = 0;
-    bool thorough = false;
-    for (int round = 0; round < mostRounds; ++round) {
+    bool thorough = false, settled = false;
+    for (int round = 0; !settled; ++round) {
+        if (round == mostRounds_) throw unsettled(basis_, round);
         bool negative = false;
         lift = 0;
         for (const Minimum& each : minima(result, added, scale, thorough)) {
@@ -123,13 +130,9 @@ std::vector<double> NonNegativeCone::nearest(const double* c, const Added& added
             negative = true;
             program.add(row(each.wi), added ? -added(each.wi) : 0);
         }
-        if (negative) {
-            solve();
-        } else if (thorough || !sure_) {
-            break;
-        } else {
-            thorough = true;
-        }
+        if (negative) solve();
+        settled = !negative && (thorough || !sure_);
+        thorough = thorough || !negative;
     }
     result[0] += lift;
     if (limit) {

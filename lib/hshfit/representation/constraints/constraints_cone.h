@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/bases/basis.h>
+#include <hshfit/error.h>
 #include <hshfit/representation/constraints/constraints_scan.h>
 #include <hshfit/representation/hemisphere_gram.h>
 
@@ -25,14 +26,16 @@ public:
     };
 
     /// `even`: the sums have no sines, before and after. `sure`: look on the finer grid as well,
-    /// for minima that the coarse one hides; without, some are missed. Throws UsageError for a
-    /// basis that is not orthonormal with a condition above 1e9.
-    NonNegativeCone(const Basis& basis, bool even, bool sure = true);
+    /// for minima that the coarse one hides; without, some are missed. `mostRounds`: how often
+    /// constraints are added. Throws UsageError for a basis that is not orthonormal with a
+    /// condition above 1e9.
+    NonNegativeCone(const Basis& basis, bool even, bool sure = true, int mostRounds = 60);
 
     /// The coefficients nearest to `c` whose sum plus `added` is at least -1e-5 of its root mean
     /// square everywhere, and within the limit, if any. Directions are added as constraints where
     /// the sum is negative, first at local minima, then along the floors of valleys, until none is
-    /// found; what the tolerance leaves is lifted by band 0.
+    /// found; what the tolerance leaves is lifted by band 0. Throws NumericError where the last
+    /// round still finds some.
     std::vector<double> nearest(const double* c, const Added& added = {},
                                 const Limit* limit = nullptr) const;
 
@@ -47,9 +50,13 @@ private:
 
     const Basis& basis_;
     bool even_, sure_;
+    int mostRounds_;
     HemisphereScan coarse_, fine_;
     std::unique_ptr<HemisphereGram> gram_;  ///< null: the norm is that of the coefficients
 };
+
+/// The error of a search for non-negative sums that its last round did not end.
+NumericError unsettled(const Basis& basis, int rounds);
 
 /// Whether none of the slots belongs to a sine.
 bool withoutSines(const std::vector<int>& slots);
