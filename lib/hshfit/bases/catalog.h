@@ -10,6 +10,13 @@
 
 namespace hshfit::bases {
 
+/// The curves of a basis in reports. Colours after Okabe & Ito (2008), told apart with colour-blind
+/// eyes and on white and black; dashes and marks, of gnuplot, tell the bases apart in grey too.
+struct Style {
+    const char* colour;
+    int dash, mark;
+};
+
 /// One row of the table of bases.
 struct Entry {
     std::string_view name;    ///< as on the command line
@@ -17,6 +24,8 @@ struct Entry {
     std::string_view source;  ///< where the definition was published
     int maxOrder;             ///< 2801; less for a finite set or a costly solve
     bool orthonormal;         ///< in the inner product that the basis names
+    bool nested;              ///< coefficients of order n are the first of those of order n + 1
+    Style style;
     std::unique_ptr<Basis> (*make)(int order, BasisOptions options);
 };
 

@@ -3,7 +3,6 @@
 #include <hshfit/pages/report_files.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -19,29 +18,6 @@ namespace hshfit::inline pages {
 namespace {
 
 using kainjow::mustache::data;
-
-/// Colours after Okabe & Ito (2008), told apart with colour-blind eyes and on white and black;
-/// the dashes and marks tell the bases apart in grey too. By place in the table of bases.
-struct Style {
-    const char* colour;
-    int dash, mark;
-};
-constexpr std::array<Style, 9> styles{{{"#0072B2", 1, 7},
-                                       {"#E69F00", 2, 5},
-                                       {"#D55E00", 4, 9},
-                                       {"#9A6A4F", 5, 11},
-                                       {"#009E73", 1, 13},
-                                       {"#CC79A7", 2, 6},
-                                       {"#8A63C9", 4, 4},
-                                       {"#56B4E9", 1, 8},
-                                       {"#4D4D4D", 3, 10}}};
-
-Style styleOf(const std::string& basis) {
-    const auto table = bases::catalog();
-    const auto row = std::find_if(table.begin(), table.end(),
-                                  [&](const bases::Entry& entry) { return entry.name == basis; });
-    return styles[static_cast<std::size_t>(row - table.begin()) % styles.size()];
-}
 
 /// All bases of all entries, each once, in order of appearance.
 std::vector<std::string> basesOf(const Report& report) {
@@ -105,7 +81,7 @@ bool hasAccuracy(const ReportEntry& entry) {
 }
 
 std::string basisColour(const std::string& basis) {
-    return styleOf(basis).colour;
+    return bases::find(basis).style.colour;
 }
 
 std::string shortName(const std::string& brdf, std::size_t limit) {
@@ -164,7 +140,7 @@ std::string reportScript(const Report& report) {
     data lines{data::type::list};
     const auto names = basesOf(report);
     for (std::size_t i = 0; i < names.size(); ++i) {
-        const Style style = styleOf(names[i]);
+        const bases::Style style = bases::find(names[i]).style;
         data line;
         line.set("index", std::to_string(i + 1));
         line.set("colour", style.colour);

@@ -319,7 +319,7 @@ ProductSymmetry symmetryOf(const Representation& matrix) {
 
 Representation truncated(const Representation& matrix, int order) {
     const auto basis = bases::make(matrix.head.basis, matrix.head.order);
-    if (matrix.head.basis == "slepian" || !isOrthonormal(*basis)) {
+    if (!bases::find(matrix.head.basis).nested) {
         throw UsageError(fmt::format("the functions of {} depend on the order: project anew",
                                      matrix.head.basis));
     }

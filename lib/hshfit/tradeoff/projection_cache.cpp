@@ -13,11 +13,6 @@ namespace {
 
 using Kind = Representation::Kind;
 
-/// Whether order n's coefficients are the first of order N's.
-bool isNested(const std::string& basis) {
-    return basis != "slepian" && bases::find(basis).orthonormal;
-}
-
 /// What the projection depends on, and nothing else of the form.
 Form rootOf(const Form& form) {
     Form root;
@@ -38,7 +33,7 @@ Form rootOf(const Form& form) {
 
 std::string keyOf(const Form& form) {
     Form root = rootOf(form);
-    if (root.kind != Kind::halfway && isNested(root.basis)) root.order = 0;
+    if (root.kind != Kind::halfway && bases::find(root.basis).nested) root.order = 0;
     return optionsOf(root);
 }
 

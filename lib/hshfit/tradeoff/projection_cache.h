@@ -12,7 +12,7 @@ namespace hshfit::tradeoff {
 
 /// Projections that many forms start from, each made once: at the highest order that any form asks
 /// of it, because the coefficients of lower orders are its prefix. Bases whose functions depend on
-/// the order (lsosh, slepian) are projected for each.
+/// the order (not nested) are projected for each.
 /// After `prepare`, safe to use from many threads.
 class ProjectionCache final : public ProjectionSource {
 public:

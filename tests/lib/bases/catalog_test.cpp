@@ -69,6 +69,33 @@ TEST(BasisCatalog, CountsFunctions) {
     }
 }
 
+TEST(BasisCatalog, LowerOrdersArePrefixesWhereARowSaysSo) {
+    for (const bases::Entry& entry : bases::catalog()) {
+        const auto small = entry.make(std::min(5, entry.maxOrder - 1), {});
+        const auto large = entry.make(std::min(7, entry.maxOrder), {});
+        double change = 0;
+        for (const Direction& d : directions) {
+            const auto a = valuesAt(*small, d), b = valuesAt(*large, d);
+            for (std::size_t i = 0; i < a.size(); ++i) {
+                change = std::max(change, std::abs(a[i] - b[i]));
+            }
+        }
+        // Inner products with the same functions: the same coefficients.
+        EXPECT_EQ(entry.nested, entry.orthonormal && change < 1e-13) << entry.name << change;
+    }
+}
+
+TEST(BasisCatalog, CurvesDifferInColourAndInGrey) {
+    std::set<std::string> colours;
+    std::set<std::pair<int, int>> strokes;
+    for (const bases::Entry& entry : bases::catalog()) {
+        colours.insert(entry.style.colour);
+        strokes.insert({entry.style.dash, entry.style.mark});
+    }
+    EXPECT_EQ(colours.size(), bases::catalog().size());
+    EXPECT_EQ(strokes.size(), bases::catalog().size());
+}
+
 TEST(BasisCatalog, FunctionsItLacksAreZero) {
     for (const bases::Entry& entry : bases::catalog()) {
         const auto basis = entry.make(std::min(9, entry.maxOrder), {});
