@@ -195,8 +195,7 @@ std::vector<double> nearestMatrix(const PairScan& scan, std::vector<double> valu
     values = program.x();
     double lift = 0;
     bool thorough = false, settled = !constraints.nonNegative;
-    for (int round = 0; !settled; ++round) {
-        if (round == constraints.mostRounds) throw unsettled(scan.basis(), round);
+    for (int round = 0; !settled && round < constraints.mostRounds; ++round) {
         bool negative = false;
         lift = 0;
         for (const auto& each : scan.minima(values, constraints.added, channel, scale, thorough)) {
@@ -215,6 +214,12 @@ std::vector<double> nearestMatrix(const PairScan& scan, std::vector<double> valu
         values = program.x();
     }
     values[0] += lift;
+    if (!settled) {
+        double least = -lift / (2 * pi);
+        for (const auto& each : scan.minima(values, constraints.added, channel, scale, true))
+            least = std::min(least, each.value);
+        requireNearlySettled(scan.basis(), constraints.mostRounds, least / scale);
+    }
     double share = 1;
     for (std::size_t k = 0; k < albedoRows.size(); ++k) {
         const double albedo = product(albedoRows[k], values);

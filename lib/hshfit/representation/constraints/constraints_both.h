@@ -14,7 +14,7 @@ struct BothConstraints {
 };
 
 /// The nearest matrix, channel by channel, over all terms at once. See constraints.h.
-/// Throws NumericError where the sum is still negative after the last round.
+/// Throws NumericError where the last round leaves more than the tolerance (constraints_cone.h).
 void constrainBoth(Representation& matrix, const BothConstraints& constraints);
 
 }  // namespace hshfit::inline representation::inline constraints

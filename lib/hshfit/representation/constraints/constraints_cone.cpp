@@ -26,11 +26,12 @@ double product(const std::vector<double>& a, const double* b) {
 
 }  // namespace
 
-NumericError unsettled(const Basis& basis, int rounds) {
-    return NumericError(fmt::format(
-        "non-negative coefficients in {} of order {} were not found in {} rounds: the sum is still "
-        "negative in places; lower the order",
-        basis.name(), basis.order(), rounds));
+void requireNearlySettled(const Basis& basis, int rounds, double least) {
+    if (least >= -nonNegativeTolerance) return;
+    throw NumericError(fmt::format(
+        "non-negative coefficients in {} of order {} were not found in {} rounds: {:.0e} of the "
+        "root mean square was left below 0; lower the order",
+        basis.name(), basis.order(), rounds, -least));
 }
 
 bool withoutSines(const std::vector<int>& slots) {
@@ -116,8 +117,7 @@ std::vector<double> NonNegativeCone::nearest(const double* c, const Added& added
     if (limit) solve();
     double lift = 0;
     bool thorough = false, settled = false;
-    for (int round = 0; !settled; ++round) {
-        if (round == mostRounds_) throw unsettled(basis_, round);
+    for (int round = 0; !settled && round < mostRounds_; ++round) {
         bool negative = false;
         lift = 0;
         for (const Minimum& each : minima(result, added, scale, thorough)) {
@@ -135,6 +135,12 @@ std::vector<double> NonNegativeCone::nearest(const double* c, const Added& added
         thorough = thorough || !negative;
     }
     result[0] += lift;
+    if (!settled) {
+        double least = -lift / std::sqrt(2 * pi);
+        for (const Minimum& each : minima(result, added, scale, sure_))
+            least = std::min(least, each.value);
+        requireNearlySettled(basis_, mostRounds_, least / scale);
+    }
     if (limit) {
         const double sum = product(limit->functional, result.data());
         if (sum > limit->most && sum > 0) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <hshfit/bases/basis.h>
-#include <hshfit/error.h>
 #include <hshfit/representation/constraints/constraints_scan.h>
 #include <hshfit/representation/hemisphere_gram.h>
 
@@ -34,8 +33,8 @@ public:
     /// The coefficients nearest to `c` whose sum plus `added` is at least -1e-5 of its root mean
     /// square everywhere, and within the limit, if any. Directions are added as constraints where
     /// the sum is negative, first at local minima, then along the floors of valleys, until none is
-    /// found; what the tolerance leaves is lifted by band 0. Throws NumericError where the last
-    /// round still finds some.
+    /// found; what the tolerance leaves is lifted by band 0. The last round may leave as much;
+    /// throws NumericError where it leaves more.
     std::vector<double> nearest(const double* c, const Added& added = {},
                                 const Limit* limit = nullptr) const;
 
@@ -55,8 +54,9 @@ private:
     std::unique_ptr<HemisphereGram> gram_;  ///< null: the norm is that of the coefficients
 };
 
-/// The error of a search for non-negative sums that its last round did not end.
-NumericError unsettled(const Basis& basis, int rounds);
+/// For a search for non-negative sums that its last round did not end. `least`: of the sum, and of
+/// what was lifted, in units of the root mean square. Throws NumericError beyond the tolerance.
+void requireNearlySettled(const Basis& basis, int rounds, double least);
 
 /// Whether none of the slots belongs to a sine.
 bool withoutSines(const std::vector<int>& slots);
