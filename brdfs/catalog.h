@@ -25,6 +25,8 @@ struct FitRange {
     std::string_view follows = {};  ///< equal to this parameter for isotropic data
 };
 
+class Parameters;
+
 /// One parameter of an analytic model, as listed, parsed, checked and documented.
 struct Parameter {
     enum class Kind {
@@ -42,6 +44,9 @@ struct Parameter {
     std::vector<std::string_view> choices = {};  ///< the first is the default
     /// The first applicable range counts. None: fits keep the stated value, or the default.
     std::vector<FitRange> fit = {};
+    /// Colours with a least value of 0: whether f is linear in it, each channel by itself, jointly
+    /// with all free parameters for which this holds, given what is stated. None: it is not.
+    bool (*linear)(const Parameters& stated) = nullptr;
 };
 
 /// Checked parameter values, defaults filled in. A request for an undeclared name is our bug.
@@ -53,6 +58,8 @@ public:
     bool given(std::string_view name) const;  ///< stated rather than left to its default
     /// "key=value,…" in the order of the table, without values equal to the default.
     std::string canonical() const;
+    /// States a number or a colour; three equal values become one, so that grey stays grey.
+    void set(std::string_view name, std::vector<double> values);
 
     std::map<std::string, std::vector<double>, std::less<>> numbers;
     std::map<std::string, std::string, std::less<>> words;

@@ -42,6 +42,11 @@ double parseNumber(std::string_view owner, const Parameter& parameter, std::stri
     return number + 0.0;  // -0 becomes 0
 }
 
+std::vector<double> greyAsOne(std::vector<double> values) {
+    if (values.size() == 3 && values[0] == values[1] && values[1] == values[2]) values.resize(1);
+    return values;
+}
+
 std::vector<double> parseNumbers(std::string_view owner, const Parameter& parameter,
                                  std::string_view value) {
     const std::vector<std::string_view> parts = split(value, '/');
@@ -52,9 +57,7 @@ std::vector<double> parseNumbers(std::string_view owner, const Parameter& parame
     std::vector<double> numbers;
     for (const std::string_view part : parts)
         numbers.push_back(parseNumber(owner, parameter, value, part));
-    if (numbers.size() == 3 && numbers[0] == numbers[1] && numbers[1] == numbers[2])
-        numbers.resize(1);
-    return numbers;
+    return greyAsOne(std::move(numbers));
 }
 
 std::string parseChoice(std::string_view owner, const Parameter& parameter,
@@ -147,14 +150,30 @@ std::string Parameters::canonical() const {
     return text;
 }
 
-Parameters parseParameters(std::string_view owner, std::span<const Parameter> declared,
-                           std::string_view text) {
+void Parameters::set(std::string_view name, std::vector<double> values) {
+    for (double& value : values) value += 0.0;  // -0 becomes 0
+    numbers.insert_or_assign(std::string(name), greyAsOne(std::move(values)));
+    stated.insert(std::string(name));
+}
+
+Parameters readParameters(std::string_view owner, std::span<const Parameter> declared,
+                          std::string_view text) {
     Parameters parsed;
     if (!text.empty())
         for (const std::string_view item : split(text, ','))
             readItem(owner, declared, item, parsed);
-    for (const Parameter& parameter : declared) complete(owner, parameter, parsed);
     return parsed;
+}
+
+Parameters completed(std::string_view owner, std::span<const Parameter> declared,
+                     Parameters stated) {
+    for (const Parameter& parameter : declared) complete(owner, parameter, stated);
+    return stated;
+}
+
+Parameters parseParameters(std::string_view owner, std::span<const Parameter> declared,
+                           std::string_view text) {
+    return completed(owner, declared, readParameters(owner, declared, text));
 }
 
 std::string validValues(const Parameter& parameter) {

@@ -18,6 +18,12 @@ namespace hshfit::brdfs {
 Parameters parseParameters(std::string_view owner, std::span<const Parameter> declared,
                            std::string_view text);
 
+/// The two halves of it: what the text states, and that with defaults and the canonical text.
+Parameters readParameters(std::string_view owner, std::span<const Parameter> declared,
+                          std::string_view text);
+Parameters completed(std::string_view owner, std::span<const Parameter> declared,
+                     Parameters stated);
+
 /// The valid values of a parameter, for messages and listings: "0 to 1, or r/g/b", "1992|duer".
 std::string validValues(const Parameter& parameter);
 

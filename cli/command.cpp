@@ -34,6 +34,18 @@ void addRgb(CLI::App& command, bool& rgb) {
                      "Turn wavelengths into linear Rec. 709 (CIE 1931 2 degrees, D65)");
 }
 
+void addQuadrature(CLI::App& command, double& tolerance, double& maxEvaluations) {
+    command
+        .add_option("--tolerance", tolerance,
+                    "Relative agreement of two quadrature levels (default: 1e-6, tables 3e-3)")
+        ->check(CLI::Range(1e-13, 1.0));
+    command
+        .add_option("--max-evaluations", maxEvaluations,
+                    "BRDF evaluations per outgoing direction before giving up")
+        ->check(CLI::Range(1e3, 1e12))
+        ->capture_default_str();
+}
+
 Direction parseDirection(const std::string& text, std::string_view option) {
     const char *at = text.data(), *end = at + text.size();
     double theta = 0, phi = 0;

@@ -35,6 +35,9 @@ void addCommand(CLI::App& app, Globals& globals, const Command& row);
 /// The option --rgb.
 void addRgb(CLI::App& command, bool& rgb);
 
+/// The options --tolerance and --max-evaluations of a projection.
+void addQuadrature(CLI::App& command, double& tolerance, double& maxEvaluations);
+
 /// "THETA,PHI" in degrees, theta from 0 to 90. Throws UsageError naming `option`.
 Direction parseDirection(const std::string& text, std::string_view option);
 

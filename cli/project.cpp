@@ -157,15 +157,7 @@ void addProject(CLI::App& command, Globals& globals) {
     command.add_flag("--cosine", options.cosine, "Project f cos(theta_i) instead of f");
     command.add_flag("--condon-shortley", options.condonShortley,
                      "Give functions of odd m the Condon-Shortley sign");
-    command
-        .add_option("--tolerance", options.tolerance,
-                    "Relative agreement of two quadrature levels (default: 1e-6, tables 3e-3)")
-        ->check(CLI::Range(1e-13, 1.0));
-    command
-        .add_option("--max-evaluations", arguments->maxEvaluations,
-                    "BRDF evaluations per outgoing direction before giving up")
-        ->check(CLI::Range(1e3, 1e12))
-        ->capture_default_str();
+    addQuadrature(command, options.tolerance, arguments->maxEvaluations);
     command.add_flag("--least-squares", options.leastSquares,
                      "Fit scattered samples themselves, not the interpolation between them");
     command

@@ -90,15 +90,7 @@ void addReport(CLI::App& command, Globals& globals) {
                        "WxH, N or THETA,PHI in degrees (default: 16, or 16x16 if anisotropic)");
     addRgb(command, options.rgb);
     command.add_flag("--cosine", options.cosine, "Report f cos(theta_i) instead of f");
-    command
-        .add_option("--tolerance", options.tolerance,
-                    "Relative agreement of two quadrature levels (default: 1e-6, tables 3e-3)")
-        ->check(CLI::Range(1e-13, 1.0));
-    command
-        .add_option("--max-evaluations", arguments->maxEvaluations,
-                    "BRDF evaluations per outgoing direction before giving up")
-        ->check(CLI::Range(1e3, 1e12))
-        ->capture_default_str();
+    addQuadrature(command, options.tolerance, arguments->maxEvaluations);
     command.callback([arguments, &globals] { runReport(*arguments, globals); });
 }
 

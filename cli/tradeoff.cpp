@@ -272,15 +272,7 @@ void addTradeoff(CLI::App& command, Globals& globals) {
                        "CSV to write: the pairs, their weights and the values of SPEC");
     command.add_flag("--cosine", arguments->cosine, "Project f cos(theta_i) instead of f");
     addRgb(command, arguments->rgb);
-    command
-        .add_option("--tolerance", arguments->tolerance,
-                    "Relative agreement of two quadrature levels (default: 1e-6, tables 3e-3)")
-        ->check(CLI::Range(1e-13, 1.0));
-    command
-        .add_option("--max-evaluations", arguments->maxEvaluations,
-                    "BRDF evaluations per outgoing direction before giving up")
-        ->check(CLI::Range(1e3, 1e12))
-        ->capture_default_str();
+    addQuadrature(command, arguments->tolerance, arguments->maxEvaluations);
     command.callback([arguments, &globals] { runTradeoff(*arguments, globals); });
 }
 

@@ -39,11 +39,16 @@ Laws lawsOf(const Parameters& p) {
     return result;
 }
 
-class Abc final : public TermBrdf {
+void evalByVectors(const AbcShape<double>& shape, const TermBatch& batch) {
+    HWY_DYNAMIC_DISPATCH(evalAbc)(shape, batch);
+}
+
+class Abc final : public ShapedBrdf<AbcShape<double>, evalByVectors,
+                                    evalAll<double, AbcTerms, AbcShape<double>>> {
 public:
     explicit Abc(const Parameters& p)
-        : TermBrdf(abcModel(), p, lawsOf(p), channelWeights<AbcFormula>(p)),
-          shape_(AbcFormula::shape(Values<double>(p, 0))) {}
+        : ShapedBrdf(abcModel(), p, lawsOf(p), channelWeights<AbcFormula>(p),
+                     AbcFormula::shape(Values<double>(p, 0))) {}
 
     /// Near the mirror direction |D| is the slope times 2 cos(theta_o) and 1 - h.z half its square;
     /// the powers are singular where these reach -1 / B.
@@ -55,17 +60,6 @@ public:
 
     /// The V-cavity term's kinks lie along curves at which no panel can end.
     double defaultTolerance() const override { return shape_.smooth ? 1e-6 : 1e-5; }
-
-protected:
-    void evalBatch(const TermBatch& batch) const override {
-        HWY_DYNAMIC_DISPATCH(evalAbc)(shape_, batch);
-    }
-    void evalBatchScalar(const TermBatch& batch) const override {
-        evalAll<double, AbcTerms>(shape_, batch);
-    }
-
-private:
-    AbcShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
@@ -90,7 +84,8 @@ const Model& abcModel() {
                         .fallback = 1,
                         .min = 0,
                         .max = 1e8,
-                        .fit = {{.low = 0, .high = 1}}},
+                        .fit = {{.low = 0, .high = 1}},
+                        .linear = alwaysLinear},
                        {.name = "B",
                         .help = "about 1 / width^2 of the peak",
                         .min = 1e-3,

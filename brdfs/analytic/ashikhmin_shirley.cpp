@@ -41,12 +41,18 @@ void checkKeys(const Parameters& p) {
         throw UsageError("ashikhmin-shirley: give either Rs or ior, not both");
 }
 
-class AshikhminShirley final : public TermBrdf {
+void evalByVectors(const AshikhminShirleyShape<double>& shape, const TermBatch& batch) {
+    HWY_DYNAMIC_DISPATCH(evalAshikhminShirley)(shape, batch);
+}
+
+class AshikhminShirley final
+    : public ShapedBrdf<AshikhminShirleyShape<double>, evalByVectors,
+                        evalAll<double, AshikhminShirleyTerms, AshikhminShirleyShape<double>>> {
 public:
     explicit AshikhminShirley(const Parameters& p)
-        : TermBrdf(ashikhminShirleyModel(), p, lawsOf(p),
-                   channelWeights<AshikhminShirleyFormula>(p)),
-          shape_(AshikhminShirleyFormula::shape(Values<double>(p, 0))) {}
+        : ShapedBrdf(ashikhminShirleyModel(), p, lawsOf(p),
+                     channelWeights<AshikhminShirleyFormula>(p),
+                     AshikhminShirleyFormula::shape(Values<double>(p, 0))) {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
         const auto width = [](double n) { return std::min(1.0, 2.5 / std::sqrt(n + 1)); };
@@ -55,17 +61,6 @@ public:
 
     /// max(cos theta_i, cos theta_o).
     std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
-
-protected:
-    void evalBatch(const TermBatch& batch) const override {
-        HWY_DYNAMIC_DISPATCH(evalAshikhminShirley)(shape_, batch);
-    }
-    void evalBatchScalar(const TermBatch& batch) const override {
-        evalAll<double, AshikhminShirleyTerms>(shape_, batch);
-    }
-
-private:
-    AshikhminShirleyShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
@@ -83,7 +78,8 @@ Parameter reflectance(std::string_view name, std::string_view help, double fallb
             .kind = Parameter::Kind::colour,
             .fallback = fallback,
             .min = 0,
-            .max = 1};
+            .max = 1,
+            .linear = linearUnderStatedScale};
 }
 
 }  // namespace

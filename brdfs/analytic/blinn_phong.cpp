@@ -40,27 +40,22 @@ Laws lawsOf(const Parameters& p) {
     return result;
 }
 
-class BlinnPhong final : public TermBrdf {
+void evalByVectors(const BlinnPhongShape<double>& shape, const TermBatch& batch) {
+    HWY_DYNAMIC_DISPATCH(evalBlinnPhong)(shape, batch);
+}
+
+class BlinnPhong final
+    : public ShapedBrdf<BlinnPhongShape<double>, evalByVectors,
+                        evalAll<double, BlinnPhongTerms, BlinnPhongShape<double>>> {
 public:
     explicit BlinnPhong(const Parameters& p)
-        : TermBrdf(blinnPhongModel(), p, lawsOf(p), channelWeights<BlinnPhongFormula>(p)),
-          shape_(BlinnPhongFormula::shape(Values<double>(p, 0))) {}
+        : ShapedBrdf(blinnPhongModel(), p, lawsOf(p), channelWeights<BlinnPhongFormula>(p),
+                     BlinnPhongFormula::shape(Values<double>(p, 0))) {}
 
     /// In the slope t the lobe is (1 + t^2)^(-n/2): nearly Gaussian, and singular at t = i.
     std::vector<Lobe> lobes(const Direction&) const override {
         return {{Lobe::About::halfway, std::min(1.0, 2.5 / std::sqrt(shape_.exponent + 1)), {}}};
     }
-
-protected:
-    void evalBatch(const TermBatch& batch) const override {
-        HWY_DYNAMIC_DISPATCH(evalBlinnPhong)(shape_, batch);
-    }
-    void evalBatchScalar(const TermBatch& batch) const override {
-        evalAll<double, BlinnPhongTerms>(shape_, batch);
-    }
-
-private:
-    BlinnPhongShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

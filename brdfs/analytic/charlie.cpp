@@ -46,10 +46,17 @@ CharlieShape shapeOf(const Parameters& p) {
     return shape;
 }
 
-class Charlie final : public TermBrdf {
+void evalByVectors(const CharlieShape& shape, const TermBatch& batch) {
+    HWY_DYNAMIC_DISPATCH(evalCharlie)(shape, batch);
+}
+
+class Charlie final
+    : public ShapedBrdf<CharlieShape, evalByVectors,
+                        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::CharlieTerms, CharlieShape>> {
 public:
     explicit Charlie(const Parameters& p)
-        : TermBrdf(charlieModel(), p, lawsOf(p), {0.0}, {p.colour("ks")}), shape_(shapeOf(p)) {}
+        : ShapedBrdf(charlieModel(), p, lawsOf(p), TermWeights{{0.0}, {p.colour("ks")}},
+                     shapeOf(p)) {}
 
     /// sin^(1/r) is singular at the normal and nearly constant beyond a slope of 1.
     std::vector<Lobe> lobes(const Direction&) const override {
@@ -60,17 +67,6 @@ public:
     /// approximate.
     std::vector<double> kinks(const Direction&) const override { return {0.5}; }
     double defaultTolerance() const override { return 1e-5; }
-
-protected:
-    void evalBatch(const TermBatch& batch) const override {
-        HWY_DYNAMIC_DISPATCH(evalCharlie)(shape_, batch);
-    }
-    void evalBatchScalar(const TermBatch& batch) const override {
-        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::CharlieTerms>(shape_, batch);
-    }
-
-private:
-    CharlieShape shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

@@ -69,12 +69,19 @@ Laws lawsOf(const Parameters& p) {
     return result;
 }
 
-class CookTorrance final : public TermBrdf {
+void evalByVectors(const CookTorranceShape<double>& shape, const TermBatch& batch) {
+    HWY_DYNAMIC_DISPATCH(evalCookTorrance)(shape, batch);
+}
+
+class CookTorrance final
+    : public ShapedBrdf<CookTorranceShape<double>, evalByVectors,
+                        evalAll<double, CookTorranceTerms, CookTorranceShape<double>>> {
 public:
     CookTorrance(const Parameters& p, const CookTorranceShape<double>& shape)
-        : TermBrdf(cookTorranceModel(), p, lawsOf(p), overPi(p.colour("kd")),
-                   eachInItsChannel(p.colour("ks"), shape.surfaces.size())),
-          shape_(shape) {}
+        : ShapedBrdf(cookTorranceModel(), p, lawsOf(p),
+                     TermWeights{overPi(p.colour("kd")),
+                                 eachInItsChannel(p.colour("ks"), shape.surfaces.size())},
+                     shape) {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
         return {{Lobe::About::halfway, 2.5 / std::numbers::sqrt2 * shape_.m, {}}};
@@ -83,17 +90,6 @@ public:
     /// The V-cavity term's minimum has kinks along curves that no panel can end at; 1e-6 would cost
     /// more than 2^26 evaluations at grazing angles.
     double defaultTolerance() const override { return 1e-5; }
-
-protected:
-    void evalBatch(const TermBatch& batch) const override {
-        HWY_DYNAMIC_DISPATCH(evalCookTorrance)(shape_, batch);
-    }
-    void evalBatchScalar(const TermBatch& batch) const override {
-        evalAll<double, CookTorranceTerms>(shape_, batch);
-    }
-
-private:
-    CookTorranceShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

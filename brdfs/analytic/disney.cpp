@@ -61,28 +61,22 @@ TermWeights weightsOf(const Parameters& p) {
     return all;
 }
 
-class Disney final : public TermBrdf {
+void evalByVectors(const DisneyShape<double>& shape, const TermBatch& batch) {
+    HWY_DYNAMIC_DISPATCH(evalDisney)(shape, batch);
+}
+
+class Disney final : public ShapedBrdf<DisneyShape<double>, evalByVectors,
+                                       evalAll<double, DisneyTerms, DisneyShape<double>>> {
 public:
     explicit Disney(const Parameters& p)
-        : TermBrdf(disneyModel(), p, lawsOf(p), weightsOf(p)),
-          shape_(DisneyFormula::shape(Values<double>(p, 0))) {}
+        : ShapedBrdf(disneyModel(), p, lawsOf(p), weightsOf(p),
+                     DisneyFormula::shape(Values<double>(p, 0))) {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
         std::vector<Lobe> lobes{halfwayLobe(shape_.axes.ax, shape_.axes.ay)};
         if (shape_.clearcoat > 0) lobes.push_back({Lobe::About::halfway, shape_.gloss, {}});
         return lobes;
     }
-
-protected:
-    void evalBatch(const TermBatch& batch) const override {
-        HWY_DYNAMIC_DISPATCH(evalDisney)(shape_, batch);
-    }
-    void evalBatchScalar(const TermBatch& batch) const override {
-        evalAll<double, DisneyTerms>(shape_, batch);
-    }
-
-private:
-    DisneyShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
@@ -91,6 +85,11 @@ std::unique_ptr<Brdf> make(const Parameters& p) {
 
 std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
     return HWY_DYNAMIC_DISPATCH(disneyColumns)(request);
+}
+
+/// Tints make a channel of baseColor act on the others through its luminance.
+bool withoutTints(const Parameters& stated) {
+    return stated.number("specularTint") == 0 && stated.number("sheenTint") == 0;
 }
 
 Parameter unitParameter(std::string_view name, std::string_view help, double fallback) {
@@ -117,7 +116,8 @@ const Model& disneyModel() {
               .fallback = 0.8,
               .min = 0,
               .max = 1,
-              .fit = {{.low = 0.05, .high = 0.9}}},
+              .fit = {{.low = 0.05, .high = 0.9}},
+              .linear = withoutTints},
              unitParameter("subsurface", "from the retroreflecting to the flat diffuse shape", 0,
                            {.low = 0.1, .high = 0.9}),
              unitParameter("metallic", "from a dielectric to a metal of baseColor", 0,

@@ -48,30 +48,25 @@ Laws lawsOf(const Colour& kd, const Settings& settings) {
     return laws;
 }
 
-class Eon final : public TermBrdf {
+void evalByVectors(const EonShape& shape, const TermBatch& batch) {
+    HWY_DYNAMIC_DISPATCH(evalEon)(shape, batch);
+}
+
+class Eon final
+    : public ShapedBrdf<EonShape, evalByVectors,
+                        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::EonTerms, EonShape>> {
 public:
     Eon(const Model& model, const Parameters& p, const Colour& kd, const Settings& settings)
-        : TermBrdf(model, p, lawsOf(kd, settings), {0.0},
-                   {overPi(kd), multiple(kd, settings.mean())}),
-          shape_{settings.roughness, settings.exact, settings.single(),
-                 settings.roughness > 0 ? 1 / (1 - settings.mean()) : 0} {}
+        : ShapedBrdf(model, p, lawsOf(kd, settings),
+                     TermWeights{{0.0}, {overPi(kd), multiple(kd, settings.mean())}},
+                     EonShape{settings.roughness, settings.exact, settings.single(),
+                              settings.roughness > 0 ? 1 / (1 - settings.mean()) : 0}) {}
 
     /// The kink at equal heights, where max(cos_i, cos_o) changes branches.
     std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
 
     /// The kink where s changes sign runs along a curve that no panel can end at.
     double defaultTolerance() const override { return shape_.roughness > 0 ? 1e-5 : 1e-6; }
-
-protected:
-    void evalBatch(const TermBatch& batch) const override {
-        HWY_DYNAMIC_DISPATCH(evalEon)(shape_, batch);
-    }
-    void evalBatchScalar(const TermBatch& batch) const override {
-        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::EonTerms>(shape_, batch);
-    }
-
-private:
-    EonShape shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
@@ -98,7 +93,7 @@ const Model& eonModel() {
         .name = "eon",
         .help = "rough diffuse surface that loses no energy (energy-preserving Oren-Nayar)",
         .source = "Portsmouth, Kutz & Hill 2025, JCGT 14(1), arXiv 2410.18026",
-        .parameters = {fitted(kdParameter(1, 1), {{.low = 0.05, .high = 0.9}}),
+        .parameters = {linearIf(fitted(kdParameter(1, 1), {{.low = 0.05, .high = 0.9}}), nullptr),
                        {.name = "roughness",
                         .help = "0 is Lambert",
                         .min = 0,

@@ -44,11 +44,16 @@ Laws lawsOf(const Parameters& p) {
     return result;
 }
 
-class Lafortune final : public TermBrdf {
+void evalByVectors(const LafortuneShape<double>& shape, const TermBatch& batch) {
+    HWY_DYNAMIC_DISPATCH(evalLafortune)(shape, batch);
+}
+
+class Lafortune final : public ShapedBrdf<LafortuneShape<double>, evalByVectors,
+                                          evalAll<double, LafortuneTerms, LafortuneShape<double>>> {
 public:
     explicit Lafortune(const Parameters& p)
-        : TermBrdf(lafortuneModel(), p, lawsOf(p), channelWeights<LafortuneFormula>(p)),
-          shape_(LafortuneFormula::shape(Values<double>(p, 0))) {}
+        : ShapedBrdf(lafortuneModel(), p, lawsOf(p), channelWeights<LafortuneFormula>(p),
+                     LafortuneFormula::shape(Values<double>(p, 0))) {}
 
     std::vector<Lobe> lobes(const Direction& wo) const override {
         const Direction a{shape_.x * wo.x, shape_.y * wo.y, shape_.z * wo.z};
@@ -58,17 +63,6 @@ public:
                  2.5 / std::sqrt(shape_.exponent + 1),
                  {a.x / length, a.y / length, a.z / length}}};
     }
-
-protected:
-    void evalBatch(const TermBatch& batch) const override {
-        HWY_DYNAMIC_DISPATCH(evalLafortune)(shape_, batch);
-    }
-    void evalBatchScalar(const TermBatch& batch) const override {
-        evalAll<double, LafortuneTerms>(shape_, batch);
-    }
-
-private:
-    LafortuneShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

@@ -30,22 +30,18 @@ Laws lawsOf(const Parameters& p) {
     return result;
 }
 
-class Minnaert final : public TermBrdf {
+void evalByVectors(const MinnaertShape& shape, const TermBatch& batch) {
+    HWY_DYNAMIC_DISPATCH(evalMinnaert)(shape, batch);
+}
+
+class Minnaert final
+    : public ShapedBrdf<
+          MinnaertShape, evalByVectors,
+          HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::MinnaertTerms, MinnaertShape>> {
 public:
     explicit Minnaert(const Parameters& p)
-        : TermBrdf(minnaertModel(), p, lawsOf(p), {0.0}, {overPi(p.colour("kd"))}),
-          shape_{p.number("k")} {}
-
-protected:
-    void evalBatch(const TermBatch& batch) const override {
-        HWY_DYNAMIC_DISPATCH(evalMinnaert)(shape_, batch);
-    }
-    void evalBatchScalar(const TermBatch& batch) const override {
-        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::MinnaertTerms>(shape_, batch);
-    }
-
-private:
-    MinnaertShape shape_;
+        : ShapedBrdf(minnaertModel(), p, lawsOf(p), TermWeights{{0.0}, {overPi(p.colour("kd"))}},
+                     MinnaertShape{p.number("k")}) {}
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

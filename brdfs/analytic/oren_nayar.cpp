@@ -45,51 +45,45 @@ Laws lawsOf(const Parameters& p) {
     return result;
 }
 
-class Simplified final : public TermBrdf {
+void evalSimplifiedByVectors(const OrenNayarShape& shape, const TermBatch& batch) {
+    HWY_DYNAMIC_DISPATCH(evalSimplified)(shape, batch);
+}
+
+class Simplified final
+    : public ShapedBrdf<
+          OrenNayarShape, evalSimplifiedByVectors,
+          HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::SimplifiedTerms, OrenNayarShape>> {
 public:
     explicit Simplified(const Parameters& p)
-        : TermBrdf(
+        : ShapedBrdf(
               orenNayarModel(), p, lawsOf(p),
-              mapped(p.colour("kd"), [&](double kd) { return kd / pi * shapeOf(p).direct; }),
-              {mapped(p.colour("kd"), [&](double kd) { return kd / pi * shapeOf(p).sameSide; })}),
-          shape_(shapeOf(p)) {}
+              TermWeights{
+                  mapped(p.colour("kd"), [&](double kd) { return kd / pi * shapeOf(p).direct; }),
+                  {mapped(p.colour("kd"),
+                          [&](double kd) { return kd / pi * shapeOf(p).sameSide; })}},
+              shapeOf(p)) {}
 
     /// The kink at equal heights, where alpha and beta exchange the directions.
     std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
-
-protected:
-    void evalBatch(const TermBatch& batch) const override {
-        HWY_DYNAMIC_DISPATCH(evalSimplified)(shape_, batch);
-    }
-    void evalBatchScalar(const TermBatch& batch) const override {
-        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::SimplifiedTerms>(shape_, batch);
-    }
-
-private:
-    OrenNayarShape shape_;
 };
 
-class Full final : public TermBrdf {
+void evalFullByVectors(const OrenNayarShape& shape, const TermBatch& batch) {
+    HWY_DYNAMIC_DISPATCH(evalFull)(shape, batch);
+}
+
+class Full final
+    : public ShapedBrdf<OrenNayarShape, evalFullByVectors,
+                        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::FullTerms, OrenNayarShape>> {
 public:
     explicit Full(const Parameters& p)
-        : TermBrdf(orenNayarModel(), p, lawsOf(p), {0.0},
-                   {overPi(p.colour("kd")),
-                    mapped(p.colour("kd"), [](double kd) { return kd * kd / pi; })}),
-          shape_(shapeOf(p)) {}
+        : ShapedBrdf(orenNayarModel(), p, lawsOf(p),
+                     TermWeights{{0.0},
+                                 {overPi(p.colour("kd")),
+                                  mapped(p.colour("kd"), [](double kd) { return kd * kd / pi; })}},
+                     shapeOf(p)) {}
 
     /// As for the simplified form.
     std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
-
-protected:
-    void evalBatch(const TermBatch& batch) const override {
-        HWY_DYNAMIC_DISPATCH(evalFull)(shape_, batch);
-    }
-    void evalBatchScalar(const TermBatch& batch) const override {
-        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::FullTerms>(shape_, batch);
-    }
-
-private:
-    OrenNayarShape shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
@@ -104,7 +98,10 @@ const Model& orenNayarModel() {
         .name = "oren-nayar",
         .help = "rough diffuse surface; simplified, or full with interreflection",
         .source = "Oren & Nayar 1994, 10.1145/192161.192213",
-        .parameters = {kdParameter(1, 1),
+        .parameters = {linearIf(kdParameter(1, 1),
+                                [](const Parameters& stated) {
+                                    return stated.choice("variant") == "simplified";
+                                }),
                        {.name = "sigma",
                         .help = "standard deviation of the groove angle, degrees",
                         .min = 0,

@@ -2,6 +2,7 @@
 
 #include <brdfs/catalog.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace hshfit::brdfs {
@@ -14,6 +15,25 @@ inline Parameter fitted(Parameter parameter, std::vector<FitRange> fit) {
     return parameter;
 }
 
+inline Parameter linearIf(Parameter parameter, bool (*linear)(const Parameters& stated)) {
+    parameter.linear = linear;
+    return parameter;
+}
+
+/// Parameter::linear of a scale.
+inline bool alwaysLinear(const Parameters&) {
+    return true;
+}
+
+/// Parameter::linear of a reflectance that ks scales: linear in their product, and Schlick's form
+/// in the reflectance.
+inline bool linearUnderStatedScale(const Parameters& stated) {
+    const std::vector<double>& ks = stated.numbers.find("ks")->second;
+    const auto fresnel = stated.words.find("fresnel");
+    return stated.given("ks") && std::ranges::any_of(ks, [](double k) { return k > 0; }) &&
+           (fresnel == stated.words.end() || fresnel->second == "schlick");
+}
+
 inline Parameter kdParameter(double fallback, double most) {
     return {.name = "kd",
             .help = "diffuse albedo",
@@ -21,7 +41,8 @@ inline Parameter kdParameter(double fallback, double most) {
             .fallback = fallback,
             .min = 0,
             .max = most,
-            .fit = {{.low = 0, .high = 1}}};
+            .fit = {{.low = 0, .high = 1}},
+            .linear = alwaysLinear};
 }
 
 inline Parameter ksParameter(std::string_view help, double most = 1e6) {
@@ -31,7 +52,8 @@ inline Parameter ksParameter(std::string_view help, double most = 1e6) {
             .fallback = 1,
             .min = 0,
             .max = most,
-            .fit = {{.low = 0, .high = 1}}};
+            .fit = {{.low = 0, .high = 1}},
+            .linear = alwaysLinear};
 }
 
 inline Parameter f0Parameter() {
@@ -40,7 +62,8 @@ inline Parameter f0Parameter() {
             .kind = Parameter::Kind::colour,
             .fallback = 1,
             .min = 0,
-            .max = 1};
+            .max = 1,
+            .linear = linearUnderStatedScale};
 }
 
 inline Parameter exponentParameter(std::string_view name, std::string_view help, FitRange fit) {

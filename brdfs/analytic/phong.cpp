@@ -39,26 +39,20 @@ Laws lawsOf(const Parameters& p) {
     return result;
 }
 
-class Phong final : public TermBrdf {
+void evalByVectors(const PhongShape<double>& shape, const TermBatch& batch) {
+    HWY_DYNAMIC_DISPATCH(evalPhong)(shape, batch);
+}
+
+class Phong final : public ShapedBrdf<PhongShape<double>, evalByVectors,
+                                      evalAll<double, PhongTerms, PhongShape<double>>> {
 public:
     explicit Phong(const Parameters& p)
-        : TermBrdf(phongModel(), p, lawsOf(p), channelWeights<PhongFormula>(p)),
-          shape_(PhongFormula::shape(Values<double>(p, 0))) {}
+        : ShapedBrdf(phongModel(), p, lawsOf(p), channelWeights<PhongFormula>(p),
+                     PhongFormula::shape(Values<double>(p, 0))) {}
 
     std::vector<Lobe> lobes(const Direction& wo) const override {
         return {{Lobe::About::axis, 2.5 / std::sqrt(shape_.exponent + 1), mirrored(wo)}};
     }
-
-protected:
-    void evalBatch(const TermBatch& batch) const override {
-        HWY_DYNAMIC_DISPATCH(evalPhong)(shape_, batch);
-    }
-    void evalBatchScalar(const TermBatch& batch) const override {
-        evalAll<double, PhongTerms>(shape_, batch);
-    }
-
-private:
-    PhongShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

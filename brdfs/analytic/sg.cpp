@@ -42,11 +42,17 @@ Laws lawsOf(const Parameters& p) {
     return result;
 }
 
-class SphericalGaussian final : public TermBrdf {
+void evalByVectors(const SphericalGaussianShape<double>& shape, const TermBatch& batch) {
+    HWY_DYNAMIC_DISPATCH(evalSphericalGaussian)(shape, batch);
+}
+
+class SphericalGaussian final
+    : public ShapedBrdf<SphericalGaussianShape<double>, evalByVectors,
+                        evalAll<double, SphericalGaussianTerms, SphericalGaussianShape<double>>> {
 public:
     explicit SphericalGaussian(const Parameters& p)
-        : TermBrdf(sgModel(), p, lawsOf(p), channelWeights<SphericalGaussianFormula>(p)),
-          shape_(SphericalGaussianFormula::shape(Values<double>(p, 0))) {}
+        : ShapedBrdf(sgModel(), p, lawsOf(p), channelWeights<SphericalGaussianFormula>(p),
+                     SphericalGaussianFormula::shape(Values<double>(p, 0))) {}
 
     /// Standard deviation 1 / sqrt(lambda), of the angle or of the slope.
     std::vector<Lobe> lobes(const Direction& wo) const override {
@@ -54,17 +60,6 @@ public:
         if (shape_.aboutNormal) return {{Lobe::About::halfway, width, {}}};
         return {{Lobe::About::axis, width, mirrored(wo)}};
     }
-
-protected:
-    void evalBatch(const TermBatch& batch) const override {
-        HWY_DYNAMIC_DISPATCH(evalSphericalGaussian)(shape_, batch);
-    }
-    void evalBatchScalar(const TermBatch& batch) const override {
-        evalAll<double, SphericalGaussianTerms>(shape_, batch);
-    }
-
-private:
-    SphericalGaussianShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

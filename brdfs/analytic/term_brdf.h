@@ -3,6 +3,7 @@
 #include <brdfs/catalog.h>
 
 #include <functional>
+#include <utility>
 
 namespace hshfit::brdfs {
 
@@ -83,6 +84,21 @@ private:
     std::vector<double> constant_;  ///< [channel]
     std::vector<double> weights_;   ///< [channel][term]
     std::size_t termCount_;
+};
+
+/// A TermBrdf whose terms follow from a `Shape`, by functions (shape, batch) over vectors and over
+/// double.
+template <class Shape, auto byVectors, auto byDouble>
+class ShapedBrdf : public TermBrdf {
+protected:
+    ShapedBrdf(const Model& model, const Parameters& parameters, const Laws& laws,
+               const TermWeights& weights, Shape shape)
+        : TermBrdf(model, parameters, laws, weights), shape_(std::move(shape)) {}
+
+    void evalBatch(const TermBatch& batch) const final { byVectors(shape_, batch); }
+    void evalBatchScalar(const TermBatch& batch) const final { byDouble(shape_, batch); }
+
+    Shape shape_;
 };
 
 }  // namespace hshfit::brdfs

@@ -41,28 +41,22 @@ Laws lawsOf(const Parameters& p) {
     return result;
 }
 
-class Ward final : public TermBrdf {
+void evalByVectors(const WardShape<double>& shape, const TermBatch& batch) {
+    HWY_DYNAMIC_DISPATCH(evalWard)(shape, batch);
+}
+
+class Ward final : public ShapedBrdf<WardShape<double>, evalByVectors,
+                                     evalAll<double, WardTerms, WardShape<double>>> {
 public:
     explicit Ward(const Parameters& p)
-        : TermBrdf(wardModel(), p, lawsOf(p), channelWeights<WardFormula>(p)),
-          shape_(WardFormula::shape(Values<double>(p, 0))) {}
+        : ShapedBrdf(wardModel(), p, lawsOf(p), channelWeights<WardFormula>(p),
+                     WardFormula::shape(Values<double>(p, 0))) {}
 
     /// exp(-(t / a)^2) has a standard deviation of a / sqrt(2).
     std::vector<Lobe> lobes(const Direction&) const override {
         constexpr double deviations = 2.5 / std::numbers::sqrt2;
         return {halfwayLobe(deviations * shape_.ax, deviations * shape_.ay)};
     }
-
-protected:
-    void evalBatch(const TermBatch& batch) const override {
-        HWY_DYNAMIC_DISPATCH(evalWard)(shape_, batch);
-    }
-    void evalBatchScalar(const TermBatch& batch) const override {
-        evalAll<double, WardTerms>(shape_, batch);
-    }
-
-private:
-    WardShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

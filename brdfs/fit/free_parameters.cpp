@@ -2,8 +2,6 @@
 
 #include <brdfs/spec.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 namespace hshfit::brdfs {
@@ -36,6 +34,7 @@ const FitRange* rangeOf(const Parameter& parameter, const Model& model, const Pa
 
 std::vector<FreeParameter> freeParameters(const Model& model, const Parameters& stated,
                                           bool isotropic, bool inSum) {
+    const Parameters values = withDefaults(model, stated);
     std::vector<FreeParameter> free;
     for (const Parameter& parameter : model.parameters) {
         if (stated.given(parameter.name)) continue;
@@ -57,27 +56,28 @@ std::vector<FreeParameter> freeParameters(const Model& model, const Parameters& 
                         .logarithmic = range->logarithmic,
                         .startLow = range->low,
                         .startHigh = range->high,
-                        .colour = parameter.kind == Parameter::Kind::colour});
+                        .colour = parameter.kind == Parameter::Kind::colour,
+                        .linear = parameter.linear && parameter.linear(values)});
     }
     return free;
 }
 
-std::string heldParameters(const Model& model, const Parameters& stated, bool isotropic) {
-    std::string text;
+Parameters withHeldParameters(const Model& model, Parameters stated, bool isotropic) {
+    Parameters all = stated;
     for (const Parameter& parameter : model.parameters) {
         const FitRange* range = rangeOf(parameter, model, stated, isotropic);
         if (stated.given(parameter.name) || !range || range->low != range->high) continue;
-        text += fmt::format("{}{}={}", text.empty() ? "" : ",", parameter.name, range->low);
+        all.set(parameter.name, {range->low});
     }
-    return text;
+    return all;
 }
 
-Parameters statedParameters(const Model& model, std::string_view text) {
+Parameters withDefaults(const Model& model, const Parameters& stated) {
     std::vector<Parameter> optional = model.parameters;
     for (Parameter& parameter : optional)
         if (parameter.kind != Parameter::Kind::choice && !parameter.fallback)
             parameter.fallback = parameter.min;
-    return parseParameters(model.name, optional, text);
+    return completed(model.name, optional, stated);
 }
 
 }  // namespace hshfit::brdfs

@@ -15,19 +15,19 @@ struct FreeParameter {
     bool logarithmic = false;  ///< moves on a logarithmic scale
     double startLow = 0, startHigh = 0;
     bool colour = false;  ///< may have a value per channel
+    bool linear = false;  ///< f is linear in it (Parameter::linear)
 };
 
-/// What of `model` is free to fit, given the parameters that were stated: those whose table row has
+/// What of `model` is free to fit, given the parameters that are stated: those whose table row has
 /// a FitRange that applies. Stated parameters are not free. In a sum of models, kd with a default
 /// of 0 stays 0.
 std::vector<FreeParameter> freeParameters(const Model& model, const Parameters& stated,
                                           bool isotropic, bool inSum);
 
-/// "key=value,…" of the parameters whose FitRange holds them, unless they are stated.
-std::string heldParameters(const Model& model, const Parameters& stated, bool isotropic);
+/// What is stated, and the parameters besides whose FitRange holds them.
+Parameters withHeldParameters(const Model& model, Parameters stated, bool isotropic);
 
-/// "key=value,…" parsed for what is stated only: keys and values are checked, absent ones are not
-/// missed. Throws UsageError.
-Parameters statedParameters(const Model& model, std::string_view text);
+/// All parameters, with defaults for what is not stated, and the least value where there is none.
+Parameters withDefaults(const Model& model, const Parameters& stated);
 
 }  // namespace hshfit::brdfs

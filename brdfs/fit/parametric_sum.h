@@ -97,19 +97,18 @@ public:
 private:
     struct Term {
         const Model* model = nullptr;
-        std::string stated;                ///< as given
+        Parameters stated;                 ///< as given, and held
         std::vector<std::size_t> shapes;   ///< indices
         std::vector<std::size_t> linears;  ///< indices
         std::vector<std::vector<std::string>> shapeKeys;
         std::vector<std::string> linearKeys;
         bool byFormula = false;
     };
-    std::string shapeText(const Term& term, std::span<const double> shapes) const;
-    std::unique_ptr<Brdf> make(const Term& term, std::span<const double> shapes,
-                               const std::string& more) const;
+    /// What is stated, and the shapes at these values.
+    Parameters shaped(const Term& term, std::span<const double> shapes) const;
     void addProbes(const Term& term, std::span<const double> shapes, Columns& columns,
                    std::size_t base) const;
-    void findLinear(Term& term, std::vector<FreeParameter>& free);
+    bool vanishes(const Term& term) const;
     std::string filledTerm(const Term& term, const std::vector<std::vector<double>>& shapes,
                            std::span<const double> linear, std::size_t channels) const;
 

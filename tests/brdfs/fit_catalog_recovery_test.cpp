@@ -5,6 +5,7 @@
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit.h>
 #include <brdfs/fit/free_parameters.h>
+#include <brdfs/spec.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -63,7 +64,7 @@ struct Truth {
 };
 
 Truth draw(const Case& c, std::mt19937_64& random) {
-    const Parameters stated = statedParameters(*c.model, c.choice);
+    const Parameters stated = readParameters(c.model->name, c.model->parameters, c.choice);
     Truth truth{
         std::string(c.model->name), freeParameters(*c.model, stated, c.isotropic, false), {}};
     char separator = ':';
@@ -73,7 +74,8 @@ Truth draw(const Case& c, std::mt19937_64& random) {
         separator = ',';
     };
     add(c.choice);
-    add(heldParameters(*c.model, stated, c.isotropic));
+    for (const auto& [key, values] : withHeldParameters(*c.model, stated, c.isotropic).numbers)
+        if (!stated.given(key)) add(fmt::format("{}={}", key, values.front()));
     for (const FreeParameter& p : truth.free) {
         const double share = static_cast<double>(random() >> 11) * 0x1p-53;
         const double value = p.logarithmic ? p.startLow * std::pow(p.startHigh / p.startLow, share)

@@ -138,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(
 std::string colouredSpec(const Model& model) {
     std::string spec(model.name);
     char separator = ':';
-    for (const FreeParameter& p : freeParameters(model, statedParameters(model, ""), true, false))
+    for (const FreeParameter& p : freeParameters(model, {}, true, false))
         for (const std::string& key : p.keys) {
             const auto at = [&](double share) {
                 return p.startLow + share * (p.startHigh - p.startLow);
