@@ -37,8 +37,11 @@ void runLtc(LtcArguments arguments, Globals& globals) {
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
     std::vector<std::string> written;
+    FileSet files(".", true);
     for (const std::string& output : arguments.outputs)
-        for (const std::string& path : brdfs::writeLtcTable(table, output)) written.push_back(path);
+        for (const std::string& path : brdfs::writeLtcTable(table, output, files))
+            written.push_back(path);
+    files.commit();
 
     const auto summary = table.summary();
     if (summary.unsettled > 0)

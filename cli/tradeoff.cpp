@@ -2,7 +2,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
-#include <hshfit/files/atomic_file.h>
+#include <hshfit/files/file_set.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
 
 #include <brdfs/catalog.h>
@@ -16,6 +16,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 
 namespace hshfit::cli {
@@ -143,8 +144,8 @@ PairSample pairsFor(const TradeoffArguments& arguments) {
     return spreadPairs(spread);
 }
 
-/// Writes the pairs, their weights and the values of one BRDF, for measurements of other models.
-void writePairs(const PairSample& pairs, const Brdf& brdf, const std::string& path) {
+/// The pairs, their weights and the values of one BRDF, for measurements of other models.
+std::string pairsCsv(const PairSample& pairs, const Brdf& brdf) {
     const std::vector<double> values = evaluateOn(brdf, pairs);
     std::string csv = "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,weight";
     for (const std::string& name : brdf.channels().names()) csv += fmt::format(",{}", name);
@@ -160,20 +161,24 @@ void writePairs(const PairSample& pairs, const Brdf& brdf, const std::string& pa
             csv += "\n";
         }
     }
-    writeFile(path, csv);
+    return csv;
 }
 
 /// The trade-offs of all inputs, in their order. They run one at a time to keep times comparable.
 std::vector<Tradeoff> measureAll(const TradeoffArguments& arguments,
                                  const std::vector<std::string>& specs, const Globals& globals,
-                                 std::vector<jobs::InputFailure>& failures) {
+                                 std::vector<jobs::InputFailure>& failures,
+                                 std::optional<FileSet>& files) {
     const PairSample pairs = pairsFor(arguments);
     const TradeoffOptions common = optionsFrom(arguments);
     std::vector<Tradeoff> trades;
     for (const std::string& spec : specs) {
         try {
             const auto brdf = jobs::openBrdf(spec, arguments.rgb);
-            if (!arguments.writePairs.empty()) writePairs(pairs, *brdf, arguments.writePairs);
+            if (!arguments.writePairs.empty()) {
+                files->write(std::filesystem::absolute(arguments.writePairs).string(),
+                             pairsCsv(pairs, *brdf));
+            }
             Progress progress(globals, spec);
             TradeoffOptions options = common;
             options.progress = progress.callback();
@@ -198,8 +203,15 @@ void runTradeoff(const TradeoffArguments& arguments, Globals& globals) {
         throw UsageError("--write-pairs holds the values of one BRDF: give one SPEC");
     }
     std::vector<jobs::InputFailure> failures;
-    const std::vector<Tradeoff> trades = measureAll(arguments, specs, globals, failures);
-    if (!trades.empty() && !arguments.output.empty()) writeTradeoffs(trades, arguments.output);
+    std::optional<FileSet> files;
+    if (!arguments.output.empty() || !arguments.writePairs.empty())
+        files.emplace(arguments.output.empty() ? "." : arguments.output, true,
+                      FileSet::Above::require);
+    const std::vector<Tradeoff> trades = measureAll(arguments, specs, globals, failures, files);
+    if (!trades.empty() && !arguments.output.empty())
+        writeTradeoffs(trades, *files);
+    else if (!trades.empty() && files)
+        files->commit();
     if (globals.json) {
         printText(tradeoffJson(trades, true));
     } else if (!trades.empty()) {

@@ -5,6 +5,7 @@
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
+#include <hshfit/files/json_fields.h>
 #include <hshfit/gpu/containers/targets.h>
 #include <hshfit/gpu/viewer.h>
 #include <hshfit/representation/forms/represented_brdf.h>
@@ -172,7 +173,7 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
     exported.textures = gpu::writeContainers(
         exported.payload, containersOf(chosen, options, listener), exported.name,
         {.zstd = options.zstd,
-         .fitError = exported.error.split ? errorJson(exported.error).dump() : std::string()},
+         .fitError = exported.error.split ? jsonText(errorJson(exported.error)) : std::string()},
         files);
     writeShaders(chosen, options, listener, files, exported);
     writeViewer(chosen, source.brdf.get(), listener, files, exported);

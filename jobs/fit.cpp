@@ -3,8 +3,10 @@
 #include "source.h"
 
 #include <hshfit/error.h>
-#include <hshfit/files/atomic_file.h>
+#include <hshfit/files/file_set.h>
+#include <hshfit/files/json_fields.h>
 #include <hshfit/pages/comparison.h>
+#include <hshfit/pages/gnuplot.h>
 #include <hshfit/wording.h>
 
 #include <brdfs/catalog.h>
@@ -40,13 +42,18 @@ brdfs::FitSamples samplesOf(const FitOptions& options, const std::string& data) 
 }
 
 /// Writes a page that compares data and fit into the fit's folder. Returns the number of files.
-std::size_t writePage(const std::string& data, const std::string& spec, const std::string& folder,
+std::size_t writePage(const std::string& data, const Fitted& fit, const std::string& folder,
                       bool rgb, const Listener& listener) {
+    FileSet files(folder, true, FileSet::Above::require);
     const auto measured = openSource(data, rgb);
-    const auto fitted = brdfs::open(spec);
+    const auto fitted = brdfs::open(fit.result.spec);
     ComparisonOptions options;
     options.progress = options.sphere.progress = listener.part("report");
-    return writeComparison(*measured, *fitted, options, folder).size();
+    const AddedComparison added = addComparison(makeComparison(*measured, *fitted, options), files);
+    files.write("fit.json", jsonText(fit.preset, 2) + "\n");
+    files.commit();
+    if (added.undrawn) throw NoFigures(*added.undrawn);
+    return added.names.size();
 }
 
 }  // namespace
@@ -68,12 +75,10 @@ Fitted fit(const std::string& data, const std::string& output, const FitOptions&
                         data, options.model, fitted.result.message, Setting{"FitOptions::accept"}));
     }
     fitted.preset = brdfs::fitPreset({data, &samples, how, fitted.result});
-    const std::string text = fitted.preset.dump(2) + "\n";
     if (isPresetPath(output)) {
-        writeFile(output, text);
+        writeFile(output, jsonText(fitted.preset, 2) + "\n");
     } else if (!output.empty()) {
-        fitted.pageFiles = writePage(data, fitted.result.spec, output, options.rgb, listener);
-        writeFile(output + "/fit.json", text);
+        fitted.pageFiles = writePage(data, fitted, output, options.rgb, listener);
     }
     return fitted;
 }

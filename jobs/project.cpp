@@ -6,6 +6,7 @@
 #include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/error.h>
+#include <hshfit/files/file_set.h>
 #include <hshfit/projection/least_squares.h>
 #include <hshfit/wording.h>
 
@@ -69,6 +70,7 @@ public:
           outgoing_(OutgoingSet::parse(options.outgoing.empty() ? defaultMap : options.outgoing)),
           form_(formOf(options)) {}
 
+    /// All but the file.
     Projected run(const std::string& spec, const std::string& output,
                   const ProgressCall& progress) const {
         const auto brdf = openBrdf(spec, options_.rgb);
@@ -79,7 +81,6 @@ public:
         Projected result{.projection = {}, .output = output};
         if (form_) {
             result.kept = represent(*brdf, *form_, sourceOpener(), how);
-            writeRepresentation(*result.kept, output);
             result.projection.coefficients = {result.kept->head};
             return result;
         }
@@ -87,8 +88,14 @@ public:
         result.projection = options_.leastSquares
                                 ? projectSamples(*brdf, *basis_, outgoing_, options_, progress)
                                 : std::move(hshfit::project(*brdf, one, outgoing_, how)[0]);
-        writeCoefficients(result.projection.coefficients, output);
         return result;
+    }
+
+    static void write(const Projected& result, AtomicFile& file) {
+        if (result.kept)
+            writeRepresentation(*result.kept, file);
+        else
+            writeCoefficients(result.projection.coefficients, file);
     }
 
 private:
@@ -103,7 +110,11 @@ private:
 Projected project(const std::string& spec, const std::string& output, const ProjectOptions& options,
                   const Listener& listener) {
     const Projector projector(options);
-    return projector.run(spec, output, listener.part("project"));
+    Projected result = projector.run(spec, output, listener.part("project"));
+    AtomicFile file(output);
+    Projector::write(result, file);
+    file.commit();
+    return result;
 }
 
 ManyProjected projectMany(const std::vector<std::string>& specs, const std::string& folder,
@@ -114,18 +125,21 @@ ManyProjected projectMany(const std::vector<std::string>& specs, const std::stri
     many.specs = expandInputs(specs);
     const std::vector<std::string> outputs = outputPaths(many.specs, folder, extension);
     std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) {
-        throw OutputError(fmt::format("{}: {}; {} of several inputs is a folder", folder,
-                                      error.message(), Setting{"output"}));
+    if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error)) {
+        throw OutputError(fmt::format("{}: a file stands there; {} of several inputs is a folder",
+                                      folder, Setting{"output"}));
     }
+    FileSet files(folder, true);
     many.results.resize(many.specs.size());
     many.failures = forEachInput(
         many.specs, listener, "project", [&](std::size_t i, const ProgressCall& progress) {
             Projected result = projector.run(many.specs[i], outputs[i], progress);
+            files.write(std::filesystem::path(outputs[i]).filename().string(),
+                        [&](AtomicFile& file) { Projector::write(result, file); });
             result.projection.coefficients.values = {};  // the values are in the file
             many.results[i] = std::move(result);
         });
+    files.commit();
     return many;
 }
 

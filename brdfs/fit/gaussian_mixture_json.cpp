@@ -1,4 +1,5 @@
 #include <brdfs/fit/gaussian_mixture_json.h>
+#include <hshfit/files/json_fields.h>
 
 #include <brdfs/preset_json.h>
 #include <hshfit/version.h>
@@ -123,7 +124,7 @@ std::string gaussianMixtureJson(const GaussianMixture& mixture) {
                                           {"fitted_albedo", elevation.fittedAlbedo},
                                           {"converged", elevation.converged}});
     }
-    return document.dump(2) + "\n";
+    return jsonText(document, 2) + "\n";
 }
 
 bool isGaussianMixture(std::string_view text) {

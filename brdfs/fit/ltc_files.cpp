@@ -1,8 +1,8 @@
 #include <brdfs/fit/ltc_files.h>
 
 #include <hshfit/error.h>
-#include <hshfit/files/atomic_file.h>
 #include <hshfit/files/exr_picture.h>
+#include <hshfit/files/json_fields.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>
@@ -60,7 +60,7 @@ std::string ltcJson(const LtcTable& table) {
         {"ltc_2", rowsOf(table, texel(1))},
         {"error", rowsOf(table, [&](int y, int x) { return table.cell(y, x).error; })},
         {"misplaced", rowsOf(table, [&](int y, int x) { return table.cell(y, x).misplaced; })}};
-    return document.dump() + "\n";
+    return jsonText(document) + "\n";
 }
 
 void writeExr(const LtcTable& table, const std::vector<float>& values, AtomicFile& file) {
@@ -126,18 +126,23 @@ std::vector<std::string> ltcOutputs(const std::string& path) {
 }
 
 std::vector<std::string> writeLtcTable(const LtcTable& table, const std::string& path) {
-    const std::vector<std::string> outputs = ltcOutputs(path);
+    FileSet files(".", true);
+    std::vector<std::string> outputs = writeLtcTable(table, path, files);
+    files.commit();
+    return outputs;
+}
+
+std::vector<std::string> writeLtcTable(const LtcTable& table, const std::string& path,
+                                       FileSet& files) {
+    std::vector<std::string> outputs = ltcOutputs(path);
     if (outputs.size() == 1) {
-        writeFile(path, ltcJson(table));
+        files.write(path, ltcJson(table));
         return outputs;
     }
     const auto pictures = ltcPictures(table);
     const auto write = extensionOf(path) == ".exr" ? writeExr : writeDds;
-    AtomicFile first(outputs[0]), second(outputs[1]);
-    write(table, pictures[0], first);
-    write(table, pictures[1], second);
-    first.commit();
-    second.commit();
+    for (std::size_t i = 0; i < outputs.size(); ++i)
+        files.write(outputs[i], [&](AtomicFile& file) { write(table, pictures[i], file); });
     return outputs;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <brdfs/fit/ltc_table.h>
+#include <hshfit/files/file_set.h>
 
 #include <array>
 #include <string>
@@ -25,6 +26,9 @@ std::array<std::vector<float>, 2> ltcPictures(const LtcTable& table);
 /// Returns what was written; of two files, both are complete before either has its name.
 /// Throws UsageError for another extension, OutputError.
 std::vector<std::string> writeLtcTable(const LtcTable& table, const std::string& path);
+/// The same into a set, which is yet to be committed.
+std::vector<std::string> writeLtcTable(const LtcTable& table, const std::string& path,
+                                       FileSet& files);
 
 /// What writeLtcTable would write. Throws UsageError for another extension.
 std::vector<std::string> ltcOutputs(const std::string& path);

@@ -98,9 +98,7 @@ std::string metadataText(const Imf::Header& header, const std::string& file) {
         const std::string key(name.substr(prefix.size()));
         const bool bare = std::find(stringKeys.begin(), stringKeys.end(), key) != stringKeys.end();
         using Json = nlohmann::json;
-        const auto quote = [](const std::string& word) {
-            return Json(word).dump(-1, ' ', false, Json::error_handler_t::replace);
-        };
+        const auto quote = [](const std::string& word) { return jsonText(Json(word)); };
         const std::string value = bare ? quote(attribute->value()) : attribute->value();
         if (!Json::accept(value)) {
             throw InputError(

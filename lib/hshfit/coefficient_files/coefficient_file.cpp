@@ -60,24 +60,48 @@ std::string readBytes(const std::string& path, std::size_t limit) {
     return bytes;
 }
 
+/// Throws UsageError where the extension is of neither.
+Form writableForm(const std::string& path) {
+    const Form form = formByExtension(path);
+    if (form != Form::none) return form;
+    throw UsageError(fmt::format(
+        "'{}': coefficient files are .json (exact) or .exr (float32); give one of the two", path));
+}
+
+bool isPlain(const Representation& representation) {
+    const auto* whole = representation.as<CoefficientArray>();
+    return representation.added.empty() && representation.steps.empty() && whole &&
+           whole->coefficients.precision == Precision::float64;
+}
+
+/// Throws UsageError where a file of that extension cannot hold the form.
+void checkForm(const Representation& representation, const std::string& path) {
+    if (isPlain(representation))
+        writableForm(path);
+    else if (formByExtension(path) != Form::json) {
+        throw UsageError(
+            fmt::format("'{}': forms other than plain coefficients are kept in .json files", path));
+    }
+}
+
 }  // namespace
 
 void writeCoefficients(const Coefficients& coefficients, const std::string& path) {
-    const Form form = formByExtension(path);
-    if (form == Form::none) {
-        throw UsageError(fmt::format(
-            "'{}': coefficient files are .json (exact) or .exr (float32); give one of the two",
-            path));
-    }
+    writableForm(path);
+    AtomicFile file(path);
+    writeCoefficients(coefficients, file);
+    file.commit();
+}
+
+void writeCoefficients(const Coefficients& coefficients, AtomicFile& file) {
+    const Form form = writableForm(file.path());
     assert(coefficients.values.size() ==
            coefficients.outgoing.size() * coefficients.channels.count() * coefficients.slots());
-    AtomicFile file(path);
     if (form == Form::json) {
         file.write(coefficientsToJson(coefficients));
     } else {
         coefficientsToExr(coefficients, file);
     }
-    file.commit();
 }
 
 Coefficients readCoefficients(const std::string& path) {
@@ -98,17 +122,18 @@ Coefficients readCoefficients(const std::string& path) {
 }
 
 void writeRepresentation(const Representation& representation, const std::string& path) {
-    const auto* whole = representation.as<CoefficientArray>();
-    const bool plain = representation.added.empty() && representation.steps.empty() && whole &&
-                       whole->coefficients.precision == Precision::float64;
-    if (plain) return writeCoefficients(decoded(representation), path);
-    if (formByExtension(path) != Form::json) {
-        throw UsageError(
-            fmt::format("'{}': forms other than plain coefficients are kept in .json files", path));
-    }
+    checkForm(representation, path);
     AtomicFile file(path);
-    file.write(representationToJson(representation));
+    writeRepresentation(representation, file);
     file.commit();
+}
+
+void writeRepresentation(const Representation& representation, AtomicFile& file) {
+    checkForm(representation, file.path());
+    if (isPlain(representation))
+        writeCoefficients(decoded(representation), file);
+    else
+        file.write(representationToJson(representation));
 }
 
 Representation readRepresentation(const std::string& path) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/coefficients/coefficients.h>
+#include <hshfit/files/atomic_file.h>
 
 #include <string>
 
@@ -15,6 +16,8 @@ namespace hshfit::inline coefficient_files {
 /// Throws UsageError for another extension, NumericError for a coefficient that is not finite or,
 /// in the EXR form, beyond float32, and OutputError where the file cannot be written.
 void writeCoefficients(const Coefficients& coefficients, const std::string& path);
+/// The same to an open file, by the extension of its path; not committed.
+void writeCoefficients(const Coefficients& coefficients, AtomicFile& file);
 
 /// Reads either form, told apart by content. Sizes, names, ranges and finiteness are checked
 /// before anything is allocated from them. Throws InputError naming the file and the field.

@@ -28,7 +28,7 @@ constexpr int maxMapSide = 1 << 16;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();  // null in files
 
 std::string text(const Ordered& value) {
-    return value.dump(-1, ' ', false, Ordered::error_handler_t::replace);
+    return jsonText(value);
 }
 
 /// 51.99999999999999 is what 52 degrees come back as from a unit vector.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <hshfit/files/atomic_file.h>
 #include <hshfit/representation/representation.h>
 
 #include <string>
@@ -11,6 +12,8 @@ namespace hshfit::inline coefficient_files {
 /// "representation", whose arrays are base64 of `packed`. Throws UsageError for an EXR of a
 /// form that only JSON can hold, otherwise as `writeCoefficients`.
 void writeRepresentation(const Representation& representation, const std::string& path);
+/// The same to an open file, by the extension of its path; not committed.
+void writeRepresentation(const Representation& representation, AtomicFile& file);
 
 /// Reads a coefficient file in any form; plain coefficients become the form outgoing in float64
 /// (EXR: float32). Shapes and sizes are checked against what the file holds before anything is

@@ -162,8 +162,7 @@ std::string representationToJson(const Representation& r) {
     std::string out = "{\n";
     for (const auto& [key, text] : metadataOf(r.head))
         out += fmt::format("  \"{}\": {},\n", key, text);
-    const std::string body =
-        Ordered(describe(r)).dump(2, ' ', false, Ordered::error_handler_t::replace);
+    const std::string body = jsonText(Ordered(describe(r)), 2);
     out += "  \"representation\": " + body + "\n}\n";
     return out;
 }

@@ -1,12 +1,8 @@
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 
-#include <array>
 #include <atomic>
 #include <cerrno>
-#include <csignal>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <system_error>
 
@@ -18,37 +14,26 @@
 namespace hshfit::inline files {
 namespace {
 
-// Paths that a signal handler is to unlink. The function that swaps a pointer out of its slot owns
-// it: the handler unlinks and never frees, removePath frees.
-std::array<std::atomic<char*>, 64> temporaries{};
-static_assert(std::atomic<char*>::is_always_lock_free);
-
-int addPath(const std::string& path) {
-    char* copy = ::strdup(path.c_str());
-    for (std::size_t i = 0; copy && i < temporaries.size(); ++i) {
-        char* empty = nullptr;
-        if (temporaries[i].compare_exchange_strong(empty, copy)) return static_cast<int>(i);
-    }
-    std::free(copy);
-    return -1;  // more files open than slots: this one only loses its cover against signals
-}
-
-void removePath(int slot) noexcept {
-    if (slot >= 0) std::free(temporaries[static_cast<std::size_t>(slot)].exchange(nullptr));
-}
-
-extern "C" void unlinkTemporariesAndDie(int signal) {
-    for (auto& slot : temporaries) {
-        if (const char* path = slot.exchange(nullptr)) ::unlink(path);
-    }
-    // SA_RESETHAND has restored the default action, which runs once this handler returns.
-    ::raise(signal);
-}
-
 std::string folderOf(const std::string& path) {
     const std::size_t slash = path.rfind('/');
     if (slash == std::string::npos) return ".";
     return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+/// Where a chain of symbolic links ends, whether or not something stands there; the path itself
+/// where the chain goes on for ever.
+std::string endOfLinks(const std::string& path) {
+    std::error_code error;
+    const auto resolved = std::filesystem::canonical(path, error);
+    if (!error) return resolved.string();
+    std::filesystem::path at = path;
+    constexpr int longest = 40;  // as in Linux
+    for (int i = 0; i < longest; ++i) {
+        const auto link = std::filesystem::read_symlink(at, error);
+        if (error) return at.string();
+        at = at.parent_path() / link;
+    }
+    return path;
 }
 
 }  // namespace
@@ -56,12 +41,11 @@ std::string folderOf(const std::string& path) {
 AtomicFile::AtomicFile(std::string path, Existing existing)
     : path_(std::move(path)), target_(path_), existing_(existing) {
     if (path_.empty()) throw OutputError("cannot write to an empty file name");
-    std::error_code error;
-    const auto resolved = std::filesystem::canonical(path_, error);
-    if (!error) target_ = resolved.string();
-
     struct stat status {};
-    if (::stat(target_.c_str(), &status) == 0) {
+    const bool stands = ::stat(path_.c_str(), &status) == 0;
+    if (!stands && errno != ENOENT) fail(errno);
+    if (!stands || S_ISREG(status.st_mode)) target_ = endOfLinks(path_);
+    if (stands) {
         if (S_ISDIR(status.st_mode)) fail(EISDIR);
         if (existing_ == Existing::refuse) fail(EEXIST);
         if (::access(target_.c_str(), W_OK) != 0) fail(errno);
@@ -71,30 +55,39 @@ AtomicFile::AtomicFile(std::string path, Existing existing)
             if (!stream_) fail(errno);
             return;
         }
-    } else if (errno != ENOENT) {
-        fail(errno);
     }
     if (target_.back() == '/') fail(EISDIR);
-    openTemporary(folderOf(target_));
+    openTemporary(stands ? &status : nullptr);
 }
 
-void AtomicFile::openTemporary(const std::string& folder) {
+void AtomicFile::openTemporary(const struct stat* replaced) {
     static std::atomic<unsigned> counter{0};
+    constexpr mode_t permissions = 0777;
+    const mode_t mode = replaced ? replaced->st_mode & permissions : 0666;
+    const std::string folder = folderOf(target_);
     int descriptor = -1;
     // Names left by a killed process of the same number are stepped over.
     for (int attempt = 0; attempt < 1000 && descriptor < 0; ++attempt) {
         temporary_ = fmt::format("{}/.hshfit-{}-{}.tmp", folder, ::getpid(), counter++);
-        registration_ = addPath(temporary_);
-        descriptor =
-            ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
-        if (descriptor < 0) {
+        const Uninterrupted step;
+        descriptor = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
+                            mode & 0666);
+        if (descriptor >= 0) {
+            trace_.file(temporary_);
+        } else if (errno != EEXIST) {
             const int error = errno;
-            removePath(registration_);
-            registration_ = -1;
-            if (error != EEXIST) fail(error);
+            temporary_.clear();
+            fail(error);
         }
     }
     if (descriptor < 0) fail(EEXIST);
+    if (replaced) {
+        // Best effort: another owner needs privileges, and some file systems have none at all.
+        const bool kept = ::fchown(descriptor, replaced->st_uid, replaced->st_gid) == 0 ||
+                          ::fchown(descriptor, static_cast<uid_t>(-1), replaced->st_gid) == 0;
+        // Rights of a group must not pass to another group.
+        ::fchmod(descriptor, kept ? mode : mode & 0707);
+    }
     stream_ = ::fdopen(descriptor, "w+");
     if (!stream_) {
         const int error = errno;
@@ -113,8 +106,7 @@ void AtomicFile::discard() noexcept {
     stream_ = nullptr;
     if (!temporary_.empty() && temporary_ != target_) ::unlink(temporary_.c_str());
     temporary_.clear();
-    removePath(registration_);
-    registration_ = -1;
+    trace_.release();
 }
 
 void AtomicFile::fail(int error) const {
@@ -169,22 +161,6 @@ void writeFile(const std::string& path, std::string_view text) {
     AtomicFile file(path);
     file.write(text);
     file.commit();
-}
-
-void removeTemporariesOnSignals() {
-    struct sigaction action {};
-    action.sa_handler = unlinkTemporariesAndDie;
-    action.sa_flags = SA_RESETHAND;
-    sigemptyset(&action.sa_mask);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE}) {
-        struct sigaction previous {};
-        // A signal that the parent ignores (nohup) stays ignored.
-        if (::sigaction(signal, nullptr, &previous) == 0 && previous.sa_handler == SIG_IGN) {
-            continue;
-        }
-        ::sigaction(signal, &action, nullptr);
-    }
-    std::signal(SIGXFSZ, SIG_IGN);
 }
 
 }  // namespace hshfit::inline files

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <hshfit/files/interruption.h>
+
 #include <cstddef>
 #include <cstdio>
 #include <span>
 #include <string>
 #include <string_view>
+
+struct stat;
 
 namespace hshfit::inline files {
 
@@ -12,9 +16,10 @@ namespace hshfit::inline files {
 ///
 /// The bytes go to a temporary name in the same folder; commit() renames it. Without a commit the
 /// destructor removes the temporary, and an earlier file at `path` stays as it was. A symbolic link
-/// is followed; a device or a pipe (/dev/stdout, /dev/null) is written to directly. New files get
-/// the permissions 0666 less the umask. The file is not synced to the disk: a power cut may lose
-/// it.
+/// is followed, also to a name where nothing stands; a device or a pipe (/dev/stdout, /dev/null) is
+/// written to directly. New files get the permissions 0666 less the umask; a file that replaces
+/// another has the other's permissions, and its owner where the system allows it. The file is not
+/// synced to the disk: a power cut may lose it.
 ///
 /// Every member but the destructor throws OutputError, with the path and the system's reason.
 class AtomicFile {
@@ -33,6 +38,10 @@ public:
     std::FILE* stream() { return stream_; }
     /// The name for another program to write to before commit(); `path` itself for a device.
     const std::string& temporaryPath() const { return temporary_; }
+    /// As given.
+    const std::string& path() const { return path_; }
+    /// Where the file goes: `path` with its links resolved.
+    const std::string& target() const { return target_; }
 
     /// Flushes and closes: every byte is in the temporary, or this throws. Only commit() may
     /// follow.
@@ -42,7 +51,7 @@ public:
 
 private:
     [[noreturn]] void fail(int error) const;
-    void openTemporary(const std::string& folder);
+    void openTemporary(const struct stat* replaced);
     void discard() noexcept;
 
     std::string path_;       ///< as given, for messages
@@ -50,16 +59,11 @@ private:
     std::string temporary_;  ///< target_ itself when it is written directly
     Existing existing_;
     std::FILE* stream_ = nullptr;
-    int registration_ = -1;
+    Trace trace_;
     bool finished_ = false;
 };
 
 /// Writes `text` to `path` through an AtomicFile.
 void writeFile(const std::string& path, std::string_view text);
-
-/// Makes SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGPIPE remove the temporaries of all open
-/// AtomicFiles before they end the process, and a file-size limit a write error instead of a
-/// signal. For `main` to call once.
-void removeTemporariesOnSignals();
 
 }  // namespace hshfit::inline files

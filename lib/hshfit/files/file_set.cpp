@@ -13,13 +13,23 @@ namespace hshfit::inline files {
 
 namespace fs = std::filesystem;
 
-FileSet::FileSet(fs::path folder, bool force) : folder_(std::move(folder)), force_(force) {
+FileSet::FileSet(fs::path folder, bool force, Above above)
+    : folder_(std::move(folder)), force_(force) {
+    if (!folder_.has_filename()) folder_ = folder_.parent_path();  // without a slash at the end
     if (folder_.empty()) folder_ = ".";
     std::error_code error;
     for (fs::path at = folder_; !at.empty() && !fs::exists(at, error); at = at.parent_path()) {
         made_.insert(made_.begin(), at);
     }
-    fs::create_directories(folder_, error);
+    if (above == Above::require && made_.size() > 1) {
+        throw OutputError(fmt::format("cannot make the folder '{}': there is no folder '{}'",
+                                      folder_.string(), folder_.parent_path().string()));
+    }
+    {
+        const Uninterrupted step;
+        fs::create_directories(folder_, error);
+        for (const fs::path& path : made_) madeTraces_.emplace_back().folder(path.string());
+    }
     if (!error && fs::is_directory(folder_)) return;
     takeBack();
     throw OutputError(fmt::format("cannot make the folder '{}': {}", folder_.string(),
@@ -31,10 +41,14 @@ FileSet::~FileSet() {
     takeBack();
 }
 
+fs::path FileSet::placeOf(const std::string& name) const {
+    return folder_ == "." ? fs::path(name) : folder_ / name;
+}
+
 AtomicFile& FileSet::add(const std::string& name) {
-    const fs::path path = folder_ / name;
-    if (std::any_of(members_.begin(), members_.end(),
-                    [&](const Member& member) { return member.path == path; })) {
+    const fs::path path = placeOf(name);
+    const std::lock_guard lock(mutex_);
+    if (std::ranges::any_of(members_, [&](const auto& member) { return member->path == path; })) {
         throw OutputError(fmt::format("'{}' would be written twice", path.string()));
     }
     std::error_code error;
@@ -42,17 +56,40 @@ AtomicFile& FileSet::add(const std::string& name) {
         throw OutputError(fmt::format("'{}' exists; nothing is written without {}", path.string(),
                                       Setting{"FileSet::force"}));
     }
-    members_.emplace_back(path,
-                          force_ ? AtomicFile::Existing::replace : AtomicFile::Existing::refuse);
-    return members_.back().file;
+    members_.push_back(std::make_unique<Member>(
+        path, force_ ? AtomicFile::Existing::replace : AtomicFile::Existing::refuse));
+    return members_.back()->file;
+}
+
+const AtomicFile& FileSet::write(const std::string& name, std::string_view text) {
+    return write(name, [&](AtomicFile& file) { file.write(text); });
+}
+
+const AtomicFile& FileSet::write(const std::string& name,
+                                 const std::function<void(AtomicFile&)>& fill) {
+    AtomicFile& file = add(name);
+    try {
+        fill(file);
+        file.finish();
+        return file;
+    } catch (...) {
+        remove(name);
+        throw;
+    }
+}
+
+void FileSet::remove(const std::string& name) {
+    const fs::path path = placeOf(name);
+    const std::lock_guard lock(mutex_);
+    std::erase_if(members_, [&](const auto& member) { return member->path == path; });
 }
 
 void FileSet::keepWhatStands(Member& member) {
     static std::atomic<unsigned> counter{0};
     std::error_code error;
-    const fs::path target = fs::canonical(member.path, error);
-    member.stood = !error;
-    if (error || !fs::is_regular_file(target)) return;
+    const fs::path target = member.file.target();
+    member.stood = fs::exists(target, error);
+    if (!fs::is_regular_file(target, error)) return;
     for (int attempt = 0; attempt < 1000; ++attempt) {
         const fs::path link =
             target.parent_path() / fmt::format(".hshfit-{}-{}.old", ::getpid(), counter++);
@@ -64,39 +101,42 @@ void FileSet::keepWhatStands(Member& member) {
 
 void FileSet::takeBack() noexcept {
     std::error_code error;
-    for (Member& member : members_) {
-        if (!member.before.empty()) {
-            const fs::path target = fs::canonical(member.path, error);
-            if (!error && member.placed) fs::rename(member.before, target, error);
-            fs::remove(member.before, error);
-        } else if (member.placed && !member.stood) {
-            fs::remove(member.path, error);
+    for (const auto& member : members_) {
+        if (!member->before.empty()) {
+            if (member->placed) fs::rename(member->before, member->file.target(), error);
+            fs::remove(member->before, error);
+        } else if (member->placed && !member->stood) {
+            fs::remove(member->file.target(), error);
         }
     }
     members_.clear();
     // Only empty folders: one that somebody else has put a file into stays.
     for (auto at = made_.rbegin(); at != made_.rend(); ++at) ::rmdir(at->c_str());
     made_.clear();
+    madeTraces_.clear();
 }
 
 void FileSet::commit() {
-    for (Member& member : members_) member.file.finish();
+    if (members_.empty()) return takeBack();
+    for (const auto& member : members_) member->file.finish();
+    const Uninterrupted renames;
     try {
-        for (Member& member : members_) {
-            if (force_) keepWhatStands(member);
-            member.file.commit();
-            member.placed = true;
+        for (const auto& member : members_) {
+            if (force_) keepWhatStands(*member);
+            member->file.commit();
+            member->placed = true;
         }
     } catch (...) {
         takeBack();
         throw;
     }
     std::error_code error;
-    for (Member& member : members_) {
-        if (!member.before.empty()) fs::remove(member.before, error);
+    for (const auto& member : members_) {
+        if (!member->before.empty()) fs::remove(member->before, error);
     }
     members_.clear();
     made_.clear();
+    madeTraces_.clear();
 }
 
 }  // namespace hshfit::inline files

@@ -4,35 +4,47 @@
 
 #include <deque>
 #include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace hshfit::inline files {
 
-/// Files of one folder that appear together or not at all.
+/// Files that appear together or not at all, most of them in one folder.
 ///
 /// Each is an AtomicFile; commit() first completes all of them, where a full disk shows, and then
 /// renames them. Should a rename fail, those before it are taken back: new files are removed, and
-/// earlier files return from hard links made beforehand (where the file system has them). A signal
-/// between two renames leaves the set incomplete.
+/// earlier files return from hard links made beforehand (where the file system has them). The
+/// signals of removeTemporariesOnSignals wait until all are renamed; a SIGKILL between two renames
+/// leaves the set incomplete, but none of its files.
 ///
-/// Every member but the destructor throws OutputError, which names the file.
+/// Every member but the destructor throws OutputError, which names the file. Files may be added
+/// from several threads at once.
 class FileSet {
 public:
-    /// Makes the folder, and those above it, if absent; they go again if nothing is committed.
-    /// Without `force`, a file that stands is refused.
-    FileSet(std::filesystem::path folder, bool force);
+    enum class Above { make, require };
+
+    /// Makes the folder, and those above it unless they are required to stand, if absent; they go
+    /// again if nothing is committed. Without `force`, a file that stands is refused.
+    FileSet(std::filesystem::path folder, bool force, Above above = Above::make);
     ~FileSet();
     FileSet(const FileSet&) = delete;
     FileSet& operator=(const FileSet&) = delete;
 
     const std::filesystem::path& folder() const { return folder_; }
 
-    /// A file of that name, to be written to; not to be committed by itself. Throws OutputError for
-    /// a name that was added before.
+    /// A file of that name in the folder, or anywhere for an absolute path, to be written to; not
+    /// to be committed by itself. Throws OutputError for a name that was added before.
     AtomicFile& add(const std::string& name);
-    void write(const std::string& name, std::string_view text) { add(name).write(text); }
+    /// Adds a file of this text and closes it, which leaves it under its temporary name.
+    const AtomicFile& write(const std::string& name, std::string_view text);
+    /// The same with a function that writes it. Where it throws, the set is without that file.
+    const AtomicFile& write(const std::string& name, const std::function<void(AtomicFile&)>& fill);
+    /// Takes a file out of the set again.
+    void remove(const std::string& name);
 
     void commit();
 
@@ -46,13 +58,16 @@ private:
         bool stood = false;  ///< something stood there
         bool placed = false;
     };
+    std::filesystem::path placeOf(const std::string& name) const;
     static void keepWhatStands(Member& member);
     void takeBack() noexcept;
 
     std::filesystem::path folder_;
     bool force_;
     std::vector<std::filesystem::path> made_;  ///< folders, the outermost first
-    std::deque<Member> members_;
+    std::deque<Trace> madeTraces_;
+    std::mutex mutex_;  ///< of members_
+    std::vector<std::unique_ptr<Member>> members_;
 };
 
 }  // namespace hshfit::inline files

@@ -12,6 +12,15 @@ namespace hshfit::inline files {
 
 using Json = nlohmann::json;
 
+std::string jsonText(const nlohmann::json& value, int indent) {
+    return printableJson(value.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+std::string jsonText(const nlohmann::ordered_json& value, int indent) {
+    return printableJson(
+        value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
 nlohmann::ordered_json finiteOrNull(std::optional<double> value) {
     if (!value || !std::isfinite(*value)) return nullptr;
     return *value;

@@ -16,6 +16,11 @@ namespace hshfit::inline files {
 /// A number as JSON can hold it: null where there is none or it is not finite.
 nlohmann::ordered_json finiteOrNull(std::optional<double> value);
 
+/// JSON as text, on one line or indented. Strings that are no UTF-8 get replacement characters,
+/// control characters are escaped (printable.h).
+std::string jsonText(const nlohmann::json& value, int indent = -1);
+std::string jsonText(const nlohmann::ordered_json& value, int indent = -1);
+
 /// Sees what the parser finds, after the checks of `parseJson`; false drops a value from the tree.
 using JsonFilter =
     std::function<bool(int depth, nlohmann::json::parse_event_t event, nlohmann::json& parsed)>;

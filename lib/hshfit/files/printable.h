@@ -1,11 +1,24 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
 namespace hshfit::inline files {
 
-/// `text`, which may quote a file, on one line and without control characters.
+/// `text`, which may quote a file or the name of one, as a terminal, a page or a figure can show
+/// it: one line of valid UTF-8. Each control character (C0, DEL, C1, line and paragraph separators,
+/// those that turn the direction of writing) and each byte that is no UTF-8 becomes '?'.
 std::string printable(std::string_view text);
+
+/// The same of a text of several lines: line feeds and tabs stay.
+std::string printableLines(std::string_view text);
+
+/// JSON with those control characters within its strings as \uXXXX.
+std::string printableJson(std::string_view json);
+
+/// `text` within `limit` bytes (10 or more): of a longer one both ends, with "…" between them. No
+/// UTF-8 character is cut.
+std::string shortened(std::string_view text, std::size_t limit);
 
 }  // namespace hshfit::inline files

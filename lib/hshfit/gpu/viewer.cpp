@@ -2,6 +2,8 @@
 
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
+#include <hshfit/files/json_fields.h>
+#include <hshfit/files/printable.h>
 #include <hshfit/gpu/shader.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/version.h>
@@ -115,7 +117,7 @@ Json shadersJson() {
 
 /// JSON that can stand within a script element.
 std::string embeddable(const Json& document) {
-    std::string text = document.dump();
+    std::string text = jsonText(document);
     for (std::size_t at = text.find('<'); at != text.npos; at = text.find('<', at)) {
         text.replace(at, 1, "\\u003c");
     }
@@ -190,7 +192,8 @@ std::string viewerPage(const ViewerInput& input) {
     page.set("notes", notesOf(input));
     page.set("data", embeddable(document));
     page.set("script", script);
-    return kainjow::mustache::mustache(std::string(embedded::viewer_page)).render(page);
+    return printableLines(
+        kainjow::mustache::mustache(std::string(embedded::viewer_page)).render(page));
 }
 
 void writeViewer(const std::string& path, const ViewerInput& input, bool force) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/accuracy/metrics.h>
+#include <hshfit/files/file_set.h>
 #include <hshfit/pictures/sphere.h>
 
 #include <functional>
@@ -74,11 +75,19 @@ Comparison makeComparison(const Brdf& reference, const Brdf& approximation,
 /// Writes comparison.html (self-contained), comparison.json, polar.csv, half.csv, residual.csv,
 /// albedo.csv, spheres.png, spheres.exr (linear; the third is approximation - reference),
 /// comparison.gp and the figures that it draws, polar-A.svg, half-A.svg and residual-A.svg for each
-/// azimuth A, to `folder`, which is made if it is absent (its parent is not). Each file appears
-/// when it is complete; the same comparison gives the same bytes. Returns the names of the files.
-/// Throws OutputError where a file cannot be written; also where gnuplot is missing or fails, and
-/// then everything but the .svg files has been written.
+/// azimuth A, to `folder`, which is made if it is absent (its parent is not). They appear together
+/// or not at all; the same comparison gives the same bytes. Returns the names of the files. Throws
+/// OutputError where a file cannot be written or a figure is cut short; also NoFigures where
+/// gnuplot is missing or fails, and then everything but the .svg files has been written.
 std::vector<std::string> writeComparison(const Comparison& comparison, const std::string& folder);
+
+/// The files of a comparison in a set with others, which is yet to be committed, and why figures
+/// are not among them.
+struct AddedComparison {
+    std::vector<std::string> names;
+    std::optional<std::string> undrawn;
+};
+AddedComparison addComparison(const Comparison& comparison, FileSet& files);
 
 /// Both in one, with the folder made before the work: a folder that cannot be made costs nothing.
 std::vector<std::string> writeComparison(const Brdf& reference, const Brdf& approximation,

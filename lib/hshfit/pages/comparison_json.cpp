@@ -1,3 +1,4 @@
+#include <hshfit/files/json_fields.h>
 #include <hshfit/pages/comparison_files.h>
 #include <hshfit/pictures/sphere_picture.h>
 #include <hshfit/version.h>
@@ -90,7 +91,7 @@ std::string comparisonJson(const Comparison& comparison) {
                            {"spheres", spheresJson(comparison)},
                            {"figures", figures},
                            {"generator", std::string("hshfit ") + version}};
-    return document.dump(2) + "\n";
+    return jsonText(document, 2) + "\n";
 }
 
 }  // namespace hshfit::inline pages

@@ -1,3 +1,4 @@
+#include <hshfit/files/printable.h>
 #include <hshfit/pages/comparison_files.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/pages/report_files.h>
@@ -157,7 +158,8 @@ std::string comparisonPage(const Comparison& comparison, const std::vector<std::
         for (const auto& figure : figuresOf(comparison)) files.push_back(data("file", figure.file));
     }
     page.set("files", files);
-    return kainjow::mustache::mustache(std::string(embedded::comparison_html)).render(page);
+    return printableLines(
+        kainjow::mustache::mustache(std::string(embedded::comparison_html)).render(page));
 }
 
 }  // namespace hshfit::inline pages

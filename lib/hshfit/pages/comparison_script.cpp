@@ -1,3 +1,4 @@
+#include <hshfit/files/printable.h>
 #include <hshfit/pages/comparison_files.h>
 #include <hshfit/pages/gnuplot.h>
 #include <hshfit/pages/report_files.h>
@@ -169,7 +170,8 @@ std::string comparisonScript(const Comparison& comparison) {
         figures.push_back(figure);
     }
     fields.set("figures", figures);
-    return kainjow::mustache::mustache(std::string(embedded::comparison_gp)).render(fields);
+    return printableLines(
+        kainjow::mustache::mustache(std::string(embedded::comparison_gp)).render(fields));
 }
 
 }  // namespace hshfit::inline pages

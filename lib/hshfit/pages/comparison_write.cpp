@@ -1,5 +1,5 @@
 #include <hshfit/error.h>
-#include <hshfit/files/atomic_file.h>
+#include <hshfit/files/file_set.h>
 #include <hshfit/pages/comparison_files.h>
 #include <hshfit/pages/gnuplot.h>
 #include <hshfit/pages/page_figures.h>
@@ -9,90 +9,99 @@
 
 #include <array>
 #include <filesystem>
-#include <optional>
-
-#include <unistd.h>
+#include <utility>
 
 namespace hshfit::inline pages {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// All figures, drawn to temporaries and committed together.
-std::vector<std::string> drawFigures(const Comparison& comparison, const std::string& folder) {
-    std::vector<std::unique_ptr<AtomicFile>> files;
-    std::string names;
-    for (const auto& figure : figuresOf(comparison)) {
-        files.push_back(std::make_unique<AtomicFile>(folder + "/" + figure.file));
-        const auto path = fs::absolute(files.back()->temporaryPath()).string();
-        names += fmt::format("svg{}={}; ", files.size(), gnuplotString(path));
+/// All figures, drawn to files of the set from others that are closed but not yet in place.
+std::vector<std::string> drawFigures(const Comparison& comparison, const std::string& data,
+                                     const AtomicFile& script, FileSet& files) {
+    std::string names = data;
+    std::vector<std::string> outputs, figures;
+    const auto drawn = figuresOf(comparison);
+    try {
+        for (const auto& figure : drawn) {
+            const AtomicFile& file = files.add(figure.file);
+            outputs.push_back(fs::absolute(file.temporaryPath()).string());
+            names += gnuplotFile(fmt::format("svg{}", outputs.size()), file);
+        }
+        runGnuplot(files.folder().string(),
+                   {"-e", names, fs::absolute(script.temporaryPath()).string()}, outputs);
+    } catch (...) {
+        for (const auto& figure : drawn) files.remove(figure.file);
+        throw;
     }
-    runGnuplot(folder, {"-e", names, "comparison.gp"});
-    std::vector<std::string> figures;
-    for (const auto& file : files) figures.push_back(fileContent(file->temporaryPath()));
-    for (const auto& file : files) file->commit();
+    for (const std::string& output : outputs) figures.push_back(fileContent(output));
     return figures;
 }
 
-/// A folder that was made for a comparison and goes again if nothing was written to it.
-class MadeFolder {
-public:
-    explicit MadeFolder(const std::string& folder) : folder_(folder), made_(makeFolder(folder)) {}
-    ~MadeFolder() {
-        if (made_) ::rmdir(folder_.c_str());  // fails, as it should, where there are files
-    }
-    MadeFolder(const MadeFolder&) = delete;
-    MadeFolder& operator=(const MadeFolder&) = delete;
-
-private:
-    std::string folder_;
-    bool made_;
-};
-
 }  // namespace
 
-std::vector<std::string> writeComparison(const Comparison& comparison, const std::string& folder) {
-    const MadeFolder made(folder);
+AddedComparison addComparison(const Comparison& comparison, FileSet& files) {
     const std::array spheres{comparison.referenceSphere, comparison.approximationSphere,
                              amplified(comparison.difference, comparison.amplification)};
     const std::array linear{comparison.referenceSphere, comparison.approximationSphere,
                             comparison.difference};
     const std::string png = spheresPng(spheres, comparison.stops);
-    std::vector<std::string> names;
-    const auto write = [&](const std::string& name, const std::string& content) {
-        writeFile(folder + "/" + name, content);
-        names.push_back(name);
+    AddedComparison added;
+    std::string data;
+    const auto write = [&](const std::string& name, const std::string& content,
+                           const char* variable = nullptr) -> const AtomicFile& {
+        const AtomicFile& file = files.write(name, content);
+        added.names.push_back(name);
+        if (variable) data += gnuplotFile(variable, file);
+        return file;
     };
     write("comparison.json", comparisonJson(comparison));
-    write("polar.csv", polarCsv(comparison));
-    write("half.csv", halfCsv(comparison));
-    write("residual.csv", residualCsv(comparison));
-    write("albedo.csv", albedoCsv(comparison));
+    write("polar.csv", polarCsv(comparison), "polarCsv");
+    write("half.csv", halfCsv(comparison), "halfCsv");
+    write("residual.csv", residualCsv(comparison), "residualCsv");
+    write("albedo.csv", albedoCsv(comparison), "albedoCsv");
     write("spheres.png", png);
-    writeSpheres(linear, 0, folder + "/spheres.exr",
-                 {{"hshfit:sphere1", comparison.reference.name},
-                  {"hshfit:sphere2", comparison.approximation.name},
-                  {"hshfit:sphere3", "sphere2 - sphere1"}});
-    names.emplace_back("spheres.exr");
-    write("comparison.gp", comparisonScript(comparison));
-    std::optional<OutputError> undrawn;
+    files.write("spheres.exr", [&](AtomicFile& file) {
+        writeSpheres(linear, 0, file,
+                     {{"hshfit:sphere1", comparison.reference.name},
+                      {"hshfit:sphere2", comparison.approximation.name},
+                      {"hshfit:sphere3", "sphere2 - sphere1"}});
+    });
+    added.names.emplace_back("spheres.exr");
+    const AtomicFile& script = write("comparison.gp", comparisonScript(comparison));
     std::vector<std::string> figures;
     try {
-        figures = drawFigures(comparison, folder);
-    } catch (const OutputError& error) {
-        undrawn = error;
+        figures = drawFigures(comparison, data, script, files);
+    } catch (const NoFigures& error) {
+        added.undrawn = error.what();
     }
-    for (std::size_t i = 0; i < figures.size(); ++i) names.push_back(figuresOf(comparison)[i].file);
+    for (std::size_t i = 0; i < figures.size(); ++i)
+        added.names.push_back(figuresOf(comparison)[i].file);
     write("comparison.html", comparisonPage(comparison, figures, png));
-    if (undrawn) throw OutputError(*undrawn);
-    return names;
+    return added;
+}
+
+namespace {
+
+std::vector<std::string> writeTo(const Comparison& comparison, FileSet& files) {
+    AddedComparison added = addComparison(comparison, files);
+    files.commit();
+    if (added.undrawn) throw NoFigures(*added.undrawn);
+    return std::move(added.names);
+}
+
+}  // namespace
+
+std::vector<std::string> writeComparison(const Comparison& comparison, const std::string& folder) {
+    FileSet files(folder, true, FileSet::Above::require);
+    return writeTo(comparison, files);
 }
 
 std::vector<std::string> writeComparison(const Brdf& reference, const Brdf& approximation,
                                          const ComparisonOptions& options,
                                          const std::string& folder) {
-    const MadeFolder made(folder);
-    return writeComparison(makeComparison(reference, approximation, options), folder);
+    FileSet files(folder, true, FileSet::Above::require);
+    return writeTo(makeComparison(reference, approximation, options), files);
 }
 
 }  // namespace hshfit::inline pages

@@ -1,17 +1,36 @@
 #pragma once
 
+#include <hshfit/error.h>
+#include <hshfit/files/file_set.h>
+
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace hshfit::inline pages {
 
-/// Runs gnuplot in `folder` with these arguments and no start-up files. Throws OutputError that
-/// names the package to install where there is no gnuplot, or with gnuplot's last words where it
-/// fails.
-void runGnuplot(const std::string& folder, const std::vector<std::string>& arguments);
+/// gnuplot is missing, or failed with a message. The files beside the figures can do without it.
+struct NoFigures : OutputError {
+    using OutputError::OutputError;
+};
 
-/// `text` as a gnuplot string expression. Single quotes hold everything but line breaks literally,
-/// back-quotes included, which gnuplot would else run as a command.
+/// Runs gnuplot in `folder` with these arguments and no start-up files, in UTC. `outputs` are the
+/// files that it is to write. Throws NoFigures that names the package to install where there is no
+/// gnuplot, or with gnuplot's last words where it fails; OutputError where gnuplot ends well and
+/// one of the files is cut short, as on a full disk, which gnuplot does not report.
+///
+/// Signals that end the process (removeTemporariesOnSignals) end gnuplot first.
+void runGnuplot(const std::string& folder, const std::vector<std::string>& arguments,
+                const std::vector<std::string>& outputs);
+
+/// Whether a PNG, PDF or SVG file ends as its format says: IEND, %%EOF, </svg>.
+bool figureIsComplete(const std::string& path);
+
+/// `text` as a gnuplot string expression, byte by byte. Quotes, back-quotes, which gnuplot would
+/// else run as a command, and control characters become octal escapes.
 std::string gnuplotString(const std::string& text);
+
+/// "NAME='FILE'; ": lets a script use the temporary of a file where it names the file itself.
+std::string gnuplotFile(const std::string& name, const AtomicFile& file);
 
 }  // namespace hshfit::inline pages

@@ -1,29 +1,16 @@
-#include <hshfit/error.h>
 #include <hshfit/pages/page_figures.h>
 
-#include <cerrno>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <regex>
-#include <system_error>
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 namespace hshfit::embedded {
 extern const std::string_view page_css;
 }
 
 namespace hshfit::inline pages {
-
-bool makeFolder(const std::string& folder) {
-    if (::mkdir(folder.c_str(), 0777) == 0) return true;
-    const int error = errno;
-    if (error == EEXIST && std::filesystem::is_directory(folder)) return false;
-    throw OutputError(fmt::format("cannot make the folder '{}': {}", folder,
-                                  std::generic_category().message(error)));
-}
 
 std::string fileContent(const std::string& path) {
     std::ifstream in(path, std::ios::binary);

@@ -1,14 +1,11 @@
 #pragma once
 
-// The common parts of pages: their folder, their style and the figures in them.
+// The common parts of pages: their style and the figures in them.
 
 #include <string>
 #include <string_view>
 
 namespace hshfit::inline pages {
-
-/// Makes `folder` if it is absent (its parent is not made); true if it was. Throws OutputError.
-bool makeFolder(const std::string& folder);
 
 /// The bytes of a file; empty if it cannot be read.
 std::string fileContent(const std::string& path);

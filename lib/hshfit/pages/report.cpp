@@ -144,7 +144,7 @@ std::string reportJson(const Report& report) {
                          {"channels", "summed"},
                          {"outgoing", "summed with the solid angles of the directions"}}},
                        {"reports", std::move(entries)}};
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return jsonText(json, 2) + "\n";
 }
 
 }  // namespace hshfit::inline pages

@@ -55,10 +55,10 @@ std::optional<ReportPoint> firstReaching(const ReportCurve& curve, double accura
 std::string reportJson(const Report& report);
 
 /// Writes curves.csv, report.json, curves.gp, curves.svg, curves.pdf and report.html to `folder`,
-/// which is made if it is absent (its parent is not). Each file appears when it is complete; the
-/// same report gives the same bytes. The figures are drawn by gnuplot.
-/// Throws OutputError where a file cannot be written; also where gnuplot is missing or fails, and
-/// then everything but curves.svg and curves.pdf has been written.
+/// which is made if it is absent (its parent is not). They appear together or not at all; the same
+/// report gives the same bytes. The figures are drawn by gnuplot. Throws OutputError where a file
+/// cannot be written or a figure is cut short; also NoFigures where gnuplot is missing or fails,
+/// and then everything but curves.svg and curves.pdf has been written.
 void writeReport(const Report& report, const std::string& folder);
 
 }  // namespace hshfit::inline pages

@@ -19,7 +19,7 @@ std::string reportScript(const Report& report);
 /// report.html. `figures` holds an SVG document for each BRDF, or nothing at all.
 std::string reportPage(const Report& report, const std::vector<std::string>& figures);
 
-/// The specification on one line, shortened in its middle to about `limit` characters.
+/// The specification on one line, printable, shortened in its middle to `limit` bytes.
 std::string shortName(const std::string& brdf, std::size_t limit);
 
 /// "1.234 ± 1e-09", or "does not exist".

@@ -1,3 +1,4 @@
+#include <hshfit/files/printable.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/pages/report_files.h>
 #include <hshfit/version.h>
@@ -157,7 +158,8 @@ std::string reportPage(const Report& report, const std::vector<std::string>& fig
     }
     page.set("plotter", plotter);
     page.set("entries", entries);
-    return kainjow::mustache::mustache(std::string(embedded::report_html)).render(page);
+    return printableLines(
+        kainjow::mustache::mustache(std::string(embedded::report_html)).render(page));
 }
 
 }  // namespace hshfit::inline pages

@@ -1,4 +1,5 @@
 #include <hshfit/bases/catalog.h>
+#include <hshfit/files/printable.h>
 #include <hshfit/pages/gnuplot.h>
 #include <hshfit/pages/report_files.h>
 
@@ -85,12 +86,7 @@ std::string basisColour(const std::string& basis) {
 }
 
 std::string shortName(const std::string& brdf, std::size_t limit) {
-    if (brdf.size() <= limit) return brdf;
-    const auto continues = [&](std::size_t at) { return (brdf[at] & 0xc0) == 0x80; };
-    std::size_t head = limit / 2, tail = brdf.size() - limit / 2;
-    while (head > 0 && continues(head)) --head;  // not within a UTF-8 character
-    while (tail < brdf.size() && continues(tail)) ++tail;
-    return brdf.substr(0, head) + "…" + brdf.substr(tail);
+    return shortened(printable(brdf), limit);
 }
 
 std::string energyText(const Energy& energy) {
@@ -128,8 +124,9 @@ std::string reportScript(const Report& report) {
         data row;
         row.set("index", std::to_string(i + 1));
         row.set("title", gnuplotString(titleOf(entry)));
-        row.set("reason",
-                gnuplotString(hasAccuracy(entry) ? "" : wrapped(entry.energy.reason, 48)));
+        row.set(
+            "reason",
+            gnuplotString(hasAccuracy(entry) ? "" : wrapped(printable(entry.energy.reason), 48)));
         row.set("maxCount", std::to_string(maxCount));
         row.set("maxOrder", std::to_string(maxOrder));
         row.set("leastMissing", fmt::format("{:g}", leastMissing(entry)));
@@ -150,7 +147,8 @@ std::string reportScript(const Report& report) {
     }
     fields.set("styles", lines);
     fields.set("bases", fmt::format("{}", fmt::join(names, " ")));
-    return kainjow::mustache::mustache(std::string(embedded::curves_gp)).render(fields);
+    return printableLines(
+        kainjow::mustache::mustache(std::string(embedded::curves_gp)).render(fields));
 }
 
 std::string reportCsv(const Report& report) {

@@ -1,5 +1,5 @@
 #include <hshfit/error.h>
-#include <hshfit/files/atomic_file.h>
+#include <hshfit/files/file_set.h>
 #include <hshfit/pages/gnuplot.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/pages/report_files.h>
@@ -29,52 +29,69 @@ void removeCreationDate(const std::string& path) {
     if (!out) throw OutputError(fmt::format("cannot write '{}'", path));
 }
 
-std::vector<std::string> script(const std::string& settings) {
-    return {"-e", settings, "curves.gp"};
-}
+/// Draws from files of the set that are closed but not yet in place.
+class Drawing {
+public:
+    Drawing(FileSet& files, const AtomicFile& script, const AtomicFile& csv)
+        : files_(files),
+          script_(fs::absolute(script.temporaryPath()).string()),
+          data_(gnuplotFile("csv", csv)) {}
 
-std::string drawing(const AtomicFile& file) {
-    return gnuplotString(fs::absolute(file.temporaryPath()).string());
-}
-
-void drawFigures(const std::string& folder) {
-    AtomicFile svg(folder + "/curves.svg"), pdf(folder + "/curves.pdf");
-    runGnuplot(folder, script(fmt::format("svg={}; pdf={}", drawing(svg), drawing(pdf))));
-    removeCreationDate(pdf.temporaryPath());
-    svg.commit();
-    pdf.commit();
-}
-
-/// One SVG document for each BRDF, through a temporary that is never committed.
-std::vector<std::string> figuresForPage(const std::string& folder, std::size_t count) {
-    std::vector<std::string> figures;
-    for (std::size_t i = 1; i <= count; ++i) {
-        const AtomicFile svg(folder + "/figure.svg");
-        runGnuplot(folder,
-                   script(fmt::format("first={0}; last={0}; svg={1}; pdf=''", i, drawing(svg))));
-        figures.push_back(fileContent(svg.temporaryPath()));
+    void drawWhole() const {
+        AtomicFile &svg = files_.add("curves.svg"), &pdf = files_.add("curves.pdf");
+        try {
+            run(gnuplotFile("svg", svg) + gnuplotFile("pdf", pdf), {&svg, &pdf});
+        } catch (...) {
+            for (const char* name : {"curves.svg", "curves.pdf"}) files_.remove(name);
+            throw;
+        }
+        removeCreationDate(pdf.temporaryPath());
     }
-    return figures;
-}
+
+    /// One SVG document for each BRDF, through a temporary that is never committed.
+    std::vector<std::string> drawForPage(std::size_t count) const {
+        std::vector<std::string> figures;
+        for (std::size_t i = 1; i <= count; ++i) {
+            const AtomicFile svg((files_.folder() / "figure.svg").string());
+            run(fmt::format("first={0}; last={0}; {1}pdf=''", i, gnuplotFile("svg", svg)), {&svg});
+            figures.push_back(fileContent(svg.temporaryPath()));
+        }
+        return figures;
+    }
+
+private:
+    void run(const std::string& settings, std::initializer_list<const AtomicFile*> drawn) const {
+        std::vector<std::string> outputs;
+        for (const AtomicFile* file : drawn) {
+            outputs.push_back(fs::absolute(file->temporaryPath()).string());
+        }
+        runGnuplot(files_.folder().string(), {"-e", data_ + settings, script_}, outputs);
+    }
+
+    FileSet& files_;
+    std::string script_, data_;
+};
 
 }  // namespace
 
 void writeReport(const Report& report, const std::string& folder) {
-    makeFolder(folder);
-    writeFile(folder + "/report.json", reportJson(report));
-    writeFile(folder + "/curves.csv", reportCsv(report));
-    writeFile(folder + "/curves.gp", reportScript(report));
-    std::optional<OutputError> undrawn;
+    FileSet files(folder, true, FileSet::Above::require);
+    files.write("report.json", reportJson(report));
+    const AtomicFile& csv = files.write("curves.csv", reportCsv(report));
+    const AtomicFile& script = files.write("curves.gp", reportScript(report));
+    const Drawing drawing(files, script, csv);
+    std::optional<NoFigures> undrawn;
     std::vector<std::string> figures;
     try {
-        if (!report.reports.empty()) drawFigures(folder);
-        figures = figuresForPage(folder, report.reports.size());
-    } catch (const OutputError& error) {
+        if (!report.reports.empty()) drawing.drawWhole();
+        figures = drawing.drawForPage(report.reports.size());
+    } catch (const NoFigures& error) {
         undrawn = error;
         figures.clear();
     }
-    writeFile(folder + "/report.html", reportPage(report, figures));
-    if (undrawn) throw OutputError(*undrawn);
+    files.write("report.html", reportPage(report, figures));
+    files.commit();
+    if (undrawn) throw NoFigures(*undrawn);
 }
 
 }  // namespace hshfit::inline pages

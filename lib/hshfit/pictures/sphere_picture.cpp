@@ -144,15 +144,21 @@ void checkSpheresPath(const std::string& path) {
 void writeSpheres(std::span<const SpherePicture> spheres, double stops, const std::string& path,
                   const std::map<std::string, std::string>& attributes) {
     checkSpheresPath(path);
-    if (endsWith(path, ".png")) {
-        writeFile(path, spheresPng(spheres, stops));
+    AtomicFile file(path);
+    writeSpheres(spheres, stops, file, attributes);
+    file.commit();
+}
+
+void writeSpheres(std::span<const SpherePicture> spheres, double stops, AtomicFile& file,
+                  const std::map<std::string, std::string>& attributes) {
+    checkSpheresPath(file.path());
+    if (endsWith(file.path(), ".png")) {
+        file.write(spheresPng(spheres, stops));
         return;
     }
     ExrPicture exr = exrOf(spheres);
     exr.attributes = attributes;
-    AtomicFile file(path);
     writeExrPicture(exr, ExrPixels::single, file);
-    file.commit();
 }
 
 }  // namespace hshfit::inline pictures

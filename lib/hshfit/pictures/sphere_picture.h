@@ -1,5 +1,6 @@
 #pragma once
 
+#include <hshfit/files/atomic_file.h>
 #include <hshfit/pictures/sphere.h>
 
 #include <map>
@@ -33,6 +34,9 @@ std::string spheresPng(std::span<const SpherePicture> spheres, double stops);
 /// R, G, B (radiance times coverage, unexposed), A (coverage), 32-bit float. Throws UsageError for
 /// another extension, OutputError where it cannot be written.
 void writeSpheres(std::span<const SpherePicture> spheres, double stops, const std::string& path,
+                  const std::map<std::string, std::string>& attributes = {});
+/// The same to an open file, by the extension of its path; not committed.
+void writeSpheres(std::span<const SpherePicture> spheres, double stops, AtomicFile& file,
                   const std::map<std::string, std::string>& attributes = {});
 
 /// Checks the extension before any work. Throws the UsageError of writeSpheres.

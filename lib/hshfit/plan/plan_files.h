@@ -20,7 +20,7 @@ std::string planPage(const Plan& plan);
 std::string planText(const Plan& plan);
 
 /// MATERIAL.json for each material that has a plan, then plan.json, plan.csv and plan.html; the
-/// folder is made if it is absent. Throws OutputError.
+/// folder is made if it is absent. They appear together or not at all. Throws OutputError.
 void writePlan(const Plan& plan, const std::string& folder);
 
 }  // namespace hshfit::plan

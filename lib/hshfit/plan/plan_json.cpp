@@ -84,7 +84,7 @@ std::string planJson(const Plan& plan) {
     if (scene.limits.nanoseconds) json["limits"]["nanoseconds"] = *scene.limits.nanoseconds;
     json["materials"] = Json::array();
     for (const MaterialPlan& each : plan.materials) json["materials"].push_back(materialJson(each));
-    return json.dump(2) + '\n';
+    return jsonText(json, 2) + '\n';
 }
 
 }  // namespace hshfit::plan

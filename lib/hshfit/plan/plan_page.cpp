@@ -1,3 +1,4 @@
+#include <hshfit/files/printable.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/plan/plan_files.h>
 #include <hshfit/version.h>
@@ -136,7 +137,8 @@ std::string planPage(const Plan& plan) {
     data materials{data::type::list};
     for (const MaterialPlan& each : plan.materials) materials.push_back(materialData(each));
     page.set("materials", materials);
-    return kainjow::mustache::mustache(std::string(embedded::plan_html)).render(page);
+    return printableLines(
+        kainjow::mustache::mustache(std::string(embedded::plan_html)).render(page));
 }
 
 }  // namespace hshfit::plan

@@ -1,6 +1,5 @@
 #include <hshfit/coefficient_files/representation_file.h>
-#include <hshfit/files/atomic_file.h>
-#include <hshfit/pages/page_figures.h>
+#include <hshfit/files/file_set.h>
 #include <hshfit/plan/plan_files.h>
 
 #include <fmt/format.h>
@@ -76,15 +75,17 @@ std::string planText(const Plan& plan) {
 }
 
 void writePlan(const Plan& plan, const std::string& folder) {
-    makeFolder(folder);
+    FileSet files(folder, true, FileSet::Above::require);
     for (const MaterialPlan& each : plan.materials) {
         if (!each.accepted) continue;
-        writeRepresentation(each.accepted->representation,
-                            fmt::format("{}/{}.json", folder, each.material.name));
+        files.write(each.material.name + ".json", [&](AtomicFile& file) {
+            writeRepresentation(each.accepted->representation, file);
+        });
     }
-    writeFile(folder + "/plan.json", planJson(plan));
-    writeFile(folder + "/plan.csv", planCsv(plan));
-    writeFile(folder + "/plan.html", planPage(plan));
+    files.write("plan.json", planJson(plan));
+    files.write("plan.csv", planCsv(plan));
+    files.write("plan.html", planPage(plan));
+    files.commit();
 }
 
 }  // namespace hshfit::plan

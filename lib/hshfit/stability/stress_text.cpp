@@ -123,7 +123,7 @@ std::string stressJson(const StressReport& report) {
                            {"orthonormality", degreesJson(report.orthonormality)},
                            {"lsosh_gram", gram},
                            {"projection", projection}};
-    return document.dump(2) + "\n";
+    return jsonText(document, 2) + "\n";
 }
 
 std::string stressMarkdown(const StressReport& report) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <hshfit/files/file_set.h>
 #include <hshfit/tradeoff/tradeoff.h>
 
 #include <span>
@@ -13,9 +14,12 @@ namespace hshfit::tradeoff {
 /// which are the same bytes whenever the same trade is measured, and, if it was timed, those that
 /// hold times:
 ///     timing.json, timing.csv, timing_front.csv, timing.svg, timing.html
-/// Throws OutputError where a file cannot be written, and where gnuplot is missing or fails; then
-/// everything but the figures has been written.
+/// They appear together or not at all. Throws OutputError where a file cannot be written or a
+/// figure is cut short; also NoFigures where gnuplot is missing or fails, and then everything but
+/// the figures has been written.
 void writeTradeoffs(std::span<const Tradeoff> trades, const std::string& folder);
+/// The same to the folder of a set, which may hold other files already, and commits it.
+void writeTradeoffs(std::span<const Tradeoff> trades, FileSet& files);
 
 /// The document of tradeoff.json (docs/schemas/tradeoff.schema.json), with a line feed at the end.
 /// With `timing`, that of timing.json is its member "timing", for a single document.

@@ -121,11 +121,11 @@ std::string tradeoffJson(std::span<const Tradeoff> trades, bool timing) {
                      {"band_edges", bandEdges},
                      {"tradeoffs", list}};
     if (timing && isTimed(trades)) document["timing"] = timingDocument(trades);
-    return document.dump(2) + "\n";
+    return jsonText(document, 2) + "\n";
 }
 
 std::string timingJson(std::span<const Tradeoff> trades) {
-    return timingDocument(trades).dump(2) + "\n";
+    return jsonText(timingDocument(trades), 2) + "\n";
 }
 
 }  // namespace hshfit::tradeoff

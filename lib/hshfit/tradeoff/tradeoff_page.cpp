@@ -1,3 +1,4 @@
+#include <hshfit/files/printable.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
 #include <hshfit/version.h>
@@ -190,7 +191,7 @@ std::string page(std::span<const Tradeoff> trades, const std::vector<std::string
     }
     fields.set("plotter", plotter);
     fields.set("entries", entries);
-    return kainjow::mustache::mustache(std::string(shape)).render(fields);
+    return printableLines(kainjow::mustache::mustache(std::string(shape)).render(fields));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <hshfit/error.h>
-#include <hshfit/files/atomic_file.h>
+#include <hshfit/files/file_set.h>
+#include <hshfit/files/printable.h>
 #include <hshfit/pages/gnuplot.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/pages/report_files.h>
@@ -29,29 +30,48 @@ bool isTimed(std::span<const Tradeoff> trades) {
     return !trades.empty() && !trades[0].times.empty();
 }
 
-/// Runs the script for one of the two figures into a file.
-void draw(const std::string& folder, const AtomicFile& file, bool timed, const std::string& more) {
-    const std::string name = gnuplotString(fs::absolute(file.temporaryPath()).string());
-    runGnuplot(folder,
-               {"-e", fmt::format("svg={}; timed={:d}{}", name, timed, more), "tradeoff.gp"});
-}
+/// One of the two figures, drawn from files of the set that are closed but not yet in place.
+class Drawing {
+public:
+    Drawing(FileSet& files, const AtomicFile& script, const AtomicFile& points,
+            const AtomicFile& front, bool timed)
+        : files_(files),
+          script_(fs::absolute(script.temporaryPath()).string()),
+          settings_(gnuplotFile("dataCsv", points) + gnuplotFile("frontCsv", front) +
+                    fmt::format("timed={:d}; ", timed)),
+          name_(timed ? "timing.svg" : "front.svg") {}
 
-void drawWhole(const std::string& folder, const std::string& name, bool timed) {
-    AtomicFile svg(folder + "/" + name);
-    draw(folder, svg, timed, "");
-    svg.commit();
-}
-
-/// One SVG document for each BRDF, through a temporary that is never committed.
-std::vector<std::string> figuresForPage(const std::string& folder, std::size_t count, bool timed) {
-    std::vector<std::string> figures;
-    for (std::size_t i = 1; i <= count; ++i) {
-        const AtomicFile svg(folder + "/figure.svg");
-        draw(folder, svg, timed, fmt::format("; first={0}; last={0}", i));
-        figures.push_back(fileContent(svg.temporaryPath()));
+    void drawWhole() const {
+        const AtomicFile& svg = files_.add(name_);
+        try {
+            draw(svg, "");
+        } catch (...) {
+            files_.remove(name_);
+            throw;
+        }
     }
-    return figures;
-}
+
+    /// One SVG document for each BRDF, through a temporary that is never committed.
+    std::vector<std::string> drawForPage(std::size_t count) const {
+        std::vector<std::string> figures;
+        for (std::size_t i = 1; i <= count; ++i) {
+            const AtomicFile svg((files_.folder() / "figure.svg").string());
+            draw(svg, fmt::format("first={0}; last={0}", i));
+            figures.push_back(fileContent(svg.temporaryPath()));
+        }
+        return figures;
+    }
+
+private:
+    void draw(const AtomicFile& svg, const std::string& rows) const {
+        runGnuplot(files_.folder().string(),
+                   {"-e", settings_ + gnuplotFile("svg", svg) + rows, script_},
+                   {fs::absolute(svg.temporaryPath()).string()});
+    }
+
+    FileSet& files_;
+    std::string script_, settings_, name_;
+};
 
 }  // namespace
 
@@ -75,36 +95,45 @@ std::string tradeoffScript(std::span<const Tradeoff> trades) {
         entries.push_back(entry);
     }
     fields.set("entries", entries);
-    return kainjow::mustache::mustache(std::string(embedded::tradeoff_gp)).render(fields);
+    return printableLines(
+        kainjow::mustache::mustache(std::string(embedded::tradeoff_gp)).render(fields));
+}
+
+void writeTradeoffs(std::span<const Tradeoff> trades, FileSet& files) {
+    const bool timed = isTimed(trades);
+    files.write("tradeoff.json", tradeoffJson(trades));
+    const AtomicFile& forms = files.write("forms.csv", formsCsv(trades));
+    const AtomicFile& front = files.write("front.csv", frontCsv(trades));
+    const AtomicFile& script = files.write("tradeoff.gp", tradeoffScript(trades));
+    const AtomicFile *timing = nullptr, *timingFront = nullptr;
+    if (timed) {
+        files.write("timing.json", timingJson(trades));
+        timing = &files.write("timing.csv", timingCsv(trades));
+        timingFront = &files.write("timing_front.csv", timingFrontCsv(trades));
+    }
+    std::optional<NoFigures> undrawn;
+    std::vector<std::string> figures, timeFigures;
+    try {
+        const Drawing drawing(files, script, forms, front, false);
+        drawing.drawWhole();
+        figures = drawing.drawForPage(trades.size());
+        if (timed) {
+            const Drawing times(files, script, *timing, *timingFront, true);
+            times.drawWhole();
+            timeFigures = times.drawForPage(trades.size());
+        }
+    } catch (const NoFigures& error) {
+        undrawn = error;
+    }
+    files.write("tradeoff.html", tradeoffPage(trades, figures));
+    if (timed) files.write("timing.html", timingPage(trades, timeFigures));
+    files.commit();
+    if (undrawn) throw NoFigures(*undrawn);
 }
 
 void writeTradeoffs(std::span<const Tradeoff> trades, const std::string& folder) {
-    const bool timed = isTimed(trades);
-    makeFolder(folder);
-    writeFile(folder + "/tradeoff.json", tradeoffJson(trades));
-    writeFile(folder + "/forms.csv", formsCsv(trades));
-    writeFile(folder + "/front.csv", frontCsv(trades));
-    writeFile(folder + "/tradeoff.gp", tradeoffScript(trades));
-    if (timed) {
-        writeFile(folder + "/timing.json", timingJson(trades));
-        writeFile(folder + "/timing.csv", timingCsv(trades));
-        writeFile(folder + "/timing_front.csv", timingFrontCsv(trades));
-    }
-    std::optional<OutputError> undrawn;
-    std::vector<std::string> figures, timeFigures;
-    try {
-        drawWhole(folder, "front.svg", false);
-        figures = figuresForPage(folder, trades.size(), false);
-        if (timed) {
-            drawWhole(folder, "timing.svg", true);
-            timeFigures = figuresForPage(folder, trades.size(), true);
-        }
-    } catch (const OutputError& error) {
-        undrawn = error;
-    }
-    writeFile(folder + "/tradeoff.html", tradeoffPage(trades, figures));
-    if (timed) writeFile(folder + "/timing.html", timingPage(trades, timeFigures));
-    if (undrawn) throw OutputError(*undrawn);
+    FileSet files(folder, true, FileSet::Above::require);
+    writeTradeoffs(trades, files);
 }
 
 }  // namespace hshfit::tradeoff

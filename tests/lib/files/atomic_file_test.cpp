@@ -8,6 +8,7 @@
 #include <iterator>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -125,6 +126,45 @@ TEST_F(AtomicFileTest, FollowsLinksAndKeepsThem) {
     EXPECT_EQ(content(path), "after");
 }
 
+TEST_F(AtomicFileTest, FollowsLinksToWhereNothingStands) {
+    fs::create_directory(folder / "to");
+    fs::create_symlink("to/second", folder / "first");
+    fs::create_symlink("made", folder / "to/second");
+    hshfit::writeFile((folder / "first").string(), "x");
+    EXPECT_TRUE(fs::is_symlink(folder / "first"));
+    EXPECT_TRUE(fs::is_symlink(folder / "to/second"));
+    EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(folder / "to/made")));
+    EXPECT_EQ(content(folder / "to/made"), "x");
+    fs::create_symlink(folder / "none/file", folder / "astray");
+    EXPECT_NE(messageOf(folder / "astray", "x").find("No such file"), std::string::npos);
+    fs::create_symlink("circle", folder / "circle");
+    EXPECT_NE(messageOf(folder / "circle", "x").find("symbolic links"), std::string::npos);
+    EXPECT_EQ(entries(), 4u) << "first, to, astray, circle";
+}
+
+TEST_F(AtomicFileTest, KeepsThePermissionsOfTheFileItReplaces) {
+    const fs::path path = folder / "a";
+    for (const mode_t mode : {0600U, 0640U, 0666U, 0755U}) {
+        std::ofstream(path) << "before";
+        ASSERT_EQ(::chmod(path.c_str(), mode), 0);
+        const bool root = ::geteuid() == 0;
+        if (root) {
+            ASSERT_EQ(::chown(path.c_str(), 12, 34), 0);
+        }
+        AtomicFile file(path.string());
+        struct stat status {};
+        ASSERT_EQ(::stat(file.temporaryPath().c_str(), &status), 0);
+        EXPECT_EQ(status.st_mode & 07777u, mode) << "never open to more readers, not even before";
+        file.commit();
+        ASSERT_EQ(::stat(path.c_str(), &status), 0);
+        EXPECT_EQ(status.st_mode & 07777u, mode);
+        if (root) {
+            EXPECT_EQ(std::pair(status.st_uid, status.st_gid), std::pair(12U, 34U));
+        }
+        fs::remove(path);
+    }
+}
+
 TEST_F(AtomicFileTest, NamesTheFileThatCannotBeWritten) {
     EXPECT_EQ(messageOf(folder, "x"), "cannot write '" + folder.string() + "': Is a directory");
     EXPECT_NE(messageOf(folder / "none" / "a", "x").find("No such file"), std::string::npos);
@@ -198,7 +238,7 @@ TEST_F(AtomicFileTest, SignalsRemoveTheTemporaries) {
 }
 
 TEST_F(AtomicFileTest, ManyOpenAtOnce) {
-    // More than the registry of temporaries has slots.
+    // Fewer file descriptors than files would be no matter: each is open until it is committed.
     {
         std::vector<std::unique_ptr<AtomicFile>> files;
         for (int i = 0; i < 100; ++i) {

@@ -3,6 +3,11 @@
 
 #include "lib/coefficient_files/coefficient_samples.h"
 
+#include <atomic>
+#include <csignal>
+#include <new>
+#include <thread>
+
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -114,6 +119,89 @@ TEST(FileSet, SaysThatAFileStandsWhereAFolderShould) {
     EXPECT_THROW(FileSet(folder / "file", true), OutputError);
     EXPECT_THROW(FileSet(folder / "file/below", true), OutputError);
     EXPECT_EQ(entries(folder.path()), 1);
+}
+
+TEST(FileSet, AFileWhoseWriterThrowsIsNotOfTheSet) {
+    const Folder folder;
+    FileSet files(folder.path(), true);
+    files.write("one", "1");
+    const auto throws = [](hshfit::AtomicFile& file) {
+        file.write("half of ");
+        throw std::bad_alloc();
+    };
+    EXPECT_THROW(files.write("two", throws), std::bad_alloc);
+    files.write("three", "3");
+    files.remove("three");
+    files.commit();
+    EXPECT_EQ(contentOf(folder / "one"), "1");
+    EXPECT_EQ(entries(folder.path()), 1);
+}
+
+TEST(FileSet, FoldersAboveAreMadeOrRequired) {
+    const Folder folder;
+    EXPECT_THROW(FileSet(folder.path() / "a" / "b", true, FileSet::Above::require), OutputError);
+    EXPECT_FALSE(fs::exists(folder / "a"));
+    FileSet slash(folder.path() / "a/", true, FileSet::Above::require);
+    slash.write("one", "1");
+    slash.commit();
+    EXPECT_EQ(contentOf(folder / "a/one"), "1");
+}
+
+/// Runs `work` in a child that removes its traces on signals; its wait status.
+template <class Work>
+int inChild(Work work) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        hshfit::removeTemporariesOnSignals();
+        work();
+        ::_exit(0);
+    }
+    int status = 0;
+    EXPECT_EQ(::waitpid(child, &status, 0), child);
+    return status;
+}
+
+TEST(FileSet, SignalsRemoveTheFolderThatWasMade) {
+    const Folder folder;
+    const int status = inChild([&] {
+        FileSet files(folder.path() / "a" / "b", true);
+        files.write("one", "1");
+        ::raise(SIGTERM);
+    });
+    EXPECT_TRUE(WIFSIGNALED(status));
+    EXPECT_EQ(entries(folder.path()), 0);
+}
+
+// The signal arrives at the thread that renames, and at another one while it renames.
+TEST(FileSet, SignalsWaitUntilAllAreRenamed) {
+    const Folder folder;
+    for (const bool another : {false, true}) {
+        const int status = inChild([&] {
+            std::atomic<bool> renaming = false;
+            std::thread other([&] {
+                renaming.wait(false);
+                ::kill(::getpid(), SIGTERM);
+            });
+            FileSet files(folder.path() / "a", true);
+            for (int i = 0; i < 100; ++i) files.write(std::to_string(i), "x");
+            {
+                const hshfit::Uninterrupted step;
+                if (another) {
+                    renaming = true;
+                    renaming.notify_one();
+                    ::usleep(20'000);
+                } else {
+                    ::raise(SIGTERM);
+                }
+                files.commit();
+            }
+            ::pause();
+        });
+        ASSERT_TRUE(WIFSIGNALED(status));
+        EXPECT_EQ(WTERMSIG(status), SIGTERM);
+        EXPECT_EQ(entries(folder.path() / "a"), 100);
+        fs::remove_all(folder / "a");
+    }
 }
 
 // The limit on the size of files stands in for a full disk: the last of three does not fit.

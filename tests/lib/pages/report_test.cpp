@@ -271,6 +271,36 @@ TEST(ReportFailures, WithoutGnuplotTheRestIsComplete) {
     expectRest("gnuplot failed");
 }
 
+// gnuplot does not report a full disk: a stand-in ends well and leaves half of each figure.
+TEST(ReportFailures, AFigureCutShortLeavesNothing) {
+    const Folder folder;
+    if (!runs("command -v gnuplot")) GTEST_SKIP() << "no gnuplot";
+    std::filesystem::create_directory(folder / "bin");
+    samples::put(folder / "bin/gnuplot",
+                 "#!/bin/sh\n"
+                 "PATH=${PATH#*:}\n"
+                 "export PATH\n"
+                 "gnuplot \"$@\" || exit\n"
+                 "for file in \"$PWD\"/.hshfit-*.tmp; do\n"
+                 "    head -c 8 \"$file\" | grep -aqE '<.xml|%PDF' || continue\n"
+                 "    truncate -s $(($(stat -c %s \"$file\") / 2)) \"$file\"\n"
+                 "done\n");
+    ::chmod((folder / "bin/gnuplot").c_str(), 0755);
+    const Path path((folder / "bin") + ":" + std::getenv("PATH"));
+    samples::put(folder / "bin/curves.svg", "of an earlier report");
+    for (const char* place : {"a", "bin"}) {
+        try {
+            writeReport(sample(), folder / place);
+            ADD_FAILURE() << "the figures were cut";
+        } catch (const OutputError& error) {
+            EXPECT_NE(std::string(error.what()).find("cut short"), std::string::npos);
+        }
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "a"));
+    EXPECT_EQ(contentOf(folder / "bin/curves.svg"), "of an earlier report");
+    EXPECT_EQ(entries(folder / "bin"), 2u) << "gnuplot and curves.svg";
+}
+
 TEST(ReportFailures, ImpossibleFoldersAreRefused) {
     const Folder folder;
     samples::put(folder / "file", "x");

@@ -1,3 +1,4 @@
+#include <hshfit/files/json_fields.h>
 #include <hshfit/gpu/containers/sidecar.h>
 
 #include <hshfit/bases/catalog.h>
@@ -17,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string compact(const Json& value) {
-    return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return jsonText(value);
 }
 
 /// Prints one key per line, and one element per line for arrays of arrays or objects.

@@ -1,6 +1,10 @@
 # A reference BRDF against its approximation.
 # Run `gnuplot comparison.gp` in this folder: reads polar.csv, half.csv, residual.csv and albedo.csv,
 # writes the .svg files. Other names: gnuplot -e "svg1='a.svg'" comparison.gp …
+if (!exists("polarCsv")) polarCsv = 'polar.csv'
+if (!exists("halfCsv")) halfCsv = 'half.csv'
+if (!exists("residualCsv")) residualCsv = 'residual.csv'
+if (!exists("albedoCsv")) albedoCsv = 'albedo.csv'
 {{#figures}}
 if (!exists("svg{{index}}")) svg{{index}} = '{{file}}'
 {{/figures}}
@@ -94,10 +98,10 @@ do for [row = 1:slices] {
         plot for [ring = 1:rings] '+' \
                 using (ringX($1) * ring / rings):(ringY($1) * ring / rings) \
                 with lines linecolor rgb '#c8c8c8' linewidth 0.5 dashtype 1, \
-             for [k = 1:channels] 'polar.csv' skip 1 \
+             for [k = 1:channels] polarCsv skip 1 \
                 using (at({{azimuth}}, slice[p]) ? x(column(2 * k + 2), p, logarithmic) : NaN): \
                       (y(column(2 * k + 2), p, logarithmic)) with lines linetype 2 * k - 1, \
-             for [k = 1:channels] 'polar.csv' skip 1 \
+             for [k = 1:channels] polarCsv skip 1 \
                 using (at({{azimuth}}, slice[p]) ? x(column(2 * k + 3), p, logarithmic) : NaN): \
                       (y(column(2 * k + 3), p, logarithmic)) with lines linetype 2 * k
     }
@@ -131,10 +135,10 @@ do for [panel = 0:5] {
     if (panel < 5) {
         unset key
         set label 1 sprintf('θd = %d°', 20 * panel) at graph 0.97, graph 0.95 right
-        plot for [k = 1:channels] 'half.csv' skip 1 \
+        plot for [k = 1:channels] halfCsv skip 1 \
                 using (at({{azimuth}}, 20 * panel) ? sqrt(column(3) / 90) : NaN):(column(2 * k + 2)) \
                 with lines linetype 2 * k - 1, \
-             for [k = 1:channels] 'half.csv' skip 1 \
+             for [k = 1:channels] halfCsv skip 1 \
                 using (at({{azimuth}}, 20 * panel) ? sqrt(column(3) / 90) : NaN):(column(2 * k + 3)) \
                 with lines linetype 2 * k
     } else {
@@ -186,7 +190,7 @@ set colorbox user origin screen 0.43, screen 0.13 size screen 0.013, screen 0.8
 set label 1 'approximation / reference' at screen 0.43, screen 0.965 left
 first = {{place}} * {{cells}}
 inside(value) = value < -end ? -end : value > end ? end : value
-plot 'residual.csv' skip 1 every ::first::(first + {{cells}} - 1) \
+plot residualCsv skip 1 every ::first::(first + {{cells}} - 1) \
     using (sqrt(column(3) / 90)):(column(2)): \
           (strlen(strcol(4)) && column(5) == 1 ? inside(column(4)) : NaN) with image
 unset object
@@ -206,10 +210,10 @@ set format y '%g'
 set xlabel 'θo'
 unset ylabel
 set label 1 'directional albedo' at graph 0, screen 0.965 left
-plot for [k = 1:channels] 'albedo.csv' skip 1 \
+plot for [k = 1:channels] albedoCsv skip 1 \
         using (column(1) == {{azimuth}} ? column(2) : NaN):(column(2 * k + 1)) \
         with lines linetype 2 * k - 1, \
-     for [k = 1:channels] 'albedo.csv' skip 1 \
+     for [k = 1:channels] albedoCsv skip 1 \
         using (column(1) == {{azimuth}} ? column(2) : NaN):(column(2 * k + 2)) \
         with lines linetype 2 * k
 unset label 1

@@ -4,6 +4,7 @@
 
 if (!exists("first")) first = 1
 if (!exists("last")) last = {{rows}}
+if (!exists("csv")) csv = 'curves.csv'
 if (!exists("svg")) svg = 'curves.svg'
 if (!exists("pdf")) pdf = 'curves.pdf'
 
@@ -88,7 +89,7 @@ do for [pass = 1:2] {
         set logscale x
         set xrange [1:maxCount[row]]
         set xtics (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 1e4, 1e5, 1e6)
-        plot for [basis = 1:words(bases)] 'curves.csv' skip 1 \
+        plot for [basis = 1:words(bases)] csv skip 1 \
             using (is(row, basis) ? column(4) : NaN):(missing(row)) \
             with linespoints linetype basis pointinterval interval[row]
 
@@ -104,7 +105,7 @@ do for [pass = 1:2] {
             set key at screen 0.86, screen bottom + 0.84 * rowHeight left top Left reverse \
                 samplen 2.5 spacing 1.25 noautotitle
         }
-        plot for [basis = 1:words(bases)] 'curves.csv' skip 1 \
+        plot for [basis = 1:words(bases)] csv skip 1 \
             using (is(row, basis) ? column(3) : NaN):(missing(row)) \
             title word(bases, basis) \
             with linespoints linetype basis pointinterval interval[row]

@@ -45,8 +45,8 @@ rows = last - first + 1
 rowHeight = 1.0 / rows
 if (exists("timed")) { from = timed; to = timed } else { from = 0; to = {{timed}} }
 do for [pass = from:to] {
-    data = pass == 0 ? 'forms.csv' : 'timing.csv'
-    front = pass == 0 ? 'front.csv' : 'timing_front.csv'
+    data = exists("dataCsv") ? dataCsv : pass == 0 ? 'forms.csv' : 'timing.csv'
+    front = exists("frontCsv") ? frontCsv : pass == 0 ? 'front.csv' : 'timing_front.csv'
     set terminal svg size 1000, 460 * rows noenhanced \
         font 'DejaVu Sans,Helvetica,Arial,sans-serif' fontscale 1.0
     if (exists("svg")) { set output svg } else { set output pass == 0 ? 'front.svg' : 'timing.svg' }
