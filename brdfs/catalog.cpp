@@ -127,11 +127,6 @@ std::unique_ptr<Brdf> openFile(const std::string& path, std::string_view options
     return format.open(path, parseParameters(format.name, format.parameters, options));
 }
 
-bool exists(std::string_view path) {
-    std::error_code error;
-    return fs::exists(fs::path(path), error);
-}
-
 /// Whether a text is a path rather than a misspelt model: it has a folder or an extension.
 bool looksLikePath(std::string_view text) {
     return text.find('/') != std::string_view::npos || fs::path(text).has_extension();
@@ -139,19 +134,18 @@ bool looksLikePath(std::string_view text) {
 
 /// Whether a specification is an existing file, with or without options after its path.
 bool isFile(std::string_view spec) {
-    return exists(spec) ||
-           (spec.find(':') != std::string_view::npos && exists(spec.substr(0, spec.rfind(':'))));
+    return !pathIn(spec).empty();
 }
 
 std::unique_ptr<Brdf> openTerm(std::string_view spec) {
     constexpr std::string_view presetPrefix = "preset:";
     if (spec.starts_with(presetPrefix)) return openNamedPreset(spec.substr(presetPrefix.size()));
     if (findModel(spec.substr(0, spec.find(':')))) return openModel(spec);
-    if (exists(spec)) return openFile(std::string(spec), {});
-    const std::size_t colon = spec.rfind(':');
-    const std::string_view path = spec.substr(0, colon);
-    if (colon != std::string_view::npos && exists(path))
-        return openFile(std::string(path), spec.substr(colon + 1));
+    if (const std::string_view path = pathIn(spec); !path.empty()) {
+        const std::string_view options = spec.substr(path.size());
+        return openFile(std::string(path), options.substr(options.empty() ? 0 : 1));
+    }
+    const std::string_view path = spec.substr(0, spec.rfind(':'));
     if (looksLikePath(path)) throw InputError(fmt::format("{}: no such file", path));
     throw unknownModel(spec.substr(0, spec.find(':')));
 }

@@ -9,7 +9,9 @@
 #include <cassert>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
+#include <system_error>
 
 namespace hshfit::brdfs {
 namespace {
@@ -123,6 +125,15 @@ void complete(std::string_view owner, const Parameter& parameter, Parameters& pa
 }
 
 }  // namespace
+
+std::string_view pathIn(std::string_view spec) {
+    std::error_code error;
+    for (std::size_t end = spec.size(); end > 0; end = spec.rfind(':', end - 1)) {
+        if (end == std::string_view::npos) break;
+        if (std::filesystem::exists(spec.substr(0, end), error)) return spec.substr(0, end);
+    }
+    return {};
+}
 
 double Parameters::number(std::string_view name) const {
     const auto found = numbers.find(name);

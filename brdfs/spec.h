@@ -24,6 +24,11 @@ Parameters readParameters(std::string_view owner, std::span<const Parameter> dec
 Parameters completed(std::string_view owner, std::span<const Parameter> declared,
                      Parameters stated);
 
+/// The path in a specification of a file: all of it where that exists, else the longest part before
+/// a ':' that does, so that the path, the options and the names after it may hold colons; "" where
+/// there is none.
+std::string_view pathIn(std::string_view spec);
+
 /// The valid values of a parameter, for messages and listings: "0 to 1, or r/g/b", "1992|duer".
 std::string validValues(const Parameter& parameter);
 

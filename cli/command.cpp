@@ -1,9 +1,13 @@
 #include "command.h"
 
 #include "command_table.h"
+#include "option_values.h"
 
 #include <hshfit/error.h>
+#include <hshfit/files/json_fields.h>
+#include <hshfit/files/printable.h>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 #include <CLI/CLI.hpp>
@@ -27,6 +31,7 @@ void addCommand(CLI::App& app, Globals& globals, const Command& row) {
     command.add_option("--threads", globals.threads, "Threads to use; 0: all cores")
         ->check(CLI::Range(0, 4096));
     row.add(command, globals);
+    stateRanges(command);
 }
 
 void addRgb(CLI::App& command, bool& rgb) {
@@ -61,7 +66,8 @@ Direction parseDirection(const std::string& text, std::string_view option) {
     return directionFromAngles(radians(theta), radians(phi));
 }
 
-void printText(std::string_view text) {
+void printText(std::string_view given) {
+    const std::string text = printableLines(given);
     const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
     if (!written || std::fflush(stdout) != 0) {
         throw OutputError(fmt::format("standard output: {}", std::strerror(errno)));
@@ -69,11 +75,44 @@ void printText(std::string_view text) {
 }
 
 void printJson(const nlohmann::ordered_json& document) {
-    printText(document.dump(2) + "\n");
+    printText(jsonText(document, 2) + "\n");
+}
+
+namespace {
+
+/// Writes to standard error, where a failure has nobody to be told to.
+void writeError(const std::string& text) {
+    std::fwrite(text.data(), 1, text.size(), stderr);
+    std::fflush(stderr);
+}
+
+/// A line of at most 500 bytes with its beginning and its line feed.
+std::string messageLine(std::string_view beginning, std::string_view message) {
+    constexpr std::size_t longest = 500;
+    return fmt::format("{}{}\n", beginning,
+                       shortened(printable(message), longest - beginning.size() - 1));
+}
+
+}  // namespace
+
+void printMessage(std::string_view message) noexcept {
+    try {
+        writeError(messageLine("hshfit: ", message));
+    } catch (const std::exception&) {
+        // Out of memory for the message: the exit code says the rest.
+    }
+}
+
+void occupyStandardStreams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
+        // The other direction than the stream's: nothing can be read or written.
+        ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+    }
 }
 
 void note(const Globals& globals, std::string_view message) {
-    if (!globals.quiet) fmt::print(stderr, "hshfit: {}\n", message);
+    if (!globals.quiet) printMessage(message);
 }
 
 struct Progress::State {
@@ -83,13 +122,13 @@ struct Progress::State {
     Clock::time_point start = Clock::now(), shown = start;
     bool visible = false;
 
-    explicit State(std::string text) : what(std::move(text)) {}
+    explicit State(const std::string& text) : what(shortened(printable(text), 40)) {}
     State(const State&) = delete;
     State& operator=(const State&) = delete;
     ~State() { clear(); }
 
     void clear() {
-        if (visible) fmt::print(stderr, "\r\x1b[K");
+        if (visible) writeError("\r\x1b[K");
         visible = false;
     }
     void update(std::size_t done, std::size_t total) {
@@ -101,15 +140,14 @@ struct Progress::State {
         visible = true;
         const double seconds = std::chrono::duration<double>(now - start).count();
         const double share = static_cast<double>(done) / static_cast<double>(total);
-        fmt::print(stderr, "\r\x1b[K{}  {}/{}  {:.3g}/s  {:.0f} s left", what, done, total,
-                   static_cast<double>(done) / seconds, seconds * (1 - share) / share);
-        std::fflush(stderr);
+        writeError(fmt::format("\r\x1b[K{}  {}/{}  {:.3g}/s  {:.0f} s left", what, done, total,
+                               static_cast<double>(done) / seconds, seconds * (1 - share) / share));
     }
 };
 
-Progress::Progress(const Globals& globals, std::string what) {
+Progress::Progress(const Globals& globals, const std::string& what) {
     if (globals.quiet || !isatty(STDERR_FILENO)) return;
-    state_ = std::make_shared<State>(std::move(what));
+    state_ = std::make_shared<State>(what);
 }
 
 Progress::~Progress() {
@@ -130,10 +168,11 @@ jobs::Listener listenerFor(const Globals& globals) {
 void reportFailures(const std::vector<jobs::InputFailure>& failures, std::size_t inputs,
                     Globals& globals) {
     if (failures.empty()) return;
-    fmt::print(stderr, "hshfit: {} of {} inputs failed:\n", failures.size(), inputs);
+    printMessage(fmt::format("{} of {} inputs failed:", failures.size(), inputs));
     for (const jobs::InputFailure& failure : failures) {
         const bool named = failure.reason.find(failure.spec) != std::string::npos;
-        fmt::print(stderr, "  {}\n", named ? failure.reason : failure.spec + ": " + failure.reason);
+        writeError(
+            messageLine("  ", named ? failure.reason : failure.spec + ": " + failure.reason));
     }
     globals.exitCode = static_cast<int>(jobs::codeOf(failures));
 }

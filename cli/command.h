@@ -43,14 +43,21 @@ Direction parseDirection(const std::string& text, std::string_view option);
 
 /// Prints a JSON document to standard output. Throws OutputError if it cannot be written.
 void printJson(const nlohmann::ordered_json& document);
-/// Prints text to standard output, likewise.
+/// Prints text to standard output, likewise, without control characters but line feeds and tabs.
 void printText(std::string_view text);
+/// Prints "hshfit: " and a message on one line of at most 500 bytes to standard error, printable; a
+/// closed standard error is no error.
+void printMessage(std::string_view message) noexcept;
+
+/// Keeps closed standard streams from becoming the files that are opened next: reading and writing
+/// them fails as if they were closed.
+void occupyStandardStreams();
 
 /// A progress line on standard error: the task, the share done, the rate and the time left.
 /// Nothing is shown with --quiet or if standard error is no terminal.
 class Progress {
 public:
-    Progress(const Globals& globals, std::string what);
+    Progress(const Globals& globals, const std::string& what);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;

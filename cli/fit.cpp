@@ -2,6 +2,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
+#include <hshfit/files/json_fields.h>
 
 #include <jobs/fit.h>
 
@@ -97,7 +98,7 @@ void runCompareModels(const FitArguments& arguments, Globals& globals) {
                            {"data", arguments.data},
                            {"loss", arguments.options.loss},
                            {"models", list}};
-    if (!arguments.output.empty()) writeFile(arguments.output, document.dump(2) + "\n");
+    if (!arguments.output.empty()) writeFile(arguments.output, jsonText(document, 2) + "\n");
     if (globals.json)
         printJson(document);
     else

@@ -88,10 +88,10 @@ std::string albedoText(const Json& row) {
 }
 
 std::string censusText(const Json& census) {
-    std::string text = factLine("stored values", census["values"].dump());
+    std::string text = factLine("stored values", jsonText(census["values"]));
     for (const auto& [key, value] : census.items()) {
         if (key == "values" || value == 0) continue;
-        text += factLine("  " + key, value.dump());
+        text += factLine("  " + key, jsonText(value));
     }
     return text;
 }
@@ -135,10 +135,10 @@ std::string healthText(const Json& document) {
     const Json& health = document["health"];
     text += factLine("measured directions",
                      fmt::format("{:.1f} % of the pairs", 100 * health["coverage"].get<double>()));
-    text += factLine("values below 0", fmt::format("{} of {} sampled", health["negative"].dump(),
-                                                   health["values"].dump()));
+    text += factLine("values below 0", fmt::format("{} of {} sampled", jsonText(health["negative"]),
+                                                   jsonText(health["values"])));
     if (health["not_finite"] != 0)
-        text += factLine("values not finite", health["not_finite"].dump());
+        text += factLine("values not finite", jsonText(health["not_finite"]));
     const Json& reciprocity = health["reciprocity"];
     std::string defect = fmt::format("{:.2g}", reciprocity["defect"].get<double>());
     if (reciprocity.contains("worst") && reciprocity["defect"] > 1e-9) {

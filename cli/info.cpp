@@ -114,7 +114,7 @@ Json describe(const Brdf& brdf, const Globals& globals) {
 }
 
 std::string scalarText(const Json& value) {
-    return value.is_string() ? value.get<std::string>() : value.dump();
+    return value.is_string() ? value.get<std::string>() : jsonText(value);
 }
 
 std::string text(const Json& document) {
@@ -129,8 +129,8 @@ std::string text(const Json& document) {
         for (const auto& [key, value] : document[section].items())
             out += factLine(key, scalarText(value));
     }
-    out += factLine("smallest f found", document["range"]["min"].dump());
-    out += factLine("largest f found", document["range"]["max"].dump());
+    out += factLine("smallest f found", jsonText(document["range"]["min"]));
+    out += factLine("largest f found", jsonText(document["range"]["max"]));
     out += healthText(document);
     return out;
 }

@@ -199,7 +199,7 @@ std::string parameterText(const Json& parameter) {
     std::string text = fmt::format("      {:<14} {}", parameter["name"].get<std::string>(),
                                    parameter["help"].get<std::string>());
     if (parameter["kind"] == "choice") {
-        return text + fmt::format(" ({}; default {})", parameter["choices"].dump(),
+        return text + fmt::format(" ({}; default {})", jsonText(parameter["choices"]),
                                   parameter["default"].get<std::string>());
     }
     const auto shown = [](const Json& limit) {

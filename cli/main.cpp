@@ -1,8 +1,10 @@
 #include "command.h"
 #include "command_table.h"
 #include "completion.h"
+#include "option_values.h"
 #include "wording.h"
 
+#include <brdfs/fit/solver_log.h>
 #include <brdfs/spec.h>
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
@@ -16,6 +18,7 @@
 #include <cstring>
 #include <new>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -65,6 +68,7 @@ int run(int argc, char** argv) {
     app.footer("hshfit COMMAND --help shows a command's options and an example.");
 
     cli::Globals globals;
+    brdfs::takeSolverLog([&globals](const std::string& said) { cli::note(globals, said); });
     std::optional<tbb::global_control> threads;
     app.parse_complete_callback([&] {
         if (globals.threads > 0) {
@@ -73,10 +77,14 @@ int run(int argc, char** argv) {
     });
     for (const cli::Command& row : cli::commands()) cli::addCommand(app, globals, row);
 
+    cli::refuseSpacedLists(app, {argv + std::min(argc, 1), argv + argc});
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& success) {
-        return app.exit(success);
+        std::ostringstream text;
+        const int code = app.exit(success, text, text);
+        cli::printText(text.str());
+        return code;
     } catch (const CLI::ParseError& error) {
         std::string message = unknownWord(app, argc, argv);
         if (message.empty()) message = error.what();
@@ -89,18 +97,19 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    hshfit::cli::occupyStandardStreams();
     hshfit::removeTemporariesOnSignals();
     hshfit::setWording(hshfit::cli::optionWording());
     try {
         return run(argc, argv);
     } catch (const hshfit::Error& error) {
-        fmt::print(stderr, "hshfit: {}\n", error.what());
+        hshfit::cli::printMessage(error.what());
         return static_cast<int>(error.code());
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "hshfit: not enough memory for what was asked\n");
+        hshfit::cli::printMessage("not enough memory for what was asked");
         return static_cast<int>(hshfit::ExitCode::numeric);
     } catch (const std::exception& error) {
-        fmt::print(stderr, "hshfit: internal error: {}\n", error.what());
+        hshfit::cli::printMessage(fmt::format("internal error: {}", error.what()));
         return 1;
     }
 }

@@ -4,6 +4,7 @@
 #include <hshfit/wording.h>
 
 #include <brdfs/catalog.h>
+#include <brdfs/spec.h>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -63,11 +64,8 @@ std::vector<std::string> measuredFiles(const std::string& folder) {
 
 /// The path of a file specification, without its options; none if it names no file.
 std::optional<fs::path> pathOf(const std::string& spec) {
-    std::error_code ignored;
-    if (fs::exists(spec, ignored)) return fs::path(spec);
-    const std::string path = spec.substr(0, spec.rfind(':'));
-    if (fs::exists(path, ignored)) return fs::path(path);
-    return std::nullopt;
+    const std::string_view path = brdfs::pathIn(spec);
+    return path.empty() ? std::nullopt : std::optional(fs::path(path));
 }
 
 std::string nameFor(const std::string& spec) {

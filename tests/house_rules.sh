@@ -89,6 +89,19 @@ matches '#include *[<"](Eigen|OpenEXR|Imf|Imath|nlohmann)' 'lib/*.h' ':!lib/**/i
     ':!lib/hshfit/files/json_fields.h' ':!lib/hshfit/files/exr_stream.h' \
     ':!lib/hshfit/linear_algebra/decompositions.h' |
     rule 'third-party headers stay out of public headers'
+# One function makes text printable (files/printable.h): everything printed goes through
+# cli/command.cpp, everything in JSON through files/json_fields.cpp, every page and every script of
+# gnuplot through printableLines. Shaders keep to ASCII by themselves.
+streams='[^/_[:alnum:]](stderr|stdout|STD(OUT|ERR)_FILENO)|std::(cout|cerr|clog)'
+matches "$streams|fmt::print|printf\\(" \
+    'lib/*.cpp' 'lib/*.h' brdfs jobs cli ':!cli/command.cpp' ':!lib/hshfit/pages/gnuplot.cpp' |
+    rule 'text is printed by printText, printMessage and note only (cli/command.h)'
+matches '\.dump\(' 'lib/*.cpp' 'lib/*.h' brdfs jobs cli ':!lib/hshfit/files/json_fields.cpp' |
+    rule 'JSON becomes text in jsonText only (files/json_fields.h)'
+git grep -lF '.render(' -- 'lib/*.cpp' brdfs jobs cli ':!lib/hshfit/gpu/shader.cpp' \
+    ':!cli/completion.cpp' | while read -r file; do
+    grep -q 'return printableLines(' "$file" || echo "$file"
+done | rule 'pages and scripts are printable (files/printable.h)'
 matches '/(work|home|Users)/[[:alnum:]]' . | rule 'paths of one machine'
 matches '(TEST|TEST_F|TEST_P)\(.*DISABLED_|^ *#if 0' '*.h' '*.cpp' | rule 'switched-off code'
 tracked '*.h' '*.cpp' | grep -E '(^|[/_])(utils?|common|helpers?|manager)[_.]' |

@@ -1,0 +1,117 @@
+#include "option_values.h"
+
+#include <hshfit/accuracy/metrics.h>
+#include <hshfit/bases/catalog.h>
+#include <hshfit/error.h>
+#include <hshfit/gpu/containers/targets.h>
+#include <hshfit/representation/forms/form.h>
+#include <hshfit/tradeoff/sweep.h>
+
+#include <brdfs/repair.h>
+#include <brdfs/spec.h>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+
+namespace hshfit::cli {
+namespace {
+
+/// Options that take several values as one word; lists that CLI11 takes apart say so themselves.
+constexpr std::string_view takeCommas[] = {"--bases",   "--halfway",  "--light",
+                                           "--metrics", "--outgoing", "--repair",
+                                           "--target",  "--wi",       "--wo"};
+
+bool takesCommas(const CLI::App& command, const std::string& name) {
+    const CLI::Option* option = command.get_option_no_throw(name);
+    return option && (option->get_delimiter() == ',' ||
+                      std::ranges::find(takeCommas, name) != std::end(takeCommas));
+}
+
+bool isNumber(std::string_view word) {
+    double number = 0;
+    const char* end = word.data() + word.size();
+    const auto parsed = std::from_chars(word.data(), end, number);
+    return parsed.ec == std::errc() && parsed.ptr == end;
+}
+
+template <class Parse>
+bool parses(Parse parse, const std::string& word) {
+    try {
+        parse(word);
+        return true;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+/// A word that options with lists know and that is no BRDF.
+bool isListed(const std::string& word) {
+    const auto isNamed = [&](const auto& row) { return row.name == word; };
+    return word == "all" || word == "none" || std::ranges::any_of(bases::catalog(), isNamed) ||
+           std::ranges::any_of(metricCatalog(), isNamed) ||
+           std::ranges::any_of(gpu::targets(), isNamed) ||
+           std::ranges::any_of(brdfs::repairs(), isNamed) || parses(parseKind, word) ||
+           parses(parsePrecision, word) || parses(parseWindow, word) ||
+           parses(tradeoff::parseConstraint, word);
+}
+
+/// Whether `word` goes on with the list that ends with `before`.
+bool goesOn(const std::string& before, const std::string& word) {
+    if (word.empty() || (word[0] == '-' && !isNumber(word)) || !brdfs::pathIn(word).empty())
+        return false;
+    if (before.ends_with(',') || word[0] == ',') return true;
+    const std::string first = word.substr(0, word.find(','));
+    const std::string last = before.substr(before.rfind(',') + 1);
+    return isNumber(first) ? isNumber(last) : isListed(first) && isListed(last);
+}
+
+}  // namespace
+
+void stateRanges(CLI::App& command) {
+    constexpr std::string_view opening = " in [", middle = " - ";
+    for (CLI::Option* option : command.get_options()) {
+        if (option->get_type_name().find(opening) == std::string::npos) continue;
+        CLI::Validator& validator = *option->get_validator(0);
+        const std::string description = validator.get_description();
+        const std::size_t begin = description.find(opening), gap = description.find(middle);
+        if (begin == std::string::npos || gap == std::string::npos) continue;
+        const std::size_t least = begin + opening.size(), most = gap + middle.size();
+        const std::string range =
+            fmt::format("{} to {}", description.substr(least, gap - least),
+                        description.substr(most, description.size() - 1 - most));
+        const CLI::Validator test = validator;
+        validator.operation([test, range](std::string& value) {
+            return test(value).empty() ? std::string()
+                                       : fmt::format("'{}' is not within {}", value, range);
+        });
+    }
+}
+
+void refuseSpacedLists(const CLI::App& app, const std::vector<std::string>& words) {
+    const auto chosen = app.get_subcommands([&](const CLI::App* subcommand) {
+        return !words.empty() && subcommand->get_name() == words[0];
+    });
+    if (chosen.empty()) return;
+    for (std::size_t k = 1; k < words.size(); ++k) {
+        const std::size_t equals = words[k].find('=');
+        const std::string name = words[k].substr(0, equals);
+        if (!name.starts_with("--") || !takesCommas(*chosen.front(), name)) continue;
+        std::size_t at = equals == std::string::npos ? k + 1 : k;
+        if (at >= words.size()) return;
+        std::string list = at == k ? words[k].substr(equals + 1) : words[at], given = list;
+        while (++at < words.size() && goesOn(list, words[at])) {
+            given += " " + words[at];
+            const bool comma = list.ends_with(',') || words[at][0] == ',';
+            list += (comma ? "" : ",") + words[at];
+        }
+        if (given != list)
+            throw UsageError(fmt::format("{} {}: commas separate the values, without spaces: {} {}",
+                                         name, given, name, list));
+    }
+}
+
+}  // namespace hshfit::cli
