@@ -1,5 +1,6 @@
 // The program as a process: its streams, its signals, the names and texts that it prints.
 
+#include "places.h"
 #include "program.h"
 
 #include <nlohmann/json.hpp>
@@ -22,7 +23,7 @@ class Process : public Cli {
 protected:
     void SetUp() override {
         Cli::SetUp();
-        ::setenv("HSHFIT", HSHFIT_PROGRAM, 1);
+        ::setenv("HSHFIT", test::program().c_str(), 1);
     }
     /// A command of the shell in the folder, with the program as $HSHFIT.
     Answer shell(const std::string& command) const {

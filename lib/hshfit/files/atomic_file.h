@@ -40,7 +40,7 @@ public:
     const std::string& temporaryPath() const { return temporary_; }
     /// As given.
     const std::string& path() const { return path_; }
-    /// Where the file goes: `path` with its links resolved.
+    /// The place of the file: `path` with its links resolved.
     const std::string& target() const { return target_; }
 
     /// Flushes and closes: every byte is in the temporary, or this throws. Only commit() may
