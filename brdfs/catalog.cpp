@@ -150,6 +150,31 @@ std::unique_ptr<Brdf> openTerm(std::string_view spec) {
     throw unknownModel(spec.substr(0, spec.find(':')));
 }
 
+std::unique_ptr<Brdf> openPrefixed(std::string_view spec, int depth) {
+    if (spec.empty())
+        throw UsageError(
+            fmt::format("empty BRDF specification; give model[:key=value,...], a file "
+                        "or preset:NAME; models: {}",
+                        joined(namesOf(models()))));
+    constexpr std::string_view rgbPrefix = "rgb:";
+    const std::string_view grey = greyPrefix(spec);
+    const bool rgb = spec.starts_with(rgbPrefix);
+    // rgb and grey after each other make sense once, and every prefix is one more wrapper.
+    constexpr int deepest = 4;
+    if ((rgb || !grey.empty()) && depth == deepest)
+        throw UsageError(
+            fmt::format("'{}…': more than {} prefixes rgb: and grey: before a specification",
+                        spec.substr(0, 40), deepest));
+    if (rgb) return asRgb(openPrefixed(spec.substr(rgbPrefix.size()), depth + 1));
+    if (!grey.empty())
+        return asGrey(openPrefixed(spec.substr(grey.size()), depth + 1), greyWeights(grey));
+    const std::vector<WeightedSpec> specs = splitSum(spec, isFile);
+    if (specs.size() == 1 && specs.front().weight == 1) return openTerm(specs.front().spec);
+    std::vector<Sum::Term> terms;
+    for (const WeightedSpec& term : specs) terms.push_back({term.weight, openTerm(term.spec)});
+    return std::make_unique<Sum>(std::move(terms));
+}
+
 }  // namespace
 
 std::span<const Model> models() {
@@ -205,20 +230,7 @@ std::unique_ptr<Brdf> openModel(std::string_view spec) {
 }
 
 std::unique_ptr<Brdf> open(std::string_view spec) {
-    if (spec.empty())
-        throw UsageError(
-            fmt::format("empty BRDF specification; give model[:key=value,...], a file "
-                        "or preset:NAME; models: {}",
-                        joined(namesOf(models()))));
-    constexpr std::string_view rgbPrefix = "rgb:";
-    if (spec.starts_with(rgbPrefix)) return asRgb(open(spec.substr(rgbPrefix.size())));
-    if (const std::string_view grey = greyPrefix(spec); !grey.empty())
-        return asGrey(open(spec.substr(grey.size())), greyWeights(grey));
-    const std::vector<WeightedSpec> specs = splitSum(spec, isFile);
-    if (specs.size() == 1 && specs.front().weight == 1) return openTerm(specs.front().spec);
-    std::vector<Sum::Term> terms;
-    for (const WeightedSpec& term : specs) terms.push_back({term.weight, openTerm(term.spec)});
-    return std::make_unique<Sum>(std::move(terms));
+    return openPrefixed(spec, 0);
 }
 
 }  // namespace hshfit::brdfs

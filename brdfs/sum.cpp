@@ -43,6 +43,14 @@ WeightedSpec parseTerm(std::string_view term) {
     return {factors.weight + 0.0, std::string(factors.rest)};
 }
 
+std::size_t countOf(std::string_view part, std::string_view text) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(part); at != std::string_view::npos;
+         at = text.find(part, at + part.size()))
+        ++count;
+    return count;
+}
+
 /// The end of the term that starts at `start`: the next " + ", unless a longer text is a whole.
 std::size_t endOfTerm(std::string_view spec, std::size_t start, bool (*isWhole)(std::string_view)) {
     std::vector<std::size_t> ends;
@@ -115,6 +123,10 @@ std::string joinedNames(const std::vector<Sum::Term>& terms) {
 
 std::vector<WeightedSpec> splitSum(std::string_view spec, bool (*isWhole)(std::string_view)) {
     if (isWhole(spec)) return {{1, std::string(spec)}};
+    const std::size_t joints = countOf(plus, spec);
+    if (joints >= mostTerms)
+        throw UsageError(fmt::format("sum: '{}…' has {} terms; valid: at most {}",
+                                     spec.substr(0, 40), joints + 1, mostTerms));
     std::vector<WeightedSpec> terms;
     for (std::size_t start = 0;;) {
         const std::size_t end = endOfTerm(spec, start, isWhole);

@@ -2,6 +2,7 @@
 
 #include <hshfit/brdf/brdf.h>
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -14,6 +15,9 @@ inline constexpr std::string_view sumHelp =
     "any specifications joined by ' + ', each with an optional weight: "
     "'lambert:kd=0.1 + 0.5 * ggx:alpha=0.2'";
 
+/// Every " + " may be part of a path, so that splitting asks the file system for each pair of them.
+inline constexpr std::size_t mostTerms = 256;
+
 /// One term of a sum; the weight is in [0, 1e6].
 struct WeightedSpec {
     double weight = 1;
@@ -22,7 +26,8 @@ struct WeightedSpec {
 
 /// Splits "SPEC + WEIGHT * SPEC + …" at " + ", with the spaces. A text for which `isWhole` is
 /// true (an existing path) is not split; the longest is tried first. One term of weight 1 if
-/// `spec` is no sum. Throws UsageError for an empty term or a weight out of range.
+/// `spec` is no sum. Throws UsageError for an empty term, a weight out of range, or more than
+/// `mostTerms`.
 std::vector<WeightedSpec> splitSum(std::string_view spec, bool (*isWhole)(std::string_view));
 
 /// sum_t weight_t f_t. Grey terms count for every channel of the others.

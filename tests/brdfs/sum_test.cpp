@@ -59,6 +59,22 @@ TEST(Sum, NameIsItsCanonicalSpecification) {
               "1e-07 * lambert + ward:ax=0.2,ay=0.5");
 }
 
+// Each " + " may belong to a path, so that splitting would look at every pair of them.
+TEST(Sum, TooManyTermsOrPrefixesAreRefused) {
+    std::string spec = "lambert:kd=0";
+    for (int k = 1; k < 2000; ++k) spec += " + lambert:kd=0";
+    EXPECT_EQ(errorOf(spec).find("sum: 'lambert:kd=0 + "), 0u) << errorOf(spec).substr(0, 200);
+    EXPECT_LT(errorOf(spec).size(), 200u);
+    spec = "0.5 * lambert";
+    for (std::size_t k = 1; k < mostTerms; ++k) spec += " + 0 * lambert";
+    EXPECT_DOUBLE_EQ(evaluate(*open(spec), wi, wo)[0], .5 / pi);
+    std::string nested;
+    for (int k = 0; k < 20000; ++k) nested += k % 2 ? "grey:" : "rgb:";
+    EXPECT_NE(errorOf(nested + "lambert").find("more than 4 prefixes"), std::string::npos);
+    EXPECT_LT(errorOf(nested + "lambert").size(), 200u);
+    EXPECT_EQ(open("grey:grey:grey:lambert")->channels().count(), 1u);
+}
+
 TEST(Sum, KeepsTheLawsThatAllTermsKeep) {
     const auto lawsOf = [](const std::string& spec) { return open(spec)->laws(); };
     EXPECT_TRUE(lawsOf("lambert + ggx:alpha=.2").isotropic);
