@@ -1,9 +1,11 @@
 #pragma once
 
+#include <hshfit/accuracy/health.h>
 #include <hshfit/brdf/brdf.h>
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +36,14 @@ struct Axis {
     double largestGap = 0;  ///< between neighbouring nodes
 };
 
+/// Samples of pairs of directions that were measured in both orders.
+struct BothOrders {
+    std::size_t pairs = 0;
+    double defect = 0;        ///< Health::reciprocityDefect of these samples
+    double largestRatio = 1;  ///< of a value to the one of the exchanged pair, both above 0
+    std::optional<Health::Exchange> worst = {};
+};
+
 /// A BRDF made of stored values.
 class MeasuredBrdf : public Brdf {
 public:
@@ -41,6 +51,8 @@ public:
     virtual Census census() const = 0;
     /// The coordinates of a table; for scattered samples, the range of the samples.
     virtual std::vector<Axis> axes() const = 0;
+    /// None where no pair was measured in both orders, or the format does not tell.
+    virtual std::optional<BothOrders> bothOrders() const { return std::nullopt; }
 
     /// As checkIntact(), but stored NaN values count as missing. It serves callers that report
     /// them or fill them in.

@@ -9,8 +9,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <sstream>
 
 namespace hshfit::brdfs {
 namespace {
@@ -190,6 +194,41 @@ TEST(AltaAttack, functionsAreChecked) {
     refused(function, head + "#FUNC nonlinear_function_diffuse\nkd nan\n", {"kd is nan"});
     refused(function, head + "#FUNC nonlinear_function_blinn\nKs 1\nN 1e9\n", {"N is"});
     refused(function, head + "what 3\n", {"belongs to no #FUNC"});
+}
+
+// On the horizon f cos is 0 whatever f is, and the cosine of 90 degrees may round to either side.
+TEST(Alta, rowsOfFTimesCosineOnTheHorizonAreLeftOutAndCounted) {
+    const std::string head =
+        "#DIM 3 1\n#PARAM_IN ISOTROPIC_TL_TV_PROJ_DPHI\n"
+        "#PARAM_OUT INV_STERADIAN_COSINE_FACTOR\n";
+    // hypot of the second and the third is above pi/2 by an ulp, and pi/2 itself.
+    const Samples samples = readAlta(head +
+                                         "0.25 -0.5372439848258255 -1.4760657170467744 0.5\n"
+                                         "0.25 1.5707963267948966 0 0.5\n0.25 0 0 0.5\n",
+                                     "f");
+    ASSERT_EQ(samples.size(), 1u);
+    EXPECT_DOUBLE_EQ(samples.values[0], 0.5);
+    EXPECT_EQ(samples.census.values, 3u);
+    EXPECT_EQ(samples.census.belowHorizon, 2u);
+
+    const std::string path = std::string(HSHFIT_SHARED) + "/data/alta/retro-gray-tape.dat";
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+    std::stringstream text;
+    text << std::ifstream(path).rdbuf();
+    std::string all = text.str(), line;
+    std::size_t rows = 0, horizontal = 0;
+    while (std::getline(text, line)) {
+        if (line.empty() || line[0] == '#') continue;
+        std::istringstream numbers(line);
+        double theta = 0, x = 0, y = 0;
+        numbers >> theta >> x >> y;
+        ++rows;
+        horizontal += std::fabs(std::hypot(x, y) - pi / 2) < 1e-9;
+    }
+    ASSERT_GT(horizontal, 5u);
+    const Samples tape = readAlta("#PARAM_OUT INV_STERADIAN_COSINE_FACTOR\n" + all, "f");
+    EXPECT_EQ(tape.size(), rows - horizontal);
+    for (const Direction& wo : tape.wo) EXPECT_GT(wo.z, 1e-9);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <brdfs/measured/scattered/interpolant.h>
 #include <brdfs/measured/scattered/scattered.h>
 
+#include <hshfit/accuracy/health.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -291,6 +293,88 @@ TEST(Scattered, anisotropicSamplesKeepTheirAxes) {
     }
     std::printf("relative error between the samples: %.4f\n", std::sqrt(missed / total));
     EXPECT_LT(std::sqrt(missed / total), 0.15);
+}
+
+/// f of a pair that is larger by `factor` for wi above wo than for the exchanged pair.
+Samples contradicting(double factor) {
+    Samples samples;
+    samples.channels = Channels::grey();
+    for (double ti = 10; ti <= 70; ti += 10)
+        for (double to = 10; to <= 70; to += 10)
+            for (double po = -170; po <= 180; po += 10) {
+                const double f = (2 + std::cos(radians(po))) * (ti > to ? factor : 1);
+                samples.add(directionFromAngles(radians(ti), 0),
+                            directionFromAngles(radians(to), radians(po)), {&f, 1},
+                            {"test", "sample", samples.size()});
+            }
+    return samples;
+}
+
+// The defect of pairs of values v and factor v is (factor - 1) / (factor + 1), diluted by pairs of
+// one elevation, which agree.
+TEST(Scattered, keepsBothOfTwoSamplesThatContradictEachOther) {
+    const Scattered brdf(contradicting(3.6), {}, "test");
+    EXPECT_FALSE(brdf.laws().reciprocal);
+    const Direction low = directionFromAngles(radians(60), 0.0);
+    const Direction high = directionFromAngles(radians(20), radians(50));
+    const double f = 2 + std::cos(radians(50));
+    EXPECT_NEAR(evaluate(brdf, low, high)[0], 3.6 * f, 1e-9);
+    EXPECT_NEAR(
+        evaluate(brdf, rotateAboutZ(high, -radians(50)), rotateAboutZ(low, -radians(50)))[0], f,
+        1e-9);
+    const auto both = brdf.bothOrders();
+    ASSERT_TRUE(both);
+    EXPECT_NEAR(both->largestRatio, 3.6, 1e-12);
+    EXPECT_GT(both->defect, 0.4);
+    EXPECT_LT(both->defect, 2.6 / 4.6);
+    ASSERT_TRUE(both->worst);
+    EXPECT_NEAR(std::max(both->worst->value, both->worst->exchanged) /
+                    std::min(both->worst->value, both->worst->exchanged),
+                3.6, 1e-12);
+    EXPECT_GT(examine(brdf).reciprocityDefect, 0.1);
+
+    const Scattered agreeing(contradicting(1), {}, "test");
+    EXPECT_TRUE(agreeing.laws().reciprocal);
+    ASSERT_TRUE(agreeing.bothOrders());
+    EXPECT_EQ(agreeing.bothOrders()->pairs, both->pairs);
+    EXPECT_EQ(agreeing.bothOrders()->defect, 0);
+    EXPECT_EQ(examine(agreeing).reciprocityDefect, 0);
+    EXPECT_FALSE(Scattered(contradicting(2), {.exchange = false}, "test").bothOrders());
+}
+
+// A hint for the quadrature, from the samples: as wide as the lobe, about its centre.
+TEST(Scattered, showsTheLobesOfItsSamples) {
+    const auto lobesOf = [](double (*f)(const Direction&, const Direction&)) {
+        Samples samples;
+        samples.channels = Channels::grey();
+        // At normal incidence the mirror direction is the way back.
+        for (double ti = 20; ti <= 60; ti += 20)
+            for (double to = 0; to <= 80; to += 1)
+                for (double po = -180; po < 180; po += 6) {
+                    const Direction wi = directionFromAngles(radians(ti), 0);
+                    const Direction wo = directionFromAngles(radians(to), radians(po));
+                    const double value = f(wi, wo);
+                    samples.add(wi, wo, {&value, 1}, {"test", "sample", samples.size()});
+                }
+        return Scattered(std::move(samples), {}, "test").lobes(directionFromAngles(0.5, 1));
+    };
+    EXPECT_TRUE(lobesOf([](const Direction&, const Direction&) { return 1.0; }).empty());
+    const auto back = lobesOf([](const Direction& i, const Direction& o) {
+        return 0.1 + std::exp(-std::pow(std::acos(std::min(1.0, dot(i, o))) / radians(3), 2));
+    });
+    ASSERT_EQ(back.size(), 1u);
+    EXPECT_EQ(back[0].about, Lobe::About::axis);
+    EXPECT_GE(back[0].width, radians(2));  // half of the peak is at 2.5 degrees
+    EXPECT_LE(back[0].width, radians(4));
+    EXPECT_NEAR(dot(back[0].axis, directionFromAngles(0.5, 1)), 1, 1e-12);
+    const auto mirror = lobesOf([](const Direction& i, const Direction& o) {
+        const double slope = std::hypot(i.x + o.x, i.y + o.y) / (i.z + o.z);
+        return 0.1 + std::exp(-std::pow(slope / 0.1, 2));
+    });
+    ASSERT_EQ(mirror.size(), 1u);
+    EXPECT_EQ(mirror[0].about, Lobe::About::halfway);
+    EXPECT_GE(mirror[0].width, radians(4));
+    EXPECT_LE(mirror[0].width, radians(8));
 }
 
 TEST(Scattered, noSampleAboveTheHorizonIsAnError) {

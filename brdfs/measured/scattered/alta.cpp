@@ -157,9 +157,10 @@ void addRow(const Header& header, const AltaParameters& parameters, std::vector<
     altaDirections(parameters, row.data(), at, wi, wo);
     const std::span<double> f = std::span(row).subspan(header.in, header.out);
     if (header.output == "XYZ_COLOR") toRgb(f.data());
-    if (header.output == "INV_STERADIAN_COSINE_FACTOR" && wo.z > 0) {
-        // On the horizon f cos does not determine f.
-        if (wo.z < 1e-9) return;
+    if (header.output == "INV_STERADIAN_COSINE_FACTOR") {
+        // On the horizon, where the cosine may round to either side of 0, f cos does not determine
+        // f.
+        if (!(wo.z > 1e-9)) return samples.leaveOut(f, at);
         for (double& value : f) value /= wo.z;
     }
     samples.add(wi, wo, f, at);

@@ -47,7 +47,9 @@ struct Neighbours {
 class Tree {
 public:
     virtual ~Tree() = default;
-    virtual void find(const Point& x, std::size_t count, Neighbours& found) const = 0;
+    /// The nearest `count` points; all of them have to lie within `bound` of x.
+    virtual void find(const Point& x, std::size_t count, Neighbours& found,
+                      double bound = std::numeric_limits<double>::infinity()) const = 0;
     /// All points within `radius`, in ascending order of their indices.
     virtual std::vector<std::uint32_t> within(const Point& x, double radius) const = 0;
 };
@@ -59,9 +61,11 @@ public:
         : index_(Dimensions, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(8)) {
         index_.buildIndex();
     }
-    void find(const Point& x, std::size_t count, Neighbours& found) const override {
+    void find(const Point& x, std::size_t count, Neighbours& found, double bound) const override {
         nanoflann::KNNResultSet<double, std::uint32_t> set(count);
         set.init(found.index, found.distance);
+        // The set takes its last distance for the largest that it still wants.
+        found.distance[count - 1] = bound * bound;
         index_.findNeighbors(set, x.data(), nanoflann::SearchParams());
         found.count = set.size();
         for (std::size_t k = 0; k < found.count; ++k) {
@@ -101,6 +105,24 @@ double shepardWeight(double distance, double radius) {
     return rest * rest;
 }
 
+/// The mean of the values of some points.
+std::vector<double> meanOf(const std::vector<std::size_t>& points, const std::vector<double>& given,
+                           std::size_t channels) {
+    std::vector<double> mean(channels, 0.0);
+    for (const std::size_t point : points)
+        for (std::size_t c = 0; c < channels; ++c) mean[c] += given[point * channels + c];
+    for (double& sum : mean) sum /= static_cast<double>(points.size());
+    return mean;
+}
+
+bool differ(const std::vector<double>& a, const std::vector<double>& b) {
+    constexpr double alike = 1e-3;
+    for (std::size_t c = 0; c < a.size(); ++c)
+        if (std::fabs(a[c] - b[c]) > alike * std::max(std::fabs(a[c]), std::fabs(b[c])))
+            return true;
+    return false;
+}
+
 }  // namespace
 
 struct ScatterInterpolant::Nodes {
@@ -110,17 +132,51 @@ struct ScatterInterpolant::Nodes {
     std::unique_ptr<Tree> tree;
     // Per node, channel by channel: value, slope in each dimension, least and greatest of Q.
     std::vector<double> values, slopes, least, greatest;
+    std::vector<BothOrders> bothOrders;
 
-    void merge(const std::vector<Point>& points, const std::vector<double>& given);
+    void merge(const std::vector<Point>& points, const std::vector<double>& given,
+               const Exchanged& isExchanged);
+    void addNode(const std::vector<std::size_t>& group, const std::vector<double>& given,
+                 const Exchanged& isExchanged);
     void fitSlopes();
     void fitSlope(std::size_t node);
     double radius(const Neighbours& found, std::size_t wanted) const;
 };
 
-/// The nodes in lexicographic order of their coordinates, each with the mean of its values.
-/// Both are independent of the order of the points.
+/// One node of all points of a group: their mean, or that of the samples themselves where exchanged
+/// images of others contradict them.
+void ScatterInterpolant::Nodes::addNode(const std::vector<std::size_t>& group,
+                                        const std::vector<double>& given,
+                                        const Exchanged& isExchanged) {
+    const std::size_t run = isExchanged.size();
+    std::vector<std::size_t> own, exchanged;
+    for (const std::size_t point : group)
+        (isExchanged[point % run] ? exchanged : own).push_back(point);
+    std::vector<double> mean = meanOf(group, given, channels);
+    const bool met = !own.empty() && !exchanged.empty();
+    // A pair that is its own exchange was measured once.
+    if (met && own.front() / run != exchanged.front() / run) {
+        BothOrders both;
+        both.value = meanOf(own, given, channels);
+        both.exchanged = meanOf(exchanged, given, channels);
+        both.contradict = differ(both.value, both.exchanged);
+        if (both.contradict) mean = both.value;
+        // The first of a run is the sample itself; the places of its images tell the same again.
+        const auto sample = std::ranges::find(own, 0, [&](std::size_t p) { return p % run; });
+        if (sample != own.end()) {
+            both.sample = *sample / run;
+            both.exchangedSample = exchanged.front() / run;
+            bothOrders.push_back(std::move(both));
+        }
+    }
+    values.insert(values.end(), mean.begin(), mean.end());
+}
+
+/// The nodes in lexical order of their coordinates: neither they nor their values depend on the
+/// order in which the points came.
 void ScatterInterpolant::Nodes::merge(const std::vector<Point>& points,
-                                      const std::vector<double>& given) {
+                                      const std::vector<double>& given,
+                                      const Exchanged& isExchanged) {
     std::vector<std::size_t> order(points.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
@@ -133,23 +189,18 @@ void ScatterInterpolant::Nodes::merge(const std::vector<Point>& points,
     for (const std::size_t k : order) all.points.push_back(points[k]);
     const std::unique_ptr<Tree> among = plant(dimensions, all);
     std::vector<unsigned char> taken(order.size(), 0);
-    std::vector<double> mean(channels);
+    std::vector<std::size_t> group;
     for (std::size_t k = 0; k < order.size(); ++k) {
         if (taken[k]) continue;
-        double count = 0;
-        std::ranges::fill(mean, 0.0);
-        const auto add = [&](std::size_t other) {
-            taken[other] = 1;
-            ++count;
-            for (std::size_t c = 0; c < channels; ++c)
-                mean[c] += given[order[other] * channels + c];
-        };
-        add(k);
+        group = {order[k]};
+        taken[k] = 1;
         for (const std::uint32_t other : among->within(all.points[k], sameNode)) {
-            if (!taken[other]) add(other);
+            if (taken[other]) continue;
+            taken[other] = 1;
+            group.push_back(order[other]);
         }
         cloud.points.push_back(all.points[k]);
-        for (const double sum : mean) values.push_back(sum / count);
+        addNode(group, given, isExchanged);
     }
 }
 
@@ -216,12 +267,13 @@ void ScatterInterpolant::Nodes::fitSlopes() {
 }
 
 ScatterInterpolant::ScatterInterpolant(int dimensions, std::vector<Point> points,
-                                       const std::vector<double>& values, std::size_t channels)
+                                       const std::vector<double>& values, std::size_t channels,
+                                       const Exchanged& isExchanged)
     : nodes_(std::make_unique<Nodes>()) {
     assert(!points.empty() && values.size() == points.size() * channels);
     nodes_->dimensions = dimensions;
     nodes_->channels = channels;
-    nodes_->merge(points, values);
+    nodes_->merge(points, values, isExchanged);
     nodes_->tree = plant(dimensions, nodes_->cloud);
     nodes_->fitSlopes();
 }
@@ -238,15 +290,28 @@ double ScatterInterpolant::nearest(const Point& x) const {
     return found.distance[0];
 }
 
-double ScatterInterpolant::evaluate(const Point& x, double limit, double* out,
-                                    std::size_t stride) const {
+const std::vector<ScatterInterpolant::BothOrders>& ScatterInterpolant::bothOrders() const {
+    return nodes_->bothOrders;
+}
+
+double ScatterInterpolant::evaluate(const Point& x, double limit, double* out, std::size_t stride,
+                                    Trail* trail) const {
     const Nodes& n = *nodes_;
     const auto size = static_cast<std::size_t>(n.dimensions);
     const std::size_t channels = n.channels;
     for (std::size_t c = 0; c < channels; ++c) out[c * stride] = 0;
     const std::size_t wanted = weighed[n.dimensions];
+    const std::size_t count = std::min(wanted + 1, n.cloud.points.size());
     Neighbours found;
-    n.tree->find(x, std::min(wanted + 1, n.cloud.points.size()), found);
+    if (trail && trail->reach >= 0) {
+        // The neighbours of the last search are this near to x, give or take rounding.
+        constexpr double rounding = 1e-9;
+        n.tree->find(x, count, found,
+                     (trail->reach + distance(x, trail->at)) * (1 + rounding) + rounding);
+    } else {
+        n.tree->find(x, count, found);
+    }
+    if (trail) *trail = {x, found.distance[count - 1]};
     const double first = found.distance[0];
     if (first > limit) return first;
     if (first <= onNode) {

@@ -23,9 +23,25 @@ namespace hshfit::brdfs {
 /// takes O(n log n), an evaluation O(log n) plus the sum.
 class ScatterInterpolant {
 public:
+    /// For each member of a run of points that come from one sample, 1 if it is the image for
+    /// exchanged directions. The first is the sample itself.
+    using Exchanged = std::vector<unsigned char>;
+    /// Samples of one place, some of them by their exchanged image. If the means of the two kinds
+    /// differ by more than 1e-3 of the larger, the node has the first of them.
+    struct BothOrders {
+        std::size_t sample = 0, exchangedSample = 0;  ///< the first of each kind
+        std::vector<double> value, exchanged;         ///< their means, one per channel
+        bool contradict = false;
+    };
+    /// The last search of a thread: the next one, near by, is faster with it, and finds the same.
+    struct Trail {
+        Point at{};
+        double reach = -1;  ///< distance of the last neighbour; below 0: no search yet
+    };
+
     /// values[point * channels + channel]. At least one point, every coordinate and value finite.
     ScatterInterpolant(int dimensions, std::vector<Point> points, const std::vector<double>& values,
-                       std::size_t channels);
+                       std::size_t channels, const Exchanged& exchanged = Exchanged(1));
     ~ScatterInterpolant();
     ScatterInterpolant(const ScatterInterpolant&) = delete;
     ScatterInterpolant& operator=(const ScatterInterpolant&) = delete;
@@ -33,8 +49,11 @@ public:
     std::size_t nodes() const;
     /// Writes out[channel * stride] and returns the distance to the nearest node; beyond `limit`
     /// only the distance is found and zeros are written.
-    double evaluate(const Point& x, double limit, double* out, std::size_t stride) const;
+    double evaluate(const Point& x, double limit, double* out, std::size_t stride,
+                    Trail* trail = nullptr) const;
     double nearest(const Point& x) const;
+    /// The places where samples and exchanged images of others meet, in the order of the nodes.
+    const std::vector<BothOrders>& bothOrders() const;
 
 private:
     struct Nodes;

@@ -11,9 +11,7 @@ InputError Row::error(std::string_view message) const {
     return InputError(fmt::format("{}: {} {}: {}", where, unit, number, message));
 }
 
-void Samples::add(const Direction& in, const Direction& out, std::span<const double> f,
-                  const Row& row) {
-    constexpr double below = -1e-6;
+void Samples::count(std::span<const double> f, const Row& row) {
     census.values += f.size();
     for (std::size_t c = 0; c < f.size(); ++c) {
         if (!std::isfinite(f[c])) {
@@ -22,10 +20,18 @@ void Samples::add(const Direction& in, const Direction& out, std::span<const dou
                             channels.names()[c], f[c]));
         }
     }
-    if (!(in.z > below) || !(out.z > below)) {
-        census.belowHorizon += f.size();
-        return;
-    }
+}
+
+void Samples::leaveOut(std::span<const double> f, const Row& row) {
+    count(f, row);
+    census.belowHorizon += f.size();
+}
+
+void Samples::add(const Direction& in, const Direction& out, std::span<const double> f,
+                  const Row& row) {
+    constexpr double below = -1e-6;
+    if (!(in.z > below) || !(out.z > below)) return leaveOut(f, row);
+    count(f, row);
     for (const double value : f) census.add(value);
     const auto lifted = [](Direction d) {
         d.z = std::max(d.z, 0.0);

@@ -41,6 +41,11 @@ struct Samples {
     /// than 1e-6 in z). Values below zero are kept and counted. Throws InputError for a value that
     /// is no finite number.
     void add(const Direction& in, const Direction& out, std::span<const double> f, const Row& row);
+    /// Counts a sample among those below the horizon. Throws likewise.
+    void leaveOut(std::span<const double> f, const Row& row);
+
+private:
+    void count(std::span<const double> f, const Row& row);
 };
 
 /// Checks a polar angle of a file, in radians. Throws InputError, with the name of the field,

@@ -135,6 +135,10 @@ Scattered::Scattered(Samples samples, const ScatteredOptions& options, std::stri
     std::vector<Point> points;
     std::vector<double> values;
     const std::size_t channels = samples_.channels.count();
+    const std::vector<Point> same = images(chart_, {.exchange = false, .mirror = folding_.mirror});
+    ScatterInterpolant::Exchanged exchanged;
+    for (const Point& signs : images_)
+        exchanged.push_back(std::ranges::find(same, signs) == same.end());
     points.reserve(samples_.size() * images_.size());
     values.reserve(samples_.values.size() * images_.size());
     for (std::size_t k = 0; k < samples_.size(); ++k) {
@@ -149,19 +153,26 @@ Scattered::Scattered(Samples samples, const ScatteredOptions& options, std::stri
         }
     }
     interpolant_ = std::make_unique<ScatterInterpolant>(dimensions(chart_), std::move(points),
-                                                        values, channels);
+                                                        values, channels, exchanged);
+    if (std::ranges::any_of(interpolant_->bothOrders(),
+                            &ScatterInterpolant::BothOrders::contradict)) {
+        images_ = same;
+        laws_.reciprocal = false;
+    }
+    if (ofPairs) lobes_ = sampleLobes(samples_);
 }
 
 void Scattered::eval(const Direction& wo, DirectionBatch wi, double* out) const {
     const double limit = 1.5 * options_.reach;
     const std::size_t channels = samples_.channels.count();
+    ScatterInterpolant::Trail trail;
     for (std::size_t k = 0; k < wi.count; ++k) {
         if (!(wi.z[k] > 0) || !(wo.z > 0)) {
             for (std::size_t c = 0; c < channels; ++c) out[c * wi.count + k] = 0;
             continue;
         }
         const Point at = folded(chartPoint(chart_, {wi.x[k], wi.y[k], wi.z[k]}, wo), images_);
-        const double away = interpolant_->evaluate(at, limit, out + k, wi.count);
+        const double away = interpolant_->evaluate(at, limit, out + k, wi.count, &trail);
         if (away <= options_.reach || away > limit) continue;
         const double t = (limit - away) / (limit - options_.reach);
         const double fade = t * t * (3 - 2 * t);
@@ -176,6 +187,41 @@ void Scattered::coverage(const Direction& wo, DirectionBatch wi, unsigned char* 
         const Point at = folded(chartPoint(chart_, {wi.x[k], wi.y[k], wi.z[k]}, wo), images_);
         covered[k] = interpolant_->nearest(at) <= options_.reach;
     }
+}
+
+std::vector<Lobe> Scattered::lobes(const Direction& wo) const {
+    std::vector<Lobe> lobes;
+    if (lobes_.mirror > 0)
+        lobes.push_back({.about = Lobe::About::halfway, .width = lobes_.mirror, .axis = {}});
+    if (lobes_.back > 0)
+        lobes.push_back({.about = Lobe::About::axis, .width = lobes_.back, .axis = wo});
+    return lobes;
+}
+
+std::optional<BothOrders> Scattered::bothOrders() const {
+    BothOrders both;
+    double difference = 0, sum = 0, largest = 0;
+    const std::size_t channels = samples_.channels.count();
+    for (const auto& place : interpolant_->bothOrders()) {
+        // Each pair comes by either of its samples.
+        if (place.sample > place.exchangedSample) continue;
+        const Direction &wi = samples_.wi[place.sample], &wo = samples_.wo[place.sample];
+        ++both.pairs;
+        for (std::size_t c = 0; c < channels; ++c) {
+            const double value = place.value[c], exchanged = place.exchanged[c];
+            const double apart = wi.z * wo.z * std::fabs(value - exchanged);
+            difference += apart;
+            sum += wi.z * wo.z * (value + exchanged);
+            const auto [less, more] = std::minmax(value, exchanged);
+            if (less > 0) both.largestRatio = std::max(both.largestRatio, more / less);
+            if (apart <= largest) continue;
+            largest = apart;
+            both.worst = Health::Exchange{wi, wo, c, value, exchanged};
+        }
+    }
+    if (both.pairs == 0) return std::nullopt;
+    if (sum > 0) both.defect = difference / sum;
+    return both;
 }
 
 DirectionSamples Scattered::directionSamples() const {

@@ -3,6 +3,7 @@
 #include <brdfs/catalog.h>
 #include <brdfs/measured/measured_brdf.h>
 #include <brdfs/measured/scattered/interpolant.h>
+#include <brdfs/measured/scattered/sample_lobes.h>
 #include <brdfs/measured/scattered/samples.h>
 #include <hshfit/projection/least_squares.h>
 
@@ -19,8 +20,8 @@ namespace hshfit::brdfs {
 struct ScatteredOptions {
     std::optional<bool> isotropic = {};
     std::optional<bool> mirror = {};
-    bool exchange = true;        ///< f(wi, wo) = f(wo, wi): a sample stands for the exchanged pair
-    double reach = radians(10);  ///< largest distance from a sample at which f is interpolated
+    bool exchange = true;  ///< a sample stands for the exchanged pair, unless that was measured
+    double reach = radians(10);  ///< distance from a sample within which f rests on it
 };
 
 /// The options `isotropic`, `mirror`, `exchange` and `reach` of every scattered format, followed by
@@ -31,8 +32,12 @@ ScatteredOptions scatteredOptions(const Parameters& parameters);
 /// A BRDF interpolated between scattered samples: `ScatterInterpolant` in the coordinates of
 /// `Chart`. Within `reach` of the nearest sample (or of its image under the symmetries) f is
 /// interpolated and coverage() is 1; from there to 1.5 reach it fades to 0; beyond it is 0.
-/// Values below zero count as 0. f is never negative and continuous above the horizon. Assumed
-/// reciprocity and mirror symmetry hold exactly, isotropy to rounding.
+/// Values below zero count as 0. Never negative, continuous above the horizon; mirror symmetric
+/// exactly where folded so, isotropic to rounding.
+///
+/// With `exchange`, f is reciprocal exactly, unless samples contradict it: where both orders of a
+/// pair were measured and differ by more than 1e-3, f has the measured value in each order, and
+/// Laws::reciprocal is false.
 class Scattered : public MeasuredBrdf {
 public:
     /// Throws InputError, starting with `name`, if there are no samples above the horizon.
@@ -48,6 +53,10 @@ public:
     std::vector<Fact> facts() const override;
     Census census() const override { return samples_.census; }
     std::vector<Axis> axes() const override;
+    std::optional<BothOrders> bothOrders() const override;
+    /// A lobe about the mirror configuration, and one about the way back, where samples of pairs
+    /// show them (sample_lobes.h).
+    std::vector<Lobe> lobes(const Direction& wo) const override;
 
     const Samples& samples() const { return samples_; }
     /// A view of the samples, values below zero included. Throws UsageError for data that were
@@ -61,7 +70,8 @@ private:
     Chart chart_;
     Folding folding_;
     Laws laws_;
-    std::vector<Point> images_;
+    std::vector<Point> images_;  ///< that f is the same at
+    SampleLobes lobes_;
     std::unique_ptr<ScatterInterpolant> interpolant_;
 };
 
