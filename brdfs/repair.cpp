@@ -38,8 +38,10 @@ std::string reciprocityReason(const Brdf&, const Health& health) {
 }
 
 std::string energyReason(const Brdf&, const Health& health) {
-    if (health.largestAlbedo() <= 1 + 2 * health.albedoTolerance) return {};
-    return fmt::format("the largest albedo is {:.4f}", health.largestAlbedo());
+    if (!health.isAboveOne()) return {};
+    const double largest = health.largestAlbedo();
+    return largest < 1e4 ? fmt::format("the largest albedo is {:.4f}", largest)
+                         : fmt::format("the largest albedo is {:.4g}", largest);
 }
 
 Chosen parseNames(std::string_view names) {

@@ -48,21 +48,39 @@ Json albedoJson(const Health& health) {
         row["theta"] = std::round(row["theta"].get<double>());  // asked for in whole degrees
         row["phi"] = std::round(row["phi"].get<double>());
         row["values"] = albedo.values.empty() ? Json(nullptr) : Json(albedo.values);
-        if (albedo.values.empty()) row["reason"] = "did not converge";
+        if (albedo.values.empty()) {
+            row["reason"] = "not finite";
+        } else {
+            row["error"] = finiteOrNull(albedo.error);
+            if (!albedo.converged) row["reason"] = "did not converge";
+        }
         rows.push_back(std::move(row));
     }
     return rows;
 }
 
-Json healthJson(const Brdf& brdf, const Health& health) {
+Json exchangeJson(const Brdf& brdf, const Health::Exchange& exchange) {
+    return {{"wi", directionJson(exchange.wi)},
+            {"wo", directionJson(exchange.wo)},
+            {"channel", brdf.channels().names()[exchange.channel]},
+            {"value", exchange.value},
+            {"exchanged", exchange.exchanged}};
+}
+
+Json reciprocityJson(const Brdf& brdf, const Health& health) {
     Json reciprocity = {{"defect", health.reciprocityDefect}};
-    if (const auto& worst = health.worstExchange) {
-        reciprocity["worst"] = {{"wi", directionJson(worst->wi)},
-                                {"wo", directionJson(worst->wo)},
-                                {"channel", brdf.channels().names()[worst->channel]},
-                                {"value", worst->value},
-                                {"exchanged", worst->exchanged}};
+    if (health.worstExchange) reciprocity["worst"] = exchangeJson(brdf, *health.worstExchange);
+    const auto* measured = dynamic_cast<const brdfs::MeasuredBrdf*>(&brdf);
+    if (const auto both = measured ? measured->bothOrders() : std::nullopt) {
+        reciprocity["samples"] = {{"pairs", both->pairs},
+                                  {"defect", both->defect},
+                                  {"largest_ratio", both->largestRatio}};
+        if (both->worst) reciprocity["samples"]["worst"] = exchangeJson(brdf, *both->worst);
     }
+    return reciprocity;
+}
+
+Json healthJson(const Brdf& brdf, const Health& health) {
     Json repairs = Json::array();
     for (const auto& repair : brdfs::repairs()) {
         const std::string reason = repair.reason(brdf, health);
@@ -73,18 +91,24 @@ Json healthJson(const Brdf& brdf, const Health& health) {
             {"values", health.values},
             {"negative", health.negative},
             {"not_finite", health.notFinite},
-            {"reciprocity", reciprocity},
+            {"reciprocity", reciprocityJson(brdf, health)},
             {"largest_albedo", health.largestAlbedo()},
             {"albedo_tolerance", health.albedoTolerance},
             {"suggested_repairs", repairs}};
 }
 
 std::string albedoText(const Json& row) {
-    if (row["values"].is_null()) return row["reason"];
+    if (row["values"].is_null()) return row["reason"].get<std::string>();
     std::vector<double> shown = row["values"];
     const bool many = shown.size() > 8;
     if (many) shown.resize(8);
-    return fmt::format("{:.4f}{}", fmt::join(shown, " "), many ? " …" : "");
+    const bool huge = *std::ranges::max_element(shown) >= 1e4;
+    std::string text = huge ? fmt::format("{:.4g}", fmt::join(shown, " "))
+                            : fmt::format("{:.4f}", fmt::join(shown, " "));
+    if (many) text += " …";
+    if (!row.contains("reason")) return text;
+    return row["error"].is_null() ? text + " (one sum, of unknown error)"
+                                  : fmt::format("{} +- {:.2g}", text, row["error"].get<double>());
 }
 
 std::string censusText(const Json& census) {
@@ -103,6 +127,14 @@ std::string axisText(const Json& axis) {
     return fmt::format("{} from {} to {} {}, gaps up to {}", axis["count"].get<std::size_t>(),
                        number("first"), number("last"), axis["unit"].get<std::string>(),
                        number("largest_gap"));
+}
+
+std::string bothOrdersText(const Json& samples) {
+    return factLine("  of the samples", fmt::format("{:.2g} over {} pairs measured in both orders, "
+                                                    "which differ by up to {:.3g} times",
+                                                    samples["defect"].get<double>(),
+                                                    samples["pairs"].get<std::size_t>(),
+                                                    samples["largest_ratio"].get<double>()));
 }
 
 }  // namespace
@@ -148,8 +180,10 @@ std::string healthText(const Json& document) {
                         worst["exchanged"].get<double>(), worst["channel"].get<std::string>());
     }
     text += factLine("reciprocity defect", defect);
-    text +=
-        factLine("largest albedo", fmt::format("{:.4f}", health["largest_albedo"].get<double>()));
+    if (reciprocity.contains("samples")) text += bothOrdersText(reciprocity["samples"]);
+    const double largest = health["largest_albedo"];
+    text += factLine("largest albedo", largest >= 1e4 ? fmt::format("{:.4g}", largest)
+                                                      : fmt::format("{:.4f}", largest));
     for (const Json& repair : health["suggested_repairs"]) {
         text +=
             factLine("suggested repair", fmt::format("{} ({})", repair["name"].get<std::string>(),

@@ -131,6 +131,13 @@ double Health::largestAlbedo() const {
     return largest;
 }
 
+bool Health::isAboveOne() const {
+    return std::ranges::any_of(albedos, [&](const Albedo& albedo) {
+        const double margin = std::max(albedo.error, 2 * albedoTolerance);
+        return std::ranges::any_of(albedo.values, [&](double value) { return value > 1 + margin; });
+    });
+}
+
 Health examine(const Brdf& brdf, const HealthOptions& options) {
     Health health;
     health.albedoTolerance = options.albedoTolerance;
@@ -138,19 +145,26 @@ Health examine(const Brdf& brdf, const HealthOptions& options) {
     for (double theta : albedoAngles) {
         for (double phi : albedoAzimuths) {
             if (phi > 0 && (theta == 0 || brdf.laws().isotropic)) break;
-            health.albedos.push_back({directionFromAngles(radians(theta), radians(phi)), {}});
+            health.albedos.push_back({.wo = directionFromAngles(radians(theta), radians(phi))});
         }
     }
-    std::atomic<std::size_t> done = 0;
+    const AlbedoOptions how{.tolerance = options.albedoTolerance,
+                            .maxEvaluations = options.albedoEvaluations / health.albedos.size()};
+    std::atomic<std::size_t> done = 0, evaluations = 0;
     tbb::parallel_for(std::size_t{0}, health.albedos.size(), [&](std::size_t i) {
         Health::Albedo& albedo = health.albedos[i];
         try {
-            albedo.values = directionalAlbedo(brdf, albedo.wo, options.albedoTolerance);
+            AlbedoEstimate found = estimateAlbedo(brdf, albedo.wo, how);
+            evaluations += found.evaluations;
+            albedo.values = std::move(found.values);
+            albedo.error = found.error;
+            albedo.converged = found.converged;
         } catch (const NumericError&) {
-            albedo.values.clear();  // reported as not converged
+            albedo.values.clear();  // reported as not finite
         }
         if (options.progress) options.progress(++done, health.albedos.size());
     });
+    health.albedoEvaluations = evaluations;
     return health;
 }
 

@@ -36,17 +36,26 @@ struct Health {
     /// Directional albedos, by theta and, for an anisotropic BRDF, four azimuths.
     struct Albedo {
         Direction wo;
-        std::vector<double> values;  ///< one per channel; empty where it did not converge
+        std::vector<double> values = {};  ///< one per channel; empty where f is not finite
+        double error = 0;                 ///< of the quadrature, absolute
+        bool converged = false;           ///< to the tolerance
     };
     std::vector<Albedo> albedos;
-    double albedoTolerance = 0;  ///< quadrature tolerance of the albedos
-    /// The largest of them: above 1, the surface reflects more than it receives.
+    double albedoTolerance = 0;  ///< of the quadrature, relative (AlbedoOptions)
+    std::size_t albedoEvaluations = 0;
+    /// The largest of them.
     double largestAlbedo() const;
+    /// Whether one of them is above 1 by more than its error and twice the tolerance: the surface
+    /// reflects more than it receives.
+    bool isAboveOne() const;
 };
 
 struct HealthOptions {
     std::size_t pairs = 16384;
     double albedoTolerance = 1e-3;
+    /// Of all albedos together; they share them evenly. Where they do not do, albedos have the
+    /// error that is left. Two million take seconds where f is a search among samples.
+    std::size_t albedoEvaluations = std::size_t{1} << 21;
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
 

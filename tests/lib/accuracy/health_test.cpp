@@ -1,9 +1,11 @@
 #include <hshfit/accuracy/health.h>
+#include <hshfit/accuracy/isotropy.h>
 
 #include <gtest/gtest.h>
 #include <lib/formula_brdf.h>
 #include <tbb/global_control.h>
 
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -77,6 +79,60 @@ TEST(Health, findsAlbedosAboveOne) {
     const Formula turned(
         [](const Direction&, const Direction& wo) { return (1 + wo.x * wo.y) / pi; }, {}, Laws{});
     EXPECT_NEAR(examine(turned).largestAlbedo(), 1 + std::pow(std::sin(radians(85)), 2) / 2, 2e-3);
+}
+
+// A thousandth of an albedo of 1e36 is not 1e-3.
+TEST(Health, albedosHaveARelativeTolerance) {
+    const double scale = 1e36;
+    std::atomic<std::size_t> evaluations = 0;
+    const auto cubic = [&](const Direction& wi, const Direction& wo) {
+        ++evaluations;
+        return (1 + wi.x * wo.x + wi.z * wi.z * wi.z) / pi;
+    };
+    const Health small = examine(Formula(cubic));
+    const std::size_t cost = evaluations.exchange(0);
+    const Health large = examine(
+        Formula([&](const Direction& wi, const Direction& wo) { return scale * cubic(wi, wo); }));
+    EXPECT_LE(evaluations, cost + cost / 10);
+    for (std::size_t k = 0; k < small.albedos.size(); ++k) {
+        ASSERT_TRUE(large.albedos[k].converged);
+        // 1 + 2/5: the integral of (1 + z^3) z over the hemisphere, over pi.
+        EXPECT_NEAR(large.albedos[k].values[0] / scale, 1.4, 2e-3);
+    }
+    EXPECT_TRUE(large.isAboveOne());
+}
+
+// f that no level resolves: the evaluations are bounded, and the albedo has the error that is left.
+TEST(Health, evaluationsAreBounded) {
+    std::atomic<std::size_t> evaluations = 0;
+    const auto noise = [&](const Direction& wi, const Direction&) {
+        ++evaluations;
+        const double turns = 43758.5453 * std::sin(1271 * wi.x + 3117 * wi.y);
+        return turns - std::floor(turns) < 0.01 ? 1e32 : 0.0;
+    };
+    const HealthOptions options;
+    const Health health = examine(Formula(noise, {}, Laws{}), options);
+    EXPECT_LE(health.albedoEvaluations, options.albedoEvaluations);
+    EXPECT_LE(evaluations, options.albedoEvaluations + 2 * options.pairs);
+    EXPECT_EQ(health.albedos.size(), 29u);
+    std::size_t converged = 0;  // by accident
+    for (const Health::Albedo& albedo : health.albedos) {
+        ASSERT_EQ(albedo.values.size(), 1u);
+        EXPECT_NEAR(albedo.values[0], pi * 1e30, 1e30);  // 1e32 in a hundredth of the directions
+        EXPECT_GT(albedo.error, 0);
+        converged += albedo.converged;
+    }
+    EXPECT_LT(converged, health.albedos.size() / 2);
+}
+
+// f = 1 + wo.x / 2 at normal incidence has the deviation sin(theta_o) / (2 sqrt 2).
+TEST(Isotropy, azimuthVariationIsThatOfNormalIncidence) {
+    EXPECT_NEAR(azimuthVariation(Formula(lambert)), 0, 1e-12);
+    const Formula tilted([](const Direction& wi, const Direction& wo) {
+        return 1 + wo.x / 2 + 5 * std::hypot(wi.x, wi.y);
+    });
+    EXPECT_NEAR(azimuthVariation(tilted), std::sin(radians(75)) / std::sqrt(8), 1e-12);
+    EXPECT_EQ(azimuthVariation(Formula([](const Direction&, const Direction&) { return 0.0; })), 0);
 }
 
 TEST(Health, doesNotDependOnTheThreads) {
