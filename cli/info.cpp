@@ -3,11 +3,14 @@
 #include "form_options.h"
 #include "health.h"
 
+#include <hshfit/accuracy/isotropy.h>
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/quadrature/quadrature.h>
 #include <hshfit/representation/forms/represented_brdf.h>
+
+#include <brdfs/measured/scattered/scattered.h>
 
 #include <jobs/source.h>
 
@@ -89,6 +92,22 @@ void describeContainer(const std::string& path, Json& facts) {
     facts["functions_per_direction"] = read.payload.slots.size();
 }
 
+/// Sentences about a BRDF that is not what it is taken for.
+std::vector<std::string> warningsOf(const Brdf& brdf) {
+    std::vector<std::string> warnings;
+    for (const auto& [name, value] : brdf.facts())
+        if (name == "looks_like")
+            warnings.push_back("the file looks like " + std::get<std::string>(value));
+    constexpr double alike = 0.01;  // the files of real materials stay below 0.001
+    const double variation = brdf.laws().isotropic ? azimuthVariation(brdf) : 0;
+    if (variation > alike)
+        warnings.push_back(
+            fmt::format("it is taken as isotropic, but at normal incidence f varies with the "
+                        "azimuth by {:.2g} % (root mean square)",
+                        100 * variation));
+    return warnings;
+}
+
 Json describe(const Brdf& brdf, const Globals& globals) {
     const auto* reconstruction = dynamic_cast<const Reconstruction*>(&brdf);
     const auto* represented = dynamic_cast<const RepresentedBrdf*>(&brdf);
@@ -108,8 +127,17 @@ Json describe(const Brdf& brdf, const Globals& globals) {
         document["facts"] = factsJson(brdf.facts());
     }
     Progress progress(globals, "info");
-    describeHealth(brdf, examine(brdf, {.progress = progress.callback()}), document);
+    HealthOptions options{.progress = progress.callback()};
+    // A search among samples takes some twenty times as long as a look into a table.
+    if (dynamic_cast<const brdfs::Scattered*>(&brdf) == nullptr) options.albedoEvaluations *= 4;
+    describeHealth(brdf, examine(brdf, options), document);
     document["range"] = rangeJson(brdf);
+    if (const auto warnings = warningsOf(brdf); !warnings.empty()) {
+        document["warnings"] = warnings;
+        // What is no BRDF is not to be repaired into one.
+        if (document["facts"].contains("looks_like"))
+            document["health"]["suggested_repairs"] = Json::array();
+    }
     return document;
 }
 
@@ -132,6 +160,8 @@ std::string text(const Json& document) {
     out += factLine("smallest f found", jsonText(document["range"]["min"]));
     out += factLine("largest f found", jsonText(document["range"]["max"]));
     out += healthText(document);
+    for (const Json& warning : document.value("warnings", Json::array()))
+        out += factLine("WARNING", warning.get<std::string>());
     return out;
 }
 

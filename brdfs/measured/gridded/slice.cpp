@@ -219,6 +219,10 @@ std::vector<Fact> SliceBrdf::facts() const {
          single ? fmt::format("only {} degrees; continued constantly", layout_.phi.front())
                 : fmt::format("{} values of 0 to {} degrees", layout_.phi.size(), layout_.period)},
     };
+    // Slices are square, or nearly so; pictures of surroundings are twice as wide as high.
+    if (single && layout_.halfCount == 2 * layout_.differenceCount) {
+        facts.emplace_back("looks_like", "a lat-long environment map, which is no BRDF");
+    }
     return facts;
 }
 
