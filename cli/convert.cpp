@@ -37,10 +37,15 @@ Json repairsJson(const jobs::Repairs& repairs) {
 }
 
 Json document(const jobs::Converted& converted, const std::string& output) {
-    Json document = {{"format", "hshfit-convert"},   {"version", 1},
-                     {"input", converted.input},     {"output", output},
-                     {"written", converted.written}, {"altered", converted.altered},
-                     {"bytes", converted.bytes}};
+    Json document = {{"format", "hshfit-convert"},
+                     {"version", 1},
+                     {"input", converted.input},
+                     {"output", output},
+                     {"written", converted.written},
+                     {"altered", converted.altered},
+                     {"bytes", converted.bytes},
+                     {"error", converted.error ? Json(*converted.error) : Json(nullptr)}};
+    if (converted.poor) document["poor"] = jobs::poorJson(*converted.poor);
     if (converted.repairs) document["repairs"] = repairsJson(*converted.repairs);
     if (const auto& loss = converted.loss) {
         Json rows = Json::array();
@@ -74,6 +79,7 @@ std::string convertText(const Json& document, const std::optional<jobs::Conversi
 void runConvert(const ConvertArguments& arguments, const Globals& globals) {
     const jobs::Converted converted =
         jobs::convert(arguments.input, arguments.output, arguments.options, listenerFor(globals));
+    if (converted.poor) note(globals, converted.poor->line());
     const Json answer = document(converted, arguments.output);
     if (globals.json) {
         printJson(answer);

@@ -59,10 +59,12 @@ std::string text(const Json& document) {
     } else {
         const auto percent = [&](const char* key) { return 100 * error[key].get<double>(); };
         out += fmt::format(
-            "error against {}: {:.3g} % = truncation {:.3g} %, interpolation {:.3g} %, "
+            "error against {}: {:.3g} % = truncation {:.3g} %, interpolation {:.3g} %{}, "
             "storage {:.3g} %; mean log {:.3g}\n",
             document["brdf"].get<std::string>(), percent("total"), percent("truncation"),
-            percent("interpolation"), percent("quantisation"), error["mean_log"].get<double>());
+            percent("interpolation"),
+            percent("form") > 0 ? fmt::format(", form {:.3g} %", percent("form")) : "",
+            percent("quantisation"), error["mean_log"].get<double>());
     }
     if (document.contains("basis_textures")) {
         const Json& basis = document["basis_textures"];
@@ -79,6 +81,7 @@ Json document(const jobs::Exported& exported, const std::string& folder) {
         {"format", "hshfit-export"}, {"version", 1}, {"folder", folder}, {"name", exported.name}};
     document.update(describe(exported.payload));
     document["fit_error"] = jobs::errorJson(exported.error);
+    if (exported.poor) document["poor"] = jobs::poorJson(*exported.poor);
     document["files"] = Json::array({{{"role", "sidecar"}, {"path", exported.sidecar}},
                                      {{"role", "test"}, {"path", exported.test}}});
     for (const gpu::ExportedFile& file : exported.textures) {
@@ -103,6 +106,7 @@ void runExport(ExportArguments& arguments, const Globals& globals) {
     options.measureError = !arguments.noError;
     const jobs::Exported exported = jobs::exportCoefficients(
         arguments.coefficients, arguments.output, options, listenerFor(globals));
+    if (exported.poor) note(globals, exported.poor->line());
     const Json answer = document(exported, arguments.output);
     if (globals.json) {
         printJson(answer);

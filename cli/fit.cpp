@@ -119,11 +119,13 @@ void runFit(const FitArguments& arguments, Globals& globals) {
     const std::clock_t cpuStart = std::clock();
     jobs::Fitted fitted =
         jobs::fit(arguments.data, arguments.output, arguments.options, listenerFor(globals));
+    if (fitted.poor) note(globals, fitted.poor->line());
     if (!globals.json) return printText(text(fitted, arguments.output));
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     fitted.preset["time"] = {
         {"seconds", elapsed.count()},
         {"cpu_seconds", static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC}};
+    if (fitted.poor) fitted.preset["poor"] = jobs::poorJson(*fitted.poor);
     printJson(fitted.preset);
 }
 

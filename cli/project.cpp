@@ -54,12 +54,14 @@ Json answer(const jobs::Projected& result) {
                                      {"samples", c.leastSquares->samples}};
     }
     if (result.kept) document["representation"] = describeForm(*result.kept);
+    if (result.poor) document["poor"] = jobs::poorJson(*result.poor);
     return document;
 }
 
-void noteEnergy(const Projection& projection, const std::string& prefix, const Globals& globals) {
-    const Energy& energy = projection.coefficients.energy;
+void noteQuality(const jobs::Projected& result, const std::string& prefix, const Globals& globals) {
+    const Energy& energy = result.projection.coefficients.energy;
     if (!energy.finite) note(globals, prefix + "the energy does not exist: " + energy.reason);
+    if (result.poor) note(globals, prefix + result.poor->line());
 }
 
 std::string line(const jobs::Projected& result, const Json& document) {
@@ -88,7 +90,7 @@ std::string line(const jobs::Projected& result, const Json& document) {
 void projectOne(const ProjectArguments& arguments, const Globals& globals) {
     const jobs::Projected result = jobs::project(arguments.specs[0], arguments.output,
                                                  arguments.options, listenerFor(globals));
-    noteEnergy(result.projection, "", globals);
+    noteQuality(result, "", globals);
     const Json document = answer(result);
     if (globals.json)
         printJson(document);
@@ -105,7 +107,7 @@ void projectMany(const ProjectArguments& arguments, Globals& globals) {
     std::string text;
     for (const auto& result : many.results) {
         if (!result) continue;
-        noteEnergy(result->projection, result->projection.coefficients.source + ": ", globals);
+        noteQuality(*result, result->projection.coefficients.source + ": ", globals);
         documents.push_back(answer(*result));
         text += line(*result, documents.back());
     }
@@ -152,7 +154,7 @@ void addProject(CLI::App& command, Globals& globals) {
     command
         .add_option("--outgoing", options.outgoing,
                     "WxH (parabolic map), N (elevations, isotropic) or THETA,PHI in degrees")
-        ->default_str("32x32");
+        ->default_str("32 if isotropic, else 32x32");
     addRgb(command, options.rgb);
     command.add_flag("--cosine", options.cosine, "Project f cos(theta_i) instead of f");
     command.add_flag("--condon-shortley", options.condonShortley,

@@ -24,6 +24,7 @@ constexpr OptionRow options[] = {
     {"ExportOptions::source", "--source"},
     {"FileSet::force", "--force"},
     {"FitOptions::accept", "--accept"},
+    {"FitOptions::model", "--model", Value::quoted},
     {"Form::basis", "--basis"},
     {"Form::condonShortley", "--condon-shortley"},
     {"Form::energyPreserving", "--energy-preserving"},
@@ -41,6 +42,7 @@ constexpr OptionRow options[] = {
     {"Form::reciprocal", "--reciprocal"},
     {"Form::split", "--split", Value::quoted},
     {"Form::window", "--window"},
+    {"PackOptions::number", "--number"},
     {"PlanOptions::bases", "--bases"},
     {"ProjectOptions::leastSquares", "--least-squares"},
     {"ProjectionOptions::maxEvaluations", "--max-evaluations"},
@@ -96,8 +98,16 @@ struct CommandRow {
 
 const CommandRow commandsOfFunctions[] = {
     {"asRgb", [](const Call&) -> std::string { return "--rgb"; }},
+    {"exportCoefficients",
+     [](const Call& call) {
+         return "hshfit export " + forShell(call.subject) + optionsOf(call) + " -o " +
+                forShell(call.output);
+     }},
     {"fit",
-     [](const Call& call) { return "hshfit fit '" + call.subject + "' --model ggx -o fit.json"; }},
+     [](const Call& call) {
+         return call.settings.empty() ? "hshfit fit '" + call.subject + "' --model ggx -o fit.json"
+                                      : "hshfit fit " + forShell(call.subject) + optionsOf(call);
+     }},
     {"formats", [](const Call&) -> std::string { return "hshfit list formats"; }},
     {"linearlyTransformedCosines", [](const Call&) -> std::string { return "hshfit ltc"; }},
     {"metricCatalog", [](const Call&) -> std::string { return "hshfit list metrics"; }},
@@ -105,6 +115,7 @@ const CommandRow commandsOfFunctions[] = {
      [](const Call& call) {
          return "hshfit project " + quoted(call.subject) + optionsOf(call) + " -o " + call.output;
      }},
+    {"writers", [](const Call&) -> std::string { return "hshfit list writers"; }},
     {"writeRepresentation",
      [](const Call& call) {
          return "hshfit project " + forShell(call.subject) + " -o " + call.output + optionsOf(call);

@@ -25,7 +25,7 @@ phong=phong:exponent=22
 ward=ward:ax=0.2,ay=0.5
 ggx=ggx:alpha=0.3
 
-echo "1. Coefficients: hemispherical harmonics of order 7 for 32 x 32 outgoing directions."
+echo "1. Coefficients: hemispherical harmonics of order 7 at 32 elevations or 32 x 32 directions."
 show project $phong -o out/phong.json
 show project $phong --cosine -o out/phong_cosine.json
 show project $ward --cosine -o out/ward_cosine.json

@@ -65,6 +65,27 @@ ConversionLoss measureLoss(const Brdf& input, const brdfs::Writer& writer,
                                      {.progress = listener.part("loss")})};
 }
 
+/// Relative L2 of f c, as a matter of course: few directions and a coarse quadrature will do. None
+/// where the two do not compare.
+std::optional<double> errorOf(const Brdf& input, const std::string& output) {
+    const OutgoingSet outgoing =
+        input.laws().isotropic ? OutgoingSet::elevations(6) : OutgoingSet::parabolic(6, 6);
+    try {
+        const auto read = brdfs::open(output);
+        return compare(input, *read, outgoing, selectMetrics("relative-l2-cosine"), {.level = 1})[0]
+            .value;
+    } catch (const Error&) {
+        return std::nullopt;  // spectra that were written as colours, for one
+    }
+}
+
+std::optional<Poor> judgeLoss(double error, const std::string& output) {
+    if (!(error > Converted::mostLoss)) return std::nullopt;
+    return Poor{fmt::format("{} differs from its source by {:.3g} % (relative L2 of f cos)", output,
+                            100 * error),
+                fmt::format("more nodes, or another format ({})", Call{.function = "writers"})};
+}
+
 }  // namespace
 
 Converted convert(const std::string& input, const std::string& output,
@@ -89,6 +110,8 @@ Converted convert(const std::string& input, const std::string& output,
     if (options.measureLoss) {
         converted.loss = measureLoss(*brdf, writer, output, options, listener);
     }
+    if (writer.readBack) converted.error = errorOf(*brdf, output);
+    if (converted.error) converted.poor = judgeLoss(*converted.error, output);
     brdf->checkIntact();
     return converted;
 }

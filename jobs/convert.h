@@ -1,6 +1,7 @@
 #pragma once
 
 #include "listener.h"
+#include "quality.h"
 
 #include <hshfit/accuracy/metrics.h>
 
@@ -40,6 +41,12 @@ struct Converted {
     std::uintmax_t bytes = 0;
     std::optional<Repairs> repairs;
     std::optional<ConversionLoss> loss;
+    /// Relative L2 of f c between the file, read back, and the BRDF; none where nothing here reads
+    /// the format, or the BRDF is 0.
+    std::optional<double> error = {};
+    std::optional<Poor> poor = {};  ///< an error above `mostLoss`
+
+    static constexpr double mostLoss = 0.01;
 };
 
 /// Writes a BRDF or a coefficient file to `output` in the format of another program. Throws

@@ -44,9 +44,13 @@ Source openSourceOf(const ExportOptions& options, const Coefficients& coefficien
 }
 
 /// Coefficients per outgoing direction. Other forms, and files with a BRDF added, are projected
-/// anew. The stated error of the export includes the loss of that projection.
-Coefficients coefficientsOf(const std::string& path, const ExportOptions& options,
-                            const Listener& listener) {
+/// anew, and what that costs is part of the error that the export states.
+struct Exportable {
+    Coefficients coefficients;
+    bool plain = true;  ///< a projection, with nothing done to it since
+};
+Exportable coefficientsOf(const std::string& path, const ExportOptions& options,
+                          const Listener& listener) {
     const Representation stored = readRepresentation(path);
     ExpandOptions expansion{.basis = options.basis, .order = options.order};
     std::optional<OutgoingSet> outgoing;
@@ -58,18 +62,19 @@ Coefficients coefficientsOf(const std::string& path, const ExportOptions& option
                                  path, kindName(stored.kind()),
                                  stored.added.empty() ? "" : " with " + stored.added));
     }
-    return expand(stored, sourceOpener(), expansion);
+    // Whatever stands in the steps (a window, factors, bits) is no projection of the source.
+    const bool plain = stored.kind == Representation::Kind::outgoing && stored.steps.empty();
+    return {expand(stored, sourceOpener(), expansion), plain};
 }
 
-/// The error, or the reason why there is none. A failure of an explicitly named source is thrown.
-ExportError errorOf(const Source& source, const Coefficients& coefficients,
-                    const gpu::Payload& payload, const ExportOptions& options,
-                    const Listener& listener) {
+/// The error, or why there is none. A source that was named has to do.
+ExportError errorOf(const Source& source, const Exportable& given, const gpu::Payload& payload,
+                    const ExportOptions& options, const Listener& listener) {
     if (!options.measureError) return {{}, "not asked for"};
     if (!source.brdf) return {{}, source.reason};
     try {
-        return {gpu::splitError(*source.brdf, coefficients, payload,
-                                {.progress = listener.part("error")}),
+        return {gpu::splitError(*source.brdf, given.coefficients, payload,
+                                {.plain = given.plain, .progress = listener.part("error")}),
                 {}};
     } catch (const Error& error) {
         if (!options.source.empty()) throw;
@@ -150,6 +155,7 @@ nlohmann::ordered_json errorJson(const ExportError& error) {
             {"outgoing", split.outgoing},
             {"truncation", split.truncation},
             {"interpolation", split.interpolation},
+            {"form", split.form},
             {"quantisation", split.quantisation},
             {"total", split.total},
             {"mean_log", split.meanLog}};
@@ -158,7 +164,8 @@ nlohmann::ordered_json errorJson(const ExportError& error) {
 Exported exportCoefficients(const std::string& path, const std::string& folder,
                             const ExportOptions& options, const Listener& listener) {
     const Targets chosen = gpu::selectTargets(options.targets);
-    const Coefficients coefficients = coefficientsOf(path, options, listener);
+    const Exportable given = coefficientsOf(path, options, listener);
+    const Coefficients& coefficients = given.coefficients;
     Exported exported;
     exported.payload = gpu::pack(coefficients, options.pack);
     exported.name =
@@ -169,7 +176,9 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
     FileSet files(folder, options.force);
     refuseToReplace(folder, exported.sidecar, options.force);
     const Source source = openSourceOf(options, coefficients);
-    exported.error = errorOf(source, coefficients, exported.payload, options, listener);
+    exported.error = errorOf(source, given, exported.payload, options, listener);
+    if (exported.error.split)
+        exported.poor = judge(*exported.error.split, exported.payload, path, folder);
     exported.textures = gpu::writeContainers(
         exported.payload, containersOf(chosen, options, listener), exported.name,
         {.zstd = options.zstd,

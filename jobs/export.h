@@ -1,6 +1,7 @@
 #pragma once
 
 #include "listener.h"
+#include "quality.h"
 
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/error_split.h>
@@ -47,6 +48,7 @@ struct Exported {
     std::string name;
     gpu::Payload payload;
     ExportError error;
+    std::optional<Poor> poor;
     std::string sidecar, test;  ///< names of files in the folder, as those below
     std::vector<gpu::ExportedFile> textures;
     std::vector<ExportedText> texts;

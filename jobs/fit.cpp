@@ -41,8 +41,14 @@ brdfs::FitSamples samplesOf(const FitOptions& options, const std::string& data) 
     return samples;
 }
 
-/// Writes a page that compares data and fit into the fit's folder. Returns the number of files.
-std::size_t writePage(const std::string& data, const Fitted& fit, const std::string& folder,
+double explainedBy(const brdfs::FitResult& result, const brdfs::FitSamples& samples,
+                   brdfs::Loss::Kind loss) {
+    const double black = brdfs::lossOf(*brdfs::open("lambert:kd=0"), samples, loss);
+    return black > 0 ? 1 - (result.loss / black) * (result.loss / black) : 1;
+}
+
+/// Data and fit side by side in the folder where the fit is; the number of files.
+std::size_t writePage(const std::string& data, const std::string& spec, const std::string& folder,
                       bool rgb, const Listener& listener) {
     FileSet files(folder, true, FileSet::Above::require);
     const auto measured = openSource(data, rgb);
@@ -75,6 +81,10 @@ Fitted fit(const std::string& data, const std::string& output, const FitOptions&
                         data, options.model, fitted.result.message, Setting{"FitOptions::accept"}));
     }
     fitted.preset = brdfs::fitPreset({data, &samples, how, fitted.result});
+    fitted.explained = explainedBy(fitted.result, samples, how.loss);
+    fitted.poor = judgeFit(fitted.explained, data, options.model);
+    fitted.preset["fit"]["explained"] = fitted.explained;
+    const std::string text = fitted.preset.dump(2) + "\n";
     if (isPresetPath(output)) {
         writeFile(output, jsonText(fitted.preset, 2) + "\n");
     } else if (!output.empty()) {

@@ -2,6 +2,7 @@
 
 #include "fit_folder.h"
 #include "listener.h"
+#include "quality.h"
 
 #include <brdfs/fit/compare_models.h>
 #include <brdfs/fit/fit.h>
@@ -11,6 +12,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +39,9 @@ struct Fitted {
     brdfs::FitResult result;
     nlohmann::ordered_json preset;  ///< docs/schemas/fit.schema.json
     std::size_t pageFiles = 0;      ///< of the page, where one was asked for
+    /// 1 - (loss / loss of a black surface)^2: the share of the data, in units of the loss.
+    double explained = 0;
+    std::optional<Poor> poor = {};
 };
 
 /// Whether `output` is a preset file rather than a folder with a preset and a page.

@@ -22,7 +22,11 @@
 namespace hshfit::jobs {
 namespace {
 
-constexpr const char* defaultMap = "32x32";
+/// Elevations describe an isotropic BRDF with as many numbers as a map has along one side.
+std::string outgoingFor(const ProjectOptions& options, const Laws& laws) {
+    if (!options.outgoing.empty()) return options.outgoing;
+    return laws.isotropic ? "32" : "32x32";
+}
 
 Quantity quantityOf(const ProjectOptions& options) {
     return options.cosine ? Quantity::brdfCosine : Quantity::brdf;
@@ -60,15 +64,17 @@ Projection projectSamples(const Brdf& brdf, const Basis& basis, const OutgoingSe
     return {.coefficients = std::move(fit.coefficients), .captured = {}, .evaluations = 0};
 }
 
-/// The basis, outgoing set and form that all inputs share.
+/// The basis and form that all inputs share.
 class Projector {
 public:
     explicit Projector(const ProjectOptions& options)
         : options_(options),
           basis_(bases::make(options.basis, options.order,
                              {.condonShortley = options.condonShortley})),
-          outgoing_(OutgoingSet::parse(options.outgoing.empty() ? defaultMap : options.outgoing)),
-          form_(formOf(options)) {}
+          form_(formOf(options)) {
+        // A word that is none fails before any file is opened.
+        if (!options.outgoing.empty()) OutgoingSet::parse(options.outgoing);
+    }
 
     /// All but the file.
     Projected run(const std::string& spec, const std::string& output,
@@ -80,14 +86,22 @@ public:
                                        .progress = progress};
         Projected result{.projection = {}, .output = output};
         if (form_) {
-            result.kept = represent(*brdf, *form_, sourceOpener(), how);
+            Form form = *form_;
+            if (form.kind == Representation::Kind::outgoing)
+                form.outgoing = outgoingFor(options_, brdf->laws());
+            result.kept = represent(*brdf, form, sourceOpener(), how);
+            result.poor = judge(*result.kept, output);
+            writeRepresentation(*result.kept, output);
             result.projection.coefficients = {result.kept->head};
             return result;
         }
+        const OutgoingSet outgoing = OutgoingSet::parse(outgoingFor(options_, brdf->laws()));
         const Basis* const one[] = {basis_.get()};
         result.projection = options_.leastSquares
-                                ? projectSamples(*brdf, *basis_, outgoing_, options_, progress)
-                                : std::move(hshfit::project(*brdf, one, outgoing_, how)[0]);
+                                ? projectSamples(*brdf, *basis_, outgoing, options_, progress)
+                                : std::move(hshfit::project(*brdf, one, outgoing, how)[0]);
+        result.poor = judge(result.projection, output);
+        writeCoefficients(result.projection.coefficients, output);
         return result;
     }
 
@@ -101,7 +115,6 @@ public:
 private:
     const ProjectOptions& options_;
     std::unique_ptr<Basis> basis_;
-    OutgoingSet outgoing_;
     std::optional<Form> form_;
 };
 

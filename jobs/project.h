@@ -2,6 +2,7 @@
 
 #include "batch.h"
 #include "listener.h"
+#include "quality.h"
 
 #include <hshfit/projection/projection.h>
 #include <hshfit/representation/forms/form.h>
@@ -16,8 +17,9 @@ namespace hshfit::jobs {
 struct ProjectOptions {
     std::string basis = "hsh";
     int order = 7;
-    std::string outgoing;  ///< OutgoingSet::parse; empty: 32x32, or what the form needs
-    bool cosine = false;   ///< f cos(theta_i) instead of f
+    /// OutgoingSet::parse; empty: 32 elevations if isotropic, else 32x32, or what the form needs.
+    std::string outgoing;
+    bool cosine = false;  ///< f cos(theta_i) instead of f
     bool condonShortley = false;
     bool rgb = false;      ///< wavelengths as linear Rec. 709
     double tolerance = 0;  ///< as in ProjectionOptions
@@ -36,6 +38,7 @@ struct Projected {
     Projection projection;
     std::optional<Representation> kept = {};
     std::string output;
+    std::optional<Poor> poor = {};
 };
 
 /// Writes the coefficients of one BRDF to `output`, .json or .exr. Throws UsageError for

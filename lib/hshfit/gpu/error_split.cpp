@@ -97,12 +97,19 @@ ErrorSplit splitError(const Brdf& f, const Coefficients& coefficients, const Pay
     const auto basis = bases::make(coefficients.basis, coefficients.order,
                                    {.condonShortley = coefficients.condonShortley});
     const Basis* const one[] = {basis.get()};
-    const AtDirections projected(project(f, one, set,
-                                         {.quantity = coefficients.quantity,
-                                          .tolerance = options.tolerance,
-                                          .progress = options.progress})[0]
-                                     .coefficients);
-    const Reconstruction interpolated(coefficients), stored(unpack(payload));
+    const auto plainly = [&](const OutgoingSet& outgoing) {
+        return std::move(project(f, one, outgoing,
+                                 {.quantity = coefficients.quantity,
+                                  .tolerance = options.tolerance,
+                                  .progress = options.progress})[0]
+                             .coefficients);
+    };
+    const AtDirections projected(plainly(set));
+    const Reconstruction given(coefficients), stored(unpack(payload));
+    const std::optional<Reconstruction> again =
+        options.plain ? std::nullopt
+                      : std::optional<Reconstruction>(plainly(coefficients.outgoing));
+    const Reconstruction& interpolated = again ? *again : given;
     const auto rms = [&](const Brdf& a, const Brdf& b) {
         return metric("ngan", a, b, set, options.level);
     };
@@ -113,7 +120,8 @@ ErrorSplit splitError(const Brdf& f, const Coefficients& coefficients, const Pay
     }
     return {.truncation = rms(f, projected) / norm,
             .interpolation = rms(projected, interpolated) / norm,
-            .quantisation = rms(interpolated, stored) / norm,
+            .form = again ? rms(interpolated, given) / norm : 0,
+            .quantisation = rms(given, stored) / norm,
             .total = rms(f, stored) / norm,
             .meanLog = metric("nbrdf", f, stored, set, options.level),
             .outgoing = set.size()};

@@ -9,16 +9,17 @@
 
 namespace hshfit::gpu {
 
-/// Error of an exported representation against the BRDF that was projected, and its three causes.
+/// Error of an exported representation against the BRDF that was projected, and its causes.
 /// With |x| the root mean square of x cos(theta_i) over wi (d omega), `outgoing` directions spread
 /// evenly over the hemisphere (not the map's own) and channels, each relative to |f|:
 ///     truncation     |f - A|   A: f projected at each of these directions themselves
-///     interpolation  |A - B|   B: coefficients interpolated in the map, before rounding
+///     interpolation  |A - I|   I: f projected at the map's directions, interpolated
+///     form           |I - B|   B: the coefficients, interpolated: a window, factors, fewer bits
 ///     quantisation   |B - C|   C: the same as stored: rounded, and without chroma bands left out
 ///     total          |f - C|
 /// The causes add in squares where they are independent; the total is measured, not summed.
 struct ErrorSplit {
-    double truncation = 0, interpolation = 0, quantisation = 0, total = 0;
+    double truncation = 0, interpolation = 0, form = 0, quantisation = 0, total = 0;
     double meanLog = 0;  ///< of C: mean |ln(1 + f c) - ln(1 + g c)|, negative g clamped
     std::size_t outgoing = 0;
 };
@@ -27,6 +28,9 @@ struct ErrorSplitOptions {
     std::size_t outgoing = 64;
     double tolerance = 0;  ///< of the projections; 0: the BRDF's own
     int level = 2;         ///< of the quadrature (CompareOptions)
+    /// Whether the coefficients are a plain projection of f, in which case I = B. Otherwise f is
+    /// projected once more, at the map's directions.
+    bool plain = true;
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
 

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <hshfit/gpu/error_split.h>
+#include <hshfit/gpu/payload.h>
+#include <hshfit/projection/projection.h>
+#include <hshfit/representation/representation.h>
+#include <hshfit/wording.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <optional>
+#include <string>
+
+namespace hshfit::jobs {
+
+/// A result that misses more than a tenth of the energy of its source: what is wrong with it, and
+/// the call that does better.
+struct Poor {
+    std::string reason;
+    std::string better;
+
+    std::string line() const;  ///< "poor: REASON; better: CALL"
+};
+/// {"reason": …, "better": …}
+nlohmann::ordered_json poorJson(const Poor& poor);
+
+/// The least share of the energy that is not poor, and the relative root-mean-square error that
+/// leaves as much: error^2 is the energy that is missed.
+inline constexpr double leastCaptured = 0.9;
+inline constexpr double mostError = 0.31622776601683794;  // sqrt(1 - leastCaptured)
+
+/// Plain coefficients: the share that they capture, or the residual of least squares. None where
+/// the energy does not exist.
+std::optional<Poor> judge(const Projection& projection, const std::string& output);
+/// A form that is linear in f: the step that changed it most, or the share that it captures.
+std::optional<Poor> judge(const Representation& kept, const std::string& output);
+/// An export of the coefficients at `path` to `folder`: its largest cause of error.
+std::optional<Poor> judge(const gpu::ErrorSplit& split, const gpu::Payload& payload,
+                          const std::string& path, const std::string& folder);
+/// A fit that explains the share `explained` of its data, in units of its loss.
+std::optional<Poor> judgeFit(double explained, const std::string& data, const std::string& model);
+
+}  // namespace hshfit::jobs

@@ -1,0 +1,182 @@
+// Poor results say that they are, and name a command that does better; good ones say nothing.
+
+#include "program.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace hshfit::test {
+namespace {
+
+using Json = nlohmann::json;
+
+class Quality : public Cli {
+protected:
+    /// The JSON answer of a command that ends with 0, and is poor or is not.
+    Json answerOf(const std::string& arguments, bool poor) const {
+        const Answer answer = run(arguments + " --json");
+        EXPECT_EQ(answer.code, 0) << arguments << "\n" << answer.err;
+        Json document = Json::parse(answer.out);
+        EXPECT_EQ(document.contains("poor"), poor) << arguments;
+        const std::size_t said = answer.err.find("poor: ");
+        EXPECT_EQ(said != std::string::npos, poor) << answer.err;
+        EXPECT_EQ(answer.err.rfind("poor: "), said) << "said once";
+        return document;
+    }
+
+    /// The answer of the command that is said to do better.
+    Json betterThan(const Json& document) const {
+        const std::string command = document["poor"]["better"];
+        EXPECT_EQ(command.find("hshfit "), 0u) << command;
+        const Answer answer = run(command.substr(7) + " --json");
+        EXPECT_EQ(answer.code, 0) << command << "\n" << answer.err;
+        return Json::parse(answer.out);
+    }
+};
+
+TEST_F(Quality, OutgoingDirectionsAreElevationsForIsotropicInput) {
+    const std::string to = " --order 2 -o " + path("x.json");
+    EXPECT_EQ(answerOf("project lambert" + to, false)["outgoing"], "32");
+    EXPECT_EQ(answerOf("project lambert --precision half" + to, false)["outgoing"], "32");
+    EXPECT_EQ(answerOf("project lambert --outgoing 4x4" + to, false)["outgoing"], "4x4");
+    EXPECT_EQ(answerOf("project ward:kd=1,ks=.001,ax=.5,ay=.6" + to, false)["outgoing"], "32x32");
+    // Each of several inputs by its own symmetry.
+    const Json both = Json::parse(run("project lambert ward:kd=1,ks=.001,ax=.5,ay=.6 --order 2 "
+                                      "--json -o " +
+                                      path("folder"))
+                                      .out)["projections"];
+    EXPECT_EQ(both[0]["outgoing"], "32");
+    EXPECT_EQ(both[1]["outgoing"], "32x32");
+}
+
+TEST_F(Quality, ALittleEnergyCapturedIsCalledPoor) {
+    const std::string to = " --order 4 -o " + path("x.json");
+    const Json narrow = answerOf("project phong:exponent=400 --outgoing 4" + to, true);
+    EXPECT_LT(narrow["accuracy"], 0.9);
+    EXPECT_TRUE(keepsSchema(narrow.dump(), "project"));
+    EXPECT_EQ(betterThan(narrow)["representation"]["kind"], "halfway");
+    // One direction, and what is not isotropic: twice the order captures more.
+    for (const std::string job :
+         {"phong:exponent=400 --outgoing 30,0", "ggx:ax=.1,ay=.2 --outgoing 4x4",
+          "phong:exponent=400 --cosine "
+          "--outgoing 4"}) {
+        const Json few = answerOf("project " + job + to, true);
+        const Json more = betterThan(few);
+        EXPECT_EQ(more["order"], 8);
+        EXPECT_EQ(more["outgoing"], few["outgoing"]);
+        EXPECT_EQ(more["quantity"], few["quantity"]);
+        EXPECT_GT(more["accuracy"], few["accuracy"]);
+    }
+    const Answer quiet = run("project phong:exponent=400 --outgoing 4 --quiet" + to);
+    EXPECT_EQ(quiet.err, "");
+}
+
+TEST_F(Quality, AStepThatChangesMuchIsCalledPoor) {
+    const std::string job = "project ggx:alpha=.6 --outgoing 8 -o " + path("x.json");
+    const Json few = answerOf(job + " --keep 9", true);
+    EXPECT_NE(few["poor"]["reason"].get<std::string>().find("keep 9"), std::string::npos);
+    EXPECT_FALSE(betterThan(few).contains("representation"));
+    answerOf(job + " --precision half", false);
+    // Rounded coefficients capture what plain ones do.
+    const std::string narrow = " phong:exponent=400 --order 4 --outgoing 4 -o " + path("x.json");
+    const Json plain = answerOf("project" + narrow, true);
+    EXPECT_EQ(answerOf("project --precision half" + narrow, true)["poor"], plain["poor"]);
+}
+
+TEST_F(Quality, ExportsNameTheLargestCauseOfAPoorError) {
+    answerOf("project phong:exponent=400 --order 4 --outgoing 8 -o " + path("x.json"), true);
+    const Json document = answerOf("export " + path("x.json") + " -o " + path("out"), true);
+    EXPECT_TRUE(keepsSchema(document.dump(), "export"));
+    const std::string reason = document["poor"]["reason"];
+    EXPECT_NE(reason.find("most of it truncation"), std::string::npos) << reason;
+    EXPECT_EQ(betterThan(document)["order"], 8);
+    answerOf("project lambert --order 2 --outgoing 8 -o " + path("x.json"), false);
+    answerOf("export " + path("x.json") + " --force -o " + path("out"), false);
+}
+
+// The share of a window is the same share that plain coefficients lack.
+TEST_F(Quality, AWindowIsNoInterpolation) {
+    const auto errorOf = [&](const std::string& options) {
+        EXPECT_EQ(run("project phong:exponent=20,kd=.2 --order 6 --outgoing 16 -o " +
+                      path("x.json") + options)
+                      .code,
+                  0);
+        return Json::parse(
+            run("export " + path("x.json") + " --force --json -o " + path("out")).out)["fit_error"];
+    };
+    const Json plain = errorOf(""), window = errorOf(" --window hann --precision float64");
+    EXPECT_EQ(plain["form"], 0);
+    EXPECT_NEAR(window["interpolation"], plain["interpolation"].get<double>(), 1e-6);
+    EXPECT_NEAR(window["truncation"], plain["truncation"].get<double>(), 1e-12);
+    EXPECT_GT(window["form"], 3 * window["interpolation"].get<double>());
+}
+
+TEST_F(Quality, AFitThatExplainsLittleIsCalledPoor) {
+    const std::string job = "fit ggx:alpha=.2 --samples 500 --starts 4 --model ";
+    const Json poor = answerOf(job + "lambert", true);
+    EXPECT_TRUE(keepsSchema(poor.dump(), "fit"));
+    EXPECT_LT(poor["fit"]["explained"], 0.9);
+    EXPECT_NE(poor["poor"]["better"].get<std::string>().find("--model 'lambert+ggx'"),
+              std::string::npos);
+    EXPECT_GT(answerOf(job + "ggx", false)["fit"]["explained"], 0.999);
+}
+
+TEST_F(Quality, AConversionThatLosesMoreThanAPerCentSaysSo) {
+    const std::string to = " " + path("x.exr") + " --force --to slices:size=";
+    const Json coarse = answerOf("convert ggx:alpha=.05" + to + "6", true);
+    EXPECT_TRUE(keepsSchema(coarse.dump(), "convert"));
+    EXPECT_GT(coarse["error"], 0.1);
+    EXPECT_LT(answerOf("convert lambert" + to + "6", false)["error"], 1e-6);
+}
+
+/// Answer of `info --json` about a shared file, null where it is absent.
+Json infoOf(const Answer& answer) {
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    return Json::parse(answer.out);
+}
+
+TEST_F(Quality, AnEnvironmentMapIsNotTakenForABrdf) {
+    const std::string file = std::string(HSHFIT_SHARED) + "/data/env/mitsuba_matpreview_envmap.exr";
+    if (!fs::exists(file)) GTEST_SKIP() << file << " is not there";
+    const Json document = infoOf(run("info --json " + file));
+    EXPECT_TRUE(keepsSchema(document.dump(), "info"));
+    ASSERT_TRUE(document.contains("warnings"));
+    EXPECT_NE(document["warnings"][0].get<std::string>().find("environment map"),
+              std::string::npos);
+    EXPECT_TRUE(document["health"]["suggested_repairs"].empty());
+    EXPECT_NE(run("info " + file).out.find("environment map"), std::string::npos);
+    EXPECT_FALSE(infoOf(run("info --json lambert")).contains("warnings"));
+}
+
+// Values of 1e36 beside ones of 0.1: a relative tolerance and a bound of the evaluations.
+TEST_F(Quality, HostileFilesHaveAlbedosWithTheirError) {
+    const std::string folder = std::string(HSHFIT_SHARED) + "/data/hostile/";
+    if (!fs::exists(folder)) GTEST_SKIP() << folder << " is not there";
+    for (const char* name : {"flip30.dat", "alta_huge.alta"}) {
+        const Json document = infoOf(run("info --json " + folder + name));
+        EXPECT_TRUE(keepsSchema(document.dump(), "info"));
+        for (const Json& row : document["albedo"]) {
+            ASSERT_TRUE(row["values"].is_array()) << name << row;
+            EXPECT_TRUE(row["error"].is_number()) << name << row;
+        }
+        EXPECT_GT(document["health"]["largest_albedo"], 1e3) << name;
+    }
+}
+
+// Incidences of 15, 30 and 60 degrees, and outgoing directions among which these are, too.
+TEST_F(Quality, ContradictionsOfSamplesAreReported) {
+    const std::string file = std::string(HSHFIT_SHARED) + "/data/alta/retro-gray-tape.dat";
+    if (!fs::exists(file)) GTEST_SKIP() << file << " is not there";
+    const Json document = infoOf(run("info --json " + file));
+    EXPECT_TRUE(keepsSchema(document.dump(), "info"));
+    const Json& samples = document["health"]["reciprocity"]["samples"];
+    EXPECT_GT(samples["pairs"], 0);
+    EXPECT_GT(samples["defect"], 1e-3);
+    EXPECT_GT(samples["largest_ratio"], 1.5);
+    EXPECT_GT(document["health"]["reciprocity"]["defect"], 0);
+    EXPECT_FALSE(document["laws"]["reciprocal"]);
+}
+
+}  // namespace
+}  // namespace hshfit::test
