@@ -134,7 +134,7 @@ Json describe(const Brdf& brdf, const Globals& globals) {
     document["range"] = rangeJson(brdf);
     if (const auto warnings = warningsOf(brdf); !warnings.empty()) {
         document["warnings"] = warnings;
-        // What is no BRDF is not to be repaired into one.
+        // A picture of light is not to be repaired into a BRDF.
         if (document["facts"].contains("looks_like"))
             document["health"]["suggested_repairs"] = Json::array();
     }

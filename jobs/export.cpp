@@ -44,7 +44,7 @@ Source openSourceOf(const ExportOptions& options, const Coefficients& coefficien
 }
 
 /// Coefficients per outgoing direction. Other forms, and files with a BRDF added, are projected
-/// anew, and what that costs is part of the error that the export states.
+/// anew. The stated error of the export includes the loss of that projection.
 struct Exportable {
     Coefficients coefficients;
     bool plain = true;  ///< a projection, with nothing done to it since
@@ -62,12 +62,12 @@ Exportable coefficientsOf(const std::string& path, const ExportOptions& options,
                                  path, kindName(stored.kind()),
                                  stored.added.empty() ? "" : " with " + stored.added));
     }
-    // Whatever stands in the steps (a window, factors, bits) is no projection of the source.
-    const bool plain = stored.kind == Representation::Kind::outgoing && stored.steps.empty();
+    // Steps (a window, factors, bits) make of a projection something else.
+    const bool plain = stored.kind() == Representation::Kind::outgoing && stored.steps.empty();
     return {expand(stored, sourceOpener(), expansion), plain};
 }
 
-/// The error, or why there is none. A source that was named has to do.
+/// The error, or the reason why there is none. A failure of an explicitly named source is thrown.
 ExportError errorOf(const Source& source, const Exportable& given, const gpu::Payload& payload,
                     const ExportOptions& options, const Listener& listener) {
     if (!options.measureError) return {{}, "not asked for"};

@@ -47,8 +47,8 @@ double explainedBy(const brdfs::FitResult& result, const brdfs::FitSamples& samp
     return black > 0 ? 1 - (result.loss / black) * (result.loss / black) : 1;
 }
 
-/// Data and fit side by side in the folder where the fit is; the number of files.
-std::size_t writePage(const std::string& data, const std::string& spec, const std::string& folder,
+/// Writes a page that compares data and fit into the fit's folder. Returns the number of files.
+std::size_t writePage(const std::string& data, const Fitted& fit, const std::string& folder,
                       bool rgb, const Listener& listener) {
     FileSet files(folder, true, FileSet::Above::require);
     const auto measured = openSource(data, rgb);
@@ -84,7 +84,6 @@ Fitted fit(const std::string& data, const std::string& output, const FitOptions&
     fitted.explained = explainedBy(fitted.result, samples, how.loss);
     fitted.poor = judgeFit(fitted.explained, data, options.model);
     fitted.preset["fit"]["explained"] = fitted.explained;
-    const std::string text = fitted.preset.dump(2) + "\n";
     if (isPresetPath(output)) {
         writeFile(output, jsonText(fitted.preset, 2) + "\n");
     } else if (!output.empty()) {

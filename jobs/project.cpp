@@ -91,7 +91,6 @@ public:
                 form.outgoing = outgoingFor(options_, brdf->laws());
             result.kept = represent(*brdf, form, sourceOpener(), how);
             result.poor = judge(*result.kept, output);
-            writeRepresentation(*result.kept, output);
             result.projection.coefficients = {result.kept->head};
             return result;
         }
@@ -101,7 +100,6 @@ public:
                                 ? projectSamples(*brdf, *basis_, outgoing, options_, progress)
                                 : std::move(hshfit::project(*brdf, one, outgoing, how)[0]);
         result.poor = judge(result.projection, output);
-        writeCoefficients(result.projection.coefficients, output);
         return result;
     }
 

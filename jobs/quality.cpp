@@ -67,7 +67,7 @@ std::optional<Poor> judgeShare(double share, const CoefficientHead& head,
 /// By the squares of the coefficients of an orthonormal basis. None for other forms and bases.
 std::optional<double> capturedBy(const Representation& kept) {
     const CoefficientHead& head = kept.head;
-    if (kept.kind != Kind::outgoing || !kept.added.empty() || !head.energy.finite ||
+    if (kept.kind() != Kind::outgoing || !kept.added.empty() || !head.energy.finite ||
         !(head.energy.value > 0) || !bases::find(head.basis).orthonormal)
         return std::nullopt;
     const Coefficients c = decoded(kept);
@@ -105,7 +105,7 @@ std::optional<Poor> judge(const Projection& projection, const std::string& outpu
 }
 
 std::optional<Poor> judge(const Representation& kept, const std::string& output) {
-    if (kept.kind == Kind::halfway || kept.steps.empty()) return std::nullopt;
+    if (kept.kind() == Kind::halfway || kept.steps.empty()) return std::nullopt;
     const auto worst = std::ranges::max_element(kept.steps, {}, &RepresentationStep::change);
     if (!(worst->change > mostError)) {
         const auto share = capturedBy(kept);
@@ -114,7 +114,7 @@ std::optional<Poor> judge(const Representation& kept, const std::string& output)
     // Without any step.
     std::vector<Setting> settings = {{"Form::basis", kept.head.basis},
                                      {"Form::order", std::to_string(kept.head.order)}};
-    if (kept.kind == Kind::basis) settings.insert(settings.begin(), kindSetting(kept.kind));
+    if (kept.kind() == Kind::basis) settings.insert(settings.begin(), kindSetting(kept.kind()));
     return Poor{fmt::format("{} changes it by {}", worst->what, percent(worst->change)),
                 projectedAgain(kept.head, std::move(settings), output)};
 }
