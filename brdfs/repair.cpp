@@ -1,6 +1,7 @@
 #include <brdfs/measured/measured_brdf.h>
 #include <brdfs/repair.h>
 #include <brdfs/spec.h>
+#include <hshfit/brdf/kink_curve.h>
 #include <hshfit/error.h>
 #include <hshfit/projection/albedo.h>
 
@@ -117,7 +118,7 @@ private:
 };
 
 /// Evaluates single pairs, or several of the same wo, with the channels of a pair side by side.
-class Repaired : public RepairedBrdf {
+class Repaired : public RepairedBrdf, public HasKinkCurves {
 public:
     Repaired(std::unique_ptr<Brdf> brdf, Chosen chosen,
              const std::function<void(std::size_t, std::size_t)>& progress)
@@ -139,6 +140,9 @@ public:
     const Laws& laws() const override { return laws_; }
     std::vector<Lobe> lobes(const Direction& wo) const override { return brdf_->lobes(wo); }
     std::vector<double> kinks(const Direction& wo) const override { return brdf_->kinks(wo); }
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
+        return kinkCurvesOf(*brdf_, wo);
+    }
     double defaultTolerance() const override { return brdf_->defaultTolerance(); }
     std::vector<Fact> facts() const override { return brdf_->facts(); }
     void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override {

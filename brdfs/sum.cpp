@@ -191,6 +191,13 @@ std::vector<double> Sum::kinks(const Direction& wo) const {
     return all;
 }
 
+std::vector<KinkCurve> Sum::kinkCurves(const Direction& wo) const {
+    std::vector<KinkCurve> all;
+    for (const Term& term : terms_)
+        for (const KinkCurve& curve : kinkCurvesOf(*term.brdf, wo)) all.push_back(curve);
+    return all;
+}
+
 double Sum::defaultTolerance() const {
     double largest = 0;
     for (const Term& term : terms_) largest = std::max(largest, term.brdf->defaultTolerance());

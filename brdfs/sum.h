@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/brdf/brdf.h>
+#include <hshfit/brdf/kink_curve.h>
 
 #include <cstddef>
 #include <memory>
@@ -36,7 +37,7 @@ std::vector<WeightedSpec> splitSum(std::string_view spec, bool (*isWhole)(std::s
 ///   coverage   where all terms are covered
 ///   lobes, kinks, facts   those of all terms; the tolerance is the largest
 /// Throws UsageError for rgb with spectral terms and for spectra of different wavelengths.
-class Sum final : public Brdf {
+class Sum final : public Brdf, public HasKinkCurves {
 public:
     struct Term {
         double weight = 1;
@@ -51,6 +52,7 @@ public:
     void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
     std::vector<Lobe> lobes(const Direction& wo) const override;
     std::vector<double> kinks(const Direction& wo) const override;
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override;
     double defaultTolerance() const override;
     std::vector<Fact> facts() const override;
     void checkIntact() const override;

@@ -1,5 +1,6 @@
 #include <brdfs/analytic/abc.h>
 
+#include <brdfs/analytic/kink_curves.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 
@@ -44,7 +45,8 @@ void evalByVectors(const AbcShape<double>& shape, const TermBatch& batch) {
 }
 
 class Abc final : public ShapedBrdf<AbcShape<double>, evalByVectors,
-                                    evalAll<double, AbcTerms, AbcShape<double>>> {
+                                    evalAll<double, AbcTerms, AbcShape<double>>>,
+                  public HasKinkCurves {
 public:
     explicit Abc(const Parameters& p)
         : ShapedBrdf(abcModel(), p, lawsOf(p), channelWeights<AbcFormula>(p),
@@ -58,8 +60,13 @@ public:
         return {{Lobe::About::halfway, std::min(1.0, width), {}}};
     }
 
-    /// The V-cavity term's kinks lie along curves at which no panel can end.
-    double defaultTolerance() const override { return shape_.smooth ? 1e-6 : 1e-5; }
+    std::vector<double> kinks(const Direction& wo) const override {
+        return shape_.smooth ? std::vector<double>{} : std::vector<double>{wo.z};
+    }
+
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
+        return shape_.smooth ? std::vector<KinkCurve>{} : vGrooveKinks(wo);
+    }
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

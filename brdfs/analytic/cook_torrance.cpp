@@ -1,5 +1,6 @@
 #include <brdfs/analytic/cook_torrance.h>
 
+#include <brdfs/analytic/kink_curves.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 #include <hshfit/error.h>
@@ -75,7 +76,8 @@ void evalByVectors(const CookTorranceShape<double>& shape, const TermBatch& batc
 
 class CookTorrance final
     : public ShapedBrdf<CookTorranceShape<double>, evalByVectors,
-                        evalAll<double, CookTorranceTerms, CookTorranceShape<double>>> {
+                        evalAll<double, CookTorranceTerms, CookTorranceShape<double>>>,
+      public HasKinkCurves {
 public:
     CookTorrance(const Parameters& p, const CookTorranceShape<double>& shape)
         : ShapedBrdf(cookTorranceModel(), p, lawsOf(p),
@@ -87,9 +89,18 @@ public:
         return {{Lobe::About::halfway, 2.5 / std::numbers::sqrt2 * shape_.m, {}}};
     }
 
-    /// The V-cavity term's minimum has kinks along curves that no panel can end at; 1e-6 would cost
-    /// more than 2^26 evaluations at grazing angles.
-    double defaultTolerance() const override { return 1e-5; }
+    std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
+
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
+        std::vector<KinkCurve> curves = vGrooveKinks(wo);
+        if (shape_.schlick) return curves;
+        for (const CookTorranceSurface<double>& surface : shape_.surfaces) {
+            if (surface.ior <= 0 || surface.k > 0) continue;
+            for (const KinkCurve& curve : totalReflectionKinks(wo, {&surface.ior, 1}))
+                curves.push_back(curve);
+        }
+        return curves;
+    }
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

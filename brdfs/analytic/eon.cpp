@@ -2,6 +2,7 @@
 
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
+#include <hshfit/brdf/kink_curve.h>
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +55,8 @@ void evalByVectors(const EonShape& shape, const TermBatch& batch) {
 
 class Eon final
     : public ShapedBrdf<EonShape, evalByVectors,
-                        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::EonTerms, EonShape>> {
+                        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::EonTerms, EonShape>>,
+      public HasKinkCurves {
 public:
     Eon(const Model& model, const Parameters& p, const Colour& kd, const Settings& settings)
         : ShapedBrdf(model, p, lawsOf(kd, settings),
@@ -65,8 +67,11 @@ public:
     /// The kink at equal heights, where max(cos_i, cos_o) changes branches.
     std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
 
-    /// The kink where s changes sign runs along a curve that no panel can end at.
-    double defaultTolerance() const override { return shape_.roughness > 0 ? 1e-5 : 1e-6; }
+    /// s changes its sign.
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
+        if (shape_.roughness == 0) return {};
+        return {circleAbout({wo.x, wo.y, 0}, 0)};
+    }
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

@@ -1,5 +1,6 @@
 #include <brdfs/analytic/lafortune.h>
 
+#include <brdfs/analytic/kink_curves.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 
@@ -49,7 +50,8 @@ void evalByVectors(const LafortuneShape<double>& shape, const TermBatch& batch) 
 }
 
 class Lafortune final : public ShapedBrdf<LafortuneShape<double>, evalByVectors,
-                                          evalAll<double, LafortuneTerms, LafortuneShape<double>>> {
+                                          evalAll<double, LafortuneTerms, LafortuneShape<double>>>,
+                        public HasKinkCurves {
 public:
     explicit Lafortune(const Parameters& p)
         : ShapedBrdf(lafortuneModel(), p, lawsOf(p), channelWeights<LafortuneFormula>(p),
@@ -62,6 +64,11 @@ public:
         return {{Lobe::About::axis,
                  2.5 / std::sqrt(shape_.exponent + 1),
                  {a.x / length, a.y / length, a.z / length}}};
+    }
+
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
+        return clampedPowerKinks({shape_.x * wo.x, shape_.y * wo.y, shape_.z * wo.z},
+                                 shape_.exponent);
     }
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <brdfs/analytic/facet_fresnel.h>
+#include <brdfs/analytic/kink_curves.h>
 #include <brdfs/analytic/term_brdf.h>
 
 #include <vector>
@@ -41,13 +42,23 @@ struct FacetShape {
 /// `Shape` holds the parameters of D and gives the width of its peak along x and along y, in
 /// units of slope.
 template <class Shape>
-class Microfacet : public TermBrdf {
+class Microfacet : public TermBrdf, public HasKinkCurves {
 public:
     Microfacet(const Model& model, const Parameters& p, const Laws& laws, const Shape& distribution)
         : Microfacet(model, p, laws, FacetFresnel(model, p), distribution) {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
         return {halfwayLobe(shape_.distribution.widthX(), shape_.distribution.widthY())};
+    }
+
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
+        std::vector<KinkCurve> curves;
+        for (const FacetIndex<double>& index : shape_.indices) {
+            if (index.k > 0) continue;
+            for (const KinkCurve& curve : totalReflectionKinks(wo, {&index.ior, 1}))
+                curves.push_back(curve);
+        }
+        return curves;
     }
 
 protected:

@@ -2,6 +2,7 @@
 
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
+#include <hshfit/brdf/kink_curve.h>
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +53,8 @@ void evalSimplifiedByVectors(const OrenNayarShape& shape, const TermBatch& batch
 class Simplified final
     : public ShapedBrdf<
           OrenNayarShape, evalSimplifiedByVectors,
-          HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::SimplifiedTerms, OrenNayarShape>> {
+          HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::SimplifiedTerms, OrenNayarShape>>,
+      public HasKinkCurves {
 public:
     explicit Simplified(const Parameters& p)
         : ShapedBrdf(
@@ -65,6 +67,11 @@ public:
 
     /// The kink at equal heights, where alpha and beta exchange the directions.
     std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
+
+    /// cos D changes its sign.
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
+        return {circleAbout({wo.x, wo.y, 0}, 0)};
+    }
 };
 
 void evalFullByVectors(const OrenNayarShape& shape, const TermBatch& batch) {
@@ -73,7 +80,8 @@ void evalFullByVectors(const OrenNayarShape& shape, const TermBatch& batch) {
 
 class Full final
     : public ShapedBrdf<OrenNayarShape, evalFullByVectors,
-                        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::FullTerms, OrenNayarShape>> {
+                        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::FullTerms, OrenNayarShape>>,
+      public HasKinkCurves {
 public:
     explicit Full(const Parameters& p)
         : ShapedBrdf(orenNayarModel(), p, lawsOf(p),
@@ -84,6 +92,11 @@ public:
 
     /// As for the simplified form.
     std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
+
+    /// cos D changes its sign.
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
+        return {circleAbout({wo.x, wo.y, 0}, 0)};
+    }
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {

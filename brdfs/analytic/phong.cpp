@@ -1,5 +1,6 @@
 #include <brdfs/analytic/phong.h>
 
+#include <brdfs/analytic/kink_curves.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 
@@ -44,7 +45,8 @@ void evalByVectors(const PhongShape<double>& shape, const TermBatch& batch) {
 }
 
 class Phong final : public ShapedBrdf<PhongShape<double>, evalByVectors,
-                                      evalAll<double, PhongTerms, PhongShape<double>>> {
+                                      evalAll<double, PhongTerms, PhongShape<double>>>,
+                    public HasKinkCurves {
 public:
     explicit Phong(const Parameters& p)
         : ShapedBrdf(phongModel(), p, lawsOf(p), channelWeights<PhongFormula>(p),
@@ -52,6 +54,10 @@ public:
 
     std::vector<Lobe> lobes(const Direction& wo) const override {
         return {{Lobe::About::axis, 2.5 / std::sqrt(shape_.exponent + 1), mirrored(wo)}};
+    }
+
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
+        return clampedPowerKinks(mirrored(wo), shape_.exponent);
     }
 };
 

@@ -1,5 +1,6 @@
 #include <brdfs/analytic/sgd.h>
 
+#include <brdfs/analytic/kink_curves.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 
@@ -52,7 +53,27 @@ std::size_t lobeCount(const Parameters& p) {
     return count;
 }
 
-class Sgd final : public TermBrdf {
+/// The cosines at which F0 + (1 - F0)(1 - cos)^5 - F1 cos is 0: its second derivative has one sign,
+/// so that the extremum parts the two.
+std::vector<double> fresnelZeros(double f0, double f1) {
+    const auto value = [&](double c) { return f0 + (1 - f0) * std::pow(1 - c, 5) - f1 * c; };
+    const double power = -f1 / (5 * (1 - f0));  // (1 - cos)^4 at the extremum
+    const double extremum = power > 0 ? std::clamp(1 - std::sqrt(std::sqrt(power)), 0.0, 1.0) : 0.0;
+    std::vector<double> zeros;
+    for (auto [low, high] : {std::pair{0.0, extremum}, {extremum, 1.0}}) {
+        if (!(value(low) * value(high) < 0)) continue;
+        const bool falls = value(low) > 0;
+        constexpr int halvings = 60;
+        for (int k = 0; k < halvings; ++k) {
+            const double middle = 0.5 * (low + high);
+            ((value(middle) > 0) == falls ? low : high) = middle;
+        }
+        zeros.push_back(low);
+    }
+    return zeros;
+}
+
+class Sgd final : public TermBrdf, public HasKinkCurves {
 public:
     explicit Sgd(const Parameters& p)
         : TermBrdf(sgdModel(), p, lawsOf(p), overPi(p.colour("kd")),
@@ -66,6 +87,26 @@ public:
         double width = 1;
         for (const ShiftedGamma<double>& lobe : shape_.lobes) width = std::min(width, lobe.alpha);
         return {{Lobe::About::halfway, width, {}}};
+    }
+
+    /// The masking of each channel sets in at theta0 and ends where nothing is left.
+    std::vector<double> kinks(const Direction&) const override {
+        std::vector<double> heights;
+        for (const ShiftedGamma<double>& lobe : shape_.lobes) {
+            const double span = std::pow(std::log1p(1 / lobe.lambda) / lobe.c, 1 / lobe.k);
+            for (const double theta : {lobe.theta0, lobe.theta0 + span})
+                if (theta > 0 && theta < pi / 2) heights.push_back(std::cos(theta));
+        }
+        return heights;
+    }
+
+    /// Fresnel's term is cut off at 0.
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
+        std::vector<KinkCurve> curves;
+        for (const ShiftedGamma<double>& lobe : shape_.lobes)
+            for (const double cosine : fresnelZeros(lobe.f0, lobe.f1))
+                curves.push_back(halfAngleKink(wo, cosine, true));
+        return curves;
     }
 
 protected:

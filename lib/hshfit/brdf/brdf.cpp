@@ -1,5 +1,7 @@
 #include <hshfit/brdf/brdf.h>
 
+#include <hshfit/brdf/kink_curve.h>
+
 namespace hshfit::inline brdf {
 
 void Brdf::coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const {
@@ -12,6 +14,11 @@ std::vector<Lobe> Brdf::lobes(const Direction&) const {
 
 std::vector<double> Brdf::kinks(const Direction&) const {
     return {};
+}
+
+std::vector<KinkCurve> kinkCurvesOf(const Brdf& brdf, const Direction& wo) {
+    const auto* known = dynamic_cast<const HasKinkCurves*>(&brdf);
+    return known ? known->kinkCurves(wo) : std::vector<KinkCurve>{};
 }
 
 std::vector<double> evaluate(const Brdf& brdf, const Direction& wi, const Direction& wo) {

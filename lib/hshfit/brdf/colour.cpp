@@ -1,5 +1,6 @@
 #include <hshfit/brdf/cie_1931.h>
 #include <hshfit/brdf/colour.h>
+#include <hshfit/brdf/kink_curve.h>
 #include <hshfit/error.h>
 #include <hshfit/wording.h>
 
@@ -65,7 +66,7 @@ double luminanceBeyond(std::span<const double> nanometres) {
     return beyond / all;
 }
 
-class RgbView : public Brdf {
+class RgbView : public Brdf, public HasKinkCurves {
 public:
     explicit RgbView(std::unique_ptr<Brdf> spectral)
         : spectral_(std::move(spectral)),
@@ -83,6 +84,9 @@ public:
     }
     std::vector<Lobe> lobes(const Direction& wo) const override { return spectral_->lobes(wo); }
     std::vector<double> kinks(const Direction& wo) const override { return spectral_->kinks(wo); }
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
+        return kinkCurvesOf(*spectral_, wo);
+    }
     double defaultTolerance() const override { return spectral_->defaultTolerance(); }
     void checkIntact() const override { spectral_->checkIntact(); }
 

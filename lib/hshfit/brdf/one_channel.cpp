@@ -1,5 +1,6 @@
 #include <hshfit/brdf/one_channel.h>
 
+#include <hshfit/brdf/kink_curve.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -15,7 +16,7 @@ namespace {
 
 constexpr std::string_view plain = "grey:", weighted = "grey=";
 
-class OneChannel final : public Brdf {
+class OneChannel final : public Brdf, public HasKinkCurves {
 public:
     OneChannel(std::unique_ptr<Brdf> brdf, std::vector<double> weights)
         : brdf_(std::move(brdf)),
@@ -43,6 +44,9 @@ public:
     }
     std::vector<Lobe> lobes(const Direction& wo) const override { return brdf_->lobes(wo); }
     std::vector<double> kinks(const Direction& wo) const override { return brdf_->kinks(wo); }
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
+        return kinkCurvesOf(*brdf_, wo);
+    }
     double defaultTolerance() const override { return brdf_->defaultTolerance(); }
     std::vector<Fact> facts() const override { return brdf_->facts(); }
     void checkIntact() const override { brdf_->checkIntact(); }

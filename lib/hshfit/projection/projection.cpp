@@ -15,6 +15,7 @@
 #include <exception>
 #include <limits>
 #include <map>
+#include <memory>
 #include <mutex>
 
 namespace hshfit::inline projection {
@@ -90,6 +91,16 @@ void applySymmetry(const Member& member, int order, const double* from, double* 
     }
 }
 
+/// The bases, and where they are of few functions a further one: changes of few numbers agree by
+/// accident, and no error is seen.
+std::vector<const Basis*> withMonitor(std::span<const Basis* const> bases) {
+    constexpr int enough = 4;
+    static const std::unique_ptr<const Basis> monitor = bases::make("hsh", enough);
+    std::vector<const Basis*> all(bases.begin(), bases.end());
+    if (std::ranges::max(bases, {}, &Basis::order)->order() < enough) all.push_back(monitor.get());
+    return all;
+}
+
 /// All groups in parallel. Of several failures the first group's is reported, so that the message
 /// does not depend on the threads.
 std::vector<RefinedMoments> projectGroups(const Brdf& brdf, std::span<const Basis* const> bases,
@@ -98,7 +109,8 @@ std::vector<RefinedMoments> projectGroups(const Brdf& brdf, std::span<const Basi
     std::vector<RefinedMoments> results(groups.size());
     std::vector<std::exception_ptr> failures(groups.size());
     std::atomic<std::size_t> firstFailure = groups.size(), done = 0;
-    const ProjectionTables tables(bases);
+    const std::vector<const Basis*> all = withMonitor(bases);
+    const ProjectionTables tables(all);
     tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
         if (g > firstFailure) return;
         try {
@@ -156,7 +168,7 @@ void addGroup(const Basis& basis, std::size_t basisIndex, const Group& group,
     const int e = static_cast<int>(basis.inner());
     out.energy.value += group.solidAngle * result.energy[e];
     out.energy.error += group.solidAngle * result.energyError[e];
-    out.error = std::max(out.error, result.error);
+    out.error = std::max(out.error, result.error * result.enlargement[basisIndex]);
     projection.evaluations += result.evaluations;
     if (!result.horizon.energyExists(basis.inner()) && out.energy.finite) {
         out.energy.finite = false;

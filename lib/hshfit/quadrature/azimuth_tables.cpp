@@ -26,6 +26,25 @@ void AzimuthTable::fill(int order, const AzimuthSpacing& spacing, std::size_t fi
         sine[j] = at.sine;
         if (!weights.empty()) weights[j] = at.weight;
     }
+    fillRows(order);
+}
+
+void AzimuthTable::fill(int order, const AzimuthSpacing& spacing, std::span<const double> t,
+                        std::span<const double> ofNodes) {
+    count = t.size();
+    cosine.resize(count);
+    sine.resize(count);
+    weights.resize(count);
+    for (std::size_t j = 0; j < count; ++j) {
+        const SpreadAzimuth at = spreadAzimuth(t[j], spacing);
+        cosine[j] = at.cosine;
+        sine[j] = at.sine;
+        weights[j] = at.weight * ofNodes[j];
+    }
+    fillRows(order);
+}
+
+void AzimuthTable::fillRows(int order) {
     const AzimuthColumns columns(order);
     const std::size_t stride = columns.all();
     rows.assign(stride * count, 0.0);

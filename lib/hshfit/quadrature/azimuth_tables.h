@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace hshfit::inline quadrature {
@@ -47,6 +48,12 @@ struct AzimuthTable {
 
     /// Azimuths number first to first + howMany - 1.
     void fill(int order, const AzimuthSpacing& spacing, std::size_t first, std::size_t howMany);
+    /// Azimuths at nodes t with the weights of their own, before those of the spacing's map.
+    void fill(int order, const AzimuthSpacing& spacing, std::span<const double> t,
+              std::span<const double> ofNodes);
+
+private:
+    void fillRows(int order);
 };
 
 /// Number of azimuths in a table: those of a quadrant or, if clustered, of half of the circle.

@@ -134,9 +134,16 @@ const GaussRule& gaussLegendre(int n) {
     return *cache.try_emplace(n, std::move(rule)).first->second;
 }
 
+std::size_t HemisphereGrid::Panel::points() const {
+    if (cuts.empty()) return rings * azimuths.spacing.azimuths;
+    std::size_t total = 0;
+    for (const CutRing& ring : cuts) total += 2 * ring.size();
+    return total;
+}
+
 std::size_t HemisphereGrid::points() const {
     std::size_t total = 0;
-    for (const Panel& panel : panels) total += panel.rings * panel.azimuths.spacing.azimuths;
+    for (const Panel& panel : panels) total += panel.points();
     return total;
 }
 
@@ -166,24 +173,38 @@ std::vector<double> panelBreaks(const std::vector<Lobe>& lobes, const Direction&
 }
 
 void appendPanel(HemisphereGrid& grid, double a, double b, const AzimuthPeaks& peaks,
-                 const GridOptions& options) {
-    const double refinement = std::pow(levelGrowth, options.level), half = 0.5 * (b - a);
+                 const GridOptions& options, const PanelCurves& curves) {
+    const double refinement = std::pow(levelGrowth, options.level);
+    const bool crowd = curves.rootAtA || curves.rootAtB;
     // Basis functions are polynomials of degree 2 order in u: half as many nodes, by length.
-    const int nodes =
-        static_cast<int>(std::ceil(firstNodes * refinement + options.order * (b - a) * 1.3));
+    constexpr double crowding = 1.5;
+    const int nodes = static_cast<int>(std::ceil(
+        (crowd ? crowding : 1) * (firstNodes * refinement + options.order * (b - a) * 1.3)));
     const GaussRule& rule = gaussLegendre(nodes);
-    grid.panels.push_back({grid.weights.size(), static_cast<std::size_t>(nodes),
-                           spreadAzimuths(peaks, {.order = options.order,
-                                                  .refinement = refinement,
-                                                  .squeezed = options.squeezed,
-                                                  .even = options.even})});
+    HemisphereGrid::Panel panel{.firstRing = grid.weights.size(),
+                                .rings = static_cast<std::size_t>(nodes),
+                                .azimuths = spreadAzimuths(peaks, {.order = options.order,
+                                                                   .refinement = refinement,
+                                                                   .squeezed = options.squeezed,
+                                                                   .even = options.even}),
+                                .crowded = crowd};
+    if (!curves.empty() && panel.azimuths.spacing.squeeze == 0) {
+        const KinkCurve& curve = curves.curves.front();
+        const double radius = std::hypot(curve.x, curve.y);
+        panel.azimuths.centreX = curve.x / radius;
+        panel.azimuths.centreY = curve.y / radius;
+    }
     for (int i = 0; i < nodes; ++i) {
-        const double u = a + half * (1 + rule.nodes[i]);
+        const Crowded place = crowded(0.5 * (1 + rule.nodes[i]), curves.rootAtA, curves.rootAtB);
+        const double u = a + (b - a) * place.at;
         const double mu = u * u, oneMinusMu = (1 - u) * (1 + u);
         grid.elevations.push_back({mu, oneMinusMu});
         grid.sines.push_back(std::sqrt(oneMinusMu * (1 + mu)));
-        grid.weights.push_back(2 * u * half * rule.weights[i]);
+        grid.weights.push_back(u * (b - a) * place.slope * rule.weights[i]);
+        if (!curves.empty())
+            panel.cuts.emplace_back(curves, panel.azimuths, refinement, mu, grid.sines.back());
     }
+    grid.panels.push_back(std::move(panel));
 }
 
 HemisphereGrid gridFor(const std::vector<Lobe>& lobes, const Direction& wo,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/brdf/brdf.h>
+#include <hshfit/quadrature/azimuth_cuts.h>
 #include <hshfit/quadrature/azimuth_spread.h>
 
 #include <cstddef>
@@ -19,13 +20,18 @@ struct GaussRule {
 /// Throws UsageError unless 1 <= n <= 100000.
 const GaussRule& gaussLegendre(int n);
 
-/// Rings of constant elevation, in groups that share their azimuths.
+/// Rings of constant elevation, in groups that share their azimuths or are cut by the same curves.
 /// The integral of q over the hemisphere is the sum over rings of
-///     weight * (2 pi / azimuths) * (sum over the ring's azimuths of q d phi / dt).
+///     weight * (2 pi / azimuths) * (sum over the ring's azimuths of q d phi / dt),
+/// and on a ring that is cut weight * (sum over nodes and their mirror images of their weights
+/// times q d phi / dt).
 struct HemisphereGrid {
     struct Panel {
         std::size_t firstRing = 0, rings = 0;
         AzimuthSpread azimuths = {};
+        bool crowded = false;            ///< rings crowd towards an end of the panel
+        std::vector<CutRing> cuts = {};  ///< of each ring, where curves cross the panel
+        std::size_t points() const;
     };
     std::vector<Elevation<double>> elevations;  ///< per ring
     std::vector<double> sines;                  ///< sin(theta) per ring
@@ -56,9 +62,9 @@ std::vector<double> panelBreaks(const std::vector<Lobe>& lobes, const Direction&
 
 /// Adds the panel [a, b] in u: Gauss-Legendre rings times azimuths, whose number and clustering
 /// follow from the singularities along phi (azimuth_spread.h). In u, functions that behave like
-/// sqrt(cos theta) at the horizon are smooth.
+/// sqrt(cos theta) at the horizon are smooth. Rings that curves cross have nodes between them.
 void appendPanel(HemisphereGrid& grid, double a, double b, const AzimuthPeaks& peaks,
-                 const GridOptions& options);
+                 const GridOptions& options, const PanelCurves& curves = {});
 
 /// All panels at one level: a grid for integrands made of a BRDF with these lobes and kinks at
 /// `wo`, its square, and basis functions.

@@ -157,6 +157,13 @@ std::vector<double> Remainder::kinks(const Direction& wo) const {
     return all;
 }
 
+std::vector<KinkCurve> Remainder::kinkCurves(const Direction& wo) const {
+    std::vector<KinkCurve> all = kinkCurvesOf(whole_, wo);
+    if (!added_) return all;
+    for (const KinkCurve& curve : kinkCurvesOf(*added_, wo)) all.push_back(curve);
+    return all;
+}
+
 double Remainder::defaultTolerance() const {
     const double own = whole_.defaultTolerance();
     return added_ ? std::max(own, added_->defaultTolerance()) : own;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/brdf/brdf.h>
+#include <hshfit/brdf/kink_curve.h>
 #include <hshfit/representation/representation.h>
 
 #include <memory>
@@ -11,7 +12,7 @@ namespace hshfit::inline representation {
 /// f - added: lobes and kinks of both, covered where both are; isotropy, mirror symmetry and
 /// reciprocity where both have them, energy conservation where f has it and `added` is nowhere
 /// negative. Named after f, so that messages and files name what the user gave.
-class Remainder final : public Brdf {
+class Remainder final : public Brdf, public HasKinkCurves {
 public:
     /// `whole` has to outlive this; `added` may be null. Throws UsageError unless it is grey or has
     /// the channels of `whole`. `nonNegative`: the difference is known to be nowhere negative.
@@ -24,6 +25,7 @@ public:
     void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
     std::vector<Lobe> lobes(const Direction& wo) const override;
     std::vector<double> kinks(const Direction& wo) const override;
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override;
     double defaultTolerance() const override;
     void checkIntact() const override;
 

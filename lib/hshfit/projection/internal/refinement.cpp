@@ -1,6 +1,9 @@
 #include <hshfit/projection/internal/refinement.h>
 
+#include <hshfit/bases/catalog.h>
+#include <hshfit/brdf/kink_curve.h>
 #include <hshfit/error.h>
+#include <hshfit/projection/internal/convergence.h>
 #include <hshfit/wording.h>
 
 #include <fmt/format.h>
@@ -17,40 +20,22 @@ using Inner = Basis::Inner;
 
 constexpr int maxLevel = 20;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// Changes of a quantity from level to level, and the error estimated from them.
-struct Change {
-    double last = infinity, before = infinity, earlier = infinity;
-
-    void add(double change) {
-        earlier = before;
-        before = last;
-        last = change;
-    }
-
-    /// Levels grow by 1.4, and exponential convergence gains more with every one: then the next
-    /// change, and with it the error, is at most last (last / before). Kinks gain a factor of 2 or
-    /// 3 a level, with accidents: without two steps that were faster than that (or one that was far
-    /// faster), the last change itself is the estimate.
-    double error() const {
-        constexpr double fast = 0.2, fastBefore = 0.35, fastAtOnce = 0.1, safety = 3;
-        if (last == 0 || before == infinity) return last;
-        const double ratio = last / before;
-        const bool smooth = earlier == infinity ? ratio < fastAtOnce
-                                                : ratio < fast && before < fastBefore * earlier;
-        return smooth ? last * std::min(1.0, safety * ratio) : last;
-    }
-};
+/// Of sums over all nodes, relative.
+constexpr double rounding = 1e-14;
+/// Tolerances from here on are those of interpolated tables (Brdf::defaultTolerance).
+constexpr double interpolated = 1e-4;
 
 /// State of one elevation panel at its present level.
 struct Panel {
     double a, b;  ///< ends in u
     AzimuthPeaks peaks;
+    PanelCurves curves;
     int level = -1;
     std::vector<double> moments = {}, before = {};  ///< in the order of ThetaProducts
     PerInner energy{};
-    std::vector<Change> change = {};  ///< per basis: of the moments, by norm
-    std::array<Change, 2> energyChange = {};
+    std::vector<Changes> change = {};  ///< per basis: of the moments, by norm
+    std::array<Changes, 2> energyChange = {};
+    PanelError error = {};  ///< relative to the totals
 };
 
 /// The root of the sum of squares of `count` values, in four sums side by side.
@@ -82,15 +67,24 @@ class Refinement {
 public:
     Refinement(const Brdf& brdf, const ProjectionTables& tables, const Direction& wo,
                const RefinementOptions& options)
-        : brdf_(brdf), tables_(tables), bases_(tables.theta.bases()), wo_(wo), options_(options) {
+        : brdf_(brdf),
+          tables_(tables),
+          bases_(tables.theta.bases()),
+          wo_(wo),
+          options_(options),
+          mayBeSmooth_(brdf.defaultTolerance() < interpolated) {
         offsets_ = {0};
         for (std::size_t b = 0; b < bases_.size(); ++b)
             offsets_.push_back(offsets_[b] + tables.theta.size(b, brdf.channels().count()));
         const std::vector<Lobe> lobes = brdf.lobes(wo);
-        const std::vector<double> breaks = panelBreaks(lobes, wo, brdf.kinks(wo));
+        const std::vector<KinkCurve> curves = kinkCurvesOf(brdf, wo);
+        std::vector<double> heights = brdf.kinks(wo);
+        for (const double height : curveEnds(curves)) heights.push_back(height);
+        const std::vector<double> breaks = panelBreaks(lobes, wo, heights);
         for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
             const double a = breaks[k], b = breaks[k + 1];
-            panels_.push_back({.a = a, .b = b, .peaks = {lobes, wo, a, b}});
+            panels_.push_back(
+                {.a = a, .b = b, .peaks = {lobes, wo, a, b}, .curves = {curves, a, b}});
         }
         result_.horizon = horizonBehaviour(brdf, wo, options.quantity);
     }
@@ -111,6 +105,7 @@ public:
         for (std::size_t b = 0; b < bases_.size(); ++b) {
             result_.moments.push_back(
                 tables_.theta.toSlots(b, spectrum_.channels, ofBasis(totals_, b).data()));
+            result_.enlargement.push_back(enlargement(b));
         }
         return std::move(result_);
     }
@@ -126,7 +121,8 @@ private:
                         {.order = tables_.azimuths.order(),
                          .level = panel.level,
                          .squeezed = true,
-                         .even = options_.even});
+                         .even = options_.even},
+                        panel.curves);
         }
         const std::size_t cost = grid_.points() / (options_.even ? 2 : 1);
         const bool tooDeep = std::any_of(active.begin(), active.end(), [&](std::size_t p) {
@@ -179,43 +175,82 @@ private:
         panel.energy = energy;
     }
 
-    /// Totals over the panels, in their order.
+    /// Totals over the panels, in their order, and their errors.
     void addUp() {
         totals_.assign(offsets_.back(), 0.0);
-        result_.energy = result_.energyError = {};
+        result_.energy = {};
         for (const Panel& panel : panels_) {
             for (std::size_t i = 0; i < totals_.size(); ++i) totals_[i] += panel.moments[i];
-            for (std::size_t e = 0; e < result_.energy.size(); ++e) {
+            for (std::size_t e = 0; e < result_.energy.size(); ++e)
                 result_.energy[e] += panel.energy[e];
-                result_.energyError[e] += panel.energyChange[e].error();
-            }
         }
         norms_.clear();
         for (std::size_t b = 0; b < bases_.size(); ++b) norms_.push_back(norm(ofBasis(totals_, b)));
-        result_.error = 0;
-        for (const Panel& panel : panels_) result_.error += errorOf(panel);
+        expected_ = result_.error = 0;
+        for (Panel& panel : panels_) {
+            panel.error = panelError(largestChanges(panel), mayBeSmooth_);
+            expected_ += panel.error.expected;
+            result_.error += panel.error.stated;
+        }
+        if (result_.error > 0) result_.error += rounding;
+        for (std::size_t e = 0; e < result_.energy.size(); ++e)
+            result_.energyError[e] = result_.error * result_.energy[e];
     }
 
-    /// A panel's error, relative to the totals: the largest over bases and their energies.
-    double errorOf(const Panel& panel) const {
-        double error = 0;
-        for (std::size_t b = 0; b < bases_.size(); ++b) {
-            error = std::max(error, relative(panel.change[b].error(), norms_[b]));
-            const Inner inner = bases_[b]->inner();
-            if (!result_.horizon.energyExists(inner)) continue;
-            const int e = static_cast<int>(inner);
-            error = std::max(error, relative(panel.energyChange[e].error(), result_.energy[e]));
+    /// A panel's changes, each relative to its total: the largest over bases and energies.
+    Changes largestChanges(const Panel& panel) const {
+        Changes largest;
+        for (std::size_t k = 0; k < Changes::kept; ++k) {
+            double& value = largest.values[k];
+            if (value = panel.energyChange[0].values[k]; value == infinity) continue;
+            value = 0;
+            for (std::size_t b = 0; b < bases_.size(); ++b)
+                value = std::max(value, relative(panel.change[b].values[k], norms_[b]));
+            for (std::size_t e = 0; e < result_.energy.size(); ++e)
+                if (result_.horizon.energyExists(static_cast<Inner>(e)))
+                    value = std::max(value,
+                                     relative(panel.energyChange[e].values[k], result_.energy[e]));
         }
-        return error;
+        return largest;
+    }
+
+    /// By how much the solution of a Gram system enlarges the last changes, relative to the
+    /// moments.
+    double enlargement(std::size_t b) const {
+        if (bases::find(bases_[b]->name()).orthonormal) return 1;
+        double changes = 0, solvedChanges = 0;
+        std::vector<double> change(offsets_[b + 1] - offsets_[b]);
+        for (const Panel& panel : panels_) {
+            const auto now = ofBasis(panel.moments, b), before = ofBasis(panel.before, b);
+            for (std::size_t i = 0; i < change.size(); ++i) change[i] = now[i] - before[i];
+            changes += norm(change);
+            solvedChanges += solvedNorm(b, change);
+        }
+        const double solved = solvedNorm(b, ofBasis(totals_, b));
+        if (!(changes > 0 && solved > 0)) return 1;
+        return std::max(1.0, solvedChanges / changes * norms_[b] / solved);
+    }
+
+    /// The norm of the coefficients that follow from moments.
+    double solvedNorm(std::size_t b, std::span<const double> moments) const {
+        const Basis& basis = *bases_[b];
+        const std::vector<double> slots =
+            tables_.theta.toSlots(b, spectrum_.channels, moments.data());
+        std::vector<double> solved(slots.size());
+        const auto each = static_cast<std::size_t>(basis.slots());
+        for (std::size_t c = 0; c < spectrum_.channels; ++c)
+            basis.coefficientsFromMoments(slots.data() + c * each, basis.order(),
+                                          solved.data() + c * each);
+        return norm(solved);
     }
 
     /// The panels to refine next: none once the errors add up to the tolerance.
     std::vector<std::size_t> unconverged() const {
         std::vector<std::size_t> active;
-        if (result_.error <= options_.tolerance) return active;
+        if (expected_ <= options_.tolerance) return active;
         const double share = 0.5 * options_.tolerance / static_cast<double>(panels_.size());
         for (std::size_t p = 0; p < panels_.size(); ++p) {
-            if (errorOf(panels_[p]) > share) active.push_back(p);
+            if (panels_[p].error.expected > share) active.push_back(p);
         }
         return active;
     }
@@ -224,7 +259,7 @@ private:
         throw NumericError(fmt::format(
             "{}: not converged at theta_o = {:.6g}, phi_o = {:.6g} degrees: relative change {:.2g} "
             "after {} evaluations, {:.2g} asked; raise {} or {}",
-            brdf_.name(), degrees(polarAngle(wo_)), degrees(azimuth(wo_)), result_.error,
+            brdf_.name(), degrees(polarAngle(wo_)), degrees(azimuth(wo_)), expected_,
             result_.evaluations, options_.tolerance, Setting{"ProjectionOptions::tolerance"},
             Setting{"ProjectionOptions::maxEvaluations"}));
     }
@@ -234,6 +269,8 @@ private:
     std::span<const Basis* const> bases_;
     Direction wo_;
     RefinementOptions options_;
+    bool mayBeSmooth_;                  ///< f is no interpolated table
+    double expected_ = 0;               ///< relative error, by which refinement goes
     std::vector<std::size_t> offsets_;  ///< of each basis among the moments
     std::vector<Panel> panels_;
     HemisphereGrid grid_;    ///< of the panels that are being refined

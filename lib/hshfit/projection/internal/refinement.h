@@ -21,7 +21,10 @@ struct RefinedMoments {
     std::vector<std::vector<double>> moments;  ///< per basis: [channel][slot]
     PerInner energy{};                         ///< integral of q^2, summed over channels
     PerInner energyError{};                    ///< absolute
-    double error = 0;                          ///< relative, the larger of coefficients and energy
+    double error = 0;                          ///< relative, the larger of moments and energy
+    /// Per basis: the relative error of its coefficients by that of its moments, 1 unless a Gram
+    /// system is solved, whose small eigenvalues enlarge it.
+    std::vector<double> enlargement;
     std::size_t evaluations = 0;
     HorizonBehaviour horizon;
 };
@@ -43,9 +46,8 @@ struct ProjectionTables {
 /// Integrates q against the analysis functions of every basis. Each elevation panel is refined on
 /// its own until the errors of all panels add up to no more than the tolerance, relative to the
 /// norm of each basis' moments and to each energy that exists: panels that hold next to nothing
-/// stay coarse. A panel's error is its last change, or, where its changes shrink as fast as those
-/// of a smooth f, the expected next change. The sum is above the true error for a smooth f, and
-/// within a factor of 3 of it where f has kinks that no panel ends at.
+/// stay coarse. Errors follow from the changes of the last levels (convergence.h). Of an
+/// interpolated table, the error stated is up to 3 times that by which refinement goes.
 ///
 /// Throws NumericError where the moments do not exist, do not converge within the evaluations
 /// allowed, or q is not finite.

@@ -26,7 +26,11 @@ struct Run {
     std::size_t firstRing, rings;
 
     const AzimuthSpacing& spacing() const { return panel->azimuths.spacing; }
-    bool squeezed() const { return spacing().squeeze > 0; }
+    bool cut() const { return !panel->cuts.empty(); }
+    const CutRing& cutRing(std::size_t ring) const { return panel->cuts[ring - panel->firstRing]; }
+    Run ring(std::size_t k) const { return {panel, nullptr, firstRing + k, 1}; }
+    /// Azimuths of half of the circle and their mirror images.
+    bool halves() const { return cut() || spacing().squeeze > 0; }
 };
 
 /// Runs that are evaluated in one call, numbers first to last - 1.
@@ -44,6 +48,8 @@ struct Blocks {
 struct Workspace {
     std::vector<double> x, y, z, values, folded;
     AzimuthTable piece;
+    std::vector<AzimuthTable> ofRings;
+    std::vector<double> nodes, nodeWeights;
 };
 
 class Lease {
@@ -87,7 +93,7 @@ public:
         Lease lease;
         Workspace& w = *lease;
         if (const Run& run = all.runs[block.first]; !run.table) {
-            byPieces(run, w);
+            run.cut() ? byCuts(run, w) : byPieces(run, w);
             return;
         }
         std::size_t points = 0;
@@ -107,7 +113,7 @@ public:
 private:
     /// Points evaluated for each azimuth of the run's table: one for each quadrant, or for each
     /// half of the circle, and half of them where q is even.
-    std::size_t copies(const Run& run) const { return (run.squeezed() ? 2 : 4) / (even_ ? 2 : 1); }
+    std::size_t copies(const Run& run) const { return (run.halves() ? 2 : 4) / (even_ ? 2 : 1); }
     std::size_t pointsOf(const Run& run) const {
         return run.rings * copies(run) * tableSize(run.spacing());
     }
@@ -128,6 +134,42 @@ private:
         weight(run);
     }
 
+    /// Rings that curves cross, each of which has a table of its own. A ring alone may have too
+    /// many nodes for one.
+    void byCuts(const Run& run, Workspace& w) const {
+        const std::size_t most = blockValues / ((3 + result_.channels) * copies(run));
+        if (run.rings == 1 && run.cutRing(run.firstRing).size() > most) {
+            std::vector<double> nodes, weights;  // `w` may serve another ring while f is evaluated
+            run.cutRing(run.firstRing).nodes(nodes, weights);
+            for (std::size_t first = 0; first < nodes.size(); first += most) {
+                const std::size_t count = std::min(most, nodes.size() - first);
+                w.piece.fill(tables_.order(), run.spacing(), std::span(nodes).subspan(first, count),
+                             std::span(weights).subspan(first, count));
+                fillDirections(run, w.piece, 0, w);
+                evaluate(copies(run) * count, w);
+                add(run, w.piece, 0, copies(run) * count, w);
+            }
+            weight(run);
+            return;
+        }
+        growTo(w.ofRings, run.rings);
+        std::size_t points = 0;
+        for (std::size_t k = 0; k < run.rings; ++k) {
+            const Run ring = run.ring(k);
+            run.cutRing(ring.firstRing).nodes(w.nodes, w.nodeWeights);
+            w.ofRings[k].fill(tables_.order(), run.spacing(), w.nodes, w.nodeWeights);
+            fillDirections(ring, w.ofRings[k], points, w);
+            points += copies(run) * w.ofRings[k].count;
+        }
+        evaluate(points, w);
+        std::size_t offset = 0;
+        for (std::size_t k = 0; k < run.rings; ++k) {
+            add(run.ring(k), w.ofRings[k], offset, points, w);
+            offset += copies(run) * w.ofRings[k].count;
+        }
+        weight(run);
+    }
+
     /// Ring by ring from number `offset`: phi, pi - phi, and unless even -phi, pi + phi; about the
     /// centre of clustered azimuths phi, and unless even -phi.
     void fillDirections(const Run& run, const AzimuthTable& table, std::size_t offset,
@@ -142,7 +184,7 @@ private:
                                         .copies = copies(run),
                                         .centreX = run.panel->azimuths.centreX,
                                         .centreY = run.panel->azimuths.centreY};
-        const auto fill = run.squeezed() ? fillSqueezedRing : fillRing;
+        const auto fill = run.halves() ? fillSqueezedRing : fillRing;
         for (std::size_t r = run.firstRing; r < run.firstRing + run.rings; ++r, offset += ring) {
             fill(directions, grid_.sines[r], grid_.elevations[r].mu, w.x.data() + offset,
                  w.y.data() + offset, w.z.data() + offset);
@@ -160,7 +202,7 @@ private:
         const std::size_t count = table.count, part = run.rings * count;
         const AzimuthColumns& columns = result_.columns;
         std::array<std::size_t, 4> kinds = {columns.c0, columns.c1, columns.s1, columns.s0};
-        if (run.squeezed()) kinds = {columns.c0 + columns.c1, columns.s1 + columns.s0};
+        if (run.halves()) kinds = {columns.c0 + columns.c1, columns.s1 + columns.s0};
         growTo(w.folded, copies(run) * part);
         double sum = 0;
         for (std::size_t channel = 0; channel < result_.channels; ++channel) {
@@ -188,7 +230,7 @@ private:
     double fold(const Run& run, const AzimuthTable& table, const double* values, std::size_t part,
                 double* to) const {
         const QuadrantFold folded{to, to + part, to + 2 * part, to + 3 * part};
-        if (!run.squeezed())
+        if (!run.halves())
             return even_ ? foldHalfRing(values, table.count, folded)
                          : foldRing(values, table.count, folded);
         const double* weights = table.weights.data();
@@ -213,7 +255,9 @@ private:
 
     /// Sums over azimuths become integrals of q.
     void weight(const Run& run) const {
-        const double step = (even_ ? 4 : 2) * pi / static_cast<double>(run.spacing().azimuths);
+        const double step =
+            run.cut() ? (even_ ? 2 : 1)
+                      : (even_ ? 4 : 2) * pi / static_cast<double>(run.spacing().azimuths);
         for (std::size_t ring = run.firstRing; ring < run.firstRing + run.rings; ++ring) {
             const double cosine =
                 quantity_ == Quantity::brdfCosine ? grid_.elevations[ring].mu : 1.0;
@@ -221,7 +265,7 @@ private:
             for (std::size_t k = 0; k < result_.ringSize(); ++k) parts[k] *= step * cosine;
             result_.squares[ring] *= step * cosine * cosine;
         }
-        if (run.squeezed() && tables_.order() > 1) turn(run);
+        if (run.halves() && tables_.order() > 1) turn(run);
     }
 
     /// From azimuths about the panel's centre to those about the x axis.
@@ -253,6 +297,18 @@ private:
     RingSpectrum& result_;
 };
 
+/// Rings of a panel that curves cross, in blocks with at most that many nodes of half circles.
+void addCutRings(const HemisphereGrid::Panel& panel, std::size_t most, Blocks& result) {
+    for (std::size_t r = 0; r < panel.rings;) {
+        std::size_t nodes = panel.cuts[r].size(), together = 1;
+        while (r + together < panel.rings && nodes + panel.cuts[r + together].size() <= most)
+            nodes += panel.cuts[r + together++].size();
+        result.blocks.push_back({result.runs.size(), result.runs.size() + 1});
+        result.runs.push_back({&panel, nullptr, panel.firstRing + r, together});
+        r += together;
+    }
+}
+
 /// Groups of rings, across neighbouring panels, that make a block. A ring whose table is too large
 /// is a group of its own.
 Blocks blocksOf(const HemisphereGrid& grid, const AzimuthTables& tables, std::size_t channels,
@@ -261,6 +317,11 @@ Blocks blocksOf(const HemisphereGrid& grid, const AzimuthTables& tables, std::si
     const std::size_t most = blockValues / (3 + channels);
     std::size_t filled = 0;
     for (const auto& panel : grid.panels) {
+        if (!panel.cuts.empty()) {
+            addCutRings(panel, even ? most : most / 2, result);
+            filled = 0;
+            continue;
+        }
         const std::size_t points = panel.azimuths.spacing.azimuths / (even ? 2 : 1);
         const auto table = tables.find(panel.azimuths.spacing);
         for (std::size_t r = 0; r < panel.rings;) {

@@ -88,7 +88,7 @@ const std::vector<double>* ThetaProducts::Kept::find(const ThetaProducts& produc
                                                      const HemisphereGrid::Panel& panel, double a,
                                                      double b) {
     const std::size_t size = products.lanes_ * panel.rings;
-    if (size > mostOfPanel || !isDyadic(a) || !isDyadic(b)) return nullptr;
+    if (size > mostOfPanel || panel.crowded || !isDyadic(a) || !isDyadic(b)) return nullptr;
     const Key key{a, b, panel.rings};
     if (const auto found = tables.find(key); found != tables.end()) return found->second.get();
     if (values.load(std::memory_order_relaxed) + size > mostOfAll) return nullptr;

@@ -1,6 +1,7 @@
 #include <hshfit/representation/forms/represented_brdf.h>
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/brdf/kink_curve.h>
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
 #include <hshfit/representation/basis_matrix.h>
@@ -14,7 +15,7 @@ namespace hshfit::inline representation::inline forms {
 namespace {
 
 /// What every kind shares: the added BRDF, and the laws that the form keeps by itself.
-class Represented : public RepresentedBrdf {
+class Represented : public RepresentedBrdf, public HasKinkCurves {
 public:
     Represented(Representation representation, const BrdfOpener& open)
         : representation_(std::move(representation)) {
@@ -45,6 +46,9 @@ public:
     }
     std::vector<double> kinks(const Direction& wo) const override {
         return added_ ? added_->kinks(wo) : std::vector<double>{};
+    }
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
+        return added_ ? kinkCurvesOf(*added_, wo) : std::vector<KinkCurve>{};
     }
 
     /// The halfway form has kinks where its roots begin and where it is cut off at 0, on curves

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+
+namespace hshfit::inline projection {
+
+/// The last changes of a quantity from level to level, newest first; infinite before there are any.
+/// Levels grow by a factor of 1.4 in both directions.
+struct Changes {
+    static constexpr std::size_t kept = 3;
+    double values[kept] = {std::numeric_limits<double>::infinity(),
+                           std::numeric_limits<double>::infinity(),
+                           std::numeric_limits<double>::infinity()};
+
+    void add(double change) {
+        values[2] = values[1];
+        values[1] = values[0];
+        values[0] = change;
+    }
+};
+
+/// Errors that follow from a panel's changes, in their unit.
+struct PanelError {
+    double expected = 0;  ///< decides about refinement
+    double stated = 0;    ///< not below `expected`
+};
+
+/// The error of the newest level, from changes of which each is the largest over all quantities,
+/// each relative to its size: one alone may agree by accident where f has kinks, and square or
+/// moment converge at different levels.
+///
+/// Exponential convergence gains more with every level: then the next change is at most the last
+/// one times its ratio to the one before. Otherwise changes go down by a ratio q of 0.4 to 0.7 with
+/// accidents, and the error is about the last change times q / (1 - q), or what is left of an
+/// earlier change that was larger. `mayBeSmooth`: whether the first is possible at all; if not, as
+/// with interpolated tables, three times as much is stated.
+PanelError panelError(const Changes& changes, bool mayBeSmooth);
+
+}  // namespace hshfit::inline projection
