@@ -1,0 +1,158 @@
+#include <brdfs/random_cases.h>
+
+#include <brdfs/spec.h>
+#include <hshfit/bases/catalog.h>
+#include <hshfit/error.h>
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+namespace hshfit::brdfs {
+namespace {
+
+/// A range over more than two decades is drawn from by its logarithm; one that begins at 0, from
+/// this share of its end on.
+constexpr double decades = 100, leastShare = 1e-9;
+
+double fromRange(double low, double high, Draws& draws) {
+    if (low >= 0 && high > decades * low && high > 1) {
+        const double least = low > 0 ? low : std::max(leastShare * high, 1e-3);
+        return draws.logBetween(least, high);
+    }
+    return draws.between(low, high);
+}
+
+double numberOf(const Parameter& parameter, Draws& draws, DrawFrom from) {
+    const bool typical = !parameter.fit.empty() && (from == DrawFrom::typical || draws.oneIn(2));
+    if (!typical) return fromRange(parameter.min, parameter.max, draws);
+    const FitRange& range = parameter.fit.front();
+    return range.logarithmic ? draws.logBetween(range.low, range.high)
+                             : draws.between(range.low, range.high);
+}
+
+std::string valueOf(const Parameter& parameter, Draws& draws, DrawFrom from) {
+    if (parameter.kind == Parameter::Kind::choice)
+        return std::string(parameter.choices[draws.below(parameter.choices.size())]);
+    std::string value = fmt::format("{:.4g}", numberOf(parameter, draws, from));
+    if (parameter.kind == Parameter::Kind::colour && draws.oneIn(4))
+        for (int c = 1; c < 3; ++c)
+            value += fmt::format("/{:.4g}", numberOf(parameter, draws, from));
+    return value;
+}
+
+/// One draw; its combination of parameters may be invalid.
+std::string drawSpec(const Model& model, Draws& draws, DrawFrom from) {
+    std::string text(model.name);
+    char separator = ':';
+    for (const Parameter& parameter : model.parameters) {
+        const bool optional =
+            parameter.fallback.has_value() || parameter.kind == Parameter::Kind::choice;
+        if (optional && draws.oneIn(2)) continue;
+        text += fmt::format("{}{}={}", separator, parameter.name, valueOf(parameter, draws, from));
+        separator = ',';
+    }
+    return text;
+}
+
+/// Small tables: edges of cells matter here, not how many there are.
+std::string_view smallOptions(std::string_view writer) {
+    if (writer == "slices") return "size=90";
+    if (writer == "rgl") return "theta=8,phi=3,slice=24,normals=32";
+    return {};
+}
+
+/// A table of a random model, opened from a file that is then removed: what is mapped stays.
+std::shared_ptr<const Brdf> randomTable(const Writer& writer, Draws& draws) {
+    const std::string path = (std::filesystem::temp_directory_path() /
+                              fmt::format("hshfit-trial-{}{}", ::getpid(), writer.extension))
+                                 .string();
+    constexpr int attempts = 100;
+    for (int k = 0; k < attempts; ++k) {
+        const Model& model = models()[draws.below(models().size())];
+        const std::string spec = randomSpec(model, draws, DrawFrom::typical);
+        try {
+            const Parameters options =
+                parseParameters(writer.name, writer.parameters, smallOptions(writer.name));
+            writer.write(*open(spec), path, options, {.force = true});
+            std::shared_ptr<const Brdf> table = open(path);
+            std::filesystem::remove(path);
+            return table;
+        } catch (const Error&) {  // a format cannot hold every model
+        }
+    }
+    throw NumericError(fmt::format("{}: no model could be written", writer.name));
+}
+
+}  // namespace
+
+double Draws::between(double low, double high) {
+    return low + (high - low) * std::ldexp(static_cast<double>(generator_() >> 11), -53);
+}
+
+double Draws::logBetween(double low, double high) {
+    return std::exp(between(std::log(low), std::log(high)));
+}
+
+std::size_t Draws::below(std::size_t count) {
+    return static_cast<std::size_t>(between(0, static_cast<double>(count)));
+}
+
+std::string randomSpec(const Model& model, Draws& draws, DrawFrom from) {
+    constexpr int attempts = 1000;
+    for (int k = 0; k < attempts; ++k) {
+        const std::string spec = drawSpec(model, draws, from);
+        try {
+            openModel(spec);
+            return spec;
+        } catch (const UsageError&) {  // parameters that exclude each other
+        }
+    }
+    return std::string(model.name);
+}
+
+std::vector<stability::ErrorTrial> randomCases(const RandomCasesOptions& options) {
+    Draws draws(options.seed);
+    const auto wanted = [&](const Writer& writer) {
+        return writer.readBack &&
+               (options.formats.empty() ||
+                std::ranges::find(options.formats, writer.name) != options.formats.end());
+    };
+    std::vector<std::pair<std::string, std::shared_ptr<const Brdf>>> tables;
+    for (std::size_t k = 0; k < options.tablesPerFormat; ++k)
+        for (const Writer& writer : writers())
+            if (wanted(writer)) tables.emplace_back(writer.name, randomTable(writer, draws));
+    const std::size_t formats = tables.size() / std::max<std::size_t>(options.tablesPerFormat, 1);
+    const std::size_t groups = models().size() + formats;
+    std::vector<stability::ErrorTrial> cases;
+    for (std::size_t k = 0; k < options.count; ++k) {
+        const std::size_t group = k % groups;
+        stability::ErrorTrial trial;
+        if (group < models().size()) {
+            const Model& model = models()[group];
+            trial.group = model.name;
+            trial.brdf = openModel(randomSpec(model, draws));
+        } else {
+            const std::size_t format = group - models().size();
+            const auto& [name, table] =
+                tables[format + formats * draws.below(options.tablesPerFormat)];
+            trial.group = name;
+            trial.brdf = table;
+        }
+        const bases::Entry& entry = bases::catalog()[draws.below(bases::catalog().size())];
+        trial.basis = entry.name;
+        trial.order = 1 + static_cast<int>(draws.below(static_cast<std::size_t>(
+                              std::min(options.maxOrder, entry.maxOrder))));
+        trial.thetaDegrees = draws.between(0, 89);
+        trial.phiDegrees = draws.between(0, 360);
+        trial.quantity = draws.oneIn(2) ? Quantity::brdfCosine : Quantity::brdf;
+        cases.push_back(std::move(trial));
+    }
+    return cases;
+}
+
+}  // namespace hshfit::brdfs

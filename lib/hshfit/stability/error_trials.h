@@ -1,0 +1,73 @@
+#pragma once
+
+#include <hshfit/brdf/brdf.h>
+#include <hshfit/coefficients/coefficients.h>
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hshfit::stability {
+
+/// A projection for one outgoing direction, whose stated errors are to be tried.
+struct ErrorTrial {
+    std::string group;  ///< under which it is counted: the name of a model or a format
+    std::shared_ptr<const Brdf> brdf;
+    double thetaDegrees = 0, phiDegrees = 0;
+    std::string basis = "hsh";
+    int order = 7;
+    Quantity quantity = Quantity::brdf;
+};
+
+/// True errors of a projection at its default tolerance, against the same projection at a
+/// hundredth of it, relative to the errors that it states.
+struct ErrorTrialResult {
+    enum class State {
+        measured,
+        refused,      ///< the coefficients do not exist, or did not converge
+        noReference,  ///< a hundredth and a tenth of the tolerance did not converge
+    };
+    ErrorTrial trial;
+    State state = State::measured;
+    double stated = 0;        ///< `error`, relative
+    double coefficients = 0;  ///< true error of the coefficients in L2, relative
+    bool hasEnergy = false;
+    double statedEnergy = 0, energy = 0;  ///< both relative to the energy
+    double share = 0;  ///< of the default tolerance at which the reference was computed
+    std::size_t evaluations = 0, referenceEvaluations = 0;
+
+    /// Neither error is above the one stated, but for rounding.
+    bool coefficientsHold() const;
+    bool energyHolds() const;
+    /// Stated by true error, of coefficients and energy the one that is nearer; infinite where the
+    /// true error is rounding.
+    double overstatement() const;
+};
+
+struct ErrorTrialOptions {
+    std::size_t referenceEvaluations = std::size_t{1} << 26;
+    std::function<void(std::size_t, std::size_t)> progress = {};
+};
+
+/// In the order of the trials. Results do not depend on the number of threads.
+std::vector<ErrorTrialResult> tryErrors(std::span<const ErrorTrial> trials,
+                                        const ErrorTrialOptions& options = {});
+
+/// Counts of a group of trials, or of all.
+struct ErrorTrialSummary {
+    std::string group;
+    std::size_t trials = 0, measured = 0, coefficientsHold = 0, energyMeasured = 0, energyHolds = 0;
+    std::size_t bothHold = 0;
+    double worst = 0;                ///< true by stated error, the largest
+    double medianOverstatement = 0;  ///< of those whose error is more than rounding
+    double medianEvaluations = 0;
+    std::size_t evaluations = 0;
+};
+
+/// One for each group, in the order of their first trials, and the last one of all.
+std::vector<ErrorTrialSummary> summarise(std::span<const ErrorTrialResult> results);
+
+}  // namespace hshfit::stability
