@@ -12,6 +12,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -152,17 +154,29 @@ std::vector<InputFailure> forEachInput(const std::vector<std::string>& specs,
                                        const std::function<void(std::size_t, ProgressCall)>& work) {
     TotalProgress progress(specs.size(), listener.part(part));
     std::vector<std::optional<InputFailure>> failed(specs.size());
+    // An exception that left a task would cancel the loops within other inputs, which would go on
+    // with results that nobody has computed: it waits until all have ended.
+    std::mutex mutex;
+    std::exception_ptr end;
+    std::atomic<bool> ended = false;
+    const auto stop = [&] {
+        const std::lock_guard lock(mutex);
+        if (!ended.exchange(true)) end = std::current_exception();
+    };
     const auto one = [&](std::size_t i) {
+        if (ended) return;
         try {
             work(i, [&progress, i](std::size_t done, std::size_t total) {
                 progress.update(i, done, total);
             });
         } catch (const OutputError&) {
-            throw;
+            stop();
         } catch (const Error& error) {
             failed[i] = {specs[i], error.what(), error.code()};
         } catch (const std::bad_alloc&) {
             failed[i] = {specs[i], "not enough memory", ExitCode::numeric};
+        } catch (...) {
+            stop();
         }
         progress.finish(i);
     };
@@ -175,6 +189,7 @@ std::vector<InputFailure> forEachInput(const std::vector<std::string>& specs,
                 tbb::this_task_arena::isolate([&] { one(i); });
         },
         tbb::simple_partitioner());
+    if (end) std::rethrow_exception(end);
     std::vector<InputFailure> failures;
     for (auto& failure : failed)
         if (failure) failures.push_back(std::move(*failure));

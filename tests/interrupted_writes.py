@@ -77,8 +77,7 @@ class Run:
     def __init__(self, program, words, folder):
         self.folder = Path(folder)
         (self.folder / "out").mkdir()
-        inputs = str(self.folder.parent / "inputs")
-        self.words = [program] + [word.replace("INPUTS", inputs) for word in words.split()]
+        self.words = [program] + words.split()
 
     def start(self, limit=None):
         def narrow():
@@ -140,7 +139,7 @@ class Trial:
         self.number += 1
         folder = (under or self.top) / f"run{self.number}"
         folder.mkdir()
-        return Run(self.program, COMMANDS[name], folder)
+        return Run(self.program, COMMANDS[name].replace("INPUTS", str(self.inputs)), folder)
 
     def check(self, name, run, kind, stood, code):
         """Holds what is left behind to the rules."""
@@ -215,7 +214,6 @@ class Trial:
                     run.stand(self.complete[name])
                 except OSError:  # not even these fit
                     return True
-            (disk / "inputs").symlink_to(self.inputs)
             process = run.start()
             process.communicate(timeout=600)
             self.check(name, run, "disk", stood, process.returncode)

@@ -5,14 +5,20 @@
 #include <hshfit/error.h>
 #include <hshfit/pages/report.h>
 
+#include <jobs/batch.h>
 #include <jobs/export.h>
 #include <jobs/fit.h>
 #include <jobs/project.h>
 #include <jobs/report.h>
 #include <jobs/source.h>
 
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <chrono>
 #include <map>
 #include <set>
+#include <thread>
 
 namespace {
 
@@ -127,6 +133,31 @@ TEST_F(Jobs, FitWritesThePresetOfTheProgram) {
     EXPECT_TRUE(fitted.result.converged);
     runProgram("fit " + data + " --model ward --starts 4 --seed 7 -o " + path("program.json"));
     EXPECT_EQ(read(path("job.json")), read(path("program.json")));
+}
+
+// A full disk for one input, while another one is within a parallel loop of its own.
+TEST(Batch, AnInputThatCannotBeWrittenLetsTheLoopsOfOthersEnd) {
+    constexpr int count = 2000;
+    std::atomic<bool> started = false;
+    std::atomic<int> done = 0;
+    std::atomic<bool> returned = false;
+    const auto soon = std::chrono::steady_clock::now() + std::chrono::seconds(2);
+    const auto work = [&](std::size_t i, const jobs::ProgressCall&) {
+        if (i == 0) {
+            while (!started && std::chrono::steady_clock::now() < soon) std::this_thread::yield();
+            throw OutputError("full");
+        }
+        tbb::parallel_for(0, count, [&](int) {
+            started = true;
+            std::this_thread::sleep_for(std::chrono::microseconds(50));
+            ++done;
+        });
+        returned = true;
+    };
+    EXPECT_THROW(jobs::forEachInput({"a", "b"}, {}, "test", work), OutputError);
+    if (!started) GTEST_SKIP() << "one thread: the second input never began";
+    EXPECT_TRUE(returned);
+    EXPECT_EQ(done, count);
 }
 
 }  // namespace
