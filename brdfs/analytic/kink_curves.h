@@ -14,7 +14,7 @@ std::vector<KinkCurve> vGrooveKinks(const Direction& wo);
 /// The border of max(0, axis wi)^exponent. None for exponents whose lobe has vanished before it.
 std::vector<KinkCurve> clampedPowerKinks(const Direction& axis, double exponent);
 
-/// Where h.wo has this value: the directions at twice its angle from wo.
+/// The circle of h.wo equal to this value: the directions at twice its angle from wo.
 KinkCurve halfAngleKink(const Direction& wo, double cosine, bool smoothSides);
 
 /// The critical angle of facets with an index of refraction below 1: sin(theta) = index. F goes
