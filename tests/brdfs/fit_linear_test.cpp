@@ -113,7 +113,8 @@ bool linearBesides(const ParametricSum& sum, Values shapes, std::size_t j) {
            cancel(high, low, at(1, none), at(0, none));
 }
 
-/// Every combination of choices, with no colour stated or one, and values on which linearity hangs.
+/// Every combination of choices, with no colour stated or one. Disney's tints are left out: with one,
+/// f is linear in a grey baseColor and not in a coloured one, and its row states the latter.
 std::vector<std::string> specsOf(const Model& model) {
     std::vector<std::string> specs{""};
     for (const Parameter& parameter : model.parameters) {
@@ -128,8 +129,6 @@ std::vector<std::string> specsOf(const Model& model) {
     for (const Parameter& parameter : model.parameters)
         for (std::size_t k = 0; parameter.kind == Parameter::Kind::colour && k < choices; ++k)
             specs.push_back(fmt::format("{},{}=0.4", specs[k], parameter.name));
-    if (model.name == "disney")
-        for (const char* tint : {",specularTint=0.5", ",sheenTint=0.5"}) specs.emplace_back(tint);
     for (std::string& spec : specs) spec = spec.empty() ? "" : ":" + spec.substr(1);
     return specs;
 }
