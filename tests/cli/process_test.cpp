@@ -205,7 +205,7 @@ TEST_F(Process, FiguresDoNotDependOnTheTimeZone) {
 }
 
 TEST_F(Process, RangesStateTheirEnds) {
-    const std::string one = "project lambert -o c.json --tolerance ";
+    const std::string one = "project lambert -o " + path("c.json") + " --tolerance ";
     expectError(one + "1e-14", 2, "--tolerance: '1e-14' is not within 1e-13 to 1", 0);
     expectError(one + "many", 2, "'many' is not within 1e-13 to 1", 0);
     expectError("report lambert --json --max-evaluations 1", 2, "is not within 1000 to 1e+12", 0);
