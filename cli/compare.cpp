@@ -2,8 +2,11 @@
 #include "documents.h"
 
 #include <hshfit/accuracy/metrics.h>
+#include <hshfit/accuracy/pair_errors.h>
 #include <hshfit/coefficients/reconstruction.h>
+#include <hshfit/error.h>
 #include <hshfit/pages/comparison.h>
+#include <hshfit/pages/pair_summary_json.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 
 #include <jobs/source.h>
@@ -11,6 +14,8 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+
+#include <optional>
 
 namespace hshfit::cli {
 namespace {
@@ -49,6 +54,17 @@ std::vector<std::string> writePage(const Brdf& a, const Brdf& b, const OutgoingS
     return writeComparison(a, b, options, arguments.output);
 }
 
+/// The errors over both hemispheres, as other commands give them: the outgoing set passes over the
+/// horizon. None where channels differ or the reference is not finite.
+std::optional<PairSummary> overPairs(const Brdf& a, const Brdf& b) {
+    if (a.channels().count() != b.channels().count()) return std::nullopt;
+    try {
+        return summaryOf(a, b);
+    } catch (const NumericError&) {
+        return std::nullopt;
+    }
+}
+
 void runCompare(const CompareArguments& arguments, Globals& globals) {
     const auto metrics = selectMetrics(arguments.metrics);
     const auto a = jobs::openSource(arguments.a, arguments.rgb),
@@ -68,6 +84,10 @@ void runCompare(const CompareArguments& arguments, Globals& globals) {
     for (const MetricValue& result : results) {
         document["metrics"].push_back(metricJson(result));
         text += metricText(result);
+    }
+    if (const auto pairs = overPairs(*a, *b)) {
+        document["pairs"] = Json::parse(pairSummaryJson(*pairs));
+        text += "  " + indented(textOf(*pairs));
     }
     if (!arguments.output.empty()) {
         const auto files = writePage(*a, *b, outgoing, results, arguments, globals);

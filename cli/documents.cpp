@@ -47,4 +47,13 @@ std::string metricText(const MetricValue& result) {
     return text + "\n";
 }
 
+std::string indented(const std::string& text) {
+    std::string out;
+    for (std::size_t k = 0; k < text.size(); ++k) {
+        out += text[k];
+        if (text[k] == '\n' && k + 1 < text.size()) out += "  ";
+    }
+    return out;
+}
+
 }  // namespace hshfit::cli

@@ -16,6 +16,9 @@ std::string directionText(const Direction& d);
 
 nlohmann::ordered_json lawsJson(const Laws& laws);
 
+/// Every line after the first begins with two spaces.
+std::string indented(const std::string& text);
+
 nlohmann::ordered_json metricJson(const MetricValue& result);
 /// An indented line with its line feed.
 std::string metricText(const MetricValue& result);

@@ -1,7 +1,9 @@
 #include "command.h"
+#include "documents.h"
 #include "form_options.h"
 
 #include <hshfit/error.h>
+#include <hshfit/pages/pair_summary_json.h>
 
 #include <jobs/project.h>
 
@@ -55,6 +57,7 @@ Json answer(const jobs::Projected& result) {
     }
     if (result.kept) document["representation"] = describeForm(*result.kept);
     if (result.poor) document["poor"] = jobs::poorJson(*result.poor);
+    if (result.errors) document["pairs"] = Json::parse(pairSummaryJson(*result.errors));
     return document;
 }
 
@@ -70,7 +73,10 @@ std::string line(const jobs::Projected& result, const Json& document) {
     if (result.kept) {
         const std::string what =
             c.basis.empty() ? "" : fmt::format("{} order {}, ", c.basis, c.order);
-        return fmt::format("{}: {}error {:.1e}\n{}", output, what, c.error, formLine(*result.kept));
+        // The errors over pairs say what a quadrature cannot.
+        const std::string error = result.errors ? indented(textOf(*result.errors))
+                                                : fmt::format("error {:.1e}\n", c.error);
+        return fmt::format("{}: {}{}{}", output, what, error, formLine(*result.kept));
     }
     if (const auto& fit = c.leastSquares) {
         return fmt::format(

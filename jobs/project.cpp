@@ -8,6 +8,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/projection/least_squares.h>
+#include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/wording.h>
 
 #include <brdfs/measured/scattered/scattered.h>
@@ -92,6 +93,9 @@ public:
             result.kept = represent(*brdf, form, sourceOpener(), how);
             result.poor = judge(*result.kept, output);
             result.projection.coefficients = {result.kept->head};
+            if (result.kept->kind() == Representation::Kind::halfway) {
+                result.errors = summaryOf(*brdf, *reconstruct(*result.kept, sourceOpener()));
+            }
             return result;
         }
         const OutgoingSet outgoing = OutgoingSet::parse(outgoingFor(options_, brdf->laws()));

@@ -4,6 +4,7 @@
 #include "listener.h"
 #include "quality.h"
 
+#include <hshfit/accuracy/pair_errors.h>
 #include <hshfit/projection/projection.h>
 #include <hshfit/representation/forms/form.h>
 
@@ -37,6 +38,8 @@ struct ProjectOptions {
 struct Projected {
     Projection projection;
     std::optional<Representation> kept = {};
+    /// Of the form halfway, as it is in the file: no quadrature tells how far it is from f.
+    std::optional<PairSummary> errors = {};
     std::string output;
     std::optional<Poor> poor = {};
 };

@@ -65,18 +65,29 @@ PairReference::PairReference(const Brdf& brdf, PairSample pairs)
     }
     std::vector<std::size_t> every(pairs_.size());
     std::iota(every.begin(), every.end(), std::size_t{0});
-    all_ = partOf(every);
-    std::vector<std::vector<std::size_t>> byReplicate(static_cast<std::size_t>(pairs_.replicates)),
-        byBand(bandCount);
+    all_ = divisionOf(every);
+    std::vector<std::vector<std::size_t>> byBand(bandCount), byZone(zoneCount);
     for (std::size_t g = 0; g < pairs_.wo.size(); ++g) {
         const std::size_t band = bandOf(pairs_.wo[g]);
         for (std::size_t k = pairs_.first[g]; k < pairs_.first[g + 1]; ++k) {
             byBand[band].push_back(k);
-            byReplicate[pairs_.replicate[k]].push_back(k);
+            for (std::size_t z = 0; z < zoneCount; ++z) {
+                const auto zone = static_cast<PairZone>(z);
+                if (inZone(zone, pairs_.incoming(k), pairs_.wo[g])) byZone[z].push_back(k);
+            }
         }
     }
-    for (auto& list : byReplicate) replicates_.push_back(partOf(std::move(list)));
     for (auto& list : byBand) bands_.push_back(partOf(std::move(list)));
+    for (const auto& list : byZone) zones_.push_back(divisionOf(list));
+}
+
+PairReference::Division PairReference::divisionOf(const std::vector<std::size_t>& pairs) const {
+    Division division;
+    std::vector<std::vector<std::size_t>> lists(static_cast<std::size_t>(pairs_.replicates));
+    for (const std::size_t k : pairs) lists[pairs_.replicate[k]].push_back(k);
+    for (auto& list : lists) division.replicates.push_back(partOf(std::move(list)));
+    division.whole = partOf(pairs);
+    return division;
 }
 
 PairReference::Part PairReference::partOf(std::vector<std::size_t> pairs) const {
@@ -107,55 +118,92 @@ std::vector<std::optional<double>> PairReference::metricsOf(const Part& part,
     return values;
 }
 
-std::optional<double> PairReference::albedoError(std::span<const double> g,
-                                                 std::size_t band) const {
-    if (pairs_.stratum.empty()) return std::nullopt;
+PairReference::AlbedoError PairReference::albedoError(std::span<const double> g,
+                                                      std::size_t band) const {
+    if (pairs_.stratum.empty()) return {};
     const std::size_t strata = 1 + *std::max_element(pairs_.stratum.begin(), pairs_.stratum.end());
-    std::vector<double> difference(strata * channels_), weight(strata);
+    const auto replicates = static_cast<std::size_t>(pairs_.replicates);
+    const std::size_t rows = strata * channels_;
+    // The last row of each is all replicates together.
+    std::vector<std::vector<double>> difference(replicates + 1, std::vector<double>(rows)),
+        weight(replicates + 1, std::vector<double>(strata));
     for (std::size_t group = 0; group < pairs_.wo.size(); ++group) {
         if (band != allBands && bandOf(pairs_.wo[group]) != band) continue;
         const std::size_t s = pairs_.stratum[group];
         for (std::size_t k = pairs_.first[group]; k < pairs_.first[group + 1]; ++k) {
             const double projected = pairs_.weights[k] * pairs_.z[k];
-            weight[s] += pairs_.weights[k];
-            for (std::size_t c = 0; c < channels_; ++c) {
-                const std::size_t at = c * pairs_.size() + k;
-                difference[s * channels_ + c] += projected * (g[at] - values_[at]);
+            for (const std::size_t r : {std::size_t{pairs_.replicate[k]}, replicates}) {
+                weight[r][s] += pairs_.weights[k];
+                for (std::size_t c = 0; c < channels_; ++c) {
+                    const std::size_t at = c * pairs_.size() + k;
+                    difference[r][s * channels_ + c] += projected * (g[at] - values_[at]);
+                }
             }
         }
     }
-    double largest = 0;
-    for (std::size_t k = 0; k < difference.size(); ++k) {
-        if (weight[k / channels_] == 0) continue;
-        largest = std::max(largest, 2 * pi * std::abs(difference[k]) / weight[k / channels_]);
+    const auto albedo = [&](std::size_t r, std::size_t row) {
+        return 2 * pi * difference[r][row] / weight[r][row / channels_];
+    };
+    AlbedoError result{.value = 0.0, .uncertainty = 0.0};
+    for (std::size_t row = 0; row < rows; ++row) {
+        if (weight[replicates][row / channels_] == 0) continue;
+        const double here = std::abs(albedo(replicates, row));
+        if (!(here > *result.value)) continue;
+        std::vector<double> estimates;
+        for (std::size_t r = 0; r < replicates; ++r) {
+            if (weight[r][row / channels_] > 0) estimates.push_back(albedo(r, row));
+        }
+        result = {here, standardError(estimates)};
     }
-    return largest;
+    return result;
 }
 
-PairReference::Result PairReference::errorsOf(std::span<const double> g) const {
-    Result result;
-    result.all.values = metricsOf(all_, g);
-    std::vector<std::vector<double>> estimates(result.all.values.size());
-    for (const Part& replicate : replicates_) {
+PairErrors PairReference::errorsOn(const Division& division, std::span<const double> g) const {
+    PairErrors errors;
+    if (division.whole.pairs.empty()) return errors;
+    errors.values = metricsOf(division.whole, g);
+    std::vector<std::vector<double>> estimates(errors.values.size());
+    for (const Part& replicate : division.replicates) {
+        if (replicate.pairs.empty()) continue;
         const auto values = metricsOf(replicate, g);
         for (std::size_t m = 0; m < values.size(); ++m) {
             if (values[m]) estimates[m].push_back(*values[m]);
         }
     }
-    const std::size_t maximum = rowOf("maximum"), albedo = rowOf("albedo");
+    const std::size_t maximum = rowOf("maximum");
     for (std::size_t m = 0; m < estimates.size(); ++m) {
-        const bool complete = m != maximum && estimates[m].size() == replicates_.size();
-        result.all.uncertainty.push_back(complete ? standardError(estimates[m]) : std::nullopt);
+        const bool complete = m != maximum && estimates[m].size() == division.replicates.size();
+        errors.uncertainty.push_back(complete ? standardError(estimates[m]) : std::nullopt);
     }
-    result.all.values[albedo] = albedoError(g, allBands);
+    double largest = -1;
+    for (const std::size_t k : division.whole.pairs) {
+        for (std::size_t c = 0; c < channels_; ++c) {
+            const std::size_t at = c * pairs_.size() + k;
+            const double here = std::abs(g[at] - values_[at]) * pairs_.z[k];
+            if (!(here > largest)) continue;
+            largest = here;
+            errors.largest = {pairs_.incoming(k), pairs_.outgoing(k)};
+        }
+    }
+    return errors;
+}
+
+PairReference::Result PairReference::errorsOf(std::span<const double> g) const {
+    Result result;
+    const std::size_t albedo = rowOf("albedo");
+    result.all = errorsOn(all_, g);
+    const AlbedoError found = albedoError(g, allBands);
+    result.all.values[albedo] = found.value;
+    result.all.uncertainty[albedo] = found.uncertainty;
     for (std::size_t b = 0; b < bands_.size(); ++b) {
         PairErrors band;
         if (!bands_[b].pairs.empty()) {
             band.values = metricsOf(bands_[b], g);
-            band.values[albedo] = albedoError(g, b);
+            band.values[albedo] = albedoError(g, b).value;
         }
         result.bands.push_back(std::move(band));
     }
+    for (const Division& zone : zones_) result.zones.push_back(errorsOn(zone, g));
     return result;
 }
 
@@ -194,6 +242,50 @@ double reciprocityError(const Brdf& g) {
         }
     }
     return norm > 0 ? std::sqrt(defect / norm) : 0;
+}
+
+PairSummary summaryOf(const PairSample& pairs, const PairReference::Result& errors) {
+    const auto valueOf = [](const PairErrors& each, std::string_view name) {
+        const std::size_t row = rowOf(name);
+        const double none = std::nan("");
+        if (each.values.empty()) return PairSummary::Value{none, none};
+        const std::optional<double> error =
+            each.uncertainty.empty() ? std::nullopt : each.uncertainty[row];
+        return PairSummary::Value{each.values[row].value_or(none), error.value_or(none)};
+    };
+    PairSummary summary{.pairs = pairs.size(),
+                        .meanLog = valueOf(errors.all, "nbrdf"),
+                        .zones = {},
+                        .maximum = valueOf(errors.all, "maximum").value,
+                        .at = errors.all.largest.value_or(DirectionPair{}),
+                        .albedo = valueOf(errors.all, "albedo")};
+    for (std::size_t z = 0; z < zoneCount; ++z) {
+        summary.zones[z] = valueOf(errors.zones[z], "nbrdf");
+    }
+    return summary;
+}
+
+PairSummary summaryOf(const Brdf& brdf, const Brdf& g) {
+    const PairReference reference(brdf, spreadPairs());
+    return summaryOf(reference.pairs(), reference.errorsOf(evaluateOn(g, reference.pairs())));
+}
+
+std::string textOf(const PairSummary& summary) {
+    const auto text = [](const PairSummary::Value& v) {
+        return fmt::format("{:.3g} +- {:.1g}", v.value, v.error);
+    };
+    const auto place = [](const Direction& d) {
+        return fmt::format("{:.2f},{:.2f}", degrees(polarAngle(d)), degrees(azimuth(d)));
+    };
+    std::string zones;
+    for (std::size_t z = 0; z < zoneCount; ++z) {
+        zones += fmt::format(", {} {}", zoneNames[z], text(summary.zones[z]));
+    }
+    return fmt::format(
+        "mean log error {} over {} pairs{}\n"
+        "largest |g - f| cos(theta_i) {:.3g} at wi {}, wo {}; albedo off by {} at most\n",
+        text(summary.meanLog), summary.pairs, zones, summary.maximum, place(summary.at.wi),
+        place(summary.at.wo), text(summary.albedo));
 }
 
 }  // namespace hshfit::inline accuracy

@@ -2,7 +2,9 @@
 
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/accuracy/pair_sample.h>
+#include <hshfit/brdf/directions.h>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,8 +15,10 @@ namespace hshfit::inline accuracy {
 struct PairErrors {
     std::vector<std::optional<double>> values;
     /// Standard error of the value, from the replicates; none where it has no meaning (maximum,
-    /// albedo, reciprocity).
+    /// reciprocity).
     std::vector<std::optional<double>> uncertainty;
+    /// The pair of the maximum.
+    std::optional<DirectionPair> largest = {};
 };
 
 /// A reference BRDF at fixed pairs, and the errors of others against it. Immutable after it is
@@ -22,8 +26,8 @@ struct PairErrors {
 ///
 /// The metrics are those of metrics.h with means over the pairs; captured-energy counts f at the
 /// same pairs. Two are found otherwise: albedo is the largest difference of the directional albedo
-/// averaged over a stratum of cos(theta_o) and all azimuths, reciprocity the root mean square of
-/// g(wi,wo) - g(wo,wi) over that of g for all pairs of 48 directions.
+/// averaged over a stratum of cos(theta_o) of a sixteenth or so and all azimuths, reciprocity the
+/// root mean square of g(wi,wo) - g(wo,wi) over that of g for all pairs of 48 directions.
 class PairReference {
 public:
     /// Throws NumericError if the reference is not finite somewhere.
@@ -37,6 +41,8 @@ public:
     struct Result {
         PairErrors all;
         std::vector<PairErrors> bands;  ///< by elevation of wo; without values where no pair is
+        /// By PairZone, likewise; with uncertainties, without albedo.
+        std::vector<PairErrors> zones = {};
     };
     /// Errors of `g`, which has as many channels. On one thread.
     Result errorsOf(const Brdf& g) const;
@@ -48,19 +54,49 @@ private:
         std::vector<std::size_t> pairs;
         std::vector<double> f, cosines, weights;
     };
+    /// Pairs, and what each replicate has of them.
+    struct Division {
+        Part whole;
+        std::vector<Part> replicates;
+    };
     Part partOf(std::vector<std::size_t> pairs) const;
+    Division divisionOf(const std::vector<std::size_t>& pairs) const;
+    PairErrors errorsOn(const Division& division, std::span<const double> g) const;
     std::vector<std::optional<double>> metricsOf(const Part& part, std::span<const double> g) const;
-    std::optional<double> albedoError(std::span<const double> g, std::size_t band) const;
+    /// The largest difference and its standard error.
+    struct AlbedoError {
+        std::optional<double> value, uncertainty;
+    };
+    AlbedoError albedoError(std::span<const double> g, std::size_t band) const;
 
     PairSample pairs_;
     std::size_t channels_;
     std::vector<double> values_;
     std::string noSquares_;
-    Part all_;
-    std::vector<Part> replicates_, bands_;
+    Division all_;
+    std::vector<Part> bands_;
+    std::vector<Division> zones_;
 };
 
 /// Root mean square of g(wi,wo) - g(wo,wi) over that of g, for all pairs of 48 directions.
 double reciprocityError(const Brdf& g);
+
+/// The errors of a form that every command prints, so that no mean hides a maximum.
+struct PairSummary {
+    struct Value {
+        double value = 0, error = 0;  ///< with its standard error
+    };
+    std::size_t pairs = 0;
+    Value meanLog;                       ///< mean |ln(1 + f c) - ln(1 + g c)|
+    std::array<Value, zoneCount> zones;  ///< the same by PairZone
+    double maximum = 0;                  ///< of |g - f| c
+    DirectionPair at;                    ///< where that is
+    Value albedo;                        ///< largest difference of directional albedo
+};
+PairSummary summaryOf(const PairSample& pairs, const PairReference::Result& errors);
+/// Errors of `g` on spreadPairs(): the same numbers for every caller. Throws as PairReference does.
+PairSummary summaryOf(const Brdf& brdf, const Brdf& g);
+/// Two lines without indentation, each ended.
+std::string textOf(const PairSummary& summary);
 
 }  // namespace hshfit::inline accuracy

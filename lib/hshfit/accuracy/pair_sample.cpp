@@ -15,9 +15,14 @@
 namespace hshfit::inline accuracy {
 namespace {
 
-constexpr double leastSlope = 1e-4, greatestSlope = 10;
+constexpr double leastSlope = 1e-4, greatestSlope = 10, leastCosine = 1e-4;
+/// Of the pairs of one wo: evenly, towards lobes, towards the horizon.
+constexpr std::array<int, 3> eighths{3, 3, 2};
+/// Divisions of the lowest stratum of cos(theta_o).
+constexpr std::array<double, 4> lowest{0, 1.0 / 64, 1.0 / 8, 1};
 constexpr int givenReplicates = 8;
 const double slopeRange = std::log(greatestSlope / leastSlope);
+const double cosineRange = std::log(1 / leastCosine);
 
 /// In [0, 1); unlike std::uniform_real_distribution the same everywhere.
 double uniform(std::mt19937_64& random) {
@@ -46,32 +51,38 @@ Direction lobeDirection(const Direction& wo, double a, double turn) {
     return {twice * h.x - wo.x, twice * h.y - wo.y, twice * h.z - wo.z};
 }
 
-/// Density of both lattices together at wi, per steradian.
+/// Density of the lattices together at wi, per steradian.
 double density(const Direction& wo, const Direction& wi) {
-    const double evenly = 1 / (2 * pi);
+    double sum = eighths[0] / (2 * pi);
+    if (wi.z >= leastCosine) sum += eighths[2] / (2 * pi * wi.z * cosineRange);
     Direction h{wi.x + wo.x, wi.y + wo.y, wi.z + wo.z};
     const double length = std::sqrt(dot(h, h));
     h = {h.x / length, h.y / length, h.z / length};
     const double sine = std::hypot(h.x, h.y), slope = sine / h.z;
-    if (slope < leastSlope || slope > greatestSlope) return evenly / 2;
-    const double perHalf = 1 / (2 * pi * slopeRange * sine * sine * h.z);
-    return (evenly + perHalf / (4 * dot(wo, h))) / 2;
+    if (slope >= leastSlope && slope <= greatestSlope) {
+        const double perHalf = 1 / (2 * pi * slopeRange * sine * sine * h.z);
+        sum += eighths[1] * perHalf / (4 * dot(wo, h));
+    }
+    return sum / 8;
 }
 
-/// Appends the pairs of one wo; weights are 1 / density.
-void appendGroup(PairSample& sample, const Direction& wo, int incoming, std::mt19937_64& random) {
+/// Appends the pairs of one wo, which stands for `share` of the hemisphere.
+void appendGroup(PairSample& sample, const Direction& wo, double share, int incoming,
+                 std::mt19937_64& random) {
     sample.wo.push_back(wo);
-    const int half = incoming / 2;
-    for (const bool towardsLobe : {false, true}) {
+    for (std::size_t way = 0; way < eighths.size(); ++way) {
         const double first = uniform(random), second = uniform(random);
-        for (int j = 0; j < half; ++j) {
-            const auto [a, b] = latticePoint(j, half, {first, second});
-            const Direction wi = towardsLobe ? lobeDirection(wo, a, b) : ofHeight(1 - a, b);
+        const int count = std::max(1, incoming * eighths[way] / 8);
+        for (int j = 0; j < count; ++j) {
+            const auto [a, b] = latticePoint(j, count, {first, second});
+            const Direction wi = way == 0   ? ofHeight(1 - a, b)
+                                 : way == 1 ? lobeDirection(wo, a, b)
+                                            : ofHeight(std::exp(-a * cosineRange), b);
             if (!(wi.z > 0)) continue;
             sample.x.push_back(wi.x);
             sample.y.push_back(wi.y);
             sample.z.push_back(wi.z);
-            sample.weights.push_back(1 / density(wo, wi));
+            sample.weights.push_back(share / density(wo, wi));
         }
     }
     sample.first.push_back(sample.size());
@@ -84,6 +95,18 @@ void normalise(std::vector<double>& weights) {
 
 }  // namespace
 
+bool inZone(PairZone zone, const Direction& wi, const Direction& wo) {
+    static const double low = std::cos(80 * pi / 180), near = std::cos(5 * pi / 180);
+    if (zone == PairZone::horizon) return std::min(wi.z, wo.z) < low;
+    const Direction h{wi.x + wo.x, wi.y + wo.y, wi.z + wo.z};
+    return h.z > near * std::sqrt(dot(h, h));
+}
+
+const Direction& PairSample::outgoing(std::size_t k) const {
+    const auto after = std::upper_bound(first.begin(), first.end(), k);
+    return wo[static_cast<std::size_t>(after - first.begin()) - 1];
+}
+
 std::size_t bandOf(const Direction& wo) {
     const double degrees = polarAngle(wo) * 180 / pi;
     std::size_t band = 0;
@@ -93,18 +116,25 @@ std::size_t bandOf(const Direction& wo) {
 
 PairSample spreadPairs(const SpreadOptions& options) {
     assert(options.replicates >= 1 && options.replicates <= 255 && options.incoming >= 2);
-    std::mt19937_64 random(1);
+    std::mt19937_64 random(options.seed);
     PairSample sample;
     sample.replicates = options.replicates;
     sample.first.push_back(0);
+    std::vector<std::array<double, 2>> strata;  // bottom and height, of the cosine
+    const double height = 1.0 / options.outgoing;
+    for (std::size_t k = lowest.size() - 1; k > 0; --k) {
+        strata.push_back({lowest[k - 1] * height, (lowest[k] - lowest[k - 1]) * height});
+    }
+    for (int s = 1; s < options.outgoing; ++s) strata.push_back({s * height, height});
+    const int count = static_cast<int>(strata.size());
     for (int r = 0; r < options.replicates; ++r) {
         const double shift = uniform(random), turn = uniform(random);
-        for (int s = 0; s < options.outgoing; ++s) {
+        for (int s = 0; s < count; ++s) {
+            const auto [within, azimuth] = latticePoint(s, count, {shift, turn});
+            const auto [bottom, share] = strata[static_cast<std::size_t>(s)];
             // At most 1 - 1e-9: at the pole, azimuths would say nothing.
-            const auto [within, azimuth] = latticePoint(s, options.outgoing, {shift, turn});
-            const double mu = 1 - (s + within) / options.outgoing;
-            const Direction wo = ofHeight(std::clamp(mu, 1e-9, 1 - 1e-9), azimuth);
-            appendGroup(sample, wo, options.incoming, random);
+            const double mu = std::clamp(bottom + (1 - within) * share, 1e-9, 1 - 1e-9);
+            appendGroup(sample, ofHeight(mu, azimuth), share, options.incoming, random);
             sample.stratum.push_back(static_cast<std::size_t>(s));
             sample.replicate.resize(sample.size(), static_cast<unsigned char>(r));
         }

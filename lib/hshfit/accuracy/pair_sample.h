@@ -16,6 +16,15 @@ constexpr std::size_t bandCount = bandEdges.size() - 1;
 /// The band of a direction above the horizon.
 std::size_t bandOf(const Direction& wo);
 
+/// Parts of both hemispheres on which errors hide behind a mean, and in which they are given too.
+/// A pair is in the zone
+///     horizon   if either direction is within 10 degrees of it
+///     mirror    if the half vector is within 5 degrees of the normal
+enum class PairZone { horizon, mirror };
+constexpr std::size_t zoneCount = 2;
+constexpr std::array<std::string_view, zoneCount> zoneNames{"horizon", "mirror"};
+bool inZone(PairZone zone, const Direction& wi, const Direction& wo);
+
 /// Pairs of directions with weights that add up to 1: sums over them are means over both
 /// hemispheres (d omega_i d omega_o). Pairs of one wo stand together.
 struct PairSample {
@@ -32,6 +41,9 @@ struct PairSample {
     std::vector<std::size_t> stratum;
 
     std::size_t size() const { return x.size(); }
+    Direction incoming(std::size_t k) const { return {x[k], y[k], z[k]}; }
+    /// wo of pair k.
+    const Direction& outgoing(std::size_t k) const;
     DirectionBatch group(std::size_t g) const {
         return {x.data() + first[g], y.data() + first[g], z.data() + first[g],
                 first[g + 1] - first[g]};
@@ -39,16 +51,19 @@ struct PairSample {
 };
 
 struct SpreadOptions {
-    int replicates = 8;  ///< each of `outgoing` x `incoming` pairs, shifted at random
-    int outgoing = 16;   ///< equal strata of cos(theta_o)
-    int incoming = 256;  ///< half of them spread evenly, half towards lobes about the mirror
+    int replicates = 8;  ///< each of (`outgoing` + 2) x `incoming` pairs, shifted at random
+    int outgoing = 16;   ///< equal strata of cos(theta_o); the lowest is divided into three
+    unsigned seed = 1;   ///< others give an independent sample
+    int incoming = 256;  ///< of eight, three spread evenly, three towards lobes, two to the horizon
 };
 
-/// Pairs over both hemispheres: wo uniform in solid angle and stratified; wi from two rank-1
-/// lattices, one uniform in solid angle, one with half vectors whose slope is spread evenly over
-/// the logarithm from 1e-4 to 10, so that lobes of every width are seen. Weights are those of the
-/// mixture (Veach's balance heuristic). The same on every machine: the shifts are those of
-/// mt19937_64 with seed 1 (Cranley & Patterson 1976).
+/// Pairs over both hemispheres. wo is uniform in solid angle and stratified; the lowest of the
+/// equal strata is divided at an eighth and at a 64th of it, so that each replicate has a wo nearly
+/// at the horizon. wi is from three rank-1 lattices: uniform in solid angle; with half vectors
+/// whose slope is spread evenly over the logarithm from 1e-4 to 10, so that lobes of every width
+/// are seen; and with cosines likewise from 1e-4 to 1. Weights are those of the mixture (Veach's
+/// balance heuristic). The same on every machine: the shifts are those of mt19937_64 with `seed`
+/// (Cranley & Patterson 1976).
 PairSample spreadPairs(const SpreadOptions& options = {});
 
 /// Pairs as given; `weights` one per pair, or empty for equal ones. Replicates take turns. Pairs

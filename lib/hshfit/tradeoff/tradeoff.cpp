@@ -148,6 +148,7 @@ Outcome measureOne(const Form& form, const Maker& maker, const PairReference& re
         measured.numbers = representation.numbers();
         measured.steps = representation.steps;
         auto errors = reference.errorsOf(*reconstruct(std::move(representation), open));
+        measured.summary = summaryOf(reference.pairs(), errors);
         measured.errors = std::move(errors.all);
         measured.bands = std::move(errors.bands);
     } catch (const Error& error) {

@@ -35,6 +35,7 @@ struct Measured {
     std::vector<RepresentationStep> steps;
     PairErrors errors;
     std::vector<PairErrors> bands;  ///< by elevation of wo, see bandEdges
+    PairSummary summary;
 };
 
 /// What a form took; wall-clock times of this machine.

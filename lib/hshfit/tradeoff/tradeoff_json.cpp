@@ -1,4 +1,5 @@
 #include <hshfit/files/json_fields.h>
+#include <hshfit/pages/pair_summary_json.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
 #include <hshfit/version.h>
 
@@ -35,6 +36,7 @@ Json formJson(const Tradeoff& trade, std::size_t k) {
             {"uncertainty", finiteOrNull(trade.uncertaintyOf(k))},
             {"band_errors", bands},
             {"metrics", metricsJson(form.errors)},
+            {"pairs", Json::parse(pairSummaryJson(form.summary))},
             {"steps", steps}};
 }
 

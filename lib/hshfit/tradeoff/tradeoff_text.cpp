@@ -52,13 +52,23 @@ std::string frontRows(std::span<const Tradeoff> trades, const char* heading,
 
 std::string frontTable(const Tradeoff& trade, const std::vector<std::size_t>& front) {
     const bool timed = !trade.times.empty();
-    std::string text =
-        fmt::format("  {:>9} {:>11} {:>9}  options\n", "bytes", "error", timed ? "ns" : "");
+    const auto percent = [](double error, double value) {
+        return fmt::format("{:.0f}%", 100 * error / value);
+    };
+    std::string text = fmt::format("  {:>9} {:>11} {:>5} {:>9} {:>9} {:>9} {:>9} {:>9}  options\n",
+                                   "bytes", "error", "+-", zoneNames[0], zoneNames[1], "maximum",
+                                   "albedo", timed ? "ns" : "");
     for (const std::size_t k : front) {
         const std::string ns =
             timed ? fmt::format("{:.1f}", trade.times[k].evaluation.batch.median) : "";
-        text += fmt::format("  {:>9} {:>11.4g} {:>9}  {}\n", trade.forms[k].bytes, trade.errorOf(k),
-                            ns, trade.forms[k].options);
+        const PairSummary& summary = trade.forms[k].summary;
+        const double error = trade.errorOf(k);
+        text +=
+            fmt::format("  {:>9} {:>11.4g} {:>5} {:>9.3g} {:>9.3g} {:>9.3g} {:>9.2g} {:>9}  {}\n",
+                        trade.forms[k].bytes, error,
+                        percent(trade.uncertaintyOf(k).value_or(std::nan("")), error),
+                        summary.zones[0].value, summary.zones[1].value, summary.maximum,
+                        summary.albedo.value, ns, trade.forms[k].options);
     }
     return text;
 }

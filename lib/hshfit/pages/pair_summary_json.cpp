@@ -1,0 +1,31 @@
+#include <hshfit/pages/pair_summary_json.h>
+
+#include <hshfit/brdf/directions.h>
+#include <hshfit/files/json_fields.h>
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace hshfit::inline pages {
+
+std::string pairSummaryJson(const PairSummary& summary) {
+    using Json = nlohmann::ordered_json;
+    const auto valueJson = [](const PairSummary::Value& v) -> Json {
+        return {{"value", finiteOrNull(v.value)}, {"error", finiteOrNull(v.error)}};
+    };
+    const auto place = [](const Direction& d) -> Json {
+        return {{"theta", degrees(polarAngle(d))}, {"phi", degrees(azimuth(d))}};
+    };
+    Json json = {{"count", summary.pairs}, {"mean_log", valueJson(summary.meanLog)}};
+    for (std::size_t z = 0; z < zoneCount; ++z) {
+        json[std::string(zoneNames[z])] = valueJson(summary.zones[z]);
+    }
+    json["maximum"] = {{"value", finiteOrNull(summary.maximum)},
+                       {"wi", place(summary.at.wi)},
+                       {"wo", place(summary.at.wo)}};
+    json["albedo"] = valueJson(summary.albedo);
+    return json.dump();
+}
+
+}  // namespace hshfit::inline pages
