@@ -41,6 +41,7 @@ Ordered describe(const Representation& r) {
         out["orders"] = {{"half", r.halfway.half},
                          {"difference", r.halfway.difference},
                          {"azimuth", r.halfway.azimuth}};
+        if (const auto& envelope = r.as<HalfwayArray>()->envelope) out["ridge"] = envelope->ridge;
     }
     if (!r.added.empty()) out["added"] = r.added;
     out["bytes"] = r.bytes();
@@ -207,6 +208,11 @@ Representation representationFromJson(std::string_view text, const std::string& 
         r.halfway = {.half = orders.integer("half", 1, 256),
                      .difference = orders.integer("difference", 1, 256),
                      .azimuth = orders.integer("azimuth", 1, 256)};
+        // Files without an envelope are of before there was one.
+        if (auto& envelope = r.as<HalfwayArray>()->envelope) {
+            envelope->ridge = part.number("ridge");
+            if (!(envelope->ridge > 0)) part.fail("has to be above 0", "ridge");
+        }
     }
     if (r.kind() != Kind::halfway && r.head.basis.empty()) fields.fail("is missing", "basis");
     if (r.kind() == Kind::basis) ShapeCheck(r, part).basis();

@@ -71,18 +71,23 @@ public:
             form.split = split_;
             const HalfwayTerms terms(orders,
                                      {laws_.isotropic, laws_.mirrorSymmetric, form.reciprocal});
-            add(form, {{channels_, terms.size()}});
+            add(form, {{channels_, terms.size()}}, leastEnvelope());
         }
     }
 
 private:
     using Shapes = std::vector<std::vector<std::size_t>>;
 
-    void add(Form form, const Shapes& shapes) {
+    /// One node, and the ridge: how many it will be shows when it is fitted.
+    std::size_t leastEnvelope() const {
+        return arrayBytes({1, 1, channels_}, Precision::unorm8) + 4;
+    }
+
+    void add(Form form, const Shapes& shapes, std::size_t more = 0) {
         for (Precision precision :
              {Precision::unorm8, Precision::unorm16, Precision::half, Precision::float32}) {
             form.precision = precision;
-            std::size_t bytes = added_;
+            std::size_t bytes = added_ + more;
             for (const auto& shape : shapes) bytes += arrayBytes(shape, precision);
             if (bytes <= options_.maxBytes) rungs_.push_back({form, index_, bytes});
         }

@@ -14,7 +14,9 @@ namespace hshfit::plan {
 struct Rung {
     Form form;
     std::size_t source = 0;  ///< which of the material's versions (all channels, one channel)
-    std::size_t bytes = 0;   ///< expected size of the numbers; low-rank factors take less
+    /// Expected size of the numbers. Factors of low rank take less, an envelope of more than one
+    /// node takes more.
+    std::size_t bytes = 0;
 };
 
 /// One version of a material and the parts that may be split off first.

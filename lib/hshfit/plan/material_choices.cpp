@@ -133,15 +133,36 @@ std::optional<Accepted> MaterialSearch::accept(const Rung& rung) {
     const bool holds = result.choice.error <= budget && result.verified <= budget &&
                        result.choice.bytes <= scene_.limits.bytes;
     if (!holds) known = std::max(result.choice.error, result.verified);
-    return holds ? std::optional(std::move(result)) : std::nullopt;
+    if (!holds) return std::nullopt;
+    result.pairs = summaryOf(*version.brdf, *reconstruct(result.representation, open_));
+    return result;
+}
+
+bool MaterialSearch::makeWay(std::size_t place) {
+    Rung& rung = rungs_[place];
+    if (rung.form.kind != Representation::Kind::halfway) return false;
+    Part& part = partOf(rung);
+    const std::size_t bytes = represent(*part.kept, rung.form, part.added).bytes();
+    if (bytes <= rung.bytes) return false;
+    rung.bytes = bytes;
+    const auto here = rungs_.begin() + static_cast<std::ptrdiff_t>(place);
+    const auto above = std::find_if(here + 1, rungs_.end(),
+                                    [&](const Rung& other) { return other.bytes > bytes; });
+    std::rotate(here, here + 1, above);
+    return above != here + 1;
 }
 
 std::optional<std::size_t> MaterialSearch::firstWithin(std::size_t from) {
     const double budget = plan_.material.budget.error;
-    for (std::size_t i = from; i < rungs_.size(); ++i) {
-        if (floorOf(rungs_[i]) > floorSlack * budget) continue;
-        if (unroundedError(rungs_[i]).value_or(never) > budget) continue;
-        if (errorOf(rungs_[i]).value_or(never) <= budget) return i;
+    for (std::size_t i = from; i < rungs_.size();) {
+        const bool within = floorOf(rungs_[i]) <= floorSlack * budget &&
+                            unroundedError(rungs_[i]).value_or(never) <= budget &&
+                            errorOf(rungs_[i]).value_or(never) <= budget;
+        if (!within) {
+            ++i;
+        } else if (!makeWay(i)) {
+            return i;
+        }
     }
     return {};
 }

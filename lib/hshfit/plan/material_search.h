@@ -65,6 +65,8 @@ private:
     std::optional<Accepted> accept(const Rung& rung);
 
     std::optional<std::size_t> firstWithin(std::size_t from);
+    /// Moves the rung up if it takes more bytes than was foreseen; whether another is there now.
+    bool makeWay(std::size_t place);
     void takeCheapest();
     void takeFastest();
     /// Without an accepted choice, finds the front of all tried rungs.

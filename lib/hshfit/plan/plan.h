@@ -1,5 +1,6 @@
 #pragma once
 
+#include <hshfit/accuracy/pair_errors.h>
 #include <hshfit/plan/scene.h>
 #include <hshfit/representation/forms/form.h>
 
@@ -27,7 +28,9 @@ struct Accepted {
     /// The error by lattice points instead of quadrature, at other views, of the representation.
     double verified = 0;
     std::vector<double> thetas = {}, errors = {};  ///< verified, by elevation (radians)
-    std::size_t raised = 0;                        ///< cheaper choices that failed only this check
+    /// Against the material over both hemispheres, whatever the light.
+    PairSummary pairs = {};
+    std::size_t raised = 0;  ///< cheaper choices that failed only this check
 };
 
 struct MaterialPlan {

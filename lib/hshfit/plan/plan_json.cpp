@@ -1,4 +1,5 @@
 #include <hshfit/files/json_fields.h>
+#include <hshfit/pages/pair_summary_json.h>
 #include <hshfit/plan/plan_files.h>
 #include <hshfit/version.h>
 
@@ -31,6 +32,7 @@ Json acceptedJson(const Accepted& accepted, const std::string& file) {
         static_cast<double>(baselineBytes) / static_cast<double>(accepted.choice.bytes);
     json["verified_error"] = accepted.verified;
     json["raised"] = accepted.raised;
+    json["pairs"] = Json::parse(pairSummaryJson(accepted.pairs));
     Json rows = Json::array();
     for (std::size_t k = 0; k < accepted.thetas.size(); ++k) {
         rows.push_back(

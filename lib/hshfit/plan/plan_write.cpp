@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <sstream>
+
 namespace hshfit::plan {
 namespace {
 
@@ -66,6 +68,8 @@ std::string planText(const Plan& plan) {
                 ? fmt::format(", {:.3g} ns a pair", *accepted.choice.nanoseconds)
                 : "",
             commandOf(accepted.choice, material.name + ".json"));
+        std::istringstream lines(textOf(accepted.pairs));
+        for (std::string line; std::getline(lines, line);) out += "  " + line + "\n";
         if (!each.cheaper.empty()) {
             out += fmt::format("  next cheaper: {} bytes, error {:.3g}\n",
                                each.cheaper.back().bytes, each.cheaper.back().error);

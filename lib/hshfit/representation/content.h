@@ -2,6 +2,7 @@
 
 #include <hshfit/representation/stored_array.h>
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -43,9 +44,15 @@ struct MatrixBlock {
 struct MatrixFactors {
     std::vector<MatrixBlock> blocks;
 };
+/// What the halfway form is cut off at: see halfway_envelope.h.
+struct EnvelopeArray {
+    StoredArray logs;  ///< [node along b][node along x][channel]
+    double ridge = 1;  ///< the width of its ridge
+};
 /// Kind halfway: the expansion of ln(1 + f).
 struct HalfwayArray {
-    StoredArray halfway;  ///< [channel][term]
+    StoredArray halfway;                         ///< [channel][term]
+    std::optional<EnvelopeArray> envelope = {};  ///< none in files from before there was one
 };
 
 /// The numbers of a representation.

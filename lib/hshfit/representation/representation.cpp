@@ -26,6 +26,12 @@ std::size_t countNumbers(std::string_view spec) {
     return count;
 }
 
+/// Numbers besides those of the arrays.
+std::size_t looseNumbers(const Representation& representation) {
+    const auto* halfway = representation.as<HalfwayArray>();
+    return countNumbers(representation.added) + (halfway && halfway->envelope ? 1 : 0);
+}
+
 /// Slots in which any row is not 0.
 std::vector<int> usedSlots(const Coefficients& c) {
     std::vector<int> slots;
@@ -61,19 +67,19 @@ Representation::Kind Representation::kind() const {
 }
 
 std::size_t Representation::bytes() const {
-    std::size_t sum = 4 * countNumbers(added);
+    std::size_t sum = 4 * looseNumbers(*this);
     for (const auto& each : namedArrays(*this)) sum += storedBytes(*each.array);
     return sum;
 }
 
 std::size_t Representation::entropyBytes() const {
-    std::size_t sum = 4 * countNumbers(added);
+    std::size_t sum = 4 * looseNumbers(*this);
     for (const auto& each : namedArrays(*this)) sum += hshfit::entropyBytes(*each.array);
     return sum;
 }
 
 std::size_t Representation::numbers() const {
-    std::size_t sum = countNumbers(added);
+    std::size_t sum = looseNumbers(*this);
     for (const auto& each : namedArrays(*this)) {
         const std::vector<bool>& kept = each.array->kept;
         sum += kept.empty() ? each.array->values.size()

@@ -57,8 +57,9 @@ struct Representation {
         return std::get_if<Form>(&content);
     }
 
-    /// Length of all arrays as packed, plus four bytes for each number in `added`. Names, shapes
-    /// and provenance are not counted, as in the sizes that others publish.
+    /// Length of all arrays as packed, plus four bytes for each number in `added` and for `ridge`
+    /// of an envelope. Names, shapes and provenance are not counted, as in the sizes that others
+    /// publish.
     std::size_t bytes() const;
     /// The same after Zstandard.
     std::size_t entropyBytes() const;

@@ -81,17 +81,24 @@ std::vector<double> valueWeights(const Representation& representation) {
     return weights;
 }
 
+/// Eight bits are what a bound takes, whatever the precision of the rest.
+bool isEnvelope(const std::string& name) {
+    return name == "envelope";
+}
+
 void keep(Representation& representation, std::size_t count) {
     const Representation before = representation;
     const std::vector<double> weights = valueWeights(before);
-    for (const auto& each : namedArrays(representation)) keepLargest(*each.array, count, weights);
+    for (const auto& each : namedArrays(representation)) {
+        if (!isEnvelope(each.name)) keepLargest(*each.array, count, weights);
+    }
     addStep(representation, before, fmt::format("keep {}", count));
 }
 
 void quantise(Representation& representation, Precision precision) {
     const Representation before = representation;
     for (const auto& each : namedArrays(representation)) {
-        quantise(*each.array, precision, each.name);
+        if (!isEnvelope(each.name)) quantise(*each.array, precision, each.name);
     }
     if (precision == Precision::float64) return;
     addStep(representation, before, std::string(precisionName(precision)));

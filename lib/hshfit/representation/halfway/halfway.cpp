@@ -41,6 +41,9 @@ HalfwayExpansion::HalfwayExpansion(const Representation& representation)
             values_[t * channels_ + c] = array.values[c * terms_.size() + t];
         }
     }
+    if (!content->envelope) return;
+    envelope_ = HalfwayEnvelope(*content->envelope, channels_, representation.head.reciprocal,
+                                fmt::format("coefficients of {}", representation.head.source));
 }
 
 void HalfwayExpansion::evaluate(const Direction& wo, DirectionBatch wi, double* out) const {
@@ -58,6 +61,12 @@ void HalfwayExpansion::evaluate(const Direction& wo, DirectionBatch wi, double* 
         }
         for (std::size_t c = 0; c < channels_; ++c) {
             out[c * wi.count + k] = std::max(0.0, std::expm1(sums[c]));
+        }
+        if (envelope_.empty() || !above) continue;
+        const auto mix = envelope_.mixAt(envelopePoint({wi.x[k], wi.y[k], wi.z[k]}, wo));
+        for (std::size_t c = 0; c < channels_; ++c) {
+            double& f = out[c * wi.count + k];
+            f = std::min(f, std::exp(envelope_.logAt(mix, c)));
         }
     }
 }

@@ -14,7 +14,17 @@ double norm(const HalfwayTerm& t) {
     return std::sqrt((2.0 * t.i + 1) * (2.0 * t.j + 1) * (2.0 * t.k + 1) * harmonic);
 }
 
-HalfwayLayout layoutOf(const Representation& r, const HalfwayTerms& terms) {
+void addEnvelope(HalfwayLayout& layout, const HalfwayEnvelope& envelope) {
+    if (envelope.empty()) return;
+    layout.alongA = static_cast<int>(envelope.nodesAlongA());
+    layout.alongB = static_cast<int>(envelope.nodesAlongB());
+    layout.ridge = static_cast<float>(envelope.ridge());
+    layout.reciprocal = envelope.reciprocal();
+    for (const double log : envelope.logs()) layout.logs.push_back(static_cast<float>(log));
+}
+
+HalfwayLayout layoutOf(const Representation& r, const HalfwayExpansion& expansion) {
+    const HalfwayTerms& terms = expansion.terms();
     const HalfwayOrders& orders = terms.orders();
     HalfwayLayout layout{.half = orders.half,
                          .difference = orders.difference,
@@ -24,7 +34,9 @@ HalfwayLayout layoutOf(const Representation& r, const HalfwayTerms& terms) {
                          .channels = r.head.channels.count(),
                          .runs = {},
                          .values = {},
+                         .logs = {},
                          .steps = {}};
+    addEnvelope(layout, expansion.envelope());
     for (const HalfwayRun& run : terms.runs()) {
         const HalfwayTerm& t = run.term;
         layout.runs.push_back({static_cast<std::uint16_t>(t.j), static_cast<std::uint16_t>(t.k),
@@ -52,8 +64,7 @@ HalfwayLayout layoutOf(const Representation& r, const HalfwayTerms& terms) {
 
 class HalfwayPairs final : public PairEvaluator {
 public:
-    explicit HalfwayPairs(const Representation& r)
-        : layout_(layoutOf(r, HalfwayExpansion(r).terms())) {}
+    explicit HalfwayPairs(const Representation& r) : layout_(layoutOf(r, HalfwayExpansion(r))) {}
 
     void evaluate(DirectionBatch wi, DirectionBatch wo, float* out) const override {
         evaluateHalfwayPairs(layout_, wi, wo, wi.count, out);

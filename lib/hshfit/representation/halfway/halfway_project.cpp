@@ -2,6 +2,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/representation/halfway/internal/halfway_fit.h>
+#include <hshfit/representation/halfway/internal/halfway_limit.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>
@@ -20,6 +21,8 @@ constexpr std::size_t mostTerms = 1500;
 constexpr double settled = 0.02;
 /// Of the mean of the diagonal, where orders are ranked.
 constexpr double rankRegularisation = 1e-6;
+/// Of albedo / pi: below that, f counts as this where it is bounded.
+constexpr double darkest = 1e-3;
 
 CoefficientHead headFor(const Brdf& brdf, bool reciprocal) {
     CoefficientHead head;
@@ -105,28 +108,36 @@ Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
     }
     const HalfwaySamples left = heldOut(brdf);
     HalfwaySamples samples;
-    HalfwayValues values;
+    HalfwayFit fit;
     const std::size_t most = std::clamp(options.maxEvaluations, fewestPairs, mostPairs);
     double error = 0, change = 1;
     for (std::size_t first = 0, last = fewestPairs;; first = last, last *= 2) {
         appendSamples(brdf, HalfwayPart::fitted, first, last, samples);
         // A fit to fewer pairs than several times the terms says nothing: go on at once.
         if (samples.size() < 24 * terms.size() && 2 * last <= most) continue;
-        values = fitHalfway(terms, samples, std::move(values));
+        fit = fitHalfway(terms, samples, std::move(fit.values));
         const double before = error;
-        error = halfwayLoss(terms, left, values);
+        error = halfwayLoss(left, halfwaySums(terms, left, fit.values));
         change = before > 0 ? std::abs(before - error) / before : 1;
         if (options.progress) options.progress(last, most);
         if (error == 0 || (before > 0 && change < settled) || 2 * last > most) break;
     }
     if (options.progress) options.progress(most, most);
-    r.head.error = error == 0 ? 0 : change;
+    const HalfwayAlbedo albedo = albedoOf(brdf, r.head.reciprocal);
+    fit = heldToAlbedo(terms, samples, albedo, {}, std::move(fit));
+    const HalfwayBounds bounds =
+        boundsOf(brdf, r.head.reciprocal, darkest * albedo.greatestMean() / pi);
+    EnvelopeArray limit = chooseLimit(terms, bounds, left, albedo, fit.values);
+    fit = heldToAlbedo(terms, samples, albedo, capsAt(limit, r.head.reciprocal, albedo.places),
+                       std::move(fit));
     StoredArray array{.shape = {r.head.channels.count(), terms.size()}, .values = {}};
-    array.values.assign(values.data(), values.data() + values.size());
-    r.content = HalfwayArray{std::move(array)};
+    array.values.assign(fit.values.data(), fit.values.data() + fit.values.size());
+    r.head.error = halfwayLoss(left, halfwaySums(terms, left, fit.values),
+                               capsAt(limit, r.head.reciprocal, left.places));
+    r.content = HalfwayArray{std::move(array), std::move(limit)};
     r.steps.push_back({fmt::format("halfway {},{},{}: mean log error over pairs held out",
                                    orders.half, orders.difference, orders.azimuth),
-                       error});
+                       r.head.error});
     return r;
 }
 
@@ -137,24 +148,37 @@ double halfwayError(const Brdf& brdf, const Representation& representation) {
     const HalfwayValues values = Eigen::Map<const HalfwayValues>(
         stored.data(), static_cast<Eigen::Index>(checked.terms().size()),
         static_cast<Eigen::Index>(representation.head.channels.count()));
-    return halfwayLoss(checked.terms(), heldOut(brdf), values);
+    const HalfwaySamples left = heldOut(brdf);
+    std::vector<double> caps;
+    if (const auto& envelope = representation.as<HalfwayArray>()->envelope) {
+        caps = capsAt(*envelope, representation.head.reciprocal, left.places);
+    }
+    return halfwayLoss(left, halfwaySums(checked.terms(), left, values), caps);
 }
 
-HalfwayOrders chooseHalfwayOrders(const Brdf& brdf, std::size_t bytes, Precision precision,
-                                  const ProjectionOptions& options, bool reciprocal) {
+namespace {
+
+/// The best orders whose expansion takes at most `room`, and what its representation takes.
+struct OrdersFound {
+    HalfwayOrders orders;
+    std::size_t bytes = 0;
+};
+
+OrdersFound ordersWithin(const Brdf& brdf, std::size_t room, Precision precision,
+                         const ProjectionOptions& options, bool reciprocal) {
     const CoefficientHead head = headFor(brdf, reciprocal);
     const HalfwaySymmetry symmetry = halfwaySymmetryOf(head);
     const std::size_t channels = head.channels.count();
     std::size_t most = 0;
     while (storedBytes({.shape = {channels, most + 1},
                         .precision = precision,
-                        .values = std::vector<double>(channels * (most + 1))}) <= bytes) {
+                        .values = std::vector<double>(channels * (most + 1))}) <= room) {
         ++most;
     }
     std::vector<HalfwayOrders> known = candidates(most, symmetry);
     if (known.empty()) {
         throw UsageError(fmt::format("{} bytes are too few for the halfway form of {} channels",
-                                     bytes, channels));
+                                     room, channels));
     }
     HalfwayOrders largest = known[0];
     for (const HalfwayOrders& o : known) {
@@ -178,17 +202,30 @@ HalfwayOrders chooseHalfwayOrders(const Brdf& brdf, std::size_t bytes, Precision
                      [](const auto& a, const auto& b) { return a.first < b.first; });
     constexpr std::size_t fitted = 4;
     double least = std::numeric_limits<double>::infinity();
-    HalfwayOrders best;
+    OrdersFound best;
     for (std::size_t n = 0; n < std::min(fitted, ranked.size()); ++n) {
         Representation r = projectHalfway(brdf, ranked[n].second, options, reciprocal);
         quantise(r.as<HalfwayArray>()->halfway, precision);
         const double error = halfwayError(brdf, r);
         if (error < least) {
             least = error;
-            best = ranked[n].second;
+            best = {ranked[n].second, r.bytes()};
         }
     }
     return best;
+}
+
+}  // namespace
+
+HalfwayOrders chooseHalfwayOrders(const Brdf& brdf, std::size_t bytes, Precision precision,
+                                  const ProjectionOptions& options, bool reciprocal) {
+    // The envelope takes its part, which shows when it is fitted.
+    std::size_t room = bytes;
+    while (true) {
+        const OrdersFound found = ordersWithin(brdf, room, precision, options, reciprocal);
+        if (found.bytes <= bytes) return found.orders;
+        room -= std::min(room, found.bytes - bytes);
+    }
 }
 
 }  // namespace hshfit::inline representation::inline halfway

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -17,8 +18,9 @@ namespace {
 constexpr std::size_t parts = 8;
 /// Samples whose terms are held at once: with a few hundred terms they stay in the cache.
 constexpr std::size_t chunk = 64;
-/// Share of the loss that the pairs spread over the axes have.
-constexpr double lobeShare = 0.02;
+/// Shares of the loss that the pairs spread over the axes and towards the horizon have: without
+/// them nothing holds narrow lobes and the sum where the cosines are small.
+constexpr double axesShare = 0.02, horizonShare = 0.02;
 /// Regularisation, of the mean of the diagonal, and the share of the loss that is left where a
 /// thousandth of it is worth its larger coefficients.
 constexpr double firstRegularisation = 1e-6, worthIt = 0.95;
@@ -37,21 +39,23 @@ double slopeBetween(double y, double now, double c, double difference) {
     return c / (std::exp(-std::max(y, 0.0)) * (1 - c) + c);
 }
 
-/// Weight per sample: its class has its share.
+/// Weight per sample: each way to draw them has its share.
 class Weights {
 public:
     explicit Weights(const HalfwaySamples& samples) {
-        const auto lobes = std::count(samples.lobe.begin(), samples.lobe.end(), 1);
-        const double count = static_cast<double>(samples.size());
-        const double inLobes = static_cast<double>(lobes);
-        const double share = lobes > 0 ? lobeShare : 0;
-        uniform_ = (1 - share) / (count - inLobes);
-        lobe_ = lobes > 0 ? share / inLobes : 0;
+        const auto count = [&](HalfwaySpread spread) {
+            return static_cast<double>(
+                std::count(samples.spread.begin(), samples.spread.end(), spread));
+        };
+        const double axes = count(HalfwaySpread::axes), horizon = count(HalfwaySpread::horizon);
+        const double left = 1 - (axes > 0 ? axesShare : 0) - (horizon > 0 ? horizonShare : 0);
+        weights_ = {left / count(HalfwaySpread::uniform), axesShare / std::max(axes, 1.0),
+                    horizonShare / std::max(horizon, 1.0)};
     }
-    double at(bool lobe) const { return lobe ? lobe_ : uniform_; }
+    double at(HalfwaySpread spread) const { return weights_[static_cast<std::size_t>(spread)]; }
 
 private:
-    double uniform_, lobe_;
+    std::array<double, 3> weights_;
 };
 
 /// The terms at samples first .. first + count - 1, one sample per column; rows are padded.
@@ -109,7 +113,7 @@ public:
 private:
     double weightOf(std::size_t sample, double y, Eigen::Index row, Eigen::Index channel) {
         const double c = samples_.cosines[sample];
-        const double weight = weights_.at(samples_.lobe[sample] != 0);
+        const double weight = weights_.at(samples_.spread[sample]);
         if (values_.size() == 0) {
             const double slope = slopeBetween(y, y, c, 0);
             return weight * slope * slope;
@@ -157,6 +161,17 @@ struct Descent {
     }
 };
 
+/// The loss of values as half precision would keep them.
+double lossInHalf(const HalfwayTerms& terms, const HalfwaySamples& samples, HalfwayValues values) {
+    StoredArray array{.shape = {static_cast<std::size_t>(values.size())},
+                      .values = {values.data(), values.data() + values.size()}};
+    constexpr double most = 65504;
+    for (double& value : array.values) value = std::clamp(value, -most, most);
+    quantise(array, Precision::half);
+    values = Eigen::Map<const HalfwayValues>(array.values.data(), values.rows(), values.cols());
+    return halfwayLoss(samples, halfwaySums(terms, samples, values));
+}
+
 }  // namespace
 
 HalfwayPass halfwayPass(const HalfwayTerms& terms, const HalfwaySamples& samples,
@@ -201,47 +216,61 @@ HalfwayValues solveHalfway(const std::vector<HalfwaySystem>& systems, double reg
     return values;
 }
 
-HalfwayValues fitHalfway(const HalfwayTerms& terms, const HalfwaySamples& samples,
-                         HalfwayValues values) {
+HalfwayFit fitHalfway(const HalfwayTerms& terms, const HalfwaySamples& samples,
+                      HalfwayValues values) {
     double regularisation = firstRegularisation;
+    // Values that were found with less regularisation would leave no step to take.
+    if (values.size() > 0) {
+        values = solveHalfway(halfwayPass(terms, samples, values).systems, regularisation);
+    }
     Descent descent{terms, samples, std::move(values)};
     descent.run(regularisation);
-    // Small coefficients survive coarse storage: larger ones have to be worth it.
+    // Small coefficients survive coarse storage: larger ones have to be worth it, in half precision
+    // too.
     for (int lower = 0; lower < 2 && descent.loss > 0; ++lower) {
-        regularisation *= 1e-3;
-        Descent freer{terms, samples, solveHalfway(descent.systems, regularisation)};
-        freer.run(regularisation);
-        if (freer.loss > worthIt * descent.loss) break;
+        const double next = regularisation * 1e-3;
+        Descent freer{terms, samples, solveHalfway(descent.systems, next)};
+        freer.run(next);
+        if (freer.loss > worthIt * descent.loss ||
+            lossInHalf(terms, samples, freer.values) > lossInHalf(terms, samples, descent.values)) {
+            break;
+        }
+        regularisation = next;
         descent.values = std::move(freer.values);
         descent.systems = std::move(freer.systems);
         descent.loss = freer.loss;
     }
-    return descent.values;
+    return {std::move(descent.values), descent.loss, regularisation};
 }
 
-double halfwayLoss(const HalfwayTerms& terms, const HalfwaySamples& samples,
-                   const HalfwayValues& values) {
-    const std::size_t channels = samples.channels();
-    std::vector<double> sums(parts, 0.0);
+std::vector<double> halfwaySums(const HalfwayTerms& terms, const HalfwaySamples& samples,
+                                const HalfwayValues& values) {
+    const auto channels = static_cast<std::size_t>(values.cols());
+    std::vector<double> sums(samples.size() * channels);
     tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
         Eigen::MatrixXd products, now;
         const std::size_t end = samples.size() * (part + 1) / parts;
         for (std::size_t first = samples.size() * part / parts; first < end; first += chunk) {
             const std::size_t count = std::min(chunk, end - first);
             fillTerms(terms, samples, first, count, products);
-            now.noalias() = products.topRows(values.rows()).transpose() * values;
-            for (std::size_t k = 0; k < count * channels; ++k) {
-                const std::size_t sample = first + k / channels;
-                const double c = samples.cosines[sample], f = samples.values[first * channels + k];
-                const double g = now(static_cast<Eigen::Index>(k / channels),
-                                     static_cast<Eigen::Index>(k % channels));
-                sums[part] += std::abs(std::log1p(f * c) - metricOf(g, c));
-            }
+            now.noalias() = values.transpose() * products.topRows(values.rows());
+            std::copy_n(now.data(), count * channels, sums.data() + first * channels);
         }
     });
+    return sums;
+}
+
+double halfwayLoss(const HalfwaySamples& samples, const std::vector<double>& sums,
+                   const std::vector<double>& caps) {
+    const std::size_t channels = samples.channels();
     double total = 0;
-    for (const double sum : sums) total += sum;
-    return total / static_cast<double>(samples.values.size());
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+        const double c = samples.cosines[k / channels];
+        double now = metricOf(sums[k], c);
+        if (!caps.empty()) now = std::min(now, std::log1p(std::exp(caps[k]) * c));
+        total += std::abs(std::log1p(samples.values[k] * c) - now);
+    }
+    return total / static_cast<double>(sums.size());
 }
 
 }  // namespace hshfit::inline representation::inline halfway

@@ -32,13 +32,24 @@ HalfwayPass halfwayPass(const HalfwayTerms& terms, const HalfwaySamples& samples
 /// added to it.
 HalfwayValues solveHalfway(const std::vector<HalfwaySystem>& systems, double regularisation);
 
+struct HalfwayFit {
+    HalfwayValues values;
+    double loss = 0;            ///< over the samples, by their weights
+    double regularisation = 0;  ///< that it was found with
+};
+
 /// Steps until the loss changes by less than a part in 300, from `values` if there are any, with
 /// as much regularisation as costs little (worthIt in halfway_fit.cpp).
-HalfwayValues fitHalfway(const HalfwayTerms& terms, const HalfwaySamples& samples,
-                         HalfwayValues values);
+HalfwayFit fitHalfway(const HalfwayTerms& terms, const HalfwaySamples& samples,
+                      HalfwayValues values);
 
-/// Mean of |ln(1 + f c) - ln(1 + g c)| over samples and channels.
-double halfwayLoss(const HalfwayTerms& terms, const HalfwaySamples& samples,
-                   const HalfwayValues& values);
+/// The sum of the expansion, ln(1 + f), at every sample: [sample][channel].
+std::vector<double> halfwaySums(const HalfwayTerms& terms, const HalfwaySamples& samples,
+                                const HalfwayValues& values);
+
+/// Mean of |ln(1 + f c) - ln(1 + g c)| over samples and channels, of sums as above. `caps`: ln of
+/// what g is cut off at, likewise, or empty.
+double halfwayLoss(const HalfwaySamples& samples, const std::vector<double>& sums,
+                   const std::vector<double>& caps = {});
 
 }  // namespace hshfit::inline representation::inline halfway

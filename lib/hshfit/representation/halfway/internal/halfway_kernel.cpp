@@ -29,10 +29,11 @@ constexpr std::size_t block = unroll * hn::MaxLanes(Lanes());
 struct Axes {
     hwy::AlignedFreeUniquePtr<float[]> memory;
     float *half, *difference, *azimuth, *harmonics, *tau, *kappa, *above;
+    float *node, *alongA, *alongB;  ///< of the envelope: the cell's first node, and place in it
 
     explicit Axes(const HalfwayLayout& layout)
         : memory(hwy::AllocateAligned<float>(block * (layout.half + layout.difference +
-                                                      layout.azimuth + 2 * layout.harmonics + 5))) {
+                                                      layout.azimuth + 2 * layout.harmonics + 8))) {
         half = memory.get();
         difference = half + block * layout.half;
         azimuth = difference + block * layout.difference;
@@ -40,6 +41,9 @@ struct Axes {
         tau = harmonics + 2 * block * (layout.harmonics + 1);
         kappa = tau + block;
         above = kappa + block;
+        node = above + block;
+        alongA = node + block;
+        alongB = alongA + block;
     }
 };
 
@@ -120,9 +124,68 @@ void fillAxes(const HalfwayLayout& layout, const Pairs& pairs, std::size_t k, co
     }
 }
 
+/// The whole part of x below `last`, and the rest.
+Vector cellOf(Vector x, int last, Vector& rest) {
+    const Lanes lanes;
+    const Vector most = hn::Set(lanes, static_cast<float>(std::max(last - 1, 0)));
+    const Vector below = hn::Min(hn::Floor(x), most);
+    rest = last > 0 ? hn::Sub(x, below) : hn::Zero(lanes);
+    return last > 0 ? below : hn::Zero(lanes);
+}
+
+/// HalfwayEnvelope::mixAt: the node of each pair's cell as a number, which is exact.
+void fillEnvelope(const HalfwayLayout& layout, const Pairs& pairs, std::size_t k,
+                  const Axes& axes) {
+    const Lanes lanes;
+    const auto at = [&](int c) { return hn::Load(lanes, pairs.values[c] + k); };
+    const auto across = [&](int c) {
+        return hn::Sqrt(hn::MulAdd(at(c), at(c), hn::Mul(at(c + 1), at(c + 1))));
+    };
+    const Vector zero = hn::Zero(lanes), one = hn::Set(lanes, 1.0F);
+    const Vector high = hn::Sub(at(5), at(2)), wide = hn::Sub(across(3), across(0));
+    const Vector chord = hn::MulAdd(high, high, hn::Mul(wide, wide));
+    const Vector a = hn::Sqrt(hn::Min(one, hn::Mul(chord, hn::Set(lanes, 0.5F))));
+    const Vector b = hn::Sqrt(hn::Sqrt(hn::Min(one, hn::Max(zero, hn::Min(at(2), at(5))))));
+    const Vector ridge = hn::Set(lanes, layout.ridge);
+    Vector along = hn::Min(one, hn::Div(hn::Mul(a, hn::Add(one, ridge)), hn::Add(a, ridge)));
+    if (!layout.reciprocal) {
+        const Vector signedAlong = hn::IfThenElse(hn::Lt(high, zero), hn::Neg(along), along);
+        along = hn::Mul(hn::Set(lanes, 0.5F), hn::Add(signedAlong, one));
+    }
+    Vector x, y;
+    const int lastA = layout.alongA - 1, lastB = layout.alongB - 1;
+    const Vector left = cellOf(hn::Mul(along, hn::Set(lanes, static_cast<float>(lastA))), lastA, x);
+    const Vector low = cellOf(hn::Mul(b, hn::Set(lanes, static_cast<float>(lastB))), lastB, y);
+    const Vector row = hn::Set(lanes, static_cast<float>(layout.alongA));
+    hn::Store(hn::MulAdd(low, row, left), lanes, axes.node + k);
+    hn::Store(x, lanes, axes.alongA + k);
+    hn::Store(y, lanes, axes.alongB + k);
+}
+
+/// E of a channel.
+Vector envelopeAt(const HalfwayLayout& layout, const Axes& axes, std::size_t place,
+                  std::size_t channel) {
+    const Lanes lanes;
+    const hn::RebindToSigned<Lanes> whole;
+    const auto channels = static_cast<std::int32_t>(layout.channels);
+    const auto node = hn::ConvertTo(whole, hn::Load(lanes, axes.node + place));
+    const auto first = hn::Mul(node, hn::Set(whole, channels));
+    const Vector x = hn::Load(lanes, axes.alongA + place);
+    const Vector y = hn::Load(lanes, axes.alongB + place);
+    const std::int32_t right = layout.alongA > 1 ? channels : 0;
+    const std::int32_t up = layout.alongB > 1 ? layout.alongA * channels : 0;
+    const float* logs = layout.logs.data() + channel;
+    const auto from = [&](std::int32_t step) {
+        return hn::GatherIndex(lanes, logs, hn::Add(first, hn::Set(whole, step)));
+    };
+    const Vector lower = hn::MulAdd(x, hn::Sub(from(right), from(0)), from(0));
+    const Vector upper = hn::MulAdd(x, hn::Sub(from(up + right), from(up)), from(up));
+    return hn::Exp(lanes, hn::MulAdd(y, hn::Sub(upper, lower), lower));
+}
+
 template <std::size_t Channels>
-void sumChannels(const HalfwayLayout& layout, const Axes& axes, const float* values,
-                 float (*out)[block]) {
+void sumChannels(const HalfwayLayout& layout, const Axes& axes, std::size_t firstChannel,
+                 const float* values, float (*out)[block]) {
     const Lanes lanes;
     const std::size_t step = hn::Lanes(lanes);
     for (std::size_t k = 0; k < block; k += unroll * step) {
@@ -166,7 +229,10 @@ void sumChannels(const HalfwayLayout& layout, const Axes& axes, const float* val
         for (std::size_t c = 0; c < Channels; ++c) {
             for (std::size_t n = 0; n < unroll; ++n) {
                 const std::size_t place = k + n * step;
-                const Vector f = hn::Max(hn::Zero(lanes), hn::Expm1(lanes, total[c][n]));
+                Vector f = hn::Max(hn::Zero(lanes), hn::Expm1(lanes, total[c][n]));
+                if (!layout.logs.empty()) {
+                    f = hn::Min(f, envelopeAt(layout, axes, place, firstChannel + c));
+                }
                 const auto above = hn::Gt(hn::Load(lanes, axes.above + place), hn::Zero(lanes));
                 hn::Store(hn::IfThenElseZero(above, f), lanes, out[c] + place);
             }
@@ -187,17 +253,18 @@ void EvaluateHalfway(const HalfwayLayout& layout, const DirectionBatch& wi,
         pairs.load(wi, wo, first);
         for (std::size_t k = 0; k < block; k += hn::Lanes(lanes)) {
             fillAxes(layout, pairs, k, axes);
+            if (!layout.logs.empty()) fillEnvelope(layout, pairs, k, axes);
         }
         const std::size_t count = std::min(block, wi.count - first);
         for (std::size_t c = 0; c < layout.channels; c += 3) {
             const float* values = layout.values.data() + c * perChannel;
             const std::size_t group = std::min<std::size_t>(3, layout.channels - c);
             if (group == 3) {
-                sumChannels<3>(layout, axes, values, sums);
+                sumChannels<3>(layout, axes, c, values, sums);
             } else if (group == 2) {
-                sumChannels<2>(layout, axes, values, sums);
+                sumChannels<2>(layout, axes, c, values, sums);
             } else {
-                sumChannels<1>(layout, axes, values, sums);
+                sumChannels<1>(layout, axes, c, values, sums);
             }
             for (std::size_t n = 0; n < group; ++n) {
                 std::copy_n(sums[n], count, out + (c + n) * stride + first);

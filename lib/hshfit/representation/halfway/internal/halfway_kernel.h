@@ -22,6 +22,11 @@ struct HalfwayLayout {
     std::vector<Run> runs;
     /// [group of three channels][run][i][channel of the group]
     std::vector<float> values;
+    /// The envelope, if `logs` is not empty: ln E, [node along b][node along x][channel].
+    int alongA = 1, alongB = 1;
+    float ridge = 1;
+    bool reciprocal = true;
+    std::vector<float> logs;
     /// sqrt(2 n + 1) and the recurrence p_{n+1} = a_n t p_n - b_n p_{n-1}, [n] = {a, b}.
     std::vector<float> steps;
 };

@@ -42,10 +42,33 @@ Direction onHemisphere(double height, double turn) {
     return {radius * std::cos(2 * pi * turn), radius * std::sin(2 * pi * turn), z};
 }
 
-DirectionPair pairAt(const Sequence& sequence, std::size_t n, bool isotropic, bool lobe) {
+/// Cosines and slopes from the greatest down by so many powers of ten.
+constexpr double horizonDecades = 4, slopeDecades = 5, greatestSlope = 10;
+
+/// wo towards the horizon; wi likewise, or the mirror image of wo at a half vector about the
+/// normal.
+DirectionPair towardsHorizon(double a, double b, double c, double d, bool mirror) {
+    const auto low = [](double x) { return 1 - std::pow(10, -horizonDecades * x); };
+    const Direction wo = onHemisphere(low(a), d);
+    if (!mirror) return {onHemisphere(low(b), c), wo};
+    const double slope = greatestSlope * std::pow(10, -slopeDecades * b);
+    const Direction h = directionFromAngles(std::atan(slope), 2 * pi * c);
+    const double twice = 2 * dot(wo, h);
+    return {{twice * h.x - wo.x, twice * h.y - wo.y, twice * h.z - wo.z}, wo};
+}
+
+HalfwaySpread spreadOf(HalfwayPart part, std::size_t n) {
+    if (part == HalfwayPart::heldOut) return HalfwaySpread::uniform;
+    if (n % 4 == 3) return HalfwaySpread::axes;
+    return n % 8 == 2 ? HalfwaySpread::horizon : HalfwaySpread::uniform;
+}
+
+DirectionPair pairAt(const Sequence& sequence, std::size_t n, bool isotropic,
+                     HalfwaySpread spread) {
     const double a = sequence.at(n, 0), b = sequence.at(n, 1), c = sequence.at(n, 2);
     const double d = isotropic ? 0 : sequence.at(n, 3);
-    if (!lobe) return {onHemisphere(a, c), onHemisphere(b, d)};
+    if (spread == HalfwaySpread::uniform) return {onHemisphere(a, c), onHemisphere(b, d)};
+    if (spread == HalfwaySpread::horizon) return towardsHorizon(a, b, c, d, n / 8 % 2 == 1);
     const double u = 1 - std::cos(pi / 2 * a);
     const double thetaHalf = 2 * std::asin(std::min(1.0, u * u / std::sqrt(2.0)));
     return fromHalfDifference(thetaHalf, 2 * pi * d, std::acos(b), 2 * pi * c);
@@ -67,14 +90,15 @@ void appendSamples(const Brdf& brdf, HalfwayPart part, std::size_t first, std::s
     const Sequence sequence(isotropic ? 3 : 4);
     std::vector<DirectionPair> pairs;
     for (std::size_t n = first; n < last; ++n) {
-        const bool lobe = part == HalfwayPart::fitted && n % 4 == 3;
+        const HalfwaySpread spread = spreadOf(part, n);
         const std::size_t place = part == HalfwayPart::fitted ? n : heldOutStart + n;
-        const DirectionPair pair = pairAt(sequence, place, isotropic, lobe);
+        const DirectionPair pair = pairAt(sequence, place, isotropic, spread);
         if (!(pair.wi.z > 0 && pair.wo.z > 0)) continue;
         pairs.push_back(pair);
-        samples.lobe.push_back(lobe ? 1 : 0);
+        samples.spread.push_back(spread);
         samples.cosines.push_back(pair.wi.z);
         samples.points.push_back(halfwayPoint(pair.wi, pair.wo));
+        samples.places.push_back(envelopePoint(pair.wi, pair.wo));
     }
     const std::size_t channels = brdf.channels().count(), start = samples.values.size();
     samples.values.resize(start + pairs.size() * channels);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/brdf/brdf.h>
+#include <hshfit/representation/halfway/halfway_envelope.h>
 #include <hshfit/representation/halfway/halfway_terms.h>
 
 #include <cstddef>
@@ -8,19 +9,25 @@
 
 namespace hshfit::inline representation::inline halfway {
 
+/// How a pair was drawn: uniform on both hemispheres; uniform in arccos(1 - u), v and the azimuths,
+/// the axes of the expansion; or by powers of ten of the cosines from 1 to 1e-4, wi likewise or
+/// about the mirror direction, with slopes of h by powers of ten from 1e-4 to 10.
+enum class HalfwaySpread : unsigned char { uniform, axes, horizon };
+
 /// Pairs of directions with f at each.
 struct HalfwaySamples {
     std::vector<HalfwayPoint> points;
-    std::vector<double> cosines;      ///< cos(theta_i)
-    std::vector<unsigned char> lobe;  ///< 1 for pairs spread over the axes of the expansion
-    std::vector<double> values;       ///< f, [sample][channel]; negative values are 0
+    std::vector<EnvelopePoint> places;
+    std::vector<double> cosines;  ///< cos(theta_i)
+    std::vector<HalfwaySpread> spread;
+    std::vector<double> values;  ///< f, [sample][channel]; negative values are 0
 
     std::size_t size() const { return cosines.size(); }
     std::size_t channels() const { return size() == 0 ? 0 : values.size() / size(); }
 };
 
-/// Which pairs: every fourth that is fitted is spread over the axes (uniform in arccos(1 - u), v
-/// and the azimuths), the others and all that are held out are uniform on both hemispheres.
+/// Which pairs: of eight that are fitted, two are spread over the axes and one towards the horizon;
+/// all that are held out are uniform.
 enum class HalfwayPart { fitted, heldOut };
 
 /// Appends pairs number `first` .. `last` - 1 of the sequence of a part, those below the horizon
