@@ -117,17 +117,16 @@ std::string randomSpec(const Model& model, Draws& draws, DrawFrom from) {
 
 std::vector<stability::ErrorTrial> randomCases(const RandomCasesOptions& options) {
     Draws draws(options.seed);
-    const auto wanted = [&](const Writer& writer) {
-        return writer.readBack &&
-               (options.formats.empty() ||
-                std::ranges::find(options.formats, writer.name) != options.formats.end());
-    };
-    std::vector<std::pair<std::string, std::shared_ptr<const Brdf>>> tables;
-    for (std::size_t k = 0; k < options.tablesPerFormat; ++k)
-        for (const Writer& writer : writers())
-            if (wanted(writer)) tables.emplace_back(writer.name, randomTable(writer, draws));
-    const std::size_t formats = tables.size() / std::max<std::size_t>(options.tablesPerFormat, 1);
-    const std::size_t groups = models().size() + formats;
+    std::vector<const Writer*> formats;
+    for (const Writer& writer : writers()) {
+        const bool wanted =
+            options.formats.empty() ||
+            std::ranges::find(options.formats, writer.name) != options.formats.end();
+        if (writer.readBack && wanted && options.tablesPerFormat > 0) formats.push_back(&writer);
+    }
+    // Written when they are first used, each from draws of its own.
+    std::vector<std::shared_ptr<const Brdf>> tables(formats.size() * options.tablesPerFormat);
+    const std::size_t groups = models().size() + formats.size();
     std::vector<stability::ErrorTrial> cases;
     for (std::size_t k = 0; k < options.count; ++k) {
         const std::size_t group = k % groups;
@@ -138,10 +137,14 @@ std::vector<stability::ErrorTrial> randomCases(const RandomCasesOptions& options
             trial.brdf = openModel(randomSpec(model, draws));
         } else {
             const std::size_t format = group - models().size();
-            const auto& [name, table] =
-                tables[format + formats * draws.below(options.tablesPerFormat)];
-            trial.group = name;
-            trial.brdf = table;
+            const std::size_t number =
+                format * options.tablesPerFormat + draws.below(options.tablesPerFormat);
+            if (!tables[number]) {
+                Draws own(options.seed + 1 + number);
+                tables[number] = randomTable(*formats[format], own);
+            }
+            trial.group = formats[format]->name;
+            trial.brdf = tables[number];
         }
         const bases::Entry& entry = bases::catalog()[draws.below(bases::catalog().size())];
         trial.basis = entry.name;

@@ -4,10 +4,13 @@
 #include <hshfit/stability/stress.h>
 
 #include <brdfs/catalog.h>
+#include <brdfs/random_cases.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+
+#include <optional>
 
 namespace hshfit::cli {
 namespace {
@@ -16,6 +19,8 @@ struct StressArguments {
     std::vector<std::string> lobes;
     std::string bases = "all", output;
     int maxOrder = stability::StressOptions{}.maxOrder;
+    std::optional<std::size_t> trials;
+    std::uint64_t seed = brdfs::RandomCasesOptions{}.seed;
 };
 
 /// From Lambert to a mirror, as exponents and as roughness.
@@ -34,10 +39,21 @@ void runStress(const StressArguments& arguments, const Globals& globals) {
         opened.push_back(brdfs::open(spec));
         lobes.push_back(opened.back().get());
     }
-    Progress progress(globals, "stress");
-    const stability::StressReport report =
-        stability::stress(bases::select(arguments.bases), lobes,
-                          {.maxOrder = arguments.maxOrder, .progress = progress.callback()});
+    stability::StressReport report;
+    {
+        Progress progress(globals, "stress");
+        report =
+            stability::stress(bases::select(arguments.bases), lobes,
+                              {.maxOrder = arguments.maxOrder, .progress = progress.callback()});
+    }
+    const std::size_t trials =
+        arguments.trials.value_or(arguments.lobes.empty() ? brdfs::RandomCasesOptions{}.count : 0);
+    if (trials > 0) {
+        Progress progress(globals, "trials of stated errors");
+        report.statedErrors = stability::summarise(
+            stability::tryErrors(brdfs::randomCases({.count = trials, .seed = arguments.seed}),
+                                 {.progress = progress.callback()}));
+    }
     if (!arguments.output.empty()) stability::writeStress(report, arguments.output);
     printText(globals.json ? stability::stressJson(report) : stability::stressMarkdown(report));
 }
@@ -52,6 +68,11 @@ void addStress(CLI::App& command, Globals& globals) {
         ->capture_default_str();
     command.add_option("--max-order", arguments->maxOrder, "Bands to look at")
         ->check(CLI::Range(2, 1000))
+        ->capture_default_str();
+    command.add_option("--trials", arguments->trials,
+                       "Random projections over the catalog whose stated errors are tried "
+                       "(default: 2000, or none if lobes are given)");
+    command.add_option("--seed", arguments->seed, "Of the random projections")
         ->capture_default_str();
     command.add_option("-o,--output", arguments->output,
                        "Folder for stress.json, stress.md and stress.csv, made if absent");

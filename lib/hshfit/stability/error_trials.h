@@ -48,7 +48,8 @@ struct ErrorTrialResult {
 };
 
 struct ErrorTrialOptions {
-    std::size_t referenceEvaluations = std::size_t{1} << 26;
+    /// Of a reference; beyond, one at a tenth of the tolerance is tried.
+    std::size_t referenceEvaluations = std::size_t{1} << 20;
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
 

@@ -4,6 +4,7 @@
 #include <hshfit/bases/lsosh.h>
 #include <hshfit/brdf/brdf.h>
 #include <hshfit/stability/basis_errors.h>
+#include <hshfit/stability/error_trials.h>
 
 #include <functional>
 #include <span>
@@ -34,6 +35,7 @@ struct StressReport {
     std::vector<DegreeErrors> evaluation = {}, orthonormality = {};
     std::vector<GramPoint> gram = {};  ///< of least-squares SH
     std::vector<LobeProjection> projection = {};
+    std::vector<ErrorTrialSummary> statedErrors = {};  ///< of trials (error_trials.h), if any
 };
 
 struct StressOptions {

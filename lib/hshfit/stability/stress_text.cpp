@@ -94,6 +94,41 @@ std::string projectionTable(const std::vector<LobeProjection>& rows, const Cell&
     return text + "\n";
 }
 
+std::string trialsTable(const std::vector<ErrorTrialSummary>& rows) {
+    std::string text =
+        "| of | trials | measured | coefficients hold | energy holds | both hold | worst | "
+        "overstatement | evaluations |\n|---|---|---|---|---|---|---|---|---|\n";
+    for (const ErrorTrialSummary& row : rows) {
+        const std::string energies =
+            row.energyMeasured > 0 ? fmt::format("{} of {}", row.energyHolds, row.energyMeasured)
+                                   : std::string();
+        const std::string overstatement = std::isfinite(row.medianOverstatement)
+                                              ? fmt::format("{:.3g}", row.medianOverstatement)
+                                              : std::string();
+        text += fmt::format("| {} | {} | {} | {} | {} | {} | {:.2g} | {} | {} |\n", row.group,
+                            row.trials, row.measured, row.coefficientsHold, energies, row.bothHold,
+                            row.worst, overstatement, row.evaluations);
+    }
+    return text;
+}
+
+Json trialsJson(const std::vector<ErrorTrialSummary>& rows) {
+    Json list = Json::array();
+    for (const ErrorTrialSummary& row : rows) {
+        list.push_back({{"group", row.group},
+                        {"trials", row.trials},
+                        {"measured", row.measured},
+                        {"coefficients_hold", row.coefficientsHold},
+                        {"energies", row.energyMeasured},
+                        {"energies_hold", row.energyHolds},
+                        {"both_hold", row.bothHold},
+                        {"worst", finiteOrNull(row.worst)},
+                        {"median_overstatement", finiteOrNull(row.medianOverstatement)},
+                        {"evaluations", row.evaluations}});
+    }
+    return list;
+}
+
 }  // namespace
 
 std::string stressJson(const StressReport& report) {
@@ -122,7 +157,8 @@ std::string stressJson(const StressReport& report) {
                            {"evaluation", degreesJson(report.evaluation)},
                            {"orthonormality", degreesJson(report.orthonormality)},
                            {"lsosh_gram", gram},
-                           {"projection", projection}};
+                            {"projection", projection},
+                            {"stated_errors", trialsJson(report.statedErrors)}};
     return jsonText(document, 2) + "\n";
 }
 
@@ -136,6 +172,11 @@ std::string stressMarkdown(const StressReport& report) {
     }
     if (!report.gram.empty())
         text += "\n## Least-squares spherical harmonics\n\n" + gramTable(report.gram);
+    if (!report.statedErrors.empty())
+        text +=
+            "\n## Stated errors\nRandom projections at the default tolerance, against ones at a "
+            "hundredth of it.\n\n" +
+            trialsTable(report.statedErrors);
     if (report.projection.empty()) return text;
     text += "\n## Projection of lobes\nf cos(theta_i) onto HSH, order 7, one outgoing direction.\n";
     text += "\nEstimated error:\n\n" + projectionTable(report.projection, [](const auto& row) {

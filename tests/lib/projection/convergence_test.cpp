@@ -45,7 +45,7 @@ TEST(Convergence, ExponentialErrorsAreCovered) {
 /// The last change alone is more than 400 times the error there.
 TEST(Convergence, ExponentialErrorsAreNotTakenForChanges) {
     const auto error = [](int k) { return std::exp(-4 * std::pow(1.4, k)); };
-    EXPECT_LE(estimate(error, 5).stated, 0.2 * error(3));
+    EXPECT_LE(estimate(error, 5).stated, 0.4 * error(3));
     // Of an interpolated table it is not believed.
     EXPECT_GE(estimate(error, 5, false).stated, error(3) - error(4));
 }

@@ -14,20 +14,24 @@ double ratioOf(double change, double before) {
 }
 
 /// The factor by which the next change is expected to be below the last one; 1 where changes do not
-/// shrink as those of a smooth f do. Factors from trials over the catalog (docs/stability.md).
+/// shrink as those of a smooth f do. Errors are about exp(-c 1.4^k) at level k: their ratios go
+/// down with every level, and an error is the last change to the power of 1.4. The larger of the
+/// two counts, since either may be an accident. Safety factors from trials over the catalog
+/// (docs/stability.md).
 double smoothFactor(const Changes& changes) {
     const auto& [last, before, earlier] = changes.values;
+    constexpr double growth = 1.4, ofRatio = 5, ofPower = 30;
     const double ratio = ratioOf(last, before);
+    const double power = ofPower * std::pow(last, growth - 1);
     if (earlier == infinity) {  // two changes show less
-        constexpr double fast = 0.1, safety = 10;
-        return ratio < fast ? std::min(1.0, safety * ratio) : 1;
+        constexpr double fast = 0.1;
+        return ratio < fast ? std::min(1.0, std::max(ofRatio * ratio, power)) : 1;
     }
-    constexpr double fast = 0.2, fastBefore = 0.35, safety = 5, further = 1.2, growth = 1.4;
+    constexpr double fast = 0.2, fastBefore = 0.35, further = 1.2;
     const double ratioBefore = ratioOf(before, earlier);
     if (!(ratio < fast && ratioBefore < fastBefore)) return 1;
-    // The logarithm of the ratio grows like the levels. A ratio below that is an accident.
     const double sure = std::max(ratio, std::pow(ratioBefore, growth));
-    return std::min(1.0, safety * std::pow(sure, further));
+    return std::min(1.0, std::max(ofRatio * std::pow(sure, further), power));
 }
 
 /// The error that algebraic convergence leaves.
@@ -48,11 +52,11 @@ double roughError(const Changes& changes) {
 
 PanelError panelError(const Changes& changes, bool mayBeSmooth) {
     const auto& [last, before, earlier] = changes.values;
-    constexpr double ofOneChange = 3, ofTables = 3;
+    constexpr double ofOneChange = 2, ofTables = 3;
     if (last == infinity) return {infinity, infinity};
-    if (before == infinity) return {ofOneChange * last, ofOneChange * last};
-    const double rough = roughError(changes);
+    const double rough = before == infinity ? ofOneChange * last : roughError(changes);
     if (!mayBeSmooth) return {rough, ofTables * rough};
+    if (before == infinity) return {rough, rough};
     const double factor = smoothFactor(changes);
     const double error = factor < 1 ? std::min(rough, factor * last) : rough;
     return {error, error};

@@ -20,7 +20,7 @@ struct Changes {
     }
 };
 
-/// Errors that follow from a panel's changes, in their unit.
+/// Errors that follow from a panel's changes, both relative.
 struct PanelError {
     double expected = 0;  ///< decides about refinement
     double stated = 0;    ///< not below `expected`
