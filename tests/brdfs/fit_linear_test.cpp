@@ -113,8 +113,8 @@ bool linearBesides(const ParametricSum& sum, Values shapes, std::size_t j) {
            cancel(high, low, at(1, none), at(0, none));
 }
 
-/// Every combination of choices, with no colour stated or one. Disney's tints are left out: with one,
-/// f is linear in a grey baseColor and not in a coloured one, and its row states the latter.
+/// Every combination of choices, with no colour stated or one. Disney's tints are left out: with
+/// one, f is linear in a grey baseColor and not in a coloured one, and its row states the latter.
 std::vector<std::string> specsOf(const Model& model) {
     std::vector<std::string> specs{""};
     for (const Parameter& parameter : model.parameters) {

@@ -157,8 +157,8 @@ std::string stressJson(const StressReport& report) {
                            {"evaluation", degreesJson(report.evaluation)},
                            {"orthonormality", degreesJson(report.orthonormality)},
                            {"lsosh_gram", gram},
-                            {"projection", projection},
-                            {"stated_errors", trialsJson(report.statedErrors)}};
+                           {"projection", projection},
+                           {"stated_errors", trialsJson(report.statedErrors)}};
     return jsonText(document, 2) + "\n";
 }
 
