@@ -9,7 +9,7 @@
 
 namespace hshfit::inline pages {
 
-nlohmann::ordered_json pairSummaryJson(const PairSummary& summary) {
+std::string pairSummaryJson(const PairSummary& summary) {
     using Json = nlohmann::ordered_json;
     const auto valueJson = [](const PairSummary::Value& v) -> Json {
         return {{"value", finiteOrNull(v.value)}, {"error", finiteOrNull(v.error)}};
@@ -25,7 +25,7 @@ nlohmann::ordered_json pairSummaryJson(const PairSummary& summary) {
                        {"wi", place(summary.at.wi)},
                        {"wo", place(summary.at.wo)}};
     json["albedo"] = valueJson(summary.albedo);
-    return json;
+    return jsonText(json);
 }
 
 }  // namespace hshfit::inline pages
