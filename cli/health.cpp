@@ -49,7 +49,8 @@ Json albedoJson(const Health& health) {
         row["phi"] = std::round(row["phi"].get<double>());
         row["values"] = albedo.values.empty() ? Json(nullptr) : Json(albedo.values);
         if (albedo.values.empty()) {
-            row["reason"] = "not finite";
+            row["reason"] =
+                std::isinf(albedo.error) ? "more evaluations than are allowed" : "not finite";
         } else {
             row["error"] = finiteOrNull(albedo.error);
             if (!albedo.converged) row["reason"] = "did not converge";
