@@ -1,5 +1,7 @@
 // Damaged files of scattered samples end in one clear line.
 
+#include "places.h"
+
 #include <brdfs/measured/scattered/alta.h>
 #include <brdfs/measured/scattered/astm.h>
 #include <brdfs/measured/scattered/cornell.h>
@@ -211,7 +213,7 @@ TEST(Alta, rowsOfFTimesCosineOnTheHorizonAreLeftOutAndCounted) {
     EXPECT_EQ(samples.census.values, 3u);
     EXPECT_EQ(samples.census.belowHorizon, 2u);
 
-    const std::string path = std::string(HSHFIT_SHARED) + "/data/alta/retro-gray-tape.dat";
+    const std::string path = test::sharedFolder() + "/data/alta/retro-gray-tape.dat";
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
     std::stringstream text;
     text << std::ifstream(path).rdbuf();

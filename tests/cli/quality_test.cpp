@@ -1,5 +1,6 @@
 // Poor results say that they are, and name a command that does better; good ones say nothing.
 
+#include "places.h"
 #include "program.h"
 
 #include <nlohmann/json.hpp>
@@ -137,7 +138,7 @@ Json infoOf(const Answer& answer) {
 }
 
 TEST_F(Quality, AnEnvironmentMapIsNotTakenForABrdf) {
-    const std::string file = std::string(HSHFIT_SHARED) + "/data/env/mitsuba_matpreview_envmap.exr";
+    const std::string file = test::sharedFolder() + "/data/env/mitsuba_matpreview_envmap.exr";
     if (!fs::exists(file)) GTEST_SKIP() << file << " is not there";
     const Json document = infoOf(run("info --json " + file));
     EXPECT_TRUE(keepsSchema(document.dump(), "info"));
@@ -151,7 +152,7 @@ TEST_F(Quality, AnEnvironmentMapIsNotTakenForABrdf) {
 
 // Values of 1e36 beside ones of 0.1: a relative tolerance and a bound of the evaluations.
 TEST_F(Quality, HostileFilesHaveAlbedosWithTheirError) {
-    const std::string folder = std::string(HSHFIT_SHARED) + "/data/hostile/";
+    const std::string folder = test::sharedFolder() + "/data/hostile/";
     if (!fs::exists(folder)) GTEST_SKIP() << folder << " is not there";
     for (const char* name : {"flip30.dat", "alta_huge.alta"}) {
         const Json document = infoOf(run("info --json " + folder + name));
@@ -166,7 +167,7 @@ TEST_F(Quality, HostileFilesHaveAlbedosWithTheirError) {
 
 // Incidences of 15, 30 and 60 degrees, and outgoing directions among which these are, too.
 TEST_F(Quality, ContradictionsOfSamplesAreReported) {
-    const std::string file = std::string(HSHFIT_SHARED) + "/data/alta/retro-gray-tape.dat";
+    const std::string file = test::sharedFolder() + "/data/alta/retro-gray-tape.dat";
     if (!fs::exists(file)) GTEST_SKIP() << file << " is not there";
     const Json document = infoOf(run("info --json " + file));
     EXPECT_TRUE(keepsSchema(document.dump(), "info"));

@@ -34,7 +34,7 @@ class RealFiles : public Cli, public testing::WithParamInterface<RealFile> {
 protected:
     void SetUp() override {
         Cli::SetUp();
-        source_ = test::sharedFolder() + "/data/" + GetParam().path;
+        source_ = hshfit::test::sharedFolder() + "/data/" + GetParam().path;
         if (!fs::exists(source_)) GTEST_SKIP() << source_ << " is not there";
     }
     std::string source_;

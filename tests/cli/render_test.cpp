@@ -26,7 +26,7 @@ TEST_F(Cli, RenderHasHelpWhoseExampleWorks) {
     ASSERT_NE(begin, std::string::npos);
     const std::string example = help.substr(begin + 16, help.find('\n', begin) - begin - 16);
     const std::string line =
-        "cd " + folder_.string() + " && " + test::program() + " " + example + " >out 2>err";
+        "cd " + folder_.string() + " && " + hshfit::test::program() + " " + example + " >out 2>err";
     EXPECT_EQ(std::system(line.c_str()), 0) << read(path("err"));
     EXPECT_EQ(read(path("spheres.png")).substr(1, 3), "PNG");
 }
