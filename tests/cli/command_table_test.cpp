@@ -57,7 +57,7 @@ protected:
         for (const Command& other : commands())
             if (reads(command, other)) runExample(other);
         const std::string arguments = std::string(command.example).substr(7);
-        const std::string line = "cd " + folder_.string() + " && " + test::program() + " " +
+        const std::string line = "cd " + folder_.string() + " && " + hshfit::test::program() + " " +
                                  arguments + " >out.txt 2>err.txt";
         ASSERT_EQ(std::system(line.c_str()), 0) << command.example << "\n" << read(path("err.txt"));
     }
@@ -78,12 +78,13 @@ TEST_P(CommandTable, HelpIsOneLineAndEndsInTheExample) {
 }
 
 TEST_P(CommandTable, ExampleWorks) {
-    fs::create_directory_symlink(fs::path(test::sourceFolder()) / "examples", path("examples"));
+    fs::create_directory_symlink(fs::path(hshfit::test::sourceFolder()) / "examples",
+                                 path("examples"));
     runExample(GetParam());
 }
 
 TEST_P(CommandTable, SourceAddsIt) {
-    const std::string file = test::sourceFolder() + "/cli/" + GetParam().file;
+    const std::string file = hshfit::test::sourceFolder() + "/cli/" + GetParam().file;
     EXPECT_NE(read(file).find("(CLI::App& command, Globals& globals) {"), std::string::npos)
         << file;
 }
@@ -123,7 +124,7 @@ TEST_F(Cli, HelpOfTheProgramListsEveryCommandUnderItsGroup) {
 TEST(CommandDocs, IndexHasExactlyTheCommandsOfTheTable) {
     std::set<std::string> known, indexed;
     for (const Command& command : commands()) known.insert(command.name);
-    std::ifstream page(test::sourceFolder() + "/docs/commands.md");
+    std::ifstream page(hshfit::test::sourceFolder() + "/docs/commands.md");
     for (std::string line; std::getline(page, line) && !line.starts_with("## ");)
         if (line.starts_with("| `")) indexed.insert(wordsOf(line.substr(3))[0]);
     EXPECT_EQ(indexed, known);

@@ -24,7 +24,7 @@ std::set<std::string> foundInSources(const std::string& pattern) {
     std::set<std::string> found;
     for (const char* folder : {"/lib", "/jobs"}) {
         for (const auto& entry :
-             fs::recursive_directory_iterator(test::sourceFolder() + std::string(folder))) {
+             fs::recursive_directory_iterator(hshfit::test::sourceFolder() + std::string(folder))) {
             if (entry.path().extension() != ".cpp") continue;
             std::ifstream file(entry.path());
             const std::string text((std::istreambuf_iterator<char>(file)), {});
