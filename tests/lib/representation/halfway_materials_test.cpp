@@ -187,7 +187,8 @@ TEST(HalfwayMaterials, PlanesOfMerlBesideNetworks) {
             projectHalfway(*brdf, orders, {.maxEvaluations = 1 << 15}, true), Precision::half);
         const double ours =
             comparison.print(name, text(orders) + " half", q.bytes(), comparison.of(q));
-        EXPECT_LT(q.bytes(), 1000U);
+        // With the table that bounds f; at most half of what the network takes.
+        EXPECT_LT(q.bytes(), 2700U / 2);
         if (ours < theirs) ++closer;
     }
     EXPECT_GE(closer, 9);
