@@ -28,7 +28,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// How many times an evaluation costs what one of a few lobes does: sums and mixtures have a lobe
+/// The cost of an evaluation relative to that of a few lobes: sums and mixtures have a lobe
 /// for every term that they add up.
 std::size_t costOf(const Brdf& brdf) {
     constexpr std::size_t fewLobes = 32;
