@@ -16,7 +16,7 @@ namespace hshfit::brdfs {
 namespace {
 
 constexpr std::size_t coarseCount = 4096;
-/// Where a second and third search on all samples would cost more than it finds.
+/// Above this number of samples, a second and third search on all costs more than it finds.
 constexpr std::size_t manySamples = 200'000, middleCount = 50'000;
 
 struct Bounds {

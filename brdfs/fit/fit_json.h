@@ -8,8 +8,8 @@
 
 namespace hshfit::brdfs {
 
-/// What a preset file of a fit says beside the specification, docs/schemas/fit.schema.json: how it
-/// was made, parameters with errors, correlations, convergence, what was masked, statistics.
+/// The report in a preset file of a fit, beside the specification (docs/schemas/fit.schema.json):
+/// method, parameters with errors, correlations, convergence, masked samples, statistics.
 struct FitReport {
     std::string data;  ///< the specification that was fitted
     FitSamples const* samples = nullptr;

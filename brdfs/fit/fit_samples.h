@@ -21,7 +21,7 @@ struct SampleOptions {
     std::uint64_t seed = 1;  ///< of that draw
 };
 
-/// What was left out, in samples (a cell of a table, a measured pair).
+/// Numbers of samples left out (a cell of a table, a measured pair).
 struct Masked {
     std::size_t belowHorizon = 0;
     std::size_t invalid = 0;    ///< marked as such, or not covered, in some channel

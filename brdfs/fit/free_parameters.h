@@ -18,16 +18,16 @@ struct FreeParameter {
     bool linear = false;  ///< f is linear in it (Parameter::linear)
 };
 
-/// What of `model` is free to fit, given the parameters that are stated: those whose table row has
-/// a FitRange that applies. Stated parameters are not free. In a sum of models, kd with a default
-/// of 0 stays 0.
+/// The parameters of `model` that are free to fit, given those that are stated: the ones whose row
+/// has a FitRange that applies. Stated parameters are not free. In a sum of models, kd with a
+/// default of 0 stays 0.
 std::vector<FreeParameter> freeParameters(const Model& model, const Parameters& stated,
                                           bool isotropic, bool inSum);
 
-/// What is stated, and the parameters besides whose FitRange holds them.
+/// The stated parameters, and the others that their FitRange holds at one value.
 Parameters withHeldParameters(const Model& model, Parameters stated, bool isotropic);
 
-/// All parameters, with defaults for what is not stated, and the least value where there is none.
+/// All parameters: those not stated have their defaults, or without a default their least value.
 Parameters withDefaults(const Model& model, const Parameters& stated);
 
 }  // namespace hshfit::brdfs

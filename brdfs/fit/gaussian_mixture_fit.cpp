@@ -122,7 +122,7 @@ private:
     std::vector<double> roots_;
 };
 
-/// What the starts are made of.
+/// The parts of which starts are made.
 struct Features {
     double peak = 0;       ///< the largest value
     double tilt = 0;       ///< of where it is

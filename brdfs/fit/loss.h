@@ -25,7 +25,7 @@ struct Mapped {
 };
 Mapped mapValue(Loss::Kind kind, double f, double cosine);
 
-/// What tames outliers: rho(s) for a squared residual s, with scale a (in units of g).
+/// The damping of outliers: rho(s) for a squared residual s, with scale a (in units of g).
 ///     huber   s for s <= a^2, else 2 a sqrt(s) - a^2
 ///     cauchy  a^2 ln(1 + s / a^2)
 enum class Robust { none, huber, cauchy };

@@ -30,7 +30,7 @@ std::vector<std::string> writeLtcTable(const LtcTable& table, const std::string&
 std::vector<std::string> writeLtcTable(const LtcTable& table, const std::string& path,
                                        FileSet& files);
 
-/// What writeLtcTable would write. Throws UsageError for another extension.
+/// The bytes that writeLtcTable would write. Throws UsageError for another extension.
 std::vector<std::string> ltcOutputs(const std::string& path);
 
 }  // namespace hshfit::brdfs

@@ -116,7 +116,7 @@ Step minimise(const LtcNodes& nodes, double magnitude, bool symmetric) {
             summary.termination_type == ceres::CONVERGENCE};
 }
 
-/// How far the change is from none.
+/// The distance of the change from the identity.
 double distance(const LtcMatrix<double>& m) {
     return std::max({std::abs(m.a - 1), std::abs(m.c), std::abs(m.b), std::abs(m.d - 1)});
 }

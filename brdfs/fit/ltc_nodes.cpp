@@ -12,7 +12,7 @@
 
 namespace hshfit::brdfs {
 
-// What lies far from a narrow lobe is pressed together where the cosine nearly is 0: a lobe of
+// Directions far from a narrow lobe are mapped close to the plane where the cosine is 0: a lobe of
 // width a has, within a radians of that plane, all directions that are more than about 45 degrees
 // away. Hence ever finer panels towards the ends.
 

@@ -7,8 +7,8 @@
 
 namespace hshfit::brdfs {
 
-/// How densely the sphere of the cosine is covered, in longitudes about y and latitudes from the
-/// plane of incidence: Gauss-Legendre nodes in panels between these fractions. The planes where the
+/// The nodes on the sphere of the cosine, in longitudes about y and latitudes from the plane of
+/// incidence: Gauss-Legendre nodes in panels between these fractions. The planes where the
 /// cosine and where cos(theta_i) become 0 meet in the y axis; so both lie between panels.
 struct LtcRule {
     std::vector<double> longitudes;  ///< of each of the up to three sectors between the planes

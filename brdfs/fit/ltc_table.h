@@ -9,7 +9,7 @@
 
 namespace hshfit::brdfs {
 
-/// How the roughness r of the table, from 0 to 1, becomes the value of a parameter.
+/// The map from the roughness r of the table, 0 to 1, to the value of a parameter.
 enum class RoughnessMapping {
     square,    ///< r^2: widths such as alpha and m
     linear,    ///< r: parameters that are themselves called roughness

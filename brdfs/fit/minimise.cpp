@@ -37,8 +37,8 @@ public:
         Matrix hessian = Eigen::Map<const Matrix>(equations.hessian.data(), n, n);
         Eigen::VectorXd gradient = Eigen::Map<const Eigen::VectorXd>(equations.gradient.data(), n);
         if (!hessian.allFinite() || !gradient.allFinite()) return false;
-        // What a bound holds back does not bend the steps of the others: Ceres would cut each step
-        // there, and search along it at the price of an evaluation each.
+        // A parameter held back by its bound leaves the steps of the others alone: Ceres would cut
+        // each step there, and search along it at the price of an evaluation each.
         for (Eigen::Index i = 0; i < n; ++i) {
             const double x = parameters[0][i], pull = gradient(i);
             if ((x > lower_[i] || pull < 0) && (x < upper_[i] || pull > 0)) continue;

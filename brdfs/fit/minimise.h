@@ -19,7 +19,7 @@ struct MinimiseOptions {
     bool curvature = true;
 };
 
-/// What Ceres says of a run.
+/// The report of Ceres on a run.
 struct Minimum {
     std::vector<double> x;
     double cost = 0;

@@ -205,7 +205,7 @@ Equations FitProblem::joint(std::span<const double> x, bool derivatives,
     none.gram = Matrix::Zero(derivatives ? n + 1 : 1, derivatives ? n + 1 : 1);
     if (spread) none.spread = Matrix::Zero(n, n);
     const JointSums zero{std::vector<ChannelSums>(channels(), none)};
-    // Where the parameters of each channel stand among all.
+    // The places of the parameters of each channel among all.
     const auto total = static_cast<Eigen::Index>(x.size());
     const auto placesOf = [&](std::size_t c) {
         std::vector<Eigen::Index> at;

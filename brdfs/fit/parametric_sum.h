@@ -104,7 +104,7 @@ private:
         std::vector<std::string> linearKeys;
         bool byFormula = false;
     };
-    /// What is stated, and the shapes at these values.
+    /// The stated parameters, with the shapes at these values.
     Parameters shaped(const Term& term, std::span<const double> shapes) const;
     void addProbes(const Term& term, std::span<const double> shapes, Columns& columns,
                    std::size_t base) const;

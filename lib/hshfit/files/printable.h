@@ -14,7 +14,7 @@ std::string printable(std::string_view text);
 /// The same of a text of several lines: line feeds and tabs stay.
 std::string printableLines(std::string_view text);
 
-/// JSON with those control characters within its strings as \uXXXX.
+/// JSON whose strings have those control characters as escapes.
 std::string printableJson(std::string_view json);
 
 /// `text` within `limit` bytes (10 or more): of a longer one both ends, with "…" between them. No

@@ -5,7 +5,7 @@
 
 namespace hshfit::inline projection {
 
-/// How q = f or f cos(theta_i) behaves as wi goes down to the horizon, for one wo.
+/// The limit of q = f or f cos(theta_i) as wi goes down to the horizon, for one wo.
 struct HorizonBehaviour {
     /// Largest a, over azimuths and channels, with q ~ cos(theta_i)^-a; 0 where q stays bounded.
     double exponent = 0;

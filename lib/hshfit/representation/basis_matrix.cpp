@@ -170,7 +170,7 @@ void gather(const Coefficients& c, const Basis& basis, const std::vector<Product
     }
 }
 
-/// What the rings have in common, with their energies added up.
+/// The fields common to all rings, with the energies of the rings added up.
 CoefficientHead headOf(const std::vector<Projection>& rings) {
     CoefficientHead head = rings[0].coefficients;
     for (std::size_t r = 1; r < rings.size(); ++r) {

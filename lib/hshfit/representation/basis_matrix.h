@@ -34,7 +34,7 @@ struct ProductSymmetry {
 /// reciprocal, N = order - 1 = 0 .. 12: 1 2 5 8 14 20 30 40 55 70 91 112 140.
 std::vector<ProductTerm> productTerms(const Basis& basis, const ProductSymmetry& symmetry);
 
-/// How many there are, without listing them.
+/// The number of terms, without listing them.
 std::size_t productTermCount(const Basis& basis, const ProductSymmetry& symmetry);
 
 /// [term] -> value of every product function at one pair, from the basis values at wi and wo

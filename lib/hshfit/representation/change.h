@@ -10,7 +10,7 @@ namespace hshfit::inline representation {
 /// expansion of ln(1 + f). Both have the same kind and sizes.
 double relativeChange(const Representation& before, const Representation& after);
 
-/// What a change of each number costs by itself, in the norm of the coefficients. One weight for
+/// The cost of a change of each number by itself, in the norm of the coefficients. One weight for
 /// each value of decoded(…).values, matrixValues(…) or the array "halfway".
 std::vector<double> changeWeights(const Representation& representation);
 

@@ -44,7 +44,7 @@ struct MatrixBlock {
 struct MatrixFactors {
     std::vector<MatrixBlock> blocks;
 };
-/// What the halfway form is cut off at: see halfway_envelope.h.
+/// The greatest f of the halfway form by elevations: see halfway_envelope.h.
 struct EnvelopeArray {
     StoredArray logs;  ///< [node along b][node along x][channel]
     double ridge = 1;  ///< the width of its ridge

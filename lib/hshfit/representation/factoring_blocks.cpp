@@ -75,7 +75,7 @@ private:
     double right(std::size_t r, std::size_t column) const {
         return right_->values[r * block_.columns.size() + column];
     }
-    /// What multiplies right(r, .) in this row.
+    /// The factor of right(r, .) in this row.
     double factor(std::size_t channel, std::size_t row, std::size_t r) const {
         const std::size_t rank = right_->rows();
         if (!block_.symmetric) {

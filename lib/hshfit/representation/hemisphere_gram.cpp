@@ -63,7 +63,7 @@ HemisphereGram::HemisphereGram(const Basis& basis) {
         Factor factor{.bands = bandsOf(basis, m), .upper = {}};
         if (!factor.bands.empty()) {
             const Matrix r = upperFactor(weightedValues(basis, m, factor.bands));
-            // Whoever is orthonormal for m = 0 is so for all m.
+            // A basis that is orthonormal for m = 0 is orthonormal for all m.
             if (m == 0 && (r - Matrix::Identity(r.rows(), r.cols())).norm() < 1e-6) return;
             const Eigen::VectorXd sigma = Eigen::JacobiSVD<Matrix>(r).singularValues();
             condition_ = std::max(condition_, sigma(0) / sigma(sigma.size() - 1));

@@ -6,7 +6,7 @@
 
 namespace hshfit::inline representation {
 
-/// What the functions of a basis are to each other over the hemisphere, in the basis' inner
+/// The Gram matrix of the functions of a basis over the hemisphere, in the basis' inner
 /// product: for each m, with T the theta parts and w = 1 or mu,
 ///     G_ll' = integral of T_l^m T_l'^m w d mu over [0, 1] = (R^T R)_ll',   R upper triangular,
 /// R from a QR decomposition of the functions at Gauss-Legendre nodes in sqrt(mu), which is exact

@@ -12,7 +12,7 @@
 
 namespace hshfit::inline representation {
 
-/// What was done to coefficients and what it cost: the relative change, in L2 over both
+/// A step that changed coefficients, and its cost: the relative change, in L2 over both
 /// hemispheres, of the projected quantity between before and after.
 struct RepresentationStep {
     std::string what;  ///< "window lanczos", "rank 4", "keep 120", "unorm8", …
@@ -63,7 +63,7 @@ struct Representation {
     std::size_t bytes() const;
     /// The same after Zstandard.
     std::size_t entropyBytes() const;
-    /// How many numbers are stored.
+    /// The count of stored numbers.
     std::size_t numbers() const;
 };
 

@@ -37,7 +37,7 @@ private:
     Laws laws_;
 };
 
-/// What was taken out of this BRDF; null if it is no `Remainder`, or nothing was.
+/// The part that was taken out of this BRDF; null if it is no `Remainder`, or nothing was.
 const Brdf* addedTo(const Brdf& brdf);
 
 /// A BRDF in two parts: f = added + remainder.

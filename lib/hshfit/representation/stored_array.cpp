@@ -228,7 +228,7 @@ std::size_t entropyBytes(const StoredArray& array) {
 void unpackInto(StoredArray& array, std::span<const std::byte> bytes, bool masked,
                 const std::string& where) {
     const Row& row = rowOf(array.precision);
-    // What the smallest file of this shape takes: nothing is allocated for more than there is.
+    // The bytes of the smallest file of this shape: nothing is allocated for more than there is.
     const std::size_t room = bytes.size() * (masked ? 8 : 1);
     std::size_t count = array.shape.empty() ? 0 : 1;
     for (std::size_t length : array.shape) {

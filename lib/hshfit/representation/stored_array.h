@@ -9,7 +9,7 @@
 
 namespace hshfit::inline representation {
 
-/// How the numbers of a stored array are kept; little-endian.
+/// The number type of a stored array; little-endian.
 enum class Precision {
     float64,
     float32,

@@ -13,7 +13,7 @@ namespace {
 
 using Kind = Representation::Kind;
 
-/// What the projection depends on, and nothing else of the form.
+/// The fields of the form on which the projection depends, and no others.
 Form rootOf(const Form& form) {
     Form root;
     root.kind = form.kind;

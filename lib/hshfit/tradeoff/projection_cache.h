@@ -22,7 +22,7 @@ public:
     /// Projects for all these forms. A projection that does not exist or does not converge is
     /// noted as the reason why its forms fail. `done` is called after each.
     void prepare(std::span<const Form> forms, const std::function<void()>& done);
-    /// How many projections `prepare` would make.
+    /// The number of projections that `prepare` would make.
     static std::size_t projectionsFor(std::span<const Form> forms);
 
     /// Wall-clock seconds, on all threads, of the projection that the form derives from.

@@ -8,7 +8,7 @@
 
 namespace hshfit::tradeoff {
 
-/// What is asked of the coefficients besides being close (constraints.h).
+/// A constraint on the coefficients (constraints.h).
 enum class Constraint { none, nonNegative, energyPreserving, both };
 /// "none", "non-negative", "energy-preserving" or "both". Throws UsageError with the four.
 Constraint parseConstraint(std::string_view name);

@@ -45,7 +45,7 @@ private:
     std::atomic<std::size_t> done_ = 0;
 };
 
-/// What is left of the BRDF after one split, and its projections.
+/// The remainder of the BRDF after one split, and its projections.
 struct Part {
     Split split;
     std::unique_ptr<ProjectionCache> cache;
@@ -123,7 +123,7 @@ double weighed(const PairErrors& errors, const std::string& metric) {
     return metric == "captured-energy" ? 1 - value : value;
 }
 
-/// What came of one form.
+/// The outcome of one form.
 struct Outcome {
     Measured measured;
     double derivationSeconds = 0;
@@ -157,7 +157,7 @@ Outcome measureOne(const Form& form, const Maker& maker, const PairReference& re
     return outcome;
 }
 
-/// What no factored form of any basis can beat.
+/// The error that no factored form of any basis can beat.
 void boundByRank(Tradeoff& trade, const Brdf& brdf, Quantity quantity) {
     constexpr std::size_t ranks = 8;
     trade.sliceOutgoing = brdf.laws().isotropic ? "16" : "8x8";

@@ -38,7 +38,7 @@ struct Measured {
     PairSummary summary;
 };
 
-/// What a form took; wall-clock times of this machine.
+/// The cost of a form; wall-clock times of this machine.
 struct MeasuredTime {
     /// The projection that the form derives from: at the highest order tried, on all threads.
     double projectionSeconds = 0;

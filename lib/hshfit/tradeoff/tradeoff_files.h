@@ -44,7 +44,7 @@ std::string tradeoffScript(std::span<const Tradeoff> trades);
 std::string tradeoffPage(std::span<const Tradeoff> trades, const std::vector<std::string>& figures);
 std::string timingPage(std::span<const Tradeoff> trades, const std::vector<std::string>& figures);
 
-/// What the program prints: the front of one BRDF, its knee and what was left out.
+/// The text that the program prints: the front of one BRDF, its knee and the forms left out.
 std::string tradeoffText(const Tradeoff& trade, bool byTime);
 
 /// The call that makes the form, as messages name it (wording.h).
@@ -59,7 +59,7 @@ std::size_t seriesOf(const Form& form);
 std::optional<std::size_t> bestWithin(const Tradeoff& trade, Representation::Kind kind,
                                       std::size_t bytes);
 
-/// What the fronts weigh, in words: "mean |ln(1 + f c) - ln(1 + g c)| (nbrdf)".
+/// The metric and the weights of the fronts in words: "mean |ln(1 + f c) - ln(1 + g c)| (nbrdf)".
 std::string metricText(const std::string& metric);
 
 }  // namespace hshfit::tradeoff

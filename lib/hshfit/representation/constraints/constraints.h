@@ -46,7 +46,8 @@ Representation madeNonNegative(Representation representation, const Brdf* added 
 /// from the moments of the basis functions, is nowhere above that of `source`, the BRDF that was
 /// projected, nor above 1 if that conserves energy: at the stored directions and, interpolated,
 /// halfway between them; kind basis: at nodes over the hemisphere, 8 per shortest wavelength. For
-/// one direction by itself a projection on a half-space. What was made non-negative stays so.
+/// one direction by itself a projection on a half-space. Coefficients that were non-negative stay
+/// non-negative.
 Representation madeEnergyPreserving(Representation representation, const Brdf& source);
 
 }  // namespace hshfit::inline representation::inline constraints

@@ -17,11 +17,11 @@ std::vector<double> albedoMoments(const Basis& basis, Quantity quantity);
 /// are evaluated once.
 std::vector<double> albedoBounds(const Brdf& source, const std::vector<Direction>& directions);
 
-/// How far the albedos of one channel at the stored directions may go, so that albedos interpolated
-/// between them stay below their bounds as well: the targets a' <= a with the least sum of
-/// solid angle times (a - a')^2, by Hildreth's method (1957). Ends when no bound is exceeded by
-/// more than 1e-10, or after `mostSweeps`: then throws NumericError for an excess above 1e-6, which
-/// is what the bounds themselves are known to (`albedoBounds`).
+/// Upper limits of the albedos of one channel at the stored directions, under which albedos that
+/// are interpolated between them stay below their bounds as well: the targets a' <= a with the
+/// least sum of solid angle times (a - a')^2, by Hildreth's method (1957). Ends when no bound is
+/// exceeded by more than 1e-10, or after `mostSweeps`: then throws NumericError for an excess above
+/// 1e-6, which is what the bounds themselves are known to (`albedoBounds`).
 struct InterpolatedBound {
     OutgoingLookup lookup;  ///< stored directions and their weights
     double most = 0;

@@ -99,7 +99,7 @@ public:
         return found;
     }
 
-    /// Where the albedo is held: all polar angles down to the horizon ring.
+    /// The directions at which the albedo is held: all polar angles down to the horizon ring.
     std::vector<Direction> albedoNodes() const {
         std::vector<Direction> nodes;
         const int polar = (symmetry_.isotropic ? 16 : 4) * basis_->order() + 9;

@@ -5,7 +5,7 @@
 
 namespace hshfit::inline representation::inline constraints {
 
-/// What is asked of a matrix over both directions.
+/// The constraints on a matrix over both directions.
 struct BothConstraints {
     bool nonNegative = false;
     const Brdf* added = nullptr;         ///< q + added >= 0

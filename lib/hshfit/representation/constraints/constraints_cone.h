@@ -16,7 +16,7 @@ inline constexpr double nonNegativeTolerance = 1e-5;
 /// Sums over a basis that are nowhere negative on the hemisphere, and the nearest of them.
 class NonNegativeCone {
 public:
-    /// What is added to the sum before it is looked at; never negative itself.
+    /// A function that is added to the sum before its sign is judged; never negative itself.
     using Added = std::function<double(const Direction& wi)>;
     /// functional . c <= most.
     struct Limit {

@@ -20,7 +20,7 @@ constexpr std::array windowNames{"none", "hann", "lanczos", "bending"};
 /// Share of the squared Laplacian that bending leaves.
 constexpr double keptBending = 0.5;
 
-/// What a window multiplies: a number and the bands that it belongs to.
+/// A number that a window multiplies, with the bands that it belongs to.
 struct BandedNumber {
     double* value;
     int l, k;       ///< k = 0 for kind outgoing

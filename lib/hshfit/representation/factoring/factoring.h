@@ -41,7 +41,7 @@ Representation factored(Representation representation, const FactorOptions& opti
 /// sum s_i^2) is the least relative error that any r functions of wi can leave, bases aside
 /// (principal components of the material's own slices, not centred). On tensor grids over wi that
 /// are doubled until the values agree to 1e-3 of the largest, at most 192 x 384 nodes; beyond,
-/// sharp peaks are under-resolved and `converged` says so.
+/// sharp peaks are under-resolved and `converged` is false.
 struct SliceSpectrum {
     std::vector<double> values;
     bool converged = false;

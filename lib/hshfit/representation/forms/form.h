@@ -42,8 +42,8 @@ std::vector<Setting> settingsOf(const Form& form);
 /// The same as messages name them (wording.h).
 std::string optionsOf(const Form& form);
 
-/// Where the projections that a form starts from come from. The default projects; a caller that
-/// tries many forms keeps what it has projected.
+/// The source of the projections that a form starts from. The default projects anew; a caller that
+/// tries many forms keeps its projections.
 class ProjectionSource {
 public:
     virtual ~ProjectionSource() = default;
@@ -61,7 +61,7 @@ std::unique_ptr<ProjectionSource> projecting(const Brdf& brdf, const ProjectionO
 /// Throws UsageError where options contradict each other or the BRDF.
 Representation represent(const Brdf& brdf, const Form& form, const BrdfOpener& open,
                          const ProjectionOptions& options = {});
-/// From projections that are at hand. What `split` took out of the BRDF stands in `added`.
+/// From projections at hand. `added` is the part of the BRDF that `split` took out.
 Representation represent(ProjectionSource& source, const Form& form, const std::string& added = {});
 
 /// The set that the form names; 32x32 where it names none.

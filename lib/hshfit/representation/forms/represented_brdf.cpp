@@ -14,7 +14,7 @@
 namespace hshfit::inline representation::inline forms {
 namespace {
 
-/// What every kind shares: the added BRDF, and the laws that the form keeps by itself.
+/// The part that every kind shares: the added BRDF, and the laws that the form keeps by itself.
 class Represented : public RepresentedBrdf, public HasKinkCurves {
 public:
     Represented(Representation representation, const BrdfOpener& open)
@@ -77,7 +77,7 @@ protected:
     Representation representation_;
 
 private:
-    /// What a file names has to open, or the file is at fault.
+    /// A BRDF that a file names has to open; a failure is an error of the file.
     std::unique_ptr<Brdf> opened(const BrdfOpener& open) const {
         try {
             return open(representation_.added);

@@ -10,7 +10,7 @@
 
 namespace hshfit::inline representation::inline halfway {
 
-/// Where two elevations lie on the axes of the envelope. With d = |theta_o - theta_i|:
+/// The place of two elevations on the axes of the envelope. With d = |theta_o - theta_i|:
 ///     a = (1 - cos d)^(1/2), negative where wo is the lower one
 ///     b = min(cos theta_i, cos theta_o)^(1/4)
 /// Lobes about the mirror direction have their ridge at a = 0; powers of the cosine towards the

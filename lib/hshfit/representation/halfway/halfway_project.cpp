@@ -70,7 +70,7 @@ bool same(const HalfwayTerm& a, const HalfwayTerm& b) {
            a.mirror == b.mirror && a.sine == b.sine;
 }
 
-/// What the terms of `part` leave of the weighted squares when the others are 0.
+/// The weighted squares that the terms of `part` leave if the others are 0.
 double residual(const HalfwayTerms& all, const HalfwayTerms& part,
                 const std::vector<HalfwaySystem>& systems) {
     std::vector<Eigen::Index> kept;

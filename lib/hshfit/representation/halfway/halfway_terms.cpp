@@ -39,7 +39,8 @@ int azimuthDegree(const HalfwayTerm& t, const HalfwaySymmetry& symmetry) {
     return t.k + t.exchange + t.mirror + (symmetry.bilateral ? t.q / 2 : t.q);
 }
 
-/// How many i the truncation leaves for given j and d: i/H + j/D + d/A <= 7/5 in whole numbers.
+/// The number of i that the truncation leaves for given j and d: i/H + j/D + d/A <= 7/5 in whole
+/// numbers.
 int runLength(const HalfwayOrders& n, int j, int d) {
     const long long h = n.half, dd = n.difference, a = n.azimuth;
     const long long room = 7 * h * dd * a - 5 * (j * h * a + d * h * dd);

@@ -13,7 +13,7 @@ struct HalfwaySymmetry {
     bool isotropic = false, bilateral = false, reciprocal = false;
 };
 
-/// Where a pair lies on the axes of the halfway form. With h = (wi + wo) / |wi + wo| and
+/// The place of a pair on the axes of the halfway form. With h = (wi + wo) / |wi + wo| and
 /// mu = cos(theta):
 ///     u     = (1 - cos(theta_h))^(1/4): lobes about the normal are spread out
 ///     v     = cos(theta_d)
@@ -73,7 +73,7 @@ private:
     int harmonics_ = 0;
 };
 
-/// What a representation of kind halfway leaves out by its head.
+/// The symmetries that the head of a representation of kind halfway states.
 HalfwaySymmetry halfwaySymmetryOf(const CoefficientHead& head);
 
 }  // namespace hshfit::inline representation::inline halfway

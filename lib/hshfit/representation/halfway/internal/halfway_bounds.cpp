@@ -20,7 +20,8 @@ constexpr int anisotropicDivisor = 2;
 constexpr double leastCosine = 1e-5;
 constexpr int azimuths = 48, turns = 6;
 constexpr double leastFloor = 1e-30;
-/// What f may change between the points, and rounding to eight bits, have this share of the bound.
+/// The part of the logarithm of boundFactor that is left to changes of f between the points and to
+/// rounding to eight bits.
 constexpr double margin = 0.1;
 /// Sweeps that raise the envelope where it cuts f off, then such that lower it where it is too
 /// high.
@@ -157,7 +158,7 @@ private:
         if (excess > 1e-9) move(s, -excess);
         return excess > 1e-9;
     }
-    /// What the sweeps have left: the nodes of a point, by its excess.
+    /// Lowers the nodes of each point by the excess that the sweeps have left there.
     void lowerAll() {
         for (std::size_t s = 0; s < mixes_.size(); ++s) {
             const double excess = value(s) - (lower_[s] + band);

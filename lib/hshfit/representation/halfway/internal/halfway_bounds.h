@@ -11,8 +11,6 @@ namespace hshfit::inline representation::inline halfway {
 
 /// The form is nowhere above this many times the greatest f at the same elevations.
 constexpr double boundFactor = 1.5;
-/// Below this many per steradian, f counts as this: a bound of 0 has no logarithm.
-constexpr double boundFloor = 2e-4;
 
 /// The greatest f over azimuths at pairs of elevations all over the axes of the envelope.
 struct HalfwayBounds {

@@ -26,7 +26,7 @@ double takenBy(const HalfwayAlbedo& albedo, const std::vector<double>& whole,
     for (std::size_t c = 0; c < channels; ++c) {
         double before = 0, after = 0;
         for (std::size_t s = 0; s < albedo.strata(); ++s) {
-            // What the expansion has too much may go.
+            // An excess of the expansion over f may be cut off without a cost.
             const std::size_t at = s * channels + c;
             before += albedo.shares[s] * std::min(whole[at], albedo.targets[at]);
             after += albedo.shares[s] * std::min(rest[at], albedo.targets[at]);

@@ -13,7 +13,7 @@
 namespace hshfit::inline representation::inline halfway {
 namespace {
 
-/// Where the sequence of the pairs that are held out starts: no fit gets that far.
+/// The start of the pairs held out in the sequence: no fit gets that far.
 constexpr std::size_t heldOutStart = std::size_t{1} << 32;
 
 /// Coordinate `axis` of point n of the sequence in `dimensions` dimensions.

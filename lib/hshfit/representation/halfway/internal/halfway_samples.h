@@ -9,9 +9,9 @@
 
 namespace hshfit::inline representation::inline halfway {
 
-/// How a pair was drawn: uniform on both hemispheres; uniform in arccos(1 - u), v and the azimuths,
-/// the axes of the expansion; or by powers of ten of the cosines from 1 to 1e-4, wi likewise or
-/// about the mirror direction, with slopes of h by powers of ten from 1e-4 to 10.
+/// The way in which a pair was drawn: uniform on both hemispheres; uniform in arccos(1 - u), v and
+/// the azimuths, the axes of the expansion; or by powers of ten of the cosines from 1 to 1e-4, wi
+/// likewise or about the mirror direction, with slopes of h by powers of ten from 1e-4 to 10.
 enum class HalfwaySpread : unsigned char { uniform, axes, horizon };
 
 /// Pairs of directions with f at each.
@@ -26,8 +26,8 @@ struct HalfwaySamples {
     std::size_t channels() const { return size() == 0 ? 0 : values.size() / size(); }
 };
 
-/// Which pairs: of eight that are fitted, two are spread over the axes and one towards the horizon;
-/// all that are held out are uniform.
+/// Two disjoint sequences of pairs. Of eight fitted pairs, two are spread over the axes and one
+/// towards the horizon; all pairs held out are uniform.
 enum class HalfwayPart { fitted, heldOut };
 
 /// Appends pairs number `first` .. `last` - 1 of the sequence of a part, those below the horizon
