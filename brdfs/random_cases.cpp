@@ -66,11 +66,28 @@ std::string_view smallOptions(std::string_view writer) {
     return {};
 }
 
-/// A table of a random model, opened from a file that is then removed: what is mapped stays.
+/// A path that has no file any more at the end.
+class TemporaryPath {
+public:
+    explicit TemporaryPath(const std::string& extension)
+        : path_((std::filesystem::temp_directory_path() /
+                 fmt::format("hshfit-trial-{}{}", ::getpid(), extension))
+                    .string()) {}
+    ~TemporaryPath() {
+        std::error_code error;
+        std::filesystem::remove(path_, error);
+    }
+    TemporaryPath(const TemporaryPath&) = delete;
+    TemporaryPath& operator=(const TemporaryPath&) = delete;
+    const std::string& text() const { return path_; }
+
+private:
+    std::string path_;
+};
+
+/// A table of a random model, opened from a file that is then removed. Mapped bytes stay readable.
 std::shared_ptr<const Brdf> randomTable(const Writer& writer, Draws& draws) {
-    const std::string path = (std::filesystem::temp_directory_path() /
-                              fmt::format("hshfit-trial-{}{}", ::getpid(), writer.extension))
-                                 .string();
+    const TemporaryPath path(std::string(writer.extension));
     constexpr int attempts = 100;
     for (int k = 0; k < attempts; ++k) {
         const Model& model = models()[draws.below(models().size())];
@@ -78,10 +95,8 @@ std::shared_ptr<const Brdf> randomTable(const Writer& writer, Draws& draws) {
         try {
             const Parameters options =
                 parseParameters(writer.name, writer.parameters, smallOptions(writer.name));
-            writer.write(*open(spec), path, options, {.force = true});
-            std::shared_ptr<const Brdf> table = open(path);
-            std::filesystem::remove(path);
-            return table;
+            writer.write(*open(spec), path.text(), options, {.force = true});
+            return open(path.text());
         } catch (const Error&) {  // a format cannot hold every model
         }
     }

@@ -135,9 +135,8 @@ std::string_view namesOf(Kind kind) {
         case Kind::outgoing:
             return "'coefficients', or 'left' and 'right'";
         case Kind::basis:
-            return "'matrix', or factors of blocks, each 'block NAME', or 'left NAME' or 'core "
-                   "NAME' "
-                   "and 'right NAME'";
+            return "'matrix', or factors of blocks, each 'block NAME', or 'left NAME' or "
+                   "'core NAME' and 'right NAME'";
         case Kind::halfway:
             break;
     }
