@@ -1,5 +1,7 @@
 #include "places.h"
 
+#include <cstdlib>
+
 namespace hshfit::test {
 
 std::string sharedFolder() {
@@ -12,6 +14,10 @@ std::string sourceFolder() {
 
 std::string program() {
     return HSHFIT_PROGRAM;
+}
+
+bool hasGnuplot() {
+    return std::system("command -v gnuplot >/dev/null 2>&1") == 0;
 }
 
 }  // namespace hshfit::test

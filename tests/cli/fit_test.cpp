@@ -24,8 +24,7 @@ TEST_F(Cli, FitIsAPresetThatOpens) {
 }
 
 TEST_F(Cli, FitWritesAReportIntoAFolder) {
-    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
-        GTEST_SKIP() << "gnuplot is not installed";
+    if (!hshfit::test::hasGnuplot()) GTEST_SKIP() << hshfit::test::noGnuplot;
     const Answer answer = run("fit phong:ks=.5,exponent=12 --model phong -o " + path("report"));
     ASSERT_EQ(answer.code, 0) << answer.err;
     for (const char* name : {"report/fit.json", "report/comparison.html", "report/spheres.png"})

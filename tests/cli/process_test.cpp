@@ -50,10 +50,6 @@ protected:
     }
 };
 
-bool hasGnuplot() {
-    return std::system("command -v gnuplot >/dev/null 2>&1") == 0;
-}
-
 /// A text for a terminal: lines of valid UTF-8 without control characters.
 void expectPrintable(const std::string& text) {
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -65,7 +61,7 @@ void expectPrintable(const std::string& text) {
 }
 
 TEST_F(Process, AReportCutShortIsNotPutInPlace) {
-    if (!hasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+    if (!hasGnuplot()) GTEST_SKIP() << noGnuplot;
     const Answer answer = shell(
         "(ulimit -f 20; $HSHFIT report ggx:alpha=.5 -o r --max-order 3 --outgoing 4 --bases hsh)");
     EXPECT_EQ(answer.code, 5) << answer.err;
@@ -110,7 +106,7 @@ TEST_F(Process, ASetOfManyInputsAppearsAsAWhole) {
 }
 
 TEST_F(Process, NamesWithQuotesDrawTheirFigures) {
-    if (!hasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+    if (!hasGnuplot()) GTEST_SKIP() << noGnuplot;
     putSamples("'it''s");
     const Answer answer = shell(
         "$HSHFIT report \"'it''s\" lambert -o \"''r'\" --max-order 2 "
@@ -192,7 +188,7 @@ TEST_F(Process, ClosedStreamsDoNotBecomeTheFilesWritten) {
 }
 
 TEST_F(Process, FiguresDoNotDependOnTheTimeZone) {
-    if (!hasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+    if (!hasGnuplot()) GTEST_SKIP() << noGnuplot;
     for (const std::string zone : {"UTC0", "XYZ-5:30"}) {
         const Answer answer = shell("TZ=" + zone + " $HSHFIT report lambert -o " + zone +
                                     " --max-order 2 --outgoing 2 --bases hsh");

@@ -16,10 +16,6 @@ using Json = nlohmann::json;
 
 namespace fs = std::filesystem;
 
-bool hasGnuplot() {
-    return std::system("command -v gnuplot >/dev/null 2>&1") == 0;
-}
-
 TEST_F(Cli, RenderHasHelpWhoseExampleWorks) {
     const std::string help = run("render --help").out;
     const std::size_t begin = help.find("Example: hshfit ");
@@ -73,7 +69,7 @@ TEST_F(Cli, RenderGivesTheSameBytesWhateverTheThreads) {
 }
 
 TEST_F(Cli, CompareWritesAPage) {
-    if (!hasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+    if (!hshfit::test::hasGnuplot()) GTEST_SKIP() << hshfit::test::noGnuplot;
     const Answer answer =
         run("compare ggx:alpha=.4 phong:exponent=9 --outgoing 4 --json -o " + path("page"));
     ASSERT_EQ(answer.code, 0) << answer.err;

@@ -7,6 +7,7 @@
 
 #include "lib/coefficient_files/coefficient_samples.h"
 #include "lib/formula_brdf.h"
+#include "places.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -49,10 +50,6 @@ FormulaBrdf scaled(double factor, Laws laws = {.isotropic = true, .mirrorSymmetr
 /// Few directions and pixels: what is tested is not the accuracy of metrics.
 ComparisonOptions small() {
     return {.outgoing = OutgoingSet::elevations(2), .sphere = {.size = 32, .samples = 1}};
-}
-
-bool hasGnuplot() {
-    return std::system("command -v gnuplot >/dev/null 2>&1") == 0;
 }
 
 std::set<std::string> entries(const std::string& folder) {
@@ -146,7 +143,7 @@ TEST(Comparison, ChannelsHaveToAgreeUnlessGrey) {
 class ComparisonFiles : public testing::Test {
 protected:
     void SetUp() override {
-        if (!hasGnuplot()) GTEST_SKIP() << "no gnuplot";
+        if (!hshfit::test::hasGnuplot()) GTEST_SKIP() << hshfit::test::noGnuplot;
     }
     const Folder folder;
 };

@@ -1,6 +1,7 @@
 #include <hshfit/pages/gnuplot.h>
 
 #include "lib/coefficient_files/coefficient_samples.h"
+#include "places.h"
 
 #include <gtest/gtest.h>
 
@@ -13,12 +14,8 @@ using hshfit::samples::put;
 
 namespace {
 
-bool hasGnuplot() {
-    return std::system("command -v gnuplot >/dev/null 2>&1") == 0;
-}
-
 TEST(Gnuplot, StringsArriveByteByByte) {
-    if (!hasGnuplot()) GTEST_SKIP() << "no gnuplot";
+    if (!hshfit::test::hasGnuplot()) GTEST_SKIP() << hshfit::test::noGnuplot;
     const Folder folder;
     std::string all;
     for (int c = 1; c < 256; ++c) all += static_cast<char>(c);
@@ -34,7 +31,7 @@ TEST(Gnuplot, StringsArriveByteByByte) {
 }
 
 TEST(Gnuplot, FiguresGoToFilesOfAnyName) {
-    if (!hasGnuplot()) GTEST_SKIP() << "no gnuplot";
+    if (!hshfit::test::hasGnuplot()) GTEST_SKIP() << hshfit::test::noGnuplot;
     const Folder folder;
     for (const std::string name : {"''", "'a", "a''b", "\"b\"", "`c`", "d\\e", "f\xff", "g\n"}) {
         std::filesystem::create_directory(folder / name);

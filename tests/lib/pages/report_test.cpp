@@ -3,6 +3,7 @@
 #include <hshfit/pages/report.h>
 
 #include "lib/coefficient_files/coefficient_samples.h"
+#include "places.h"
 
 #include <cstdlib>
 #include <limits>
@@ -147,7 +148,7 @@ TEST(Report, JsonHoldsTheContract) {
 class ReportFiles : public ::testing::Test {
 protected:
     void SetUp() override {
-        if (!runs("command -v gnuplot")) GTEST_SKIP() << "no gnuplot";
+        if (!hshfit::test::hasGnuplot()) GTEST_SKIP() << hshfit::test::noGnuplot;
     }
     const Folder folder;
 };
@@ -274,7 +275,7 @@ TEST(ReportFailures, WithoutGnuplotTheRestIsComplete) {
 // gnuplot does not report a full disk: a stand-in ends well and leaves half of each figure.
 TEST(ReportFailures, AFigureCutShortLeavesNothing) {
     const Folder folder;
-    if (!runs("command -v gnuplot")) GTEST_SKIP() << "no gnuplot";
+    if (!hshfit::test::hasGnuplot()) GTEST_SKIP() << hshfit::test::noGnuplot;
     std::filesystem::create_directory(folder / "bin");
     samples::put(folder / "bin/gnuplot",
                  "#!/bin/sh\n"
