@@ -86,7 +86,7 @@ void runCompare(const CompareArguments& arguments, Globals& globals) {
         text += metricText(result);
     }
     if (const auto pairs = overPairs(*a, *b)) {
-        document["pairs"] = Json::parse(pairSummaryJson(*pairs));
+        document["pairs"] = pairSummaryJson(*pairs);
         text += "  " + indented(textOf(*pairs));
     }
     if (!arguments.output.empty()) {

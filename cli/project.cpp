@@ -57,7 +57,7 @@ Json answer(const jobs::Projected& result) {
     }
     if (result.kept) document["representation"] = describeForm(*result.kept);
     if (result.poor) document["poor"] = jobs::poorJson(*result.poor);
-    if (result.errors) document["pairs"] = Json::parse(pairSummaryJson(*result.errors));
+    if (result.errors) document["pairs"] = pairSummaryJson(*result.errors);
     return document;
 }
 

@@ -127,11 +127,14 @@ PairReference::AlbedoError PairReference::albedoError(std::span<const double> g,
     // The last row of each is all replicates together.
     std::vector<std::vector<double>> difference(replicates + 1, std::vector<double>(rows)),
         weight(replicates + 1, std::vector<double>(strata));
+    std::vector<double> reference(rows);
     for (std::size_t group = 0; group < pairs_.wo.size(); ++group) {
         if (band != allBands && bandOf(pairs_.wo[group]) != band) continue;
         const std::size_t s = pairs_.stratum[group];
         for (std::size_t k = pairs_.first[group]; k < pairs_.first[group + 1]; ++k) {
             const double projected = pairs_.weights[k] * pairs_.z[k];
+            for (std::size_t c = 0; c < channels_; ++c)
+                reference[s * channels_ + c] += projected * values_[c * pairs_.size() + k];
             for (const std::size_t r : {std::size_t{pairs_.replicate[k]}, replicates}) {
                 weight[r][s] += pairs_.weights[k];
                 for (std::size_t c = 0; c < channels_; ++c) {
@@ -153,7 +156,8 @@ PairReference::AlbedoError PairReference::albedoError(std::span<const double> g,
         for (std::size_t r = 0; r < replicates; ++r) {
             if (weight[r][row / channels_] > 0) estimates.push_back(albedo(r, row));
         }
-        result = {here, standardError(estimates)};
+        result = {here, standardError(estimates),
+                  2 * pi * reference[row] / weight[replicates][row / channels_], row / channels_};
     }
     return result;
 }
@@ -195,6 +199,13 @@ PairReference::Result PairReference::errorsOf(std::span<const double> g) const {
     const AlbedoError found = albedoError(g, allBands);
     result.all.values[albedo] = found.value;
     result.all.uncertainty[albedo] = found.uncertainty;
+    result.albedoThere = found.there;
+    for (std::size_t group = 0; group < pairs_.stratum.size(); ++group) {
+        if (pairs_.stratum[group] != found.stratum) continue;
+        const double theta = polarAngle(pairs_.wo[group]);
+        result.albedoFrom = result.albedoTo == 0 ? theta : std::min(result.albedoFrom, theta);
+        result.albedoTo = std::max(result.albedoTo, theta);
+    }
     for (std::size_t b = 0; b < bands_.size(); ++b) {
         PairErrors band;
         if (!bands_[b].pairs.empty()) {
@@ -258,7 +269,10 @@ PairSummary summaryOf(const PairSample& pairs, const PairReference::Result& erro
                         .zones = {},
                         .maximum = valueOf(errors.all, "maximum").value,
                         .at = errors.all.largest.value_or(DirectionPair{}),
-                        .albedo = valueOf(errors.all, "albedo")};
+                        .albedo = valueOf(errors.all, "albedo"),
+                        .albedoThere = errors.albedoThere,
+                        .albedoFrom = errors.albedoFrom,
+                        .albedoTo = errors.albedoTo};
     for (std::size_t z = 0; z < zoneCount; ++z) {
         summary.zones[z] = valueOf(errors.zones[z], "nbrdf");
     }
@@ -283,9 +297,12 @@ std::string textOf(const PairSummary& summary) {
     }
     return fmt::format(
         "mean log error {} over {} pairs{}\n"
-        "largest |g - f| cos(theta_i) {:.3g} at wi {}, wo {}; albedo off by {} at most\n",
+        "largest |g - f| cos(theta_i) {:.3g} at wi {}, wo {}; albedo off by {} at most, of {:.3g} "
+        "at "
+        "theta_o {:.4g} to {:.4g}\n",
         text(summary.meanLog), summary.pairs, zones, summary.maximum, place(summary.at.wi),
-        place(summary.at.wo), text(summary.albedo));
+        place(summary.at.wo), text(summary.albedo), summary.albedoThere,
+        degrees(summary.albedoFrom), degrees(summary.albedoTo));
 }
 
 }  // namespace hshfit::inline accuracy

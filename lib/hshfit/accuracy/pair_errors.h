@@ -43,6 +43,9 @@ public:
         std::vector<PairErrors> bands;  ///< by elevation of wo; without values where no pair is
         /// By PairZone, likewise; with uncertainties, without albedo.
         std::vector<PairErrors> zones = {};
+        /// The albedo of the reference where `all` has its largest difference, and the theta_o of
+        /// that stratum.
+        double albedoThere = 0, albedoFrom = 0, albedoTo = 0;
     };
     /// Errors of `g`, which has as many channels. On one thread.
     Result errorsOf(const Brdf& g) const;
@@ -63,9 +66,11 @@ private:
     Division divisionOf(const std::vector<std::size_t>& pairs) const;
     PairErrors errorsOn(const Division& division, std::span<const double> g) const;
     std::vector<std::optional<double>> metricsOf(const Part& part, std::span<const double> g) const;
-    /// The largest difference and its standard error.
+    /// The largest difference, its standard error, the albedo of the reference there, the stratum.
     struct AlbedoError {
         std::optional<double> value, uncertainty;
+        double there = 0;
+        std::size_t stratum = 0;
     };
     AlbedoError albedoError(std::span<const double> g, std::size_t band) const;
 
@@ -87,11 +92,13 @@ struct PairSummary {
         double value = 0, error = 0;  ///< with its standard error
     };
     std::size_t pairs = 0;
-    Value meanLog;                       ///< mean |ln(1 + f c) - ln(1 + g c)|
-    std::array<Value, zoneCount> zones;  ///< the same by PairZone
-    double maximum = 0;                  ///< of |g - f| c
-    DirectionPair at;                    ///< where that is
-    Value albedo;                        ///< largest difference of directional albedo
+    Value meanLog;                        ///< mean |ln(1 + f c) - ln(1 + g c)|
+    std::array<Value, zoneCount> zones;   ///< the same by PairZone
+    double maximum = 0;                   ///< of |g - f| c
+    DirectionPair at;                     ///< where that is
+    Value albedo;                         ///< largest difference of directional albedo
+    double albedoThere = 0;               ///< the albedo of the reference there
+    double albedoFrom = 0, albedoTo = 0;  ///< and theta_o, of the pairs that it is averaged over
 };
 PairSummary summaryOf(const PairSample& pairs, const PairReference::Result& errors);
 /// Errors of `g` on spreadPairs(): the same numbers for every caller. Throws as PairReference does.

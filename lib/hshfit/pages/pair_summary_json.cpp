@@ -9,7 +9,7 @@
 
 namespace hshfit::inline pages {
 
-std::string pairSummaryJson(const PairSummary& summary) {
+nlohmann::ordered_json pairSummaryJson(const PairSummary& summary) {
     using Json = nlohmann::ordered_json;
     const auto valueJson = [](const PairSummary::Value& v) -> Json {
         return {{"value", finiteOrNull(v.value)}, {"error", finiteOrNull(v.error)}};
@@ -25,7 +25,9 @@ std::string pairSummaryJson(const PairSummary& summary) {
                        {"wi", place(summary.at.wi)},
                        {"wo", place(summary.at.wo)}};
     json["albedo"] = valueJson(summary.albedo);
-    return jsonText(json);
+    json["albedo"]["of"] = finiteOrNull(summary.albedoThere);
+    json["albedo"]["theta_o"] = {degrees(summary.albedoFrom), degrees(summary.albedoTo)};
+    return json;
 }
 
 }  // namespace hshfit::inline pages

@@ -2,12 +2,11 @@
 
 #include <hshfit/accuracy/pair_errors.h>
 
-#include <string>
+#include <nlohmann/json_fwd.hpp>
 
 namespace hshfit::inline pages {
 
-/// The object "pairs" of several answers, as text; directions in degrees, null for what is no
-/// number.
-std::string pairSummaryJson(const PairSummary& summary);
+/// The object "pairs" of several answers; directions in degrees, null for infinity and NaN.
+nlohmann::ordered_json pairSummaryJson(const PairSummary& summary);
 
 }  // namespace hshfit::inline pages

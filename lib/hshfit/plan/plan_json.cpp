@@ -32,7 +32,7 @@ Json acceptedJson(const Accepted& accepted, const std::string& file) {
         static_cast<double>(baselineBytes) / static_cast<double>(accepted.choice.bytes);
     json["verified_error"] = accepted.verified;
     json["raised"] = accepted.raised;
-    json["pairs"] = Json::parse(pairSummaryJson(accepted.pairs));
+    json["pairs"] = pairSummaryJson(accepted.pairs);
     Json rows = Json::array();
     for (std::size_t k = 0; k < accepted.thetas.size(); ++k) {
         rows.push_back(

@@ -36,7 +36,7 @@ Json formJson(const Tradeoff& trade, std::size_t k) {
             {"uncertainty", finiteOrNull(trade.uncertaintyOf(k))},
             {"band_errors", bands},
             {"metrics", metricsJson(form.errors)},
-            {"pairs", Json::parse(pairSummaryJson(form.summary))},
+            {"pairs", pairSummaryJson(form.summary)},
             {"steps", steps}};
 }
 

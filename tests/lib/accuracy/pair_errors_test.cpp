@@ -75,6 +75,23 @@ TEST(PairSummary, IndependentSamplesAgreeWithinTheirErrors) {
     agree(a.albedo, b.albedo);
 }
 
+/// The albedo beside the largest difference is that of the reference in the same stratum.
+TEST(PairSummary, StatesTheAlbedoThatIsOff) {
+    // f = (1 + cos theta_o) / pi has the albedo 1 + cos theta_o; g has it everywhere but low down.
+    const double edge = 1.0 / 16;
+    const FormulaBrdf f([](const Direction&, const Direction& wo) { return (1 + wo.z) / pi; });
+    const FormulaBrdf g([&](const Direction&, const Direction& wo) {
+        return (1 + wo.z + (wo.z < edge ? 0.25 : 0.0)) / pi;
+    });
+    const PairSummary summary = summaryOf(f, g);
+    EXPECT_NEAR(summary.albedo.value, 0.25, 4 * summary.albedo.error + 0.01);
+    EXPECT_GT(summary.albedoFrom, std::acos(edge) - 1e-9);
+    EXPECT_LE(summary.albedoTo, pi / 2);
+    EXPECT_LE(summary.albedoFrom, summary.albedoTo);
+    EXPECT_GT(summary.albedoThere, 1 + std::cos(summary.albedoTo) - 0.03);
+    EXPECT_LT(summary.albedoThere, 1 + std::cos(summary.albedoFrom) + 0.03);
+}
+
 /// Values that only the last tenth of a degree has, which a mean over solid angle does not show.
 TEST(PairSummary, SeesWhatExplodesAtTheHorizon) {
     const FormulaBrdf f = lobeOf(0.3);
