@@ -42,7 +42,7 @@ void addRgb(CLI::App& command, bool& rgb) {
 void addQuadrature(CLI::App& command, double& tolerance, double& maxEvaluations) {
     command
         .add_option("--tolerance", tolerance,
-                    "Relative agreement of two quadrature levels (default: 1e-6, tables 3e-3)")
+                    "Relative error of the quadrature to refine to (default: 1e-6, tables 3e-3)")
         ->check(CLI::Range(1e-13, 1.0));
     command
         .add_option("--max-evaluations", maxEvaluations,

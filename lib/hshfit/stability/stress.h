@@ -18,7 +18,7 @@ struct LobeProjection {
     std::string brdf;
     double thetaDegrees = 0;
     bool converged = false;
-    double error = 0;     ///< estimated: relative difference of the last two quadrature levels
+    double error = 0;     ///< relative, estimated from the levels of quadrature
     double captured = 0;  ///< share of the energy, Eq. 15
     std::size_t evaluations = 0;
     std::string reason = {};  ///< the reason why it did not converge
