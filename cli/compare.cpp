@@ -90,10 +90,10 @@ void runCompare(const CompareArguments& arguments, Globals& globals) {
         text += "  " + indented(textOf(*pairs));
     }
     if (!arguments.output.empty()) {
-        const auto files = writePage(*a, *b, outgoing, results, arguments, globals);
-        document["report"] = {{"folder", arguments.output}, {"files", files}};
+        const auto written = writePage(*a, *b, outgoing, results, arguments, globals);
+        document["report"] = {{"folder", arguments.output}, {"files", written}};
         text += fmt::format("written to {}: comparison.html and {} files beside it\n",
-                            arguments.output, files.size() - 1);
+                            arguments.output, written.size() - 1);
     }
     if (globals.json) {
         printJson(document);

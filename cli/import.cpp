@@ -42,7 +42,7 @@ Json describe(const gpu::ImportedPayload& read, const ImportArguments& arguments
             {"tests", {{"count", read.tests}, {"largest_difference", read.testDifference}}}};
 }
 
-std::string text(const Json& document) {
+std::string importedText(const Json& document) {
     return fmt::format(
         "{}: {} order {}, {}, from {} ({}, {}); SHA-256 right, {} tests within {:.1g}\n",
         document["output"].get<std::string>(), document["basis"].get<std::string>(),
@@ -64,7 +64,7 @@ void runImport(const ImportArguments& arguments, const Globals& globals) {
     if (globals.json) {
         printJson(document);
     } else {
-        printText(text(document));
+        printText(importedText(document));
     }
 }
 

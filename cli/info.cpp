@@ -156,7 +156,7 @@ std::string scalarText(const Json& value) {
     return value.is_string() ? value.get<std::string>() : jsonText(value);
 }
 
-std::string text(const Json& document) {
+std::string infoText(const Json& document) {
     std::string out = fmt::format("{}: {}\n", document["kind"].get<std::string>(),
                                   document["name"].get<std::string>());
     std::vector<std::string> names = document["channels"];
@@ -195,7 +195,7 @@ void addInfo(CLI::App& command, Globals& globals) {
         if (globals.json) {
             printJson(document);
         } else {
-            printText(text(document));
+            printText(infoText(document));
         }
     });
 }

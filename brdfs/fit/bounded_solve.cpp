@@ -10,10 +10,10 @@
 namespace hshfit::brdfs {
 namespace {
 
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// The unconstrained minimum over the variables in `free`, the others as they are in x.
-Eigen::VectorXd solveFree(const Matrix& a, const Eigen::VectorXd& b, const Eigen::VectorXd& x,
+Eigen::VectorXd solveFree(const RowMatrix& a, const Eigen::VectorXd& b, const Eigen::VectorXd& x,
                           const std::vector<Eigen::Index>& free) {
     const auto n = static_cast<Eigen::Index>(free.size());
     Eigen::MatrixXd part(n, n);
@@ -38,7 +38,7 @@ std::vector<double> solveBounded(std::span<const double> a, std::span<const doub
     const auto n = static_cast<Eigen::Index>(b.size());
     if (n == 0) return {};
     // Columns of norm 1.
-    Matrix scaled = Eigen::Map<const Matrix>(a.data(), n, n);
+    RowMatrix scaled = Eigen::Map<const RowMatrix>(a.data(), n, n);
     Eigen::VectorXd norm = scaled.diagonal().cwiseMax(0).cwiseSqrt();
     Eigen::VectorXd right(n), low(n), high(n);
     for (Eigen::Index i = 0; i < n; ++i) {

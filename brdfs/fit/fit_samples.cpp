@@ -36,12 +36,12 @@ public:
     /// `f`: a value per channel.
     void add(const DirectionPair& pair, const double* f, double weight) {
         Masked& masked = samples_.masked;
-        const double least = std::min(pair.wi.z, pair.wo.z);
-        if (!(least > 0)) {
+        const double lower = std::min(pair.wi.z, pair.wo.z);
+        if (!(lower > 0)) {
             ++masked.belowHorizon;
         } else if (!std::all_of(f, f + channelCount_, [](double v) { return std::isfinite(v); })) {
             ++masked.notFinite;
-        } else if (least < lowest_) {
+        } else if (lower < lowest_) {
             ++masked.grazing;
         } else {
             samples_.wiX.push_back(pair.wi.x);

@@ -10,7 +10,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Function = std::function<Equations(std::span<const double>, bool)>;
 
 /// With H = V L V^T (rows and columns scaled to a diagonal of 1) the residuals L^(-1/2) V^T g, and
@@ -34,7 +34,7 @@ public:
         std::fill_n(residuals, count_ + 1, 0.0);
         residuals[count_] = std::sqrt(2 * equations.cost);
         if (!derivatives) return true;
-        Matrix hessian = Eigen::Map<const Matrix>(equations.hessian.data(), n, n);
+        RowMatrix hessian = Eigen::Map<const RowMatrix>(equations.hessian.data(), n, n);
         Eigen::VectorXd gradient = Eigen::Map<const Eigen::VectorXd>(equations.gradient.data(), n);
         if (!hessian.allFinite() || !gradient.allFinite()) return false;
         // A parameter held back by its bound leaves the steps of the others alone: Ceres would cut
@@ -61,7 +61,7 @@ public:
         if (own > most) top *= std::sqrt(most / own);
         Eigen::Map<Eigen::VectorXd>(residuals, n) = top;
         residuals[count_] = std::sqrt(std::max(0.0, most - top.squaredNorm()));
-        Eigen::Map<Matrix> jacobian(jacobians[0], n + 1, n);
+        Eigen::Map<RowMatrix> jacobian(jacobians[0], n + 1, n);
         jacobian.topRows(n) = roots.asDiagonal() * eigen.eigenvectors().transpose();
         jacobian.topRows(n).array().rowwise() *= scale.transpose().array();
         jacobian.row(n).setZero();
@@ -112,8 +112,8 @@ public:
         ++evaluations_;
         if (!derivatives || !std::isfinite(result.cost)) return result;
         const auto n = static_cast<Eigen::Index>(x.size());
-        Eigen::Map<Matrix> given(result.hessian.data(), n, n);
-        Matrix hessian = given;
+        Eigen::Map<RowMatrix> given(result.hessian.data(), n, n);
+        RowMatrix hessian = given;
         for (std::size_t i = 0; i < x.size(); ++i) {
             const auto row = static_cast<Eigen::Index>(i);
             const double curvature = given(row, row);
@@ -148,17 +148,17 @@ public:
 
 private:
     /// `hessian` with eigenvalues, on the scale of `model`, of their size and no less than 1e-9.
-    static Matrix positive(const Matrix& hessian, const Matrix& model) {
+    static RowMatrix positive(const RowMatrix& hessian, const RowMatrix& model) {
         Eigen::VectorXd scale = model.diagonal().cwiseMax(0).cwiseSqrt();
         for (double& s : scale) s = s > 0 ? s : 1;
-        Matrix scaled = hessian;
+        RowMatrix scaled = hessian;
         scaled.array().colwise() /= scale.array();
         scaled.array().rowwise() /= scale.transpose().array();
         const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
         constexpr double least = 1e-9;
-        Matrix result = eigen.eigenvectors() *
-                        eigen.eigenvalues().cwiseAbs().cwiseMax(least).asDiagonal() *
-                        eigen.eigenvectors().transpose();
+        RowMatrix result = eigen.eigenvectors() *
+                           eigen.eigenvalues().cwiseAbs().cwiseMax(least).asDiagonal() *
+                           eigen.eigenvectors().transpose();
         result.array().colwise() *= scale.array();
         result.array().rowwise() *= scale.transpose().array();
         return result;

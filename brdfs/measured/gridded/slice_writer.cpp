@@ -17,7 +17,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-constexpr std::size_t mostValues = std::size_t{1} << 26;
+constexpr std::size_t mostWritten = std::size_t{1} << 26;
 constexpr double largestHalf = 65504;
 
 /// 90 degrees first, then the others in ascending order around the circle.
@@ -52,11 +52,11 @@ public:
           colours_(brdf.channels().count()) {
         picture_ = {.width = options.size, .height = options.size};
         const std::vector<std::string> names = colourNames(brdf.channels());
-        if (options.size * options.size > mostValues / (phi_.size() * names.size())) {
+        if (options.size * options.size > mostWritten / (phi_.size() * names.size())) {
             throw UsageError(fmt::format(
                 "{}: {} x {} pixels of {} channels are too many; a "
                 "picture has at most {} values",
-                brdf.name(), options.size, options.size, phi_.size() * names.size(), mostValues));
+                brdf.name(), options.size, options.size, phi_.size() * names.size(), mostWritten));
         }
         for (std::size_t i = 0; i < phi_.size(); ++i) {
             for (const std::string& name : names) {

@@ -94,7 +94,7 @@ bool fromStark(const double* x, Direction& wi, Direction& wo) {
     return true;
 }
 
-constexpr Chart pairOnly = Chart::anisotropic, isotropic = Chart::isotropic;
+constexpr Chart pairOnly = Chart::anisotropic, isotropicPairs = Chart::isotropic;
 
 using In = const double*;
 using Out = Direction&;
@@ -130,7 +130,7 @@ const std::array table{
     AltaParameters{"RUSIN_TH_PH_TD", 3, Chart::halfVectorDistance,
                    [](In x, Out i, Out o) { return fromHalf(x[0], x[1], x[2], pi / 2, i, o); },
                    kind_tpt},
-    AltaParameters{"RUSIN_TH_TD_PD", 3, isotropic,
+    AltaParameters{"RUSIN_TH_TD_PD", 3, isotropicPairs,
                    [](In x, Out i, Out o) { return fromHalf(x[0], 0, x[1], x[2], i, o); },
                    kind_ttp},
     AltaParameters{"RUSIN_TH_PH_TD_PD", 4, pairOnly,
@@ -153,8 +153,8 @@ const std::array table{
                        return unit(x, k) && fromBack(k, i, o);
                    },
                    kind_xxx},
-    AltaParameters{"SCHLICK_TL_TK_PROJ_DPHI", 3, isotropic, fromSchlick, kind_tjj},
-    AltaParameters{"RETRO_TL_TVL_PROJ_DPHI", 3, isotropic, fromRetro, kind_tjj},
+    AltaParameters{"SCHLICK_TL_TK_PROJ_DPHI", 3, isotropicPairs, fromSchlick, kind_tjj},
+    AltaParameters{"RETRO_TL_TVL_PROJ_DPHI", 3, isotropicPairs, fromRetro, kind_tjj},
     AltaParameters{"STEREOGRAPHIC", 4, pairOnly,
                    [](In x, Out i, Out o) {
                        const auto raised = [](double a, double b) {
@@ -173,14 +173,14 @@ const std::array table{
                        return true;
                    },
                    kind_tptp},
-    AltaParameters{"ISOTROPIC_TV_TL_DPHI", 3, isotropic,
+    AltaParameters{"ISOTROPIC_TV_TL_DPHI", 3, isotropicPairs,
                    [](In x, Out i, Out o) {
                        o = directionFromAngles(x[0], x[2]);
                        i = directionFromAngles(x[1], 0);
                        return true;
                    },
                    kind_ttp},
-    AltaParameters{"ISOTROPIC_TL_TV_PROJ_DPHI", 3, isotropic,
+    AltaParameters{"ISOTROPIC_TL_TV_PROJ_DPHI", 3, isotropicPairs,
                    [](In x, Out i, Out o) {
                        i = directionFromAngles(x[0], 0);
                        o = projected(x[1], x[2]);
@@ -193,12 +193,12 @@ const std::array table{
                        return fromStark(turned, i, o);
                    },
                    kind_xx},
-    AltaParameters{"STARK_3D", 3, isotropic, fromStark, kind_xxp},
+    AltaParameters{"STARK_3D", 3, isotropicPairs, fromStark, kind_xxp},
     AltaParameters{
         "NEUMANN_2D", 2, Chart::neumann,
         [](In x, Out i, Out o) { return lifted(x[0], x[1], i) && lifted(x[0], -x[1], o); },
         kind_xx},
-    AltaParameters{"NEUMANN_3D", 3, isotropic,
+    AltaParameters{"NEUMANN_3D", 3, isotropicPairs,
                    [](In x, Out i, Out o) {
                        const double bx = x[1] * std::cos(x[2]), by = x[1] * std::sin(x[2]);
                        return lifted(x[0] - bx, -by, i) && lifted(x[0] + bx, by, o);
