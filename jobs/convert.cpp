@@ -1,5 +1,6 @@
 #include "convert.h"
 
+#include "named_errors.h"
 #include "source.h"
 
 #include <hshfit/error.h>
@@ -86,11 +87,9 @@ std::optional<Poor> judgeLoss(double error, const std::string& output) {
                 fmt::format("more nodes, or another format ({})", Call{.function = "writers"})};
 }
 
-}  // namespace
-
-Converted convert(const std::string& input, const std::string& output,
-                  const ConvertOptions& options, const Listener& listener) {
-    const brdfs::Writer& writer = chooseWriter(options.format, output);
+Converted converted(const std::string& input, const std::string& output,
+                    const brdfs::Writer& writer, const ConvertOptions& options,
+                    const Listener& listener) {
     const brdfs::Parameters parameters = writerParameters(writer, options.format);
     std::unique_ptr<Brdf> brdf = openSource(input, options.rgb);
     const brdfs::RepairedBrdf* repaired = nullptr;
@@ -100,20 +99,30 @@ Converted convert(const std::string& input, const std::string& output,
         brdf = std::move(wrapped);
     }
 
-    Converted converted;
-    converted.input = brdf->name();
-    converted.written = writer.name;
-    converted.altered = writer.write(
-        *brdf, output, parameters, {.force = options.force, .progress = listener.part("convert")});
-    converted.bytes = std::filesystem::file_size(output);
-    if (repaired) converted.repairs = Repairs{repaired->evaluated(), repaired->counts()};
+    Converted result;
+    result.input = brdf->name();
+    result.written = writer.name;
+    result.altered = writer.write(*brdf, output, parameters,
+                                  {.force = options.force, .progress = listener.part("convert")});
+    result.bytes = std::filesystem::file_size(output);
+    if (repaired) result.repairs = Repairs{repaired->evaluated(), repaired->counts()};
     if (options.measureLoss) {
-        converted.loss = measureLoss(*brdf, writer, output, options, listener);
+        result.loss = measureLoss(*brdf, writer, output, options, listener);
     }
-    if (writer.readBack) converted.error = errorOf(*brdf, output);
-    if (converted.error) converted.poor = judgeLoss(*converted.error, output);
+    if (writer.readBack) result.error = errorOf(*brdf, output);
+    if (result.error) result.poor = judgeLoss(*result.error, output);
     brdf->checkIntact();
-    return converted;
+    return result;
+}
+
+}  // namespace
+
+Converted convert(const std::string& input, const std::string& output,
+                  const ConvertOptions& options, const Listener& listener) {
+    const brdfs::Writer& writer = chooseWriter(options.format, output);
+    Converted result;
+    withFileNamed(input, [&] { result = converted(input, output, writer, options, listener); });
+    return result;
 }
 
 }  // namespace hshfit::jobs

@@ -1,5 +1,6 @@
 #include "project.h"
 
+#include "named_errors.h"
 #include "source.h"
 
 #include <hshfit/bases/catalog.h>
@@ -80,6 +81,21 @@ public:
     /// All but the file.
     Projected run(const std::string& spec, const std::string& output,
                   const ProgressCall& progress) const {
+        Projected result;
+        withFileNamed(spec, [&] { result = projected(spec, output, progress); });
+        return result;
+    }
+
+    static void write(const Projected& result, AtomicFile& file) {
+        if (result.kept)
+            writeRepresentation(*result.kept, file);
+        else
+            writeCoefficients(result.projection.coefficients, file);
+    }
+
+private:
+    Projected projected(const std::string& spec, const std::string& output,
+                        const ProgressCall& progress) const {
         const auto brdf = openBrdf(spec, options_.rgb);
         const ProjectionOptions how = {.quantity = quantityOf(options_),
                                        .tolerance = options_.tolerance,
@@ -107,14 +123,6 @@ public:
         return result;
     }
 
-    static void write(const Projected& result, AtomicFile& file) {
-        if (result.kept)
-            writeRepresentation(*result.kept, file);
-        else
-            writeCoefficients(result.projection.coefficients, file);
-    }
-
-private:
     const ProjectOptions& options_;
     std::unique_ptr<Basis> basis_;
     std::optional<Form> form_;

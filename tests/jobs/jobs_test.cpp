@@ -68,6 +68,19 @@ TEST_F(Jobs, ProjectKeepsTheFormOfTheProgram) {
     EXPECT_EQ(read(path("job.json")), read(path("program.json")));
 }
 
+TEST_F(Jobs, ErrorsNameTheFileThatAPresetIsIn) {
+    write("p.json", R"({"format": "hshfit-preset", "version": 1, "model": "ward",)"
+                    R"( "parameters": {"ax": 0.2, "ay": 0.5}, "source": "none"})");
+    try {
+        jobs::project(path("p.json"), path("c.json"), {.order = 2, .outgoing = "2"});
+        FAIL() << "elevations of an anisotropic BRDF";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::usage);
+        EXPECT_NE(std::string(error.what()).find(path("p.json") + ": ward"), std::string::npos)
+            << error.what();
+    }
+}
+
 TEST_F(Jobs, SeveralInputsAreProjectedAndFailuresAreValues) {
     const std::vector<std::string> specs = {"lambert", "no_such_model", "phong:exponent=9"};
     const jobs::ManyProjected many =

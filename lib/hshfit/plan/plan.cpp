@@ -20,14 +20,25 @@ void requireUsable(const std::vector<std::string>& names) {
     }
 }
 
+MaterialPlan planMaterial(const Scene& scene, const Material& material, const BrdfOpener& open,
+                          const PlanOptions& options) {
+    try {
+        return MaterialSearch(scene, material, open, options).run();
+    } catch (const Error& error) {
+        const std::string_view message = error.what();
+        if (message.find(scene.file) != std::string_view::npos) throw;
+        throw Error(error.code(),
+                    fmt::format("{}: material '{}': {}", scene.file, material.name, message));
+    }
+}
+
 }  // namespace
 
 Plan planScene(const Scene& scene, const BrdfOpener& open, const PlanOptions& options) {
     requireUsable(options.bases);
     Plan plan{.scene = scene, .materials = {}};
     for (const Material& material : scene.materials) {
-        MaterialSearch search(scene, material, open, options);
-        plan.materials.push_back(search.run());
+        plan.materials.push_back(planMaterial(scene, material, open, options));
         if (options.progress) options.progress(plan.materials.size(), scene.materials.size());
     }
     return plan;

@@ -294,6 +294,18 @@ TEST(Plan, OneColourOfLightNeedsOneChannel) {
     EXPECT_EQ(other.materials[0].accepted->representation.head.channels.count(), 3U);
 }
 
+TEST(Plan, ErrorsOfAMaterialNameTheSceneAndTheMaterial) {
+    Scene scene = smallScene("lambert:kd=x", SkyLight{}, 0.01);
+    scene.file = "some-scene.json";
+    try {
+        planScene(scene, open);
+        FAIL() << "kd=x was taken";
+    } catch (const Error& error) {
+        const std::string named = "some-scene.json: material '" + scene.materials[0].name + "': ";
+        EXPECT_TRUE(std::string(error.what()).starts_with(named)) << error.what();
+    }
+}
+
 TEST(Plan, IsTheSameTwiceAndGrowsAsTheBudgetShrinks) {
     const DiscLight lamp{directionFromAngles(0.6, 1), 0.2, grey(1)};
     std::size_t last = 0;
