@@ -186,8 +186,9 @@ Direction uniform(std::mt19937_64& random) {
 TEST(HalfwayEnvelope, IsBilinearInTheCoordinatesOfItsFormulaByEitherPath) {
     std::mt19937_64 random(5);
     for (const bool reciprocal : {true, false}) {
-        for (const auto& [alongX, alongB] :
+        for (const auto& size :
              {std::pair<std::size_t, std::size_t>{1, 1}, {5, 4}, {1, 3}, {13, 1}}) {
+            const std::size_t alongX = size.first, alongB = size.second;  // clang 14 captures these
             const Representation r = unbounded(alongX, alongB, reciprocal);
             const std::vector<double>& logs = r.as<HalfwayArray>()->envelope->logs.values;
             const HalfwayExpansion slow(r);
