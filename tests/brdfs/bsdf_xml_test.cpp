@@ -1,7 +1,9 @@
 // Matrices and trees written here are read with the conventions of docs/bsdf_xml.md, derived a
 // second time.
 
+#include <hshfit/bases/catalog.h>
 #include <hshfit/projection/albedo.h>
+#include <hshfit/projection/projection.h>
 
 #include "bsdf_xml_files.h"
 
@@ -122,6 +124,69 @@ TEST(Klems, BeyondABasisThatEndsEarlyNothingIsCovered) {
     EXPECT_EQ(valueOf(*brdf, beyond, inside), 0);
     EXPECT_EQ(valueOf(*brdf, inside, beyond), 0);
     EXPECT_GT(valueOf(*brdf, inside, inside), 0);
+}
+
+/// Moments with 1, x, y and z and the integral of f^2, each a closed form on a patch.
+struct PatchSums {
+    double energy = 0, one = 0, x = 0, y = 0, z = 0;
+};
+
+PatchSums patchSums(const std::vector<KlemsRing>& rings, const Brdf& brdf, const Direction& wo) {
+    PatchSums sums;
+    for (const KlemsRing& ring : rings) {
+        const double low = radians(ring.lower), up = radians(ring.upper);
+        const double step = 2 * pi / ring.azimuths;
+        const double one = std::cos(low) - std::cos(up);
+        const double across = (up - low) / 2 - (std::sin(2 * up) - std::sin(2 * low)) / 4;
+        const double high = (std::pow(std::sin(up), 2) - std::pow(std::sin(low), 2)) / 2;
+        for (int j = 0; j < ring.azimuths; ++j) {
+            const double phi = j * step;
+            const double middle = ring.azimuths == 1 ? low : (low + up) / 2;
+            const double f = valueOf(brdf, directionFromAngles(middle, phi), wo);
+            sums.energy += f * f * one * step;
+            sums.one += f * one * step;
+            sums.x += f * across * (std::sin(phi + step / 2) - std::sin(phi - step / 2));
+            sums.y += f * across * (std::cos(phi - step / 2) - std::cos(phi + step / 2));
+            sums.z += f * high * step;
+        }
+    }
+    return sums;
+}
+
+TEST(Klems, ProjectionsAreSumsOverPatches) {
+    const auto basis = bases::make("sh", 2);
+    const Basis* const one[] = {basis.get()};
+    const auto lopsided = [](int o, int i) { return 0.1 + (o * 31 + i * 17) % 23 / 100.0; };
+    const auto mirror = [](int o, int i) { return o == i ? 1.0 : 0.0; };
+    const std::pair<const char*, std::vector<KlemsRing>> files[] = {
+        {"LBNL/Klems Full", klemsFull}, {"Ours", {{0, 20, 3}, {20, 47.5, 6}, {47.5, 90, 10}}}};
+    for (const auto& [name, rings] : files) {
+        for (const bool symmetric : {false, true}) {
+            if (symmetric && patchesOf(rings) != 145) continue;
+            const int patches = patchesOf(rings);
+            const auto brdf = openBytes(bsdfXml(
+                "Columns", basisXml(name, rings),
+                blockXml("Reflection Front",
+                         symmetric ? matrixText(patches, mirror) : matrixText(patches, lopsided),
+                         name)));
+            for (const double phi : {0.0, 1.0}) {
+                const Direction wo = directionFromAngles(radians(52), phi);
+                const PatchSums exact = patchSums(rings, *brdf, wo);
+                const Projection found =
+                    project(*brdf, one, OutgoingSet::direction(radians(52), phi))[0];
+                const Coefficients& c = found.coefficients;
+                EXPECT_NEAR(c.energy.value, exact.energy, 1e-9 * exact.energy);
+                const double first = std::sqrt(1 / (4 * pi)), second = std::sqrt(3 / (4 * pi));
+                const double expected[] = {first * exact.one, second * exact.y, second * exact.z,
+                                           second * exact.x};
+                for (int k = 0; k < 4; ++k)
+                    EXPECT_NEAR(c.values[static_cast<std::size_t>(k)], expected[k],
+                                1e-9 * exact.one)
+                        << name << " " << k << " at " << phi;
+                EXPECT_LE(found.evaluations, 30000U);
+            }
+        }
+    }
 }
 
 TEST(Klems, ColoursAndPartsOfTheSpectrumAreRead) {

@@ -140,6 +140,26 @@ std::vector<double> KlemsBrdf::kinks(const Direction&) const {
     return incident_.boundaryCosines();
 }
 
+std::vector<KinkCurve> KlemsBrdf::kinkCurves(const Direction&) const {
+    std::vector<double> heights = incident_.boundaryCosines();
+    heights.insert(heights.begin(), 1);
+    heights.push_back(0);
+    std::vector<KinkCurve> curves;
+    for (std::size_t r = 0; r < incident_.rings().size(); ++r) {
+        const std::size_t n = incident_.rings()[r].azimuths;
+        if (n == 1) continue;
+        // A plane through the pole crosses the ring at two opposite azimuths.
+        for (std::size_t j = 0; j < (n % 2 == 0 ? n / 2 : n); ++j) {
+            const double phi = 2 * pi * (static_cast<double>(j) + 0.5) / static_cast<double>(n);
+            curves.push_back({.x = -std::sin(phi),
+                              .y = selection_.fileX(std::cos(phi)),
+                              .low = heights[r + 1],
+                              .high = heights[r]});
+        }
+    }
+    return curves;
+}
+
 double KlemsBrdf::directionalReflectance(std::size_t channel, std::size_t incident) const {
     double sum = 0;
     for (std::size_t ring = 0; ring < outgoing_.rings().size(); ++ring) {

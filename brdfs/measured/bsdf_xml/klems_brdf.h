@@ -4,6 +4,7 @@
 #include <brdfs/measured/bsdf_xml/document.h>
 #include <brdfs/measured/bsdf_xml/selection.h>
 #include <brdfs/measured/measured_brdf.h>
+#include <hshfit/brdf/kink_curve.h>
 
 #include <string>
 #include <vector>
@@ -18,7 +19,7 @@ namespace hshfit::brdfs {
 /// Negative values are taken as 0, as in Radiance. So are NaN and infinite values, for which
 /// checkIntact() throws InputError. f is 0 beyond a basis that ends above the
 /// horizon. Laws are claimed where the matrix has them exactly.
-class KlemsBrdf : public MeasuredBrdf {
+class KlemsBrdf : public MeasuredBrdf, public HasKinkCurves {
 public:
     /// Throws InputError for unknown bases, matrices of wrong size, and words among the
     /// numbers.
@@ -31,6 +32,8 @@ public:
     void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
     /// The rings of the incident basis.
     std::vector<double> kinks(const Direction& wo) const override;
+    /// The meridians between patches of the incident basis.
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override;
     double defaultTolerance() const override { return selection_.tolerance; }
     std::vector<Fact> facts() const override;
     void checkIntact() const override { selection_.checkIntact(); }

@@ -191,8 +191,8 @@ void appendPanel(HemisphereGrid& grid, double a, double b, const AzimuthPeaks& p
     if (!curves.empty() && panel.azimuths.spacing.squeeze == 0) {
         const KinkCurve& curve = curves.curves.front();
         const double radius = std::hypot(curve.x, curve.y);
-        panel.azimuths.centreX = curve.x / radius;
-        panel.azimuths.centreY = curve.y / radius;
+        panel.azimuths.centreX = options.even ? std::copysign(1.0, curve.x) : curve.x / radius;
+        panel.azimuths.centreY = options.even ? 0 : curve.y / radius;
     }
     for (int i = 0; i < nodes; ++i) {
         const Crowded place = crowded(0.5 * (1 + rule.nodes[i]), curves.rootAtA, curves.rootAtB);
