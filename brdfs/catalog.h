@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/brdf/brdf.h>
+#include <hshfit/specification/parameters.h>
 
 #include <functional>
 #include <map>
@@ -14,58 +15,9 @@
 
 namespace hshfit::brdfs {
 
-/// The range of a parameter in fits (docs/fit.md), within the parameter's bounds.
-struct FitRange {
-    enum class Data { any, isotropic, anisotropic };
-    double low = 0, high = 0;       ///< range of starting values; equal: held there
-    bool logarithmic = false;       ///< fitted on a logarithmic scale
-    Data data = Data::any;          ///< fitted to such data only
-    std::string_view choice = {};   ///< fitted with this choice only, "key=word"; empty: any
-    std::string_view unless = {};   ///< not fitted if this parameter is stated instead
-    std::string_view follows = {};  ///< equal to this parameter for isotropic data
-};
-
-class Parameters;
-
-/// One parameter of an analytic model, as listed, parsed, checked and documented.
-struct Parameter {
-    enum class Kind {
-        number,  ///< one value in [min, max]
-        colour,  ///< one value, or three as r/g/b; each in [min, max]
-        choice,  ///< one of `choices`
-    };
-    std::string_view name;
-    std::string_view help;
-    Kind kind = Kind::number;
-    /// None: the parameter has to be given. Outside [min, max]: the default is described in the
-    /// help.
-    std::optional<double> fallback = {};
-    double min = 0, max = 0;
-    std::vector<std::string_view> choices = {};  ///< the first is the default
-    /// The first applicable range counts. None: fits keep the stated value, or the default.
-    std::vector<FitRange> fit = {};
-    /// Colours with a least value of 0: whether f is linear in it, each channel by itself, jointly
-    /// with all free parameters for which this holds, given what is stated. None: it is not.
-    bool (*linear)(const Parameters& stated) = nullptr;
-};
-
-/// Checked parameter values, defaults filled in. A request for an undeclared name is our bug.
-class Parameters {
-public:
-    double number(std::string_view name) const;
-    std::vector<double> colour(std::string_view name) const;  ///< 1 or 3 values
-    std::string choice(std::string_view name) const;
-    bool given(std::string_view name) const;  ///< stated rather than left to its default
-    /// "key=value,…" in the order of the table, without values equal to the default.
-    std::string canonical() const;
-    /// States a number or a colour; three equal values become one, so that grey stays grey.
-    void set(std::string_view name, std::vector<double> values);
-
-    std::map<std::string, std::vector<double>, std::less<>> numbers;
-    std::map<std::string, std::string, std::less<>> words;
-    std::set<std::string, std::less<>> stated;
-    std::string text;
-};
+using hshfit::FitRange;
+using hshfit::Parameter;
+using hshfit::Parameters;
 
 class ModelColumns;
 struct ColumnRequest;

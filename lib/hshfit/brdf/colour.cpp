@@ -147,6 +147,13 @@ RgbWeights rgbWeights(std::span<const double> nanometres) {
     return result;
 }
 
+std::array<double, 3> rec709FromXyz(const std::array<double, 3>& xyz) {
+    static const Eigen::Matrix3d matrix =
+        rgbFromXyz({0.3127 / 0.3290, 1, (1 - 0.3127 - 0.3290) / 0.3290});
+    const Eigen::Vector3d rgb = matrix * Eigen::Vector3d(xyz[0], xyz[1], xyz[2]);
+    return {rgb[0], rgb[1], rgb[2]};
+}
+
 std::array<double, 3> tristimulus(std::span<const double> nanometres, std::span<const double> f) {
     const Eigen::Map<const Eigen::VectorXd> values(f.data(), static_cast<Eigen::Index>(f.size()));
     const Eigen::Vector3d xyz = xyzWeights(nanometres) * values;

@@ -31,6 +31,10 @@ RgbWeights rgbWeights(std::span<const double> nanometres);
 /// limits.
 std::array<double, 3> tristimulus(std::span<const double> nanometres, std::span<const double> f);
 
+/// Linear Rec. 709 of CIE XYZ, with R = G = B = 1 for Y = 1 at the chromaticity of D65, (0.3127,
+/// 0.3290). Components of colours beyond the gamut are negative.
+std::array<double, 3> rec709FromXyz(const std::array<double, 3>& xyz);
+
 /// A spectral BRDF seen as RGB: `rgbWeights` applied to every value. Its name is "rgb:" and that of
 /// the spectral one.
 /// Throws UsageError if the BRDF is not spectral, and as rgbWeights does.

@@ -1,6 +1,8 @@
 #include <hshfit/light/light_samples.h>
 
+#include <hshfit/light/internal/sky_nodes.h>
 #include <hshfit/light/picture_light.h>
+#include <hshfit/light/sky.h>
 #include <hshfit/quadrature/quadrature.h>
 
 #include <algorithm>
@@ -45,15 +47,6 @@ PanelPoint panelPoint(const PanelLight& light, const Axes& axes, double x, doubl
             halfWidth * halfHeight / (squared * std::sqrt(squared))};
 }
 
-Rgb skyRadiance(const SkyLight& light, const Direction& world) {
-    if (world.z < 0) return light.ground;
-    Rgb radiance = light.zenith;
-    if (light.model == SkyLight::Model::overcast) {
-        for (double& value : radiance) value *= (1 + 2 * world.z) / 3;
-    }
-    return radiance;
-}
-
 struct RadianceFrom {
     const Direction& world;
 
@@ -72,14 +65,10 @@ struct RadianceFrom {
                             std::abs(c * b - s * a) <= std::tan(light.height / 2);
         return inside ? light.radiance : Rgb{};
     }
-    Rgb operator()(const SkyLight& light) const { return skyRadiance(light, world); }
+    Rgb operator()(const SkyLight& light) const { return radianceOf(light, world); }
     Rgb operator()(const PictureLight& light) const { return radianceOf(light, world); }
+    Rgb operator()(const DirectionalLight&) const { return {}; }
 };
-
-/// Number of nodes at a level, from the number at level 0.
-int grown(double nodes, int level) {
-    return std::max(2, static_cast<int>(std::ceil(nodes * std::pow(1.5, level))));
-}
 
 /// Adds the nodes of one light at one level.
 struct AddNodes {
@@ -89,7 +78,7 @@ struct AddNodes {
 
     void operator()(const DiscLight& light) const {
         const Axes axes(light.towards);
-        const int rings = grown(3 + 2 * light.radius, level), azimuths = 2 * rings + 1;
+        const int rings = nodesAtLevel(3 + 2 * light.radius, level), azimuths = 2 * rings + 1;
         const GaussRule& rule = gaussLegendre(rings);
         const double depth = 2 * std::pow(std::sin(light.radius / 2), 2);  // 1 - cos(radius)
         for (std::size_t r = 0; r < rule.nodes.size(); ++r) {
@@ -107,8 +96,8 @@ struct AddNodes {
 
     void operator()(const PanelLight& light) const {
         const Axes axes(light.towards);
-        const GaussRule& across = gaussLegendre(grown(4 + 4 * light.width, level));
-        const GaussRule& down = gaussLegendre(grown(4 + 4 * light.height, level));
+        const GaussRule& across = gaussLegendre(nodesAtLevel(4 + 4 * light.width, level));
+        const GaussRule& down = gaussLegendre(nodesAtLevel(4 + 4 * light.height, level));
         for (std::size_t i = 0; i < across.nodes.size(); ++i) {
             for (std::size_t j = 0; j < down.nodes.size(); ++j) {
                 const PanelPoint point = panelPoint(light, axes, across.nodes[i], down.nodes[j]);
@@ -118,20 +107,7 @@ struct AddNodes {
         }
     }
 
-    /// Rings about the normal, in panels that end where the world's horizon touches a ring; each
-    /// ring in its arc of sky and its arc of ground.
-    void operator()(const SkyLight& light) const {
-        const Direction up = frame.toLocal({0, 0, 1});
-        const double touch = std::min(std::hypot(up.x, up.y), 1.0);
-        const GaussRule& rule = gaussLegendre(grown(8, level));
-        for (const auto& [low, high] : {std::pair(0.0, touch), std::pair(touch, 1.0)}) {
-            if (high - low < 1e-12) continue;
-            for (std::size_t r = 0; r < rule.nodes.size(); ++r) {
-                const double z = low + (high - low) * (1 + rule.nodes[r]) / 2;
-                addRing(light, up, z, (high - low) * rule.weights[r] / 2);
-            }
-        }
-    }
+    void operator()(const SkyLight& light) const { addSkyNodes(light, frame, level, samples); }
 
     void operator()(const PictureLight& light) const {
         for (const PictureSample& part : pictureSamples(light, 1e-3 * std::pow(1.5, -3 * level))) {
@@ -139,30 +115,8 @@ struct AddNodes {
         }
     }
 
-private:
-    void addRing(const SkyLight& light, const Direction& up, double z, double weight) const {
-        const double s = std::sqrt((1 - z) * (1 + z)), across = s * std::hypot(up.x, up.y);
-        const double middle = std::atan2(up.y, up.x);
-        // Sky where up.z z + across cos(phi - middle) > 0.
-        const double edge =
-            across > 0 ? std::acos(std::clamp(-up.z * z / across, -1.0, 1.0)) : (up.z > 0 ? pi : 0);
-        addArc(light, z, s, middle, edge, weight);
-        addArc(light, z, s, middle + pi, pi - edge, weight);
-    }
-    void addArc(const SkyLight& light, double z, double s, double middle, double half,
-                double weight) const {
-        if (half < 1e-12) return;
-        const bool whole = half > pi - 1e-9;
-        const int nodes = grown(16 * half / pi + 4, level) * (whole ? 2 : 1);
-        const GaussRule& rule = gaussLegendre(nodes);
-        for (int j = 0; j < nodes; ++j) {
-            const auto k = static_cast<std::size_t>(j);
-            const double at = whole ? (2 * j + 1.0) / nodes - 1 : rule.nodes[k];
-            const double share = whole ? 2.0 / nodes : rule.weights[k];
-            const double phi = middle + half * at;
-            const Direction local{s * std::cos(phi), s * std::sin(phi), z};
-            samples.add(local, skyRadiance(light, frame.toWorld(local)), weight * share * half);
-        }
+    void operator()(const DirectionalLight& light) const {
+        samples.add(frame.toLocal(light.towards), light.irradiance, 1);
     }
 };
 
@@ -203,10 +157,13 @@ struct AddLattice {
         }
     }
     void operator()(const SkyLight& light) const {
-        hemisphere([&](const Direction& world) { return skyRadiance(light, world); });
+        hemisphere([&](const Direction& world) { return radianceOf(light, world); });
     }
     void operator()(const PictureLight& light) const {
         hemisphere([&](const Direction& world) { return radianceOf(light, world); });
+    }
+    void operator()(const DirectionalLight& light) const {
+        samples.add(frame.toLocal(light.towards), light.irradiance, 1);
     }
 
 private:

@@ -29,12 +29,14 @@ struct LightSamples {
     void add(const Direction& local, const Rgb& radiance, double solidAngle);
 };
 
-/// Radiance that comes from a direction of the world, all lights together.
+/// Radiance that comes from a direction of the world, all lights together. Directional lights,
+/// whose radiance no number is, are left out.
 Rgb radianceFrom(std::span<const Light> lights, const Direction& world);
 
 /// Nodes that follow each light's own shape: Gauss-Legendre by equispaced nodes over discs, Gauss
-/// over panels and over the arcs of sky and ground above the surface, parts of pictures by their
-/// flux. Each level has 1.5 times as many nodes again in both directions.
+/// over panels and over the arcs of sky and ground above the surface, finer around the sun, parts
+/// of pictures by their flux, one node for a directional light. Each level has 1.5 times as many
+/// nodes again in both directions.
 LightSamples sampleLights(std::span<const Light> lights, const Frame& frame, int level);
 
 /// The same integral in another way, to check the first with: points of a lattice (Roberts 2018,

@@ -29,24 +29,58 @@ struct PanelLight {
     Rgb radiance{};
 };
 
+/// The shape of a sky by two angles, theta from the zenith and chi from the sun:
+///     F = (1 + a exp(b / cos theta)) (1 + c (exp(d chi) - offset) + e cos^2 chi)
+/// offset is exp(d pi / 2) in the CIE general sky and 0 in the formula of Perez et al. 1993.
+struct SkyShape {
+    double a = 0, b = -1, c = 0, d = -1, e = 0, offset = 0;
+};
+
 /// The half space above the world's horizon, and a uniform ground below it.
 /// uniform   L = zenith
 /// overcast  L = zenith (1 + 2 cos theta) / 3   (Moon & Spencer 1942; CIE standard overcast sky)
+/// cie       L = zenith F / F(zenith), F of shapes[0]   (ISO 15469:2004; sky.h)
+/// preetham  L = zenith times the colour of the chromaticity (x, y) and the luminance Y, each its
+///           value at the zenith times F / F(zenith) by shapes[0], [1], [2] of Y, x, y; Y is 1 at
+///           the zenith. Components of colours beyond the gamut count as 0.
 struct SkyLight {
-    enum class Model { uniform, overcast };
+    enum class Model { uniform, overcast, cie, preetham };
     Model model = Model::uniform;
     Rgb zenith{}, ground{};
+    Direction sun{};
+    std::array<SkyShape, 3> shapes{};
+    std::array<double, 2> chromaticity{};  ///< x and y at the zenith
 };
 
-/// A latitude-longitude picture: row 0 around the zenith; azimuth pi at the left edge, 0 in the
-/// middle, -pi at the right edge, plus `turn`. Radiance is constant within a pixel.
+/// The place of directions in a picture (picture_layout.h).
+enum class PictureLayout { latlong, angular, mirrorBall, cross, faces };
+
+/// The code of a picture's values, which decodes to linear ones (picture_reader.h).
+enum class TransferCurve { linear, srgb, rec709, gamma18, gamma22, gamma24 };
+
+/// A picture of radiance, constant within a pixel. In a latitude-longitude picture, row 0 is around
+/// the zenith, and the azimuth is pi at the left edge, 0 in the middle, -pi at the right edge, plus
+/// `turn`.
 struct PictureLight {
     std::string file;
     std::size_t width = 0, height = 0;
     std::vector<float> rgb;  ///< [row][column][R, G, B], scaled
-    double turn = 0;
+    double turn = 0;         ///< radians about +z
+    PictureLayout layout = PictureLayout::latlong;
+    /// For `forEachRow`, which reads a larger file again: the size of the file, 0 where `rgb` is
+    /// all of it, and the way from the file's values to radiance.
+    std::size_t fileWidth = 0, fileHeight = 0;
+    TransferCurve curve = TransferCurve::linear;
+    double scale = 1;
 };
 
-using Light = std::variant<DiscLight, PanelLight, SkyLight, PictureLight>;
+/// Light from one direction alone. Its radiance is infinite there and 0 elsewhere; `irradiance` is
+/// that of a surface across the beam.
+struct DirectionalLight {
+    Direction towards;
+    Rgb irradiance{};
+};
+
+using Light = std::variant<DiscLight, PanelLight, SkyLight, PictureLight, DirectionalLight>;
 
 }  // namespace hshfit::inline light

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace hshfit::inline light {
 namespace {
@@ -25,65 +26,103 @@ std::size_t channelOf(const ExrPicture& picture, std::string_view name, const st
         fmt::format("{}: has no channel {}; an environment has R, G and B", path, name));
 }
 
-double polar(const PictureLight& light, double row) {
-    return pi * row / static_cast<double>(light.height);
-}
-
-/// Solid angle of one pixel of a row.
-double pixelSolidAngle(const PictureLight& light, std::size_t row) {
-    const double top = polar(light, static_cast<double>(row));
-    const double bottom = polar(light, static_cast<double>(row + 1));
-    const double step = 2 * pi / static_cast<double>(light.width);
-    return 2 * std::sin((top + bottom) / 2) * std::sin((bottom - top) / 2) * step;
-}
+constexpr CurveName curves[] = {
+    {TransferCurve::linear, "linear", "values are radiance"},
+    {TransferCurve::srgb, "srgb", "IEC 61966-2-1"},
+    {TransferCurve::rec709, "rec709", "the inverse of the camera curve of ITU-R BT.709"},
+    {TransferCurve::gamma18, "gamma1.8", "value to the power of 1.8"},
+    {TransferCurve::gamma22, "gamma2.2", "value to the power of 2.2"},
+    {TransferCurve::gamma24, "gamma2.4", "value to the power of 2.4"},
+};
 
 struct Part {
     std::size_t column, row, width, height;
 };
 
-/// Sums of flux and of flux times direction over any part, from tables of running sums.
-class Sums {
+/// Cuts a picture into parts, from the pixels up: parts that need no cut become one sample.
+class Parts {
 public:
-    explicit Sums(const PictureLight& light) : width_(light.width + 1) {
-        table_.resize(width_ * (light.height + 1));
+    Parts(const PictureLight& light, double finest)
+        : light_(light), geometry_(geometryOf(light)), finest_(finest) {
         for (std::size_t row = 0; row < light.height; ++row) {
-            const double solidAngle = pixelSolidAngle(light, row);
             for (std::size_t column = 0; column < light.width; ++column) {
-                const Direction d = directionOf(light, static_cast<double>(column) + 0.5,
-                                                static_cast<double>(row) + 0.5);
-                const float* rgb = light.rgb.data() + 3 * (row * light.width + column);
-                const double all = (double{rgb[0]} + rgb[1] + rgb[2]) * solidAngle;
-                const Entry here{rgb[0] * solidAngle, rgb[1] * solidAngle, rgb[2] * solidAngle,
-                                 all * d.x,           all * d.y,           all * d.z};
-                for (std::size_t k = 0; k < here.size(); ++k) {
-                    at(column + 1, row + 1)[k] = here[k] + at(column, row + 1)[k] +
-                                                 at(column + 1, row)[k] - at(column, row)[k];
-                }
+                total_ += weigh(column, row).grey();
             }
         }
     }
-    using Entry = std::array<double, 6>;
-    Entry over(const Part& p) const {
-        Entry sum{};
-        for (std::size_t k = 0; k < sum.size(); ++k) {
-            sum[k] = at(p.column + p.width, p.row + p.height)[k] + at(p.column, p.row)[k] -
-                     at(p.column, p.row + p.height)[k] - at(p.column + p.width, p.row)[k];
+
+    std::vector<PictureSample> samples() {
+        add({0, 0, light_.width, light_.height});
+        return std::move(samples_);
+    }
+
+private:
+    struct Sum {
+        Rgb flux{};
+        double x = 0, y = 0, z = 0;  ///< of flux times direction
+        double grey() const { return flux[0] + flux[1] + flux[2]; }
+        void operator+=(const Sum& other) {
+            for (std::size_t c = 0; c < 3; ++c) flux[c] += other.flux[c];
+            x += other.x, y += other.y, z += other.z;
+        }
+    };
+
+    /// Flux of one pixel, without its direction.
+    Sum weigh(std::size_t column, std::size_t row) const {
+        const float* rgb = light_.rgb.data() + 3 * (row * light_.width + column);
+        if (rgb[0] + rgb[1] + rgb[2] <= 0) return {};
+        const double omega = geometry_.solidAngle(column, row);
+        return {{rgb[0] * omega, rgb[1] * omega, rgb[2] * omega}};
+    }
+
+    /// Adds the samples of a part and returns its sum.
+    Sum add(const Part& part) {
+        if (part.width * part.height == 0) return {};
+        const std::size_t first = samples_.size();
+        Sum sum;
+        if (part.width * part.height == 1) {
+            sum = weigh(part.column, part.row);
+            const double grey = sum.grey();
+            if (!(grey > 0)) return {};
+            const Direction d = directionOf(light_, static_cast<double>(part.column) + 0.5,
+                                            static_cast<double>(part.row) + 0.5);
+            sum.x = grey * d.x, sum.y = grey * d.y, sum.z = grey * d.z;
+        } else {
+            const std::size_t w = (part.width + 1) / 2, h = (part.height + 1) / 2;
+            sum += add({part.column, part.row, w, h});
+            sum += add({part.column + w, part.row, part.width - w, h});
+            sum += add({part.column, part.row + h, w, part.height - h});
+            sum += add({part.column + w, part.row + h, part.width - w, part.height - h});
+            const auto longest = static_cast<double>(std::max(part.width, part.height));
+            if (sum.grey() * longest * geometry_.pixelAngle() > finest_ * total_) return sum;
+        }
+        samples_.resize(first);
+        const double length = std::hypot(sum.x, sum.y, sum.z);
+        if (length > 0) {
+            samples_.push_back({{sum.x / length, sum.y / length, sum.z / length}, sum.flux});
         }
         return sum;
     }
 
-private:
-    Entry& at(std::size_t column, std::size_t row) { return table_[row * width_ + column]; }
-    const Entry& at(std::size_t column, std::size_t row) const {
-        return table_[row * width_ + column];
-    }
-    std::size_t width_;
-    std::vector<Entry> table_;
+    const PictureLight& light_;
+    PictureGeometry geometry_;
+    double finest_, total_ = 0;
+    std::vector<PictureSample> samples_;
 };
 
 }  // namespace
 
-PictureLight readPictureLight(const std::string& path, double scale) {
+std::span<const CurveName> curveNames() {
+    return curves;
+}
+
+bool isPicturePath(std::string_view text) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(text, error);
+}
+
+PictureLight readPictureLight(const std::string& path, double scale,
+                              const PictureOptions& /*options*/) {
     const MappedFile file(path);
     const ExrPicture picture =
         readExrPicture({reinterpret_cast<const char*>(file.data()), file.size()}, path, mostValues);
@@ -114,57 +153,36 @@ PictureLight readPictureLight(const std::string& path, double scale) {
     return light;
 }
 
+PictureGeometry geometryOf(const PictureLight& light) {
+    return {light.layout, light.width, light.height};
+}
+
+PictureGeometry fileGeometryOf(const PictureLight& light) {
+    if (light.fileWidth == 0) return geometryOf(light);
+    return {light.layout, light.fileWidth, light.fileHeight};
+}
+
+void forEachRow(const PictureLight& light,
+                const std::function<void(std::size_t row, std::span<const float> rgb)>& visit) {
+    const std::span<const float> all(light.rgb);
+    for (std::size_t row = 0; row < light.height; ++row) {
+        visit(row, all.subspan(3 * light.width * row, 3 * light.width));
+    }
+}
+
 Direction directionOf(const PictureLight& light, double column, double row) {
-    return directionFromAngles(
-        polar(light, row), pi - 2 * pi * column / static_cast<double>(light.width) + light.turn);
+    return rotateAboutZ(geometryOf(light).direction(column, row), light.turn);
 }
 
 Rgb radianceOf(const PictureLight& light, const Direction& world) {
-    const double around = std::remainder(pi - azimuth(world) + light.turn - pi, 2 * pi) + pi;
-    const auto index = [](double at, std::size_t count) {
-        return static_cast<std::size_t>(std::clamp(std::floor(at * static_cast<double>(count)), 0.0,
-                                                   static_cast<double>(count) - 1));
-    };
-    const std::size_t row = index(polarAngle(world) / pi, light.height);
-    const std::size_t column = index(around / (2 * pi), light.width);
-    const float* rgb = light.rgb.data() + 3 * (row * light.width + column);
+    const auto [column, row] = geometryOf(light).position(rotateAboutZ(world, -light.turn));
+    const float* rgb = light.rgb.data() + 3 * (static_cast<std::size_t>(row) * light.width +
+                                               static_cast<std::size_t>(column));
     return {rgb[0], rgb[1], rgb[2]};
 }
 
 std::vector<PictureSample> pictureSamples(const PictureLight& light, double finest) {
-    const Sums sums(light);
-    const auto flux = [&](const Part& part) {
-        const Sums::Entry sum = sums.over(part);
-        return sum[0] + sum[1] + sum[2];
-    };
-    const double total = flux({0, 0, light.width, light.height});
-    const double pixel = pi / static_cast<double>(light.height);
-    std::vector<PictureSample> samples;
-    std::vector<Part> parts{{0, 0, light.width, light.height}};
-    while (!parts.empty()) {
-        const Part part = parts.back();
-        parts.pop_back();
-        const double wide = pixel * static_cast<double>(std::max(part.width, part.height));
-        const double share = total > 0 ? flux(part) / total : 0;
-        if (part.width * part.height > 1 && share * wide > finest) {
-            const std::size_t w = (part.width + 1) / 2, h = (part.height + 1) / 2;
-            for (std::size_t row : {std::size_t{0}, h}) {
-                for (std::size_t column : {std::size_t{0}, w}) {
-                    const Part quarter{part.column + column, part.row + row,
-                                       column == 0 ? w : part.width - w,
-                                       row == 0 ? h : part.height - h};
-                    if (quarter.width * quarter.height > 0) parts.push_back(quarter);
-                }
-            }
-            continue;
-        }
-        const Sums::Entry sum = sums.over(part);
-        const double length = std::hypot(sum[3], sum[4], sum[5]);
-        if (!(length > 0)) continue;
-        samples.push_back({{sum[3] / length, sum[4] / length, sum[5] / length},
-                           {std::max(sum[0], 0.0), std::max(sum[1], 0.0), std::max(sum[2], 0.0)}});
-    }
-    return samples;
+    return Parts(light, finest).samples();
 }
 
 }  // namespace hshfit::inline light

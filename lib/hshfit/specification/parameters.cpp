@@ -1,4 +1,4 @@
-#include <brdfs/spec.h>
+#include <hshfit/specification/parameters.h>
 
 #include <hshfit/error.h>
 
@@ -13,7 +13,7 @@
 #include <numeric>
 #include <system_error>
 
-namespace hshfit::brdfs {
+namespace hshfit::inline specification {
 namespace {
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
@@ -64,10 +64,15 @@ std::vector<double> parseNumbers(std::string_view owner, const Parameter& parame
 
 std::string parseChoice(std::string_view owner, const Parameter& parameter,
                         std::string_view value) {
+    if (parameter.kind == Parameter::Kind::text) return std::string(value);
     if (std::ranges::find(parameter.choices, value) == parameter.choices.end())
         throw UsageError(fmt::format("{}: {}='{}' is unknown; valid: {}", owner, parameter.name,
                                      value, validValues(parameter)));
     return std::string(value);
+}
+
+bool isWord(const Parameter& parameter) {
+    return parameter.kind == Parameter::Kind::choice || parameter.kind == Parameter::Kind::text;
 }
 
 const Parameter& findParameter(std::string_view owner, std::span<const Parameter> declared,
@@ -90,7 +95,7 @@ void readItem(std::string_view owner, std::span<const Parameter> declared, std::
     const Parameter& parameter = findParameter(owner, declared, item.substr(0, equals));
     const std::string_view value = item.substr(equals + 1);
     const bool fresh =
-        parameter.kind == Parameter::Kind::choice
+        isWord(parameter)
             ? parsed.words
                   .try_emplace(std::string(parameter.name), parseChoice(owner, parameter, value))
                   .second
@@ -105,8 +110,9 @@ void readItem(std::string_view owner, std::span<const Parameter> declared, std::
 void complete(std::string_view owner, const Parameter& parameter, Parameters& parsed) {
     const std::string separator = parsed.text.empty() ? "" : ",";
     const std::string name(parameter.name);
-    if (parameter.kind == Parameter::Kind::choice) {
-        const std::string fallback(parameter.choices.front());
+    if (isWord(parameter)) {
+        const bool choice = parameter.kind == Parameter::Kind::choice;
+        const std::string fallback(choice ? parameter.choices.front() : "");
         const std::string& word = parsed.words.try_emplace(name, fallback).first->second;
         if (word != fallback) parsed.text += fmt::format("{}{}={}", separator, name, word);
         return;
@@ -188,6 +194,8 @@ Parameters parseParameters(std::string_view owner, std::span<const Parameter> de
 }
 
 std::string validValues(const Parameter& parameter) {
+    if (parameter.kind == Parameter::Kind::text)
+        return fmt::format("a text such as {}", parameter.choices.front());
     if (parameter.kind == Parameter::Kind::choice)
         return fmt::format("{}", fmt::join(parameter.choices, "|"));
     const std::string range = fmt::format("{} to {}", parameter.min, parameter.max);
@@ -232,4 +240,4 @@ std::string joined(std::span<const std::string_view> words) {
     return fmt::format("{}", fmt::join(words, ", "));
 }
 
-}  // namespace hshfit::brdfs
+}  // namespace hshfit::inline specification

@@ -1,0 +1,416 @@
+#include <hshfit/light/catalog.h>
+
+#include <hshfit/error.h>
+#include <hshfit/light/picture_light.h>
+#include <hshfit/light/placement.h>
+#include <hshfit/light/sky.h>
+#include <hshfit/light/solar_position.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+
+namespace hshfit::inline light {
+namespace {
+
+constexpr double brightest = 1e9;
+constexpr double notGiven = -1000;  // outside of every range: the help says the default
+
+// --- parameters that several kinds have -----------------------------------------------------
+
+Parameter colour(std::string_view name, std::string_view help, double fallback) {
+    return {.name = name,
+            .help = help,
+            .kind = Parameter::Kind::colour,
+            .fallback = fallback,
+            .min = 0,
+            .max = brightest};
+}
+
+Parameter number(std::string_view name, std::string_view help, double fallback, double min,
+                 double max) {
+    return {.name = name, .help = help, .fallback = fallback, .min = min, .max = max};
+}
+
+Parameter words(std::string_view name, std::string_view help, std::string_view example) {
+    return {.name = name, .help = help, .kind = Parameter::Kind::text, .choices = {example}};
+}
+
+std::vector<Parameter> both(std::vector<Parameter> first, const std::vector<Parameter>& second) {
+    first.insert(first.end(), second.begin(), second.end());
+    return first;
+}
+
+std::vector<Parameter> scaleAndTurn() {
+    return {number("scale", "factor of the radiance", 1, 0, brightest),
+            number("turn", "degrees about +z, from +x towards +y", 0, -360, 360)};
+}
+
+/// A direction, or a place and time for that of the sun.
+std::vector<Parameter> sunPlace(double lowest) {
+    return {number("elevation", "of the sun, degrees from the horizon; or a place and time",
+                   notGiven, lowest, 90),
+            number("azimuth", "degrees from +x towards +y", 0, -360, 360),
+            number("latitude", "degrees, positive in the north", notGiven, -90, 90),
+            number("longitude", "degrees, positive in the east", notGiven, -180, 180),
+            words("date", "of the place, 1950 to 2050", "2024-06-21"),
+            words("time", "of the place", "12:00"),
+            number("zone", "hours that the place's time is ahead of Universal Time", 0, -14, 14)};
+}
+
+Rgb rgb(const Parameters& p, std::string_view name) {
+    const std::vector<double> values = p.colour(name);
+    if (values.size() == 3) return {values[0], values[1], values[2]};
+    return {values[0], values[0], values[0]};
+}
+
+Rgb over(Rgb values, const Rgb& divisors) {
+    for (std::size_t c = 0; c < 3; ++c) values[c] = divisors[c] > 0 ? values[c] / divisors[c] : 0;
+    return values;
+}
+Rgb over(const Rgb& values, double divisor) {
+    return over(values, Rgb{divisor, divisor, divisor});
+}
+
+void onlyOne(std::string_view owner, const Parameters& p) {
+    if (p.given("radiance") && p.given("irradiance"))
+        throw UsageError(
+            fmt::format("{}: radiance and irradiance are both given; valid: one of "
+                        "the two",
+                        owner));
+}
+
+/// Radiance, or the irradiance asked for over that of radiance 1.
+Rgb radianceBy(std::string_view owner, const Parameters& p, double irradianceOfOne) {
+    onlyOne(owner, p);
+    const bool byIrradiance = p.given("irradiance") || p.colour("radiance")[0] < 0;
+    return byIrradiance ? over(rgb(p, "irradiance"), irradianceOfOne) : rgb(p, "radiance");
+}
+
+Direction fromElevation(const Parameters& p) {
+    return directionFromAngles(radians(90 - p.number("elevation")), radians(p.number("azimuth")));
+}
+
+/// The direction of the sun.
+Direction sunDirection(std::string_view owner, const Parameters& p) {
+    constexpr std::string_view place[] = {"latitude", "longitude", "date", "time"};
+    const auto stated = [&](std::string_view name) { return p.given(name); };
+    if (!std::ranges::any_of(place, stated)) {
+        if (!p.given("elevation"))
+            throw UsageError(
+                fmt::format("{}: elevation has to be given, or latitude, longitude, "
+                            "date and time",
+                            owner));
+        if (p.given("zone"))
+            throw UsageError(fmt::format("{}: zone is given without date and time", owner));
+        return fromElevation(p);
+    }
+    for (const std::string_view name : place)
+        if (!p.given(name))
+            throw UsageError(
+                fmt::format("{}: {} is missing; a place and time needs latitude, "
+                            "longitude, date and time",
+                            owner, name));
+    for (const std::string_view name : {"elevation", "azimuth"})
+        if (p.given(name))
+            throw UsageError(fmt::format(
+                "{}: {} is given beside a place and time; valid: one of the two", owner, name));
+    const SolarPosition sun =
+        solarPosition(parseMoment(owner, p.choice("date"), p.choice("time"), p.number("zone")),
+                      radians(p.number("latitude")), radians(p.number("longitude")));
+    if (sun.elevation < 0)
+        throw UsageError(
+            fmt::format("{}: the sun is {:.2f} degrees below the horizon at {} on {}; "
+                        "valid: a time between sunrise and sunset",
+                        owner, -degrees(sun.elevation), p.choice("time"), p.choice("date")));
+    return directionOf(sun);
+}
+
+// --- the kinds ------------------------------------------------------------------------------
+
+Light uniform(std::string_view owner, const Parameters& p) {
+    const Rgb radiance = radianceBy(owner, p, pi);
+    return SkyLight{.zenith = radiance, .ground = radiance};
+}
+
+Light directional(std::string_view owner, const Parameters& p) {
+    if (!p.given("elevation"))
+        throw UsageError(fmt::format("{}: elevation has to be given; valid: -90 to 90", owner));
+    return DirectionalLight{fromElevation(p), rgb(p, "irradiance")};
+}
+
+Light sun(std::string_view owner, const Parameters& p) {
+    const double radius = radians(p.number("angle")) / 2;
+    return DiscLight{sunDirection(owner, p), radius,
+                     radianceBy(owner, p, pi * std::pow(std::sin(radius), 2))};
+}
+
+Light panel(std::string_view owner, const Parameters& p) {
+    const double width = radians(p.number("width")), height = radians(p.number("height"));
+    // A rectangle seen from a surface that faces its centre (Lambert's formula).
+    const double a = std::tan(width / 2), b = std::tan(height / 2);
+    const double overA = std::sqrt(1 + a * a), overB = std::sqrt(1 + b * b);
+    const double irradiance =
+        2 * (a / overA * std::atan(b / overA) + b / overB * std::atan(a / overB));
+    const Direction towards = directionFromAngles(radians(90 - p.number("elevation")), 0);
+    return turned(PanelLight{towards, width, height, radians(p.number("roll")),
+                             radianceBy(owner, p, irradiance)},
+                  radians(p.number("azimuth")));
+}
+
+/// The sky with its irradiance scaled to what is asked for.
+Light withIrradiance(SkyLight sky, const Rgb& asked) {
+    sky.ground = {};
+    sky.zenith = {1, 1, 1};
+    sky.zenith = over(asked, skyIrradiance(sky));
+    return sky;
+}
+
+Light generalSky(std::string_view owner, const Parameters& p) {
+    onlyOne(owner, p);
+    const double type = p.number("type");
+    if (type != std::floor(type))
+        throw UsageError(
+            fmt::format("{}: type={} is no whole number; valid: 1 to 15", owner, type));
+    // The luminance of these depends on the elevation above the horizon alone.
+    const bool sunless = type == 1 || type == 3 || type == 5;
+    const bool placed = p.given("elevation") || p.given("latitude") || p.given("longitude") ||
+                        p.given("date") || p.given("time");
+    const Direction towards = sunless && !placed ? Direction{} : sunDirection(owner, p);
+    SkyLight sky = cieSky(static_cast<int>(type), towards, rgb(p, "radiance"));
+    if (p.given("irradiance")) sky = std::get<SkyLight>(withIrradiance(sky, rgb(p, "irradiance")));
+    sky.ground = rgb(p, "ground");
+    return sky;
+}
+
+double luminance(const Rgb& colour) {
+    return 0.2126 * colour[0] + 0.7152 * colour[1] + 0.0722 * colour[2];
+}
+
+/// Factors that give a colour the luminance, or the three components, asked for.
+Rgb factors(const std::vector<double>& asked, const Rgb& colour) {
+    if (asked.size() == 3) return over({asked[0], asked[1], asked[2]}, colour);
+    return over({asked[0], asked[0], asked[0]}, luminance(colour));
+}
+
+Light preetham(std::string_view owner, const Parameters& p) {
+    onlyOne(owner, p);
+    const Direction towards = sunDirection(owner, p);
+    const double turbidity = p.number("turbidity");
+    SkyLight sky = preethamSky(turbidity, towards, {1, 1, 1});
+    Rgb factor{1, 1, 1};
+    if (p.given("radiance")) factor = factors(p.colour("radiance"), radianceOf(sky, {0, 0, 1}));
+    if (p.given("irradiance")) factor = factors(p.colour("irradiance"), skyIrradiance(sky));
+    for (std::size_t c = 0; c < 3; ++c) sky.zenith[c] *= factor[c];
+    sky.ground = rgb(p, "ground");
+    return sky;
+}
+
+std::vector<Parameter> pictureParameters() {
+    std::vector<std::string_view> layouts{"by-size"}, curves{"by-format"};
+    for (const auto& row : layoutNames()) layouts.push_back(row.name);
+    for (const auto& row : curveNames()) curves.push_back(row.name);
+    return {{.name = "layout",
+             .help = "of directions; has to be given where the size does not tell",
+             .kind = Parameter::Kind::choice,
+             .choices = layouts},
+            {.name = "curve",
+             .help = "code of the values; has to be given for whole-number formats",
+             .kind = Parameter::Kind::choice,
+             .choices = curves}};
+}
+
+PictureOptions pictureOptions(const Parameters& p) {
+    PictureOptions options;
+    for (const auto& row : layoutNames())
+        if (row.name == p.choice("layout")) options.layout = row.layout;
+    for (const auto& row : curveNames())
+        if (row.name == p.choice("curve")) options.curve = row.curve;
+    return options;
+}
+
+LightKind kind(std::string_view name, std::string_view help, std::string_view source,
+               std::string_view example, const std::vector<Parameter>& parameters,
+               Light (*make)(std::string_view, const Parameters&)) {
+    return {name, help, source, example, both(parameters, scaleAndTurn()), make};
+}
+
+std::vector<LightKind> makeKinds() {
+    const Parameter ground = colour("ground", "radiance below the horizon", 0);
+    return {
+        kind("uniform", "the same radiance from all directions", "", "uniform:radiance=1",
+             {colour("radiance", "from each direction", 1),
+              colour("irradiance", "of any surface, instead", notGiven)},
+             uniform),
+        kind("directional", "parallel light from one direction", "",
+             "directional:elevation=40,azimuth=120,irradiance=3",
+             {number("elevation", "degrees from the horizon; has to be given", notGiven, -90, 90),
+              number("azimuth", "degrees from +x towards +y", 0, -360, 360),
+              colour("irradiance", "of a surface across the light", 1)},
+             directional),
+        kind("sun", "a round light of uniform radiance",
+             "position: Michalsky 1988, Solar Energy 40(3)",
+             "sun:latitude=50.1,longitude=14.4,date=2024-06-21,time=09:30,zone=2,irradiance=3",
+             both(sunPlace(-90), {number("angle", "angular diameter, degrees", 0.533, 0.001, 180),
+                                  colour("radiance", "of the disc; or irradiance", notGiven),
+                                  colour("irradiance", "of a surface across the light", 1)}),
+             sun),
+        kind("panel", "a rectangle of uniform radiance that faces the origin", "",
+             "panel:elevation=50,width=60,height=20,radiance=2",
+             {number("elevation", "of its centre, degrees from the horizon", 90, -90, 90),
+              number("azimuth", "degrees from +x towards +y", 0, -360, 360),
+              number("width", "angle along azimuth, degrees", 40, 0.01, 170),
+              number("height", "angle along elevation, degrees", 40, 0.01, 170),
+              number("roll", "turn about its own centre, degrees", 0, -360, 360),
+              colour("radiance", "of the panel", 1),
+              colour("irradiance", "of a surface that faces its centre, instead", notGiven)},
+             panel),
+        kind("sky", "CIE standard general sky, types 1 to 15", "ISO 15469:2004",
+             "sky:type=12,elevation=40",
+             both({Parameter{.name = "type",
+                             .help = "1 overcast to 5 uniform, 12 clear, 15 turbid",
+                             .min = 1,
+                             .max = 15}},
+                  both(sunPlace(0),
+                       {colour("radiance", "of the zenith", 1),
+                        colour("irradiance", "of a horizontal surface, instead", notGiven),
+                        ground})),
+             generalSky),
+        kind("preetham", "daylight sky with its colours, without the sun's disc",
+             "Preetham, Shirley and Smits 1999, 10.1145/311535.311545",
+             "preetham:turbidity=3,elevation=30",
+             both({number("turbidity", "2 clear to 10 haze", 3, 2, 10)},
+                  both(sunPlace(0),
+                       {colour("radiance",
+                               "of the zenith; one number is its luminance, in place of the "
+                               "model's in 1000 cd/m^2",
+                               notGiven),
+                        colour("irradiance",
+                               "of a horizontal surface, instead; one number is its "
+                               "illuminance",
+                               notGiven),
+                        ground})),
+             preetham),
+    };
+}
+
+// --- the text -------------------------------------------------------------------------------
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+    return text;
+}
+
+/// Whether the '+' at `at` belongs to a number such as 1e+3.
+bool inExponent(std::string_view text, std::size_t at) {
+    const auto digit = [&](std::size_t k) {
+        return k < text.size() && std::isdigit(static_cast<unsigned char>(text[k])) != 0;
+    };
+    return at >= 2 && (text[at - 1] == 'e' || text[at - 1] == 'E') && digit(at + 1) &&
+           (digit(at - 2) || text[at - 2] == '.');
+}
+
+constexpr std::size_t mostTerms = 256;
+constexpr std::string_view form = "kind[:key=value,...] or the path of a picture, joined by '+'";
+
+/// The end of the path that starts `text`, up to a '+', a ':' or the end; 0 where there is none.
+std::size_t pathEnd(std::string_view text) {
+    std::size_t longest = 0;
+    for (std::size_t end = 1; end <= text.size() && end < 4096; ++end) {
+        if (end < text.size() && text[end] != '+' && text[end] != ':') continue;
+        if (isPicturePath(trimmed(text.substr(0, end)))) longest = end;
+    }
+    return longest;
+}
+
+/// The end of the term that starts `text`: its first '+' outside of a path and of numbers.
+std::size_t termEnd(std::string_view text) {
+    std::size_t at = namesLight(trimmed(text)) ? 0 : pathEnd(text);
+    while ((at = text.find('+', at)) != std::string_view::npos && inExponent(text, at)) ++at;
+    return at;
+}
+
+std::vector<std::string_view> splitTerms(std::string_view text) {
+    std::vector<std::string_view> terms;
+    while (true) {
+        const std::size_t end = termEnd(text);
+        terms.push_back(trimmed(text.substr(0, end)));
+        if (terms.back().empty())
+            throw UsageError(fmt::format("light: an empty term before '{}'; valid: {}",
+                                         text.substr(0, 40), form));
+        if (terms.size() > mostTerms)
+            throw UsageError(fmt::format("light: more than {} terms", mostTerms));
+        if (end == std::string_view::npos) return terms;
+        text.remove_prefix(end + 1);
+    }
+}
+
+const LightKind* findKind(std::string_view name) {
+    const auto kinds = lightKinds();
+    const auto row = std::ranges::find(kinds, name, &LightKind::name);
+    return row == kinds.end() ? nullptr : &*row;
+}
+
+Light placed(Light light, const Parameters& p) {
+    return turned(scaled(std::move(light), p.number("scale")), radians(p.number("turn")));
+}
+
+[[noreturn]] void failUnknown(std::string_view term) {
+    const std::string_view name = term.substr(0, term.find(':'));
+    if (name.find('/') != std::string_view::npos || std::filesystem::path(name).has_extension())
+        throw InputError(fmt::format("{}: no such file", name));
+    std::vector<std::string_view> names;
+    for (const LightKind& row : lightKinds()) names.push_back(row.name);
+    throw UsageError(fmt::format("unknown light '{}'{}; valid: {}, or the path of a picture", name,
+                                 suggestion(name, names), joined(names)));
+}
+
+Light parseTerm(std::string_view term) {
+    const std::size_t colon = term.find(':');
+    const auto after = [&](std::size_t at) {
+        return at < term.size() ? term.substr(at + 1) : std::string_view();
+    };
+    if (const LightKind* row = findKind(term.substr(0, colon))) {
+        const Parameters p = parseParameters(row->name, row->parameters,
+                                             colon == std::string_view::npos ? "" : after(colon));
+        return placed(row->make(row->name, p), p);
+    }
+    const std::size_t end = pathEnd(term);
+    if (end == 0) failUnknown(term);
+    const std::string path(trimmed(term.substr(0, end)));
+    const Parameters p = parseParameters(path, pictureKind().parameters, after(end));
+    return placed(readPictureLight(path, 1, pictureOptions(p)), p);
+}
+
+}  // namespace
+
+std::span<const LightKind> lightKinds() {
+    static const std::vector<LightKind> table = makeKinds();
+    return table;
+}
+
+const LightKind& pictureKind() {
+    static const LightKind row =
+        kind("PATH", "a picture: OpenEXR, Radiance HDR; PNG, JPEG, TIFF and others with a curve",
+             "", "studio.hdr:turn=90,scale=2", pictureParameters(), nullptr);
+    return row;
+}
+
+bool namesLight(std::string_view text) {
+    return findKind(text.substr(0, text.find_first_of(":+ "))) != nullptr;
+}
+
+LightSpecification parseLights(const std::string& text) {
+    if (trimmed(text).empty())
+        throw UsageError(fmt::format("empty light specification; valid: {}", form));
+    LightSpecification specification{.text = text, .lights = {}};
+    for (const std::string_view term : splitTerms(text))
+        specification.lights.push_back(parseTerm(term));
+    return specification;
+}
+
+}  // namespace hshfit::inline light

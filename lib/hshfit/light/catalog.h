@@ -1,0 +1,47 @@
+#pragma once
+
+#include <hshfit/light/lights.h>
+#include <hshfit/specification/parameters.h>
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::inline light {
+
+/// A light specification and its lights, whose radiances add up.
+struct LightSpecification {
+    std::string text;
+    std::vector<Light> lights;  ///< one per term, in the order of the text
+};
+
+/// Parses "TERM + TERM + …", spaces or none around '+', each term
+///     kind[:key=value,…] | path of a picture[:key=value,…]
+/// with the kinds and keys of the table below. World frame: right-handed, +z up; `elevation` from
+/// the horizon and `azimuth` from +x towards +y, degrees; a place, date and time means +x east and
+/// +y north. Throws UsageError for an unknown kind, key or value (naming the valid ones) and
+/// InputError for a picture that is absent or invalid.
+LightSpecification parseLights(const std::string& text);
+
+/// Whether a text begins with a kind of light, "sky:…" or "uniform", rather than a path.
+bool namesLight(std::string_view text);
+
+/// One row of the table of lights.
+struct LightKind {
+    std::string_view name;
+    std::string_view help;
+    std::string_view source;  ///< of the formula; may be empty
+    std::string_view example;
+    std::vector<Parameter> parameters;  ///< `scale` and `turn` included
+    /// The light without scale and turn. `owner` starts messages.
+    Light (*make)(std::string_view owner, const Parameters& parameters);
+};
+
+/// The analytic lights.
+std::span<const LightKind> lightKinds();
+
+/// Pictures, which a path stands for; `make` is null.
+const LightKind& pictureKind();
+
+}  // namespace hshfit::inline light

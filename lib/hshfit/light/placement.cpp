@@ -1,0 +1,57 @@
+#include <hshfit/light/placement.h>
+
+namespace hshfit::inline light {
+namespace {
+
+struct Turn {
+    double angle;
+    void operator()(DiscLight& light) const { turn(light.towards); }
+    void operator()(PanelLight& light) const {
+        // At the poles azimuth is 0 (directions.h), so that the panel turns about its centre.
+        if (light.towards.x == 0 && light.towards.y == 0) {
+            light.turn += light.towards.z > 0 ? -angle : angle;
+        } else {
+            turn(light.towards);
+        }
+    }
+    void operator()(SkyLight& light) const { turn(light.sun); }
+    void operator()(PictureLight& light) const { light.turn += angle; }
+    void operator()(DirectionalLight& light) const { turn(light.towards); }
+
+private:
+    void turn(Direction& direction) const { direction = rotateAboutZ(direction, angle); }
+};
+
+struct Scale {
+    double factor;
+    void operator()(DiscLight& light) const { scale(light.radiance); }
+    void operator()(PanelLight& light) const { scale(light.radiance); }
+    void operator()(SkyLight& light) const {
+        scale(light.zenith);
+        scale(light.ground);
+    }
+    void operator()(PictureLight& light) const {
+        for (float& value : light.rgb) value = static_cast<float>(value * factor);
+        light.scale *= factor;
+    }
+    void operator()(DirectionalLight& light) const { scale(light.irradiance); }
+
+private:
+    void scale(Rgb& rgb) const {
+        for (double& value : rgb) value *= factor;
+    }
+};
+
+}  // namespace
+
+Light turned(Light light, double angle) {
+    std::visit(Turn{angle}, light);
+    return light;
+}
+
+Light scaled(Light light, double factor) {
+    std::visit(Scale{factor}, light);
+    return light;
+}
+
+}  // namespace hshfit::inline light
