@@ -2,6 +2,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/coefficient_files/light_file.h>
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/exr_picture.h>
@@ -121,6 +122,23 @@ void coefficientFiles(const std::filesystem::path& folder) {
             writeCoefficients(c, folder / (std::to_string(number++) + ".exr"));
         }
     }
+}
+
+void lightFiles(const std::filesystem::path& folder) {
+    using namespace hshfit;
+    std::filesystem::create_directories(folder);
+    LightCoefficients light;
+    light.basis = "sh";
+    light.order = 2;
+    light.values = samples::randomValues(3 * light.slots(), 1);
+    light.energy.value = 1;
+    light.curves = {{"sh", {{1, 1, 0.5}}}};
+    writeLight(light, folder / "sphere.json");
+    light.domain = LightCoefficients::Domain::hemisphere;
+    light.basis = "hsh";
+    light.channels = Channels::grey();
+    light.values.resize(light.slots());
+    writeLight(light, folder / "hemisphere.json");
 }
 
 /// Coefficient files in forms other than plain coefficients.
@@ -252,6 +270,7 @@ int main(int count, char** arguments) {
     const std::filesystem::path folder = arguments[1];
     coefficientFiles(folder / "fuzz_coefficients");
     formFiles(folder / "fuzz_coefficients");
+    lightFiles(folder / "fuzz_light");
     gpuFiles(folder / "fuzz_gpu_containers");
     scatteredFiles(folder);
     presetFiles(folder);

@@ -35,31 +35,6 @@ Form formByContent(std::string_view bytes) {
     return first != std::string_view::npos && bytes[first] == '{' ? Form::json : Form::none;
 }
 
-/// At most `limit` bytes of a regular file.
-std::string readBytes(const std::string& path, std::size_t limit) {
-    std::error_code error;
-    const auto status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) {
-        throw InputError(fmt::format("{}: no such file", path));
-    }
-    if (!std::filesystem::is_regular_file(status)) {
-        throw InputError(fmt::format("{}: is not a regular file", path));
-    }
-    std::ifstream in(path, std::ios::binary);
-    if (!in) {
-        throw InputError(
-            fmt::format("{}: cannot be opened: {}", path, std::generic_category().message(errno)));
-    }
-    std::string bytes;
-    std::string block(std::size_t{1} << 16, '\0');
-    while (in && bytes.size() < limit) {
-        in.read(block.data(), static_cast<std::streamsize>(block.size()));
-        bytes.append(block, 0, static_cast<std::size_t>(in.gcount()));
-    }
-    if (in.bad()) throw InputError(fmt::format("{}: cannot be read to its end", path));
-    return bytes;
-}
-
 /// Throws UsageError where the extension is of neither.
 Form writableForm(const std::string& path) {
     const Form form = formByExtension(path);
@@ -86,6 +61,30 @@ void checkForm(const Representation& representation, const std::string& path) {
 
 }  // namespace
 
+std::string readRegularFile(const std::string& path, std::size_t limit) {
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) {
+        throw InputError(fmt::format("{}: no such file", path));
+    }
+    if (!std::filesystem::is_regular_file(status)) {
+        throw InputError(fmt::format("{}: is not a regular file", path));
+    }
+    std::ifstream in(path, std::ios::binary);
+    if (!in) {
+        throw InputError(
+            fmt::format("{}: cannot be opened: {}", path, std::generic_category().message(errno)));
+    }
+    std::string bytes;
+    std::string block(std::size_t{1} << 16, '\0');
+    while (in && bytes.size() < limit) {
+        in.read(block.data(), static_cast<std::streamsize>(block.size()));
+        bytes.append(block, 0, static_cast<std::size_t>(in.gcount()));
+    }
+    if (in.bad()) throw InputError(fmt::format("{}: cannot be read to its end", path));
+    return bytes;
+}
+
 void writeCoefficients(const Coefficients& coefficients, const std::string& path) {
     writableForm(path);
     AtomicFile file(path);
@@ -105,7 +104,7 @@ void writeCoefficients(const Coefficients& coefficients, AtomicFile& file) {
 }
 
 Coefficients readCoefficients(const std::string& path) {
-    const std::string bytes = readBytes(path, std::numeric_limits<std::size_t>::max());
+    const std::string bytes = readRegularFile(path, std::numeric_limits<std::size_t>::max());
     if (bytes.empty()) throw InputError(fmt::format("{}: is empty", path));
     Form form = formByContent(bytes);
     if (form == Form::none) form = formByExtension(path);
@@ -137,7 +136,7 @@ void writeRepresentation(const Representation& representation, AtomicFile& file)
 }
 
 Representation readRepresentation(const std::string& path) {
-    const std::string bytes = readBytes(path, std::numeric_limits<std::size_t>::max());
+    const std::string bytes = readRegularFile(path, std::numeric_limits<std::size_t>::max());
     if (formByContent(bytes) == Form::json && hasRepresentation(bytes)) {
         return representationFromJson(bytes, path);
     }
@@ -147,9 +146,9 @@ Representation readRepresentation(const std::string& path) {
 bool looksLikeCoefficients(const std::string& path) {
     std::string head;
     try {
-        head = readBytes(path, std::size_t{1} << 16);
+        head = readRegularFile(path, std::size_t{1} << 16);
         // The list of channels comes before the attribute that tells.
-        if (hasExrMagic(head)) head = readBytes(path, std::size_t{1} << 22);
+        if (hasExrMagic(head)) head = readRegularFile(path, std::size_t{1} << 22);
     } catch (const InputError&) {
         return false;
     }

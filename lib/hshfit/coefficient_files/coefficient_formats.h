@@ -6,6 +6,7 @@
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/representation/representation.h>
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,6 +20,25 @@ namespace hshfit::inline coefficient_files {
 
 /// No form of a coefficient file nests its JSON more deeply.
 inline constexpr int deepestJson = 8;
+
+/// At most `limit` bytes of a regular file. Throws InputError.
+std::string readRegularFile(const std::string& path, std::size_t limit);
+
+/// The values with commas between them, so that reading gives the same doubles.
+void appendJsonNumbers(std::span<const double> values, std::string& out);
+
+/// Radians in degrees, to 1e-10: 51.99999999999999 is what 52 comes back as from a unit vector.
+double tidyDegrees(double angle);
+
+/// The object "basis" of a file.
+struct BasisName {
+    std::string name;
+    int order = 0;
+    bool condonShortley = false;
+};
+std::string basisText(const BasisName& basis);
+/// Throws InputError that names the field.
+BasisName readBasisName(const JsonFields& basis);
 
 /// The head as (key, JSON text), in the order in which it is written.
 using CoefficientMetadata = std::vector<std::pair<std::string, std::string>>;

@@ -122,13 +122,15 @@ Coefficients decodedOrRefused(std::string_view text, const std::string& file) {
 
 constexpr std::size_t longestNumber = sizeof("-1.7976931348623157e+308");  // and the comma
 
+}  // namespace
+
 /// Straight into memory of the largest size that they can have, with a format known when this is
 /// compiled: less than half the time of an appending iterator.
-void appendNumbers(const double* values, std::size_t count, std::string& out) {
+void appendJsonNumbers(std::span<const double> values, std::string& out) {
     const std::size_t start = out.size();
-    out.resize(start + count * longestNumber);
+    out.resize(start + values.size() * longestNumber);
     char* at = out.data() + start;
-    for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t k = 0; k < values.size(); ++k) {
         if (k > 0) *at++ = ',';
         // "-0" would come back as the integer 0.
         if (values[k] == 0 && std::signbit(values[k])) {
@@ -139,8 +141,6 @@ void appendNumbers(const double* values, std::size_t count, std::string& out) {
     }
     out.resize(static_cast<std::size_t>(at - out.data()));
 }
-
-}  // namespace
 
 std::string coefficientsToJson(const Coefficients& c) {
     requireFinite(c);
@@ -154,7 +154,7 @@ std::string coefficientsToJson(const Coefficients& c) {
     for (std::size_t o = 0; o < c.outgoing.size(); ++o) {
         for (std::size_t channel = 0; channel < c.channels.count(); ++channel) {
             out += channel == 0 ? "    [[" : ",\n     [";
-            appendNumbers(c.at(o, channel), c.slots(), out);
+            appendJsonNumbers({c.at(o, channel), c.slots()}, out);
             out += ']';
         }
         out += o + 1 < c.outgoing.size() ? "],\n" : "]\n";

@@ -31,12 +31,6 @@ std::string text(const Ordered& value) {
     return jsonText(value);
 }
 
-/// 51.99999999999999 is what 52 degrees come back as from a unit vector.
-double tidyDegrees(double angle) {
-    const double rounded = std::round(degrees(angle) * 1e10) / 1e10;
-    return rounded == 0 ? 0 : rounded;
-}
-
 Ordered describe(const OutgoingSet& set) {
     if (set.directions.empty()) return {{"map", "none"}};
     switch (set.map) {
@@ -85,24 +79,6 @@ void checkVersion(const Fields& root) {
         root.fail(fmt::format("is {}: written by a newer hshfit; this one reads version {}",
                               version, formatVersion),
                   "version");
-    }
-}
-
-void readBasis(const Fields& basis, CoefficientHead& result) {
-    result.basis = basis.word("name");
-    const auto known = bases::catalog();
-    const auto entry = std::find_if(known.begin(), known.end(), [&](const bases::Entry& candidate) {
-        return candidate.name == result.basis;
-    });
-    if (entry == known.end()) {
-        std::string names;
-        for (const auto& candidate : known) names += fmt::format(" {}", candidate.name);
-        basis.fail(fmt::format("is '{}'; known:{}", result.basis.substr(0, 40), names), "name");
-    }
-    result.order = basis.integer("order", 1, entry->maxOrder);
-    result.condonShortley = basis.flag("condon_shortley");
-    if (basis.word("index") != slotRule) {
-        basis.fail(fmt::format("has to be '{}'", slotRule), "index");
     }
 }
 
@@ -206,6 +182,38 @@ Energy readEnergy(const Fields& root) {
 
 }  // namespace
 
+double tidyDegrees(double angle) {
+    const double rounded = std::round(degrees(angle) * 1e10) / 1e10;
+    return rounded == 0 ? 0 : rounded;
+}
+
+std::string basisText(const BasisName& basis) {
+    return text({{"name", basis.name},
+                 {"order", basis.order},
+                 {"condon_shortley", basis.condonShortley},
+                 {"index", slotRule}});
+}
+
+BasisName readBasisName(const Fields& basis) {
+    BasisName result;
+    result.name = basis.word("name");
+    const auto known = bases::catalog();
+    const auto entry = std::find_if(known.begin(), known.end(), [&](const bases::Entry& candidate) {
+        return candidate.name == result.name;
+    });
+    if (entry == known.end()) {
+        std::string names;
+        for (const auto& candidate : known) names += fmt::format(" {}", candidate.name);
+        basis.fail(fmt::format("is '{}'; known:{}", result.name.substr(0, 40), names), "name");
+    }
+    result.order = basis.integer("order", 1, entry->maxOrder);
+    result.condonShortley = basis.flag("condon_shortley");
+    if (basis.word("index") != slotRule) {
+        basis.fail(fmt::format("has to be '{}'", slotRule), "index");
+    }
+    return result;
+}
+
 CoefficientMetadata metadataOf(const CoefficientHead& c) {
     CoefficientMetadata metadata;
     const auto add = [&](const char* key, const Ordered& value) {
@@ -216,10 +224,7 @@ CoefficientMetadata metadataOf(const CoefficientHead& c) {
     add("generator", c.generator.empty() ? std::string("hshfit ") + version : c.generator);
     add("source", {{"brdf", c.source}});
     if (!c.basis.empty()) {
-        add("basis", {{"name", c.basis},
-                      {"order", c.order},
-                      {"condon_shortley", c.condonShortley},
-                      {"index", slotRule}});
+        metadata.emplace_back("basis", basisText({c.basis, c.order, c.condonShortley}));
     }
     add("quantity", quantityName(c.quantity));
     add("channels", c.channels.names());
@@ -251,7 +256,12 @@ CoefficientHead readSharedHead(const Fields& root, std::size_t outgoingCount) {
     result.generator = root.word("generator");
     result.source = root.object("source").word("brdf");
     // Without coefficients per outgoing direction there may be no basis.
-    if (outgoingCount > 0 || root.has("basis")) readBasis(root.object("basis"), result);
+    if (outgoingCount > 0 || root.has("basis")) {
+        const BasisName basis = readBasisName(root.object("basis"));
+        result.basis = basis.name;
+        result.order = basis.order;
+        result.condonShortley = basis.condonShortley;
+    }
     const std::string quantity = root.word("quantity");
     result.quantity =
         quantity == quantityName(Quantity::brdfCosine) ? Quantity::brdfCosine : Quantity::brdf;
