@@ -9,7 +9,7 @@
 #include <benchmark/benchmark.h>
 #include <brdfs/catalog.h>
 #include <hshfit/bases/catalog.h>
-#include <hshfit/projection/internal/lane_products.h>
+#include <hshfit/projection/lane_products.h>
 #include <hshfit/projection/projection.h>
 #include <hshfit/quadrature/azimuth_tables.h>
 #include <tbb/global_control.h>

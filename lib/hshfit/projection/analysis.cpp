@@ -1,7 +1,7 @@
 #include <hshfit/projection/analysis.h>
 
 #include <hshfit/error.h>
-#include <hshfit/projection/internal/lane_products.h>
+#include <hshfit/projection/lane_products.h>
 #include <hshfit/projection/internal/ring_kernels.h>
 #include <hshfit/quadrature/quadrature.h>
 

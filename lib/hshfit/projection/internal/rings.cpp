@@ -1,7 +1,7 @@
 #include <hshfit/projection/internal/rings.h>
 
 #include <hshfit/error.h>
-#include <hshfit/projection/internal/lane_products.h>
+#include <hshfit/projection/lane_products.h>
 #include <hshfit/projection/internal/ring_kernels.h>
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include <hshfit/projection/internal/theta_products.h>
 
-#include <hshfit/projection/internal/lane_products.h>
+#include <hshfit/projection/lane_products.h>
 
 #include <tbb/concurrent_unordered_map.h>
 

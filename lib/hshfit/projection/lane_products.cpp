@@ -1,10 +1,10 @@
 #include <hshfit/vector_targets.h>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "hshfit/projection/internal/lane_products.cpp"
+#define HWY_TARGET_INCLUDE "hshfit/projection/lane_products.cpp"
 #include <hwy/foreach_target.h>
 
-#include <hshfit/projection/internal/lane_products.h>
+#include <hshfit/projection/lane_products.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
