@@ -1,7 +1,7 @@
 #include <hshfit/representation/split.h>
 
 #include <hshfit/error.h>
-#include <hshfit/representation/descend.h>
+#include <hshfit/linear_algebra/descend.h>
 #include <hshfit/wording.h>
 
 #include <fmt/format.h>

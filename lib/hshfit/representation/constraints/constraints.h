@@ -1,30 +1,15 @@
 #pragma once
 
 #include <hshfit/representation/representation.h>
-
-#include <string_view>
-#include <vector>
+#include <hshfit/transfer/windows.h>
 
 namespace hshfit::inline representation::inline constraints {
-
-/// Factors on the bands against ringing.
-enum class Window { none, hann, lanczos, bending };
-std::string_view windowName(Window window);
-/// Throws UsageError with the names.
-Window parseWindow(std::string_view name);
-
-/// The factor on every band l of n = `order` bands (Sloan 2008, "Stupid Spherical Harmonics
-/// Tricks"):
-///     hann     (1 + cos(pi l / n)) / 2
-///     lanczos  sin(pi l / n) / (pi l / n), the sigma factors
-///     bending  1 / (1 + lambda l^2 (l + 1)^2)
-/// All are 1 for l = 0, so that what band 0 carries stays. `lambda` is for bending only.
-std::vector<double> windowFactors(Window window, int order, double lambda = 0);
 
 /// Each returns the changed coefficients and adds a step with its cost. For the kinds outgoing and
 /// basis, neither factored nor quantised; UsageError for halfway.
 
-/// Multiplies each band by its factor; kind basis: by those of both bands, l for wi and k for wo.
+/// Multiplies each band by its factor (`windowFactors`); kind basis: by those of both bands, l for
+/// wi and k for wo.
 /// Bending minimises |f - f'|^2 + lambda |Delta f'|^2 with one lambda for all outgoing directions
 /// and channels, such that |Delta f'|^2 is half of |Delta f|^2. -l (l + 1) is the eigenvalue of the
 /// Laplacian Delta for sh, esh and lsosh; for hsh it is that on the sphere to which the hemisphere

@@ -2,8 +2,8 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
+#include <hshfit/linear_algebra/descend.h>
 #include <hshfit/representation/constraints/constraints_least_change.h>
-#include <hshfit/representation/descend.h>
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 #include <hshfit/bases/basis.h>
 #include <hshfit/brdf/directions.h>
-#include <hshfit/representation/descend.h>
+#include <hshfit/linear_algebra/descend.h>
 
 #include <array>
 #include <cstddef>

@@ -7,15 +7,12 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <functional>
 
 namespace hshfit::inline representation::inline constraints {
 namespace {
-
-constexpr std::array windowNames{"none", "hann", "lanczos", "bending"};
 
 /// Share of the squared Laplacian that bending leaves.
 constexpr double keptBending = 0.5;
@@ -82,29 +79,6 @@ double bendingLambda(const std::vector<BandedNumber>& numbers, int order) {
 }
 
 }  // namespace
-
-std::string_view windowName(Window window) {
-    return windowNames[static_cast<std::size_t>(window)];
-}
-
-Window parseWindow(std::string_view name) {
-    for (std::size_t k = 0; k < windowNames.size(); ++k) {
-        if (windowNames[k] == name) return static_cast<Window>(k);
-    }
-    throw UsageError(fmt::format("'{}' is no window; known: none, hann, lanczos, bending", name));
-}
-
-std::vector<double> windowFactors(Window window, int order, double lambda) {
-    std::vector<double> factors(static_cast<std::size_t>(order), 1.0);
-    for (int l = 1; l < order; ++l) {
-        const double x = pi * l / order;
-        double& factor = factors[static_cast<std::size_t>(l)];
-        if (window == Window::hann) factor = (1 + std::cos(x)) / 2;
-        if (window == Window::lanczos) factor = std::sin(x) / x;
-        if (window == Window::bending) factor = 1 / (1 + lambda * squared(l * (l + 1.0)));
-    }
-    return factors;
-}
 
 Representation windowed(Representation representation, Window window) {
     const bool outgoing = representation.as<CoefficientArray>() != nullptr;

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace hshfit::inline representation {
+namespace hshfit::linear_algebra {
 
 /// Where a search may move along one coordinate, and how far at first.
 struct SearchAxis {
@@ -51,4 +51,9 @@ double descend(F&& f, std::vector<double>& x, const std::vector<SearchAxis>& axe
     return best;
 }
 
-}  // namespace hshfit::inline representation
+}  // namespace hshfit::linear_algebra
+
+namespace hshfit {
+using linear_algebra::descend;
+using linear_algebra::SearchAxis;
+}  // namespace hshfit
