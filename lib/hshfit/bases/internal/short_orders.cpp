@@ -9,7 +9,7 @@
 #define HWY_TARGET_INCLUDE "hshfit/bases/internal/short_orders.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target.h comes before these.
-#include <hshfit/bases/internal/vectors-inl.h>
+#include <hshfit/bases/vectors-inl.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();

@@ -10,7 +10,7 @@
 #endif
 
 #include <hshfit/bases/internal/long_orders.h>
-#include <hshfit/bases/internal/vectors-inl.h>
+#include <hshfit/bases/vectors-inl.h>
 
 #include <cmath>
 #include <cstdint>

@@ -1,4 +1,5 @@
-// Loads and transposed stores that the kernels share; compiled once for every instruction set.
+// Loads and transposed stores that vector kernels of any room share; compiled once for every
+// instruction set.
 
 #if defined(HSHFIT_BASES_KERNELS_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HSHFIT_BASES_KERNELS_VECTORS_INL_H
