@@ -57,7 +57,7 @@ struct Bound {
     int order;
     double error;
 };
-constexpr Bound bounds[] = {{1, 1e-15},  {2, 1e-15},   {3, 1e-15},   {10, 1e-14},
+constexpr Bound bounds[] = {{1, 4e-15},  {2, 4e-15},   {3, 4e-15},   {10, 1e-14},
                             {11, 1e-14}, {100, 1e-13}, {300, 1e-12}, {1000, 1e-11}};
 
 TEST(ShRotation, RotatedFunctionIsTheFunctionAtTurnedDirections) {
