@@ -11,6 +11,7 @@ void addCompare(CLI::App& command, Globals& globals);
 void addConvert(CLI::App& command, Globals& globals);
 void addExport(CLI::App& command, Globals& globals);
 void addFit(CLI::App& command, Globals& globals);
+void addPlot(CLI::App& command, Globals& globals);
 void addRender(CLI::App& command, Globals& globals);
 void addLtc(CLI::App& command, Globals& globals);
 void addGaussians(CLI::App& command, Globals& globals);
@@ -89,6 +90,12 @@ constexpr Command table[] = {
      .file = "render.cpp",
      .example = "hshfit render lambert ggx:alpha=.2 -o spheres.png",
      .add = addRender},
+    {.name = "plot",
+     .group = inspection,
+     .help = "The functions of a basis as a figure of lobes",
+     .file = "plot.cpp",
+     .example = "hshfit plot hsh -o hsh.png",
+     .add = addPlot},
     {.name = "ltc",
      .group = fits,
      .help =
