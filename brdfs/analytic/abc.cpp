@@ -53,10 +53,12 @@ public:
                      AbcFormula::shape(Values<double>(p, 0))) {}
 
     /// Near the mirror direction |D| is the slope times 2 cos(theta_o) and 1 - h.z half its square;
-    /// the powers are singular where these reach -1 / B.
+    /// the powers are singular where these reach -1 / B. With a large exponent C they are nearly
+    /// Gaussians, with standard deviations below that by sqrt(2 C).
     std::vector<Lobe> lobes(const Direction& wo) const override {
-        const double width = shape_.smooth ? 1 / (2 * std::max(wo.z, 1e-3) * std::sqrt(shape_.b))
-                                           : std::sqrt(2 / shape_.b);
+        const double pole = shape_.smooth ? 1 / (2 * std::max(wo.z, 1e-3) * std::sqrt(shape_.b))
+                                          : std::sqrt(2 / shape_.b);
+        const double width = pole * std::min(1.0, 2.5 / std::sqrt(2 * shape_.c));
         return {{Lobe::About::halfway, std::min(1.0, width), {}}};
     }
 
