@@ -9,17 +9,17 @@ unset border
 unset tics
 unset key
 set view equal xyz
-set view 68, 0, 1.9
+set view 68, 0, 2.7
 set pm3d depthorder noborder
 set pm3d lighting primary 0.35 specular 0.1
 set margins 0, 0, 0, 0
-set xrange [-last - 0.9:last + 0.6]
+set xrange [-last - 1.0:last + 0.6]
 set yrange [-0.5:0.5]
-set zrange [-last - 0.6:0.6]
+set zrange [-last - 0.7:0.6]
 do for [l = 0:last] {
-    set label sprintf("l = %d", l) at -last - 0.5, 0, -l + 0.1 right
+    set label sprintf("l = %d", l) at -last - 0.6, 0, -l + 0.05 right
 }
 do for [m = -last:last] {
-    set label sprintf("m = %d", m) at m, 0, -last - 0.55 center
+    set label sprintf("m = %d", m) at m, 0, -last - 0.68 center
 }
 splot data using 1:2:3:4 with pm3d
