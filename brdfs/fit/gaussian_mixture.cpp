@@ -21,34 +21,52 @@ Neighbours neighbours(const std::vector<GaussianElevation>& elevations, double t
     return {second - 1, second, (theta - from) / (to - from)};
 }
 
-/// The frame of a lobe's axis: w.p and w.x.
-struct InPlane {
-    double along, aside;
+/// A lobe for one wo: sine and cosine of its axis' angle are common to all wi.
+class PlacedLobe {
+public:
+    PlacedLobe(GaussianKind kind, const GaussianLobe& lobe, double theta)
+        : kind_(kind),
+          lobe_(lobe),
+          sine_(std::sin(theta + lobe.tilt)),
+          cosine_(std::cos(theta + lobe.tilt)) {}
+
+    double along(const Direction& w) const { return w.x * sine_ + w.z * cosine_; }
+    double aside(const Direction& w) const { return w.x * cosine_ - w.z * sine_; }
+    /// 1 - w.p from the distance to p, without cancellation.
+    double versine(const Direction& w) const {
+        const double dx = w.x - sine_, dz = w.z - cosine_;
+        return (dx * dx + w.y * w.y + dz * dz) / 2;
+    }
+
+    double value(const Direction& w) const {
+        if (kind_ == GaussianKind::spherical) return bell(lobe_.sharpness * versine(w));
+        const double height = along(w), side = aside(w);
+        if (height <= 0) return 0;
+        return height * bell(lobe_.sharpness * side * side + lobe_.across * w.y * w.y);
+    }
+
+private:
+    /// exp(-x), which is 0 beyond the least double.
+    static double bell(double x) { return x > 750 ? 0 : std::exp(-x); }
+
+    GaussianKind kind_;
+    const GaussianLobe& lobe_;
+    double sine_, cosine_;
 };
-InPlane inPlane(const Direction& w, double angle) {
-    const double s = std::sin(angle), c = std::cos(angle);
-    return {w.x * s + w.z * c, w.x * c - w.z * s};
-}
 
 }  // namespace
 
 GaussianValue evaluateLobe(GaussianKind kind, const GaussianLobe& lobe, double theta,
                            const Direction& wi) {
-    const double angle = theta + lobe.tilt;
-    const InPlane w = inPlane(wi, angle);
-    if (kind == GaussianKind::spherical) {
-        // 1 - w.p from the distance to p, without cancellation.
-        const double dx = wi.x - std::sin(angle), dz = wi.z - std::cos(angle);
-        const double versine = (dx * dx + wi.y * wi.y + dz * dz) / 2;
-        const double value = std::exp(-lobe.sharpness * versine);
-        return {value, value * lobe.sharpness * w.aside, -value * lobe.sharpness * versine, 0};
-    }
-    if (w.along <= 0) return {};
-    const double inPlaneTerm = lobe.sharpness * w.aside * w.aside;
-    const double acrossTerm = lobe.across * wi.y * wi.y;
-    const double bell = std::exp(-inPlaneTerm - acrossTerm);
-    return {w.along * bell, bell * w.aside * (1 + 2 * lobe.sharpness * w.along * w.along),
-            -w.along * bell * inPlaneTerm, -w.along * bell * acrossTerm};
+    const PlacedLobe placed(kind, lobe, theta);
+    const double value = placed.value(wi), aside = placed.aside(wi);
+    if (kind == GaussianKind::spherical)
+        return {value, value * lobe.sharpness * aside, -value * lobe.sharpness * placed.versine(wi),
+                0};
+    const double along = placed.along(wi);
+    if (along <= 0) return {};
+    return {value, value / along * aside * (1 + 2 * lobe.sharpness * along * along),
+            -value * lobe.sharpness * aside * aside, -value * lobe.across * wi.y * wi.y};
 }
 
 const Laws& GaussianMixture::laws() const {
@@ -63,16 +81,20 @@ void GaussianMixture::eval(const Direction& wo, DirectionBatch wi, double* out) 
     const double theta = polarAngle(wo), turn = pi - azimuth(wo);
     const double c = std::cos(turn), s = std::sin(turn);
     const Neighbours near = neighbours(content_.elevations, theta);
+    std::vector<Direction> turned(wi.count);
+    for (std::size_t k = 0; k < wi.count; ++k)
+        turned[k] = {c * wi.x[k] - s * wi.y[k], s * wi.x[k] + c * wi.y[k], wi.z[k]};
     const auto add = [&](const GaussianElevation& elevation, double weight) {
         if (weight == 0) return;
-        for (const GaussianLobe& lobe : elevation.lobes)
+        for (const GaussianLobe& lobe : elevation.lobes) {
+            const PlacedLobe placed(content_.kind, lobe, theta);
             for (std::size_t k = 0; k < wi.count; ++k) {
-                if (!(wi.z[k] > 0)) continue;
-                const Direction w{c * wi.x[k] - s * wi.y[k], s * wi.x[k] + c * wi.y[k], wi.z[k]};
-                const double value = weight * evaluateLobe(content_.kind, lobe, theta, w).value;
+                const double value = turned[k].z > 0 ? weight * placed.value(turned[k]) : 0;
+                if (value == 0) continue;
                 for (std::size_t channel = 0; channel < channels; ++channel)
                     out[channel * wi.count + k] += lobe.amplitude[channel] * value;
             }
+        }
     };
     add(content_.elevations[near.first], 1 - near.weight);
     add(content_.elevations[near.second], near.weight);

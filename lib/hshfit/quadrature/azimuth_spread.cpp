@@ -16,16 +16,17 @@ constexpr std::size_t maxAzimuths = std::size_t{1} << 22;
 
 AzimuthPeaks::AzimuthPeaks(const std::vector<Lobe>& lobes, const Direction& wo, double a,
                            double b) {
-    const auto visit = [&](double u) {
+    const auto visit = [&](const Lobe& lobe, double u) {
         const double mu = u * u, s = std::sqrt((1 - mu) * (1 + mu));
-        for (const Lobe& lobe : lobes) addLobe(lobe, wo, s, mu);
+        addLobe(lobe, wo, s, mu);
     };
-    visit(a);
-    visit(b);
+    // A lobe is narrowest on its own ring: those of other lobes tell nothing more about it.
+    for (const double end : {a, b})
+        for (const Lobe& lobe : lobes) visit(lobe, end);
     for (const Lobe& lobe : lobes) {
         const double peak = lobe.about == Lobe::About::axis ? lobe.axis.z : wo.z;
         const double u = std::sqrt(std::clamp(peak, 0.0, 1.0));
-        if (u > a && u < b) visit(u);
+        if (u > a && u < b) visit(lobe, u);
     }
 }
 

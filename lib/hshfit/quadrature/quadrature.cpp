@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -101,19 +102,21 @@ std::vector<Complex> singularities(const std::vector<Lobe>& lobes, const Directi
     return points;
 }
 
+/// The ellipse of a half lies within that of the whole: only points within are passed on.
 void splitPanels(double a, double b, const std::vector<Complex>& points, int depth,
                  std::vector<double>& breaks) {
     constexpr int maxDepth = 40;
-    const bool split = depth < maxDepth &&
-                       std::any_of(points.begin(), points.end(),
-                                   [&](Complex z) { return bernstein(a, b, z) < panelEllipse; });
-    if (!split) {
+    std::vector<Complex> within;
+    if (depth < maxDepth)
+        std::ranges::copy_if(points, std::back_inserter(within),
+                             [&](Complex z) { return bernstein(a, b, z) < panelEllipse; });
+    if (within.empty()) {
         breaks.push_back(b);
         return;
     }
     const double middle = 0.5 * (a + b);
-    splitPanels(a, middle, points, depth + 1, breaks);
-    splitPanels(middle, b, points, depth + 1, breaks);
+    splitPanels(a, middle, within, depth + 1, breaks);
+    splitPanels(middle, b, within, depth + 1, breaks);
 }
 
 }  // namespace
