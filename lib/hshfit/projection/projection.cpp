@@ -168,7 +168,8 @@ void addGroup(const Basis& basis, std::size_t basisIndex, const Group& group,
     const int e = static_cast<int>(basis.inner());
     out.energy.value += group.solidAngle * result.energy[e];
     out.energy.error += group.solidAngle * result.energyError[e];
-    out.error = std::max(out.error, result.error * result.enlargement[basisIndex]);
+    out.error = std::max(
+        out.error, result.error * result.enlargement[basisIndex] + result.rounding[basisIndex]);
     projection.evaluations += result.evaluations;
     if (!result.horizon.energyExists(basis.inner()) && out.energy.finite) {
         out.energy.finite = false;

@@ -14,8 +14,8 @@
 namespace hshfit::stability {
 namespace {
 
-/// Errors below this, relative, are rounding of sums.
-constexpr double rounding = 1e-13;
+/// Errors below this, relative, are those of basis functions and of models' values.
+constexpr double rounding = 1e-12;
 
 Projection projectTrial(const ErrorTrial& trial, double share, std::size_t maxEvaluations) {
     const auto basis = bases::make(trial.basis, trial.order);
@@ -54,6 +54,19 @@ ErrorTrialResult tryError(const ErrorTrial& trial, const ErrorTrialOptions& opti
             result.state = ErrorTrialResult::State::measured;
             break;
         } catch (const NumericError&) {
+        }
+    }
+    // The same nodes would show no error.
+    constexpr double finer = 1e-2, finest = 1e-11;
+    for (double share = result.share * finer;
+         result.state == ErrorTrialResult::State::measured && share > finest &&
+         exact.evaluations == found.evaluations;
+         share *= finer) {
+        try {
+            exact = projectTrial(trial, share, options.referenceEvaluations);
+            result.share = share;
+        } catch (const NumericError&) {
+            break;
         }
     }
     const Coefficients& c = found.coefficients;

@@ -23,7 +23,7 @@ struct ErrorTrial {
 };
 
 /// True errors of a projection at its default tolerance, against the same projection at a
-/// hundredth of it, relative to the errors that it states.
+/// hundredth of it, or finer until the nodes differ, relative to the errors that it states.
 struct ErrorTrialResult {
     enum class State {
         measured,

@@ -50,6 +50,22 @@ TEST(Convergence, ExponentialErrorsAreNotTakenForChanges) {
     EXPECT_GE(estimate(error, 5, false).stated, error(3) - error(4));
 }
 
+/// A last change that is a thousand times too small would hide nearly all of the error.
+TEST(Convergence, AnAccidentOfTheLastChangeIsSeen) {
+    for (const double rate : {2.0, 3.0, 4.0, 5.0}) {
+        const auto error = [&](int k) { return std::exp(-rate * std::pow(1.4, k)); };
+        for (int levels = 4; levels < 6; ++levels) {
+            Changes changes;
+            for (int k = 1; k < levels; ++k) {
+                const double accident = k + 1 == levels ? 1e-3 : 1;
+                changes.add(accident * std::abs(error(k) - error(k - 1)));
+            }
+            EXPECT_GE(10 * panelError(changes, true).stated, error(levels - 1))
+                << rate << " " << levels;
+        }
+    }
+}
+
 /// Of one sign, as at a singularity that rules come nearer to: N^-1 is 1.4^-1 a level.
 TEST(Convergence, SlowErrorsOfOneSignAreCovered) {
     for (const double ratio : {0.3, 0.5, 0.6, 0.7, 0.75}) {

@@ -13,25 +13,34 @@ double ratioOf(double change, double before) {
     return before > 0 ? change / before : infinity;
 }
 
+constexpr double growth = 1.4;  ///< of the number of nodes, from level to level
+
+/// A last change far below the one that the two before lead to is an accident.
+double withoutAccident(const Changes& changes) {
+    const auto& [last, before, earlier] = changes.values;
+    constexpr double plausible = 0.03;
+    if (!(earlier < infinity && earlier > 0)) return last;
+    return std::max(last, plausible * before * std::pow(std::min(1.0, before / earlier), growth));
+}
+
 /// The factor by which the next change is expected to be below the last one; 1 where changes do not
 /// shrink as those of a smooth f do. Errors are about exp(-c 1.4^k) at level k: their ratios go
 /// down with every level, and an error is the last change to the power of 1.4. The larger of the
-/// two counts, since either may be an accident. Safety factors from trials over the catalog
+/// two counts, since either may be an accident. Factors from trials over the catalog
 /// (docs/stability.md).
 double smoothFactor(const Changes& changes) {
     const auto& [last, before, earlier] = changes.values;
-    constexpr double growth = 1.4, ofRatio = 5, ofPower = 30;
+    constexpr double ofPower = 20, fast = 0.3;
     const double ratio = ratioOf(last, before);
+    if (!(ratio < fast)) return 1;
     const double power = ofPower * std::pow(last, growth - 1);
-    if (earlier == infinity) {  // two changes show less
-        constexpr double fast = 0.1;
-        return ratio < fast ? std::min(1.0, std::max(ofRatio * ratio, power)) : 1;
-    }
-    constexpr double fast = 0.2, fastBefore = 0.35, further = 1.2;
+    constexpr double ofOneRatio = 0.5;
+    if (earlier == infinity) return std::min(1.0, std::max(ofOneRatio * ratio, power));
+    constexpr double ofTwoRatios = 5, fastBefore = 0.25, further = 1.2;
     const double ratioBefore = ratioOf(before, earlier);
-    if (!(ratio < fast && ratioBefore < fastBefore)) return 1;
+    if (!(ratioBefore < fastBefore)) return 1;
     const double sure = std::max(ratio, std::pow(ratioBefore, growth));
-    return std::min(1.0, std::max(ofRatio * std::pow(sure, further), power));
+    return std::min(1.0, std::max(ofTwoRatios * std::pow(sure, further), power));
 }
 
 /// The error that algebraic convergence leaves.
@@ -50,11 +59,13 @@ double roughError(const Changes& changes) {
 
 }  // namespace
 
-PanelError panelError(const Changes& changes, bool mayBeSmooth) {
-    const auto& [last, before, earlier] = changes.values;
-    constexpr double ofOneChange = 2, ofTables = 3;
+PanelError panelError(const Changes& given, bool mayBeSmooth) {
+    constexpr double ofTables = 3;
+    Changes changes = given;
+    auto& [last, before, earlier] = changes.values;
     if (last == infinity) return {infinity, infinity};
-    const double rough = before == infinity ? ofOneChange * last : roughError(changes);
+    last = withoutAccident(changes);
+    const double rough = before == infinity ? last : roughError(changes);
     if (!mayBeSmooth) return {rough, ofTables * rough};
     if (before == infinity) return {rough, rough};
     const double factor = smoothFactor(changes);

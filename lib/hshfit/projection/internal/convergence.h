@@ -33,7 +33,8 @@ struct PanelError {
 /// Exponential convergence gains more with every level: then the next change is at most the last
 /// one times its ratio to the one before. Otherwise changes go down by a ratio q of 0.4 to 0.7 with
 /// accidents, and the error is about the last change times q / (1 - q), or what is left of an
-/// earlier change that was larger. `mayBeSmooth`: whether the first is possible at all; if not, as
+/// earlier change that was larger. A last change of less than 3 % of the one that the two before
+/// lead to is raised to that. `mayBeSmooth`: whether the first is possible at all; if not, as
 /// with interpolated tables, three times as much is stated.
 PanelError panelError(const Changes& changes, bool mayBeSmooth);
 

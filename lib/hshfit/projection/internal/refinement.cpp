@@ -20,10 +20,16 @@ using Inner = Basis::Inner;
 
 constexpr int maxLevel = 20;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Of sums over all nodes, relative.
-constexpr double rounding = 1e-14;
+/// Of sums over all nodes, relative; and the accuracy of basis functions and of models' formulas,
+/// below which no error is stated.
+constexpr double rounding = 1e-14, accuracyOfValues = 1e-12;
 /// Tolerances from here on are those of interpolated tables (Brdf::defaultTolerance).
 constexpr double interpolated = 1e-4;
+/// Levels that a panel has to reach before its changes are believed: a small one, or two, may be an
+/// accident.
+constexpr int leastLevel = 3;
+/// The share of the totals below which a panel is believed sooner.
+constexpr double negligible = 0.1;
 
 /// State of one elevation panel at its present level.
 struct Panel {
@@ -36,6 +42,7 @@ struct Panel {
     std::vector<Changes> change = {};  ///< per basis: of the moments, by norm
     std::array<Changes, 2> energyChange = {};
     PanelError error = {};  ///< relative to the totals
+    double share = 0;       ///< of the totals, the largest over bases and energies
 };
 
 /// The root of the sum of squares of `count` values, in four sums side by side.
@@ -106,6 +113,7 @@ public:
             result_.moments.push_back(
                 tables_.theta.toSlots(b, spectrum_.channels, ofBasis(totals_, b).data()));
             result_.enlargement.push_back(enlargement(b));
+            result_.rounding.push_back(roundingOf(b));
         }
         return std::move(result_);
     }
@@ -189,10 +197,11 @@ private:
         expected_ = result_.error = 0;
         for (Panel& panel : panels_) {
             panel.error = panelError(largestChanges(panel), mayBeSmooth_);
+            panel.share = shareOf(panel);
             expected_ += panel.error.expected;
             result_.error += panel.error.stated;
         }
-        if (result_.error > 0) result_.error += rounding;
+        if (result_.error > 0) result_.error += accuracyOfValues;
         for (std::size_t e = 0; e < result_.energy.size(); ++e)
             result_.energyError[e] = result_.error * result_.energy[e];
     }
@@ -214,6 +223,21 @@ private:
         return largest;
     }
 
+    double shareOf(const Panel& panel) const {
+        double largest = 0;
+        for (std::size_t b = 0; b < bases_.size(); ++b)
+            largest = std::max(largest, relative(norm(ofBasis(panel.moments, b)), norms_[b]));
+        for (std::size_t e = 0; e < result_.energy.size(); ++e)
+            if (result_.horizon.energyExists(static_cast<Inner>(e)))
+                largest = std::max(largest, relative(panel.energy[e], result_.energy[e]));
+        return largest;
+    }
+
+    /// Whether a panel has as many changes as are needed to see how it converges.
+    static bool hasShownItself(const Panel& panel) {
+        return panel.level >= leastLevel || panel.share < negligible;
+    }
+
     /// By how much the solution of a Gram system enlarges the last changes, relative to the
     /// moments.
     double enlargement(std::size_t b) const {
@@ -229,6 +253,15 @@ private:
         const double solved = solvedNorm(b, ofBasis(totals_, b));
         if (!(changes > 0 && solved > 0)) return 1;
         return std::max(1.0, solvedChanges / changes * norms_[b] / solved);
+    }
+
+    /// Rounding of f, relative: a Gram system enlarges it by up to the root of its largest inverse
+    /// eigenvalue, which the solution of moments of alternating signs shows.
+    double roundingOf(std::size_t b) const {
+        if (bases::find(bases_[b]->name()).orthonormal) return 0;
+        std::vector<double> signs(offsets_[b + 1] - offsets_[b]);
+        for (std::size_t i = 0; i < signs.size(); ++i) signs[i] = i % 2 == 0 ? 1 : -1;
+        return rounding * std::sqrt(std::max(1.0, solvedNorm(b, signs)));
     }
 
     /// The norm of the coefficients that follow from moments.
@@ -247,7 +280,9 @@ private:
     /// The panels to refine next: none once the errors add up to the tolerance.
     std::vector<std::size_t> unconverged() const {
         std::vector<std::size_t> active;
-        if (expected_ <= options_.tolerance) return active;
+        for (std::size_t p = 0; p < panels_.size(); ++p)
+            if (panels_[p].level > 0 && !hasShownItself(panels_[p])) active.push_back(p);
+        if (!active.empty() || expected_ <= options_.tolerance) return active;
         const double share = 0.5 * options_.tolerance / static_cast<double>(panels_.size());
         for (std::size_t p = 0; p < panels_.size(); ++p) {
             if (panels_[p].error.expected > share) active.push_back(p);

@@ -25,6 +25,7 @@ struct RefinedMoments {
     /// Per basis: the relative error of its coefficients by that of its moments, 1 unless a Gram
     /// system is solved, whose small eigenvalues enlarge it.
     std::vector<double> enlargement;
+    std::vector<double> rounding;  ///< per basis: that of f, as the Gram system enlarges it
     std::size_t evaluations = 0;
     HorizonBehaviour horizon;
 };
@@ -46,8 +47,9 @@ struct ProjectionTables {
 /// Integrates q against the analysis functions of every basis. Each elevation panel is refined on
 /// its own until the errors of all panels add up to no more than the tolerance, relative to the
 /// norm of each basis' moments and to each energy that exists: panels that hold next to nothing
-/// stay coarse. Errors follow from the changes of the last levels (convergence.h). Of an
-/// interpolated table, the error stated is up to 3 times that by which refinement goes.
+/// stay coarse, others show three changes. Errors follow from the changes of the last levels
+/// (convergence.h). Of an interpolated table, the error stated is up to 3 times that by which
+/// refinement goes. None but 0 is stated below 1e-12, the accuracy of values.
 ///
 /// Throws NumericError where the moments do not exist, do not converge within the evaluations
 /// allowed, or q is not finite.
