@@ -19,6 +19,8 @@ void addTradeoff(CLI::App& command, Globals& globals);
 void addPlan(CLI::App& command, Globals& globals);
 void addStress(CLI::App& command, Globals& globals);
 void addImport(CLI::App& command, Globals& globals);
+void addMatrix(CLI::App& command, Globals& globals);
+void addRotate(CLI::App& command, Globals& globals);
 
 namespace {
 
@@ -135,6 +137,18 @@ constexpr Command table[] = {
      .file = "import.cpp",
      .example = "hshfit import out/ward/ward.hsh.json -o ward_again.json",
      .add = addImport},
+    {.name = "rotate",
+     .group = coefficients,
+     .help = "Coefficients of a rotated function, with the energy that left the hemisphere",
+     .file = "rotate.cpp",
+     .example = "hshfit rotate ward.json -o turned.json --euler 0,30,0",
+     .add = addRotate},
+    {.name = "matrix",
+     .group = coefficients,
+     .help = "The matrix of a change of basis or of a rotation",
+     .file = "matrix.cpp",
+     .example = "hshfit matrix sh hsh --order 3",
+     .add = addMatrix},
 };
 
 }  // namespace

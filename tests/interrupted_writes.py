@@ -61,6 +61,7 @@ COMMANDS = {
                   "-o out/m.json",
     "export": "export INPUTS/c.json -o set --force --target exr,ktx2,glsl,hlsl",
     "import": "import INPUTS/c.hsh.json -o out/i.json --force",
+    "rotate": "rotate INPUTS/c.json -o out/r.json --euler 0,30,0",
     "eval": "eval ggx:alpha=.3 --pairs INPUTS/pairs.csv -o out/e.csv",
     "gaussians": "gaussians ggx:alpha=.4 --outgoing 4 --lobes 1 -o out/g.json",
     "ltc": "ltc ggx --size 3 -o out/l.json -o out/l.exr -o out/l.dds",

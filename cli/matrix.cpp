@@ -1,0 +1,65 @@
+#include "command.h"
+#include "rotation_options.h"
+
+#include <jobs/rotate.h>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace hshfit::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct MatrixArguments {
+    std::string from, to, euler;
+    int order = 3, fromOrder = 0;
+};
+
+void runMatrix(const MatrixArguments& arguments, const Globals& globals) {
+    jobs::MatrixOptions options{
+        .from = arguments.from,
+        .to = arguments.to,
+        .fromOrder = arguments.fromOrder == 0 ? arguments.order : arguments.fromOrder,
+        .toOrder = arguments.order};
+    if (!arguments.euler.empty()) options.rotation = parseEuler(arguments.euler);
+    const auto rows = jobs::matrix(options);
+    if (globals.json) {
+        Json document = {{"format", "hshfit-matrix"},
+                         {"version", 1},
+                         {"from", {{"basis", options.from}, {"order", options.fromOrder}}},
+                         {"to", {{"basis", options.to}, {"order", options.toOrder}}}};
+        if (!arguments.euler.empty())
+            document["euler"] = parseNumbers(arguments.euler, 3, "--euler", "A,B,C");
+        document["matrix"] = rows;
+        printJson(document);
+        return;
+    }
+    std::string text;
+    for (const auto& row : rows) {
+        for (const double entry : row) text += fmt::format("{:10.6f}", entry == 0 ? 0 : entry);
+        text += "\n";
+    }
+    printText(text);
+}
+
+}  // namespace
+
+void addMatrix(CLI::App& command, Globals& globals) {
+    auto arguments = std::make_shared<MatrixArguments>();
+    command.add_option("FROM", arguments->from, "Basis of the columns (hshfit list bases)")
+        ->required();
+    command.add_option("TO", arguments->to, "Basis of the rows")->required();
+    command.add_option("--order", arguments->order, "Bands of TO")
+        ->check(CLI::Range(1, 2048))
+        ->capture_default_str();
+    command
+        .add_option("--from-order", arguments->fromOrder, "Bands of FROM (default: those of TO)")
+        ->check(CLI::Range(1, 2048));
+    command.add_option("--euler", arguments->euler,
+                       "A,B,C in degrees: of the rotated function, R_z(A) R_y(B) R_z(C)");
+    command.callback([arguments, &globals] { runMatrix(*arguments, globals); });
+}
+
+}  // namespace hshfit::cli

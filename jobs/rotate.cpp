@@ -1,0 +1,171 @@
+#include "rotate.h"
+
+#include <hshfit/bases/catalog.h>
+#include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/coefficient_files/light_file.h>
+#include <hshfit/error.h>
+#include <hshfit/rotation/band_matrix.h>
+#include <hshfit/rotation/basis_change.h>
+#include <hshfit/rotation/sh_rotation.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hshfit::jobs {
+namespace {
+
+constexpr std::size_t largestMatrix = std::size_t{1} << 22;
+
+/// Whether the plane y = 0 is mapped to itself, sides included.
+bool keepsMirrorPlane(const Rotation& rotation) {
+    const auto& r = rotation.matrix();
+    return std::abs(r[1]) + std::abs(r[3]) + std::abs(r[5]) + std::abs(r[7]) < 1e-12 && r[4] > 0;
+}
+
+/// What is left of an energy; the part that the coefficients do not hold may have gone or stayed.
+Energy leftOf(Energy energy, double captured, double lost) {
+    if (!energy.finite) return energy;
+    energy.error += std::max(0.0, energy.value - captured);
+    energy.value *= 1 - lost;
+    return energy;
+}
+
+Rotated rotateBrdf(const std::string& input, const std::string& output,
+                   const RotateOptions& options) {
+    Coefficients c = readCoefficients(input);
+    const auto basis = bases::make(c.basis, c.order, {.condonShortley = c.condonShortley});
+    const HemisphereRotation rotation(*basis, options.way);
+    // Loss and error weigh outgoing directions by their solid angles.
+    const double largest =
+        *std::max_element(c.outgoing.solidAngles.begin(), c.outgoing.solidAngles.end());
+    const std::size_t perDirection = c.channels.count() * c.slots();
+    const auto scaleOf = [&](std::size_t i) {
+        return std::sqrt(std::max(c.outgoing.solidAngles[i / perDirection], 1e-12 * largest));
+    };
+    double captured = 0;
+    for (std::size_t i = 0; i < c.values.size(); ++i) {
+        c.values[i] *= scaleOf(i);
+        captured += c.values[i] * c.values[i];
+    }
+    const HemisphereRotated rotated = rotation.rotate(options.rotation, c.values);
+    for (std::size_t i = 0; i < c.values.size(); ++i) c.values[i] = rotated.values[i] / scaleOf(i);
+    c.energy = leftOf(c.energy, captured, rotated.lostEnergy);
+    if (options.way.method != HemisphereMethod::exact) c.error += rotated.error;
+    c.isotropic = c.isotropic && c.outgoing.map == OutgoingSet::Map::elevations;
+    c.bilateral = c.bilateral && keepsMirrorPlane(options.rotation);
+    c.reciprocal = false;
+    c.leastSquares.reset();
+    c.source += " (rotated)";
+    writeCoefficients(c, output);
+    return {
+        "brdf",        c.basis,      "hemisphere", c.order, options.way.method, rotated.lostEnergy,
+        rotated.error, rotated.bands};
+}
+
+Rotated rotateLight(const std::string& input, const std::string& output,
+                    const RotateOptions& options) {
+    LightCoefficients light = readLight(input);
+    Rotated result{"light", light.basis, "sphere", light.order, options.way.method, 0, 0, 0};
+    if (light.domain == LightCoefficients::Domain::sphere) {
+        if (options.way.method != HemisphereMethod::exact)
+            throw UsageError(
+                fmt::format("'{}' is light on the whole sphere, which only the method "
+                            "exact rotates",
+                            input));
+        const ShRotation rotate(light.order, {.condonShortley = light.condonShortley});
+        light.values = rotate.rotate(options.rotation, light.values);
+    } else {
+        const auto basis =
+            bases::make(light.basis, light.order, {.condonShortley = light.condonShortley});
+        const HemisphereRotated rotated =
+            HemisphereRotation(*basis, options.way).rotate(options.rotation, light.values);
+        double captured = 0;
+        for (const double value : light.values) captured += value * value;
+        light.values = rotated.values;
+        light.energy = leftOf(light.energy, captured, rotated.lostEnergy);
+        if (options.way.method != HemisphereMethod::exact) light.error += rotated.error;
+        light.curves.clear();
+        result.domain = "hemisphere";
+        result.lostEnergy = rotated.lostEnergy;
+        result.error = rotated.error;
+        result.bands = rotated.bands;
+    }
+    light.source += " (rotated)";
+    writeLight(light, output);
+    return result;
+}
+
+using Rows = std::vector<std::vector<double>>;
+
+Rows rowsOf(const std::vector<double>& values, std::size_t columns) {
+    Rows rows;
+    for (auto at = values.begin(); at != values.end(); at += static_cast<std::ptrdiff_t>(columns))
+        rows.emplace_back(at, at + static_cast<std::ptrdiff_t>(columns));
+    return rows;
+}
+
+Rows shRotation(int toOrder, int fromOrder, const Rotation& rotation) {
+    Rows rows(static_cast<std::size_t>(toOrder * toOrder),
+              std::vector<double>(static_cast<std::size_t>(fromOrder * fromOrder), 0.0));
+    for (int l = 0; l < std::min(toOrder, fromOrder); ++l) {
+        const std::vector<double> band = bandMatrix(l, rotation);
+        const auto width = static_cast<std::size_t>(2 * l + 1),
+                   first = static_cast<std::size_t>(l * l);
+        for (std::size_t i = 0; i < width; ++i)
+            std::copy_n(band.begin() + static_cast<std::ptrdiff_t>(i * width), width,
+                        rows[first + i].begin() + static_cast<std::ptrdiff_t>(first));
+    }
+    return rows;
+}
+
+Rows product(const Rows& a, const Rows& b) {
+    Rows rows(a.size(), std::vector<double>(b[0].size(), 0.0));
+    for (std::size_t i = 0; i < a.size(); ++i)
+        for (std::size_t k = 0; k < b.size(); ++k)
+            for (std::size_t j = 0; a[i][k] != 0 && j < b[0].size(); ++j)
+                rows[i][j] += a[i][k] * b[k][j];
+    return rows;
+}
+
+Rows changeOf(const MatrixOptions& options) {
+    const auto from = bases::make(options.from, options.fromOrder);
+    const auto to = bases::make(options.to, options.toOrder);
+    return rowsOf(BasisChange(*from, *to).dense(), static_cast<std::size_t>(from->slots()));
+}
+
+}  // namespace
+
+Rotated rotate(const std::string& input, const std::string& output, const RotateOptions& options) {
+    return isLightFile(input) ? rotateLight(input, output, options)
+                                 : rotateBrdf(input, output, options);
+}
+
+std::vector<std::vector<double>> matrix(const MatrixOptions& options) {
+    const auto from = bases::make(options.from, options.fromOrder);
+    const auto to = bases::make(options.to, options.toOrder);
+    const std::size_t entries =
+        static_cast<std::size_t>(from->slots()) * static_cast<std::size_t>(to->slots());
+    if (entries > largestMatrix)
+        throw UsageError(fmt::format("a matrix of {} x {} entries; at most {} in all", to->slots(),
+                                     from->slots(), largestMatrix));
+    if (!options.rotation) return changeOf(options);
+    const Rotation& rotation = *options.rotation;
+    if (options.from == "sh") {
+        const Rows turned = shRotation(options.fromOrder, options.fromOrder, rotation);
+        if (options.to == "sh") return shRotation(options.toOrder, options.fromOrder, rotation);
+        return product(changeOf(options), turned);
+    }
+    if (options.to == "sh")
+        return product(shRotation(options.toOrder, options.toOrder, rotation), changeOf(options));
+    if (options.from != options.to || options.fromOrder != options.toOrder)
+        throw UsageError(fmt::format(
+            "a rotation from {} of order {} to {} of order {}: give one basis and order, or sh as "
+            "one of the bases",
+            options.from, options.fromOrder, options.to, options.toOrder));
+    return rowsOf(HemisphereRotation(*from).matrix(rotation),
+                  static_cast<std::size_t>(from->slots()));
+}
+
+}  // namespace hshfit::jobs

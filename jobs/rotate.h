@@ -1,0 +1,49 @@
+#pragma once
+
+#include <hshfit/rotation/hemisphere_rotation.h>
+#include <hshfit/rotation/rotation.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hshfit::jobs {
+
+struct RotateOptions {
+    Rotation rotation = {};
+    /// Light on the whole sphere has `exact` alone.
+    HemisphereRotationOptions way = {};
+};
+
+struct Rotated {
+    std::string kind;  ///< "brdf" or "light"
+    std::string basis, domain;
+    int order = 0;
+    HemisphereMethod method = HemisphereMethod::exact;
+    double lostEnergy = 0, error = 0;  ///< HemisphereRotated
+    int bands = 0;                     ///< of the way through SH
+};
+
+/// Rotates a coefficient file of a BRDF (plain, JSON or EXR) or of light (JSON) to another.
+///
+/// BRDF: for each outgoing direction its function over wi rotates, wo stays. A set of elevations
+/// rotates in the frame in which wo is at azimuth 0 and stays isotropic; other sets do not, none
+/// stays reciprocal, and bilateral only those that turn about y.
+/// Light: on the whole sphere every direction moves; on a hemisphere it is rotated about the axes
+/// of that hemisphere's frame, whose normal stays. The energy that the file states becomes that of
+/// the part that stays. Throws UsageError for a way that the basis does not have, InputError and
+/// OutputError.
+Rotated rotate(const std::string& input, const std::string& output, const RotateOptions& options);
+
+struct MatrixOptions {
+    std::string from, to;  ///< bases
+    int fromOrder = 3, toOrder = 3;
+    std::optional<Rotation> rotation = {};
+};
+
+/// Rows TO, columns FROM: the change of basis or, with a rotation, from the coefficients of a
+/// function to those of the rotated function. A rotation of different bases needs SH as one of
+/// them, which rotates. At most 2^22 entries. Throws UsageError.
+std::vector<std::vector<double>> matrix(const MatrixOptions& options);
+
+}  // namespace hshfit::jobs
