@@ -51,17 +51,17 @@ void addQuadrature(CLI::App& command, double& tolerance, double& maxEvaluations)
         ->capture_default_str();
 }
 
-Direction parseDirection(const std::string& text, std::string_view option) {
+Direction parseDirection(const std::string& text, std::string_view option, double mostTheta) {
     const char *at = text.data(), *end = at + text.size();
     double theta = 0, phi = 0;
     const auto first = std::from_chars(at, end, theta);
     const bool comma = first.ec == std::errc() && first.ptr != end && *first.ptr == ',';
     const auto second = comma ? std::from_chars(first.ptr + 1, end, phi) : first;
     if (!comma || second.ec != std::errc() || second.ptr != end || !(theta >= 0) ||
-        !(theta <= 90) || !std::isfinite(phi)) {
+        !(theta <= mostTheta) || !std::isfinite(phi)) {
         throw UsageError(
-            fmt::format("{} '{}': give THETA,PHI in degrees, theta from 0 to 90 (for example 45,0)",
-                        option, text));
+            fmt::format("{} '{}': give THETA,PHI in degrees, theta from 0 to {} (for example 45,0)",
+                        option, text, mostTheta));
     }
     return directionFromAngles(radians(theta), radians(phi));
 }

@@ -38,8 +38,8 @@ void addRgb(CLI::App& command, bool& rgb);
 /// The options --tolerance and --max-evaluations of a projection.
 void addQuadrature(CLI::App& command, double& tolerance, double& maxEvaluations);
 
-/// "THETA,PHI" in degrees, theta from 0 to 90. Throws UsageError naming `option`.
-Direction parseDirection(const std::string& text, std::string_view option);
+/// "THETA,PHI" in degrees, theta from 0 to `mostTheta`. Throws UsageError naming `option`.
+Direction parseDirection(const std::string& text, std::string_view option, double mostTheta = 90);
 
 /// Prints a JSON document to standard output. Throws OutputError if it cannot be written.
 void printJson(const nlohmann::ordered_json& document);

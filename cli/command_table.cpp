@@ -21,6 +21,8 @@ void addStress(CLI::App& command, Globals& globals);
 void addImport(CLI::App& command, Globals& globals);
 void addMatrix(CLI::App& command, Globals& globals);
 void addRotate(CLI::App& command, Globals& globals);
+void addLight(CLI::App& command, Globals& globals);
+void addIrradiance(CLI::App& command, Globals& globals);
 
 namespace {
 
@@ -29,6 +31,7 @@ constexpr const char* coefficients = "Coefficients";
 constexpr const char* files = "Files";
 constexpr const char* fits = "Fits";
 constexpr const char* studies = "Studies";
+constexpr const char* lighting = "Light";
 
 constexpr Command table[] = {
     {.name = "list",
@@ -149,6 +152,19 @@ constexpr Command table[] = {
      .file = "matrix.cpp",
      .example = "hshfit matrix sh hsh --order 3",
      .add = addMatrix},
+    {.name = "light",
+     .group = lighting,
+     .help = "Coefficients of light from all around or above a surface, and the bands it needs",
+     .file = "light.cpp",
+     .example = "hshfit light sky:type=12,elevation=40,radiance=1 -o sky.json --order 10",
+     .add = addLight},
+    {.name = "irradiance",
+     .group = lighting,
+     .help =
+         "The nine coefficients that engines take, in each engine's convention, with their error",
+     .file = "irradiance.cpp",
+     .example = "hshfit irradiance sky:type=12,elevation=40,radiance=1 --convention three",
+     .add = addIrradiance},
 };
 
 }  // namespace

@@ -42,6 +42,7 @@ constexpr OptionRow options[] = {
     {"Form::reciprocal", "--reciprocal"},
     {"Form::split", "--split", Value::quoted},
     {"Form::window", "--window"},
+    {"LightDomain::normal", "--normal"},
     {"PackOptions::number", "--number"},
     {"PlanOptions::bases", "--bases"},
     {"ProjectOptions::leastSquares", "--least-squares"},

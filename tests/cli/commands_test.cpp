@@ -145,6 +145,10 @@ TEST_F(Cli, JsonAnswersKeepTheirSchemas) {
         {"report", "report phong:exponent=5 --outgoing 20,0 --max-order 4 --json"},
         {"stress", "stress lambert --max-order 8 --json"},
         {"compare", "compare lambert phong:exponent=2 --outgoing 4 --json"},
+        {"light", "light sky:type=3 --order 4 --json -o " + path("l.json")},
+        {"light",
+         "light directional:elevation=40 --normal 30,0 --basis hsh --json -o " + path("d.json")},
+        {"irradiance", "irradiance sky:type=3 --normals 100 --window hann --json"},
         {"convert", "convert lambert --json --repair all --report-loss " + path("x.binary")}};
     for (const auto& [name, arguments] : answers) {
         const Answer answer = run(arguments);

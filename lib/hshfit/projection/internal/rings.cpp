@@ -1,8 +1,8 @@
 #include <hshfit/projection/internal/rings.h>
 
 #include <hshfit/error.h>
-#include <hshfit/projection/lane_products.h>
 #include <hshfit/projection/internal/ring_kernels.h>
+#include <hshfit/projection/lane_products.h>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>

@@ -1,0 +1,148 @@
+#include "command.h"
+#include "documents.h"
+
+#include <jobs/irradiance.h>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace hshfit::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct IrradianceArguments {
+    std::vector<std::string> specs;
+    std::string convention = "all";
+    jobs::IrradianceOptions options;
+};
+
+Json nineJson(const NineRgb& nine) {
+    Json rows = Json::array();
+    for (const Rgb& rgb : nine) rows.push_back({rgb[0], rgb[1], rgb[2]});
+    return rows;
+}
+
+Json errorJson(const IrradianceErrors& error) {
+    return {{"maximum", error.maximum},
+            {"mean", error.mean},
+            {"worst_normal", directionJson(error.worst)},
+            {"negative", error.negative}};
+}
+
+Json conventionJson(const Convention& c, const NineRgb& radiance) {
+    return {{"name", c.name},
+            {"engine", c.engine},
+            {"signs", c.signs},
+            {"up", c.up},
+            {"handedness", c.handedness},
+            {"quantity", c.quantity},
+            {"divided_by_pi", c.divided},
+            {"constants", c.constants},
+            {"order", c.order},
+            {"source", c.source},
+            {"evidence", c.evidence},
+            {"values", engineValues(c, radiance)},
+            {"shader", engineShader(c, radiance)}};
+}
+
+Json answer(const jobs::LitSurface& lit, const IrradianceArguments& arguments) {
+    Json conventions = Json::array();
+    for (const Convention* each : selectConventions(arguments.convention))
+        conventions.push_back(conventionJson(*each, lit.radiance));
+    const ZonalForm& zonal = lit.zonal;
+    Json linear = Json::array();
+    for (const Rgb& rgb : zonal.linear) linear.push_back({rgb[0], rgb[1], rgb[2]});
+    return {{"format", "hshfit-irradiance"},
+            {"version", 1},
+            {"light", lit.light},
+            {"order", arguments.options.order},
+            {"radiance", nineJson(lit.radiance)},
+            {"irradiance", nineJson(lit.irradiance)},
+            {"window", {{"name", lit.window}, {"factors", lit.factors}}},
+            {"mean_irradiance", lit.meanIrradiance},
+            {"normals", arguments.options.normals},
+            {"error", errorJson(lit.error)},
+            {"zonal",
+             {{"linear", linear},
+              {"quadratic", zonal.quadratic},
+              {"axis", {zonal.axis.x, zonal.axis.y, zonal.axis.z}},
+              {"bytes", sizeof(float) * 15},
+              {"error", errorJson(lit.zonalError)}}},
+            {"conventions", conventions}};
+}
+
+std::string errorText(const char* name, std::size_t numbers, const IrradianceErrors& error) {
+    return fmt::format(
+        "{:<18} {:>3} bytes  error at most {:.2f} % (normal {}), mean {:.2f} %{}\n", name,
+        numbers * sizeof(float), 100 * error.maximum, directionText(error.worst), 100 * error.mean,
+        error.negative < 0 ? fmt::format(", down to {:.2f} %", 100 * error.negative) : "");
+}
+
+std::string text(const jobs::LitSurface& lit, const IrradianceArguments& arguments) {
+    std::string out = fmt::format(
+        "mean irradiance {:.6g}; errors against direct integration at {} normals, relative to it\n",
+        lit.meanIrradiance, arguments.options.normals);
+    const auto numbers =
+        static_cast<std::size_t>(3 * arguments.options.order * arguments.options.order);
+    out += errorText(fmt::format("order {}", arguments.options.order).c_str(), numbers, lit.error);
+    out += errorText("zonal order 3", 15, lit.zonalError);
+    out += " l  m  radiance R, G, B                       irradiance R, G, B\n";
+    for (int l = 0; l < 3; ++l) {
+        for (int m = -l; m <= l; ++m) {
+            const auto k = static_cast<std::size_t>(l * (l + 1) + m);
+            const Rgb &a = lit.radiance[k], &b = lit.irradiance[k];
+            out += fmt::format("{:2} {:2} {:13.6g}{:13.6g}{:13.6g} {:13.6g}{:13.6g}{:13.6g}\n", l,
+                               m, a[0], a[1], a[2], b[0], b[1], b[2]);
+        }
+    }
+    for (const Convention* each : selectConventions(arguments.convention)) {
+        out += fmt::format(
+            "\n{}: {}\n  signs {}; up {}; {}-handed\n  {}; divided by pi: {}\n"
+            "  constants folded in: {}; {}\n{}",
+            each->name, each->engine, each->signs, each->up, each->handedness, each->quantity,
+            each->divided, each->constants, each->order, engineShader(*each, lit.radiance));
+    }
+    return out;
+}
+
+void runIrradiance(const IrradianceArguments& arguments, const Globals& globals) {
+    selectConventions(arguments.convention);
+    const jobs::LitSurface lit = jobs::irradianceOfLight(arguments.specs, arguments.options);
+    if (globals.json)
+        printJson(answer(lit, arguments));
+    else
+        printText(text(lit, arguments));
+}
+
+}  // namespace
+
+void addIrradiance(CLI::App& command, Globals& globals) {
+    auto arguments = std::make_shared<IrradianceArguments>();
+    jobs::IrradianceOptions& options = arguments->options;
+    command
+        .add_option("SPEC", arguments->specs,
+                    "One or more lights, which add up: kind:key=value,… or the path of a picture")
+        ->required();
+    command
+        .add_option("--convention", arguments->convention,
+                    "three, unity, filament, godot, unreal or all")
+        ->capture_default_str();
+    command.add_option("--order", options.order, "Bands of the irradiance")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    command
+        .add_option("--window", options.window,
+                    "Against ringing: none, hann, lanczos or least-negative")
+        ->check(CLI::IsMember({"none", "hann", "lanczos", "least-negative"}))
+        ->capture_default_str();
+    command.add_option("--normals", options.normals, "Normals at which the error is taken")
+        ->check(CLI::Range(16, 1000000))
+        ->capture_default_str();
+    command.add_option("--by-normal", options.byNormal,
+                       "CSV of direct and approximate irradiance at each of them");
+    command.callback([arguments, &globals] { runIrradiance(*arguments, globals); });
+}
+
+}  // namespace hshfit::cli

@@ -1,0 +1,141 @@
+#include "command.h"
+
+#include <hshfit/coefficients/light_coefficients.h>
+#include <hshfit/error.h>
+#include <hshfit/files/json_fields.h>
+
+#include <jobs/light.h>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace hshfit::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct LightArguments {
+    std::vector<std::string> specs;
+    std::string output, normal;
+    jobs::LightOptions options;
+};
+
+Json energyJson(const Energy& energy) {
+    Json json = {{"value", finiteOrNull(energy.finite ? energy.value : NAN)},
+                 {"error", finiteOrNull(energy.finite ? energy.error : NAN)},
+                 {"finite", energy.finite}};
+    if (!energy.finite) json["reason"] = energy.reason;
+    return json;
+}
+
+Json curveJson(const LightCurve& curve) {
+    Json points = Json::array();
+    for (const LightCurve::Point& point : curve.points) {
+        points.push_back({{"order", point.order},
+                          {"coefficients", point.coefficients},
+                          {"slots", point.order * point.order},
+                          {"accuracy", finiteOrNull(point.accuracy)}});
+    }
+    return {{"basis", curve.basis}, {"points", points}};
+}
+
+std::string shareName(double share) {
+    return fmt::format("{:g}", 100 * share);
+}
+
+Json answer(const jobs::ProjectedLight& result, const std::string& output) {
+    const LightCoefficients& light = result.light;
+    Json normal = nullptr;
+    if (light.domain == LightCoefficients::Domain::hemisphere) {
+        normal = {{"theta", degrees(light.normalTheta)}, {"phi", degrees(light.normalPhi)}};
+    }
+    Json enough = Json::object();
+    for (std::size_t k = 0; k < result.enough.size(); ++k) {
+        enough[shareName(jobs::lightShares[k])] =
+            result.enough[k] ? Json(*result.enough[k]) : Json(nullptr);
+    }
+    return {{"format", "hshfit-light-answer"},
+            {"version", 1},
+            {"light", light.source},
+            {"output", output},
+            {"basis", light.basis},
+            {"order", light.order},
+            {"domain", normal.is_null() ? "sphere" : "hemisphere"},
+            {"normal", normal},
+            {"channels", light.channels.names()},
+            {"energy", energyJson(light.energy)},
+            {"error", finiteOrNull(light.error)},
+            {"bands", result.bands},
+            {"enough", enough},
+            {"curves", Json::array({curveJson(light.curves.front())})}};
+}
+
+std::string enoughText(const jobs::ProjectedLight& result) {
+    std::string text;
+    for (std::size_t k = 0; k < result.enough.size(); ++k) {
+        const auto& order = result.enough[k];
+        text += fmt::format("  {:>5} % of the energy: {}\n", shareName(jobs::lightShares[k]),
+                            order ? fmt::format("{} bands ({} slots)", *order, *order * *order)
+                                  : fmt::format("more than {} bands", result.light.order));
+    }
+    return text;
+}
+
+std::string text(const jobs::ProjectedLight& result, const std::string& output) {
+    const LightCoefficients& light = result.light;
+    const bool known = light.energy.finite && light.energy.value > 0;
+    return fmt::format("{}: {} order {}, {}, error {:.1e}\n{}", output, light.basis, light.order,
+                       known ? fmt::format("{:.6f} of the energy captured",
+                                           light.curves.front().points.back().accuracy)
+                             : "no energy to compare with",
+                       light.error, known ? enoughText(result) : "");
+}
+
+void runLight(LightArguments& arguments, Globals& globals) {
+    if (!arguments.normal.empty()) {
+        const Direction normal = parseDirection(arguments.normal, "--normal", 180);
+        arguments.options.normal =
+            Orientation{.theta = polarAngle(normal), .phi = azimuth(normal), .turn = 0};
+    }
+    const jobs::ProjectedLight result =
+        jobs::light(arguments.specs, arguments.output, arguments.options);
+    const Energy& energy = result.light.energy;
+    if (!energy.finite) note(globals, "the energy does not exist: " + energy.reason);
+    if (globals.json)
+        printJson(answer(result, arguments.output));
+    else
+        printText(text(result, arguments.output));
+}
+
+}  // namespace
+
+void addLight(CLI::App& command, Globals& globals) {
+    auto arguments = std::make_shared<LightArguments>();
+    jobs::LightOptions& options = arguments->options;
+    command
+        .add_option("SPEC", arguments->specs,
+                    "One or more lights, which add up: kind:key=value,… or the path of a picture")
+        ->required();
+    command.add_option("-o,--output", arguments->output, "File of coefficients, .json")->required();
+    command.add_option("--basis", options.basis, "sh; with --normal any of hshfit list bases")
+        ->capture_default_str();
+    command.add_option("--order", options.order, "Number of bands: l = 0 .. order-1")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command.add_option("--normal", arguments->normal,
+                       "THETA,PHI in degrees: the hemisphere about it, in its own frame "
+                       "(default: the whole sphere)");
+    command.add_flag("--condon-shortley", options.condonShortley,
+                     "Give functions of odd m the Condon-Shortley sign");
+    command
+        .add_option("--tolerance", options.tolerance,
+                    "Relative error that quadrature is refined to, where light has no closed form")
+        ->check(CLI::Range(1e-13, 1.0))
+        ->capture_default_str();
+    command.callback([arguments, &globals] { runLight(*arguments, globals); });
+}
+
+}  // namespace hshfit::cli

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <hshfit/irradiance/conventions.h>
+#include <hshfit/irradiance/irradiance.h>
+#include <hshfit/irradiance/zonal_form.h>
+
+#include <string>
+#include <vector>
+
+namespace hshfit::jobs {
+
+struct IrradianceOptions {
+    int order = 3;                ///< bands that the irradiance is made of
+    std::string window = "none";  ///< none, hann, lanczos or least-negative
+    std::size_t normals = 2000;   ///< of the lattice on which errors are taken
+    std::string byNormal;         ///< CSV of the irradiances at them; empty: none
+};
+
+struct LitSurface {
+    std::string light;                 ///< the specification
+    NineRgb radiance{}, irradiance{};  ///< windowed; bands from `order` on are 0
+    std::vector<double> factors;       ///< of the window, by band
+    std::string window;                ///< that was applied
+    double meanIrradiance = 0;         ///< over normals and channels, by direct integration
+    IrradianceErrors error;            ///< of the order that was asked for
+    ZonalForm zonal;                   ///< of `radiance`
+    IrradianceErrors zonalError;
+};
+
+/// The irradiance of the sum of all specifications by coefficients, and its error against direct
+/// integration.
+LitSurface irradianceOfLight(const std::vector<std::string>& specs,
+                             const IrradianceOptions& options);
+
+}  // namespace hshfit::jobs

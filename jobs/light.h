@@ -1,0 +1,35 @@
+#pragma once
+
+#include <hshfit/coefficients/light_coefficients.h>
+#include <hshfit/light/light_nodes.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hshfit::jobs {
+
+struct LightOptions {
+    std::string basis = "sh";
+    int order = 10;
+    bool condonShortley = false;
+    std::optional<Orientation> normal = {};  ///< of a hemisphere; none: the whole sphere
+    double tolerance = 1e-6;                 ///< of coefficients that come from quadrature
+};
+
+struct ProjectedLight {
+    LightCoefficients light;
+    std::vector<double> bands;  ///< energy of each, sum over m and channels of c^2
+    /// The least order that captures the shares below; none within the order asked for.
+    std::vector<std::optional<int>> enough;
+};
+
+/// Captured energies that `enough` is for.
+inline constexpr double lightShares[] = {0.9, 0.99, 0.999};
+
+/// Coefficients of the sum of all specifications (light/catalog.h), to a file unless `output` is
+/// empty.
+ProjectedLight light(const std::vector<std::string>& specs, const std::string& output,
+                     const LightOptions& options);
+
+}  // namespace hshfit::jobs
