@@ -275,19 +275,26 @@ bool exrSaysCoefficients(std::string_view bytes) {
     return exrHasAttribute(bytes, "hshfit:format");
 }
 
-bool exrSaysSize(std::string_view bytes, std::int32_t width, std::int32_t height) {
-    if (!hasExrMagic(bytes)) return false;
+std::optional<std::array<std::size_t, 2>> exrSize(std::string_view bytes) {
+    if (!hasExrMagic(bytes)) return std::nullopt;
     ByteCursor cursor(bytes);
     cursor.take(magic.size() + sizeof(std::uint32_t));
     for (;;) {
         const auto attribute = nextAttribute(cursor);
-        if (!attribute || attribute->name.empty()) return false;
+        if (!attribute || attribute->name.empty()) return std::nullopt;
         if (attribute->name != "dataWindow") continue;
         ByteCursor box(attribute->value);
         const auto left = box.number<std::int32_t>(), top = box.number<std::int32_t>();
         const auto right = box.number<std::int32_t>(), bottom = box.number<std::int32_t>();
-        return bottom && *left == 0 && *top == 0 && *right == width - 1 && *bottom == height - 1;
+        if (!bottom || *left != 0 || *top != 0 || *right < 0 || *bottom < 0) return std::nullopt;
+        return std::array{static_cast<std::size_t>(*right) + 1,
+                          static_cast<std::size_t>(*bottom) + 1};
     }
+}
+
+bool exrSaysSize(std::string_view bytes, std::int32_t width, std::int32_t height) {
+    return exrSize(bytes) ==
+           std::array{static_cast<std::size_t>(width), static_cast<std::size_t>(height)};
 }
 
 }  // namespace hshfit::inline files

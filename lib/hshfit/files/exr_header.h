@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,6 +46,9 @@ bool exrHasAttribute(std::string_view bytes, std::string_view name);
 
 /// Whether it has the attribute hshfit:format.
 bool exrSaysCoefficients(std::string_view bytes);
+
+/// Width and height of its data window, if that starts at (0, 0).
+std::optional<std::array<std::size_t, 2>> exrSize(std::string_view bytes);
 
 /// Whether its data window is that of width x height pixels from (0, 0).
 bool exrSaysSize(std::string_view bytes, std::int32_t width, std::int32_t height);

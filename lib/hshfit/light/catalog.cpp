@@ -1,6 +1,7 @@
 #include <hshfit/light/catalog.h>
 
 #include <hshfit/error.h>
+#include <hshfit/files/exr_header.h>
 #include <hshfit/light/picture_light.h>
 #include <hshfit/light/placement.h>
 #include <hshfit/light/sky.h>
@@ -12,6 +13,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 namespace hshfit::inline light {
 namespace {
@@ -317,27 +319,34 @@ bool inExponent(std::string_view text, std::size_t at) {
 constexpr std::size_t mostTerms = 256;
 constexpr std::string_view form = "kind[:key=value,...] or the path of a picture, joined by '+'";
 
+/// A path in a specification, seen from `folder`.
+std::string within(const std::string& folder, std::string_view path) {
+    return folder.empty() ? std::string(path) : (std::filesystem::path(folder) / path).string();
+}
+
 /// The end of the path that starts `text`, up to a '+', a ':' or the end; 0 where there is none.
-std::size_t pathEnd(std::string_view text) {
+std::size_t pathEnd(std::string_view text, const std::string& folder) {
+    constexpr std::size_t longestPath = 4096;
     std::size_t longest = 0;
-    for (std::size_t end = 1; end <= text.size() && end < 4096; ++end) {
+    for (std::size_t end = 1; end <= std::min(text.size(), longestPath); ++end) {
         if (end < text.size() && text[end] != '+' && text[end] != ':') continue;
-        if (isPicturePath(trimmed(text.substr(0, end)))) longest = end;
+        const std::string_view path = trimmed(text.substr(0, end));
+        if (!path.empty() && isPicturePath(within(folder, path))) longest = end;
     }
     return longest;
 }
 
 /// The end of the term that starts `text`: its first '+' outside of a path and of numbers.
-std::size_t termEnd(std::string_view text) {
-    std::size_t at = namesLight(trimmed(text)) ? 0 : pathEnd(text);
+std::size_t termEnd(std::string_view text, const std::string& folder) {
+    std::size_t at = namesLight(trimmed(text)) ? 0 : pathEnd(text, folder);
     while ((at = text.find('+', at)) != std::string_view::npos && inExponent(text, at)) ++at;
     return at;
 }
 
-std::vector<std::string_view> splitTerms(std::string_view text) {
+std::vector<std::string_view> splitTerms(std::string_view text, const std::string& folder) {
     std::vector<std::string_view> terms;
     while (true) {
-        const std::size_t end = termEnd(text);
+        const std::size_t end = termEnd(text, folder);
         terms.push_back(trimmed(text.substr(0, end)));
         if (terms.back().empty())
             throw UsageError(fmt::format("light: an empty term before '{}'; valid: {}",
@@ -359,17 +368,17 @@ Light placed(Light light, const Parameters& p) {
     return turned(scaled(std::move(light), p.number("scale")), radians(p.number("turn")));
 }
 
-[[noreturn]] void failUnknown(std::string_view term) {
+[[noreturn]] void failUnknown(std::string_view term, const std::string& folder) {
     const std::string_view name = term.substr(0, term.find(':'));
     if (name.find('/') != std::string_view::npos || std::filesystem::path(name).has_extension())
-        throw InputError(fmt::format("{}: no such file", name));
+        throw InputError(fmt::format("{}: no such file", within(folder, name)));
     std::vector<std::string_view> names;
     for (const LightKind& row : lightKinds()) names.push_back(row.name);
     throw UsageError(fmt::format("unknown light '{}'{}; valid: {}, or the path of a picture", name,
                                  suggestion(name, names), joined(names)));
 }
 
-Light parseTerm(std::string_view term) {
+Light parseTerm(std::string_view term, const std::string& folder, InvalidPixels invalid) {
     const std::size_t colon = term.find(':');
     const auto after = [&](std::size_t at) {
         return at < term.size() ? term.substr(at + 1) : std::string_view();
@@ -379,11 +388,11 @@ Light parseTerm(std::string_view term) {
                                              colon == std::string_view::npos ? "" : after(colon));
         return placed(row->make(row->name, p), p);
     }
-    const std::size_t end = pathEnd(term);
-    if (end == 0) failUnknown(term);
-    const std::string path(trimmed(term.substr(0, end)));
+    const std::size_t end = pathEnd(term, folder);
+    if (end == 0) failUnknown(term, folder);
+    const std::string path = within(folder, trimmed(term.substr(0, end)));
     const Parameters p = parseParameters(path, pictureKind().parameters, after(end));
-    return placed(readPictureLight(path, 1, pictureOptions(p)), p);
+    return placed(readPictureLight(path, 1, pictureOptions(p), invalid), p);
 }
 
 }  // namespace
@@ -404,12 +413,38 @@ bool namesLight(std::string_view text) {
     return findKind(text.substr(0, text.find_first_of(":+ "))) != nullptr;
 }
 
-LightSpecification parseLights(const std::string& text) {
+bool looksLikeLight(const std::string& text) {
+    if (namesLight(trimmed(text))) return true;
+    const std::string_view term = trimmed(std::string_view(text).substr(0, termEnd(text, "")));
+    const std::size_t end = pathEnd(term, "");
+    if (end == 0) return false;
+    const std::string path(trimmed(term.substr(0, end)));
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) return true;  // six files
+    std::string head(std::size_t{1} << 16, '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(file.gcount()));
+    if (!hasExrMagic(head)) return hasPictureMagic(head);
+    for (const char* own : {"hshfit:format", "hshfit:phi_difference"}) {
+        if (exrHasAttribute(head, own)) return false;
+    }
+    const std::string_view options = term.substr(end);
+    if (options.find("layout=") != std::string_view::npos ||
+        options.find("curve=") != std::string_view::npos) {
+        return true;
+    }
+    const auto size = exrSize(head);
+    return size && (*size)[0] == 2 * (*size)[1];
+}
+
+LightSpecification parseLights(const std::string& text, const std::string& folder,
+                               InvalidPixels invalid) {
     if (trimmed(text).empty())
         throw UsageError(fmt::format("empty light specification; valid: {}", form));
     LightSpecification specification{.text = text, .lights = {}};
-    for (const std::string_view term : splitTerms(text))
-        specification.lights.push_back(parseTerm(term));
+    for (const std::string_view term : splitTerms(text, folder))
+        specification.lights.push_back(parseTerm(term, folder, invalid));
     return specification;
 }
 

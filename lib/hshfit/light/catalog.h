@@ -1,6 +1,6 @@
 #pragma once
 
-#include <hshfit/light/lights.h>
+#include <hshfit/light/picture_light.h>
 #include <hshfit/specification/parameters.h>
 
 #include <span>
@@ -9,6 +9,10 @@
 #include <vector>
 
 namespace hshfit::inline light {
+
+/// The syntax of a sum of lights, in one line.
+inline constexpr std::string_view lightSumHelp =
+    "any specifications joined by '+': 'sky:type=12,elevation=40+sun:elevation=40,irradiance=3'";
 
 /// A light specification and its lights, whose radiances add up.
 struct LightSpecification {
@@ -22,7 +26,14 @@ struct LightSpecification {
 /// the horizon and `azimuth` from +x towards +y, degrees; a place, date and time means +x east and
 /// +y north. Throws UsageError for an unknown kind, key or value (naming the valid ones) and
 /// InputError for a picture that is absent or invalid.
-LightSpecification parseLights(const std::string& text);
+/// Paths are relative to `folder`, "" for the current one.
+LightSpecification parseLights(const std::string& text, const std::string& folder = "",
+                               InvalidPixels invalid = InvalidPixels::refused);
+
+/// Whether a text begins with the path of a picture that is light rather than a table of a BRDF:
+/// any format but OpenEXR; an OpenEXR picture twice as wide as high, or with `layout` or `curve`
+/// behind its path, that has none of the program's own attributes.
+bool looksLikeLight(const std::string& text);
 
 /// Whether a text begins with a kind of light, "sky:…" or "uniform", rather than a path.
 bool namesLight(std::string_view text);

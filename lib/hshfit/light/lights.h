@@ -58,6 +58,12 @@ enum class PictureLayout { latlong, angular, mirrorBall, cross, faces };
 /// The code of a picture's values, which decodes to linear ones (picture_reader.h).
 enum class TransferCurve { linear, srgb, rec709, gamma18, gamma22, gamma24 };
 
+/// Pixels of a picture that are no radiance, each counted once.
+struct PictureCensus {
+    std::size_t negative = 0, notANumber = 0, infinite = 0;
+    std::size_t total() const { return negative + notANumber + infinite; }
+};
+
 /// A picture of radiance, constant within a pixel. In a latitude-longitude picture, row 0 is around
 /// the zenith, and the azimuth is pi at the left edge, 0 in the middle, -pi at the right edge, plus
 /// `turn`.
@@ -72,6 +78,7 @@ struct PictureLight {
     std::size_t fileWidth = 0, fileHeight = 0;
     TransferCurve curve = TransferCurve::linear;
     double scale = 1;
+    PictureCensus census = {};  ///< of pixels that count as 0
 };
 
 /// Light from one direction alone. Its radiance is infinite there and 0 elsewhere; `irradiance` is

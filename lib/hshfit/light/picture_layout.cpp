@@ -15,10 +15,9 @@ constexpr LayoutName names[] = {
     {PictureLayout::faces, "faces", "six faces of a cube in a row or a column"},
 };
 
-/// The largest double below `limit` at most.
+/// `value` within [0, limit), by so much that it stays below after whole faces are added.
 double below(double value, std::size_t limit) {
-    const auto most = static_cast<double>(limit);
-    return std::clamp(value, 0.0, std::nextafter(most, 0.0));
+    return std::clamp(value, 0.0, static_cast<double>(limit) * (1 - 0x1p-40));
 }
 
 // --- discs ----------------------------------------------------------------------------------

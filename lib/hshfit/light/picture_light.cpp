@@ -1,38 +1,68 @@
 #include <hshfit/light/picture_light.h>
 
 #include <hshfit/error.h>
-#include <hshfit/files/exr_picture.h>
-#include <hshfit/files/mapped_file.h>
+#include <hshfit/light/internal/picture_reduction.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
+#include <limits>
 
 namespace hshfit::inline light {
 namespace {
 
-constexpr std::size_t mostValues = std::size_t{1} << 28;
+/// Radiance from the values of a row, with pixels that are none as 0, counted.
+class Scaling {
+public:
+    Scaling(const PictureGeometry& geometry, double scale) : geometry_(geometry), scale_(scale) {}
 
-std::size_t channelOf(const ExrPicture& picture, std::string_view name, const std::string& path) {
-    for (std::string_view wanted : {name, std::string_view("Y")}) {
-        const auto at = std::find(picture.channels.begin(), picture.channels.end(), wanted);
-        if (at != picture.channels.end()) {
-            return static_cast<std::size_t>(at - picture.channels.begin());
+    void apply(std::size_t row, std::span<const float> from, std::span<float> to) {
+        for (std::size_t column = 0; column < geometry_.width; ++column) {
+            const float* value = from.data() + 3 * column;
+            float* out = to.data() + 3 * column;
+            bool valid = true;
+            for (std::size_t c = 0; c < 3; ++c) {
+                out[c] = static_cast<float>(value[c] * scale_);
+                valid &= out[c] >= 0 && out[c] <= std::numeric_limits<float>::max();
+            }
+            if (valid) continue;
+            std::fill(out, out + 3, 0.F);
+            if (geometry_.solidAngle(column, row) > 0) count(column, row, value);
         }
     }
-    throw InputError(
-        fmt::format("{}: has no channel {}; an environment has R, G and B", path, name));
-}
 
-constexpr CurveName curves[] = {
-    {TransferCurve::linear, "linear", "values are radiance"},
-    {TransferCurve::srgb, "srgb", "IEC 61966-2-1"},
-    {TransferCurve::rec709, "rec709", "the inverse of the camera curve of ITU-R BT.709"},
-    {TransferCurve::gamma18, "gamma1.8", "value to the power of 1.8"},
-    {TransferCurve::gamma22, "gamma2.2", "value to the power of 2.2"},
-    {TransferCurve::gamma24, "gamma2.4", "value to the power of 2.4"},
+    const PictureCensus& census() const { return census_; }
+
+    void requireNone(const std::string& path) const {
+        if (census_.total() == 0) return;
+        throw InputError(fmt::format(
+            "{}: {} pixels below 0, {} infinite, {} not a number; the first is {} at column {}, "
+            "row {}; radiance has to be finite and not below 0",
+            path, census_.negative, census_.infinite, census_.notANumber, firstValue_, firstColumn_,
+            firstRow_));
+    }
+
+private:
+    void count(std::size_t column, std::size_t row, const float* value) {
+        const float* worst = std::find_if(value, value + 3, [&](float v) {
+            return !(v >= 0 && std::isfinite(static_cast<float>(v * scale_)));
+        });
+        if (census_.total() == 0) firstValue_ = *worst, firstColumn_ = column, firstRow_ = row;
+        if (std::any_of(value, value + 3, [](float v) { return std::isnan(v); })) {
+            ++census_.notANumber;
+        } else if (*worst < 0) {
+            ++census_.negative;
+        } else {
+            ++census_.infinite;
+        }
+    }
+
+    PictureGeometry geometry_;
+    double scale_;
+    PictureCensus census_;
+    float firstValue_ = 0;
+    std::size_t firstColumn_ = 0, firstRow_ = 0;
 };
 
 struct Part {
@@ -52,7 +82,15 @@ public:
     }
 
     std::vector<PictureSample> samples() {
-        add({0, 0, light_.width, light_.height});
+        // Neighbours in a picture of faces may be far apart in direction.
+        const std::size_t face = geometry_.faceSize();
+        const std::size_t width = face > 0 ? face : light_.width;
+        const std::size_t height = face > 0 ? face : light_.height;
+        for (std::size_t row = 0; row < light_.height; row += height) {
+            for (std::size_t column = 0; column < light_.width; column += width) {
+                add({column, row, width, height});
+            }
+        }
         return std::move(samples_);
     }
 
@@ -112,44 +150,27 @@ private:
 
 }  // namespace
 
-std::span<const CurveName> curveNames() {
-    return curves;
-}
-
-bool isPicturePath(std::string_view text) {
-    std::error_code error;
-    return std::filesystem::is_regular_file(text, error);
-}
-
-PictureLight readPictureLight(const std::string& path, double scale,
-                              const PictureOptions& /*options*/) {
-    const MappedFile file(path);
-    const ExrPicture picture =
-        readExrPicture({reinterpret_cast<const char*>(file.data()), file.size()}, path, mostValues);
-    if (picture.width != 2 * picture.height) {
-        throw InputError(
-            fmt::format("{}: is {} x {} pixels; a latitude-longitude picture is twice "
-                        "as wide as high",
-                        path, picture.width, picture.height));
-    }
-    const std::size_t channels[] = {channelOf(picture, "R", path), channelOf(picture, "G", path),
-                                    channelOf(picture, "B", path)};
-    PictureLight light{.file = path, .width = picture.width, .height = picture.height, .rgb = {}};
-    light.rgb.reserve(3 * picture.width * picture.height);
-    for (std::size_t row = 0; row < picture.height; ++row) {
-        for (std::size_t column = 0; column < picture.width; ++column) {
-            for (std::size_t channel : channels) {
-                const float value = picture.at(row, column, channel);
-                if (!(value >= 0 && std::isfinite(value))) {
-                    throw InputError(fmt::format(
-                        "{}: radiance {} at column {}, row {}; it has to be finite and not below 0",
-                        path, value, column, row));
-                }
-                light.rgb.push_back(static_cast<float>(value * scale));
-            }
-        }
-    }
-    file.checkIntact();
+PictureLight readPictureLight(const std::string& path, double scale, const PictureOptions& options,
+                              InvalidPixels invalid) {
+    PictureReader reader(path, options);
+    const PictureGeometry& file = reader.facts().geometry;
+    PictureReduction reduction(file, mostHeldPixels);
+    Scaling scaling(file, scale);
+    std::vector<float> row(3 * file.width);
+    reader.forEachRow([&](std::size_t at, std::span<const float> values) {
+        scaling.apply(at, values, row);
+        reduction.add(at, row);
+    });
+    if (invalid == InvalidPixels::refused) scaling.requireNone(path);
+    PictureLight light{.file = path,
+                       .width = reduction.geometry().width,
+                       .height = reduction.geometry().height,
+                       .rgb = reduction.result(),
+                       .layout = file.layout,
+                       .curve = reader.facts().curve,
+                       .scale = scale,
+                       .census = scaling.census()};
+    if (light.width != file.width) light.fileWidth = file.width, light.fileHeight = file.height;
     return light;
 }
 
@@ -162,12 +183,28 @@ PictureGeometry fileGeometryOf(const PictureLight& light) {
     return {light.layout, light.fileWidth, light.fileHeight};
 }
 
-void forEachRow(const PictureLight& light,
-                const std::function<void(std::size_t row, std::span<const float> rgb)>& visit) {
-    const std::span<const float> all(light.rgb);
-    for (std::size_t row = 0; row < light.height; ++row) {
-        visit(row, all.subspan(3 * light.width * row, 3 * light.width));
+void forEachRow(const PictureLight& light, const RowVisitor& visit) {
+    if (light.fileWidth == 0) {
+        const std::span<const float> all(light.rgb);
+        for (std::size_t row = 0; row < light.height; ++row) {
+            visit(row, all.subspan(3 * light.width * row, 3 * light.width));
+        }
+        return;
     }
+    PictureOptions options{.layout = light.layout};
+    if (light.curve != TransferCurve::linear) options.curve = light.curve;
+    PictureReader reader(light.file, options);
+    const PictureGeometry file = reader.facts().geometry;
+    if (file.width != light.fileWidth || file.height != light.fileHeight) {
+        throw InputError(fmt::format("{}: changed while it was in use", light.file));
+    }
+    Scaling scaling(file, light.scale);
+    std::vector<float> scaled(3 * file.width);
+    reader.forEachRow([&](std::size_t row, std::span<const float> values) {
+        scaling.apply(row, values, scaled);
+        visit(row, scaled);
+    });
+    if (light.census.total() == 0) scaling.requireNone(light.file);
 }
 
 Direction directionOf(const PictureLight& light, double column, double row) {

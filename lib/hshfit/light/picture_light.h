@@ -1,37 +1,26 @@
 #pragma once
 
 #include <hshfit/light/lights.h>
-#include <hshfit/light/picture_layout.h>
+#include <hshfit/light/picture_reader.h>
 
-#include <functional>
-#include <optional>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace hshfit::inline light {
 
-/// A code of values and its name in specifications.
-struct CurveName {
-    TransferCurve curve;
-    std::string_view name, help;
-};
-std::span<const CurveName> curveNames();
+/// Pictures of more pixels are held as a reduction, a box filter that keeps the flux, whose sides
+/// are whole fractions of the file's, or next to them.
+inline constexpr std::size_t mostHeldPixels = std::size_t{1} << 23;
 
-/// Facts that a file may not tell.
-struct PictureOptions {
-    std::optional<PictureLayout> layout = {};  ///< none: by the size
-    std::optional<TransferCurve> curve = {};   ///< none: linear, for floating-point files only
-};
+/// The treatment of pixels below 0, infinite or not a number.
+enum class InvalidPixels { refused, zero };
 
-/// Whether a text is the path of a file.
-bool isPicturePath(std::string_view text);
-
-/// Reads a picture and multiplies it by `scale`. Throws InputError, which names the file, for a
-/// value below 0 or not finite, a size that does not fit the layout, or a file that cannot be read.
+/// Reads a picture (picture_reader.h) and multiplies it by `scale`. Pixels outside of the layout's
+/// used area do not count. Throws InputError, which names the file, for invalid pixels, with their
+/// number and the first place, unless they are to be 0, and as PictureReader does.
 PictureLight readPictureLight(const std::string& path, double scale,
-                              const PictureOptions& options = {});
+                              const PictureOptions& options = {},
+                              InvalidPixels invalid = InvalidPixels::refused);
 
 /// The layout with the size of `rgb`, or with that of the rows of forEachRow.
 PictureGeometry geometryOf(const PictureLight& light);
@@ -40,8 +29,7 @@ PictureGeometry fileGeometryOf(const PictureLight& light);
 /// Calls `visit(row, rgb)` for each row from the top at the full resolution of the file, with
 /// fileGeometryOf(light).width times R, G, B, scaled: from memory, or from the file again, a few
 /// rows at a time, where `light.rgb` is a reduction of it. Throws InputError as reading does.
-void forEachRow(const PictureLight& light,
-                const std::function<void(std::size_t row, std::span<const float> rgb)>& visit);
+void forEachRow(const PictureLight& light, const RowVisitor& visit);
 
 /// Directions in the world at (column, row) in pixels of `rgb`, fractions allowed.
 Direction directionOf(const PictureLight& light, double column, double row);

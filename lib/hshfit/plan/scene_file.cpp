@@ -1,7 +1,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/files/mapped_file.h>
-#include <hshfit/light/picture_light.h>
+#include <hshfit/light/catalog.h>
 #include <hshfit/plan/scene.h>
 
 #include <fmt/format.h>
@@ -124,12 +124,23 @@ PictureLight pictureLight(const JsonFields& fields, const Json& object, const st
     return light;
 }
 
-Light light(const JsonFields& fields, const Json& object, const std::string& scene) {
+/// A light or, by its specification, several.
+std::vector<Light> lightsOf(const JsonFields& fields, const Json& object,
+                            const std::string& scene) {
+    if (fields.has("light")) {
+        onlyKeys(fields, object, {"light"});
+        const std::string folder = std::filesystem::path(scene).parent_path().string();
+        try {
+            return parseLights(fields.word("light"), folder).lights;
+        } catch (const UsageError& error) {
+            fields.fail(error.what(), "light");
+        }
+    }
     const std::string kind = fields.word("kind");
-    if (kind == "disc") return discLight(fields, object);
-    if (kind == "panel") return panelLight(fields, object);
-    if (kind == "sky") return skyLight(fields, object);
-    if (kind == "environment") return pictureLight(fields, object, scene);
+    if (kind == "disc") return {discLight(fields, object)};
+    if (kind == "panel") return {panelLight(fields, object)};
+    if (kind == "sky") return {skyLight(fields, object)};
+    if (kind == "environment") return {pictureLight(fields, object, scene)};
     failWord(fields, "kind", {"disc", "panel", "sky", "environment"});
 }
 
@@ -248,7 +259,7 @@ Scene readScene(const std::string& path) {
         }
     }
     for (const auto& [each, object] : elements(root, "lights")) {
-        scene.lights.push_back(light(each, *object, path));
+        for (Light& one : lightsOf(each, *object, path)) scene.lights.push_back(std::move(one));
     }
     if (root.has("views")) scene.views = viewRange(root.object("views"), root.at("views"));
     if (root.has("limits")) scene.limits = limits(root.object("limits"), root.at("limits"));

@@ -1,0 +1,59 @@
+// The module itself: all that is linked to OpenImageIO.
+#include <hshfit/light/internal/image_module.h>
+
+#include <OpenImageIO/imageio.h>
+
+#include <memory>
+
+namespace hshfit::inline light {
+namespace {
+
+class Picture : public ImageModulePicture {
+public:
+    explicit Picture(std::unique_ptr<OIIO::ImageInput> input) : input_(std::move(input)) {
+        const OIIO::ImageSpec& spec = input_->spec();
+        width = spec.width, height = spec.height, depth = spec.depth, x = spec.x, y = spec.y;
+        fullWidth = spec.full_width, fullHeight = spec.full_height;
+        fullX = spec.full_x, fullY = spec.full_y;
+        tileHeight = spec.tile_width > 0 ? spec.tile_height : 0;
+        orientation = spec.get_int_attribute("Orientation", 1);
+        deep = spec.deep;
+        floating = spec.format.is_floating_point();
+        number = spec.format.c_str();
+        environment = std::string(spec.get_string_attribute("textureformat"));
+        channels = spec.channelnames;
+    }
+
+    bool read(int top, int bottom, int first, int last, float* values) override {
+        const auto type = OIIO::TypeDesc::FLOAT;
+        const bool good =
+            tileHeight > 0
+                ? input_->read_tiles(0, 0, 0, width, top, bottom, 0, 1, first, last, type, values)
+                : input_->read_scanlines(0, 0, top, bottom, 0, first, last, type, values);
+        if (good && !input_->has_error()) return true;
+        error = input_->geterror();
+        return false;
+    }
+
+private:
+    std::unique_ptr<OIIO::ImageInput> input_;
+};
+
+}  // namespace
+}  // namespace hshfit::inline light
+
+extern "C" [[gnu::visibility("default")]] hshfit::ImageModulePicture* hshfitOpenImage(
+    const char* plugin, const char* path, std::string& error) {
+    auto input = OIIO::ImageInput::create(plugin);
+    if (!input) {
+        error = OIIO::geterror();
+        return nullptr;
+    }
+    OIIO::ImageSpec spec, hints;
+    hints.attribute("oiio:UnassociatedAlpha", 1);
+    if (!input->open(path, spec, hints)) {
+        error = input->geterror();
+        return nullptr;
+    }
+    return new hshfit::Picture(std::move(input));
+}

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <hshfit/light/catalog.h>
+#include <hshfit/light/picture_light.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace hshfit::inline light {
+
+/// A light as a whole. Radiance by pixel: of the first picture at its full resolution, with what
+/// other lights add in the pixels' middles, or of a grid of 1024 x 512 where there is no picture.
+/// Discs below 2 degrees of radius and directional lights stand beside the grid, whose pixels would
+/// miss them.
+struct LightHealth {
+    Rgb mean{};  ///< radiance over the sphere
+    Rgb peak{};  ///< radiance with the largest sum of components; infinite for a direction
+    Direction peakDirection{};
+    /// The share of the flux, all channels, in the brightest 0.1 % of the sphere, within 1 %.
+    double brightestShare = 0;
+    /// Largest over smallest sum of components, of pixels that are not black; 0 for darkness.
+    double dynamicRange = 0;
+    double blackShare = 0;  ///< of the sphere
+    double aboveHalf = 0;   ///< largest component over 65504, the largest of a 16-bit float
+    bool clippedByHalf = false;
+    PictureCensus invalid = {};  ///< of all pictures; these count as 0
+};
+
+LightHealth examine(const std::vector<Light>& lights);
+
+/// "disc", "panel", "sky", "picture" or "direction".
+std::string_view kindOf(const Light& light);
+
+}  // namespace hshfit::inline light
