@@ -36,14 +36,16 @@ constexpr const char* lighting = "Light";
 constexpr Command table[] = {
     {.name = "list",
      .group = inspection,
-     .help = "The catalogs: models, formats (read), writers, bases, metrics, targets, presets",
+     .help =
+         "The catalogs: models, formats (read), writers, lights, bases, metrics, targets, presets",
      .file = "list.cpp",
      .example = "hshfit list presets acrylic",
      .add = addList},
     {.name = "info",
      .group = inspection,
-     .help = "What a BRDF or a coefficient file is, and how healthy: channels, symmetry, sampling, "
-             "invalid values, coverage, reciprocity, albedo, repairs",
+     .help = "What a BRDF, a light or a coefficient file is, and how healthy: channels, symmetry, "
+             "sampling, invalid values, coverage, reciprocity, albedo, repairs; of a light mean, "
+             "peak, range",
      .file = "info.cpp",
      .example = "hshfit info ggx:alpha=.2,F0=.9",
      .add = addInfo},

@@ -2,11 +2,13 @@
 #include "documents.h"
 #include "form_options.h"
 #include "health.h"
+#include "info_light.h"
 
 #include <hshfit/accuracy/isotropy.h>
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/gpu/containers/containers.h>
+#include <hshfit/light/catalog.h>
 #include <hshfit/quadrature/quadrature.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 
@@ -184,10 +186,19 @@ void addInfo(CLI::App& command, Globals& globals) {
         bool rgb = false;
     };
     auto options = std::make_shared<Options>();
-    command.add_option("SPEC", options->spec, "BRDF, coefficient file or file of an export")
+    command.add_option("SPEC", options->spec, "BRDF, light, coefficient file or file of an export")
         ->required();
     addRgb(command, options->rgb);
     command.callback([options, &globals] {
+        if (looksLikeLight(options->spec)) {
+            const Json document = describeLight(options->spec);
+            if (globals.json) {
+                printJson(document);
+            } else {
+                printText(lightText(document));
+            }
+            return;
+        }
         const auto brdf = jobs::openSource(options->spec, options->rgb);
         Json document = describe(*brdf, globals);
         describeContainer(options->spec, document["facts"]);

@@ -6,6 +6,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/gpu/containers/targets.h>
+#include <hshfit/light/catalog.h>
 
 #include <brdfs/catalog.h>
 #include <brdfs/preset.h>
@@ -27,6 +28,12 @@ using Json = nlohmann::ordered_json;
 Json parameterJson(const brdfs::Parameter& parameter) {
     using Kind = brdfs::Parameter::Kind;
     Json json = {{"name", parameter.name}, {"help", parameter.help}};
+    if (parameter.kind == Kind::text) {
+        json["kind"] = "text";
+        json["default"] = "";
+        json["choices"] = parameter.choices;
+        return json;
+    }
     if (parameter.kind == Kind::choice) {
         json["kind"] = "choice";
         json["default"] = parameter.choices.front();
@@ -79,6 +86,20 @@ Json formatsJson() {
 
 Json writersJson() {
     return fileRowsJson(brdfs::writers());
+}
+
+Json lightsJson() {
+    Json rows = Json::array();
+    const auto add = [&](const LightKind& kind) {
+        rows.push_back({{"name", kind.name},
+                        {"help", kind.help},
+                        {"source", kind.source},
+                        {"example", kind.example},
+                        {"parameters", parametersJson(kind.parameters)}});
+    };
+    for (const LightKind& kind : lightKinds()) add(kind);
+    add(pictureKind());
+    return rows;
 }
 
 Json basesJson() {
@@ -191,6 +212,7 @@ struct Section {
 constexpr Section sections[] = {{"models", modelsJson, brdfs::sumHelp},
                                 {"formats", formatsJson},
                                 {"writers", writersJson},
+                                {"lights", lightsJson, lightSumHelp},
                                 {"bases", basesJson},
                                 {"metrics", metricsJson},
                                 {"targets", targetsJson}};
@@ -198,6 +220,8 @@ constexpr Section sections[] = {{"models", modelsJson, brdfs::sumHelp},
 std::string parameterText(const Json& parameter) {
     std::string text = fmt::format("      {:<14} {}", parameter["name"].get<std::string>(),
                                    parameter["help"].get<std::string>());
+    if (parameter["kind"] == "text")
+        return text + fmt::format(" (such as {})", parameter["choices"][0].get<std::string>());
     if (parameter["kind"] == "choice") {
         return text + fmt::format(" ({}; default {})", jsonText(parameter["choices"]),
                                   parameter["default"].get<std::string>());
@@ -234,6 +258,8 @@ void printSection(const char* name, const Json& rows, std::string_view sums = {}
         if (row.contains("parts"))
             text += fmt::format("      {:<14} {}\n", "parts",
                                 fmt::join(row["parts"].get<std::vector<std::string>>(), ", "));
+        if (row.contains("example"))
+            text += fmt::format("      {:<14} {}\n", "example", row["example"].get<std::string>());
         for (const Json& parameter : row.value("parameters", Json::array())) {
             text += parameterText(parameter) + "\n";
         }

@@ -1,0 +1,148 @@
+#include "info_light.h"
+
+#include "health.h"
+
+#include <hshfit/files/json_fields.h>
+#include <hshfit/light/light_health.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace hshfit::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json placeJson(const Direction& d) {
+    return {{"elevation", 90 - degrees(polarAngle(d))}, {"azimuth", degrees(azimuth(d))}};
+}
+
+Json rgbJson(const Rgb& rgb) {
+    return {finiteOrNull(rgb[0]), finiteOrNull(rgb[1]), finiteOrNull(rgb[2])};
+}
+
+/// The members of one light beside its kind.
+struct LightJson {
+    Json operator()(const DiscLight& light) const {
+        return {{"direction", placeJson(light.towards)},
+                {"angular_diameter", degrees(2 * light.radius)}};
+    }
+    Json operator()(const PanelLight& light) const {
+        return {{"direction", placeJson(light.towards)},
+                {"width", degrees(light.width)},
+                {"height", degrees(light.height)}};
+    }
+    Json operator()(const SkyLight& light) const {
+        constexpr const char* models[] = {"uniform", "overcast", "cie", "preetham"};
+        const auto model = static_cast<std::size_t>(light.model);
+        Json json = {{"model", models[model]}};
+        if (model >= 2) json["sun"] = placeJson(light.sun);
+        return json;
+    }
+    Json operator()(const PictureLight& light) const {
+        const PictureGeometry file = fileGeometryOf(light);
+        return {{"file", light.file},
+                {"layout", layoutName(light.layout)},
+                {"width", file.width},
+                {"height", file.height},
+                {"held_width", light.width},
+                {"held_height", light.height},
+                {"curve", curveName(light.curve)}};
+    }
+    Json operator()(const DirectionalLight& light) const {
+        return {{"direction", placeJson(light.towards)}};
+    }
+};
+
+std::string colourText(const Json& rgb) {
+    const auto one = [](const Json& value) {
+        return value.is_null() ? std::string("inf") : fmt::format("{:.4g}", value.get<double>());
+    };
+    return one(rgb[0]) + " " + one(rgb[1]) + " " + one(rgb[2]);
+}
+
+std::string placeText(const Json& place) {
+    return fmt::format("elevation {:.1f}, azimuth {:.1f}", place["elevation"].get<double>(),
+                       place["azimuth"].get<double>());
+}
+
+std::string lightLine(const Json& light) {
+    std::string text;
+    for (const auto& [key, value] : light.items()) {
+        if (key == "kind" || key.starts_with("held_")) continue;
+        if (value.is_object()) {
+            text += (text.empty() ? "" : "; ") + placeText(value);
+        } else if (value.is_string()) {
+            text += (text.empty() ? "" : ", ") + value.get<std::string>();
+        } else {
+            text += fmt::format("{}{} {:g}", text.empty() ? "" : ", ", key, value.get<double>());
+        }
+    }
+    if (light.contains("held_width") && light["held_width"] != light["width"])
+        text += fmt::format(", held as {} x {}", light["held_width"].get<std::size_t>(),
+                            light["held_height"].get<std::size_t>());
+    return text;
+}
+
+}  // namespace
+
+Json describeLight(const std::string& spec) {
+    const LightSpecification parsed = parseLights(spec, "", InvalidPixels::zero);
+    Json document = {
+        {"format", "hshfit-info"},     {"version", 1},           {"kind", "light"}, {"name", spec},
+        {"channels", {"R", "G", "B"}}, {"lights", Json::array()}};
+    for (const Light& light : parsed.lights) {
+        Json json = {{"kind", kindOf(light)}};
+        json.update(std::visit(LightJson{}, light));
+        document["lights"].push_back(json);
+    }
+    const LightHealth health = examine(parsed.lights);
+    document["light_health"] = {{"mean", rgbJson(health.mean)},
+                                {"peak", rgbJson(health.peak)},
+                                {"peak_direction", placeJson(health.peakDirection)},
+                                {"brightest_share", health.brightestShare},
+                                {"dynamic_range", finiteOrNull(health.dynamicRange)},
+                                {"black_share", health.blackShare},
+                                {"clipped_by_half", health.clippedByHalf},
+                                {"invalid",
+                                 {{"negative", health.invalid.negative},
+                                  {"nan", health.invalid.notANumber},
+                                  {"infinite", health.invalid.infinite}}}};
+    if (health.invalid.total() > 0)
+        document["warnings"] = {
+            fmt::format("{} pixels are no radiance and count as 0 here; "
+                        "commands that use the light refuse it",
+                        health.invalid.total())};
+    return document;
+}
+
+std::string lightText(const Json& document) {
+    std::string out = fmt::format("light: {}\n", document["name"].get<std::string>());
+    for (const Json& light : document["lights"])
+        out += factLine(light["kind"].get<std::string>(), lightLine(light));
+    const Json& health = document["light_health"];
+    out += factLine("mean radiance", colourText(health["mean"]));
+    out += factLine("peak radiance", colourText(health["peak"]));
+    out += factLine("peak towards", placeText(health["peak_direction"]));
+    out += factLine("flux in the brightest 0.1 % of the sphere",
+                    fmt::format("{:.3g} %", 100 * health["brightest_share"].get<double>()));
+    const Json& range = health["dynamic_range"];
+    out += factLine("dynamic range",
+                    range.is_null() ? "infinite" : fmt::format("{:.3g} : 1", range.get<double>()));
+    if (health["black_share"] > 0)
+        out += factLine("black", fmt::format("{:.3g} % of the sphere",
+                                             100 * health["black_share"].get<double>()));
+    out += factLine("fits a 16-bit float", health["clipped_by_half"] ? "no: above 65504" : "yes");
+    const Json& invalid = health["invalid"];
+    out += factLine(
+        "pixels below 0, NaN, infinite",
+        fmt::format("{}, {}, {}", invalid["negative"].get<std::size_t>(),
+                    invalid["nan"].get<std::size_t>(), invalid["infinite"].get<std::size_t>()));
+    for (const Json& warning : document.value("warnings", Json::array()))
+        out += factLine("WARNING", warning.get<std::string>());
+    return out;
+}
+
+}  // namespace hshfit::cli

@@ -1,0 +1,174 @@
+// `info` and `list` of lights, and scenes of `plan` with them.
+
+#include "places.h"
+#include "program.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace hshfit::test {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double pi = 3.14159265358979323846;
+
+class Lights : public Cli {
+protected:
+    Json info(const std::string& spec) const {
+        const Answer answer = run("info --json '" + spec + "'");
+        EXPECT_EQ(answer.code, 0) << spec << "\n" << answer.err;
+        EXPECT_TRUE(keepsSchema(answer.out, "info")) << spec;
+        return answer.code == 0 ? Json::parse(answer.out) : Json();
+    }
+
+    /// A PFM file of grey values by row from the bottom, or with one R, G and B for each pixel.
+    std::string pfm(const std::string& name, int width, int height,
+                    const std::vector<float>& rgb) const {
+        std::ofstream out(path(name), std::ios::binary);
+        out << "PF\n" << width << " " << height << "\n-1.0\n";
+        out.write(reinterpret_cast<const char*>(rgb.data()),
+                  static_cast<std::streamsize>(rgb.size() * sizeof(float)));
+        return path(name);
+    }
+};
+
+TEST_F(Lights, MixedAnalyticLightsHaveAHealthReport) {
+    const Json document = info("sky:type=12,elevation=40+sun:elevation=40,irradiance=3");
+    EXPECT_EQ(document["kind"], "light");
+    EXPECT_EQ(document["lights"].size(), 2U);
+    const Json& health = document["light_health"];
+    // The sun: radiance E / (pi sin^2 r) above a sky of about 1, in 0.1 % of the sphere.
+    const double radius = 0.533 / 2 * pi / 180;
+    const double sun = 3 / (pi * std::pow(std::sin(radius), 2));
+    EXPECT_NEAR(health["peak"][0], sun, 1e-2 * sun);
+    EXPECT_NEAR(health["peak_direction"]["elevation"], 40, 0.01);
+    EXPECT_FALSE(health["clipped_by_half"]);
+    EXPECT_TRUE(info("sun:elevation=40,irradiance=50")["light_health"]["clipped_by_half"]);
+    EXPECT_NEAR(health["black_share"], 0.5, 1e-3);
+
+    const Json uniform = info("uniform:radiance=2/1/0")["light_health"];
+    EXPECT_NEAR(uniform["mean"][0], 2, 1e-9);
+    EXPECT_NEAR(uniform["mean"][2], 0, 1e-9);
+    EXPECT_NEAR(uniform["brightest_share"], 1e-3, 1e-6);
+    EXPECT_NEAR(uniform["dynamic_range"], 1, 1e-12);
+
+    // All flux in a disc of 0.07 sr or in one direction.
+    EXPECT_NEAR(info("sun:elevation=40")["light_health"]["brightest_share"], 1, 1e-9);
+    const Json beam = info("directional:elevation=90,irradiance=3")["light_health"];
+    EXPECT_TRUE(beam["peak"][0].is_null());
+    EXPECT_NEAR(beam["mean"][0], 3 / (4 * pi), 1e-12);
+    const std::string text = run("info 'sky:type=3+sun:elevation=30'").out;
+    for (const char* words : {"light:", "mean radiance", "peak towards", "fits a 16-bit float"}) {
+        EXPECT_NE(text.find(words), std::string::npos) << words;
+    }
+}
+
+TEST_F(Lights, PicturesHaveTheHealthOfTheirPixels) {
+    // 64 x 32, 1 everywhere but for one pixel of 70000 next to the horizon.
+    std::vector<float> rgb(3 * 64 * 32, 1.F);
+    for (int c = 0; c < 3; ++c) rgb[3 * (16 * 64 + 32) + c] = 70000;
+    const std::string file = pfm("a.pfm", 64, 32, rgb);
+    const Json document = info(file);
+    EXPECT_EQ(document["lights"][0]["layout"], "latlong");
+    EXPECT_EQ(document["lights"][0]["width"], 64);
+    const Json& health = document["light_health"];
+    const double step = pi / 32, omega = (std::cos(15 * step) - std::cos(16 * step)) * 2 * pi / 64;
+    const double flux = 70000 * omega + (4 * pi - omega);
+    EXPECT_NEAR(health["mean"][1], flux / (4 * pi), 1e-6 * flux);
+    EXPECT_NEAR(health["brightest_share"], (70000 * omega + (4e-3 * pi - omega)) / flux, 0.01);
+    EXPECT_NEAR(health["dynamic_range"], 70000, 1e-3);
+    EXPECT_TRUE(health["clipped_by_half"]);
+    EXPECT_NEAR(health["peak_direction"]["elevation"], 90.0 / 32, 1e-3);
+    EXPECT_NEAR(health["peak_direction"]["azimuth"], -180.0 / 64, 1e-3);
+    EXPECT_NEAR(info(file + ":turn=30")["light_health"]["peak_direction"]["azimuth"],
+                30 - 180.0 / 64, 1e-3);
+
+    rgb[7] = -1;
+    rgb[100] = std::numeric_limits<float>::quiet_NaN();
+    const Json broken = info(pfm("b.pfm", 64, 32, rgb));
+    EXPECT_EQ(broken["light_health"]["invalid"]["negative"], 1);
+    EXPECT_EQ(broken["light_health"]["invalid"]["nan"], 1);
+    EXPECT_TRUE(broken.contains("warnings"));
+}
+
+TEST_F(Lights, BrokenPicturesEndInThreeWithOneLine) {
+    const std::vector<float> rgb(3 * 16 * 8, 1.F);
+    const auto three = [&](const std::string& spec, const std::string& words) {
+        const Answer answer = run("info '" + spec + "'");
+        EXPECT_EQ(answer.code, 3) << spec;
+        EXPECT_NE(answer.err.find(words), std::string::npos) << answer.err;
+        EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1) << answer.err;
+    };
+    const std::string good = pfm("good.pfm", 16, 8, rgb);
+    for (const char* layout : {"angular", "mirror-ball", "cross", "faces"}) {
+        three(good + ":layout=" + layout, layout);
+    }
+    const std::string cut = pfm("cut.pfm", 16, 8, std::vector<float>(100, 1.F));
+    three(cut, cut);
+    three(pfm("odd.pfm", 17, 8, std::vector<float>(3 * 17 * 8, 1.F)), "do not tell a layout");
+    three(good + ":curve=srgb", "linear");
+    EXPECT_EQ(run("info '" + good + ":layout=flat'").code, 2);
+    EXPECT_EQ(run("info 'sky:type=16'").code, 2);
+}
+
+TEST_F(Lights, SharedMapsAreLightsAndTablesAreNot) {
+    const std::string env = sharedFolder() + "/data/env/";
+    if (!fs::exists(env)) GTEST_SKIP() << env << " is not there";
+    EXPECT_EQ(info(env + "rnl_probe_latlong.hdr")["kind"], "light");
+    EXPECT_EQ(info(env + "grace_probe_angular.hdr:layout=angular")["lights"][0]["layout"],
+              "angular");
+    EXPECT_EQ(run("info " + env + "grace_probe_angular.hdr").code, 3);
+    // A table of a BRDF written as a picture stays one.
+    EXPECT_EQ(run("convert lambert " + path("x.exr") + " --to slices:size=8").code, 0);
+    EXPECT_EQ(info(path("x.exr"))["kind"], "brdf");
+}
+
+TEST_F(Lights, TheListHasEveryKindAndKeepsItsSchema) {
+    const Answer answer = run("list lights --json");
+    EXPECT_TRUE(keepsSchema(answer.out, "list"));
+    const Json rows = Json::parse(answer.out)["lights"];
+    ASSERT_EQ(rows.size(), 7U);
+    EXPECT_EQ(rows[3]["name"], "panel");
+    const std::string text = run("list lights").out;
+    for (const char* words : {"preetham", "turbidity", "layout", "such as 2024-06-21", "sums"}) {
+        EXPECT_NE(text.find(words), std::string::npos) << words;
+    }
+}
+
+/// The same plan by a lamp of the scene's own kind and by its specification; a picture in PFM.
+TEST_F(Lights, ScenesTakeSpecificationsAndEveryFormat) {
+    pfm("room.pfm", 16, 8, std::vector<float>(3 * 16 * 8, 0.5F));
+    const auto plan = [&](const std::string& name, const std::string& lights) {
+        std::ofstream(path(name + ".json"))
+            << R"({"format": "hshfit-scene", "version": 1, "materials": [{"name": "grey", )"
+            << R"("brdf": "lambert:kd=0.5"}], "lights": )" << lights
+            << R"(, "budget": {"metric": "relative_l2", "error": 0.05}})";
+        const Answer answer =
+            run("plan " + path(name + ".json") + " -o " + path(name) + " --quiet --json");
+        EXPECT_EQ(answer.code, 0) << answer.err;
+        return answer;
+    };
+    const Answer own = plan("own", R"([{"kind": "disc", "theta": 30, "phi": 20,
+        "angular_diameter": 10, "irradiance": 2}, {"kind": "environment", "file": "room.pfm"}])");
+    const Answer spec = plan("spec", R"([{"light":
+        "sun:elevation=60,azimuth=20,angle=10,irradiance=2 + room.pfm"}])");
+    if (own.code != 0 || spec.code != 0) return;
+    const Json a = Json::parse(own.out)["materials"][0], b = Json::parse(spec.out)["materials"][0];
+    EXPECT_EQ(a["choice"]["bytes"], b["choice"]["bytes"]);
+    EXPECT_EQ(a["choice"]["error"], b["choice"]["error"]);
+    EXPECT_TRUE(a["choice"]["error"].is_number());
+
+    std::ofstream(path("bad.json"))
+        << R"({"format": "hshfit-scene", "version": 1, "materials": [{"name": "grey", )"
+        << R"("brdf": "lambert"}], "lights": [{"light": "sky:type=77"}], )"
+        << R"("budget": {"metric": "log", "error": 0.05}})";
+    const Answer bad = run("plan " + path("bad.json") + " -o " + path("bad"));
+    EXPECT_EQ(bad.code, 3);
+    EXPECT_NE(bad.err.find("1 to 15"), std::string::npos) << bad.err;
+}
+
+}  // namespace
+}  // namespace hshfit::test
