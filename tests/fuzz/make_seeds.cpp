@@ -6,6 +6,7 @@
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/exr_picture.h>
+#include <hshfit/light/catalog.h>
 #include <hshfit/representation/basis_matrix.h>
 #include <hshfit/representation/named_arrays.h>
 
@@ -108,6 +109,63 @@ void utiaPicture(const std::filesystem::path& folder) {
     AtomicFile file(folder / "picture.exr");
     writeExrPicture(picture, ExrPixels::half, file);
     file.commit();
+}
+
+/// Pictures of light behind a byte that chooses layout and curve (fuzz_pictures.cpp).
+void lightFiles(const std::filesystem::path& folder) {
+    using namespace hshfit;
+    struct Shape {
+        std::size_t width, height;
+        char layout;
+    };
+    int number = 0;
+    for (const Shape& shape : {Shape{8, 4, 0},
+                               {5, 5, 1},
+                               {5, 5, 2},
+                               {8, 6, 3},
+                               {6, 8, 3},
+                               {12, 2, 4},
+                               {2, 12, 4},
+                               {8, 4, 7}}) {
+        ExrPicture picture{
+            .width = shape.width, .height = shape.height, .channels = {"B", "G", "R"}};
+        picture.values.assign(3 * shape.width * shape.height, 0.5F);
+        const std::filesystem::path exr = folder / "seed.exr";
+        std::filesystem::create_directories(folder);
+        AtomicFile file(exr);
+        writeExrPicture(picture, ExrPixels::half, file);
+        file.commit();
+        std::ifstream in(exr, std::ios::binary);
+        const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+        const char choice = static_cast<char>(shape.layout + 8 * 7);
+        write(folder / std::to_string(number++), choice + bytes);
+        std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " +
+                          std::to_string(shape.height) + " +X " + std::to_string(shape.width) +
+                          "\n";
+        std::string pfm =
+            "PF\n" + std::to_string(shape.width) + " " + std::to_string(shape.height) + "\n-1.0\n";
+        std::string ppm =
+            "P6\n" + std::to_string(shape.width) + " " + std::to_string(shape.height) + "\n255\n";
+        for (std::size_t k = 0; k < shape.width * shape.height; ++k) {
+            hdr += "\x40\x80\x20\x81";
+            ppm += "\x10\x20\x30";
+            for (const float v : {1.F, 0.5F, 2.F}) put(pfm, v);
+        }
+        write(folder / std::to_string(number++), choice + hdr);
+        write(folder / std::to_string(number++), choice + pfm);
+        write(folder / std::to_string(number++), static_cast<char>(shape.layout + 8) + ppm);
+        std::filesystem::remove(exr);
+    }
+}
+
+void lightSpecifications(const std::filesystem::path& folder) {
+    int number = 0;
+    for (const hshfit::LightKind& kind : hshfit::lightKinds())
+        write(folder / std::to_string(number++), std::string(kind.example));
+    for (const char* text :
+         {"sky:type=12,elevation=40+sun:elevation=40,irradiance=1e+3,turn=-90",
+          "uniform: + panel:roll=30,scale=2", "none.hdr:layout=angular,curve=srgb"})
+        write(folder / std::to_string(number++), text);
 }
 
 void coefficientFiles(const std::filesystem::path& folder) {
@@ -275,6 +333,8 @@ int main(int count, char** arguments) {
     scatteredFiles(folder);
     presetFiles(folder);
     bsdfXmlFiles(folder / "fuzz_bsdf_xml");
+    lightFiles(folder / "fuzz_pictures");
+    lightSpecifications(folder / "fuzz_lights");
     int number = 0;
     for (const std::vector<float>& phi :
          {std::vector<float>{0}, {0, 1}, {-3.1415927F, -1.5707964F, 0}, {0, 0.5F, 1.5707964F}}) {
