@@ -142,8 +142,10 @@ void LatlongProjection::addBlock(const float* rows, std::size_t count) {
     std::vector<std::array<double, 3>> squares(count);
     tbb::parallel_for(std::size_t{0}, (count + rowsOfTask - 1) / rowsOfTask, [&](std::size_t task) {
         const std::size_t first = task * rowsOfTask, some = std::min(rowsOfTask, count - first);
-        std::vector<double> folded(4 * kindStride);
-        std::vector<float> repeated;
+        // Kept between tasks: fresh pages for each would cost as much as the sums of low orders.
+        thread_local std::vector<double> folded;
+        thread_local std::vector<float> repeated;
+        if (folded.size() < 4 * kindStride) folded.resize(4 * kindStride);
         for (std::size_t r = 0; r < some; ++r) {
             const float* row = rows + (first + r) * 3 * width_;
             if (repeats_ > 1) {
