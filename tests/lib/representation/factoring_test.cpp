@@ -295,6 +295,18 @@ TEST(Factoring, OneNonNegativeProductIsFound) {
     EXPECT_LT(factored(before, {.rank = 1, .nonNegative = true}).steps.at(0).change, 1e-5);
 }
 
+TEST(Factoring, ASearchThatStopsEarlySaysSo) {
+    const auto basis = bases::make("hsh", 4);
+    const Representation before = perOutgoing(glossy(5), *basis, OutgoingSet::elevations(6));
+    const auto said = [&](int mostSweeps) {
+        return factored(before, {.rank = 3, .nonNegative = true, .mostSweeps = mostSweeps})
+            .steps.at(0)
+            .what;
+    };
+    EXPECT_EQ(said(1), "non-negative rank 3, not settled in 1 sweeps");
+    EXPECT_EQ(said(1000), "non-negative rank 3");
+}
+
 TEST(Factoring, RefusesWhatItCannotDo) {
     const auto basis = bases::make("hsh", 3);
     const Representation rows = perOutgoing(glossy(5), *basis, OutgoingSet::elevations(4));

@@ -87,15 +87,16 @@ RowFactors singularFactors(const WeightedRows& rows, const Basis& basis,
     return factors;
 }
 
-Representation factoredRows(Representation result, const FactorOptions& options) {
+Representation factoredRows(Representation result, const FactorOptions& options, bool& settled) {
     const auto basis = bases::make(result.head.basis, result.head.order,
                                    {.condonShortley = result.head.condonShortley});
     const WeightedRows rows = rowsOf(result);
     const RowFactors factors =
         options.nonNegative
             ? nonNegativeFactors(rows, *basis, static_cast<std::size_t>(options.rank),
-                                 withoutSines(result.slots))
+                                 withoutSines(result.slots), options.mostSweeps)
             : singularFactors(rows, *basis, options);
+    settled = factors.settled;
     Matrix right(static_cast<Index>(factors.rank), static_cast<Index>(result.slots.size()));
     for (Index r = 0; r < right.rows(); ++r) {
         for (Index k = 0; k < right.cols(); ++k) {
@@ -255,13 +256,15 @@ void check(const Representation& representation, const FactorOptions& options) {
 Representation factored(Representation representation, const FactorOptions& options) {
     check(representation, options);
     const Representation before = representation;
+    bool settled = true;
     Representation result = representation.as<CoefficientArray>()
-                                ? factoredRows(std::move(representation), options)
+                                ? factoredRows(std::move(representation), options, settled)
                                 : factoredMatrix(std::move(representation), options);
-    const std::string name = options.nonNegative ? "non-negative rank" : "rank";
-    addStep(result, before,
-            options.rank > 0 ? fmt::format("{} {}", name, options.rank)
-                             : fmt::format("{} for {:g}", name, options.error));
+    std::string name = options.nonNegative ? "non-negative rank" : "rank";
+    name += options.rank > 0 ? fmt::format(" {}", options.rank)
+                             : fmt::format(" for {:g}", options.error);
+    if (!settled) name += fmt::format(", not settled in {} sweeps", options.mostSweeps);
+    addStep(result, before, name);
     return result;
 }
 

@@ -27,20 +27,23 @@ public:
           left_(Matrix::Zero(rest_.rows(), static_cast<Index>(rank))),
           right_(Matrix::Zero(static_cast<Index>(rank), rest_.cols())) {}
 
-    RowFactors search() {
+    RowFactors search(int mostSweeps) {
+        constexpr double enough = 1e-4, nothing = 1e-24;
+        const double whole = error();
         for (Index r = 0; r < right_.rows(); ++r) seed(r);
-        constexpr int mostSweeps = 60;
+        bool settled = false;
         double before = error();
-        for (int sweep = 0; sweep < mostSweeps; ++sweep) {
+        for (int sweep = 0; sweep < mostSweeps && !settled; ++sweep) {
             for (Index r = 0; r < right_.rows(); ++r) improve(r);
             const double now = error();
-            if (before - now <= 1e-4 * before) break;
+            settled = before - now <= enough * before || now <= nothing * whole;
             before = now;
         }
         sure_ = true;
         for (Index r = 0; r < right_.rows(); ++r) improve(r);
         RowFactors factors{
             .rank = static_cast<std::size_t>(right_.rows()), .left = {}, .right = {}};
+        factors.settled = settled;
         factors.left.assign(left_.data(), left_.data() + left_.size());
         factors.right.assign(right_.data(), right_.data() + right_.size());
         return factors;
@@ -109,8 +112,8 @@ private:
 }  // namespace
 
 RowFactors nonNegativeFactors(const WeightedRows& rows, const Basis& basis, std::size_t rank,
-                              bool even) {
-    return NonNegativeSearch(rows, basis, rank, even).search();
+                              bool even, int mostSweeps) {
+    return NonNegativeSearch(rows, basis, rank, even).search(mostSweeps);
 }
 
 }  // namespace hshfit::inline representation::inline factoring

@@ -18,10 +18,11 @@ struct WeightedRows {
 struct RowFactors {
     std::size_t rank = 0;
     std::vector<double> left, right;
+    bool settled = true;  ///< the last sweep lowered the squared error by less than 1e-4 of it
 };
 
 /// See `factored`: left >= 0, right non-negative on the hemisphere.
 RowFactors nonNegativeFactors(const WeightedRows& rows, const Basis& basis, std::size_t rank,
-                              bool even);
+                              bool even, int mostSweeps);
 
 }  // namespace hshfit::inline representation::inline factoring
