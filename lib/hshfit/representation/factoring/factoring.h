@@ -13,7 +13,7 @@ struct FactorOptions {
     int rank = 0;      ///< 0: the least that keeps to `error`
     double error = 0;  ///< relative change allowed
     bool nonNegative = false;
-    int mostSweeps = 60;  ///< of nonNegative; if the error still falls by 1e-4, the step says so
+    int mostSweeps = 60;  ///< of nonNegative; the step says whether they were too few
 };
 
 /// Replaces CoefficientArray or MatrixArray by factors; adds a step with its cost.
