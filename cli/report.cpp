@@ -32,13 +32,13 @@ std::string summary(const ReportEntry& entry) {
     for (const ReportCurve& curve : entry.curves) {
         const ReportPoint& last = curve.points.back();
         const auto reached = firstReaching(curve, 0.99);
-        text += fmt::format(
-            "  {:<16} {:.6f} at order {:<3} ({} coefficients); 99 %: {}\n", curve.basis,
-            last.accuracy.value_or(std::numeric_limits<double>::quiet_NaN()), last.order,
-            last.coefficients,
-            reached
-                ? fmt::format("{} coefficients (order {})", reached->coefficients, reached->order)
-                : fmt::format("more than {}", last.coefficients));
+        text += fmt::format("  {:<16} {:.6f} at order {:<3} ({} coefficients); 99 %: {}\n",
+                            curve.bestTerms ? curve.basis + ", best k" : curve.basis,
+                            last.accuracy.value_or(std::numeric_limits<double>::quiet_NaN()),
+                            last.order, last.coefficients,
+                            reached ? fmt::format("{} coefficients (order {})",
+                                                  reached->coefficients, reached->order)
+                                    : fmt::format("more than {}", last.coefficients));
     }
     return text;
 }
@@ -88,6 +88,8 @@ void addReport(CLI::App& command, Globals& globals) {
         ->capture_default_str();
     command.add_option("--outgoing", options.outgoing,
                        "WxH, N or THETA,PHI in degrees (default: 16, or 16x16 if anisotropic)");
+    command.add_flag("--wavelets", options.wavelets,
+                     "A curve of SOHO wavelets too: the best n^2 terms of each outgoing direction");
     addRgb(command, options.rgb);
     command.add_flag("--cosine", options.cosine, "Report f cos(theta_i) instead of f");
     addQuadrature(command, options.tolerance, arguments->maxEvaluations);

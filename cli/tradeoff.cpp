@@ -36,7 +36,7 @@ struct TradeoffArguments {
     std::string metric = TradeoffOptions{}.metric;
     double maxBytes = 0, maxNanoseconds = 0, tolerance = 0;
     double maxEvaluations = static_cast<double>(TradeoffOptions{}.projection.maxEvaluations);
-    bool cosine = false, noTiming = false, byTime = false, rgb = false;
+    bool cosine = false, noTiming = false, byTime = false, rgb = false, wavelets = false;
 };
 
 /// Replaces the sweep's default values with those on the command line, if there are any.
@@ -84,6 +84,7 @@ TradeoffOptions optionsFrom(const TradeoffArguments& arguments) {
     if (arguments.maxNanoseconds > 0) options.maxNanoseconds = arguments.maxNanoseconds;
     options.timing = !arguments.noTiming;
     options.byTime = arguments.byTime;
+    options.wavelets = arguments.wavelets;
     options.projection.tolerance = arguments.tolerance;
     options.projection.maxEvaluations = static_cast<std::size_t>(arguments.maxEvaluations);
     return options;
@@ -282,6 +283,8 @@ void addTradeoff(CLI::App& command, Globals& globals) {
                        "CSV of the pairs to measure on instead: columns wi_x … wo_z, and weight");
     command.add_option("--write-pairs", arguments->writePairs,
                        "CSV to write: the pairs, their weights and the values of SPEC");
+    command.add_flag("--wavelets", arguments->wavelets,
+                     "Measure the best terms of SOHO wavelets too, for comparison");
     command.add_flag("--cosine", arguments->cosine, "Project f cos(theta_i) instead of f");
     addRgb(command, arguments->rgb);
     addQuadrature(command, arguments->tolerance, arguments->maxEvaluations);

@@ -4,6 +4,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
+#include <hshfit/wavelets/slices.h>
 
 #include <algorithm>
 #include <limits>
@@ -45,20 +46,36 @@ std::vector<Projection> withoutNumbers(const Brdf& brdf, std::span<const Basis* 
     return projections;
 }
 
+/// Adds the curve of spherical wavelets, whose energy is that of the projections.
+void addWavelets(ReportEntry& entry, const Brdf& brdf, int maxOrder) {
+    std::optional<wavelets::SliceCurve> slices;
+    if (entry.energy.finite) {
+        slices = wavelets::sliceCurve(brdf, entry.outgoing,
+                                      static_cast<std::size_t>(maxOrder) * maxOrder,
+                                      {.quantity = entry.quantity});
+        entry.evaluations += slices->evaluations;
+    }
+    entry.curves.push_back(waveletCurve(slices ? &*slices : nullptr, entry.energy, maxOrder));
+}
+
 ReportEntry entryOf(const std::string& spec, std::span<const Basis* const> bases,
                     const ReportOptions& options, const ProgressCall& progress) {
     const auto brdf = openBrdf(spec, options.rgb);
     const OutgoingSet outgoing = outgoingOrDefault(options.outgoing, *brdf);
     const Quantity quantity = options.cosine ? Quantity::brdfCosine : Quantity::brdf;
+    std::vector<Projection> projections;
     try {
-        return reportEntry(hshfit::project(*brdf, bases, outgoing,
-                                           {.quantity = quantity,
-                                            .tolerance = options.tolerance,
-                                            .maxEvaluations = options.maxEvaluations,
-                                            .progress = progress}));
+        projections = hshfit::project(*brdf, bases, outgoing,
+                                      {.quantity = quantity,
+                                       .tolerance = options.tolerance,
+                                       .maxEvaluations = options.maxEvaluations,
+                                       .progress = progress});
     } catch (const NumericError& error) {
-        return reportEntry(withoutNumbers(*brdf, bases, outgoing, quantity, error.what()));
+        projections = withoutNumbers(*brdf, bases, outgoing, quantity, error.what());
     }
+    ReportEntry entry = reportEntry(projections);
+    if (options.wavelets) addWavelets(entry, *brdf, options.maxOrder);
+    return entry;
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ struct ReportOptions {
     std::string outgoing;       ///< as in outgoingOrDefault
     bool cosine = false;        ///< f cos(theta_i) instead of f
     bool rgb = false;           ///< wavelengths as linear Rec. 709
+    bool wavelets = false;      ///< a curve of the best terms of spherical wavelets as well
     double tolerance = 0;       ///< as in ProjectionOptions
     std::size_t maxEvaluations = ProjectionOptions{}.maxEvaluations;
 };

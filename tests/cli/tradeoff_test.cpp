@@ -55,6 +55,12 @@ TEST_F(TradeoffCommand, AnswersWithJsonThatKeepsItsSchema) {
     const json untimed = json::parse(trade("--json --no-timing").out);
     EXPECT_FALSE(untimed.contains("timing"));
     EXPECT_EQ(untimed["tradeoffs"], document["tradeoffs"]);
+    const Answer wavelets = trade("--json --no-timing --wavelets");
+    EXPECT_TRUE(keepsSchema(wavelets.out, "tradeoff"));
+    json with = json::parse(wavelets.out)["tradeoffs"];
+    EXPECT_FALSE(with[0]["wavelets"].empty());
+    with[0].erase("wavelets");
+    EXPECT_EQ(with, document["tradeoffs"]);
 }
 
 /// The commands that name the points of the front make files of the size and error that it states.

@@ -149,6 +149,21 @@ TEST_F(Jobs, FitWritesThePresetOfTheProgram) {
 }
 
 // A full disk for one input, while another one is within a parallel loop of its own.
+TEST_F(Jobs, WaveletsOfALambertianAreFourTermsWhateverTheView) {
+    const jobs::Reported reported =
+        jobs::report({"lambert", "ward:ax=.2,ay=.5"},
+                     {.bases = "hsh", .maxOrder = 3, .outgoing = "4x4", .wavelets = true});
+    ASSERT_EQ(reported.report.reports.size(), 2u);
+    const ReportCurve& flat = reported.report.reports[0].curves.back();
+    ASSERT_TRUE(flat.bestTerms);
+    ASSERT_EQ(flat.points.size(), 3u);
+    EXPECT_NEAR(*flat.points[0].accuracy, 0.25, 1e-6);
+    EXPECT_NEAR(*flat.points[1].accuracy, 1, 1e-6);
+    EXPECT_NEAR(*flat.points[2].accuracy, 1, 1e-6);
+    // Raw Ward has no energy.
+    EXPECT_FALSE(reported.report.reports[1].curves.back().points[0].accuracy);
+}
+
 TEST(Batch, AnInputThatCannotBeWrittenLetsTheLoopsOfOthersEnd) {
     constexpr int count = 2000;
     std::atomic<bool> started = false;

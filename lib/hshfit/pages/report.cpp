@@ -48,6 +48,8 @@ Json curveJson(const ReportCurve& curve) {
                           {"accuracy", finiteOrNull(point.accuracy)}});
     }
     Json json = {{"basis", curve.basis}};
+    if (curve.bestTerms) json["selection"] = "best_terms";
+    if (curve.error) json["error"] = finiteOrNull(*curve.error);
     if (curve.energy) {
         json["inner_product"] = "projected_solid_angle";
         json["energy"] = energyJson(*curve.energy);
@@ -74,7 +76,7 @@ Json entryJson(const ReportEntry& entry) {
 ReportCurve curveOf(const Projection& projection, const Energy& reference) {
     const Coefficients& c = projection.coefficients;
     const auto basis = bases::make(c.basis, c.order);
-    ReportCurve curve{.basis = c.basis, .points = {}, .energy = {}};
+    ReportCurve curve{.basis = c.basis, .points = {}, .energy = {}, .error = {}};
     const Energy* energy = &reference;
     if (basis->inner() != Basis::Inner::solidAngle) {
         curve.energy = c.energy;
@@ -121,6 +123,24 @@ ReportEntry reportEntry(std::span<const Projection> projections) {
         entry.curves.push_back(curveOf(projection, entry.energy));
     }
     return entry;
+}
+
+ReportCurve waveletCurve(const wavelets::SliceCurve* slices, const Energy& energy, int maxOrder) {
+    ReportCurve curve{.basis = std::string(wavelets::sohoName),
+                      .points = {},
+                      .energy = {},
+                      .bestTerms = true,
+                      .error = {}};
+    if (slices) curve.error = slices->error;
+    for (int order = 1; order <= maxOrder; ++order) {
+        const int terms = order * order;
+        ReportPoint point{.order = order, .coefficients = terms, .slots = terms, .accuracy = {}};
+        if (slices && energy.finite && energy.value > 0) {
+            point.accuracy = slices->captured.at(static_cast<std::size_t>(terms)) / energy.value;
+        }
+        curve.points.push_back(point);
+    }
+    return curve;
 }
 
 std::optional<ReportPoint> firstReaching(const ReportCurve& curve, double accuracy) {

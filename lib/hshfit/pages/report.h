@@ -2,6 +2,7 @@
 
 #include <hshfit/coefficients/coefficients.h>
 #include <hshfit/projection/projection.h>
+#include <hshfit/wavelets/slices.h>
 
 #include <cstddef>
 #include <optional>
@@ -25,6 +26,11 @@ struct ReportCurve {
     std::vector<ReportPoint> points;  ///< ascending order
     /// The energy in this basis' own inner product, where that is not the solid angle.
     std::optional<Energy> energy;
+    /// The points keep the largest coefficients of each outgoing direction and channel instead of
+    /// the first ones: a nonlinear approximation, which has to store their indices too.
+    bool bestTerms = false;
+    /// Relative, of the energies behind a curve of best terms.
+    std::optional<double> error;
 };
 
 /// The curves of one BRDF.
@@ -47,6 +53,10 @@ struct Report {
 
 /// The curves of orders 1 to each projection's order. `projections` are one BRDF's, not empty.
 ReportEntry reportEntry(std::span<const Projection> projections);
+
+/// The curve of spherical wavelets: point n keeps n^2 terms, as many as order n of a basis has
+/// slots, for n = 1 .. maxOrder. `slices` has as many; none: the energy does not exist.
+ReportCurve waveletCurve(const wavelets::SliceCurve* slices, const Energy& energy, int maxOrder);
 
 /// The first point whose accuracy is at least `accuracy`; none if the curve does not get there.
 std::optional<ReportPoint> firstReaching(const ReportCurve& curve, double accuracy);

@@ -2,6 +2,7 @@
 
 // The parts of writeReport, apart from the folder that they go to.
 
+#include <hshfit/bases/catalog.h>
 #include <hshfit/pages/report.h>
 
 #include <string>
@@ -31,7 +32,7 @@ std::string outgoingText(const OutgoingSet& outgoing);
 /// Whether any point of any curve has an accuracy.
 bool hasAccuracy(const ReportEntry& entry);
 
-/// The colour of a basis in figures and tables, "#rrggbb".
-std::string basisColour(const std::string& basis);
+/// Colour, dash and mark of a curve in figures and tables, of the wavelets too.
+bases::Style curveStyle(const std::string& basis);
 
 }  // namespace hshfit::inline pages

@@ -35,13 +35,18 @@ std::string accuracyText(const std::optional<double>& accuracy) {
     return fmt::format("{:.{}f} %", 100 * *accuracy, digits);
 }
 
-/// The fewest coefficients with which a curve reaches a threshold, 0 if none does. Only of bases
-/// that measure the same energy.
+/// Whether the numbers of a curve's coefficients compare with those of others: the same energy, and
+/// no indices beside the values.
+bool compares(const ReportCurve& curve) {
+    return !curve.energy && !curve.bestTerms;
+}
+
+/// The fewest coefficients with which a curve reaches a threshold, 0 if none does.
 int fewest(const ReportEntry& entry, double threshold) {
     int best = 0;
     for (const auto& curve : entry.curves) {
         const auto point = firstReaching(curve, threshold);
-        if (point && !curve.energy && (best == 0 || point->coefficients < best))
+        if (point && compares(curve) && (best == 0 || point->coefficients < best))
             best = point->coefficients;
     }
     return best;
@@ -55,7 +60,8 @@ data needsOf(const ReportEntry& entry) {
             data cell;
             const auto point = firstReaching(curve, threshold);
             if (point) {
-                const bool best = !curve.energy && point->coefficients == fewest(entry, threshold);
+                const bool best =
+                    compares(curve) && point->coefficients == fewest(entry, threshold);
                 cell.set("text", fmt::format("{} ({})", point->coefficients, point->order));
                 cell.set("class", best ? "best" : "reached");
             } else {
@@ -68,7 +74,7 @@ data needsOf(const ReportEntry& entry) {
         }
         data row;
         row.set("basis", curve.basis);
-        row.set("colour", basisColour(curve.basis));
+        row.set("colour", curveStyle(curve.basis).colour);
         row.set("cells", cells);
         rows.push_back(row);
     }
@@ -116,9 +122,10 @@ data entryData(const ReportEntry& entry, std::size_t index) {
     fields.set("evaluations", std::to_string(entry.evaluations));
     if (!entry.energy.finite) fields.set("reason", entry.energy.reason);
     fields.set("hasAccuracy", hasAccuracy(entry));
-    data columns{data::type::list}, own{data::type::list};
+    data columns{data::type::list}, own{data::type::list}, best{data::type::list};
     for (const auto& curve : entry.curves) {
         columns.push_back(data("basis", curve.basis));
+        if (curve.bestTerms) best.push_back(data("basis", curve.basis));
         if (!curve.energy) continue;
         data line("basis", curve.basis);
         line.set("energy", energyText(*curve.energy));
@@ -126,6 +133,7 @@ data entryData(const ReportEntry& entry, std::size_t index) {
     }
     fields.set("columns", columns);
     fields.set("ownEnergy", own);
+    fields.set("bestTerms", best);
     fields.set("needs", needsOf(entry));
     fields.set("rows", everyOrder(entry));
     return fields;

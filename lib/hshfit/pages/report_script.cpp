@@ -81,8 +81,9 @@ bool hasAccuracy(const ReportEntry& entry) {
     return false;
 }
 
-std::string basisColour(const std::string& basis) {
-    return bases::find(basis).style.colour;
+bases::Style curveStyle(const std::string& basis) {
+    if (basis == wavelets::sohoName) return {"#882255", 3, 12};
+    return bases::find(basis).style;
 }
 
 std::string shortName(const std::string& brdf, std::size_t limit) {
@@ -137,7 +138,7 @@ std::string reportScript(const Report& report) {
     data lines{data::type::list};
     const auto names = basesOf(report);
     for (std::size_t i = 0; i < names.size(); ++i) {
-        const bases::Style style = bases::find(names[i]).style;
+        const bases::Style style = curveStyle(names[i]);
         data line;
         line.set("index", std::to_string(i + 1));
         line.set("colour", style.colour);

@@ -16,12 +16,7 @@ constexpr std::array constraintNames{"none", "non-negative", "energy-preserving"
 
 /// The forms that are projected: one for each projection and order.
 std::vector<Form> projectedForms(const Sweep& sweep, const Brdf& brdf) {
-    const bool isotropic = brdf.laws().isotropic;
-    std::vector<std::string> sets = sweep.outgoing;
-    if (sets.empty()) {
-        sets = isotropic ? std::vector<std::string>{"8", "16", "32"}
-                         : std::vector<std::string>{"8x8", "16x16"};
-    }
+    const std::vector<std::string> sets = outgoingSets(sweep, brdf);
     std::vector<Form> forms;
     const auto addBases = [&](const Form& form) {
         for (const std::string& basis : sweep.bases) {
@@ -88,6 +83,12 @@ Constraint parseConstraint(std::string_view name) {
     }
     throw UsageError(fmt::format(
         "'{}' is no constraint; known: none, non-negative, energy-preserving, both", name));
+}
+
+std::vector<std::string> outgoingSets(const Sweep& sweep, const Brdf& brdf) {
+    if (!sweep.outgoing.empty()) return sweep.outgoing;
+    if (brdf.laws().isotropic) return {"8", "16", "32"};
+    return {"8x8", "16x16"};
 }
 
 std::vector<Form> formsOf(const Sweep& sweep, const Brdf& brdf) {

@@ -276,6 +276,19 @@ std::optional<double> Tradeoff::uncertaintyOf(std::size_t form) const {
     return forms[form].errors.uncertainty[metricIndex(metric)];
 }
 
+double Tradeoff::waveletErrorOf(std::size_t form) const {
+    return weighed(wavelets[form].errors, metric);
+}
+
+std::vector<std::size_t> Tradeoff::waveletFront() const {
+    std::vector<double> bytes, errors;
+    for (std::size_t k = 0; k < wavelets.size(); ++k) {
+        bytes.push_back(static_cast<double>(wavelets[k].bytes));
+        errors.push_back(waveletErrorOf(k));
+    }
+    return paretoFront(bytes, errors);
+}
+
 Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& options,
                  const BrdfOpener& open) {
     const std::vector<Form> forms = formsFor(brdf, options);
@@ -316,6 +329,9 @@ Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& opti
             trade.leftOut.empty()
                 ? fmt::format("all take more than {}", Setting{"TradeoffOptions::maxBytes"})
                 : trade.leftOut[0].reason));
+    }
+    if (options.wavelets) {
+        trade.wavelets = measureWavelets(brdf, reference, options.sweep, options.maxBytes);
     }
     if (options.timing) timeForms(trade, maker, open, steps);
     findFronts(trade, options);

@@ -4,6 +4,7 @@
 #include <hshfit/error.h>
 #include <hshfit/tradeoff/sweep.h>
 #include <hshfit/tradeoff/timing.h>
+#include <hshfit/tradeoff/wavelet_forms.h>
 
 #include <functional>
 #include <limits>
@@ -21,7 +22,8 @@ struct TradeoffOptions {
     /// Slower forms are left out of the front over time; takes `byTime`.
     double maxNanoseconds = std::numeric_limits<double>::infinity();
     bool timing = true;
-    bool byTime = false;  ///< the choice is the knee over time instead of that over bytes
+    bool wavelets = false;  ///< measure the best terms of spherical wavelets too
+    bool byTime = false;    ///< the choice is the knee over time instead of that over bytes
     ProjectionOptions projection = {};
     /// Called with steps done and in all, from any thread.
     std::function<void(std::size_t, std::size_t)> progress = {};
@@ -73,6 +75,7 @@ struct Tradeoff {
     /// exist or its grid did not converge.
     std::vector<double> sliceErrors = {};
     std::string sliceOutgoing = {};
+    std::vector<MeasuredWavelets> wavelets = {};  ///< if asked for
 
     std::vector<MeasuredTime> times = {};     ///< like `forms`; empty without timing
     std::vector<std::size_t> timeFront = {};  ///< by rising nanoseconds a pair, batch of 4096
@@ -83,6 +86,10 @@ struct Tradeoff {
     /// Of one band; NaN likewise.
     double bandErrorOf(std::size_t form, std::size_t band) const;
     std::optional<double> uncertaintyOf(std::size_t form) const;
+    /// Of `wavelets`.
+    double waveletErrorOf(std::size_t form) const;
+    /// Those that no other wavelet form beats, by rising bytes.
+    std::vector<std::size_t> waveletFront() const;
 };
 
 /// Measures every form of the sweep against `brdf` at the pairs. Errors on all threads, times

@@ -2,6 +2,7 @@
 #include <hshfit/pages/pair_summary_json.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
 #include <hshfit/version.h>
+#include <hshfit/wavelets/slices.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -58,21 +59,39 @@ Json leftOutJson(const Tradeoff& trade) {
     return list;
 }
 
+Json waveletsJson(const Tradeoff& trade) {
+    Json list = Json::array();
+    for (std::size_t k = 0; k < trade.wavelets.size(); ++k) {
+        const MeasuredWavelets& form = trade.wavelets[k];
+        list.push_back({{"basis", wavelets::sohoName},
+                        {"selection", "best_terms"},
+                        {"outgoing", form.outgoing},
+                        {"terms", form.terms},
+                        {"value_bytes", form.valueBytes},
+                        {"bytes", form.bytes},
+                        {"error", finiteOrNull(trade.waveletErrorOf(k))},
+                        {"metrics", metricsJson(form.errors)}});
+    }
+    return list;
+}
+
 Json tradeJson(const Tradeoff& trade) {
     Json forms = Json::array();
     for (std::size_t k = 0; k < trade.forms.size(); ++k) forms.push_back(formJson(trade, k));
-    return {{"brdf", trade.brdf},
-            {"channels", trade.channels.names()},
-            {"isotropic", trade.laws.isotropic},
-            {"pairs", trade.pairs},
-            {"no_squares", trade.noSquares.empty() ? Json(nullptr) : Json(trade.noSquares)},
-            {"slice_bound",
-             {{"outgoing", trade.sliceOutgoing}, {"relative_l2_by_rank", trade.sliceErrors}}},
-            {"front", frontJson(trade)},
-            {"knee", trade.byteKnee ? Json(*trade.byteKnee) : Json(nullptr)},
-            {"forms", forms},
-            {"left_out", leftOutJson(trade)},
-            {"beyond_max_bytes", trade.beyondBytes}};
+    Json json = {{"brdf", trade.brdf},
+                 {"channels", trade.channels.names()},
+                 {"isotropic", trade.laws.isotropic},
+                 {"pairs", trade.pairs},
+                 {"no_squares", trade.noSquares.empty() ? Json(nullptr) : Json(trade.noSquares)},
+                 {"slice_bound",
+                  {{"outgoing", trade.sliceOutgoing}, {"relative_l2_by_rank", trade.sliceErrors}}},
+                 {"front", frontJson(trade)},
+                 {"knee", trade.byteKnee ? Json(*trade.byteKnee) : Json(nullptr)},
+                 {"forms", forms},
+                 {"left_out", leftOutJson(trade)},
+                 {"beyond_max_bytes", trade.beyondBytes}};
+    if (!trade.wavelets.empty()) json["wavelets"] = waveletsJson(trade);
+    return json;
 }
 
 Json pairTimeJson(const PairTime& time) {

@@ -105,6 +105,21 @@ data leftOutRows(const Tradeoff& trade) {
     return rows;
 }
 
+/// The wavelet forms that no other of them beats.
+data waveletTable(const Tradeoff& trade) {
+    data rows{data::type::list};
+    for (const std::size_t k : trade.waveletFront()) {
+        data row;
+        row.set("bytes", std::to_string(trade.wavelets[k].bytes));
+        row.set("error", numberText(trade.waveletErrorOf(k)));
+        row.set("name", trade.wavelets[k].name());
+        rows.push_back(row);
+    }
+    data table;
+    table.set("rows", rows);
+    return table;
+}
+
 data sizeEntry(const Tradeoff& trade) {
     data entry;
     entry.set("channels", fmt::format("{}", fmt::join(trade.channels.names(), ", ")));
@@ -127,6 +142,7 @@ data sizeEntry(const Tradeoff& trade) {
     for (const std::size_t k : trade.byteFront) front.push_back(frontRow(trade, k));
     entry.set("front", front);
     entry.set("budgets", budgetRows(trade));
+    if (!trade.wavelets.empty()) entry.set("wavelets", waveletTable(trade));
     entry.set("anyLeftOut", !trade.leftOut.empty());
     entry.set("leftOut", leftOutRows(trade));
     return entry;

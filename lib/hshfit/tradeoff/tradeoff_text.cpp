@@ -50,6 +50,23 @@ std::string frontRows(std::span<const Tradeoff> trades, const char* heading,
     return csv;
 }
 
+/// Rows of forms.csv of the wavelets, the series after the last.
+std::string waveletRows(std::span<const Tradeoff> trades) {
+    std::string csv;
+    for (std::size_t t = 0; t < trades.size(); ++t) {
+        for (std::size_t k = 0; k < trades[t].wavelets.size(); ++k) {
+            const MeasuredWavelets& form = trades[t].wavelets[k];
+            csv += fmt::format("{},{},{},{},", t + 1, series.size() + 1, form.bytes,
+                               cell(trades[t].waveletErrorOf(k)));
+            for (std::size_t b = 0; b < bandCount; ++b) csv += ",";
+            csv += fmt::format(",,{}", form.terms);
+            for (const auto& value : form.errors.values) csv += fmt::format(",{}", cell(value));
+            csv += fmt::format(",0,{}\n", quoted(form.name()));
+        }
+    }
+    return csv;
+}
+
 std::string frontTable(const Tradeoff& trade, const std::vector<std::size_t>& front) {
     const bool timed = !trade.times.empty();
     const auto percent = [](double error, double value) {
@@ -142,7 +159,7 @@ std::string formsCsv(std::span<const Tradeoff> trades) {
             csv += fmt::format(",{:d},{}\n", bool(front[k]), quoted(form.options));
         }
     }
-    return csv;
+    return csv + waveletRows(trades);
 }
 
 std::string frontCsv(std::span<const Tradeoff> trades) {
@@ -191,6 +208,15 @@ std::string tradeoffText(const Tradeoff& trade, bool byTime) {
     if (trade.beyondBytes > 0) {
         text += fmt::format("  left out: {} forms larger than {}\n", trade.beyondBytes,
                             Setting{"TradeoffOptions::maxBytes"});
+    }
+    if (!trade.wavelets.empty()) {
+        text +=
+            "  for comparison, adaptive: the best terms of spherical wavelets, values and "
+            "indices\n";
+        for (const std::size_t k : trade.waveletFront()) {
+            text += fmt::format("  {:>9} {:>11.4g}  {}\n", trade.wavelets[k].bytes,
+                                trade.waveletErrorOf(k), trade.wavelets[k].name());
+        }
     }
     if (const auto knee = byTime ? trade.timeKnee : trade.byteKnee) {
         text += fmt::format("  the front bends at: {}\n", commandOf(trade, *knee));

@@ -80,6 +80,10 @@ std::string tradeoffScript(std::span<const Tradeoff> trades) {
     fields.set("rows", std::to_string(std::max<std::size_t>(1, trades.size())));
     fields.set("metric", gnuplotString(trades.empty() ? "" : metricText(trades[0].metric)));
     fields.set("timed", isTimed(trades) ? "1" : "0");
+    const bool wavelets =
+        std::ranges::any_of(trades, [](const Tradeoff& trade) { return !trade.wavelets.empty(); });
+    fields.set("wavelets", wavelets);
+    fields.set("kinds", std::to_string(seriesNames().size() + (wavelets ? 1 : 0)));
     data entries{data::type::list};
     for (std::size_t t = 0; t < trades.size(); ++t) {
         data entry;

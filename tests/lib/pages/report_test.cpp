@@ -1,6 +1,6 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
-#include <hshfit/pages/report.h>
+#include <hshfit/pages/report_files.h>
 
 #include "lib/coefficient_files/coefficient_samples.h"
 #include "places.h"
@@ -103,6 +103,35 @@ TEST(Report, EntryIsCapturedOverEnergy) {
         }
         EXPECT_EQ(entry.curves[i].energy.has_value(), basis->inner() != Basis::Inner::solidAngle);
     }
+}
+
+TEST(Report, CurvesOfWaveletsAreLabelledAsBestTerms) {
+    wavelets::SliceCurve slices;
+    for (int k = 0; k <= 16; ++k) slices.captured.push_back(0.1 * k);
+    slices.error = 1e-4;
+    Report report;
+    report.reports.push_back(reportEntry(projections(2.5, 0.3, 0.4)));
+    ReportEntry& entry = report.reports[0];
+    const std::string before = reportJson(report), pageBefore = reportPage(report, {});
+    EXPECT_EQ(before.find("best_terms"), std::string::npos);
+    EXPECT_EQ(pageBefore.find("nonlinear"), std::string::npos);
+    entry.curves.push_back(waveletCurve(&slices, entry.energy, 4));
+    const Json curve = Json::parse(reportJson(report))["reports"][0]["curves"].back();
+    EXPECT_EQ(curve["basis"], "soho");
+    EXPECT_EQ(curve["selection"], "best_terms");
+    EXPECT_EQ(curve["error"], 1e-4);
+    ASSERT_EQ(curve["points"].size(), 4u);
+    for (int n = 1; n <= 4; ++n) {
+        const Json& point = curve["points"][n - 1];
+        EXPECT_EQ(point["coefficients"], n * n);
+        EXPECT_EQ(point["slots"], n * n);
+        EXPECT_DOUBLE_EQ(point["accuracy"].get<double>(), 0.1 * n * n / 2.5);
+    }
+    EXPECT_NE(reportPage(report, {}).find("nonlinear"), std::string::npos);
+    EXPECT_NE(reportScript(report).find("soho"), std::string::npos);
+    // Without an energy the curve has no accuracy.
+    for (const ReportPoint& point : waveletCurve(nullptr, entry.energy, 3).points)
+        EXPECT_FALSE(point.accuracy);
 }
 
 TEST(Report, FirstReaching) {

@@ -86,6 +86,10 @@ TEST_F(Schemas, Reports) {
             p.coefficients.error = std::numeric_limits<double>::quiet_NaN();
         }
         report.reports.push_back(reportEntry(std::vector{p, flux}));
+        ReportEntry& entry = report.reports.back();
+        wavelets::SliceCurve slices;
+        slices.captured = {0, 0.1, 0.2, 0.3, 0.4};
+        entry.curves.push_back(waveletCurve(seed % 2 ? nullptr : &slices, entry.energy, 2));
     }
     samples::put(folder / "report.json", reportJson(report));
     EXPECT_EQ(validate("report", "'" + folder / "report.json" + "'"), 0);

@@ -21,14 +21,15 @@ largest[{{index}}] = {{largest}}
 {{/entries}}
 metric = {{{metric}}}
 
-series = 'outgoing outgoing-factored basis basis-factored halfway'
-array name[5] = ['per outgoing direction', 'the same, factored', 'both in one basis', \
-                 'the same, factored', 'half and difference']
+series = 'outgoing outgoing-factored basis basis-factored halfway{{#wavelets}} wavelets{{/wavelets}}'
+array name[{{kinds}}] = ['per outgoing direction', 'the same, factored', 'both in one basis', \
+                 'the same, factored', 'half and difference'{{#wavelets}}, 'wavelets, best k'{{/wavelets}}]
 set linetype 1 linecolor rgb '#0072B2' pointtype 7 pointsize 0.35
 set linetype 2 linecolor rgb '#56B4E9' pointtype 6 pointsize 0.4
 set linetype 3 linecolor rgb '#D55E00' pointtype 5 pointsize 0.35
 set linetype 4 linecolor rgb '#E69F00' pointtype 4 pointsize 0.4
-set linetype 5 linecolor rgb '#009E73' pointtype 9 pointsize 0.55
+set linetype 5 linecolor rgb '#009E73' pointtype 9 pointsize 0.55{{#wavelets}}
+set linetype 6 linecolor rgb '#882255' pointtype 12 pointsize 0.5{{/wavelets}}
 
 # Columns: brdf, series, cost, error, …; of the fronts: brdf, cost, error, knee, …
 is(row, kind) = column(1) == row && column(2) == kind
@@ -85,7 +86,7 @@ do for [pass = from:to] {
         }
         set key at screen 0.80, screen bottom + 0.87 * rowHeight left top Left reverse \
             samplen 1.5 spacing 1.25 noautotitle
-        plot for [kind = 1:5] data skip 1 \
+        plot for [kind = 1:{{kinds}}] data skip 1 \
                 using (is(row, kind) ? positive(column(3)) : NaN):(positive(column(4))) \
                 title name[kind] with points linetype kind, \
              front skip 1 using (column(1) == row ? column(2) : NaN):(positive(column(3))) \
