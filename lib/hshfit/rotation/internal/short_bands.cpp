@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <hwy/cache_control.h>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "hshfit/rotation/internal/short_bands.cpp"
 #include <hwy/foreach_target.h>
@@ -89,21 +91,6 @@ struct Band {
         ((k > 0 ? hn::Store(s[k], Tag(), at + (l - k) * lanes) : void()), ...);
     }
 
-    /// About z, by the angle of `phases` or, `back`, by its opposite.
-    template <bool back, std::size_t m>
-    HWY_INLINE void turnOne(const Phases& phases) {
-        if constexpr (m > 0) {
-            const V a = c[m], b = s[m], cosine = phases.cosine[m], sine = phases.sine[m];
-            const V left = hn::Mul(cosine, a), right = hn::Mul(cosine, b);
-            c[m] = back ? hn::MulAdd(sine, b, left) : hn::NegMulAdd(sine, b, left);
-            s[m] = back ? hn::NegMulAdd(sine, a, right) : hn::MulAdd(sine, a, right);
-        }
-    }
-    template <bool back, std::size_t... m>
-    HWY_INLINE void turn(const Phases& phases, std::index_sequence<m...>) {
-        (turnOne<back, m>(phases), ...);
-    }
-
     /// *this = J from.
     HWY_INLINE void exchange(const double* k, const Band& from) {
         constexpr int h = l / 2;
@@ -127,36 +114,67 @@ struct AllPhases {
     Phases alpha, beta, gamma;
 };
 
-/// Bands l .. bands - 1 of a block, [slot][lane], in place.
+// A step is made for all bands before the next one, so that there is always work that does not wait
+// for the last result. Blocks are [slot][lane].
+
+/// Bands 1 .. bands - 1 about z, by the angle of `phases` or, `back`, by its opposite.
+template <bool back>
+HWY_INLINE void turnAll(const Phases& phases, int bands, double* block) {
+    const Tag tag;
+    for (int m = 1; m < bands; ++m) {
+        const V cosine = phases.cosine[m], sine = phases.sine[m];
+        for (int l = m; l < bands; ++l) {
+            double* const upper = block + static_cast<std::size_t>(l * (l + 1) + m) * lanes;
+            double* const lower = block + static_cast<std::size_t>(l * (l + 1) - m) * lanes;
+            const V a = hn::Load(tag, upper), b = hn::Load(tag, lower);
+            const V left = hn::Mul(cosine, a), right = hn::Mul(cosine, b);
+            hn::Store(back ? hn::MulAdd(sine, b, left) : hn::NegMulAdd(sine, b, left), tag, upper);
+            hn::Store(back ? hn::NegMulAdd(sine, a, right) : hn::MulAdd(sine, a, right), tag,
+                      lower);
+        }
+    }
+}
+
+/// Bands l .. bands - 1 times J.
 template <int l>
-HWY_INLINE void rotateBands(const double* table, const AllPhases& phases, int bands,
-                            double* block) {
+HWY_INLINE void exchangeAll(const double* table, int bands, double* block) {
     if constexpr (l < shortBands) {
         if (l >= bands) return;
         constexpr auto all = std::make_index_sequence<l + 1>();
-        const double* k = table + ShortTable::offset(l);
         Band<l> band, next;
         band.load(block + l * l * lanes, all);
-        band.template turn<false>(phases.gamma, all);
-        next.exchange(k, band);
-        next.template turn<true>(phases.beta, all);
-        band.exchange(k, next);
-        band.template turn<false>(phases.alpha, all);
-        band.store(block + l * l * lanes, all);
-        rotateBands<l + 1>(table, phases, bands, block);
+        next.exchange(table + ShortTable::offset(l), band);
+        next.store(block + l * l * lanes, all);
+        exchangeAll<l + 1>(table, bands, block);
+    }
+}
+
+/// Vectors `in[i]`, i < lanes, slot by slot to block[slot][i].
+HWY_INLINE void gather(const double* const* in, std::size_t slots, double* block) {
+    if (slots < lanes || lanes == 1) {
+        for (std::size_t slot = 0; slot < slots; ++slot)
+            for (std::size_t i = 0; i < lanes; ++i) block[slot * lanes + i] = in[i][slot];
+        return;
+    }
+    for (std::size_t slot = 0; slot < slots; slot += lanes) {
+        const std::size_t from = std::min(slot, slots - lanes);
+        V v[lanes];
+        for (std::size_t i = 0; i < lanes; ++i) v[i] = hn::LoadU(Tag(), in[i] + from);
+        shared::transpose(Tag(), v);
+        for (std::size_t i = 0; i < lanes; ++i) hn::Store(v[i], Tag(), block + (from + i) * lanes);
     }
 }
 
 /// The turns of one rotation a lane, as Rotation::turns.
 HWY_INLINE void phasesOf(const ShortBatch& batch, std::size_t first, AllPhases& phases) {
     const Tag tag;
+    const double* matrices[lanes];
+    for (std::size_t i = 0; i < lanes; ++i)
+        matrices[i] =
+            batch.rotations[std::min(first + i, batch.count - 1) / batch.channels].matrix().data();
     HWY_ALIGN double rows[9][lanes];
-    for (std::size_t i = 0; i < lanes; ++i) {
-        const std::size_t vector = std::min(first + i, batch.count - 1);
-        const auto& matrix = batch.rotations[vector / batch.channels].matrix();
-        for (std::size_t e = 0; e < 9; ++e) rows[e][i] = matrix[e];
-    }
-    const auto r = [&](std::size_t e) { return hn::Load(tag, rows[e]); };
+    gather(matrices, 9, rows[0]);
+    const auto r = [&](std::size_t e) HWY_ATTR { return hn::Load(tag, rows[e]); };
     const V zero = hn::Zero(tag), one = hn::Set(tag, 1);
     // Scaled against underflow of the squares of tiny tilts.
     const V up = hn::Max(hn::Abs(r(2)), hn::Abs(r(5)));
@@ -177,22 +195,6 @@ HWY_INLINE void phasesOf(const ShortBatch& batch, std::size_t first, AllPhases& 
     phases.gamma.fill(hn::Mul(cg, unit), hn::Mul(sg, unit), batch.bands);
 }
 
-/// Vectors `in[i]`, i < lanes, slot by slot to block[slot][i].
-HWY_INLINE void gather(const double* const* in, std::size_t slots, double* block) {
-    if (slots < lanes || lanes == 1) {
-        for (std::size_t slot = 0; slot < slots; ++slot)
-            for (std::size_t i = 0; i < lanes; ++i) block[slot * lanes + i] = in[i][slot];
-        return;
-    }
-    for (std::size_t slot = 0; slot < slots; slot += lanes) {
-        const std::size_t from = std::min(slot, slots - lanes);
-        V v[lanes];
-        for (std::size_t i = 0; i < lanes; ++i) v[i] = hn::LoadU(Tag(), in[i] + from);
-        shared::transpose(Tag(), v);
-        for (std::size_t i = 0; i < lanes; ++i) hn::Store(v[i], Tag(), block + (from + i) * lanes);
-    }
-}
-
 HWY_INLINE void scatter(const double* block, std::size_t slots, std::size_t valid,
                         double* const* out) {
     if (slots < lanes || lanes == 1) {
@@ -207,6 +209,17 @@ HWY_INLINE void scatter(const double* block, std::size_t slots, std::size_t vali
         shared::transpose(Tag(), v);
         for (std::size_t i = 0; i < valid; ++i) hn::StoreU(v[i], Tag(), out[i] + from);
     }
+}
+
+/// Asks for the vectors of the next block, which would come in too late where they are not in the
+/// cache: eight streams of a few lines each end before the machine has recognised them.
+HWY_INLINE void fetchAhead(const ShortBatch& batch, std::size_t first, std::size_t slots) {
+    constexpr std::size_t line = 64 / sizeof(double);
+    for (std::size_t k = first; k < std::min(first + lanes, batch.count); ++k)
+        for (std::size_t slot = 0; slot < slots; slot += line) {
+            hwy::Prefetch(batch.in + k * batch.stride + slot);
+            if (batch.out != batch.in) hwy::Prefetch(batch.out + k * batch.stride + slot);
+        }
 }
 
 }  // namespace
@@ -224,10 +237,15 @@ void rotateAll(const ShortTable& table, const ShortBatch& batch) {
             in[i] = batch.in + vector * batch.stride;
             out[i] = batch.out + vector * batch.stride;
         }
+        fetchAhead(batch, first + lanes, slots);
         AllPhases phases;
         phasesOf(batch, first, phases);
         gather(in, slots, block);
-        rotateBands<1>(table.data(), phases, batch.bands, block);
+        turnAll<false>(phases.gamma, batch.bands, block);
+        exchangeAll<1>(table.data(), batch.bands, block);
+        turnAll<true>(phases.beta, batch.bands, block);
+        exchangeAll<1>(table.data(), batch.bands, block);
+        turnAll<false>(phases.alpha, batch.bands, block);
         scatter(block, slots, valid, out);
     }
 }
