@@ -24,7 +24,7 @@ bool keepsMirrorPlane(const Rotation& rotation) {
     return std::abs(r[1]) + std::abs(r[3]) + std::abs(r[5]) + std::abs(r[7]) < 1e-12 && r[4] > 0;
 }
 
-/// What is left of an energy; the part that the coefficients do not hold may have gone or stayed.
+/// The energy that stays; the part that the coefficients do not hold may have gone or stayed.
 Energy leftOf(Energy energy, double captured, double lost) {
     if (!energy.finite) return energy;
     energy.error += std::max(0.0, energy.value - captured);
