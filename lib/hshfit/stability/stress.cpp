@@ -2,6 +2,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/projection/projection.h>
+#include <hshfit/stability/rotation_errors.h>
 
 #include <tbb/parallel_for.h>
 
@@ -56,6 +57,7 @@ StressReport stress(std::span<const bases::Entry* const> bases, std::span<const 
         if (entry->name == "lsosh") {
             for (int n : gramOrders(order)) report.gram.push_back({n, bases::lsoshGram(n)});
         }
+        if (entry->name == "sh") report.rotation.push_back(rotationErrors(std::min(order, 1000)));
         const auto basis = entry->make(order, {});
         const auto* jacobi = dynamic_cast<const bases::JacobiBasis*>(basis.get());
         for (Precision precision : {Precision::twice, Precision::single}) {

@@ -33,7 +33,8 @@ struct GramPoint {
 struct StressReport {
     int maxOrder = 0;
     std::vector<DegreeErrors> evaluation = {}, orthonormality = {};
-    std::vector<GramPoint> gram = {};  ///< of least-squares SH
+    std::vector<DegreeErrors> rotation = {};  ///< of spherical harmonics (rotation_errors.h)
+    std::vector<GramPoint> gram = {};         ///< of least-squares SH
     std::vector<LobeProjection> projection = {};
     std::vector<ErrorTrialSummary> statedErrors = {};  ///< of trials (error_trials.h), if any
 };

@@ -156,6 +156,7 @@ std::string stressJson(const StressReport& report) {
                            {"max_order", report.maxOrder},
                            {"evaluation", degreesJson(report.evaluation)},
                            {"orthonormality", degreesJson(report.orthonormality)},
+                           {"rotation", degreesJson(report.rotation)},
                            {"lsosh_gram", gram},
                            {"projection", projection},
                            {"stated_errors", trialsJson(report.statedErrors)}};
@@ -170,6 +171,11 @@ std::string stressMarkdown(const StressReport& report) {
         text += "\n## Orthonormality\nLargest deviation of the Gram matrix from the identity.\n\n" +
                 degreesTable(report.orthonormality);
     }
+    if (!report.rotation.empty())
+        text +=
+            "\n## Rotation\nLargest difference of two rotations from their product, relative to a "
+            "band.\n\n" +
+            degreesTable(report.rotation);
     if (!report.gram.empty())
         text += "\n## Least-squares spherical harmonics\n\n" + gramTable(report.gram);
     if (!report.statedErrors.empty())
@@ -204,6 +210,7 @@ std::string stressCsv(const StressReport& report) {
     };
     add("evaluation", report.evaluation);
     add("orthonormality", report.orthonormality);
+    add("rotation", report.rotation);
     return text;
 }
 

@@ -3,6 +3,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/stability/reference.h>
+#include <hshfit/stability/rotation_errors.h>
 #include <hshfit/stability/stress.h>
 
 #include <gtest/gtest.h>
@@ -86,6 +87,14 @@ TEST(StabilityErrors, SampledOrdersHoldTheEnds) {
         EXPECT_EQ(sampled.back(), order - 1);
         EXPECT_TRUE(std::is_sorted(sampled.begin(), sampled.end()));
     }
+}
+
+TEST(StabilityRotation, RoundingGrowsWithTheDegreeAndStaysBelowTheBoundsOfTheRoom) {
+    const DegreeErrors errors = rotationErrors(300);
+    ASSERT_EQ(errors.error.size(), 300U);
+    EXPECT_EQ(errors.goodUntil(1e-12), 299);
+    EXPECT_GE(errors.goodUntil(1e-13), 99);
+    EXPECT_LT(errors.goodUntil(1e-16), 10);
 }
 
 TEST(StabilityGram, ConditionOfTheSmallestIsItsClosedForm) {
