@@ -1,0 +1,113 @@
+// The nine coefficients that Ramamoorthi & Hanrahan (2001) published for Debevec's probes, from the
+// pictures of these probes, read here by a few lines of their own. The pictures have another
+// scale and resolution than those of 2001: one factor for each, and 1 % of the norm.
+
+#include <hshfit/bases/sh.h>
+#include <hshfit/irradiance/irradiance.h>
+#include <hshfit/light/light_projection.h>
+
+#include "places.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+
+using namespace hshfit;
+
+namespace {
+
+/// A Radiance picture with rows from the top, run-length encoded by component.
+PictureLight readProbe(const std::string& path, PictureLayout layout) {
+    std::ifstream in(path, std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    std::size_t at = bytes.find("\n\n") + 2;
+    PictureLight picture{.file = path, .rgb = {}, .layout = layout};
+    std::string sign, axis;
+    std::istringstream(bytes.substr(at)) >> sign >> picture.height >> axis >> picture.width;
+    at = bytes.find('\n', at) + 1;
+    const auto next = [&] { return static_cast<unsigned char>(bytes.at(at++)); };
+    for (std::size_t row = 0; row < picture.height; ++row) {
+        at += 4;  // 2, 2, width
+        std::vector<unsigned char> components(4 * picture.width);
+        for (std::size_t c = 0; c < 4; ++c) {
+            for (std::size_t column = 0; column < picture.width;) {
+                const int count = next();
+                const bool run = count > 128;
+                const unsigned char value = run ? next() : 0;
+                for (int k = 0; k < (run ? count - 128 : count); ++k)
+                    components[4 * column++ + c] = run ? value : next();
+            }
+        }
+        for (std::size_t column = 0; column < picture.width; ++column) {
+            const unsigned char* rgbe = components.data() + 4 * column;
+            for (std::size_t c = 0; c < 3; ++c)
+                picture.rgb.push_back(rgbe[3] == 0 ? 0.0F
+                                                   : std::ldexp(float{1} * rgbe[c], rgbe[3] - 136));
+        }
+    }
+    return picture;
+}
+
+/// Nine rows of "env,l,m,R,G,B".
+NineRgb published(const std::string& path, const std::string& probe) {
+    std::ifstream in(path);
+    NineRgb nine{};
+    std::size_t found = 0;
+    for (std::string line; std::getline(in, line);) {
+        if (!line.starts_with(probe + ",")) continue;
+        std::istringstream fields(line.substr(probe.size() + 1));
+        char comma = 0;
+        int l = 0, m = 0;
+        Rgb rgb{};
+        fields >> l >> comma >> m >> comma >> rgb[0] >> comma >> rgb[1] >> comma >> rgb[2];
+        nine[static_cast<std::size_t>(slotOf(l, m))] = rgb;
+        ++found;
+    }
+    EXPECT_EQ(found, 9u);
+    return nine;
+}
+
+struct Probe {
+    const char *file, *name;
+    PictureLayout layout;
+    double ratio;  ///< of the picture's scale to the table's
+};
+
+TEST(PublishedProbes, NineCoefficientsFollowFromTheirPictures) {
+    const std::string shared = test::sharedFolder() + "/data";
+    if (!std::filesystem::exists(shared + "/env")) GTEST_SKIP() << shared << "/env is absent";
+    const Probe probes[] = {
+        {"grace_probe_angular.hdr", "grace", PictureLayout::angular, 3.197},
+        {"rnl_probe_latlong.hdr", "eucalyptus", PictureLayout::latlong, 9.98},
+        {"stpeters_probe_latlong.hdr", "stpeters", PictureLayout::latlong, 9.975},
+    };
+    for (const Probe& probe : probes) {
+        const PictureLight picture = readProbe(shared + "/env/" + probe.file, probe.layout);
+        const std::vector<Light> lights{picture};
+        const LightCoefficients light =
+            projectLight(lights, *bases::makeSh(3, {}), {.maxLevel = 1});
+        NineRgb ours{};
+        for (std::size_t k = 0; k < 9; ++k)
+            for (std::size_t c = 0; c < 3; ++c) ours[k][c] = light.at(c)[k] / probe.ratio;
+        // Theirs: x to the right of the picture's middle, y up, z to the middle.
+        const NineRgb turned = inAxes(ours, [](const Direction& d) {
+            return Direction{-d.y, d.z, d.x};
+        });
+        const NineRgb theirs = published(shared + "/tables/irradiance_sh9_debevec.csv", probe.name);
+        double difference = 0, all = 0;
+        for (std::size_t k = 0; k < 9; ++k) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                difference += std::pow(turned[k][c] - theirs[k][c], 2);
+                all += theirs[k][c] * theirs[k][c];
+            }
+        }
+        EXPECT_LT(std::sqrt(difference / all), 0.01) << probe.name;
+    }
+}
+
+}  // namespace
