@@ -5,6 +5,7 @@
 #include <hshfit/coefficient_files/coefficient_formats.h>
 #include <hshfit/error.h>
 #include <hshfit/files/exr_header.h>
+#include <hshfit/files/printable.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/representation/named_arrays.h>
 
