@@ -62,6 +62,12 @@ echo "7. The least that a scene needs: matte materials under one sky; a mirror h
 finding "no form of this order holds a mirror." plan examples/scenes/matte_room.json -o out/plan
 
 echo
+echo "8. Light: a sky as coefficients, turned, and as the nine numbers that engines take."
+show light sky:type=12,elevation=40,radiance=1 -o out/sky.json
+show rotate out/sky.json -o out/sky_turned.json --axis 0,1,0,30
+show irradiance sky:type=12,elevation=40,radiance=1 --convention three
+
+echo
 echo "Captured energy of f cos with order 7 (49 slots) and the files it went to:"
 # The BRDF is the last column, in quotes and with commas of its own.
 awk -F, '
