@@ -93,7 +93,7 @@ constexpr Command table[] = {
      .add = addFit},
     {.name = "render",
      .group = inspection,
-     .help = "Lit spheres of BRDFs or coefficient files, side by side",
+     .help = "Spheres and meshes under any light, by integration and by coefficients, side by side",
      .file = "render.cpp",
      .example = "hshfit render lambert ggx:alpha=.2 -o spheres.png",
      .add = addRender},

@@ -4,12 +4,14 @@
 #include <hshfit/error.h>
 #include <hshfit/pictures/sphere_picture.h>
 
+#include <jobs/render.h>
 #include <jobs/source.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -17,12 +19,20 @@ namespace hshfit::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using By = jobs::RenderOptions::By;
+using Kind = jobs::RenderedPicture::Kind;
+
+constexpr const char* exposuresOption = "--exposures";
 
 struct RenderArguments {
-    std::vector<std::string> specs, lights;
-    std::string output, exposure = "auto";
-    int size = SphereOptions{}.size, samples = SphereOptions{}.samples;
-    double dome = SphereRig{}.dome;
+    std::vector<std::string> specs, lights, bases, exposures;
+    std::vector<int> orders;
+    std::string output, exposure = "auto", mesh, up = "y", by = "both", view = "75,0", outgoing;
+    int size = SphereOptions{}.size, samples = 0;
+    double dome = SphereRig{}.dome, tolerance = jobs::RenderOptions{}.tolerance;
+    bool cosine = false;
+    /// Whether an option was given that the spheres under point lights do not have.
+    bool surface = false, domeGiven = false;
 };
 
 /// "THETA,PHI" or "THETA,PHI,STRENGTH".
@@ -40,26 +50,60 @@ SphereLight parseLight(const std::string& text) {
         !(numbers[0] <= 180) || !(numbers[2] >= 0)) {
         throw UsageError(fmt::format(
             "--light '{}': give THETA,PHI or THETA,PHI,STRENGTH: degrees from the line of sight "
-            "(0 to 180), degrees from the right counterclockwise, strength (for example 45,135,1)",
+            "(0 to 180), degrees from the right counterclockwise, strength (for example 45,135,1); "
+            "or a kind of light or the path of a picture",
             text));
     }
     return {directionFromAngles(radians(numbers[0]), radians(numbers[1])), numbers[2]};
 }
 
-/// Stops; none for "auto".
-std::optional<double> parseExposure(const std::string& text) {
-    if (text == "auto") return {};
+/// Whether a light begins like numbers; others are kinds of light and paths.
+bool isNumbers(const std::string& text) {
+    double first = 0;
+    const char* end = text.data() + text.size();
+    const auto [next, error] = std::from_chars(text.data(), end, first);
+    if (error != std::errc() || (next != end && *next != ',')) return text.size() < 2;
+    return true;
+}
+
+double parseStops(const std::string& text, std::string_view option, std::string_view valid) {
     double stops = 0;
     const char* end = text.data() + text.size();
-    const auto [next, error] = std::from_chars(text.data(), end, stops);
+    const char* begin = text.starts_with('+') ? text.data() + 1 : text.data();
+    const auto [next, error] = std::from_chars(begin, end, stops);
     if (error != std::errc() || next != end || !(std::abs(stops) <= 100)) {
-        throw UsageError(
-            fmt::format("--exposure '{}': give auto or stops (for example -1.5)", text));
+        throw UsageError(fmt::format("{} '{}': give {} (for example -1.5)", option, text, valid));
     }
     return stops;
 }
 
-Json lightsJson(const SphereRig& rig) {
+/// Stops; none for "auto".
+std::optional<double> parseExposure(const std::string& text) {
+    if (text == "auto") return {};
+    return parseStops(text, "--exposure", "auto or stops");
+}
+
+/// The direction to the viewer, degrees: "THETA,PHI", theta from the zenith to 180.
+std::array<double, 2> parseView(const std::string& text) {
+    std::array<double, 2> angles{};
+    const char *at = text.data(), *end = at + text.size();
+    bool good = true;
+    for (std::size_t k = 0; k < 2 && good; ++k) {
+        const auto [next, error] = std::from_chars(at, end, angles[k]);
+        good = error == std::errc() && std::isfinite(angles[k]) &&
+               (k == 1 ? next == end : next != end && *next == ',');
+        at = next + 1;
+    }
+    if (!good || !(angles[0] >= 0 && angles[0] <= 180)) {
+        throw UsageError(
+            fmt::format("--view '{}': give THETA,PHI, degrees from the zenith (0 to "
+                        "180) and from +x towards +y (for example 75,0)",
+                        text));
+    }
+    return angles;
+}
+
+Json pointLightsJson(const SphereRig& rig) {
     Json lights = Json::array();
     for (const SphereLight& light : rig.lights) {
         Json json = directionJson(light.towards);
@@ -69,20 +113,27 @@ Json lightsJson(const SphereRig& rig) {
     return lights;
 }
 
-void runRender(const RenderArguments& arguments, Globals& globals) {
+Json startDocument(const RenderArguments& arguments, int samples) {
+    return {{"format", "hshfit-render"},
+            {"version", 1},
+            {"output", arguments.output},
+            {"size", arguments.size},
+            {"samples", samples}};
+}
+
+// --- spheres under point lights ---------------------------------------------------------------
+
+void runSpheres(const RenderArguments& arguments, const SphereRig& rig, Globals& globals) {
     checkSpheresPath(arguments.output);
-    SphereOptions options{.size = arguments.size, .samples = arguments.samples};
-    options.rig.dome = arguments.dome;
-    if (!arguments.lights.empty()) options.rig.lights.clear();
-    for (const auto& light : arguments.lights) options.rig.lights.push_back(parseLight(light));
+    SphereOptions options{.rig = rig, .size = arguments.size};
+    if (arguments.samples > 0) options.samples = arguments.samples;
     const std::optional<double> stops = parseExposure(arguments.exposure);
 
     std::vector<SpherePicture> spheres;
     std::map<std::string, std::string> attributes;
-    Json document = {{"format", "hshfit-render"},    {"version", 1},
-                     {"output", arguments.output},   {"size", arguments.size},
-                     {"samples", arguments.samples}, {"lights", lightsJson(options.rig)},
-                     {"dome", options.rig.dome}};
+    Json document = startDocument(arguments, options.samples);
+    document["lights"] = pointLightsJson(options.rig);
+    document["dome"] = options.rig.dome;
     Json list = Json::array();
     for (const auto& spec : arguments.specs) {
         const auto brdf = jobs::openSource(spec, /*rgb=*/false);
@@ -114,6 +165,172 @@ void runRender(const RenderArguments& arguments, Globals& globals) {
     }
 }
 
+// --- surfaces under any light -----------------------------------------------------------------
+
+jobs::RenderOptions optionsOf(const RenderArguments& arguments) {
+    jobs::RenderOptions options;
+    for (const std::string& light : arguments.lights) {
+        if (isNumbers(light))
+            options.rig.lights.push_back(parseLight(light));
+        else
+            options.lights.push_back(light);
+    }
+    if (arguments.lights.empty()) options.rig = SphereRig{};
+    if (arguments.domeGiven || options.lights.empty()) options.rig.dome = arguments.dome;
+    options.mesh = arguments.mesh;
+    options.meshYUp = arguments.up == "y";
+    options.by = arguments.by == "both"          ? By::both
+                 : arguments.by == "integration" ? By::integration
+                                                 : By::coefficients;
+    if (!arguments.bases.empty()) options.bases = arguments.bases;
+    if (!arguments.orders.empty()) options.orders = arguments.orders;
+    options.cosine = arguments.cosine;
+    options.outgoing = arguments.outgoing;
+    if (!arguments.exposures.empty()) options.exposures.clear();
+    for (const std::string& text : arguments.exposures) {
+        options.exposures.push_back(parseStops(text, exposuresOption, "stops"));
+    }
+    options.stops = parseExposure(arguments.exposure);
+    options.size = arguments.size;
+    if (arguments.samples > 0) options.samples = arguments.samples;
+    const auto view = parseView(arguments.view);
+    options.viewTheta = view[0];
+    options.viewPhi = view[1];
+    options.tolerance = arguments.tolerance;
+    return options;
+}
+
+Json pictureJson(const jobs::RenderedPicture& picture) {
+    Json json = {{"brdf", picture.brdf},         {"by", jobs::kindName(picture.kind)},
+                 {"row", picture.row},           {"column", picture.column},
+                 {"exposure", picture.exposure}, {"not_finite", picture.notFinite}};
+    if (picture.kind != Kind::integration) {
+        json["basis"] = picture.basis;
+        json["order"] = picture.order;
+    }
+    if (picture.kind == Kind::difference) json["amplification"] = picture.amplification;
+    if (picture.kind != Kind::difference) json["error"] = picture.error;
+    if (picture.kind == Kind::integration) {
+        json["cut_points"] = picture.cut;
+        return json;
+    }
+    json["missed"] = picture.missed ? Json(*picture.missed) : Json();
+    json["relative_l2"] = json["maximum"] = nullptr;
+    if (!picture.difference) return json;
+    json["relative_l2"] = picture.difference->relativeL2;
+    json["maximum"] = picture.difference->maximum;
+    json["maximum_at"] = {{"column", picture.difference->column}, {"row", picture.difference->row}};
+    json["mean_radiance"] = picture.difference->meanRadiance;
+    return json;
+}
+
+Json surfaceDocument(const RenderArguments& arguments, const jobs::RenderOptions& options,
+                     const jobs::Rendered& rendered) {
+    Json document = startDocument(arguments, options.samples);
+    document["lights"] = pointLightsJson(options.rig);
+    for (const std::string& light : options.lights) document["lights"].push_back(light);
+    document["dome"] = options.rig.dome;
+    document["view"] = {{"theta", options.viewTheta}, {"phi", options.viewPhi}};
+    document["mesh"] = nullptr;
+    if (!rendered.mesh.empty()) {
+        document["mesh"] = {{"file", rendered.mesh},
+                            {"triangles", rendered.triangles},
+                            {"degenerate", rendered.degenerate}};
+    }
+    document["points"] = rendered.points;
+    document["quantity"] = options.cosine ? "brdf_cosine" : "brdf";
+    document["light_coefficients"] = "from samples about each normal";
+    document["exposure"] = {{"automatic", !options.stops}, {"stops", rendered.stops}};
+    document["pictures"] = Json::array();
+    for (const auto& picture : rendered.pictures) {
+        document["pictures"].push_back(pictureJson(picture));
+    }
+    return document;
+}
+
+std::string surfaceText(const RenderArguments& arguments, const jobs::Rendered& rendered) {
+    std::string text = fmt::format("{}: {} picture{} of {} x {} pixels, exposure {:+.1f} stops\n",
+                                   arguments.output, rendered.pictures.size(),
+                                   rendered.pictures.size() == 1 ? "" : "s", arguments.size,
+                                   arguments.size, rendered.stops);
+    for (const auto& picture : rendered.pictures) {
+        text += fmt::format("  {},{}  {}  {}", picture.column, picture.row, picture.brdf,
+                            jobs::kindName(picture.kind));
+        if (!picture.basis.empty()) text += fmt::format(" {} {}", picture.basis, picture.order);
+        if (picture.exposure != 0) text += fmt::format(" {:+g} stops", picture.exposure);
+        if (picture.kind == Kind::difference) {
+            text += fmt::format(
+                " x {:g}: relative L2 {:.4f}, at most {:.3f} of the mean radiance "
+                "{:.4g}",
+                picture.amplification, picture.difference->relativeL2, picture.difference->maximum,
+                picture.difference->meanRadiance);
+        } else if (picture.kind == Kind::integration) {
+            text += fmt::format(": error {:.2g}", picture.error);
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+void runSurface(const RenderArguments& arguments, Globals& globals) {
+    const jobs::RenderOptions options = optionsOf(arguments);
+    const jobs::Rendered rendered =
+        jobs::render(arguments.specs, arguments.output, options, listenerFor(globals));
+    if (globals.json)
+        printJson(surfaceDocument(arguments, options, rendered));
+    else
+        printText(surfaceText(arguments, rendered));
+}
+
+void runRender(const RenderArguments& arguments, Globals& globals) {
+    if (arguments.surface || !std::ranges::all_of(arguments.lights, isNumbers)) {
+        runSurface(arguments, globals);
+        return;
+    }
+    SphereRig rig;
+    rig.dome = arguments.dome;
+    if (!arguments.lights.empty()) rig.lights.clear();
+    for (const auto& light : arguments.lights) rig.lights.push_back(parseLight(light));
+    runSpheres(arguments, rig, globals);
+}
+
+/// The options of surfaces under any light; `surface` becomes true with each of them.
+void addSurfaceOptions(CLI::App& command, RenderArguments& arguments) {
+    const auto given = [&arguments](auto&&...) { arguments.surface = true; };
+    command.add_option("--mesh", arguments.mesh, "OBJ or PLY file in the place of the sphere")
+        ->each(given);
+    command.add_option("--up", arguments.up, "The mesh's axis that points up")
+        ->check(CLI::IsMember({"y", "z"}))
+        ->capture_default_str();
+    command.add_option("--view", arguments.view, "THETA,PHI: the direction to the viewer, degrees")
+        ->capture_default_str()
+        ->each(given);
+    command.add_option("--by", arguments.by, "The way in which light and material meet")
+        ->check(CLI::IsMember({"coefficients", "integration", "both"}))
+        ->capture_default_str()
+        ->each(given);
+    command
+        .add_option("--basis,--bases", arguments.bases,
+                    "Bases of the coefficients, a column each (default: hsh)")
+        ->delimiter(',')
+        ->each(given);
+    command
+        .add_option("--order,--orders", arguments.orders,
+                    "Their numbers of bands, a column each (default: 10)")
+        ->delimiter(',')
+        ->each(given);
+    command.add_flag("--cosine", arguments.cosine, "Coefficients of f cos(theta_i)");
+    command.add_option("--outgoing", arguments.outgoing,
+                       "Outgoing directions of the coefficients, interpolated in between "
+                       "(default: 64 if isotropic, else 48x48)");
+    command.add_option(exposuresOption, arguments.exposures, "Stops, a column each: -2,0,2")
+        ->delimiter(',')
+        ->each(given);
+    command.add_option("--tolerance", arguments.tolerance, "Bound of the integration's error")
+        ->check(CLI::Range(1e-6, 0.5))
+        ->capture_default_str();
+}
+
 }  // namespace
 
 void addRender(CLI::App& command, Globals& globals) {
@@ -122,22 +339,27 @@ void addRender(CLI::App& command, Globals& globals) {
         ->required();
     command.add_option("-o,--output", arguments->output, "Picture to write, .png or .exr")
         ->required();
-    command.add_option("--size", arguments->size, "Pixels along a sphere's square")
+    command.add_option("--size", arguments->size, "Pixels along a picture's square")
         ->check(CLI::Range(8, 4096))
         ->capture_default_str();
-    command.add_option("--samples", arguments->samples, "N: N x N samples a pixel")
-        ->check(CLI::Range(1, 16))
-        ->capture_default_str();
+    command
+        .add_option("--samples", arguments->samples,
+                    "N: N x N samples a pixel (default: 3; 2 under other than point lights)")
+        ->check(CLI::Range(1, 16));
     command
         .add_option("--light", arguments->lights,
-                    "THETA,PHI[,STRENGTH] in degrees about the line of sight, again for more "
-                    "lights (default: 45,135,1 and 75,-30,0.25)")
+                    "A light, sky or picture, added up with '+'; or THETA,PHI[,STRENGTH] in "
+                    "degrees about the line of sight; again for more lights (default: 45,135,1 "
+                    "and 75,-30,0.25)")
         ->allow_extra_args(false);
-    command.add_option("--dome", arguments->dome, "Radiance from all around")
+    command
+        .add_option("--dome", arguments->dome,
+                    "Radiance from all around (default: 0.1 with point lights, else 0)")
         ->check(CLI::Range(0.0, 1e6))
-        ->capture_default_str();
+        ->each([arguments](auto&&...) { arguments->domeGiven = true; });
     command.add_option("--exposure", arguments->exposure, "auto or stops; for .png only")
         ->capture_default_str();
+    addSurfaceOptions(command, *arguments);
     command.callback([arguments, &globals] { runRender(*arguments, globals); });
 }
 

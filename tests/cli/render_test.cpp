@@ -49,13 +49,72 @@ TEST_F(Cli, RenderRefusesInOneLine) {
     const std::string to = " -o " + path("s.png");
     expectError("render lambert", 2, "--output", 0);
     expectError("render lambert -o " + path("s.jpeg"), 2, ".exr", 0);
-    for (const char* light : {"45", "45,", "181,0", "45,0,-1", "45,0,1,2", "x,0", "45,nan"}) {
+    for (const char* light : {"45", "45,", "181,0", "45,0,-1", "45,0,1,2", "45,nan"}) {
         expectError(std::string("render lambert --light ") + light + to, 2, "THETA,PHI", 0);
     }
+    expectError("render lambert --light x,0" + to, 2, "x,0", 0);
     expectError("render lambert --exposure bright" + to, 2, "auto", 0);
     expectError("render lambert --size 4" + to, 2, "--size", 0);
     expectError("render lambret" + to, 2, "lambert", 0);
     expectError("render lambert -o " + path("absent/s.png"), 5, "absent", 0);
+}
+
+TEST_F(Cli, RenderComparesCoefficientsWithIntegration) {
+    const std::string job =
+        "render lambert:kd=.5 phong:exponent=8,ks=.5 --size 16 --samples 1 --light uniform "
+        "--light 40,60,.5 --orders 2,6 --json -o " +
+        path("s.exr");
+    const Answer answer = run(job);
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "render"));
+    const Json json = Json::parse(answer.out);
+    const Json& pictures = json["pictures"];
+    // A row for each material: integration, then coefficients and difference of each order.
+    ASSERT_EQ(pictures.size(), 10u);
+    for (std::size_t k = 0; k < 10; ++k) {
+        EXPECT_EQ(pictures[k]["row"], k < 5 ? 0 : 16);
+        EXPECT_EQ(pictures[k]["column"], 16 * (k % 5));
+    }
+    EXPECT_EQ(pictures[0]["by"], "integration");
+    EXPECT_EQ(pictures[8]["by"], "coefficients");
+    EXPECT_EQ(pictures[9]["by"], "difference");
+    EXPECT_EQ(pictures[9]["order"], 6);
+    // Lambert is in the span of the first band; a lobe needs more.
+    EXPECT_LT(pictures[1]["relative_l2"], 1e-3);
+    EXPECT_GT(pictures[6]["relative_l2"], 2 * pictures[8]["relative_l2"].get<double>());
+    EXPECT_GE(pictures[6]["maximum"], pictures[6]["relative_l2"]);
+    // Uniform light of radiance 1 on albedo 0.5, and the point light.
+    EXPECT_GT(pictures[1]["mean_radiance"], 0.5);
+}
+
+TEST_F(Cli, RenderLightsMeshes) {
+    write("quad.obj", "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 4 3 2\n");
+    const Answer answer = run("render lambert --mesh " + path("quad.obj") +
+                              " --view 0,0 --light uniform --by integration --size 16 --samples 1 "
+                              "--exposures -1,1 --json -o " +
+                              path("s.exr"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "render"));
+    const Json json = Json::parse(answer.out);
+    EXPECT_EQ(json["mesh"]["triangles"], 2);
+    EXPECT_EQ(json["pictures"].size(), 2u);
+    EXPECT_EQ(json["pictures"][1]["exposure"], 1);
+    // A square from above fills the frame.
+    EXPECT_GE(json["points"], 14 * 14);
+}
+
+TEST_F(Cli, RenderOfSurfacesRefusesInOneLine) {
+    const std::string to = " -o " + path("s.png");
+    expectError("render lambert --light moonlight" + to, 2, "moonlight", 0);
+    expectError("render lambert --by magic" + to, 2, "--by", 0);
+    expectError("render lambert --basis hash --light uniform" + to, 2, "hsh", 0);
+    expectError("render lambert --order 0 --light uniform" + to, 2, "order", 0);
+    expectError("render lambert --view 75" + to, 2, "THETA,PHI", 0);
+    expectError("render lambert --exposures 1,x" + to, 2, "--exposures", 0);
+    expectError("render lambert --mesh " + path("absent.obj") + to, 3, "absent.obj", 0);
+    write("empty.obj", "# nothing\n");
+    expectError("render lambert --mesh " + path("empty.obj") + to, 3, "no faces", 1);
+    EXPECT_FALSE(fs::exists(path("s.png")));
 }
 
 TEST_F(Cli, RenderGivesTheSameBytesWhateverTheThreads) {

@@ -44,21 +44,45 @@ bool endsWith(const std::string& path, std::string_view extension) {
     return path.size() > extension.size() && path.ends_with(extension);
 }
 
-ExrPicture exrOf(std::span<const SpherePicture> spheres) {
-    const auto size = static_cast<std::size_t>(spheres.front().size);
-    ExrPicture exr{
-        .width = size * spheres.size(), .height = size, .channels = {"R", "G", "B", "A"}};
-    exr.values.resize(exr.width * exr.height * 4);
-    for (std::size_t s = 0; s < spheres.size(); ++s) {
-        for (std::size_t i = 0; i < size * size; ++i) {
-            const std::size_t row = i / size, column = s * size + i % size;
-            const float coverage = spheres[s].coverage[i];
-            for (std::size_t c = 0; c < 3; ++c) {
-                exr.at(row, column, c) = coverage * spheres[s].radiance[3 * i + c];
+std::size_t columnsOf(const Sheet& sheet) {
+    std::size_t columns = 0;
+    for (const auto& row : sheet) columns = std::max(columns, row.size());
+    return columns;
+}
+
+/// Calls `put(picture, pixel of it, row and column of the sheet)` for every pixel.
+template <class Put>
+void forEachPixel(const Sheet& sheet, std::size_t size, const Put& put) {
+    for (std::size_t r = 0; r < sheet.size(); ++r) {
+        for (std::size_t s = 0; s < sheet[r].size(); ++s) {
+            assert(static_cast<std::size_t>(sheet[r][s].size) == size);
+            for (std::size_t i = 0; i < size * size; ++i) {
+                put(sheet[r][s], i, r * size + i / size, s * size + i % size);
             }
-            exr.at(row, column, 3) = coverage;
         }
     }
+}
+
+std::size_t sizeOf(const Sheet& sheet) {
+    assert(!sheet.empty() && !sheet.front().empty());
+    return static_cast<std::size_t>(sheet.front().front().size);
+}
+
+ExrPicture exrOf(const Sheet& sheet) {
+    const std::size_t size = sizeOf(sheet);
+    ExrPicture exr{.width = size * columnsOf(sheet),
+                   .height = size * sheet.size(),
+                   .channels = {"R", "G", "B", "A"}};
+    exr.values.resize(exr.width * exr.height * 4);
+    forEachPixel(
+        sheet, size,
+        [&](const SpherePicture& sphere, std::size_t i, std::size_t row, std::size_t column) {
+            const float coverage = sphere.coverage[i];
+            for (std::size_t c = 0; c < 3; ++c) {
+                exr.at(row, column, c) = coverage * sphere.radiance[3 * i + c];
+            }
+            exr.at(row, column, 3) = coverage;
+        });
     return exr;
 }
 
@@ -106,25 +130,26 @@ double amplificationFor(const SpherePicture& difference, double stops) {
 }
 
 std::string spheresPng(std::span<const SpherePicture> spheres, double stops) {
-    assert(!spheres.empty());
-    const auto size = static_cast<std::size_t>(spheres.front().size);
-    const std::size_t width = size * spheres.size();
+    return sheetPng({spheres}, stops);
+}
+
+std::string sheetPng(const Sheet& sheet, double stops) {
+    const std::size_t size = sizeOf(sheet), width = size * columnsOf(sheet);
     const double scale = std::exp2(stops);
-    std::vector<std::uint8_t> pixels(width * size * 4);
-    for (std::size_t s = 0; s < spheres.size(); ++s) {
-        assert(spheres[s].size == spheres.front().size);
-        for (std::size_t i = 0; i < size * size; ++i) {
-            std::uint8_t* pixel = pixels.data() + 4 * (i / size * width + s * size + i % size);
+    std::vector<std::uint8_t> pixels(width * size * sheet.size() * 4);
+    forEachPixel(
+        sheet, size,
+        [&](const SpherePicture& sphere, std::size_t i, std::size_t row, std::size_t column) {
+            std::uint8_t* pixel = pixels.data() + 4 * (row * width + column);
             for (std::size_t c = 0; c < 3; ++c) {
-                pixel[c] = encoded(scale * spheres[s].radiance[3 * i + c]);
+                pixel[c] = encoded(scale * sphere.radiance[3 * i + c]);
             }
-            pixel[3] = static_cast<std::uint8_t>(std::lround(255 * spheres[s].coverage[i]));
-        }
-    }
+            pixel[3] = static_cast<std::uint8_t>(std::lround(255 * sphere.coverage[i]));
+        });
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
     image.width = static_cast<png_uint_32>(width);
-    image.height = static_cast<png_uint_32>(size);
+    image.height = static_cast<png_uint_32>(size * sheet.size());
     image.format = PNG_FORMAT_RGBA;
     std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(image), '\0');
     png_alloc_size_t length = bytes.size();
@@ -151,12 +176,17 @@ void writeSpheres(std::span<const SpherePicture> spheres, double stops, const st
 
 void writeSpheres(std::span<const SpherePicture> spheres, double stops, AtomicFile& file,
                   const std::map<std::string, std::string>& attributes) {
+    writeSheet({spheres}, stops, file, attributes);
+}
+
+void writeSheet(const Sheet& sheet, double stops, AtomicFile& file,
+                const std::map<std::string, std::string>& attributes) {
     checkSpheresPath(file.path());
     if (endsWith(file.path(), ".png")) {
-        file.write(spheresPng(spheres, stops));
+        file.write(sheetPng(sheet, stops));
         return;
     }
-    ExrPicture exr = exrOf(spheres);
+    ExrPicture exr = exrOf(sheet);
     exr.attributes = attributes;
     writeExrPicture(exr, ExrPixels::single, file);
 }

@@ -6,6 +6,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace hshfit::inline pictures {
 
@@ -38,6 +39,14 @@ void writeSpheres(std::span<const SpherePicture> spheres, double stops, const st
 /// The same to an open file, by the extension of its path; not committed.
 void writeSpheres(std::span<const SpherePicture> spheres, double stops, AtomicFile& file,
                   const std::map<std::string, std::string>& attributes = {});
+
+/// Pictures in rows, from the top, each row from the left; all of the same size. The place of
+/// missing pictures at the end of shorter rows is transparent.
+using Sheet = std::vector<std::span<const SpherePicture>>;
+std::string sheetPng(const Sheet& sheet, double stops);
+/// The same as writeSpheres for more than one row.
+void writeSheet(const Sheet& sheet, double stops, AtomicFile& file,
+                const std::map<std::string, std::string>& attributes = {});
 
 /// Checks the extension before any work. Throws the UsageError of writeSpheres.
 void checkSpheresPath(const std::string& path);

@@ -1,0 +1,101 @@
+#include <hshfit/meshes/internal/mesh_readers.h>
+
+#include <hshfit/error.h>
+
+#include <fmt/format.h>
+#include <tiny_obj_loader.h>
+
+#include <algorithm>
+
+namespace hshfit::inline meshes {
+namespace {
+
+constexpr std::string_view blanks = " \t\r";
+
+/// tinyobjloader reads a word that is no number as 0, so that words are checked before it: each of
+/// a line `v` or `vn` has to be a number in digits.
+void checkNumbers(std::string_view text, const std::string& path) {
+    for (std::size_t number = 1; !text.empty(); ++number) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        const std::string_view line = text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        std::size_t at = std::min(line.find_first_not_of(blanks), line.size());
+        const std::size_t wordEnd = std::min(line.find_first_of(blanks, at), line.size());
+        const std::string_view keyword = line.substr(at, wordEnd - at);
+        if (keyword != "v" && keyword != "vn") continue;
+        int count = 0;
+        for (at = wordEnd; at < line.size(); ++count) {
+            at = line.find_first_not_of(blanks, at);
+            if (at == std::string_view::npos) break;
+            const std::size_t last = std::min(line.find_first_of(blanks, at), line.size());
+            const std::string_view word = line.substr(at, last - at);
+            if (word.front() == '#') break;
+            if (word.find_first_not_of("0123456789+-.eE") != std::string_view::npos) {
+                throw InputError(
+                    fmt::format("{}: line {}: '{}' is no number; '{}' takes three, x y z", path,
+                                number, word.substr(0, 40), keyword));
+            }
+            at = last;
+        }
+        if (count < 3) {
+            throw InputError(fmt::format("{}: line {}: '{}' has {} numbers; it takes three, x y z",
+                                         path, number, keyword, count));
+        }
+    }
+}
+
+template <class Number>
+MeshVector vectorAt(const std::vector<Number>& numbers, int index) {
+    const auto at = 3 * static_cast<std::size_t>(index);
+    return {static_cast<float>(numbers[at]), static_cast<float>(numbers[at + 1]),
+            static_cast<float>(numbers[at + 2])};
+}
+
+}  // namespace
+
+Mesh readObj(std::string_view text, const std::string& path) {
+    if (text.find('\0') != std::string_view::npos) {
+        throw InputError(
+            fmt::format("{}: is neither a PLY file nor text, as a Wavefront OBJ file", path));
+    }
+    checkNumbers(text, path);
+    tinyobj::ObjReaderConfig config;
+    config.triangulate = true;
+    config.vertex_color = false;
+    tinyobj::ObjReader reader;
+    if (!reader.ParseFromString(std::string(text), "", config)) {
+        std::string reason = reader.Error();
+        std::ranges::replace(reason, '\n', ' ');
+        throw InputError(fmt::format("{}: is no Wavefront OBJ file: {}", path,
+                                     reason.empty() ? "it cannot be read" : reason));
+    }
+    const tinyobj::attrib_t& attributes = reader.GetAttrib();
+    Mesh mesh;
+    const auto vertices = static_cast<int>(attributes.vertices.size() / 3);
+    const auto normals = static_cast<int>(attributes.normals.size() / 3);
+    for (int v = 0; v < vertices; ++v) mesh.positions.push_back(vectorAt(attributes.vertices, v));
+    for (const tinyobj::shape_t& shape : reader.GetShapes()) {
+        const auto& indices = shape.mesh.indices;
+        for (std::size_t k = 0; k + 2 < indices.size(); k += 3) {
+            std::array<std::uint32_t, 3> triangle{};
+            for (std::size_t corner = 0; corner < 3; ++corner) {
+                const tinyobj::index_t& index = indices[k + corner];
+                if (index.vertex_index < 0 || index.vertex_index >= vertices ||
+                    index.normal_index >= normals) {
+                    throw InputError(fmt::format(
+                        "{}: face {} names vertex {} and normal {}; there are {} and {}", path,
+                        mesh.triangles.size(), index.vertex_index + 1, index.normal_index + 1,
+                        vertices, normals));
+                }
+                triangle[corner] = static_cast<std::uint32_t>(index.vertex_index);
+                mesh.normals.push_back(index.normal_index < 0
+                                           ? MeshVector{}
+                                           : vectorAt(attributes.normals, index.normal_index));
+            }
+            mesh.triangles.push_back(triangle);
+        }
+    }
+    return mesh;
+}
+
+}  // namespace hshfit::inline meshes

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <hshfit/brdf/directions.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace hshfit::inline meshes {
+
+using MeshVector = std::array<float, 3>;
+
+/// Triangles in space. The front of a triangle is the side from which its corners run
+/// counterclockwise.
+struct Mesh {
+    std::vector<MeshVector> positions;
+    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of positions
+    std::vector<MeshVector> normals;                      ///< [3 triangle + corner], of length 1
+};
+
+/// The largest angle between two triangles over whose common edge computed normals are smooth.
+constexpr double creaseAngle = 60 * (pi / 180);
+
+/// Fills in every normal of length 0, and all if there are none, and makes the others unit vectors.
+/// A computed normal is the mean of those of the triangles at the vertex, weighted with their
+/// angles there (Thürmer and Wüthrich 1998), of triangles within `creaseAngle` of its own. Beyond
+/// 256 triangles a vertex has one normal for all of them.
+void completeNormals(Mesh& mesh);
+
+/// Drops triangles without area, and returns their number.
+std::size_t dropDegenerate(Mesh& mesh);
+
+/// From a frame with +y up to one with +z up: (x, y, z) becomes (x, -z, y).
+void turnUpright(Mesh& mesh);
+
+/// A unit sphere from an octahedron whose triangles are cut into four `levels` times, with the
+/// sphere's normals.
+Mesh sphereMesh(int levels);
+
+}  // namespace hshfit::inline meshes

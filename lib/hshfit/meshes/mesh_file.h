@@ -1,0 +1,29 @@
+#pragma once
+
+#include <hshfit/meshes/mesh.h>
+
+#include <cstddef>
+#include <string>
+
+namespace hshfit::inline meshes {
+
+/// A mesh from a file, and the changes made to it.
+struct MeshFile {
+    Mesh mesh;
+    std::size_t degenerate = 0;    ///< triangles without area, which were left out
+    bool computedNormals = false;  ///< some or all, because the file has none
+};
+
+/// The largest file that is read, in bytes.
+constexpr std::size_t largestMeshFile = std::size_t{1} << 30;
+
+/// Reads a Wavefront OBJ or a PLY file (ascii, binary of either byte order), by its content: a PLY
+/// file starts with "ply". Of an OBJ file, `v`, `vn` and `f` count; of a PLY file x, y, z and nx,
+/// ny, nz of `vertex` and `vertex_indices` (or `vertex_index`) of `face`. Polygons become
+/// triangles: those of PLY files as fans, which is right where they are convex.
+/// Throws InputError, which names the file and the place, for a file that is broken, cut short,
+/// larger than `largestMeshFile` or without a triangle of some area, for a number that is not
+/// finite or beyond 1e15, and for an index of no vertex.
+MeshFile readMesh(const std::string& path);
+
+}  // namespace hshfit::inline meshes

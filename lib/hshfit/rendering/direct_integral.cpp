@@ -1,0 +1,280 @@
+#include <hshfit/rendering/direct_integral.h>
+
+#include <hshfit/rendering/internal/light_cells.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hshfit::inline rendering {
+namespace {
+
+/// The direction about which f has a lobe, and the lobe's width in radians of wi.
+struct Peak {
+    Direction towards;
+    double width = 1;
+};
+
+std::vector<Peak> peaksOf(const Brdf& brdf, const Direction& wo) {
+    std::vector<Peak> peaks;
+    for (const Lobe& lobe : brdf.lobes(wo)) {
+        // A half vector turns by half of the angle by which wi does.
+        if (lobe.about == Lobe::About::halfway)
+            peaks.push_back({mirrored(wo), std::clamp(2 * lobe.width, 1e-3, 1.0)});
+        else
+            peaks.push_back({lobe.axis, std::clamp(lobe.width, 1e-3, 1.0)});
+    }
+    return peaks;
+}
+
+double between(const Direction& a, const Direction& b) {
+    const double x = a.y * b.z - a.z * b.y, y = a.z * b.x - a.x * b.z, z = a.x * b.y - a.y * b.x;
+    return std::atan2(std::sqrt(x * x + y * y + z * z), dot(a, b));
+}
+
+/// Four parts of a cell may all have their middles below the horizon, and light above it, so that
+/// cells on the horizon are cut to this width, radians, in any case.
+constexpr double widestAtHorizon = 0.03;
+
+/// Whether a cell is too wide beside a lobe, or on the horizon, for its four parts to show what
+/// is there.
+bool tooWide(double width, const Direction& local, std::span<const Peak> peaks) {
+    if (width > widestAtHorizon && std::abs(local.z) < width) return true;
+    return std::ranges::any_of(peaks, [&](const Peak& peak) {
+        if (width <= peak.width) return false;
+        return width > std::max(peak.width, 0.7 * between(local, peak.towards));
+    });
+}
+
+/// f at directions of the frame, times cosine and flux.
+class Evaluator {
+public:
+    Evaluator(const Brdf& brdf, const Direction& wo, PointRadiance& result)
+        : brdf_(brdf), wo_(wo), channels_(brdf.channels().count()), result_(result) {}
+
+    void clear() {
+        for (auto* v : {&x_, &y_, &z_}) v->clear();
+    }
+    void add(const Direction& local) {
+        x_.push_back(local.x);
+        y_.push_back(local.y);
+        z_.push_back(local.z);
+    }
+    void evaluate() {
+        f_.resize(channels_ * x_.size());
+        if (x_.empty()) return;
+        brdf_.eval(wo_, {x_.data(), y_.data(), z_.data(), x_.size()}, f_.data());
+        result_.evaluations += x_.size();
+        for (double& value : f_) {
+            if (std::isfinite(value)) continue;
+            value = 0;
+            ++result_.notFinite;
+        }
+    }
+    Rgb value(std::size_t k, const Rgb& flux) const {
+        Rgb value{};
+        if (!(z_[k] > 0)) return value;
+        for (std::size_t c = 0; c < 3; ++c) {
+            value[c] = flux[c] * z_[k] * f_[(channels_ == 1 ? 0 : c) * x_.size() + k];
+        }
+        return value;
+    }
+
+private:
+    const Brdf& brdf_;
+    const Direction& wo_;
+    std::size_t channels_;
+    PointRadiance& result_;
+    std::vector<double> x_, y_, z_, f_;
+};
+
+void add(Rgb& to, const Rgb& value) {
+    for (std::size_t c = 0; c < 3; ++c) to[c] += value[c];
+}
+double magnitude(const Rgb& value) {
+    return std::abs(value[0]) + std::abs(value[1]) + std::abs(value[2]);
+}
+double distance(const Rgb& a, const Rgb& b) {
+    return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
+}
+
+struct Item {
+    LightCell cell;
+    Direction local;
+    Rgb value{};
+};
+
+/// The integral over cells at one point.
+class CellIntegral {
+public:
+    CellIntegral(const LightCells& cells, const Brdf& brdf, const Frame& frame, const Direction& wo,
+                 const IntegrationOptions& options, PointRadiance& result)
+        : cells_(cells),
+          frame_(frame),
+          options_(options),
+          peaks_(peaksOf(brdf, wo)),
+          evaluator_(brdf, wo, result),
+          result_(result) {}
+
+    void run() {
+        std::vector<Item> frontier;
+        for (const LightCell& cell : cells_.coarse()) addItem(cell, frontier);
+        evaluate(frontier);
+        while (!frontier.empty()) frontier = refined(frontier);
+    }
+
+private:
+    /// Unless all of it is below the horizon.
+    void addItem(const LightCell& cell, std::vector<Item>& items) const {
+        const Direction local = frame_.toLocal(cell.direction);
+        if (local.z > -cell.width) items.push_back({cell, local});
+    }
+    void evaluate(std::vector<Item>& items) {
+        evaluator_.clear();
+        for (const Item& item : items) evaluator_.add(item.local);
+        evaluator_.evaluate();
+        for (std::size_t k = 0; k < items.size(); ++k) {
+            items[k].value = evaluator_.value(k, items[k].cell.flux);
+        }
+    }
+
+    /// Cuts every cell once. Parts that agree with their whole are added to the result; the others
+    /// are returned.
+    std::vector<Item> refined(const std::vector<Item>& whole) {
+        std::vector<Item> parts;
+        std::vector<std::size_t> first = {0};
+        std::array<LightCell, 4> four;
+        for (const Item& item : whole) {
+            const std::size_t count = cells_.split(item.cell, four);
+            for (std::size_t k = 0; k < count; ++k) addItem(four[k], parts);
+            if (count == 0) parts.push_back(item);
+            first.push_back(parts.size());
+        }
+        evaluate(parts);
+
+        std::vector<Rgb> sums(whole.size());
+        Rgb estimate = result_.radiance;
+        double open = 0;
+        bool wide = false;
+        std::vector<double> differences(whole.size());
+        std::vector<char> forced(whole.size(), 0);
+        for (std::size_t k = 0; k < whole.size(); ++k) {
+            for (std::size_t i = first[k]; i < first[k + 1]; ++i) {
+                add(sums[k], parts[i].value);
+                if (tooWide(parts[i].cell.width, parts[i].local, peaks_)) forced[k] = 1;
+            }
+            if (first[k + 1] == first[k] + 1 && parts[first[k]].cell.width == whole[k].cell.width)
+                forced[k] = 0;  // a cell that is not cut
+            add(estimate, sums[k]);
+            differences[k] = distance(whole[k].value, sums[k]);
+            open += differences[k];
+            wide = wide || forced[k] != 0;
+        }
+        const double allowed = options_.tolerance * magnitude(estimate) / 2;
+        result_.cut = result_.evaluations > options_.maxEvaluations;
+        const bool all = result_.cut || (!wide && open <= allowed);
+        const double each = allowed / static_cast<double>(whole.size());
+        std::vector<Item> next;
+        for (std::size_t k = 0; k < whole.size(); ++k) {
+            if (all || (!forced[k] && differences[k] <= each)) {
+                add(result_.radiance, sums[k]);
+                result_.error += differences[k];
+            } else {
+                next.insert(next.end(), parts.begin() + static_cast<std::ptrdiff_t>(first[k]),
+                            parts.begin() + static_cast<std::ptrdiff_t>(first[k + 1]));
+            }
+        }
+        return next;
+    }
+
+    const LightCells& cells_;
+    const Frame& frame_;
+    const IntegrationOptions& options_;
+    const std::vector<Peak> peaks_;
+    Evaluator evaluator_;
+    PointRadiance& result_;
+};
+
+/// The largest angle from side to side of a light that is sampled by nodes.
+double extentOf(const Light& light) {
+    if (const auto* disc = std::get_if<DiscLight>(&light)) return 2 * disc->radius;
+    if (const auto* panel = std::get_if<PanelLight>(&light))
+        return std::max(panel->width, panel->height);
+    return 0;
+}
+
+constexpr int mostLevel = 12;
+
+/// The level at which nodes are as close as the narrowest lobe is wide.
+int firstLevel(double extent, std::span<const Peak> peaks) {
+    double narrowest = 1;
+    for (const Peak& peak : peaks) narrowest = std::min(narrowest, peak.width);
+    const double more = extent / (narrowest * (3 + 2 * extent));
+    return more <= 1 ? 0
+                     : std::min(mostLevel - 1,
+                                static_cast<int>(std::ceil(std::log(more) / std::log(1.5))));
+}
+
+}  // namespace
+
+struct DirectIntegral::Parts {
+    explicit Parts(std::span<const Light> lights) : cells(withSkyPictures(lights)) {
+        for (const Light& light : lights) {
+            if (!std::holds_alternative<PictureLight>(light) &&
+                !std::holds_alternative<SkyLight>(light)) {
+                compact.push_back(light);
+            }
+        }
+    }
+    LightCells cells;
+    std::vector<Light> compact;  ///< discs, panels, directional lights
+};
+
+DirectIntegral::DirectIntegral(std::span<const Light> lights)
+    : parts_(std::make_unique<Parts>(lights)) {}
+DirectIntegral::~DirectIntegral() = default;
+
+PointRadiance DirectIntegral::at(const Brdf& brdf, const Frame& frame, const Direction& wo,
+                                 const IntegrationOptions& options) const {
+    PointRadiance result;
+    CellIntegral(parts_->cells, brdf, frame, wo, options, result).run();
+    Evaluator evaluator(brdf, wo, result);
+    const std::vector<Peak> peaks =
+        parts_->compact.empty() ? std::vector<Peak>{} : peaksOf(brdf, wo);
+    for (const Light& light : parts_->compact) {
+        const auto sumAt = [&](int level) {
+            const LightSamples samples = sampleLights({&light, 1}, frame, level);
+            evaluator.clear();
+            for (std::size_t k = 0; k < samples.count(); ++k) {
+                evaluator.add({samples.x[k], samples.y[k], samples.z[k]});
+            }
+            evaluator.evaluate();
+            Rgb sum{};
+            for (std::size_t k = 0; k < samples.count(); ++k) {
+                add(sum, evaluator.value(
+                             k, {samples.flux[0][k], samples.flux[1][k], samples.flux[2][k]}));
+            }
+            return sum;
+        };
+        int level = firstLevel(extentOf(light), peaks);
+        Rgb sum = sumAt(level);
+        if (std::holds_alternative<DirectionalLight>(light)) {
+            add(result.radiance, sum);
+            continue;
+        }
+        double difference = 0;
+        while (true) {
+            const Rgb finer = sumAt(++level);
+            difference = distance(sum, finer);
+            sum = finer;
+            const double total = magnitude(result.radiance) + magnitude(sum);
+            if (difference <= options.tolerance * total / 2) break;
+            result.cut = result.cut || result.evaluations > options.maxEvaluations;
+            if (level >= mostLevel || result.cut) break;
+        }
+        add(result.radiance, sum);
+        result.error += difference;
+    }
+    return result;
+}
+
+}  // namespace hshfit::inline rendering

@@ -1,0 +1,189 @@
+#include <hshfit/rendering/view.h>
+
+#include <hshfit/rays/ray_scene.h>
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+
+namespace hshfit::inline rendering {
+namespace {
+
+/// The least cosine of a mesh's normal to the line of sight.
+constexpr double leastCosine = 0.01;
+
+Direction sum(double a, const Direction& u, double b, const Direction& v, double c,
+              const Direction& w) {
+    return {a * u.x + b * v.x + c * w.x, a * u.y + b * v.y + c * w.y, a * u.z + b * v.z + c * w.z};
+}
+Direction normalised(const Direction& d) {
+    const double length = std::sqrt(dot(d, d));
+    return {d.x / length, d.y / length, d.z / length};
+}
+Direction directionOf(const MeshVector& v) {
+    return {v[0], v[1], v[2]};
+}
+
+/// The normal at (x, y) of the picture in units of the sphere's radius, up and to the right of its
+/// middle; none beside the surface.
+using NormalAt = std::function<std::optional<Direction>(double x, double y)>;
+
+SurfacePoints pointsBy(const NormalAt& normalAt, int size, int samples) {
+    const auto edge = static_cast<std::size_t>(size);
+    const double n = samples, scale = 2 / (size * sphereRadius);
+    std::vector<std::vector<Direction>> rows(edge);
+    std::vector<std::size_t> counts(edge * edge);
+    tbb::parallel_for(std::size_t{0}, edge, [&](std::size_t row) {
+        for (std::size_t column = 0; column < edge; ++column) {
+            for (int i = 0; i < samples * samples; ++i) {
+                const double across = (i % samples + 0.5) / n, down = (i / samples + 0.5) / n;
+                const auto normal =
+                    normalAt(scale * (static_cast<double>(column) + across) - 1 / sphereRadius,
+                             1 / sphereRadius - scale * (static_cast<double>(row) + down));
+                if (!normal) continue;
+                rows[row].push_back(*normal);
+                ++counts[row * edge + column];
+            }
+        }
+    });
+    SurfacePoints points{.size = size, .coverage = {}, .first = {0}, .normals = {}};
+    for (const std::size_t count : counts) {
+        points.coverage.push_back(static_cast<float>(static_cast<double>(count) / (n * n)));
+        points.first.push_back(points.first.back() + count);
+    }
+    for (const auto& row : rows) {
+        points.normals.insert(points.normals.end(), row.begin(), row.end());
+    }
+    return points;
+}
+
+/// The place of a mesh in the picture's axes.
+struct Extent {
+    Extent(const Mesh& mesh, const View& view) {
+        std::array<double, 3> low, high;
+        low.fill(std::numeric_limits<double>::infinity());
+        high.fill(-std::numeric_limits<double>::infinity());
+        for (const auto& triangle : mesh.triangles) {
+            for (const std::uint32_t v : triangle) {
+                const Direction p = directionOf(mesh.positions[v]);
+                const double at[] = {dot(p, view.right), dot(p, view.up), dot(p, view.towards)};
+                for (std::size_t i = 0; i < 3; ++i) {
+                    low[i] = std::min(low[i], at[i]);
+                    high[i] = std::max(high[i], at[i]);
+                }
+            }
+        }
+        for (std::size_t i = 0; i < 3; ++i) middle[i] = (low[i] + high[i]) / 2;
+        half = std::max(high[0] - low[0], high[1] - low[1]) / 2;
+        depth = (high[2] - low[2]) / 2;
+        // A mesh seen on its edge.
+        if (!(half > 0)) half = depth > 0 ? depth : 1;
+    }
+    std::array<double, 3> middle{};
+    double half = 0, depth = 0;
+};
+
+/// Of the side that is seen, and at least a little towards the viewer.
+Direction seenNormal(const Mesh& mesh, const RayHit& hit, const Direction& towards) {
+    const auto& t = mesh.triangles[hit.triangle];
+    const Direction a = directionOf(mesh.positions[t[0]]), b = directionOf(mesh.positions[t[1]]),
+                    c = directionOf(mesh.positions[t[2]]);
+    const Direction u{b.x - a.x, b.y - a.y, b.z - a.z}, v{c.x - a.x, c.y - a.y, c.z - a.z};
+    const Direction flat{u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+    const MeshVector* corners = mesh.normals.data() + 3 * std::size_t{hit.triangle};
+    Direction n = sum(1 - hit.u - hit.v, directionOf(corners[0]), hit.u, directionOf(corners[1]),
+                      hit.v, directionOf(corners[2]));
+    if (!(dot(n, n) > 0)) n = flat;
+    // Normals of the file say which side is the front; without a clear answer the triangle does.
+    const bool front = dot(flat, n) >= 0 ? dot(flat, towards) >= 0 : dot(flat, towards) < 0;
+    n = normalised(front ? n : Direction{-n.x, -n.y, -n.z});
+    const double cosine = dot(n, towards);
+    if (cosine >= leastCosine) return n;
+    const Direction across = sum(1, n, -cosine, towards, 0, n);
+    if (!(dot(across, across) > 1e-12)) return towards;
+    return sum(std::sqrt(1 - leastCosine * leastCosine), normalised(across), leastCosine, towards,
+               0, n);
+}
+
+}  // namespace
+
+View::View(double theta, double phi)
+    : right{-std::sin(phi), std::cos(phi), 0},
+      up{-std::cos(theta) * std::cos(phi), -std::cos(theta) * std::sin(phi), std::sin(theta)},
+      towards(directionFromAngles(theta, phi)) {}
+
+Direction View::toWorld(const Direction& d) const {
+    return sum(d.x, right, d.y, up, d.z, towards);
+}
+
+SurfacePoints spherePoints(const View& view, int size, int samples) {
+    return pointsBy(
+        [&](double x, double y) -> std::optional<Direction> {
+            const double squared = x * x + y * y;
+            if (squared >= 1) return std::nullopt;
+            return view.toWorld({x, y, std::sqrt(1 - squared)});
+        },
+        size, samples);
+}
+
+SurfacePoints meshPoints(const Mesh& mesh, const View& view, int size, int samples) {
+    const Extent extent(mesh, view);
+    // Rays start in front of the mesh, in its own units about its middle: a mesh far from the
+    // origin keeps the digits of single precision.
+    Mesh centred{.positions = mesh.positions, .triangles = mesh.triangles, .normals = mesh.normals};
+    const Direction middle = view.toWorld({extent.middle[0], extent.middle[1], extent.middle[2]});
+    for (MeshVector& p : centred.positions) {
+        p = {static_cast<float>((p[0] - middle.x) / extent.half),
+             static_cast<float>((p[1] - middle.y) / extent.half),
+             static_cast<float>((p[2] - middle.z) / extent.half)};
+    }
+    const RayScene scene(centred);
+    const double start = extent.depth / extent.half + 1;
+    const Direction away{-view.towards.x, -view.towards.y, -view.towards.z};
+    return pointsBy(
+        [&](double x, double y) -> std::optional<Direction> {
+            const Direction origin = view.toWorld({x, y, start});
+            const auto hit = scene.firstHit({origin.x, origin.y, origin.z}, away);
+            if (!hit) return std::nullopt;
+            return seenNormal(centred, *hit, view.towards);
+        },
+        size, samples);
+}
+
+Frame frameAt(const Direction& normal) {
+    Frame frame{Orientation{}};
+    const double across = std::hypot(normal.x, normal.y);
+    frame.normal = normal;
+    frame.tangent =
+        across > 1e-9 ? Direction{-normal.y / across, normal.x / across, 0} : Direction{1, 0, 0};
+    const Direction &n = normal, &t = frame.tangent;
+    frame.bitangent = {n.y * t.z - n.z * t.y, n.z * t.x - n.x * t.z, n.x * t.y - n.y * t.x};
+    return frame;
+}
+
+SpherePicture pictureOf(const SurfacePoints& points, const Radiance& radiance) {
+    assert(radiance.size() == points.count());
+    SpherePicture picture{.size = points.size,
+                          .radiance = std::vector<float>(3 * points.coverage.size()),
+                          .coverage = points.coverage,
+                          .colours = {}};
+    for (std::size_t pixel = 0; pixel < points.coverage.size(); ++pixel) {
+        Rgb total{};
+        const std::size_t first = points.first[pixel], last = points.first[pixel + 1];
+        for (std::size_t k = first; k < last; ++k) {
+            for (std::size_t c = 0; c < 3; ++c) total[c] += radiance[k][c];
+        }
+        for (std::size_t c = 0; c < 3 && last > first; ++c) {
+            picture.radiance[3 * pixel + c] =
+                static_cast<float>(total[c] / static_cast<double>(last - first));
+        }
+    }
+    return picture;
+}
+
+}  // namespace hshfit::inline rendering

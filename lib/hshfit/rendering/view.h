@@ -1,0 +1,46 @@
+#pragma once
+
+#include <hshfit/light/light_samples.h>
+#include <hshfit/meshes/mesh.h>
+#include <hshfit/pictures/sphere.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace hshfit::inline rendering {
+
+/// A picture's axes in the world, for parallel lines of sight: to the right, up, and to the viewer.
+struct View {
+    /// Of the direction (theta, phi) to the viewer, radians; the world's +z is up in the picture.
+    View(double theta, double phi);
+    Direction toWorld(const Direction& inPicture) const;
+
+    Direction right, up, towards;
+};
+
+/// The points of a surface that the samples of a square picture see.
+struct SurfacePoints {
+    int size = 0;                    ///< pixels along an edge
+    std::vector<float> coverage;     ///< [row][column], the share of samples on the surface
+    std::vector<std::size_t> first;  ///< [pixel]: its points are those up to first[pixel + 1]
+    std::vector<Direction> normals;  ///< in the world, of each point
+
+    std::size_t count() const { return normals.size(); }
+};
+
+/// A unit sphere in n x n samples a pixel, with the radius of sphere pictures (sphere.h).
+SurfacePoints spherePoints(const View& view, int size, int samples);
+
+/// A mesh, framed so that its extent in the picture is that of the sphere. Normals are interpolated
+/// between corners; they are those of the side that is seen, and bent towards the viewer where they
+/// would turn away, to a cosine of 0.01. Without shadows or reflections of the mesh in itself.
+SurfacePoints meshPoints(const Mesh& mesh, const View& view, int size, int samples);
+
+/// The axes of a surface with that normal. The tangent is horizontal, along z x n (+x where n is
+/// +z or -z): brushed materials are brushed along the parallels.
+Frame frameAt(const Direction& normal);
+
+/// The picture of radiances at the points, averaged over each pixel's.
+SpherePicture pictureOf(const SurfacePoints& points, const Radiance& radiance);
+
+}  // namespace hshfit::inline rendering
