@@ -139,7 +139,7 @@ Rows changeOf(const MatrixOptions& options) {
 
 Rotated rotate(const std::string& input, const std::string& output, const RotateOptions& options) {
     return isLightFile(input) ? rotateLight(input, output, options)
-                                 : rotateBrdf(input, output, options);
+                              : rotateBrdf(input, output, options);
 }
 
 std::vector<std::vector<double>> matrix(const MatrixOptions& options) {

@@ -112,7 +112,7 @@ void utiaPicture(const std::filesystem::path& folder) {
 }
 
 /// Pictures of light behind a byte that chooses layout and curve (fuzz_pictures.cpp).
-void lightFiles(const std::filesystem::path& folder) {
+void lightPictures(const std::filesystem::path& folder) {
     using namespace hshfit;
     struct Shape {
         std::size_t width, height;
@@ -333,7 +333,7 @@ int main(int count, char** arguments) {
     scatteredFiles(folder);
     presetFiles(folder);
     bsdfXmlFiles(folder / "fuzz_bsdf_xml");
-    lightFiles(folder / "fuzz_pictures");
+    lightPictures(folder / "fuzz_pictures");
     lightSpecifications(folder / "fuzz_lights");
     int number = 0;
     for (const std::vector<float>& phi :
