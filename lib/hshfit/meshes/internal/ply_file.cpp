@@ -12,8 +12,8 @@
 #include <limits>
 #include <optional>
 
-// The polygon file format (Turk 1994), whose importer in Debian's library of importers, assimp
-// 5.2.5, writes past the end of its arrays (CVE-2024-40724).
+// The polygon file format (Turk 1994). The importer of assimp, in the version of Debian 12, has a
+// reported heap overflow (CVE-2024-40724).
 
 namespace hshfit::inline meshes {
 namespace {
