@@ -19,8 +19,7 @@ struct EnvironmentElement {
 };
 
 /// Ordered by slot, then by environment slot. M is block diagonal in m, and the blocks of m and -m
-/// are equal. From Gauss-Legendre quadrature in sqrt(z), where the integrands are polynomials times
-/// (1 + z)^{m/2}: exact to rounding. Elements below 1e-9 in magnitude count as 0.
+/// are equal. By BasisChange: exact to rounding. Elements below 1e-9 in magnitude count as 0.
 std::vector<EnvironmentElement> environmentMatrix(const Basis& basis, int environmentOrder,
                                                   Quantity quantity);
 

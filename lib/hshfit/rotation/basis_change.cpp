@@ -46,8 +46,8 @@ struct Nodes {
 
 /// Nodes for products of one m. sqrt(1 + mu), where it is left, has its branch point at mu = -1,
 /// which costs 24 nodes.
-Nodes nodesFor(const Basis& from, const Basis& to, int m) {
-    const bool projected = to.inner() == Basis::Inner::projectedSolidAngle;
+Nodes nodesFor(const Basis& from, const Basis& to, Basis::Inner weighting, int m) {
+    const bool projected = weighting == Basis::Inner::projectedSolidAngle;
     Nodes nodes;
     const auto add = [&](double mu, double oneMinusMu, double weight) {
         nodes.points.push_back({mu, oneMinusMu});
@@ -79,9 +79,9 @@ struct Values {
 
 /// Calls visit(values) for the nodes of one m, chunk by chunk.
 template <class Visit>
-void eachChunk(const Basis& from, const Basis& to, int m, Visit visit) {
+void eachChunk(const Basis& from, const Basis& to, Basis::Inner weight, int m, Visit visit) {
     constexpr std::size_t chunk = 64;
-    const Nodes nodes = nodesFor(from, to, m);
+    const Nodes nodes = nodesFor(from, to, weight, m);
     for (std::size_t first = 0; first < nodes.points.size(); first += chunk) {
         const std::size_t n = std::min(chunk, nodes.points.size() - first);
         const auto points = std::span(nodes.points).subspan(first, n);
@@ -120,6 +120,7 @@ void scatter(int m, int order, const Matrix& values, double* out) {
 
 struct BasisChange::Parts {
     std::unique_ptr<Basis> from, to;
+    Basis::Inner weight = Basis::Inner::solidAngle;
     std::vector<std::vector<double>> kept = {};  ///< by m, if all are
 
     int blocks() const { return std::min(from->order(), to->order()); }
@@ -130,7 +131,7 @@ struct BasisChange::Parts {
 
     std::vector<double> make(int m) const {
         Matrix sum = Matrix::Zero(to->order() - m, from->order() - m);
-        eachChunk(*from, *to, m, [&](const Values& values) {
+        eachChunk(*from, *to, weight, m, [&](const Values& values) {
             sum.noalias() += signOf(m) * values.to * values.from.transpose();
         });
         return {sum.data(), sum.data() + sum.size()};
@@ -170,7 +171,7 @@ struct BasisChange::Parts {
                 else
                     sum.noalias() = block * c;
             } else {
-                eachChunk(*from, *to, m, [&](const Values& values) {
+                eachChunk(*from, *to, weight, m, [&](const Values& values) {
                     const Matrix &a = transposed ? values.to : values.from,
                                  &b = transposed ? values.from : values.to;
                     const Matrix function = signOf(m) * (a.transpose() * c);
@@ -182,7 +183,9 @@ struct BasisChange::Parts {
     }
 };
 
-BasisChange::BasisChange(const Basis& from, const Basis& to) : parts_(std::make_unique<Parts>()) {
+BasisChange::BasisChange(const Basis& from, const Basis& to, std::optional<Basis::Inner> weight)
+    : parts_(std::make_unique<Parts>()) {
+    parts_->weight = weight.value_or(to.inner());
     const auto copyOf = [](const Basis& basis) {
         return bases::find(basis.name())
             .make(basis.order(), {.condonShortley = basis.condonShortley()});

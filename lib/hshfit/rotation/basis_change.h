@@ -4,16 +4,17 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace hshfit::inline rotation {
 
 /// Coefficients in one basis from those in another (Gautron et al. 2004, Eq. 18):
 ///     C_(i,j) = integral over the hemisphere of TO_i FROM_j w d omega,
-/// w = 1 or cos(theta), the inner product of TO: the projection of sum c_j FROM_j, a function on
-/// the hemisphere that is 0 below the horizon, onto TO. A basis TO that is not orthonormal (lsosh)
-/// solves its Gram system, so that C c fits the function best on the hemisphere. C is
-/// block-diagonal in m, and the blocks of m and -m are equal.
+/// w = 1 or cos(theta), the inner product of TO unless `weight` states another: the projection of
+/// sum c_j FROM_j, a function on the hemisphere that is 0 below the horizon, onto TO. A basis TO
+/// that is not orthonormal (lsosh) solves its Gram system, so that C c fits the function best on
+/// the hemisphere. C is block-diagonal in m, and the blocks of m and -m are equal.
 ///
 /// HSH to SH is the transpose of SH to HSH, and not its inverse: the smallest singular value of C
 /// is 1.3e-2 at order 4 and 1.7e-5 at order 8, so that an inverse amplifies what SH miss by as
@@ -27,7 +28,7 @@ namespace hshfit::inline rotation {
 /// order 100 it errs by 5e-15 for m = 2, 3e-8 for m = 10 and 8e-4 for m = 20 (docs/rotation.md).
 class BasisChange {
 public:
-    BasisChange(const Basis& from, const Basis& to);
+    BasisChange(const Basis& from, const Basis& to, std::optional<Basis::Inner> weight = {});
     ~BasisChange();
     BasisChange(BasisChange&&) noexcept;
     BasisChange& operator=(BasisChange&&) noexcept;
