@@ -1,10 +1,11 @@
 // The nine coefficients that Ramamoorthi & Hanrahan (2001) published for Debevec's probes, from the
-// pictures of these probes, read here by a few lines of their own. The pictures have another
-// scale and resolution than those of 2001: one factor for each, and 1 % of the norm.
+// pictures of these probes. The pictures have another scale and resolution than those of 2001: one
+// factor for each, and 1 % of the norm.
 
 #include <hshfit/bases/sh.h>
 #include <hshfit/irradiance/irradiance.h>
 #include <hshfit/light/light_projection.h>
+#include <hshfit/light/picture_light.h>
 
 #include "places.h"
 
@@ -13,45 +14,12 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 
 using namespace hshfit;
 
 namespace {
-
-/// A Radiance picture with rows from the top, run-length encoded by component.
-PictureLight readProbe(const std::string& path, PictureLayout layout) {
-    std::ifstream in(path, std::ios::binary);
-    const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    std::size_t at = bytes.find("\n\n") + 2;
-    PictureLight picture{.file = path, .rgb = {}, .layout = layout};
-    std::string sign, axis;
-    std::istringstream(bytes.substr(at)) >> sign >> picture.height >> axis >> picture.width;
-    at = bytes.find('\n', at) + 1;
-    const auto next = [&] { return static_cast<unsigned char>(bytes.at(at++)); };
-    for (std::size_t row = 0; row < picture.height; ++row) {
-        at += 4;  // 2, 2, width
-        std::vector<unsigned char> components(4 * picture.width);
-        for (std::size_t c = 0; c < 4; ++c) {
-            for (std::size_t column = 0; column < picture.width;) {
-                const int count = next();
-                const bool run = count > 128;
-                const unsigned char value = run ? next() : 0;
-                for (int k = 0; k < (run ? count - 128 : count); ++k)
-                    components[4 * column++ + c] = run ? value : next();
-            }
-        }
-        for (std::size_t column = 0; column < picture.width; ++column) {
-            const unsigned char* rgbe = components.data() + 4 * column;
-            for (std::size_t c = 0; c < 3; ++c)
-                picture.rgb.push_back(rgbe[3] == 0 ? 0.0F
-                                                   : std::ldexp(float{1} * rgbe[c], rgbe[3] - 136));
-        }
-    }
-    return picture;
-}
 
 /// Nine rows of "env,l,m,R,G,B".
 NineRgb published(const std::string& path, const std::string& probe) {
@@ -87,7 +55,8 @@ TEST(PublishedProbes, NineCoefficientsFollowFromTheirPictures) {
         {"stpeters_probe_latlong.hdr", "stpeters", PictureLayout::latlong, 9.975},
     };
     for (const Probe& probe : probes) {
-        const PictureLight picture = readProbe(shared + "/env/" + probe.file, probe.layout);
+        const PictureLight picture =
+            readPictureLight(shared + "/env/" + probe.file, 1, {.layout = probe.layout});
         const std::vector<Light> lights{picture};
         const LightCoefficients light =
             projectLight(lights, *bases::makeSh(3, {}), {.maxLevel = 1});
