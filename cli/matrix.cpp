@@ -7,6 +7,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+
 namespace hshfit::cli {
 namespace {
 
@@ -38,7 +40,10 @@ void runMatrix(const MatrixArguments& arguments, const Globals& globals) {
     }
     std::string text;
     for (const auto& row : rows) {
-        for (const double entry : row) text += fmt::format("{:10.6f}", entry == 0 ? 0 : entry);
+        for (const double entry : row) {
+            // No sign for what prints as 0.
+            text += fmt::format("{:10.6f}", std::abs(entry) < 5e-7 ? 0 : entry);
+        }
         text += "\n";
     }
     printText(text);

@@ -88,9 +88,12 @@ void runRotate(const RotateArguments& arguments, const Globals& globals) {
         printJson(document);
         return;
     }
-    printText(fmt::format("{}: {} order {}, {}: {:.3g} % of the energy left the {}, error {:.2g}\n",
-                          arguments.output, done.basis, done.order, methodName(done.method),
-                          100 * done.lostEnergy, done.domain, done.error));
+    printText(
+        fmt::format("{}: {} order {}, {}: {:.3g} % of the energy left the {}; {:.2g} % off the "
+                    "rotated function in "
+                    "relative L2\n",
+                    arguments.output, done.basis, done.order, methodName(done.method),
+                    100 * done.lostEnergy, done.domain, 100 * done.error));
 }
 
 }  // namespace

@@ -95,11 +95,12 @@ std::string surfaces(const Basis& basis, FigureDomain domain) {
     return text;
 }
 
-}  // namespace
-
+/// Whether a basis is defined below the horizon.
 bool definedOnSphere(std::string_view basis) {
     return basis == "sh" || basis == "esh";
 }
+
+}  // namespace
 
 void writeBasisFigure(const Basis& basis, FigureDomain domain, const std::string& path) {
     const Terminal& terminal = terminalOf(path);

@@ -19,7 +19,4 @@ enum class FigureDomain { hemisphere, sphere };
 /// a hemisphere; NoFigures without gnuplot; OutputError where the file cannot be written.
 void writeBasisFigure(const Basis& basis, FigureDomain domain, const std::string& path);
 
-/// Whether a basis of that name is defined below the horizon.
-bool definedOnSphere(std::string_view basis);
-
 }  // namespace hshfit::inline pages
