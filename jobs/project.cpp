@@ -24,12 +24,6 @@
 namespace hshfit::jobs {
 namespace {
 
-/// Elevations describe an isotropic BRDF with as many numbers as a map has along one side.
-std::string outgoingFor(const ProjectOptions& options, const Laws& laws) {
-    if (!options.outgoing.empty()) return options.outgoing;
-    return laws.isotropic ? "32" : "32x32";
-}
-
 Quantity quantityOf(const ProjectOptions& options) {
     return options.cosine ? Quantity::brdfCosine : Quantity::brdf;
 }
@@ -103,10 +97,7 @@ private:
                                        .progress = progress};
         Projected result{.projection = {}, .output = output};
         if (form_) {
-            Form form = *form_;
-            if (form.kind == Representation::Kind::outgoing)
-                form.outgoing = outgoingFor(options_, brdf->laws());
-            result.kept = represent(*brdf, form, sourceOpener(), how);
+            result.kept = represent(*brdf, *form_, sourceOpener(), how);
             result.poor = judge(*result.kept, output);
             result.projection.coefficients = {result.kept->head};
             if (result.kept->kind() == Representation::Kind::halfway) {
@@ -114,7 +105,7 @@ private:
             }
             return result;
         }
-        const OutgoingSet outgoing = OutgoingSet::parse(outgoingFor(options_, brdf->laws()));
+        const OutgoingSet outgoing = outgoingOf({.outgoing = options_.outgoing}, brdf->laws());
         const Basis* const one[] = {basis_.get()};
         result.projection = options_.leastSquares
                                 ? projectSamples(*brdf, *basis_, outgoing, options_, progress)

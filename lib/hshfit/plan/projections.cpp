@@ -118,7 +118,7 @@ Coefficients KeptProjections::outgoing(const Form& form) {
     auto& kept = outgoing_[key];
     if (kept.empty()) {
         once(key, [&] {
-            for (Coefficients& each : allBases(outgoingOf(form), form.quantity)) {
+            for (Coefficients& each : allBases(outgoingOf(form, brdf_.laws()), form.quantity)) {
                 std::string name = each.basis;
                 kept.emplace(std::move(name), std::move(each));
             }

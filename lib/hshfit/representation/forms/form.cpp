@@ -31,7 +31,8 @@ public:
     Coefficients outgoing(const Form& form) override {
         const auto basis = basisOf(form);
         const Basis* const one[] = {basis.get()};
-        return std::move(project(brdf_, one, outgoingOf(form), optionsFor(form))[0].coefficients);
+        const OutgoingSet set = outgoingOf(form, brdf_.laws());
+        return std::move(project(brdf_, one, set, optionsFor(form))[0].coefficients);
     }
     Representation both(const Form& form) override {
         return projectBoth(brdf_, *basisOf(form), form.reciprocal, optionsFor(form));
@@ -182,9 +183,9 @@ std::string optionsOf(const Form& form) {
     return fmt::format("{}", fmt::join(settingsOf(form), " "));
 }
 
-OutgoingSet outgoingOf(const Form& form) {
+OutgoingSet outgoingOf(const Form& form, const Laws& laws) {
     if (!form.outgoing.empty()) return OutgoingSet::parse(form.outgoing);
-    return OutgoingSet::parse("32x32");
+    return laws.isotropic ? OutgoingSet::elevations(32) : OutgoingSet::parabolic(32, 32);
 }
 
 void requireConsistent(const Form& form, const Laws& laws) {

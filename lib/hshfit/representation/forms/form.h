@@ -24,7 +24,7 @@ struct Form {
     int order = 7;
     Quantity quantity = Quantity::brdf;
     bool condonShortley = false;
-    std::string outgoing = {};  ///< OutgoingSet::parse; empty: 32x32
+    std::string outgoing = {};  ///< as in outgoingOf
     HalfwayOrders halfway = {};
     bool reciprocal = false;  ///< the symmetric half only
     std::string split = {};   ///< "", "diffuse", or a BRDF specification
@@ -64,8 +64,9 @@ Representation represent(const Brdf& brdf, const Form& form, const BrdfOpener& o
 /// From projections at hand. `added` is the part of the BRDF that `split` took out.
 Representation represent(ProjectionSource& source, const Form& form, const std::string& added = {});
 
-/// The set that the form names; 32x32 where it names none.
-OutgoingSet outgoingOf(const Form& form);
+/// The set that the form names (OutgoingSet::parse). Where it names none, 32 elevations of an
+/// isotropic BRDF, whose functions over wi turn with wo, and a 32x32 map of any other.
+OutgoingSet outgoingOf(const Form& form, const Laws& laws);
 
 /// Throws UsageError for options that contradict each other or the BRDF's laws.
 void requireConsistent(const Form& form, const Laws& laws);
