@@ -42,9 +42,11 @@ constexpr OptionRow options[] = {
     {"Form::reciprocal", "--reciprocal"},
     {"Form::split", "--split", Value::quoted},
     {"Form::window", "--window"},
+    {"ImportOptions::force", "--force"},
     {"LightDomain::normal", "--normal"},
     {"PackOptions::number", "--number"},
     {"PlanOptions::bases", "--bases"},
+    {"PlanOptions::byTime", "--by-time"},
     {"ProjectOptions::leastSquares", "--least-squares"},
     {"ProjectionOptions::maxEvaluations", "--max-evaluations"},
     {"ProjectionOptions::quantity", "--cosine", Value::none},
@@ -54,6 +56,7 @@ constexpr OptionRow options[] = {
     {"TradeoffOptions::maxNanoseconds", "--max-ns"},
     {"TradeoffOptions::metric", "--metric"},
     {"TradeoffOptions::timing", "--no-timing", Value::none},
+    {"TradeoffOptions::writePairs", "--write-pairs"},
     {"output", "-o"},
 };
 
@@ -88,7 +91,7 @@ std::string forShell(const std::string& text) {
 
 std::string optionsOf(const Call& call) {
     std::string text;
-    for (const Setting& setting : call.settings) text += " " + optionOf(setting);
+    for (const Setting& setting : call.settings) text += fmt::format(" {}", optionOf(setting));
     return text;
 }
 

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <hshfit/accuracy/pair_sample.h>
+
+#include <array>
+#include <functional>
+#include <string>
+
+namespace hshfit::jobs {
+
+/// A row of a CSV of direction pairs: the columns wi_x, wi_y, wi_z, wo_x, wo_y, wo_z as text, and
+/// as unit vectors.
+struct PairRow {
+    std::array<std::string, 6> cells;
+    Direction wi, wo;
+};
+
+/// Calls `take` for each row of the file; other columns are ignored. Throws InputError for a file
+/// that cannot be read, a missing column, and cells that are no unit vectors within 0.001.
+void readPairs(const std::string& path, const std::function<void(const PairRow&)>& take);
+
+/// The pairs of such a file as a sample, weighted by its column `weight` if there is one.
+PairSample readPairSample(const std::string& path);
+
+}  // namespace hshfit::jobs
