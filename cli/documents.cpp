@@ -37,6 +37,12 @@ Json metricJson(const MetricValue& result) {
     return json;
 }
 
+Json metricValuesJson(const std::vector<MetricValue>& results) {
+    Json rows = Json::array();
+    for (const MetricValue& result : results) rows.push_back(metricJson(result));
+    return rows;
+}
+
 std::string metricText(const MetricValue& result) {
     std::string text = fmt::format("  {:<20} ", result.metric->name);
     if (!result.value) return text + "-  (" + result.reason + ")\n";

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 namespace hshfit::cli {
 
@@ -20,6 +21,7 @@ nlohmann::ordered_json lawsJson(const Laws& laws);
 std::string indented(const std::string& text);
 
 nlohmann::ordered_json metricJson(const MetricValue& result);
+nlohmann::ordered_json metricValuesJson(const std::vector<MetricValue>& results);
 /// An indented line with its line feed.
 std::string metricText(const MetricValue& result);
 

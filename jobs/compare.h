@@ -1,0 +1,37 @@
+#pragma once
+
+#include "listener.h"
+
+#include <hshfit/accuracy/metrics.h>
+#include <hshfit/accuracy/pair_errors.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hshfit::jobs {
+
+struct CompareOptions {
+    std::string metrics = "all";  ///< or names, separated by commas
+    /// OutgoingSet::parse; empty: those of the coefficients, else as in outgoingOrDefault.
+    std::string outgoing = {};
+    bool rgb = false;  ///< wavelengths as linear Rec. 709
+};
+
+struct Compared {
+    std::string a, b;  ///< names of the BRDFs
+    OutgoingSet outgoing;
+    std::vector<MetricValue> metrics = {};
+    /// Over both hemispheres, whereas the outgoing set leaves out the horizon. None where the
+    /// channels differ or `a` is not finite.
+    std::optional<PairSummary> pairs = {};
+    std::vector<std::string> files = {};  ///< of the page, where one was asked for
+};
+
+/// Errors of the approximation `b` against the reference `a`, sources as in openSource. `output`
+/// is a folder for a page with figures and spheres, or empty. A metric without a value has the
+/// reason. Throws UsageError, InputError and OutputError.
+Compared compare(const std::string& a, const std::string& b, const std::string& output,
+                 const CompareOptions& options, const Listener& listener = {});
+
+}  // namespace hshfit::jobs
