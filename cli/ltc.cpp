@@ -1,19 +1,16 @@
 #include "command.h"
 
-#include <brdfs/fit/ltc_files.h>
-#include <hshfit/error.h>
+#include <jobs/ltc.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <chrono>
+#include <map>
 
 namespace hshfit::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct LtcArguments {
     std::string spec, mapping = "square";
@@ -26,48 +23,33 @@ const std::map<std::string, brdfs::RoughnessMapping> mappings{
     {"linear", brdfs::RoughnessMapping::linear},
     {"exponent", brdfs::RoughnessMapping::exponent}};
 
-void runLtc(LtcArguments arguments, Globals& globals) {
-    for (const std::string& output : arguments.outputs) brdfs::ltcOutputs(output);
-    const auto start = std::chrono::steady_clock::now();
-    Progress progress(globals, "ltc");
+void runLtc(LtcArguments& arguments, const Globals& globals) {
     arguments.table.mapping = mappings.at(arguments.mapping);
-    arguments.table.progress = progress.callback();
-    const brdfs::LtcTable table = brdfs::fitLtcTable(arguments.spec, arguments.table);
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-
-    std::vector<std::string> written;
-    FileSet files(".", true);
-    for (const std::string& output : arguments.outputs)
-        for (const std::string& path : brdfs::writeLtcTable(table, output, files))
-            written.push_back(path);
-    files.commit();
-
-    const auto summary = table.summary();
-    if (summary.unsettled > 0)
-        note(globals, fmt::format("{} of {} fits ended before they had settled", summary.unsettled,
-                                  table.cells.size()));
+    const jobs::FittedLtc fitted =
+        jobs::fitLtc(arguments.spec, arguments.outputs, arguments.table, listenerFor(globals));
+    const brdfs::LtcTable& table = fitted.table;
+    const auto& summary = fitted.summary;
     if (globals.json) {
         printJson({{"format", "hshfit-ltc-answer"},
                    {"version", 1},
                    {"brdf", table.spec},
                    {"parameter", table.parameter},
                    {"size", table.size},
-                   {"outputs", written},
+                   {"outputs", fitted.files},
                    {"mean_error", summary.meanError},
                    {"largest_error", summary.largestError},
                    {"mean_misplaced", summary.meanMisplaced},
                    {"largest_uncertainty", summary.largestUncertainty},
                    {"unsettled", summary.unsettled},
-                   {"seconds", seconds}});
+                   {"seconds", fitted.seconds}});
         return;
     }
     printText(fmt::format(
         "{}: {} x {} over {} from {:.4g} to {:.4g}; cubed lobe error {:.4f}, at most {:.3f}; "
         "{:.2f} % of the light misplaced; {:.0f} s\n",
-        fmt::join(written, ", "), table.size, table.size, table.parameter, table.values.front(),
-        table.values.back(), summary.meanError, summary.largestError, 100 * summary.meanMisplaced,
-        seconds));
+        fmt::join(fitted.files, ", "), table.size, table.size, table.parameter,
+        table.values.front(), table.values.back(), summary.meanError, summary.largestError,
+        100 * summary.meanMisplaced, fitted.seconds));
 }
 
 }  // namespace
