@@ -1,14 +1,11 @@
 #include "command.h"
 
 #include <hshfit/error.h>
-#include <hshfit/plan/plan.h>
 #include <hshfit/plan/plan_files.h>
 
-#include <brdfs/catalog.h>
+#include <jobs/plan.h>
 
-#include <fmt/format.h>
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 namespace hshfit::cli {
 namespace {
@@ -19,16 +16,8 @@ struct PlanArguments {
 };
 
 void runPlan(const PlanArguments& arguments, Globals& globals) {
-    const plan::Scene scene = plan::readScene(arguments.scene);
-    Progress progress(globals, "plan");
-    plan::PlanOptions options = arguments.options;
-    options.progress = progress.callback();
-    if (scene.limits.nanoseconds && !options.byTime) {
-        note(globals, "the limit in nanoseconds counts with --by-time only: no times were taken");
-    }
-    const plan::Plan result = plan::planScene(
-        scene, [](const std::string& spec) { return brdfs::open(spec); }, options);
-    plan::writePlan(result, arguments.output);
+    const plan::Plan result =
+        jobs::planScene(arguments.scene, arguments.output, arguments.options, listenerFor(globals));
     printText(globals.json ? plan::planJson(result) : plan::planText(result));
     for (const plan::MaterialPlan& each : result.materials) {
         if (!each.accepted) globals.exitCode = static_cast<int>(ExitCode::numeric);

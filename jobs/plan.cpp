@@ -1,0 +1,28 @@
+#include "plan.h"
+
+#include "source.h"
+
+#include <hshfit/plan/plan_files.h>
+#include <hshfit/wording.h>
+
+#include <fmt/format.h>
+
+namespace hshfit::jobs {
+
+plan::Plan planScene(const std::string& scene, const std::string& output,
+                     const plan::PlanOptions& options, const Listener& listener) {
+    const plan::Scene read = plan::readScene(scene);
+    if (read.limits.nanoseconds && !options.byTime) {
+        listener.say(
+            fmt::format("the limit in nanoseconds counts with {} only: no times were taken",
+                        Setting{"PlanOptions::byTime"}));
+    }
+    plan::PlanOptions how = options;
+    how.progress = listener.part("plan");
+    plan::Plan result = plan::planScene(
+        read, [](const std::string& spec) { return openBrdf(spec); }, how);
+    plan::writePlan(result, output);
+    return result;
+}
+
+}  // namespace hshfit::jobs

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "listener.h"
+
+#include <hshfit/plan/plan.h>
+
+#include <string>
+
+namespace hshfit::jobs {
+
+/// The plan of a scene file (plan::readScene), whose files are written to a folder
+/// (plan::writePlan). Materials are BRDF specifications. `options.progress` is not called: the
+/// listener is. Throws UsageError, InputError and OutputError.
+plan::Plan planScene(const std::string& scene, const std::string& output,
+                     const plan::PlanOptions& options, const Listener& listener = {});
+
+}  // namespace hshfit::jobs
