@@ -1,14 +1,10 @@
 #include "command.h"
 
-#include <hshfit/coefficient_files/coefficient_file.h>
-#include <hshfit/error.h>
-#include <hshfit/gpu/containers/containers.h>
+#include <jobs/import.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-
-#include <filesystem>
 
 namespace hshfit::cli {
 namespace {
@@ -17,10 +13,11 @@ using Json = nlohmann::ordered_json;
 
 struct ImportArguments {
     std::string input, output;
-    bool force = false;
+    jobs::ImportOptions options;
 };
 
-Json describe(const gpu::ImportedPayload& read, const ImportArguments& arguments) {
+Json answer(const jobs::Imported& imported, const ImportArguments& arguments) {
+    const gpu::ImportedPayload& read = imported.read;
     const gpu::Payload& payload = read.payload;
     return {{"format", "hshfit-import"},
             {"version", 1},
@@ -29,7 +26,7 @@ Json describe(const gpu::ImportedPayload& read, const ImportArguments& arguments
             {"file", read.file},
             {"sidecar", read.sidecar},
             {"output", arguments.output},
-            {"bytes", std::filesystem::file_size(arguments.output)},
+            {"bytes", imported.bytes},
             {"brdf", payload.head.source},
             {"basis", payload.head.basis},
             {"order", payload.head.order},
@@ -53,14 +50,9 @@ std::string importedText(const Json& document) {
 }
 
 void runImport(const ImportArguments& arguments, const Globals& globals) {
-    std::error_code error;
-    if (!arguments.force && std::filesystem::is_regular_file(arguments.output, error)) {
-        throw OutputError(
-            fmt::format("'{}' exists; nothing is written without --force", arguments.output));
-    }
-    const gpu::ImportedPayload read = gpu::readPayload(arguments.input);
-    writeCoefficients(gpu::unpack(read.payload), arguments.output);
-    const Json document = describe(read, arguments);
+    const jobs::Imported imported =
+        jobs::importCoefficients(arguments.input, arguments.output, arguments.options);
+    const Json document = answer(imported, arguments);
     if (globals.json) {
         printJson(document);
     } else {
@@ -78,7 +70,7 @@ void addImport(CLI::App& command, Globals& globals) {
         ->required();
     command.add_option("-o,--output", arguments->output, "Coefficient file, .json or .exr")
         ->required();
-    command.add_flag("--force", arguments->force, "Replace an existing file");
+    command.add_flag("--force", arguments->options.force, "Replace an existing file");
     command.callback([arguments, &globals] { runImport(*arguments, globals); });
 }
 

@@ -1,41 +1,34 @@
 #include "command.h"
 
-#include <hshfit/bases/catalog.h>
-#include <hshfit/pages/basis_figure.h>
+#include <jobs/plot.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-
-#include <algorithm>
 
 namespace hshfit::cli {
 namespace {
 
 struct PlotArguments {
     std::string basis, output;
-    int order = 4;
-    bool sphere = false, condonShortley = false;
+    bool sphere = false;
+    jobs::PlotOptions options;
 };
 
-void runPlot(const PlotArguments& arguments, Globals& globals) {
-    const bases::Entry& entry = bases::find(arguments.basis);
-    const int order = std::min(arguments.order, entry.maxOrder);
-    const auto basis = bases::make(entry.name, order, {.condonShortley = arguments.condonShortley});
-    const FigureDomain domain = arguments.sphere ? FigureDomain::sphere : FigureDomain::hemisphere;
-    writeBasisFigure(*basis, domain, arguments.output);
-    const int functions = basis->functionCount(order);
+void runPlot(PlotArguments& arguments, const Globals& globals) {
+    arguments.options.domain = arguments.sphere ? FigureDomain::sphere : FigureDomain::hemisphere;
+    const jobs::Plotted plotted = jobs::plot(arguments.basis, arguments.output, arguments.options);
     if (globals.json) {
         printJson({{"format", "hshfit-plot"},
                    {"version", 1},
                    {"output", arguments.output},
-                   {"basis", basis->name()},
-                   {"order", order},
+                   {"basis", plotted.basis},
+                   {"order", plotted.order},
                    {"domain", arguments.sphere ? "sphere" : "hemisphere"},
-                   {"functions", functions}});
+                   {"functions", plotted.functions}});
     } else {
-        printText(fmt::format("{}: {} functions of {}, order {}\n", arguments.output, functions,
-                              basis->name(), order));
+        printText(fmt::format("{}: {} functions of {}, order {}\n", arguments.output,
+                              plotted.functions, plotted.basis, plotted.order));
     }
 }
 
@@ -46,12 +39,12 @@ void addPlot(CLI::App& command, Globals& globals) {
     command.add_option("BASIS", arguments->basis, "A basis of hshfit list bases")->required();
     command.add_option("-o,--output", arguments->output, "Figure to write: .png, .svg or .pdf")
         ->required();
-    command.add_option("--order", arguments->order, "Bands to draw")
+    command.add_option("--order", arguments->options.order, "Bands to draw")
         ->check(CLI::Range(1, 8))
         ->capture_default_str();
     command.add_flag("--sphere", arguments->sphere,
                      "The whole sphere, for sh and esh (default: the hemisphere)");
-    command.add_flag("--condon-shortley", arguments->condonShortley,
+    command.add_flag("--condon-shortley", arguments->options.condonShortley,
                      "Functions of odd m times -1, as both source papers have them");
     command.callback([arguments, &globals] { runPlot(*arguments, globals); });
 }

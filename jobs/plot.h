@@ -1,0 +1,24 @@
+#pragma once
+
+#include <hshfit/pages/basis_figure.h>
+
+#include <string>
+
+namespace hshfit::jobs {
+
+struct PlotOptions {
+    int order = 4;  ///< bands to draw, or as many as the basis has
+    FigureDomain domain = FigureDomain::hemisphere;
+    bool condonShortley = false;
+};
+
+struct Plotted {
+    std::string basis;
+    int order = 0, functions = 0;
+};
+
+/// The functions of a basis as a figure, .png, .svg or .pdf (writeBasisFigure). Throws UsageError,
+/// NoFigures and OutputError.
+Plotted plot(const std::string& basis, const std::string& output, const PlotOptions& options);
+
+}  // namespace hshfit::jobs
