@@ -2,10 +2,9 @@
 #include "documents.h"
 
 #include <hshfit/error.h>
-#include <hshfit/pictures/sphere_picture.h>
 
 #include <jobs/render.h>
-#include <jobs/source.h>
+#include <jobs/spheres.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -123,45 +122,41 @@ Json startDocument(const RenderArguments& arguments, int samples) {
 
 // --- spheres under point lights ---------------------------------------------------------------
 
-void runSpheres(const RenderArguments& arguments, const SphereRig& rig, Globals& globals) {
-    checkSpheresPath(arguments.output);
-    SphereOptions options{.rig = rig, .size = arguments.size};
-    if (arguments.samples > 0) options.samples = arguments.samples;
-    const std::optional<double> stops = parseExposure(arguments.exposure);
+Json sphereJson(const jobs::SphereSheet::Sphere& sphere) {
+    return {{"brdf", sphere.brdf},
+            {"column", sphere.column},
+            {"colours", sphere.colours},
+            {"not_finite", sphere.notFinite}};
+}
 
-    std::vector<SpherePicture> spheres;
-    std::map<std::string, std::string> attributes;
+Json spheresDocument(const RenderArguments& arguments, const jobs::SphereSheetOptions& options,
+                     const jobs::SphereSheet& sheet) {
     Json document = startDocument(arguments, options.samples);
     document["lights"] = pointLightsJson(options.rig);
     document["dome"] = options.rig.dome;
-    Json list = Json::array();
-    for (const auto& spec : arguments.specs) {
-        const auto brdf = jobs::openSource(spec, /*rgb=*/false);
-        Progress progress(globals, brdf->name());
-        options.progress = progress.callback();
-        spheres.push_back(renderSphere(*brdf, options));
-        brdf->checkIntact();
-        const std::size_t column = (spheres.size() - 1) * static_cast<std::size_t>(options.size);
-        list.push_back({{"brdf", brdf->name()},
-                        {"column", column},
-                        {"colours", spheres.back().colours},
-                        {"not_finite", spheres.back().notFinite}});
-        attributes[fmt::format("hshfit:sphere{}", spheres.size())] = brdf->name();
-        if (spheres.back().notFinite > 0) {
-            note(globals, fmt::format("{}: {} values that are not finite were left out",
-                                      brdf->name(), spheres.back().notFinite));
-        }
-    }
-    const double shown = stops ? *stops : automaticExposure(spheres);
-    writeSpheres(spheres, shown, arguments.output, attributes);
-    document["exposure"] = {{"automatic", !stops}, {"stops", shown}};
-    document["spheres"] = list;
+    document["exposure"] = {{"automatic", !options.stops}, {"stops", sheet.stops}};
+    document["spheres"] = Json::array();
+    for (const auto& sphere : sheet.spheres) document["spheres"].push_back(sphereJson(sphere));
+    return document;
+}
+
+void runSpheres(const RenderArguments& arguments, const Globals& globals) {
+    jobs::SphereSheetOptions options;
+    options.size = arguments.size;
+    options.stops = parseExposure(arguments.exposure);
+    options.rig.dome = arguments.dome;
+    if (!arguments.lights.empty()) options.rig.lights.clear();
+    for (const auto& light : arguments.lights) options.rig.lights.push_back(parseLight(light));
+    if (arguments.samples > 0) options.samples = arguments.samples;
+    const jobs::SphereSheet sheet =
+        jobs::renderSpheres(arguments.specs, arguments.output, options, listenerFor(globals));
     if (globals.json) {
-        printJson(document);
+        printJson(spheresDocument(arguments, options, sheet));
     } else {
         printText(fmt::format("{}: {} sphere{} of {} x {} pixels, exposure {:+.1f} stops\n",
-                              arguments.output, spheres.size(), spheres.size() == 1 ? "" : "s",
-                              options.size, options.size, shown));
+                              arguments.output, sheet.spheres.size(),
+                              sheet.spheres.size() == 1 ? "" : "s", options.size, options.size,
+                              sheet.stops));
     }
 }
 
@@ -285,13 +280,9 @@ void runSurface(const RenderArguments& arguments, Globals& globals) {
 void runRender(const RenderArguments& arguments, Globals& globals) {
     if (arguments.surface || !std::ranges::all_of(arguments.lights, isNumbers)) {
         runSurface(arguments, globals);
-        return;
+    } else {
+        runSpheres(arguments, globals);
     }
-    SphereRig rig;
-    rig.dome = arguments.dome;
-    if (!arguments.lights.empty()) rig.lights.clear();
-    for (const auto& light : arguments.lights) rig.lights.push_back(parseLight(light));
-    runSpheres(arguments, rig, globals);
 }
 
 /// The options of surfaces under any light; `surface` becomes true with each of them.
