@@ -1,8 +1,7 @@
 #include "health.h"
+
 #include "documents.h"
 
-#include <brdfs/measured/measured_brdf.h>
-#include <brdfs/repair.h>
 #include <hshfit/files/json_fields.h>
 
 #include <fmt/format.h>
@@ -68,31 +67,31 @@ Json exchangeJson(const Brdf& brdf, const Health::Exchange& exchange) {
             {"exchanged", exchange.exchanged}};
 }
 
-Json reciprocityJson(const Brdf& brdf, const Health& health) {
+Json reciprocityJson(const jobs::BrdfInfo& info) {
+    const Health& health = info.health;
     Json reciprocity = {{"defect", health.reciprocityDefect}};
-    if (health.worstExchange) reciprocity["worst"] = exchangeJson(brdf, *health.worstExchange);
-    const auto* measured = dynamic_cast<const brdfs::MeasuredBrdf*>(&brdf);
-    if (const auto both = measured ? measured->bothOrders() : std::nullopt) {
+    if (health.worstExchange)
+        reciprocity["worst"] = exchangeJson(*info.brdf, *health.worstExchange);
+    if (const auto& both = info.bothOrders) {
         reciprocity["samples"] = {{"pairs", both->pairs},
                                   {"defect", both->defect},
                                   {"largest_ratio", both->largestRatio}};
-        if (both->worst) reciprocity["samples"]["worst"] = exchangeJson(brdf, *both->worst);
+        if (both->worst) reciprocity["samples"]["worst"] = exchangeJson(*info.brdf, *both->worst);
     }
     return reciprocity;
 }
 
-Json healthJson(const Brdf& brdf, const Health& health) {
+Json healthJson(const jobs::BrdfInfo& info) {
+    const Health& health = info.health;
     Json repairs = Json::array();
-    for (const auto& repair : brdfs::repairs()) {
-        const std::string reason = repair.reason(brdf, health);
-        if (!reason.empty()) repairs.push_back({{"name", repair.name}, {"reason", reason}});
-    }
+    for (const auto& repair : info.repairs)
+        repairs.push_back({{"name", repair.name}, {"reason", repair.reason}});
     return {{"pairs", health.pairs},
             {"coverage", health.coverage},
             {"values", health.values},
             {"negative", health.negative},
             {"not_finite", health.notFinite},
-            {"reciprocity", reciprocityJson(brdf, health)},
+            {"reciprocity", reciprocityJson(info)},
             {"largest_albedo", health.largestAlbedo()},
             {"albedo_tolerance", health.albedoTolerance},
             {"suggested_repairs", repairs}};
@@ -145,13 +144,13 @@ std::string factLine(std::string name, const std::string& value) {
     return fmt::format("  {:<28} {}\n", name, value);
 }
 
-void describeHealth(const Brdf& brdf, const Health& health, Json& document) {
-    if (const auto* measured = dynamic_cast<const brdfs::MeasuredBrdf*>(&brdf)) {
-        document["census"] = censusJson(measured->census());
-        document["axes"] = axesJson(measured->axes());
+void describeHealth(const jobs::BrdfInfo& info, Json& document) {
+    if (info.census) {
+        document["census"] = censusJson(*info.census);
+        document["axes"] = axesJson(info.axes);
     }
-    document["albedo"] = albedoJson(health);
-    document["health"] = healthJson(brdf, health);
+    document["albedo"] = albedoJson(info.health);
+    document["health"] = healthJson(info);
 }
 
 std::string healthText(const Json& document) {

@@ -2,15 +2,16 @@
 
 // The answer of `info` on the health of a BRDF.
 
-#include <hshfit/accuracy/health.h>
+#include <jobs/info.h>
 
 #include <nlohmann/json_fwd.hpp>
+
 #include <string>
 
 namespace hshfit::cli {
 
 /// The members "albedo", "health", and for a measured BRDF "census" and "axes".
-void describeHealth(const Brdf& brdf, const Health& health, nlohmann::ordered_json& document);
+void describeHealth(const jobs::BrdfInfo& info, nlohmann::ordered_json& document);
 
 /// The same members as indented lines.
 std::string healthText(const nlohmann::ordered_json& document);

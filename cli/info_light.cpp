@@ -3,7 +3,6 @@
 #include "health.h"
 
 #include <hshfit/files/json_fields.h>
-#include <hshfit/light/light_health.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -88,17 +87,16 @@ std::string lightLine(const Json& light) {
 
 }  // namespace
 
-Json describeLight(const std::string& spec) {
-    const LightSpecification parsed = parseLights(spec, "", InvalidPixels::zero);
+Json lightAnswer(const std::string& spec, const jobs::LightInfo& info) {
     Json document = {
         {"format", "hshfit-info"},     {"version", 1},           {"kind", "light"}, {"name", spec},
         {"channels", {"R", "G", "B"}}, {"lights", Json::array()}};
-    for (const Light& light : parsed.lights) {
+    for (const Light& light : info.lights) {
         Json json = {{"kind", kindOf(light)}};
         json.update(std::visit(LightJson{}, light));
         document["lights"].push_back(json);
     }
-    const LightHealth health = examine(parsed.lights);
+    const LightHealth& health = info.health;
     document["light_health"] = {{"mean", rgbJson(health.mean)},
                                 {"peak", rgbJson(health.peak)},
                                 {"peak_direction", placeJson(health.peakDirection)},
@@ -110,11 +108,7 @@ Json describeLight(const std::string& spec) {
                                  {{"negative", health.invalid.negative},
                                   {"nan", health.invalid.notANumber},
                                   {"infinite", health.invalid.infinite}}}};
-    if (health.invalid.total() > 0)
-        document["warnings"] = {
-            fmt::format("{} pixels are no radiance and count as 0 here; "
-                        "commands that use the light refuse it",
-                        health.invalid.total())};
+    if (!info.warnings.empty()) document["warnings"] = info.warnings;
     return document;
 }
 

@@ -2,14 +2,17 @@
 
 // `info` of a light: what it is and a report on its health.
 
+#include <jobs/info.h>
+
 #include <nlohmann/json_fwd.hpp>
+
 #include <string>
 
 namespace hshfit::cli {
 
-/// The answer for a light specification; invalid pixels are counted, not refused.
-nlohmann::ordered_json describeLight(const std::string& spec);
+nlohmann::ordered_json lightAnswer(const std::string& spec, const jobs::LightInfo& info);
 
+/// The answer as indented lines.
 std::string lightText(const nlohmann::ordered_json& document);
 
 }  // namespace hshfit::cli
