@@ -1,6 +1,6 @@
 // Jobs write the files that the program writes, byte for byte, and tell a listener what they do.
 
-#include <cli/program.h>
+#include "job_fixture.h"
 
 #include <hshfit/error.h>
 #include <hshfit/pages/report.h>
@@ -16,32 +16,14 @@
 
 #include <atomic>
 #include <chrono>
-#include <map>
 #include <set>
 #include <thread>
 
 namespace {
 
 using namespace hshfit;
-namespace fs = std::filesystem;
 
-class Jobs : public test::Cli {
-protected:
-    void runProgram(const std::string& arguments) const {
-        const test::Answer answer = run(arguments);
-        ASSERT_EQ(answer.code, 0) << arguments << "\n" << answer.err;
-    }
-
-    /// Name -> bytes of every file below a folder.
-    std::map<std::string, std::string> filesIn(const std::string& folder) const {
-        std::map<std::string, std::string> files;
-        for (const auto& entry : fs::recursive_directory_iterator(path(folder)))
-            if (entry.is_regular_file())
-                files[fs::relative(entry.path(), path(folder)).string()] =
-                    read(entry.path().string());
-        return files;
-    }
-};
+class Jobs : public test::JobFiles {};
 
 TEST_F(Jobs, ProjectWritesTheFileOfTheProgram) {
     const std::string spec = "ward:ax=.2,ay=.5";
@@ -148,7 +130,6 @@ TEST_F(Jobs, FitWritesThePresetOfTheProgram) {
     EXPECT_EQ(read(path("job.json")), read(path("program.json")));
 }
 
-// A full disk for one input, while another one is within a parallel loop of its own.
 TEST_F(Jobs, WaveletsOfALambertianAreFourTermsWhateverTheView) {
     const jobs::Reported reported =
         jobs::report({"lambert", "ward:ax=.2,ay=.5"},
@@ -164,6 +145,7 @@ TEST_F(Jobs, WaveletsOfALambertianAreFourTermsWhateverTheView) {
     EXPECT_FALSE(reported.report.reports[1].curves.back().points[0].accuracy);
 }
 
+// A full disk for one input, while another one is within a parallel loop of its own.
 TEST(Batch, AnInputThatCannotBeWrittenLetsTheLoopsOfOthersEnd) {
     constexpr int count = 2000;
     std::atomic<bool> started = false;
