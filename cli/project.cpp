@@ -31,23 +31,21 @@ Json answer(const jobs::Projected& result) {
                    {"error", c.energy.finite ? Json(c.energy.error) : Json(nullptr)},
                    {"finite", c.energy.finite}};
     if (!c.energy.finite) energy["reason"] = c.energy.reason;
-    const bool known = c.energy.finite && c.energy.value > 0 && !projection.captured.empty();
-    Json document = {
-        {"format", "hshfit-project"},
-        {"version", 1},
-        {"brdf", c.source},
-        {"output", result.output},
-        {"basis", c.basis},
-        {"order", c.order},
-        {"quantity", quantityName(c.quantity)},
-        {"outgoing", c.outgoing.spec()},
-        {"directions", c.outgoing.size()},
-        {"channels", c.channels.names()},
-        {"energy", energy},
-        {"accuracy", known ? Json(projection.captured.back() / c.energy.value) : Json(nullptr)},
-        {"error", c.error},
-        {"tolerance", c.tolerance},
-        {"evaluations", projection.evaluations}};
+    Json document = {{"format", "hshfit-project"},
+                     {"version", 1},
+                     {"brdf", c.source},
+                     {"output", result.output},
+                     {"basis", c.basis},
+                     {"order", c.order},
+                     {"quantity", quantityName(c.quantity)},
+                     {"outgoing", c.outgoing.spec()},
+                     {"directions", c.outgoing.size()},
+                     {"channels", c.channels.names()},
+                     {"energy", energy},
+                     {"accuracy", result.captured ? Json(*result.captured) : Json(nullptr)},
+                     {"error", c.error},
+                     {"tolerance", c.tolerance},
+                     {"evaluations", projection.evaluations}};
     if (c.leastSquares) {
         document["least_squares"] = {{"regularisation", c.leastSquares->regularisation},
                                      {"kernel_degrees", c.leastSquares->kernelDegrees},
@@ -63,11 +61,19 @@ Json answer(const jobs::Projected& result) {
 
 void noteQuality(const jobs::Projected& result, const std::string& prefix, const Globals& globals) {
     const Energy& energy = result.projection.coefficients.energy;
-    if (!energy.finite) note(globals, prefix + "the energy does not exist: " + energy.reason);
+    // The halfway form has the energy of f cos cos, which its errors state.
+    const bool halfway = result.kept && result.kept->kind() == Representation::Kind::halfway;
+    if (!energy.finite && !halfway)
+        note(globals, prefix + "the energy does not exist: " + energy.reason);
     if (result.poor) note(globals, prefix + result.poor->line());
 }
 
-std::string line(const jobs::Projected& result, const Json& document) {
+std::string capturedText(const jobs::Projected& result) {
+    return result.captured ? fmt::format("{:.6f} of the energy captured", *result.captured)
+                           : "no captured energy";
+}
+
+std::string line(const jobs::Projected& result) {
     const Coefficients& c = result.projection.coefficients;
     const std::string& output = result.output;
     if (result.kept) {
@@ -75,7 +81,8 @@ std::string line(const jobs::Projected& result, const Json& document) {
             c.basis.empty() ? "" : fmt::format("{} order {}, ", c.basis, c.order);
         // The errors over pairs say what a quadrature cannot.
         const std::string error = result.errors ? indented(textOf(*result.errors))
-                                                : fmt::format("error {:.1e}\n", c.error);
+                                                : fmt::format("{}, quadrature error {:.1e}\n",
+                                                              capturedText(result), c.error);
         return fmt::format("{}: {}{}{}", output, what, error, formLine(*result.kept));
     }
     if (const auto& fit = c.leastSquares) {
@@ -85,12 +92,8 @@ std::string line(const jobs::Projected& result, const Json& document) {
             output, c.basis, c.order, c.outgoing.size(), fit->samples, fit->condition,
             fit->residual);
     }
-    const std::string accuracy =
-        document["accuracy"].is_null()
-            ? "no captured energy"
-            : fmt::format("{:.6f} of the energy captured", document["accuracy"].get<double>());
     return fmt::format("{}: {} order {}, {} directions, {}, quadrature error {:.1e}\n", output,
-                       c.basis, c.order, c.outgoing.size(), accuracy, c.error);
+                       c.basis, c.order, c.outgoing.size(), capturedText(result), c.error);
 }
 
 void projectOne(const ProjectArguments& arguments, const Globals& globals) {
@@ -101,7 +104,7 @@ void projectOne(const ProjectArguments& arguments, const Globals& globals) {
     if (globals.json)
         printJson(document);
     else
-        printText(line(result, document));
+        printText(line(result));
 }
 
 /// Every input to a file of its own in the folder `-o`.
@@ -115,7 +118,7 @@ void projectMany(const ProjectArguments& arguments, Globals& globals) {
         if (!result) continue;
         noteQuality(*result, result->projection.coefficients.source + ": ", globals);
         documents.push_back(answer(*result));
-        text += line(*result, documents.back());
+        text += line(*result);
     }
     for (const jobs::InputFailure& failure : many.failures)
         failed.push_back({{"spec", failure.spec}, {"reason", failure.reason}});

@@ -98,11 +98,12 @@ private:
         Projected result{.projection = {}, .output = output};
         if (form_) {
             result.kept = represent(*brdf, *form_, sourceOpener(), how);
-            result.poor = judge(*result.kept, output);
             result.projection.coefficients = {result.kept->head};
             if (result.kept->kind() == Representation::Kind::halfway) {
                 result.errors = summaryOf(*brdf, *reconstruct(*result.kept, sourceOpener()));
             }
+            result.captured = capturedShare(*result.kept, *brdf, result.errors);
+            result.poor = judge(*result.kept, result.captured, result.errors, *brdf, output);
             return result;
         }
         const OutgoingSet outgoing = outgoingOf({.outgoing = options_.outgoing}, brdf->laws());
@@ -110,7 +111,8 @@ private:
         result.projection = options_.leastSquares
                                 ? projectSamples(*brdf, *basis_, outgoing, options_, progress)
                                 : std::move(hshfit::project(*brdf, one, outgoing, how)[0]);
-        result.poor = judge(result.projection, output);
+        result.captured = capturedShare(result.projection, *brdf);
+        result.poor = judge(result.projection, result.captured, *brdf, output);
         return result;
     }
 

@@ -40,6 +40,8 @@ struct Projected {
     std::optional<Representation> kept = {};
     /// Of the form halfway, as it is in the file: no quadrature tells how far it is from f.
     std::optional<PairSummary> errors = {};
+    /// The share of the energy that is captured; none where that is not known.
+    std::optional<double> captured = {};
     std::string output;
     std::optional<Poor> poor = {};
 };

@@ -1,12 +1,20 @@
 #include "quality.h"
 
+#include "source.h"
+
+#include <hshfit/accuracy/metrics.h>
 #include <hshfit/bases/catalog.h>
+#include <hshfit/coefficients/reconstruction.h>
+#include <hshfit/error.h>
+#include <hshfit/representation/forms/represented_brdf.h>
+#include <hshfit/representation/halfway/halfway.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -32,13 +40,22 @@ std::string projectedAgain(const CoefficientHead& head, std::vector<Setting> set
                                   .output = output});
 }
 
+/// The settings of coefficients of this order for the source and set of `head`. A basis that ends
+/// below the order gives way to hemispherical harmonics.
+std::vector<Setting> settingsWith(int order, const CoefficientHead& head) {
+    const bool ends = head.basis.empty() || bases::find(head.basis).maxOrder < order;
+    std::vector<Setting> settings = {{"Form::basis", ends ? "hsh" : head.basis},
+                                     {"Form::order", std::to_string(order)}};
+    if (!head.outgoing.directions.empty())
+        settings.push_back({"Form::outgoing", head.outgoing.spec()});
+    if (head.quantity == Quantity::brdfCosine) settings.push_back({"Form::quantity"});
+    return settings;
+}
+
 /// To twice the order: every band adds to the energy captured.
 std::string toTwiceTheOrder(const CoefficientHead& head, const std::string& output) {
-    std::vector<Setting> settings = {{"Form::basis", head.basis},
-                                     {"Form::order", std::to_string(2 * head.order)},
-                                     {"Form::outgoing", head.outgoing.spec()}};
-    if (head.quantity == Quantity::brdfCosine) settings.push_back({"Form::quantity"});
-    return projectedAgain(head, std::move(settings), output);
+    constexpr int least = 8;  // of forms without an order of their own
+    return projectedAgain(head, settingsWith(std::max(2 * head.order, least), head), output);
 }
 
 /// A set of twice as many elevations, or texels along each side; as it is for one direction.
@@ -53,15 +70,96 @@ std::string finer(const OutgoingSet& set) {
     }
 }
 
-std::optional<Poor> judgeShare(double share, const CoefficientHead& head,
-                               const std::string& output) {
-    if (share >= leastCaptured) return std::nullopt;
-    // The halfway form holds f, of isotropic BRDFs, at every direction.
-    const bool fits = head.isotropic && head.quantity == Quantity::brdf &&
-                      head.outgoing.map != OutgoingSet::Map::direction;
-    return Poor{fmt::format("{} of the energy is captured", percent(share)),
-                fits ? projectedAgain(head, {kindSetting(Kind::halfway)}, output)
-                     : toTwiceTheOrder(head, output)};
+/// The highest order of a trial, the share of the energy that it has to capture to be suggested, as
+/// it sees few outgoing directions, and its tolerance.
+constexpr int trialOrder = 24;
+constexpr double trialCaptured = 0.93, trialTolerance = 1e-2;
+constexpr int trialElevations = 6, trialTexels = 4;
+
+/// A few of the outgoing directions of `head`, or of those that it would have.
+OutgoingSet fewOf(const CoefficientHead& head) {
+    const OutgoingSet& own = head.outgoing;
+    if (!own.directions.empty() && own.map == OutgoingSet::Map::direction) return own;
+    if (head.isotropic) return OutgoingSet::elevations(trialElevations);
+    return OutgoingSet::parabolic(trialTexels, trialTexels);
+}
+
+/// The least order that captures enough; none up to `trialOrder`.
+std::optional<int> sufficientOrder(const Brdf& source, const CoefficientHead& head) {
+    const bool nested = !head.basis.empty() && bases::find(head.basis).nested &&
+                        bases::find(head.basis).maxOrder >= trialOrder;
+    try {
+        const auto basis = bases::make(nested ? head.basis : "hsh", trialOrder);
+        const Basis* const one[] = {basis.get()};
+        const Projection trial = std::move(hshfit::project(
+            source, one, fewOf(head), {.quantity = head.quantity, .tolerance = trialTolerance})[0]);
+        const Energy& energy = trial.coefficients.energy;
+        if (!energy.finite || !(energy.value > 0)) return std::nullopt;
+        const auto enough = std::ranges::find_if(
+            trial.captured, [&](double c) { return c >= trialCaptured * energy.value; });
+        if (enough == trial.captured.end()) return std::nullopt;
+        return 1 + static_cast<int>(enough - trial.captured.begin());
+    } catch (const NumericError&) {
+        return std::nullopt;
+    }
+}
+
+/// Whether most of the energy of f cos cos has its half vector within 20 degrees of the normal: the
+/// halfway form resolves lobes there, and no others.
+bool isAboutTheMirror(const Brdf& source) {
+    const double within = std::cos(20 * pi / 180);
+    const PairSample pairs = spreadPairs({.replicates = 2});
+    const std::vector<double> f = evaluateOn(source, pairs);
+    double near = 0, all = 0;
+    for (std::size_t k = 0; k < f.size(); ++k) {
+        const std::size_t p = k % pairs.size();
+        const Direction wi = pairs.incoming(p), wo = pairs.outgoing(p);
+        const double energy = pairs.weights[p] * std::pow(f[k] * wi.z * wo.z, 2);
+        all += energy;
+        const double half = (wi.z + wo.z) / std::hypot(wi.x + wo.x, wi.y + wo.y, wi.z + wo.z);
+        if (half > within) near += energy;
+    }
+    return 2 * near > all;
+}
+
+std::string textOf(const HalfwayOrders& o) {
+    return fmt::format("{},{},{}", o.half, o.difference, o.azimuth);
+}
+
+/// The halfway form of this head with more functions along each axis; empty where it has too many.
+std::string toMoreFunctions(const Representation& kept, const Brdf& source,
+                            const std::string& output) {
+    const HalfwayOrders& own = kept.halfway;
+    for (const int more : {own.half, own.half / 2, own.half / 4}) {
+        const HalfwayOrders orders{own.half + more, own.difference + 2, own.azimuth + 1};
+        if (more == 0 ||
+            HalfwayTerms(orders, halfwaySymmetryOf(kept.head)).size() > mostHalfwayTerms)
+            continue;
+        std::vector<Setting> settings = {kindSetting(Kind::halfway),
+                                         {"Form::halfway", textOf(orders)}};
+        if (kept.head.reciprocal && !source.laws().reciprocal)
+            settings.push_back({"Form::reciprocal"});
+        return projectedAgain(kept.head, std::move(settings), output);
+    }
+    return {};
+}
+
+/// The call that captures more, for a result of this head; `kept` where it is the halfway form.
+std::string betterThan(const CoefficientHead& head, const Representation* kept, const Brdf& source,
+                       const std::string& output) {
+    const auto order = sufficientOrder(source, head);
+    if (order && *order > head.order)
+        return projectedAgain(head, settingsWith(*order, head), output);
+    // The halfway form holds f at every direction.
+    const bool fits =
+        head.quantity == Quantity::brdf &&
+        (head.outgoing.directions.empty() || head.outgoing.map != OutgoingSet::Map::direction);
+    if (fits && isAboutTheMirror(source)) {
+        if (!kept) return projectedAgain(head, {kindSetting(Kind::halfway)}, output);
+        std::string finer = toMoreFunctions(*kept, source, output);
+        if (!finer.empty()) return finer;
+    }
+    return toTwiceTheOrder(head, output);
 }
 
 /// By the squares of the coefficients of an orthonormal basis. None for other forms and bases.
@@ -81,6 +179,23 @@ std::optional<double> capturedBy(const Representation& kept) {
     return captured / head.energy.value;
 }
 
+/// What `result` captures of f cos(theta_i): at its own outgoing directions if they are few.
+std::optional<double> measuredShare(const Brdf& source, const Brdf& result, const OutgoingSet& set,
+                                    const std::optional<PairSummary>& pairs) {
+    constexpr std::size_t few = 64;
+    try {
+        if (set.directions.empty() || set.size() > few) {
+            const double left = (pairs ? *pairs : summaryOf(source, result)).energyLeft.value;
+            return std::isfinite(left) ? std::optional(1 - left) : std::nullopt;
+        }
+        const auto metric = selectMetrics("relative-l2-cosine");
+        const auto error = compare(source, result, set, metric, {.level = 2})[0].value;
+        return error && std::isfinite(*error) ? std::optional(1 - *error * *error) : std::nullopt;
+    } catch (const NumericError&) {
+        return std::nullopt;
+    }
+}
+
 }  // namespace
 
 std::string Poor::line() const {
@@ -91,7 +206,22 @@ nlohmann::ordered_json poorJson(const Poor& poor) {
     return {{"reason", poor.reason}, {"better", poor.better}};
 }
 
-std::optional<Poor> judge(const Projection& projection, const std::string& output) {
+std::optional<double> capturedShare(const Projection& projection, const Brdf& source) {
+    const Coefficients& c = projection.coefficients;
+    if (c.leastSquares) return std::nullopt;
+    if (!c.energy.finite) return measuredShare(source, Reconstruction(c), c.outgoing, {});
+    if (!(c.energy.value > 0) || projection.captured.empty()) return std::nullopt;
+    return projection.captured.back() / c.energy.value;
+}
+
+std::optional<double> capturedShare(const Representation& kept, const Brdf& source,
+                                    const std::optional<PairSummary>& pairs) {
+    if (const auto share = capturedBy(kept)) return share;
+    return measuredShare(source, *reconstruct(kept, sourceOpener()), kept.head.outgoing, pairs);
+}
+
+std::optional<Poor> judge(const Projection& projection, std::optional<double> captured,
+                          const Brdf& source, const std::string& output) {
     const Coefficients& c = projection.coefficients;
     if (c.leastSquares) {
         if (c.leastSquares->residual <= mostError) return std::nullopt;
@@ -99,24 +229,29 @@ std::optional<Poor> judge(const Projection& projection, const std::string& outpu
             fmt::format("the residual is {} of the samples", percent(c.leastSquares->residual)),
             projectedAgain(c, {kindSetting(Kind::halfway)}, output)};
     }
-    if (!c.energy.finite || !(c.energy.value > 0) || projection.captured.empty())
-        return std::nullopt;
-    return judgeShare(projection.captured.back() / c.energy.value, c, output);
+    if (!captured || *captured >= leastCaptured) return std::nullopt;
+    return Poor{fmt::format("{} of the energy is captured", percent(std::max(*captured, 0.0))),
+                betterThan(c, nullptr, source, output)};
 }
 
-std::optional<Poor> judge(const Representation& kept, const std::string& output) {
-    if (kept.kind() == Kind::halfway || kept.steps.empty()) return std::nullopt;
+std::optional<Poor> judge(const Representation& kept, std::optional<double> captured,
+                          const std::optional<PairSummary>& pairs, const Brdf& source,
+                          const std::string& output) {
+    const bool halfway = kept.kind() == Kind::halfway;
     const auto worst = std::ranges::max_element(kept.steps, {}, &RepresentationStep::change);
-    if (!(worst->change > mostError)) {
-        const auto share = capturedBy(kept);
-        return share ? judgeShare(*share, kept.head, output) : std::nullopt;
+    if (!halfway && worst != kept.steps.end() && worst->change > mostError) {
+        // Without any step.
+        std::vector<Setting> settings = {{"Form::basis", kept.head.basis},
+                                         {"Form::order", std::to_string(kept.head.order)}};
+        if (kept.kind() == Kind::basis) settings.insert(settings.begin(), kindSetting(kept.kind()));
+        return Poor{fmt::format("{} changes it by {}", worst->what, percent(worst->change)),
+                    projectedAgain(kept.head, std::move(settings), output)};
     }
-    // Without any step.
-    std::vector<Setting> settings = {{"Form::basis", kept.head.basis},
-                                     {"Form::order", std::to_string(kept.head.order)}};
-    if (kept.kind() == Kind::basis) settings.insert(settings.begin(), kindSetting(kept.kind()));
-    return Poor{fmt::format("{} changes it by {}", worst->what, percent(worst->change)),
-                projectedAgain(kept.head, std::move(settings), output)};
+    if (!captured || *captured >= leastCaptured) return std::nullopt;
+    std::string reason =
+        fmt::format("{} of the energy is captured", percent(std::max(*captured, 0.0)));
+    if (pairs) reason += fmt::format(", at a mean log error of {:.3g}", pairs->meanLog.value);
+    return Poor{reason, betterThan(kept.head, halfway ? &kept : nullptr, source, output)};
 }
 
 std::optional<Poor> judge(const gpu::ErrorSplit& split, const gpu::Payload& payload,

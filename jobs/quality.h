@@ -1,5 +1,6 @@
 #pragma once
 
+#include <hshfit/accuracy/pair_errors.h>
 #include <hshfit/gpu/error_split.h>
 #include <hshfit/gpu/payload.h>
 #include <hshfit/projection/projection.h>
@@ -29,11 +30,25 @@ nlohmann::ordered_json poorJson(const Poor& poor);
 inline constexpr double leastCaptured = 0.9;
 inline constexpr double mostError = 0.31622776601683794;  // sqrt(1 - leastCaptured)
 
-/// Plain coefficients: the share that they capture, or the residual of least squares. None where
-/// the energy does not exist.
-std::optional<Poor> judge(const Projection& projection, const std::string& output);
-/// A form that is linear in f: the step that changed it most, or the share that it captures.
-std::optional<Poor> judge(const Representation& kept, const std::string& output);
+/// The share of its source's energy that a result captures. Plain coefficients and orthonormal ones
+/// have it from their squares; other bases, forms in which both directions are expanded and those
+/// of an energy that does not exist, from f cos(theta_i) at their few outgoing directions or else
+/// from f cos(theta_i) cos(theta_o) over `pairs`, which are measured if none are given. None where
+/// the source is 0 or not finite, and for least squares, which have a residual instead.
+std::optional<double> capturedShare(const Projection& projection, const Brdf& source);
+std::optional<double> capturedShare(const Representation& kept, const Brdf& source,
+                                    const std::optional<PairSummary>& pairs = {});
+
+/// Plain coefficients: the share that they capture, or the residual of least squares. The call that
+/// does better is found by a trial: the order up to 24 that captures enough at a few outgoing
+/// directions; else the halfway form, or a finer one, if f^2 is about the mirror direction; else
+/// twice the order.
+std::optional<Poor> judge(const Projection& projection, std::optional<double> captured,
+                          const Brdf& source, const std::string& output);
+/// A form: the step that changed it most, or the share that it captures.
+std::optional<Poor> judge(const Representation& kept, std::optional<double> captured,
+                          const std::optional<PairSummary>& pairs, const Brdf& source,
+                          const std::string& output);
 /// An export of the coefficients at `path` to `folder`: its largest cause of error.
 std::optional<Poor> judge(const gpu::ErrorSplit& split, const gpu::Payload& payload,
                           const std::string& path, const std::string& folder);

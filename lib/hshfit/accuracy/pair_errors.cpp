@@ -162,6 +162,20 @@ PairReference::AlbedoError PairReference::albedoError(std::span<const double> g,
     return result;
 }
 
+double PairReference::energyLeftOn(const Part& part, std::span<const double> g) const {
+    double left = 0, whole = 0;
+    for (std::size_t c = 0; c < channels_; ++c) {
+        for (std::size_t n = 0; n < part.pairs.size(); ++n) {
+            const std::size_t k = part.pairs[n];
+            const double cosines = part.cosines[n] * pairs_.outgoing(k).z;
+            const double f = part.f[c * part.pairs.size() + n];
+            left += part.weights[n] * std::pow((g[c * pairs_.size() + k] - f) * cosines, 2);
+            whole += part.weights[n] * std::pow(f * cosines, 2);
+        }
+    }
+    return left == 0 ? 0 : left / whole;
+}
+
 PairErrors PairReference::errorsOn(const Division& division, std::span<const double> g) const {
     PairErrors errors;
     if (division.whole.pairs.empty()) return errors;
@@ -214,6 +228,12 @@ PairReference::Result PairReference::errorsOf(std::span<const double> g) const {
         }
         result.bands.push_back(std::move(band));
     }
+    std::vector<double> left;
+    for (const Part& replicate : all_.replicates) {
+        if (!replicate.pairs.empty()) left.push_back(energyLeftOn(replicate, g));
+    }
+    result.energyLeft = energyLeftOn(all_.whole, g);
+    result.energyLeftError = standardError(left).value_or(std::nan(""));
     for (const Division& zone : zones_) result.zones.push_back(errorsOn(zone, g));
     return result;
 }
@@ -266,6 +286,8 @@ PairSummary summaryOf(const PairSample& pairs, const PairReference::Result& erro
     };
     PairSummary summary{.pairs = pairs.size(),
                         .meanLog = valueOf(errors.all, "nbrdf"),
+                        .relativeL2 = valueOf(errors.all, "relative-l2-cosine"),
+                        .energyLeft = {errors.energyLeft, errors.energyLeftError},
                         .zones = {},
                         .maximum = valueOf(errors.all, "maximum").value,
                         .at = errors.all.largest.value_or(DirectionPair{}),
@@ -297,12 +319,14 @@ std::string textOf(const PairSummary& summary) {
     }
     return fmt::format(
         "mean log error {} over {} pairs{}\n"
+        "relative L2 of f cos(theta_i) {}; share of the energy of f cos cos that is left {}\n"
         "largest |g - f| cos(theta_i) {:.3g} at wi {}, wo {}; albedo off by {} at most, of {:.3g} "
         "at "
         "theta_o {:.4g} to {:.4g}\n",
-        text(summary.meanLog), summary.pairs, zones, summary.maximum, place(summary.at.wi),
-        place(summary.at.wo), text(summary.albedo), summary.albedoThere,
-        degrees(summary.albedoFrom), degrees(summary.albedoTo));
+        text(summary.meanLog), summary.pairs, zones, text(summary.relativeL2),
+        text(summary.energyLeft), summary.maximum, place(summary.at.wi), place(summary.at.wo),
+        text(summary.albedo), summary.albedoThere, degrees(summary.albedoFrom),
+        degrees(summary.albedoTo));
 }
 
 }  // namespace hshfit::inline accuracy

@@ -46,6 +46,8 @@ public:
         /// The albedo of the reference where `all` has its largest difference, and the theta_o of
         /// that stratum.
         double albedoThere = 0, albedoFrom = 0, albedoTo = 0;
+        /// Over all pairs, as in PairSummary.
+        double energyLeft = 0, energyLeftError = 0;
     };
     /// Errors of `g`, which has as many channels. On one thread.
     Result errorsOf(const Brdf& g) const;
@@ -64,6 +66,7 @@ private:
     };
     Part partOf(std::vector<std::size_t> pairs) const;
     Division divisionOf(const std::vector<std::size_t>& pairs) const;
+    double energyLeftOn(const Part& part, std::span<const double> g) const;
     PairErrors errorsOn(const Division& division, std::span<const double> g) const;
     std::vector<std::optional<double>> metricsOf(const Part& part, std::span<const double> g) const;
     /// The largest difference, its standard error, the albedo of the reference there, the stratum.
@@ -93,6 +96,10 @@ struct PairSummary {
     };
     std::size_t pairs = 0;
     Value meanLog;                        ///< mean |ln(1 + f c) - ln(1 + g c)|
+    Value relativeL2;                     ///< root of the integral of ((g - f) c)^2 over (f c)^2
+    /// The share that g misses of the energy of f cos(theta_i) cos(theta_o), which exists for every
+    /// BRDF of finite albedo: the integral of the squared difference over that of the square.
+    Value energyLeft;
     std::array<Value, zoneCount> zones;   ///< the same by PairZone
     double maximum = 0;                   ///< of |g - f| c
     DirectionPair at;                     ///< where that is
@@ -103,7 +110,7 @@ struct PairSummary {
 PairSummary summaryOf(const PairSample& pairs, const PairReference::Result& errors);
 /// Errors of `g` on spreadPairs(): the same numbers for every caller. Throws as PairReference does.
 PairSummary summaryOf(const Brdf& brdf, const Brdf& g);
-/// Two lines without indentation, each ended.
+/// Three lines without indentation, each ended.
 std::string textOf(const PairSummary& summary);
 
 }  // namespace hshfit::inline accuracy

@@ -21,6 +21,8 @@ nlohmann::ordered_json pairSummaryJson(const PairSummary& summary) {
     for (std::size_t z = 0; z < zoneCount; ++z) {
         json[std::string(zoneNames[z])] = valueJson(summary.zones[z]);
     }
+    json["relative_l2"] = valueJson(summary.relativeL2);
+    json["energy_left"] = valueJson(summary.energyLeft);
     json["maximum"] = {{"value", finiteOrNull(summary.maximum)},
                        {"wi", place(summary.at.wi)},
                        {"wo", place(summary.at.wo)}};

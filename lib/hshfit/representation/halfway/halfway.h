@@ -7,6 +7,7 @@
 #include <hshfit/representation/pair_evaluator.h>
 #include <hshfit/representation/representation.h>
 
+#include <cstddef>
 #include <memory>
 
 namespace hshfit::inline representation::inline halfway {
@@ -32,6 +33,9 @@ private:
     HalfwayEnvelope envelope_;
 };
 
+/// More terms a channel than that take too long to fit: time goes with the square of their number.
+inline constexpr std::size_t mostHalfwayTerms = 1500;
+
 /// For `pairEvaluator`, without `added`. Throws InputError as HalfwayExpansion does.
 std::unique_ptr<PairEvaluator> halfwayPairEvaluator(const Representation& representation);
 
@@ -45,7 +49,7 @@ std::unique_ptr<PairEvaluator> halfwayPairEvaluator(const Representation& repres
 /// threads. Terms keep the symmetries of `brdf.laws()`; `reciprocal` asks for those only that are
 /// symmetric in wi and wo, and for an isotropic BRDF mirror symmetric. Of `options` only `progress`
 /// (pairs done and in all) and `maxEvaluations` (of f by pairs) are used. Throws NumericError where
-/// f is not finite, UsageError for more than 1500 terms a channel.
+/// f is not finite, UsageError for more than mostHalfwayTerms a channel.
 Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
                               const ProjectionOptions& options = {}, bool reciprocal = false);
 

@@ -15,8 +15,6 @@ namespace hshfit::inline representation::inline halfway {
 namespace {
 
 constexpr std::size_t fewestPairs = 1 << 14, mostPairs = 1 << 18, heldOutPairs = 1 << 15;
-/// More terms than that take too long to fit: time goes with the square of their number.
-constexpr std::size_t mostTerms = 1500;
 /// Change of the error of the pairs that are held out at which their number is enough.
 constexpr double settled = 0.02;
 /// Of the mean of the diagonal, where orders are ranked.
@@ -54,7 +52,7 @@ std::vector<HalfwayOrders> candidates(std::size_t mostInBudget, const HalfwaySym
             const auto terms = [&] {
                 return HalfwayTerms({half, difference, azimuth}, symmetry).size();
             };
-            while (half >= 4 && terms() > std::min(mostInBudget, mostTerms)) --half;
+            while (half >= 4 && terms() > std::min(mostInBudget, mostHalfwayTerms)) --half;
             if (half >= 4) found.push_back({half, difference, azimuth});
         }
     }
@@ -100,11 +98,11 @@ Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
     r.head = headFor(brdf, reciprocal);
     r.halfway = orders;
     const HalfwayTerms terms(orders, halfwaySymmetryOf(r.head));
-    if (terms.size() > mostTerms) {
-        throw UsageError(
-            fmt::format("orders {},{},{} of the halfway form make {} terms a channel; "
-                        "it fits up to {}",
-                        orders.half, orders.difference, orders.azimuth, terms.size(), mostTerms));
+    if (terms.size() > mostHalfwayTerms) {
+        throw UsageError(fmt::format(
+            "orders {},{},{} of the halfway form make {} terms a channel; "
+            "it fits up to {}",
+            orders.half, orders.difference, orders.azimuth, terms.size(), mostHalfwayTerms));
     }
     const HalfwaySamples left = heldOut(brdf);
     HalfwaySamples samples;
