@@ -5,7 +5,7 @@
 // median of ours over theirs.
 
 #include <benchmark/benchmark.h>
-#include <hshfit/light/internal/picture_rows.h>
+#include <hshfit/light/internal/picture_spectra.h>
 #include <hshfit/light/latlong_projection.h>
 #include <libsharp/sharp_almhelpers.h>
 #include <libsharp/sharp_cxx.h>

@@ -1,7 +1,7 @@
 #include <hshfit/light/latlong_projection.h>
 
 #include <hshfit/bases/sh.h>
-#include <hshfit/light/internal/picture_rows.h>
+#include <hshfit/light/internal/picture_spectra.h>
 #include <hshfit/projection/lane_products.h>
 
 #include <tbb/blocked_range.h>
@@ -11,24 +11,14 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <optional>
 
 namespace hshfit::inline light {
 namespace {
 
-constexpr std::size_t rowsOfBlock = 64, rowsOfTask = 4, degreesOfTask = 32;
-
-/// The place of one kind of azimuth functions among the columns.
-struct Kind {
-    std::size_t first, count;
-    bool evenM;
-};
-std::array<Kind, 4> kindsOf(const AzimuthColumns& columns) {
-    const std::size_t c1 = columns.c0, s1 = c1 + columns.c1, s0 = s1 + columns.s1;
-    return {{{0, columns.c0, true},
-             {c1, columns.c1, false},
-             {s1, columns.s1, false},
-             {s0, columns.s0, true}}};
-}
+constexpr std::size_t rowsOfBlock = 64, rowsOfTask = 8, degreesOfTask = 32;
+/// Values in the spectra of all rows, where they are kept.
+constexpr std::size_t mostKept = std::size_t{1} << 26;
 
 /// Equispaced theta of the northern half, and at each the waves of the degrees of one parity,
 /// times the weight of the point and its mirror image.
@@ -75,9 +65,9 @@ constexpr std::size_t sides = 8;  ///< cosine R, G, B, 0, sine R, G, B, 0
 
 /// Sums over theta for one m: [l - m][side].
 std::vector<double> thetaSums(const Basis& harmonics, const Rings& rings, int m,
-                              const std::vector<double>& fourier, std::size_t all,
-                              std::size_t cosine, std::size_t sine) {
-    const std::size_t count = rings.count();
+                              const std::vector<double>& fourier, const SpectrumColumns& columns) {
+    const std::size_t count = rings.count(), all = columns.all;
+    const std::size_t cosine = columns.of(static_cast<std::size_t>(m), false), sine = cosine + 1;
     const auto degrees = static_cast<std::size_t>(harmonics.order() - m);
     std::vector<double> theta(degrees * count), out(degrees * sides, 0.0);
     harmonics.theta(m, rings.elevations(), theta.data());
@@ -105,106 +95,118 @@ std::vector<double> thetaSums(const Basis& harmonics, const Rings& rings, int m,
 
 }  // namespace
 
-LatlongProjection::LatlongProjection(int order, std::size_t width, std::size_t height)
-    : order_(order),
-      width_(width),
-      height_(height),
-      repeats_(width % 4 == 0   ? 1
-               : width % 2 == 0 ? 2
-                                : 4),
-      columns_(order) {
-    const std::size_t azimuths = width_ * repeats_;
-    table_.fill(order, {azimuths}, 0, azimuths / 4);
-    for (std::size_t k = 0; k < 4 * height_; ++k) {
-        waves_.push_back(std::cos(static_cast<double>(k) * pi / static_cast<double>(2 * height_)));
-    }
-    spectrum_.resize(rowsOfBlock * 3 * columns_.all());
-    fourier_.assign((static_cast<std::size_t>(order) + 1) * 3 * columns_.all(), 0.0);
-}
+struct LatlongProjection::Plans {
+    SpectrumColumns columns;
+    std::optional<ShortPlan> low;
+    std::optional<FourierPlan> azimuth, colatitude;
 
-double LatlongProjection::wave(std::size_t k, bool sine) const {
-    return waves_[(k + (sine ? 3 * height_ : 0)) % (4 * height_)];
+    Plans(int order, std::size_t width, std::size_t height, bool whole) : columns(order) {
+        if (ShortPlan::serves(order, width))
+            low.emplace(order, width);
+        else
+            azimuth.emplace(width);
+        if (whole) colatitude.emplace(height);
+    }
+};
+
+LatlongProjection::LatlongProjection(int order, std::size_t width, std::size_t height)
+    : order_(order), width_(width), height_(height) {
+    const std::size_t row = 3 * SpectrumColumns(order).all;
+    const auto degrees = static_cast<std::size_t>(order) + 1;
+    whole_ = order > ShortPlan::mostOrder && 2 * degrees <= height && row * height <= mostKept;
+    plans_ = std::make_unique<const Plans>(order, width, height, whole_);
+    waves_ = wavesOf(height);
+    spectra_.resize((whole_ ? height : rowsOfBlock) * row);
+    fourier_.assign(degrees * row, 0.0);
+}
+LatlongProjection::~LatlongProjection() = default;
+
+double LatlongProjection::stepWeight(std::size_t j) const {
+    const double half = pi / 2 / static_cast<double>(height_);
+    return 2 / pi *
+           (j == 0 ? half : 2 * std::sin(static_cast<double>(j) * half) / static_cast<double>(j));
 }
 
 void LatlongProjection::addRows(const float* rows, std::size_t count) {
     assert(rows_ + count <= height_);
     for (std::size_t first = 0; first < count; first += rowsOfBlock) {
         const std::size_t some = std::min(rowsOfBlock, count - first);
-        addBlock(rows + first * 3 * width_, some);
-        addFourierSums(some);
+        double* const spectra =
+            spectra_.data() + (whole_ ? rows_ * 3 * plans_->columns.all : std::size_t{0});
+        addBlock(rows + first * 3 * width_, some, spectra);
+        if (!whole_) addFourierSums(spectra, some);
         rows_ += some;
     }
+    if (whole_ && rows_ == height_) transformRows();
 }
 
-void LatlongProjection::addBlock(const float* rows, std::size_t count) {
-    const std::size_t all = columns_.all(), quadrant = table_.count;
-    const std::size_t kindStride = rowsOfTask * 3 * quadrant;
-    std::vector<std::array<double, 3>> squares(count);
+void LatlongProjection::addBlock(const float* rows, std::size_t count, double* spectra) {
+    const SpectrumColumns& columns = plans_->columns;
+    std::array<std::array<double, 3>, rowsOfBlock> squares;
     tbb::parallel_for(std::size_t{0}, (count + rowsOfTask - 1) / rowsOfTask, [&](std::size_t task) {
         const std::size_t first = task * rowsOfTask, some = std::min(rowsOfTask, count - first);
-        // Kept between tasks: fresh pages for each would cost as much as the sums of low orders.
-        thread_local std::vector<double> folded;
-        thread_local std::vector<float> repeated;
-        if (folded.size() < 4 * kindStride) folded.resize(4 * kindStride);
-        for (std::size_t r = 0; r < some; ++r) {
-            const float* row = rows + (first + r) * 3 * width_;
-            if (repeats_ > 1) {
-                repeated.clear();
-                for (std::size_t column = 0; column < width_; ++column)
-                    for (std::size_t k = 0; k < repeats_; ++k)
-                        repeated.insert(repeated.end(), row + 3 * column, row + 3 * column + 3);
-                row = repeated.data();
-            }
-            foldPictureRow(row, width_ * repeats_, kindStride, folded.data() + r * 3 * quadrant,
-                           squares[first + r].data());
-        }
-        double* out = spectrum_.data() + first * 3 * all;
-        std::fill(out, out + some * 3 * all, 0.0);
-        const double* from = folded.data();
-        for (const Kind& kind : kindsOf(columns_)) {
-            addProducts({from, some * 3, quadrant},
-                        {table_.rows.data() + kind.first, kind.count, all}, quadrant,
-                        out + kind.first, all);
-            from += kindStride;
-        }
+        const float* const from = rows + first * 3 * width_;
+        double* const out = spectra + first * 3 * columns.all;
+        if (plans_->low)
+            pictureSpectra(*plans_->low, columns, from, some, out, squares[first].data());
+        else
+            pictureSpectra(*plans_->azimuth, columns, from, some, out, squares[first].data());
     });
-    const double step = 2 * pi / static_cast<double>(width_ * repeats_);
+    const double step = 2 * pi / static_cast<double>(width_);
     for (std::size_t r = 0; r < count; ++r) {
-        const double middle = wave(2 * (rows_ + r) + 1, true);
+        const double middle = waves_[(2 * (rows_ + r) + 1 + 3 * height_) % (4 * height_)];  // sine
         const double solidAngle =
             2 * middle * std::sin(pi / 2 / static_cast<double>(height_)) * step;
         for (std::size_t c = 0; c < 3; ++c) energy_[c] += solidAngle * squares[r][c];
     }
 }
 
-void LatlongProjection::addFourierSums(std::size_t count) {
-    const std::size_t all = columns_.all(), degrees = static_cast<std::size_t>(order_) + 1;
+void LatlongProjection::addFourierSums(const double* spectra, std::size_t count) {
+    const SpectrumColumns& columns = plans_->columns;
+    const std::size_t all = columns.all, degrees = static_cast<std::size_t>(order_) + 1;
+    const std::size_t period = 4 * height_;
     tbb::parallel_for(
         std::size_t{0}, (degrees + degreesOfTask - 1) / degreesOfTask, [&](std::size_t task) {
             const std::size_t first = task * degreesOfTask;
             const std::size_t some = std::min(degreesOfTask, degrees - first);
-            std::array<std::vector<double>, 2> steps;  // by cosine, sine: [degree][row]
+            std::vector<double> steps(some * count);  // [degree][row]
             for (const bool sine : {false, true}) {
-                for (std::size_t j = first; j < first + some; ++j) {
-                    const double half = pi / 2 / static_cast<double>(height_);
-                    const double width = j == 0 ? half
-                                                : 2 * std::sin(static_cast<double>(j) * half) /
-                                                      static_cast<double>(j);
+                for (std::size_t j = 0; j < some; ++j) {
+                    const double weight = stepWeight(first + j);
+                    const std::size_t step = 2 * (first + j) % period;
+                    std::size_t at =
+                        ((first + j) * (2 * rows_ + 1) + (sine ? 3 * height_ : 0)) % period;
                     for (std::size_t r = 0; r < count; ++r) {
-                        steps[sine].push_back(2 / pi * width *
-                                              wave(j * (2 * (rows_ + r) + 1), sine));
+                        steps[j * count + r] = weight * waves_[at];
+                        at += step;
+                        if (at >= period) at -= period;
                     }
                 }
-            }
-            for (const Kind& kind : kindsOf(columns_)) {
-                for (std::size_t c = 0; c < 3; ++c) {
-                    const std::size_t column = c * all + kind.first;
-                    addProducts({steps[kind.evenM].data(), some, count},
-                                {spectrum_.data() + column, kind.count, 3 * all}, count,
+                const std::size_t begin = sine ? 0 : columns.evens;
+                const std::size_t end = sine ? columns.evens : all;
+                for (std::size_t c = 0; c < 3 && begin < end; ++c) {
+                    const std::size_t column = c * all + begin;
+                    addProducts({steps.data(), some, count},
+                                {spectra + column, end - begin, 3 * all}, count,
                                 fourier_.data() + first * 3 * all + column, 3 * all);
                 }
             }
         });
+}
+
+void LatlongProjection::transformRows() {
+    const SpectrumColumns& columns = plans_->columns;
+    constexpr std::size_t group = SpectrumColumns::group;
+    const auto degrees = static_cast<std::size_t>(order_) + 1;
+    std::vector<double> weights;
+    for (std::size_t j = 0; j < degrees; ++j) weights.push_back(stepWeight(j));
+    tbb::parallel_for(std::size_t{0}, 3 * columns.all / group, [&](std::size_t k) {
+        const std::size_t column = k * group;
+        colatitudeSums(*plans_->colatitude, column % columns.all < columns.evens,
+                       spectra_.data() + column, 3 * columns.all, degrees, weights.data(),
+                       fourier_.data() + column);
+    });
+    spectra_ = {};
 }
 
 void LatlongProjection::coefficients(double turn, double* out) const {
@@ -212,11 +214,11 @@ void LatlongProjection::coefficients(double turn, double* out) const {
     const auto harmonics = bases::makeSh(order_, {});
     const Rings rings(order_);
     const auto slots = static_cast<std::size_t>(harmonics->slots());
-    const double step = 2 * pi / static_cast<double>(width_ * repeats_);
+    const double step = 2 * pi / static_cast<double>(width_);
     tbb::parallel_for(0, order_, [&](int m) {
-        const std::vector<double> sums = thetaSums(*harmonics, rings, m, fourier_, columns_.all(),
-                                                   columns_.of(m), m == 0 ? 0 : columns_.of(-m));
-        const double width = m == 0 ? step : 2 * std::sin(m * step / 2) / m;
+        const std::vector<double> sums = thetaSums(*harmonics, rings, m, fourier_, plans_->columns);
+        const double width =
+            (m == 0 ? step : 2 * std::sin(m * step / 2) / m) / std::sqrt(m == 0 ? 2 * pi : pi);
         // phi = pi + turn - psi
         const double cosine = std::cos(m * turn) * (m % 2 == 0 ? 1 : -1) * width;
         const double sine = std::sin(m * turn) * (m % 2 == 0 ? 1 : -1) * width;

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <hshfit/light/lights.h>
-#include <hshfit/quadrature/azimuth_tables.h>
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace hshfit::inline light {
@@ -11,15 +11,18 @@ namespace hshfit::inline light {
 /// Spherical harmonics of a latitude-longitude picture whose radiance is constant within a pixel,
 /// exact but for rounding at any order and size: no pixel is a point. Rows come from the top in any
 /// number at a time, so that the picture need not be in memory; 48 n^2 bytes and the tables of one
-/// row are kept for order n. Runs on all threads; results do not depend on their number.
+/// row are kept for order n, and 48 n bytes a row where these are at most 512 MB and n is more than
+/// 32 and at most half the rows. Runs on all threads; results do not depend on their number.
 ///
-/// A ring is a step in theta and in azimuth. Its azimuth integrals are those at pixel centres times
-/// sin(m d/2) / (m d/2). T_l^m sin(theta) is a trigonometric polynomial of degree l + 1, so that
-/// the Fourier coefficients of the steps in theta up to degree n, in closed form, have the same
-/// integrals as the steps; those are sums over n + 1 equispaced theta.
+/// A ring is a step in theta and in azimuth. Its azimuth integrals are those at pixel centres, a
+/// fast Fourier transform, times sin(m d/2) / (m d/2). T_l^m sin(theta) is a trigonometric
+/// polynomial of degree l + 1, so that the Fourier coefficients of the steps in theta up to degree
+/// n, in closed form, have the same integrals as the steps; those are sums over n + 1 equispaced
+/// theta.
 class LatlongProjection {
 public:
     LatlongProjection(int order, std::size_t width, std::size_t height);
+    ~LatlongProjection();
 
     /// The next `count` rows, [row][column][R, G, B].
     void addRows(const float* rows, std::size_t count);
@@ -31,19 +34,21 @@ public:
     const Rgb& energy() const { return energy_; }
 
 private:
-    void addBlock(const float* rows, std::size_t count);
-    void addFourierSums(std::size_t count);
-    /// Cosine (odd m) or sine (even m) of k pi / (2 height).
-    double wave(std::size_t k, bool sine) const;
+    struct Plans;
+    void addBlock(const float* rows, std::size_t count, double* spectra);
+    void addFourierSums(const double* spectra, std::size_t count);
+    void transformRows();
+    /// Integral of cos(j x) over a row about x = 0, times the weight of degree j.
+    double stepWeight(std::size_t j) const;
 
     int order_;
-    std::size_t width_, height_, repeats_;  ///< times that a column counts, so that 4 divides all
-    std::size_t rows_ = 0;                  ///< so far
-    AzimuthColumns columns_;
-    AzimuthTable table_;
-    std::vector<double> waves_;     ///< cos(k pi / (2 height)), a whole period
-    std::vector<double> spectrum_;  ///< [row of the block][channel][column]
-    std::vector<double> fourier_;   ///< [degree][channel][column]
+    std::size_t width_, height_;
+    std::size_t rows_ = 0;  ///< so far
+    bool whole_;            ///< the spectra of all rows are kept
+    std::unique_ptr<const Plans> plans_;
+    std::vector<double> waves_;    ///< cos(k pi / (2 height)), a whole period
+    std::vector<double> spectra_;  ///< [row, of the picture or of the block][channel][column]
+    std::vector<double> fourier_;  ///< [degree][channel][column]
     Rgb energy_{};
 };
 

@@ -3,11 +3,13 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
+#include <hshfit/light/latlong_projection.h>
 #include <hshfit/light/light_projection.h>
 #include <hshfit/quadrature/quadrature.h>
 
 #include <gsl/gsl_sf_legendre.h>
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
@@ -184,6 +186,109 @@ TEST(LightProjection, PicturesStayExactToOrderThousand) {
             if (m > 0) worst = std::max(worst, std::abs(light.at(0)[slotOf(l, -m)] - sine[k]));
         }
         EXPECT_LT(worst, 1e-12 * scale) << m;
+    }
+}
+
+/// Coefficients of l, m of channel 0, pixel after pixel: azimuths in closed form, theta by Gauss.
+double byRows(const std::vector<float>& rgb, std::size_t width, std::size_t height, int l, int m) {
+    const auto basis = bases::make("sh", l + 1);
+    const GaussRule& rule = gaussLegendre(l + 12);
+    const double down = pi / static_cast<double>(height),
+                 across = 2 * pi / static_cast<double>(width);
+    const int k = std::abs(m);
+    const double norm = k == 0 ? 1 / std::sqrt(2 * pi) : 1 / std::sqrt(pi) / k;
+    double sum = 0;
+    std::vector<double> t(static_cast<std::size_t>(l + 1 - k));
+    for (std::size_t row = 0; row < height; ++row) {
+        double azimuths = 0, integral = 0;
+        for (std::size_t column = 0; column < width; ++column) {
+            const double high = pi - across * static_cast<double>(column), low = high - across;
+            azimuths += rgb[3 * (row * width + column)] * norm *
+                        (m == 0  ? across
+                         : m > 0 ? std::sin(k * high) - std::sin(k * low)
+                                 : std::cos(k * low) - std::cos(k * high));
+        }
+        for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+            const double theta = down * (static_cast<double>(row) + (1 + rule.nodes[i]) / 2);
+            const std::vector<Elevation<double>> point{
+                {std::cos(theta), 2 * std::pow(std::sin(theta / 2), 2)}};
+            basis->theta(k, point, t.data());
+            integral += rule.weights[i] * down / 2 * std::sin(theta) * t.back();
+        }
+        sum += azimuths * integral;
+    }
+    return sum;
+}
+
+// Low orders and widths of whole 32 have sums of their own; odd factors and lanes that are not all
+// used; rows that are kept for a transform over theta, and those that are not.
+TEST(LightProjection, FastTransformsAreSumsForAnySize) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> value(0, 2);
+    struct Case {
+        int order;
+        std::size_t width, height;
+    };
+    for (const Case c : {Case{10, 64, 5},
+                         {11, 160, 3},
+                         {32, 32, 9},
+                         {33, 32, 68},
+                         {40, 33, 100},
+                         {40, 96, 128},
+                         {40, 20, 81},
+                         {12, 31, 11}}) {
+        std::vector<float> rgb(3 * c.width * c.height);
+        for (float& each : rgb) each = value(random);
+        LatlongProjection projection(c.order, c.width, c.height);
+        projection.addRows(rgb.data(), 2);
+        projection.addRows(rgb.data() + 6 * c.width, c.height - 2);
+        const auto slots = static_cast<std::size_t>(c.order * c.order);
+        std::vector<double> got(3 * slots);
+        projection.coefficients(0, got.data());
+        const int l = c.order - 1;
+        for (const auto& [degree, m] : {std::pair{0, 0},
+                                        {1, -1},
+                                        {l, 0},
+                                        {l, l},
+                                        {l, -l},
+                                        {l, 8},
+                                        {l, -9},
+                                        {l - 1, 3 - l},
+                                        {l - 1, l - 2}})
+            EXPECT_NEAR(got[slotOf(degree, m)], byRows(rgb, c.width, c.height, degree, m), 1e-13)
+                << c.order << " " << c.width << " x " << c.height << ": " << degree << " " << m;
+        double energy = 0;
+        for (std::size_t row = 0; row < c.height; ++row) {
+            const double solidAngle =
+                (std::cos(pi * static_cast<double>(row) / static_cast<double>(c.height)) -
+                 std::cos(pi * static_cast<double>(row + 1) / static_cast<double>(c.height))) *
+                2 * pi / static_cast<double>(c.width);
+            for (std::size_t column = 0; column < c.width; ++column)
+                energy += solidAngle * std::pow(double{rgb[3 * (row * c.width + column)]}, 2);
+        }
+        EXPECT_NEAR(projection.energy()[0], energy, 1e-13 * energy);
+    }
+}
+
+// Every instruction set has lanes of its own.
+TEST(LightProjection, EveryInstructionSetGivesTheSameButForRounding) {
+    std::mt19937 random(4);
+    std::uniform_real_distribution<float> value(0, 2);
+    for (const int order : {7, 25, 40}) {
+        const std::size_t width = 96, height = 90;
+        std::vector<float> rgb(3 * width * height);
+        for (float& each : rgb) each = value(random);
+        std::vector<double> first;
+        for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+            hwy::SetSupportedTargetsForTest(target);
+            LatlongProjection projection(order, width, height);
+            projection.addRows(rgb.data(), height);
+            std::vector<double> got(static_cast<std::size_t>(3 * order * order));
+            projection.coefficients(0.2, got.data());
+            if (first.empty()) first = got;
+            expectNear(got, first, 1e-14);
+        }
+        hwy::SetSupportedTargetsForTest(0);
     }
 }
 
