@@ -13,7 +13,7 @@
 
 namespace hshfit::embedded {
 extern const std::string_view shader_basis, shader_clamp, shader_ends, shader_eval, shader_header,
-    shader_shade, shader_turn, shader_uv;
+    shader_shade, shader_shade_world, shader_turn, shader_uv;
 extern const std::string_view shader_glsl, shader_glsl_es, shader_glsl_functions, shader_hlsl,
     shader_metal, shader_osl, shader_wgsl;
 }  // namespace hshfit::embedded
@@ -42,6 +42,7 @@ struct Words {
     std::string real, vec2, vec3, vec4;      ///< types, which also construct
     std::string dot = "dot";
     std::string environment = "env";  ///< the array of environment coefficients
+    std::string light = "light";      ///< the same in the world
     bool macros = true;               ///< texels are looked up by macros, not functions
     bool flat = false;                ///< a spectral environment is an array of numbers
     std::string_view text = {};       ///< the template
@@ -79,6 +80,7 @@ Words wordsOf(Language language, const std::string& prefix) {
         case Language::metal:
             hlsl.text = embedded::shader_metal;
             hlsl.environment = "env.sh";
+            hlsl.light = "light.sh";
             return hlsl;
         case Language::wgsl:
             return {.let = "let",
@@ -190,6 +192,7 @@ void setWords(const Words& words, const Payload& payload, const std::string& pre
     page.set("vec3", words.vec3);
     page.set("vec4", words.vec4);
     page.set("env", words.environment);
+    page.set("light", words.light);
     page.set("dot", words.dot);
     std::string upper = prefix;
     for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -232,6 +235,7 @@ void setPartials(data& page) {
         {"evalBody", embedded::shader_eval},
         {"clampBody", embedded::shader_clamp},
         {"shadeBody", embedded::shader_shade},
+        {"worldBody", embedded::shader_shade_world},
         {"glslFunctions", embedded::shader_glsl_functions},
     };
     for (const auto& [name, text] : parts) {
@@ -278,14 +282,17 @@ std::string shaderSource(Language language, const Payload& payload, const Shader
     setWords(words, payload, options.prefix, page);
     setHeader(payload, options.environmentOrder, page);
     setMap(payload.head.outgoing, page);
-    ShaderCost eval, shade;
+    ShaderCost eval, shade, world;
     setBasis(payload, *basis, page, eval);
     setEvaluation(payload, page, eval);
     page.set("shade", options.environmentOrder > 0);
-    if (options.environmentOrder > 0)
+    if (options.environmentOrder > 0) {
         setShading(payload, *basis, options.environmentOrder, words.flat, page, shade);
+        setFrameTurn(payload, options.environmentOrder, words.flat, page, world);
+    }
     setCost("eval", eval, page);
     setCost("shade", shade, page);
+    setCost("world", world, page);
     setPartials(page);
     mustache text{std::string(words.text)};
     text.set_custom_escape([](const std::string& s) { return s; });

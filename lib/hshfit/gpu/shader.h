@@ -33,6 +33,8 @@ struct ShaderOptions {
 ///     given
 ///                             by its SH coefficients in the local frame (orthonormal, slot
 ///                             l(l+1)+m, the sign convention of the payload)
+///     PREFIX_shadeWorld(wo, t, b, n, light)  the same, with wo, the axes of the surface and L in
+///                             the world
 /// Directions below the horizon give 0. Throws UsageError for a payload that the language cannot
 /// take, with the reason.
 std::string shaderSource(Language language, const Payload& payload, const ShaderOptions& options);

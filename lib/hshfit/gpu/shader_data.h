@@ -36,6 +36,12 @@ void setEvaluation(const Payload& payload, kainjow::mustache::data& data, Shader
 void setShading(const Payload& payload, const Basis& basis, int environmentOrder, bool flat,
                 kainjow::mustache::data& data, ShaderCost& cost);
 
+/// Turns of `shadeWorld`: R_z(alpha) S R_z(-beta) S R_z(gamma) on the coefficients of the light, S
+/// the exchange of y and z, a sparse matrix per band (rotation/sh_rotation.h), with sines and
+/// cosines from the axes of the frame, accurate at the pole too.
+void setFrameTurn(const Payload& payload, int environmentOrder, bool flat,
+                  kainjow::mustache::data& data, ShaderCost& cost);
+
 /// A row of `Payload::toChannels`, without its zeros.
 kainjow::mustache::data outputTerms(const std::vector<double>& factors, ShaderCost& cost);
 /// Scale and offset of a layer's lanes, where numbers are normalised.

@@ -5,6 +5,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/quadrature/quadrature.h>
+#include <hshfit/rotation/sh_rotation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -38,8 +39,26 @@ struct Grid {
     DirectionBatch batch() const { return {x.data(), y.data(), z.data(), x.size()}; }
 };
 
+/// The coefficients of the light in the frame of a surface, [slot][colour].
+std::vector<double> turned(const ShaderJob& job, const Direction& normal) {
+    const auto [t, b, n] = frameOf(normal);
+    const auto toFrame = Rotation::fromMatrix({t.x, t.y, t.z, b.x, b.y, b.z, n.x, n.y, n.z});
+    const ShRotation rotation(job.environment.order,
+                              {.condonShortley = job.payload.head.condonShortley});
+    const std::size_t slots = job.environment.values.size() / job.lights();
+    std::vector<double> values = job.environment.values;
+    for (std::size_t i = 0; i < job.lights(); ++i) {
+        std::vector<double> one(slots);
+        for (std::size_t j = 0; j < slots; ++j) one[j] = values[j * job.lights() + i];
+        one = rotation.rotate(toFrame, one);
+        for (std::size_t j = 0; j < slots; ++j) values[j * job.lights() + i] = one[j];
+    }
+    return values;
+}
+
 /// Light times weight times, if f was projected, the cosine: [colour][node].
-std::vector<double> lightOn(const Grid& grid, const ShaderJob& job) {
+std::vector<double> lightOn(const Grid& grid, const ShaderJob& job,
+                            const std::vector<double>& environment) {
     const int order = job.environment.order;
     const auto harmonics =
         bases::make("sh", order, {.condonShortley = job.payload.head.condonShortley});
@@ -52,7 +71,7 @@ std::vector<double> lightOn(const Grid& grid, const ShaderJob& job) {
         for (std::size_t i = 0; i < job.lights(); ++i) {
             for (std::size_t j = 0; j < slots; ++j) {
                 light[i * count + k] +=
-                    factor * values[k * slots + j] * job.environment.values[j * job.lights() + i];
+                    factor * values[k * slots + j] * environment[j * job.lights() + i];
             }
         }
     }
@@ -114,6 +133,14 @@ Pairs directionPairs() {
     return pairs;
 }
 
+std::array<Direction, 3> frameOf(const Direction& n) {
+    const double across = std::hypot(n.x, n.y);
+    const double x = across > 0 ? -n.y / across : 1, y = across > 0 ? n.x / across : 0;
+    const Direction rise{-n.z * y, n.z * x, n.x * y - n.y * x};
+    return {Direction{0.6 * x + 0.8 * rise.x, 0.6 * y + 0.8 * rise.y, 0.8 * rise.z},
+            Direction{0.6 * rise.x - 0.8 * x, 0.6 * rise.y - 0.8 * y, 0.6 * rise.z}, n};
+}
+
 Environment randomEnvironment(int order, std::size_t colours) {
     std::mt19937_64 random(21);
     std::uniform_real_distribution<double> uniform(-1, 1);
@@ -126,13 +153,14 @@ Environment randomEnvironment(int order, std::size_t colours) {
 ShaderJob makeJob(gpu::Payload payload, int environmentOrder) {
     const bool spectral = payload.head.channels.kind == Channels::Kind::spectral;
     const std::size_t colours = spectral ? payload.head.channels.count() : 3;
-    return {std::move(payload), directionPairs(), randomEnvironment(environmentOrder, colours)};
+    return {std::move(payload), directionPairs(), randomEnvironment(environmentOrder, colours),
+            false};
 }
 
 std::vector<double> reference(const ShaderJob& job) {
     const Reconstruction sums(gpu::unpack(job.payload));
     const Grid grid(job.payload.head.order + job.environment.order);
-    const std::vector<double> light = lightOn(grid, job);
+    std::vector<double> light = lightOn(grid, job, job.environment.values);
     const std::size_t nodes = grid.x.size(), channels = job.channels();
     std::vector<double> texels;
     if (job.payload.basisTexels) texels = gpu::decode(*job.payload.basisTexels);
@@ -149,6 +177,7 @@ std::vector<double> reference(const ShaderJob& job) {
             result.insert(result.end(), job.lights(), std::nan(""));
             continue;
         }
+        if (job.world) light = lightOn(grid, job, turned(job, wi));
         sums.evalQuantity(wo, grid.batch(), onGrid.data());
         for (std::size_t i = 0; i < job.lights(); ++i) {
             const double* values = onGrid.data() + (channels == 1 ? 0 : i) * nodes;

@@ -4,6 +4,7 @@
 #include <hshfit/gpu/payload.h>
 #include <hshfit/gpu/shader.h>
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -28,11 +29,18 @@ struct Environment {
 };
 Environment randomEnvironment(int order, std::size_t colours);
 
+/// Tangent, bitangent and normal of surfaces in the world: the tangent is 0.6 of the horizontal one
+/// and 0.8 of the upward one, so that no angle of the frame is special.
+std::array<Direction, 3> frameOf(const Direction& normal);
+
 /// The inputs that a snippet is run on.
 struct ShaderJob {
     gpu::Payload payload;
     Pairs pairs;
     Environment environment;
+    /// `shadeWorld` instead of `shade`: the surface of a pair has the normal wi and the tangent of
+    /// `frameOf`, wo is in that frame, and the environment in the world.
+    bool world = false;
 
     std::size_t channels() const { return payload.head.channels.count(); }
     std::size_t lights() const { return environment.colours; }

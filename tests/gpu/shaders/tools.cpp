@@ -153,6 +153,15 @@ std::string wrapped(gpu::Language language, const ShaderJob& job, const std::str
     page.set("v", spectral ? ".v" : "");
     page.set("of", spectral ? ".v[i]" : grey ? "" : "[i]");
     page.set("tabulated", job.payload.basisTexels.has_value());
+    page.set("world", job.world);
+    const bool wgsl = language == gpu::Language::wgsl;
+    data words;
+    words.set("let", wgsl ? "let" : types.real);
+    words.set("let3", wgsl ? "let" : types.vector);
+    words.set("vec3", types.vector);
+    kainjow::mustache::mustache frame(textOf(here / "wrappers/frame.mustache"));
+    frame.set_custom_escape([](const std::string& text) { return text; });
+    page.set("frame", frame.render(words));
     const auto number = [&](const char* name, std::size_t value) {
         page.set(name, std::to_string(value));
     };

@@ -23,6 +23,9 @@ inline vector operator+(vector a, vector b) {
 inline vector operator-(vector a, vector b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
+inline float dot(vector a, vector b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 inline float step(float edge, float x) {
     return x < edge ? 0.0f : 1.0f;
 }
