@@ -2,6 +2,8 @@
 
 #include <hshfit/error.h>
 #include <hshfit/projection/projection.h>
+#include <hshfit/rotation/sh_rotation.h>
+#include <hshfit/stability/basis_change_errors.h>
 #include <hshfit/stability/rotation_errors.h>
 
 #include <tbb/parallel_for.h>
@@ -40,6 +42,31 @@ std::vector<int> gramOrders(int largest) {
     return orders;
 }
 
+/// Of matrices that rotate hemispherical bases, whose cost grows with the sixth power of the order.
+constexpr int mostMatrixOrder = 16;
+
+/// Rotation, and change of basis with the spherical harmonics as the other one.
+void addAlgebra(const bases::Entry& entry, const bases::JacobiBasis& basis, StressReport& report) {
+    const auto& asJacobi = [](const Basis& any) -> const bases::JacobiBasis& {
+        return dynamic_cast<const bases::JacobiBasis&>(any);
+    };
+    const int order = std::min(basis.order(), ShRotation::maxOrder);
+    const auto same = entry.make(order, {}), harmonics = bases::make("sh", order);
+    const auto small = entry.make(std::min(order, mostMatrixOrder), {});
+    for (Precision precision : {Precision::twice, Precision::single}) {
+        if (entry.name == "sh") {
+            report.rotation.push_back(rotationErrors(order, precision));
+            continue;
+        }
+        report.rotation.push_back(hemisphereRotationErrors(*small, precision));
+        report.basisChange.push_back(
+            basisChangeErrors(asJacobi(*harmonics), asJacobi(*same), precision));
+        if (entry.name == "hsh")
+            report.basisChange.push_back(
+                basisChangeErrors(asJacobi(*same), asJacobi(*harmonics), precision));
+    }
+}
+
 }  // namespace
 
 StressReport stress(std::span<const bases::Entry* const> bases, std::span<const Brdf* const> lobes,
@@ -57,7 +84,6 @@ StressReport stress(std::span<const bases::Entry* const> bases, std::span<const 
         if (entry->name == "lsosh") {
             for (int n : gramOrders(order)) report.gram.push_back({n, bases::lsoshGram(n)});
         }
-        if (entry->name == "sh") report.rotation.push_back(rotationErrors(std::min(order, 1000)));
         const auto basis = entry->make(order, {});
         const auto* jacobi = dynamic_cast<const bases::JacobiBasis*>(basis.get());
         for (Precision precision : {Precision::twice, Precision::single}) {
@@ -67,6 +93,7 @@ StressReport stress(std::span<const bases::Entry* const> bases, std::span<const 
             report.orthonormality.push_back(orthonormalityErrors(*jacobi, precision));
             advance(1);
         }
+        if (jacobi) addAlgebra(*entry, *jacobi, report);
         if (!jacobi) advance(4);
     }
     report.projection.resize(projections);

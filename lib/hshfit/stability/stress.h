@@ -33,8 +33,9 @@ struct GramPoint {
 struct StressReport {
     int maxOrder = 0;
     std::vector<DegreeErrors> evaluation = {}, orthonormality = {};
-    std::vector<DegreeErrors> rotation = {};  ///< of spherical harmonics (rotation_errors.h)
-    std::vector<GramPoint> gram = {};         ///< of least-squares SH
+    std::vector<DegreeErrors> rotation = {};     ///< rotation_errors.h
+    std::vector<DegreeErrors> basisChange = {};  ///< from SH, and from HSH to SH
+    std::vector<GramPoint> gram = {};            ///< of least-squares SH
     std::vector<LobeProjection> projection = {};
     std::vector<ErrorTrialSummary> statedErrors = {};  ///< of trials (error_trials.h), if any
 };
@@ -45,7 +46,8 @@ struct StressOptions {
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
 
-/// Evaluation and orthonormality of those of `bases` that have degrees, in float and double; the
+/// Evaluation and orthonormality of those of `bases` that have degrees, rotation, and change of
+/// basis between SH and each of them, in float and double; the
 /// Gram systems of lsosh if it is among them; the projection of every lobe of `lobes`.
 /// Results do not depend on the number of threads.
 StressReport stress(std::span<const bases::Entry* const> bases, std::span<const Brdf* const> lobes,

@@ -41,7 +41,9 @@ std::vector<std::size_t> shownDegrees(std::size_t count) {
 
 std::string degreesTable(const std::vector<DegreeErrors>& rows) {
     if (rows.empty()) return {};
-    const std::vector<std::size_t> degrees = shownDegrees(rows[0].error.size());
+    std::size_t longest = 0;
+    for (const DegreeErrors& row : rows) longest = std::max(longest, row.error.size());
+    const std::vector<std::size_t> degrees = shownDegrees(longest);
     std::string text = "| basis | precision |";
     std::string rule = "|---|---|";
     for (std::size_t l : degrees) text += fmt::format(" degree {} |", l), rule += "---|";
@@ -51,14 +53,16 @@ std::string degreesTable(const std::vector<DegreeErrors>& rows) {
         text += fmt::format("| {} | {} |", row.basis, precisionName(row.precision));
         for (std::size_t l : degrees) {
             // A basis that lacks functions of a degree has no number there.
-            const double error = row.error[l];
+            const double error = l < row.error.size() ? row.error[l] : NAN;
             text += std::isnan(error) ? " |" : fmt::format(" {:.1e} |", error);
         }
         for (double bound : bounds) {
             const int good = row.goodUntil(bound);
-            text += good + 1 == static_cast<int>(row.error.size()) ? " all |"
-                    : good < 0                                     ? " none |"
-                                                                   : fmt::format(" {} |", good);
+            const bool all = good + 1 == static_cast<int>(row.error.size());
+            if (all && row.error.size() < longest)
+                text += fmt::format(" all, to {} |", good);
+            else
+                text += all ? " all |" : good < 0 ? " none |" : fmt::format(" {} |", good);
         }
         text += "\n";
     }
@@ -157,6 +161,7 @@ std::string stressJson(const StressReport& report) {
                            {"evaluation", degreesJson(report.evaluation)},
                            {"orthonormality", degreesJson(report.orthonormality)},
                            {"rotation", degreesJson(report.rotation)},
+                           {"basis_change", degreesJson(report.basisChange)},
                            {"lsosh_gram", gram},
                            {"projection", projection},
                            {"stated_errors", trialsJson(report.statedErrors)}};
@@ -173,9 +178,15 @@ std::string stressMarkdown(const StressReport& report) {
     }
     if (!report.rotation.empty())
         text +=
-            "\n## Rotation\nLargest difference of two rotations from their product, relative to a "
-            "band.\n\n" +
+            "\n## Rotation\nSH in double: two rotations against their product. Hemispherical bases "
+            "in double: the matrix against the transpose of that of the inverse rotation. Float: "
+            "matrix times vector against double. All relative to the norm of a band.\n\n" +
             degreesTable(report.rotation);
+    if (!report.basisChange.empty())
+        text +=
+            "\n## Change of basis\nLargest error of a coefficient of a function of norm 1, against "
+            "extended precision.\n\n" +
+            degreesTable(report.basisChange);
     if (!report.gram.empty())
         text += "\n## Least-squares spherical harmonics\n\n" + gramTable(report.gram);
     if (!report.statedErrors.empty())
@@ -211,6 +222,7 @@ std::string stressCsv(const StressReport& report) {
     add("evaluation", report.evaluation);
     add("orthonormality", report.orthonormality);
     add("rotation", report.rotation);
+    add("basis_change", report.basisChange);
     return text;
 }
 

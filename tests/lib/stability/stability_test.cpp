@@ -2,6 +2,7 @@
 #include "lib/formula_brdf.h"
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/stability/basis_change_errors.h>
 #include <hshfit/stability/reference.h>
 #include <hshfit/stability/rotation_errors.h>
 #include <hshfit/stability/stress.h>
@@ -95,6 +96,43 @@ TEST(StabilityRotation, RoundingGrowsWithTheDegreeAndStaysBelowTheBoundsOfTheRoo
     EXPECT_EQ(errors.goodUntil(1e-12), 299);
     EXPECT_GE(errors.goodUntil(1e-13), 99);
     EXPECT_LT(errors.goodUntil(1e-16), 10);
+}
+
+TEST(StabilityRotation, FloatKeepsTheDigitsOfFloat) {
+    const DegreeErrors errors = rotationErrors(130, Precision::single);
+    ASSERT_EQ(errors.error.size(), 130U);
+    EXPECT_EQ(errors.goodUntil(1e-5), 129);
+    EXPECT_LT(errors.goodUntil(1e-8), 2);
+    EXPECT_TRUE(std::isnan(errors.error[50]));  // degrees in between are not measured
+    EXPECT_FALSE(std::isnan(errors.error[129]));
+}
+
+TEST(StabilityRotation, MatricesOfInverseRotationsOnTheHemisphereAreTransposed) {
+    for (const char* name : {"hsh", "makhotkin"}) {
+        const auto basis = bases::make(name, 7);
+        const DegreeErrors twice = hemisphereRotationErrors(*basis, Precision::twice);
+        EXPECT_EQ(twice.goodUntil(1e-11), 6) << name;
+        EXPECT_LT(twice.goodUntil(1e-17), 6) << name;
+        const DegreeErrors single = hemisphereRotationErrors(*basis, Precision::single);
+        EXPECT_EQ(single.goodUntil(1e-5), 6) << name;
+        EXPECT_LT(single.goodUntil(1e-9), 6) << name;
+    }
+}
+
+TEST(StabilityChange, AgreesWithExtendedPrecision) {
+    const auto sh = bases::make("sh", 65);
+    for (const char* name : {"hsh", "esh", "zernike", "makhotkin", "makhotkin-flux"}) {
+        const auto basis = bases::make(name, 65);
+        const DegreeErrors twice =
+            basisChangeErrors(asJacobi(*sh), asJacobi(*basis), Precision::twice);
+        EXPECT_EQ(twice.basis, std::string("sh to ") + name);
+        EXPECT_EQ(twice.goodUntil(1e-13), 64) << name;
+        EXPECT_LT(twice.goodUntil(1e-18), 64) << name;
+        EXPECT_EQ(
+            basisChangeErrors(asJacobi(*sh), asJacobi(*basis), Precision::single).goodUntil(1e-6),
+            64)
+            << name;
+    }
 }
 
 TEST(StabilityGram, ConditionOfTheSmallestIsItsClosedForm) {
