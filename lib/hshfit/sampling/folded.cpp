@@ -1,0 +1,23 @@
+#include <hshfit/sampling/folded.h>
+
+#include <cmath>
+#include <limits>
+
+namespace hshfit::inline sampling {
+
+Sample FoldedSampler::sample(const Direction& wo, const Uniforms& u) const {
+    if (!(wo.z > 0)) return {};
+    Direction wi = draw(wo, u);
+    const double length = std::sqrt(dot(wi, wi));
+    // On the horizon itself f is 0; the least height keeps the density defined.
+    const double z = std::max(std::abs(wi.z) / length, std::numeric_limits<double>::min());
+    wi = {wi.x / length, wi.y / length, z};
+    return {wi, pdf(wo, wi)};
+}
+
+double FoldedSampler::pdf(const Direction& wo, const Direction& wi) const {
+    if (!aboveHorizon(wo, wi)) return 0;
+    return density(wo, wi) + density(wo, {wi.x, wi.y, -wi.z});
+}
+
+}  // namespace hshfit::inline sampling

@@ -1,0 +1,138 @@
+#include <hshfit/sampling/internal/target.h>
+
+#include <hshfit/quadrature/quadrature.h>
+#include <hshfit/quadrature/ring_points.h>
+#include <hshfit/sampling/internal/mirror_cells.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hshfit::inline sampling {
+
+double meanMagnitude(std::span<const double> f, std::size_t k, std::size_t count,
+                     std::size_t channels) {
+    double sum = 0;
+    for (std::size_t c = 0; c < channels; ++c) sum += std::abs(f[c * count + k]);
+    // Values beyond this would overflow in squares.
+    return std::isfinite(sum) ? std::min(sum / static_cast<double>(channels), 1e100) : 0;
+}
+
+namespace {
+
+/// Adds f cos(theta_i) at some nodes; the solid angles count half.
+void addNodes(const Brdf& brdf, DirectionBatch wi, const std::vector<double>& solidAngles,
+              Target& target) {
+    const std::size_t channels = brdf.channels().count();
+    std::vector<double> f(wi.count * channels, 0.0);
+    brdf.eval(target.wo, wi, f.data());
+    for (std::size_t j = 0; j < wi.count; ++j) {
+        target.wi.push_back({wi.x[j], wi.y[j], wi.z[j]});
+        target.solidAngle.push_back(solidAngles[j] / 2);
+        target.value.push_back(meanMagnitude(f, j, wi.count, channels) * wi.z[j]);
+        target.total += target.value.back() * target.solidAngle.back();
+    }
+}
+
+/// The quadrature that follows from the lobes which f names.
+void addRings(const Brdf& brdf, Target& target) {
+    const Direction& wo = target.wo;
+    const HemisphereGrid grid =
+        gridFor(brdf.lobes(wo), wo, {.order = 1, .level = 0, .squeezed = true}, brdf.kinks(wo));
+    RingPoints points;
+    std::vector<double> solidAngles;
+    for (const HemisphereGrid::Panel& panel : grid.panels) {
+        points.start(panel);
+        for (std::size_t r = panel.firstRing; r < panel.firstRing + panel.rings; ++r) {
+            points.move(grid, r);
+            solidAngles.clear();
+            for (std::size_t j = 0; j < points.count(); ++j)
+                solidAngles.push_back(points.weight(j));
+            addNodes(brdf, points.directions(), solidAngles, target);
+        }
+    }
+}
+
+/// Cells about the mirror direction at every scale, for lobes that f does not name.
+void addMirrorCells(const Brdf& brdf, Target& target) {
+    const MirrorPolar polar(target.wo);
+    const MirrorCells cells(48);
+    const std::size_t n = cells.columns();
+    std::vector<double> x(n), y(n), z(n), solidAngles(n);
+    for (std::size_t r = 0; r < cells.rows(); ++r) {
+        for (std::size_t c = 0; c < n; ++c) {
+            const double psi = 0.5 * (cells.angles[c] + cells.angles[c + 1]);
+            const double share = 0.5 * (cells.radii[r] + cells.radii[r + 1]);
+            const double reach = polar.reach(std::cos(psi));
+            const Direction wi = polar.direction(share, std::cos(psi), std::sin(psi));
+            x[c] = wi.x, y[c] = wi.y, z[c] = wi.z;
+            solidAngles[c] = cells.area(r, c) * reach * reach / wi.z;
+        }
+        addNodes(brdf, {x.data(), y.data(), z.data(), n}, solidAngles, target);
+    }
+}
+
+}  // namespace
+
+Target targetAt(const Brdf& brdf, const Direction& wo) {
+    Target target{.wo = wo, .wi = {}, .solidAngle = {}, .value = {}};
+    addRings(brdf, target);
+    addMirrorCells(brdf, target);
+    return target;
+}
+
+NodeDensities densitiesAt(const Sampler& sampler, std::span<const Target> targets) {
+    NodeDensities densities;
+    for (const Target& target : targets)
+        for (const Direction& wi : target.wi)
+            densities.push_back(std::min(sampler.pdf(target.wo, wi), 1e100));
+    return densities;
+}
+
+namespace {
+
+/// Squares of the target over solid angle and total, node by node.
+std::vector<double> squares(std::span<const Target> targets) {
+    std::vector<double> all;
+    for (const Target& target : targets)
+        for (std::size_t j = 0; j < target.wi.size(); ++j) {
+            const double part = target.total > 0 ? target.value[j] / target.total : 0;
+            all.push_back(part * part * target.solidAngle[j]);
+        }
+    return all;
+}
+
+}  // namespace
+
+LeastMoment leastSecondMoment(std::span<const Target> targets,
+                              std::span<const NodeDensities* const> parts, double leastFirst,
+                              int steps) {
+    const std::vector<double> square = squares(targets);
+    const double count = static_cast<double>(std::max<std::ptrdiff_t>(
+        1, std::ranges::count_if(targets, [](const Target& target) { return target.total > 0; })));
+    LeastMoment best{std::vector<double>(parts.size(), 1 / static_cast<double>(parts.size()))};
+    std::vector<double>& shares = best.shares;
+    std::vector<double> slope(parts.size());
+    for (int step = 0; step <= steps; ++step) {
+        best.moment = 0;
+        std::ranges::fill(slope, 0.0);
+        for (std::size_t j = 0; j < square.size(); ++j) {
+            if (square[j] == 0) continue;
+            double p = 0;
+            for (std::size_t k = 0; k < parts.size(); ++k) p += shares[k] * (*parts[k])[j];
+            const double term = square[j] / p;
+            best.moment += term / count;
+            for (std::size_t k = 0; k < parts.size(); ++k) slope[k] += term * ((*parts[k])[j] / p);
+        }
+        if (step == steps || best.moment == 0) break;
+        double sum = 0;
+        for (std::size_t k = 0; k < parts.size(); ++k) sum += shares[k] *= std::sqrt(slope[k]);
+        for (double& share : shares) share /= sum;
+        if (shares[0] >= leastFirst || parts.size() == 1) continue;
+        const double scale = (1 - leastFirst) / (1 - shares[0]);
+        for (double& share : shares) share *= scale;
+        shares[0] = leastFirst;
+    }
+    return best;
+}
+
+}  // namespace hshfit::inline sampling
