@@ -15,8 +15,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct MatrixArguments {
-    std::string from, to, euler;
+    std::string from, to, euler, weight;
     int order = 3, fromOrder = 0;
+    bool condonShortley = false;
 };
 
 void runMatrix(const MatrixArguments& arguments, const Globals& globals) {
@@ -24,7 +25,10 @@ void runMatrix(const MatrixArguments& arguments, const Globals& globals) {
         .from = arguments.from,
         .to = arguments.to,
         .fromOrder = arguments.fromOrder == 0 ? arguments.order : arguments.fromOrder,
-        .toOrder = arguments.order};
+        .toOrder = arguments.order,
+        .condonShortley = arguments.condonShortley};
+    if (arguments.weight == "cosine") options.weight = Basis::Inner::projectedSolidAngle;
+    if (arguments.weight == "solid-angle") options.weight = Basis::Inner::solidAngle;
     if (!arguments.euler.empty()) options.rotation = parseEuler(arguments.euler);
     const auto rows = jobs::matrix(options);
     if (globals.json) {
@@ -34,6 +38,8 @@ void runMatrix(const MatrixArguments& arguments, const Globals& globals) {
                          {"to", {{"basis", options.to}, {"order", options.toOrder}}}};
         if (!arguments.euler.empty())
             document["euler"] = parseNumbers(arguments.euler, 3, "--euler", "A,B,C");
+        document["condon_shortley"] = arguments.condonShortley;
+        if (!arguments.weight.empty()) document["weight"] = arguments.weight;
         document["matrix"] = rows;
         printJson(document);
         return;
@@ -64,6 +70,12 @@ void addMatrix(CLI::App& command, Globals& globals) {
         ->check(CLI::Range(1, 2048));
     command.add_option("--euler", arguments->euler,
                        "A,B,C in degrees: of the rotated function, R_z(A) R_y(B) R_z(C)");
+    command.add_flag("--condon-shortley", arguments->condonShortley,
+                     "Give functions of odd m the Condon-Shortley sign, in both bases");
+    command
+        .add_option("--weight", arguments->weight,
+                    "Of the integral: solid-angle or cosine (default: that of the basis TO)")
+        ->check(CLI::IsMember({"solid-angle", "cosine"}));
     command.callback([arguments, &globals] { runMatrix(*arguments, globals); });
 }
 

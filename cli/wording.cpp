@@ -44,6 +44,7 @@ constexpr OptionRow options[] = {
     {"Form::window", "--window"},
     {"ImportOptions::force", "--force"},
     {"LightDomain::normal", "--normal"},
+    {"MatrixOptions::weight", "--weight"},
     {"PackOptions::number", "--number"},
     {"PlanOptions::bases", "--bases"},
     {"PlanOptions::byTime", "--by-time"},

@@ -7,6 +7,7 @@
 #include <hshfit/rotation/band_matrix.h>
 #include <hshfit/rotation/basis_change.h>
 #include <hshfit/rotation/sh_rotation.h>
+#include <hshfit/wording.h>
 
 #include <fmt/format.h>
 
@@ -132,17 +133,11 @@ Rows product(const Rows& a, const Rows& b) {
 Rows changeOf(const MatrixOptions& options) {
     const auto from = bases::make(options.from, options.fromOrder);
     const auto to = bases::make(options.to, options.toOrder);
-    return rowsOf(BasisChange(*from, *to).dense(), static_cast<std::size_t>(from->slots()));
+    return rowsOf(BasisChange(*from, *to, options.weight).dense(),
+                  static_cast<std::size_t>(from->slots()));
 }
 
-}  // namespace
-
-Rotated rotate(const std::string& input, const std::string& output, const RotateOptions& options) {
-    return isLightFile(input) ? rotateLight(input, output, options)
-                              : rotateBrdf(input, output, options);
-}
-
-std::vector<std::vector<double>> matrix(const MatrixOptions& options) {
+Rows unsignedMatrix(const MatrixOptions& options) {
     const auto from = bases::make(options.from, options.fromOrder);
     const auto to = bases::make(options.to, options.toOrder);
     const std::size_t entries =
@@ -151,6 +146,9 @@ std::vector<std::vector<double>> matrix(const MatrixOptions& options) {
         throw UsageError(fmt::format("a matrix of {} x {} entries; at most {} in all", to->slots(),
                                      from->slots(), largestMatrix));
     if (!options.rotation) return changeOf(options);
+    if (options.weight)
+        throw UsageError(fmt::format("a rotation has no weight: leave out {}",
+                                     Setting{"MatrixOptions::weight"}));
     const Rotation& rotation = *options.rotation;
     if (options.from == "sh") {
         const Rows turned = shRotation(options.fromOrder, options.fromOrder, rotation);
@@ -166,6 +164,26 @@ std::vector<std::vector<double>> matrix(const MatrixOptions& options) {
             options.from, options.fromOrder, options.to, options.toOrder));
     return rowsOf(HemisphereRotation(*from).matrix(rotation),
                   static_cast<std::size_t>(from->slots()));
+}
+
+}  // namespace
+
+Rotated rotate(const std::string& input, const std::string& output, const RotateOptions& options) {
+    return isLightFile(input) ? rotateLight(input, output, options)
+                              : rotateBrdf(input, output, options);
+}
+
+std::vector<std::vector<double>> matrix(const MatrixOptions& options) {
+    Rows rows = unsignedMatrix(options);
+    if (!options.condonShortley) return rows;
+    const auto isOdd = [](std::size_t slot) {
+        const auto l = static_cast<std::size_t>(std::sqrt(static_cast<double>(slot) + 0.5));
+        return (slot - l * l - l) % 2 != 0;
+    };
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        for (std::size_t j = 0; j < rows[i].size(); ++j)
+            if (isOdd(i) != isOdd(j) && rows[i][j] != 0) rows[i][j] = -rows[i][j];
+    return rows;
 }
 
 }  // namespace hshfit::jobs

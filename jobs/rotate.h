@@ -39,6 +39,10 @@ struct MatrixOptions {
     std::string from, to;  ///< bases
     int fromOrder = 3, toOrder = 3;
     std::optional<Rotation> rotation = {};
+    /// Both bases with the Condon-Shortley sign, as in the source papers.
+    bool condonShortley = false;
+    /// Of the integral of a change of basis; none: the inner product of TO.
+    std::optional<Basis::Inner> weight = {};
 };
 
 /// Rows TO, columns FROM: the change of basis or, with a rotation, from the coefficients of a

@@ -45,6 +45,28 @@ TEST_F(Cli, MatrixOfARotation) {
     EXPECT_NEAR(mixed[0][2].get<double>(), 0, 1e-15);
 }
 
+TEST_F(Cli, MatrixTakesTheSignsAndTheWeightOfThePapers) {
+    // The sign (-1)^m of both sides: entries between odd and even m change theirs.
+    const std::string job = "matrix sh sh --order 2 --euler 30,90,50 --json";
+    const Answer answer = run(job + " --condon-shortley");
+    EXPECT_TRUE(keepsSchema(answer.out, "matrix"));
+    const Json plain = Json::parse(run(job).out)["matrix"];
+    const Json sign = Json::parse(answer.out)["matrix"];
+    for (const std::size_t i : {1u, 3u}) {
+        EXPECT_EQ(sign[i][2].get<double>(), -plain[i][2].get<double>());
+        EXPECT_NE(sign[i][2].get<double>(), 0);
+        for (const std::size_t j : {1u, 3u}) EXPECT_EQ(sign[i][j], plain[i][j]);
+    }
+    EXPECT_EQ(sign[2][2], plain[2][2]);
+    // The printed matrix of the HSH paper: twice the integral of H_00 Y_00 cos(theta) = pi over
+    // sqrt(2 pi) sqrt(4 pi).
+    const Answer cosine = run("matrix sh hsh --order 1 --weight cosine --json");
+    EXPECT_TRUE(keepsSchema(cosine.out, "matrix"));
+    EXPECT_NEAR(Json::parse(cosine.out)["matrix"][0][0], std::sqrt(1.0 / 8), 1e-15);
+    EXPECT_EQ(run("matrix hsh hsh --weight cosine --euler 1,2,3").code, 2);
+    EXPECT_EQ(run("matrix hsh hsh --weight flux").code, 2);
+}
+
 TEST_F(Cli, RotateMovesTheFunctionAndTellsTheLoss) {
     ASSERT_EQ(
         run("project phong:exponent=8 -o " + path("a.json") + " --order 8 --outgoing 0,0 --quiet")
