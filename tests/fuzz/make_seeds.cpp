@@ -318,6 +318,34 @@ void presetFiles(const std::filesystem::path& folder) {
     }
 }
 
+void meshes(const std::filesystem::path& folder) {
+    write(folder / "quad.obj",
+          "# a square\nv -1 0 -1\nv 1 0 -1 0.5 0.5 0.5\nv 1 0 1\nv -1 0 1e0\nvt 0 1\n"
+          "vn 0 -1 0\no a\ng b\ns 1\nusemtl m\nf 1/1/1 4//1 3/1 -3\nl 1 2\n");
+    const std::string head =
+        "comment c\nobj_info i\nelement vertex 4\nproperty float x\n"
+        "property double y\nproperty short z\nproperty uchar red\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    write(folder / "quad.ply",
+          "ply\nformat ascii 1.0\n" + head + "0 0 0 9\n1 0 0 9\n1 1 0 9\n0 1 0 9\n4 0 1 2 3\n");
+    std::string body;
+    for (const int k : {0, 1, 2, 3}) {
+        put(body, static_cast<float>(k % 3 > 0));
+        put(body, static_cast<double>(k / 2));
+        put(body, std::int16_t{0});
+        put(body, std::uint8_t{9});
+    }
+    put(body, std::uint8_t{4});
+    for (const std::int32_t k : {0, 1, 2, 3}) put(body, k);
+    write(folder / "little.ply", "ply\nformat binary_little_endian 1.0\n" + head + body);
+    write(folder / "big.ply", "ply\nformat binary_big_endian 1.0\n" + head + body);
+    write(folder / "normals.ply",
+          "ply\r\nformat ascii 1.0\r\nelement vertex 3\r\nproperty float x\r\n"
+          "property float y\r\nproperty float z\r\nproperty float nx\r\nproperty float ny\r\n"
+          "property float nz\r\nelement face 1\r\nproperty list uint8 uint32 vertex_index\r\n"
+          "end_header\r\n0 0 0 0 0 1\r\n1 0 0 0 0 2\r\n0 1 0 0 0 0\r\n3 0 1 2\r\n");
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -335,6 +363,7 @@ int main(int count, char** arguments) {
     bsdfXmlFiles(folder / "fuzz_bsdf_xml");
     lightPictures(folder / "fuzz_pictures");
     lightSpecifications(folder / "fuzz_lights");
+    meshes(folder / "fuzz_meshes");
     int number = 0;
     for (const std::vector<float>& phi :
          {std::vector<float>{0}, {0, 1}, {-3.1415927F, -1.5707964F, 0}, {0, 0.5F, 1.5707964F}}) {

@@ -36,11 +36,16 @@ MeshFile readMesh(const std::string& path) {
         throw InputError(fmt::format("{}: has {} bytes; a mesh file may have {} at most", path,
                                      file.size(), largestMeshFile));
     }
-    const std::string_view bytes(reinterpret_cast<const char*>(file.data()), file.size());
+    MeshFile result =
+        meshFromBytes({reinterpret_cast<const char*>(file.data()), file.size()}, path);
+    file.checkIntact();
+    return result;
+}
+
+MeshFile meshFromBytes(std::string_view bytes, const std::string& path) {
     const bool ply =
         bytes.starts_with("ply") && bytes.size() > 3 && (bytes[3] == '\n' || bytes[3] == '\r');
     MeshFile result{.mesh = ply ? readPly(bytes, path) : readObj(bytes, path)};
-    file.checkIntact();
     Mesh& mesh = result.mesh;
     if (mesh.triangles.empty()) {
         throw InputError(

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 namespace hshfit::inline meshes {
 
@@ -25,5 +26,7 @@ constexpr std::size_t largestMeshFile = std::size_t{1} << 30;
 /// larger than `largestMeshFile` or without a triangle of some area, for a number that is not
 /// finite or beyond 1e15, and for an index of no vertex.
 MeshFile readMesh(const std::string& path);
+/// The same from the bytes of a file, whose name starts every message.
+MeshFile meshFromBytes(std::string_view bytes, const std::string& name);
 
 }  // namespace hshfit::inline meshes
