@@ -53,6 +53,23 @@ struct LightJson {
     Json operator()(const DirectionalLight& light) const {
         return {{"direction", placeJson(light.towards)}};
     }
+    Json operator()(const CoefficientLight& light) const {
+        const LightCoefficients& c = *light.coefficients;
+        const bool sphere = c.domain == LightCoefficients::Domain::sphere;
+        Json json = {{"file", light.file},
+                     {"basis", c.basis},
+                     {"order", c.order},
+                     {"domain", sphere ? "sphere" : "hemisphere"}};
+        if (!sphere) json["normal"] = placeJson(light.normal);
+        json["signs_of_odd_m"] = c.condonShortley ? "-" : "+";
+        if (std::isfinite(c.error)) json["error"] = c.error;
+        if (c.energy.finite) json["energy"] = c.energy.value;
+        const bool curve = !c.curves.empty() && !c.curves.front().points.empty();
+        if (curve && std::isfinite(c.curves.front().points.back().accuracy))
+            json["captured"] = c.curves.front().points.back().accuracy;
+        json["source"] = c.source;
+        return json;
+    }
 };
 
 std::string colourText(const Json& rgb) {

@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace hshfit::cli {
@@ -52,6 +53,13 @@ Json answer(const jobs::ProjectedLight& result, const std::string& output) {
     if (light.domain == LightCoefficients::Domain::hemisphere) {
         normal = {{"theta", degrees(light.normalTheta)}, {"phi", degrees(light.normalPhi)}};
     }
+    Json curves = Json::array({curveJson(light.curves.front())});
+    if (result.wavelets) {
+        Json curve = curveJson(*result.wavelets);
+        curve["selection"] = "best_terms";
+        curve["error"] = finiteOrNull(result.waveletError);
+        curves.push_back(curve);
+    }
     Json enough = Json::object();
     for (std::size_t k = 0; k < result.enough.size(); ++k) {
         enough[shareName(jobs::lightShares[k])] =
@@ -70,7 +78,7 @@ Json answer(const jobs::ProjectedLight& result, const std::string& output) {
             {"error", finiteOrNull(light.error)},
             {"bands", result.bands},
             {"enough", enough},
-            {"curves", Json::array({curveJson(light.curves.front())})}};
+            {"curves", curves}};
 }
 
 std::string enoughText(const jobs::ProjectedLight& result) {
@@ -84,14 +92,31 @@ std::string enoughText(const jobs::ProjectedLight& result) {
     return text;
 }
 
+std::string waveletText(const jobs::ProjectedLight& result) {
+    if (!result.wavelets) return "";
+    const LightCurve::Point& last = result.wavelets->points.back();
+    std::string out = fmt::format("  soho, best {} terms: {:.6f} of the energy, error {:.1e}\n",
+                                  last.coefficients, last.accuracy, result.waveletError);
+    for (const double share : jobs::lightShares) {
+        const auto& points = result.wavelets->points;
+        const auto first = std::ranges::find_if(
+            points, [&](const LightCurve::Point& point) { return point.accuracy >= share; });
+        out +=
+            fmt::format("  {:>5} % of the energy: {}\n", shareName(share),
+                        first == points.end() ? fmt::format("more than {} terms", last.coefficients)
+                                              : fmt::format("{} terms", first->coefficients));
+    }
+    return out;
+}
+
 std::string text(const jobs::ProjectedLight& result, const std::string& output) {
     const LightCoefficients& light = result.light;
     const bool known = light.energy.finite && light.energy.value > 0;
-    return fmt::format("{}: {} order {}, {}, error {:.1e}\n{}", output, light.basis, light.order,
+    return fmt::format("{}: {} order {}, {}, error {:.1e}\n{}{}", output, light.basis, light.order,
                        known ? fmt::format("{:.6f} of the energy captured",
                                            light.curves.front().points.back().accuracy)
                              : "no energy to compare with",
-                       light.error, known ? enoughText(result) : "");
+                       light.error, known ? enoughText(result) : "", waveletText(result));
 }
 
 void runLight(LightArguments& arguments, Globals& globals) {
@@ -128,6 +153,8 @@ void addLight(CLI::App& command, Globals& globals) {
     command.add_option("--normal", arguments->normal,
                        "THETA,PHI in degrees: the hemisphere about it, in its own frame "
                        "(default: the whole sphere)");
+    command.add_flag("--wavelets", options.wavelets,
+                     "A curve of SOHO wavelets too: the best n^2 terms of each channel");
     command.add_flag("--condon-shortley", options.condonShortley,
                      "Give functions of odd m the Condon-Shortley sign");
     command

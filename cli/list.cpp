@@ -99,6 +99,7 @@ Json lightsJson() {
     };
     for (const LightKind& kind : lightKinds()) add(kind);
     add(pictureKind());
+    add(coefficientsKind());
     return rows;
 }
 

@@ -15,6 +15,7 @@ struct LightOptions {
     bool condonShortley = false;
     std::optional<Orientation> normal = {};  ///< of a hemisphere; none: the whole sphere
     double tolerance = 1e-6;                 ///< of coefficients that come from quadrature
+    bool wavelets = false;                   ///< the captured energy of the best SOHO wavelets too
 };
 
 struct ProjectedLight {
@@ -22,6 +23,10 @@ struct ProjectedLight {
     std::vector<double> bands;  ///< energy of each, sum over m and channels of c^2
     /// The least order that captures the shares below; none within the order asked for.
     std::vector<std::optional<int>> enough;
+    /// The captured share by the best n^2 wavelets, n = 1 .. order, and their error; if asked for
+    /// and the energy exists.
+    std::optional<LightCurve> wavelets = {};
+    double waveletError = 0;
 };
 
 /// Captured energies that `enough` is for.

@@ -2,13 +2,17 @@
 
 #include <hshfit/brdf/colour.h>
 #include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/coefficient_files/light_file.h>
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/coefficients/reconstruction.h>
+#include <hshfit/error.h>
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 
 #include <brdfs/catalog.h>
 #include <brdfs/measured/measured_brdf.h>
+
+#include <fmt/format.h>
 
 #include <utility>
 
@@ -23,6 +27,9 @@ std::unique_ptr<Brdf> seenAsRgb(std::unique_ptr<Brdf> brdf, bool rgb) {
 }  // namespace
 
 std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb) {
+    if (isLightFile(spec))
+        throw InputError(fmt::format(
+            "{}: has coefficients of light, where a BRDF or coefficients of one belong", spec));
     return seenAsRgb(brdfs::open(spec), rgb);
 }
 

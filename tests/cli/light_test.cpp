@@ -60,6 +60,21 @@ TEST_F(Lights, MixedAnalyticLightsHaveAHealthReport) {
     const Json beam = info("directional:elevation=90,irradiance=3")["light_health"];
     EXPECT_TRUE(beam["peak"][0].is_null());
     EXPECT_NEAR(beam["mean"][0], 3 / (4 * pi), 1e-12);
+    // A wide sun and a panel before a uniform sky: mean radiance and black share are those of their
+    // solid angles, 2 pi (1 - cos r) and 4 atan(a b / sqrt(1 + a^2 + b^2)).
+    const double cap = 2 * pi * (1 - std::cos(10 * pi / 180));
+    const Json disc = info("sun:elevation=35,azimuth=77,angle=20,radiance=5")["light_health"];
+    EXPECT_NEAR(disc["mean"][0], 5 * cap / (4 * pi), 1e-12);
+    EXPECT_NEAR(disc["black_share"], 1 - cap / (4 * pi), 1e-5);
+    const double a = std::tan(15 * pi / 180), b = std::tan(5 * pi / 180);
+    const double panel = 4 * std::atan(a * b / std::sqrt(1 + a * a + b * b));
+    const Json both =
+        info("panel:elevation=20,width=30,height=10,radiance=3+uniform:radiance=1")["light_health"];
+    EXPECT_NEAR(both["mean"][1], 1 + 3 * panel / (4 * pi), 1e-6);
+    EXPECT_NEAR(both["dynamic_range"], 4, 1e-12);
+    const Json strip = info("panel:elevation=20,width=80,height=0.01,radiance=3")["light_health"];
+    EXPECT_GT(strip["mean"][1].get<double>(), 0);
+
     const std::string text = run("info 'sky:type=3+sun:elevation=30'").out;
     for (const char* words : {"light:", "mean radiance", "peak towards", "fits a 16-bit float"}) {
         EXPECT_NE(text.find(words), std::string::npos) << words;
@@ -130,12 +145,76 @@ TEST_F(Lights, TheListHasEveryKindAndKeepsItsSchema) {
     const Answer answer = run("list lights --json");
     EXPECT_TRUE(keepsSchema(answer.out, "list"));
     const Json rows = Json::parse(answer.out)["lights"];
-    ASSERT_EQ(rows.size(), 7U);
+    ASSERT_EQ(rows.size(), 8U);
     EXPECT_EQ(rows[3]["name"], "panel");
     const std::string text = run("list lights").out;
     for (const char* words : {"preetham", "turbidity", "layout", "such as 2024-06-21", "sums"}) {
         EXPECT_NE(text.find(words), std::string::npos) << words;
     }
+}
+
+TEST_F(Lights, FilesOfCoefficientsAreLights) {
+    const std::string file = path("sky.json");
+    ASSERT_EQ(run("light sky:type=12,elevation=40 --order 4 -o " + file).code, 0);
+    const Json document = info(file + ":turn=20");
+    EXPECT_EQ(document["kind"], "light");
+    EXPECT_EQ(document["lights"][0]["kind"], "coefficients");
+    EXPECT_EQ(document["lights"][0]["order"], 4);
+    ASSERT_EQ(run("rotate " + file + " -o " + path("turned.json") + " --euler 20,0,0").code, 0);
+    EXPECT_EQ(info(path("turned.json"))["lights"][0]["domain"], "sphere");
+
+    // The nine coefficients are those of the file, turned or not.
+    const auto nine = [&](const std::string& spec) {
+        const Answer answer = run("irradiance --normals 64 --json '" + spec + "'");
+        EXPECT_EQ(answer.code, 0) << answer.err;
+        return answer.code == 0 ? Json::parse(answer.out) : Json();
+    };
+    const Json sky = nine("sky:type=12,elevation=40"), read = nine(file);
+    const Json turned = nine(path("turned.json")), turn = nine(file + ":turn=20");
+    for (std::size_t k = 0; k < 9; ++k)
+        for (std::size_t c = 0; c < 3; ++c) {
+            EXPECT_NEAR(read["radiance"][k][c], sky["radiance"][k][c], 1e-6);
+            EXPECT_NEAR(turned["radiance"][k][c], turn["radiance"][k][c], 1e-12);
+        }
+    // Light of four bands is met by irradiance of four bands.
+    const Answer four = run("irradiance --order 4 --normals 64 --json " + file);
+    ASSERT_EQ(four.code, 0) << four.err;
+    EXPECT_LT(Json::parse(four.out)["error"]["maximum"], 1e-6);
+
+    const Answer rendered =
+        run("render lambert --size 16 --samples 1 --orders 2 --cosine --light " + file +
+            " --json -o " + path("a.exr"));
+    ASSERT_EQ(rendered.code, 0) << rendered.err;
+    EXPECT_LT(Json::parse(rendered.out)["pictures"][1]["relative_l2"], 1e-3);
+}
+
+TEST_F(Lights, LightComparesWithItsBestWavelets) {
+    const Answer answer =
+        run("light panel:elevation=50,width=30,height=20 --order 8 --wavelets --json -o " +
+            path("p.json"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "light"));
+    const Json curves = Json::parse(answer.out)["curves"];
+    ASSERT_EQ(curves.size(), 2U);
+    EXPECT_EQ(curves[1]["basis"], "soho");
+    EXPECT_EQ(curves[1]["selection"], "best_terms");
+    ASSERT_EQ(curves[1]["points"].size(), 8U);
+    // Edges are for wavelets: 64 of the best against 64 harmonics.
+    EXPECT_GT(curves[1]["points"][7]["accuracy"], curves[0]["points"][7]["accuracy"]);
+    EXPECT_LE(curves[1]["points"][7]["accuracy"], 1);
+    EXPECT_LT(curves[1]["error"], 0.02);
+}
+
+TEST_F(Lights, CoefficientsOfTheOtherKindAreRefused) {
+    ASSERT_EQ(run("light uniform --order 2 -o " + path("light.json")).code, 0);
+    ASSERT_EQ(run("project lambert --order 2 --outgoing 4 -o " + path("brdf.json")).code, 0);
+    const std::string light = path("light.json"), brdf = path("brdf.json"), out = path("o.png");
+    expectError("irradiance " + brdf, 3, "of a BRDF", 2);
+    expectError("render lambert --light " + brdf + " -o " + out, 3, "of a BRDF", 2);
+    expectError("light " + brdf + " -o " + path("again.json"), 3, "of a BRDF", 2);
+    expectError("render " + light + " --light uniform -o " + out, 3, "of light", 2);
+    expectError("eval " + light + " --wi 0,0 --wo 0,0", 3, "of light", 2);
+    expectError("report " + light + " --json", 3, "of light", 2);
 }
 
 /// The same plan by a lamp of the scene's own kind and by its specification; a picture in PFM.

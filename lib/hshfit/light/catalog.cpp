@@ -1,7 +1,10 @@
 #include <hshfit/light/catalog.h>
 
+#include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/coefficient_files/light_file.h>
 #include <hshfit/error.h>
 #include <hshfit/files/exr_header.h>
+#include <hshfit/light/coefficient_light.h>
 #include <hshfit/light/picture_light.h>
 #include <hshfit/light/placement.h>
 #include <hshfit/light/sky.h>
@@ -317,7 +320,8 @@ bool inExponent(std::string_view text, std::size_t at) {
 }
 
 constexpr std::size_t mostTerms = 256;
-constexpr std::string_view form = "kind[:key=value,...] or the path of a picture, joined by '+'";
+constexpr std::string_view form =
+    "kind[:key=value,...], the path of a picture or of coefficients of light, joined by '+'";
 
 /// A path in a specification, seen from `folder`.
 std::string within(const std::string& folder, std::string_view path) {
@@ -391,6 +395,15 @@ Light parseTerm(std::string_view term, const std::string& folder, InvalidPixels 
     const std::size_t end = pathEnd(term, folder);
     if (end == 0) failUnknown(term, folder);
     const std::string path = within(folder, trimmed(term.substr(0, end)));
+    if (isLightFile(path)) {
+        const Parameters p = parseParameters(path, coefficientsKind().parameters, after(end));
+        return placed(readCoefficientLight(path), p);
+    }
+    if (looksLikeCoefficients(path))
+        throw InputError(
+            fmt::format("{}: has coefficients of a BRDF; light is a picture or coefficients of "
+                        "light",
+                        path));
     const Parameters p = parseParameters(path, pictureKind().parameters, after(end));
     return placed(readPictureLight(path, 1, pictureOptions(p), invalid), p);
 }
@@ -409,6 +422,13 @@ const LightKind& pictureKind() {
     return row;
 }
 
+const LightKind& coefficientsKind() {
+    static const LightKind row =
+        kind("FILE", "coefficients of light, a JSON file of the format hshfit-light", "",
+             "sky.json:turn=90,scale=2", {}, nullptr);
+    return row;
+}
+
 bool namesLight(std::string_view text) {
     return findKind(text.substr(0, text.find_first_of(":+ "))) != nullptr;
 }
@@ -421,6 +441,7 @@ bool looksLikeLight(const std::string& text) {
     const std::string path(trimmed(term.substr(0, end)));
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) return true;  // six files
+    if (isLightFile(path)) return true;
     std::string head(std::size_t{1} << 16, '\0');
     std::ifstream file(path, std::ios::binary);
     file.read(head.data(), static_cast<std::streamsize>(head.size()));

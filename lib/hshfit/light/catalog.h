@@ -21,7 +21,7 @@ struct LightSpecification {
 };
 
 /// Parses "TERM + TERM + …", spaces or none around '+', each term
-///     kind[:key=value,…] | path of a picture[:key=value,…]
+///     kind[:key=value,…] | path of a picture or of light coefficients[:key=value,…]
 /// with the kinds and keys of the table below. World frame: right-handed, +z up; `elevation` from
 /// the horizon and `azimuth` from +x towards +y, degrees; a place, date and time means +x east and
 /// +y north. Throws UsageError for an unknown kind, key or value (naming the valid ones) and
@@ -32,7 +32,8 @@ LightSpecification parseLights(const std::string& text, const std::string& folde
 
 /// Whether a text begins with the path of a picture that is light rather than a table of a BRDF:
 /// any format but OpenEXR; an OpenEXR picture twice as wide as high, or with `layout` or `curve`
-/// behind its path, that has none of the program's own attributes.
+/// behind its path, that has none of the program's own attributes; or with the path of a file of
+/// light coefficients.
 bool looksLikeLight(const std::string& text);
 
 /// Whether a text begins with a kind of light, "sky:…" or "uniform", rather than a path.
@@ -52,7 +53,8 @@ struct LightKind {
 /// The analytic lights.
 std::span<const LightKind> lightKinds();
 
-/// Pictures, which a path stands for; `make` is null.
+/// Pictures and files of coefficients, which a path stands for; `make` is null.
 const LightKind& pictureKind();
+const LightKind& coefficientsKind();
 
 }  // namespace hshfit::inline light

@@ -17,7 +17,8 @@ constexpr int resolution = 16;  ///< bands that nodes resolve at the first level
 /// Where two lights overlap, the later in this order has the finer nodes.
 int fineness(const Light& light) {
     if (std::holds_alternative<PictureLight>(light)) return 0;
-    if (std::holds_alternative<SkyLight>(light)) return 1;
+    if (std::holds_alternative<SkyLight>(light) || std::holds_alternative<CoefficientLight>(light))
+        return 1;
     if (std::holds_alternative<PanelLight>(light)) return 2;
     return std::holds_alternative<DiscLight>(light) ? 3 : 4;
 }

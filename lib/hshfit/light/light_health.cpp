@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace hshfit::inline light {
 namespace {
 
 constexpr double largestHalf = 65504;
 constexpr double brightestPart = 1e-3 * 4 * pi;
-constexpr double smallDisc = 2 * (pi / 180);
+constexpr double narrow = 4 * (pi / 180);  ///< from side to side of a shape beside the grid
+/// Parts of a pixel on the edge of a shape, in each direction.
+constexpr std::size_t edgeParts = 8;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double sumOf(const Rgb& rgb) {
@@ -57,6 +60,27 @@ private:
     std::vector<Class> classes_ = std::vector<Class>((highest - lowest) * perOctave + 2);
 };
 
+/// A disc or a panel: uniform radiance within an edge.
+struct Shape {
+    Direction towards;
+    Rgb radiance{};
+    double solidAngle = 0, width = 0;  ///< from side to side where it is narrowest
+};
+
+std::optional<Shape> shapeOf(const Light& light) {
+    if (const auto* disc = std::get_if<DiscLight>(&light)) {
+        return Shape{disc->towards, disc->radiance,
+                     4 * pi * std::pow(std::sin(disc->radius / 2), 2), 2 * disc->radius};
+    }
+    const auto* panel = std::get_if<PanelLight>(&light);
+    if (!panel) return {};
+    // Of a rectangle at distance 1, seen from above its middle.
+    const double a = std::tan(panel->width / 2), b = std::tan(panel->height / 2);
+    return Shape{panel->towards, panel->radiance,
+                 4 * std::atan(a * b / std::sqrt(1 + a * a + b * b)),
+                 std::min(panel->width, panel->height)};
+}
+
 class Examination {
 public:
     /// Whether the pixel is the brightest so far.
@@ -80,22 +104,25 @@ public:
     }
     void setPeakDirection(const Direction& direction) { health_.peakDirection = direction; }
 
-    /// A disc in front of the rest, whose radiance at its middle is `behind`.
-    void addDisc(const DiscLight& disc, const Rgb& behind) {
-        Rgb seen = disc.radiance;
-        for (std::size_t c = 0; c < 3; ++c) seen[c] += behind[c];
-        const double solidAngle = 4 * pi * std::pow(std::sin(disc.radius / 2), 2);
+    /// A shape in front of the rest, whose radiance at its middle is `behind`.
+    void addShape(const Shape& shape, const Rgb& behind) {
+        Rgb seen = shape.radiance;
         for (std::size_t c = 0; c < 3; ++c) {
-            flux_[c] += disc.radiance[c] * solidAngle;
+            seen[c] += behind[c];
+            flux_[c] += shape.radiance[c] * shape.solidAngle;
             largest_ = std::max(largest_, seen[c]);
         }
-        if (sumOf(disc.radiance) <= 0) return;
-        classes_.add(sumOf(seen), solidAngle);
+        if (sumOf(shape.radiance) <= 0) return;
+        classes_.add(sumOf(seen), shape.solidAngle);
         least_ = std::min(least_, sumOf(seen));
         if (sumOf(seen) > sumOf(health_.peak)) {
             health_.peak = seen;
-            health_.peakDirection = disc.towards;
+            health_.peakDirection = shape.towards;
         }
+    }
+    /// Flux that the pixels lack.
+    void addFlux(const Rgb& flux) {
+        for (std::size_t c = 0; c < 3; ++c) flux_[c] += flux[c];
     }
 
     void addBeam(const DirectionalLight& beam) {
@@ -128,31 +155,86 @@ private:
     double solidAngle_ = 0, black_ = 0, least_ = infinity, largest_ = 0;
 };
 
+/// A light that the pixels of the grid would miss.
 bool besideTheGrid(const Light& light) {
-    const auto* disc = std::get_if<DiscLight>(&light);
-    return (disc && disc->radius < smallDisc) || std::holds_alternative<DirectionalLight>(light);
+    const auto shape = shapeOf(light);
+    return (shape && shape->width < narrow) || std::holds_alternative<DirectionalLight>(light);
 }
+
+/// Pixels, or their parts, with the shapes in front of them. Their edges cross pixels: what those
+/// count of a shape's flux is made up for by its exact flux.
+class Pixels {
+public:
+    Pixels(Examination& examination, const PictureGeometry& geometry, double turn,
+           const std::vector<Light>& others)
+        : examination_(examination), geometry_(geometry), turn_(turn) {
+        for (const Light& light : others) (shapeOf(light) ? shapes_ : smooth_).push_back(light);
+    }
+    ~Pixels() {
+        for (const Light& light : shapes_) {
+            const Shape shape = *shapeOf(light);
+            for (std::size_t c = 0; c < 3; ++c) missing_[c] += shape.radiance[c] * shape.solidAngle;
+        }
+        examination_.addFlux(missing_);
+    }
+    Pixels(const Pixels&) = delete;
+    Pixels& operator=(const Pixels&) = delete;
+
+    void add(std::size_t column, std::size_t row, const Rgb& own, double solidAngle) {
+        const auto x = static_cast<double>(column), y = static_cast<double>(row);
+        if (shapes_.empty() || !onEdge(x, y)) return addPart(x + 0.5, y + 0.5, own, solidAngle);
+        constexpr double parts = edgeParts;
+        for (std::size_t k = 0; k < edgeParts * edgeParts; ++k)
+            addPart(x + (static_cast<double>(k % edgeParts) + 0.5) / parts,
+                    y + (static_cast<double>(k / edgeParts) + 0.5) / parts, own,
+                    solidAngle / (parts * parts));
+    }
+
+private:
+    Direction direction(double x, double y) const {
+        return rotateAboutZ(geometry_.direction(x, y), turn_);
+    }
+    bool onEdge(double x, double y) const {
+        const Rgb middle = radianceFrom(shapes_, direction(x + 0.5, y + 0.5));
+        for (const double u : {0.0, 1.0})
+            for (const double v : {0.0, 1.0})
+                if (radianceFrom(shapes_, direction(x + u, y + v)) != middle) return true;
+        return false;
+    }
+    void addPart(double x, double y, const Rgb& own, double solidAngle) {
+        Rgb seen = own;
+        if (!shapes_.empty() || !smooth_.empty()) {
+            const Direction towards = direction(x, y);
+            const Rgb smooth = radianceFrom(smooth_, towards),
+                      shape = radianceFrom(shapes_, towards);
+            for (std::size_t c = 0; c < 3; ++c) {
+                seen[c] += smooth[c] + shape[c];
+                missing_[c] -= shape[c] * solidAngle;
+            }
+        }
+        if (examination_.add(seen, solidAngle)) examination_.setPeakDirection(direction(x, y));
+    }
+
+    Examination& examination_;
+    const PictureGeometry geometry_;
+    const double turn_;
+    std::vector<Light> smooth_, shapes_;
+    Rgb missing_{};
+};
 
 /// The pixels of a picture, or of a grid, with what `others` add.
 void addPixels(Examination& examination, const PictureLight* picture,
                const std::vector<Light>& others) {
     const PictureGeometry g =
         picture ? fileGeometryOf(*picture) : PictureGeometry{PictureLayout::latlong, 1024, 512};
-    const double turn = picture ? picture->turn : 0;
+    Pixels pixels(examination, g, picture ? picture->turn : 0, others);
     const auto addRow = [&](std::size_t row, std::span<const float> rgb) {
         const bool latlong = g.layout == PictureLayout::latlong;
         const double ofRow = latlong ? g.solidAngle(0, row) : 0;
-        const auto direction = [&](std::size_t column) {
-            return rotateAboutZ(
-                g.direction(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5),
-                turn);
-        };
         for (std::size_t column = 0; column < g.width; ++column) {
-            Rgb seen = others.empty() ? Rgb{} : radianceFrom(others, direction(column));
-            for (std::size_t c = 0; c < 3 && !rgb.empty(); ++c) seen[c] += rgb[3 * column + c];
-            if (examination.add(seen, latlong ? ofRow : g.solidAngle(column, row))) {
-                examination.setPeakDirection(direction(column));
-            }
+            Rgb own{};
+            for (std::size_t c = 0; c < 3 && !rgb.empty(); ++c) own[c] = rgb[3 * column + c];
+            pixels.add(column, row, own, latlong ? ofRow : g.solidAngle(column, row));
         }
     };
     if (picture) {
@@ -184,13 +266,13 @@ LightHealth examine(const std::vector<Light>& lights) {
     Examination examination;
     if (picture || !others.empty()) addPixels(examination, picture, others);
     for (const Light& light : small) {
-        if (const auto* disc = std::get_if<DiscLight>(&light)) {
-            Rgb behind = radianceFrom(others, disc->towards);
+        if (const auto shape = shapeOf(light)) {
+            Rgb behind = radianceFrom(others, shape->towards);
             if (picture) {
-                const Rgb more = radianceOf(*picture, disc->towards);
+                const Rgb more = radianceOf(*picture, shape->towards);
                 for (std::size_t c = 0; c < 3; ++c) behind[c] += more[c];
             }
-            examination.addDisc(*disc, behind);
+            examination.addShape(*shape, behind);
         }
     }
     for (const Light& light : small) {
@@ -208,6 +290,7 @@ std::string_view kindOf(const Light& light) {
         std::string_view operator()(const SkyLight&) const { return "sky"; }
         std::string_view operator()(const PictureLight&) const { return "picture"; }
         std::string_view operator()(const DirectionalLight&) const { return "direction"; }
+        std::string_view operator()(const CoefficientLight&) const { return "coefficients"; }
     };
     return std::visit(Names{}, light);
 }

@@ -1,7 +1,8 @@
 #include <hshfit/light/light_nodes.h>
 
+#include <hshfit/light/coefficient_light.h>
+#include <hshfit/light/internal/cap_nodes.h>
 #include <hshfit/light/internal/picture_nodes.h>
-#include <hshfit/quadrature/quadrature.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,110 +10,6 @@
 
 namespace hshfit::inline light {
 namespace {
-
-Direction scaled(double a, const Direction& u) {
-    return {a * u.x, a * u.y, a * u.z};
-}
-Direction plus(const Direction& u, const Direction& v) {
-    return {u.x + v.x, u.y + v.y, u.z + v.z};
-}
-Direction cross(const Direction& a, const Direction& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-int grown(double nodes, int level) {
-    return std::max(2, static_cast<int>(std::ceil(nodes * std::pow(1.5, level))));
-}
-
-/// The part of a cap about `axis` that lies above the plane across `above`, if there is one.
-struct Cap {
-    Direction axis;
-    double radius = pi;
-    std::optional<Direction> above = {};
-};
-
-using Emit = std::function<void(const Direction&, double solidAngle)>;
-
-/// Rings about the axis in panels that end where the plane touches a ring; each ring is whole, or
-/// an arc with Gauss nodes.
-class CapNodes {
-public:
-    CapNodes(const Cap& cap, int order, int level, const Emit& emit)
-        : cap_(cap), order_(order), level_(level), emit_(emit) {
-        u_ = std::abs(cap.axis.z) < 0.9 ? Direction{0, 0, 1} : Direction{1, 0, 0};
-        if (cap.above) {
-            height_ = std::clamp(dot(cap.axis, *cap.above), -1.0, 1.0);
-            const Direction across = cross(cap.axis, *cap.above);
-            slope_ = std::sqrt(dot(across, across));
-            if (slope_ > 1e-9) u_ = *cap.above;
-        }
-        u_ = plus(u_, scaled(-dot(u_, cap.axis), cap.axis));
-        u_ = scaled(1 / std::sqrt(dot(u_, u_)), u_);
-        v_ = cross(cap.axis, u_);
-    }
-
-    void run() const {
-        std::vector<double> ends{0, cap_.radius};
-        if (cap_.above) {
-            const double tilt = std::atan2(slope_, height_), touch = std::abs(pi / 2 - tilt);
-            for (const double end : {touch, pi - touch})
-                if (end > 1e-12 && end < cap_.radius - 1e-12) ends.push_back(end);
-        }
-        std::sort(ends.begin(), ends.end());
-        for (std::size_t k = 0; k + 1 < ends.size(); ++k) panel(ends[k], ends[k + 1]);
-    }
-
-private:
-    /// Half of the arc of a ring above the plane, about u.
-    double halfArc(double chi) const {
-        if (!cap_.above) return pi;
-        const double across = std::sin(chi) * slope_, ahead = std::cos(chi) * height_;
-        if (std::abs(ahead) >= across) return ahead > 0 ? pi : 0;
-        return std::acos(std::clamp(-ahead / across, -1.0, 1.0));
-    }
-
-    void panel(double low, double high) const {
-        const double middle = (low + high) / 2, half = (high - low) / 2;
-        const double arc = halfArc(middle);
-        if (arc <= 0) return;
-        const bool whole = arc >= pi;
-        const GaussRule& rule =
-            gaussLegendre(grown(6 + order_ * half * (whole ? 0.8 : 1.2), level_));
-        for (std::size_t r = 0; r < rule.nodes.size(); ++r) {
-            // Arcs grow like a root from the ends of their panel: clustered there.
-            const double t = rule.nodes[r];
-            const double at = whole ? t : std::sin(pi / 2 * t);
-            const double rate = whole ? 1 : pi / 2 * std::cos(pi / 2 * t);
-            const double chi = middle + half * at;
-            ring(chi, whole ? pi : halfArc(chi), std::sin(chi) * half * rate * rule.weights[r]);
-        }
-    }
-
-    void ring(double chi, double arc, double weight) const {
-        const double s = std::sin(chi), c = std::cos(chi);
-        const bool whole = arc >= pi;
-        const int count = grown(
-            (whole ? 2 : 1.2 * arc / pi + 0.4) * order_ * std::min(1.0, s + .1) + (whole ? 8 : 6),
-            level_);
-        const GaussRule& rule = gaussLegendre(count);
-        for (int j = 0; j < count; ++j) {
-            const auto k = static_cast<std::size_t>(j);
-            const double psi = arc * (whole ? (2 * j + 1.0) / count - 1 : rule.nodes[k]);
-            const double share = arc * (whole ? 2.0 / count : rule.weights[k]);
-            Direction d = plus(scaled(c, cap_.axis),
-                               plus(scaled(s * std::cos(psi), u_), scaled(s * std::sin(psi), v_)));
-            // Rings about the pole of the frame have one height, bit by bit.
-            if (cap_.axis.z == 1) d.z = c;
-            emit_(d, weight * share);
-        }
-    }
-
-    Cap cap_;
-    int order_, level_;
-    const Emit& emit_;
-    Direction u_, v_;
-    double height_ = 1, slope_ = 0;  ///< of the axis to the plane: cosine and sine of its tilt
-};
 
 /// Largest order for which the sharp peak of a sky about the sun is resolved by rings about it.
 constexpr int ordersAboutSun = 32;
@@ -127,10 +24,8 @@ struct AddLight {
     bool hemisphere() const { return domain.normal.has_value(); }
 
     void cap(const Cap& cap, const std::function<Rgb(const Direction&)>& radiance) const {
-        const Emit emit = [&](const Direction& d, double weight) {
-            nodes.add(d, radiance(d), weight);
-        };
-        CapNodes(cap, order, level, emit).run();
+        addCapNodes(cap, order, level,
+                    [&](const Direction& d, double weight) { nodes.add(d, radiance(d), weight); });
     }
 
     void operator()(const DiscLight& light) const {
@@ -140,7 +35,7 @@ struct AddLight {
     }
 
     void operator()(const SkyLight& light) const {
-        const Direction up = frame.toLocal({0, 0, 1}), down = scaled(-1, up);
+        const Direction up = frame.toLocal({0, 0, 1}), down = Direction{-up.x, -up.y, -up.z};
         const auto sky = [&](const Direction& d) {
             // The world's horizon belongs to the sky, whatever rounding makes of it.
             Direction world = frame.toWorld(d);
@@ -182,6 +77,23 @@ struct AddLight {
 
     void operator()(const PictureLight& light) const {
         addPictureNodes(light, domain, order, level, nodes);
+    }
+
+    /// The bands of the light and those asked for share the nodes.
+    void operator()(const CoefficientLight& light) const {
+        Cap part{.axis = {0, 0, 1}, .radius = hemisphere() ? pi / 2 : pi};
+        if (light.coefficients->domain == LightCoefficients::Domain::hemisphere)
+            part.above = frame.toLocal(light.normal);
+        std::vector<Direction> local, world;
+        std::vector<double> weights;
+        addCapNodes(part, std::max(order, light.coefficients->order), level,
+                    [&](const Direction& d, double weight) {
+                        local.push_back(d);
+                        world.push_back(frame.toWorld(d));
+                        weights.push_back(weight);
+                    });
+        const std::vector<Rgb> radiance = radianceOf(light, world);
+        for (std::size_t k = 0; k < local.size(); ++k) nodes.add(local[k], radiance[k], weights[k]);
     }
 
 private:

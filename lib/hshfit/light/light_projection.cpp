@@ -2,6 +2,7 @@
 
 #include <hshfit/bases/sh.h>
 #include <hshfit/error.h>
+#include <hshfit/light/coefficient_light.h>
 #include <hshfit/light/latlong_projection.h>
 #include <hshfit/light/light_energy.h>
 #include <hshfit/light/node_moments.h>
@@ -92,6 +93,15 @@ struct ExactMoments {
     }
     bool operator()(const PanelLight&) const { return false; }
     bool operator()(const SkyLight&) const { return false; }
+    bool operator()(const CoefficientLight& light) const {
+        if (light.coefficients->domain != LightCoefficients::Domain::sphere) return false;
+        const Moments own = harmonicsOf(light, basis.order(), basis.condonShortley());
+        for (std::size_t k = 0; k < own.size(); ++k) moments[k] += own[k];
+        energy = 0;
+        for (const double value : harmonicsOf(light, light.coefficients->order, false))
+            *energy += value * value;
+        return true;
+    }
 
 private:
     std::size_t index(std::size_t channel, int l, int m) const {

@@ -1,5 +1,7 @@
 #include <hshfit/light/light_samples.h>
 
+#include <hshfit/light/coefficient_light.h>
+#include <hshfit/light/internal/cap_nodes.h>
 #include <hshfit/light/internal/sky_nodes.h>
 #include <hshfit/light/picture_light.h>
 #include <hshfit/light/sky.h>
@@ -68,6 +70,7 @@ struct RadianceFrom {
     Rgb operator()(const SkyLight& light) const { return radianceOf(light, world); }
     Rgb operator()(const PictureLight& light) const { return radianceOf(light, world); }
     Rgb operator()(const DirectionalLight&) const { return {}; }
+    Rgb operator()(const CoefficientLight& light) const { return radianceOf(light, world); }
 };
 
 /// Adds the nodes of one light at one level.
@@ -118,6 +121,22 @@ struct AddNodes {
     void operator()(const DirectionalLight& light) const {
         samples.add(frame.toLocal(light.towards), light.irradiance, 1);
     }
+
+    void operator()(const CoefficientLight& light) const {
+        Cap part{.axis = {0, 0, 1}, .radius = pi / 2};
+        if (light.coefficients->domain == LightCoefficients::Domain::hemisphere)
+            part.above = frame.toLocal(light.normal);
+        std::vector<Direction> local, world;
+        std::vector<double> weights;
+        addCapNodes(part, light.coefficients->order, level, [&](const Direction& d, double weight) {
+            local.push_back(d);
+            world.push_back(frame.toWorld(d));
+            weights.push_back(weight);
+        });
+        const std::vector<Rgb> radiance = radianceOf(light, world);
+        for (std::size_t k = 0; k < local.size(); ++k)
+            samples.add(local[k], radiance[k], weights[k]);
+    }
 };
 
 /// Point k of the lattice on the unit square.
@@ -165,6 +184,9 @@ struct AddLattice {
     void operator()(const DirectionalLight& light) const {
         samples.add(frame.toLocal(light.towards), light.irradiance, 1);
     }
+    void operator()(const CoefficientLight& light) const {
+        hemisphere([&](const Direction& world) { return radianceOf(light, world); });
+    }
 
 private:
     template <class Radiance>
@@ -198,7 +220,8 @@ Direction Frame::toLocal(const Direction& d) const {
 }
 
 void LightSamples::add(const Direction& local, const Rgb& radiance, double solidAngle) {
-    const double total = radiance[0] + radiance[1] + radiance[2];
+    // Coefficients of light ring below 0.
+    const double total = std::abs(radiance[0]) + std::abs(radiance[1]) + std::abs(radiance[2]);
     if (!(local.z > 0) || !(total * solidAngle > 0)) return;
     const Direction d = normalised(local);
     x.push_back(d.x);

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <hshfit/brdf/directions.h>
+#include <hshfit/coefficients/light_coefficients.h>
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -88,6 +90,17 @@ struct DirectionalLight {
     Rgb irradiance{};
 };
 
-using Light = std::variant<DiscLight, PanelLight, SkyLight, PictureLight, DirectionalLight>;
+/// Radiance by coefficients: the sum of the series on the whole sphere, or on a hemisphere and 0
+/// beside it. It rings, and may be below 0 (coefficient_light.h).
+struct CoefficientLight {
+    std::string file;
+    std::shared_ptr<const LightCoefficients> coefficients;
+    std::shared_ptr<const Basis> basis;    ///< of the coefficients
+    Direction tangent, bitangent, normal;  ///< the axes of the coefficients in the world
+    double scale = 1;
+};
+
+using Light =
+    std::variant<DiscLight, PanelLight, SkyLight, PictureLight, DirectionalLight, CoefficientLight>;
 
 }  // namespace hshfit::inline light

@@ -17,6 +17,9 @@ struct Turn {
     void operator()(SkyLight& light) const { turn(light.sun); }
     void operator()(PictureLight& light) const { light.turn += angle; }
     void operator()(DirectionalLight& light) const { turn(light.towards); }
+    void operator()(CoefficientLight& light) const {
+        for (Direction* axis : {&light.tangent, &light.bitangent, &light.normal}) turn(*axis);
+    }
 
 private:
     void turn(Direction& direction) const { direction = rotateAboutZ(direction, angle); }
@@ -35,6 +38,7 @@ struct Scale {
         light.scale *= factor;
     }
     void operator()(DirectionalLight& light) const { scale(light.irradiance); }
+    void operator()(CoefficientLight& light) const { light.scale *= factor; }
 
 private:
     void scale(Rgb& rgb) const {

@@ -1,6 +1,7 @@
 #include <hshfit/light/radiance.h>
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/projection/lane_products.h>
 #include <hshfit/representation/basis_matrix.h>
 
 #include <tbb/parallel_for.h>
@@ -13,6 +14,8 @@ namespace {
 
 /// Light samples evaluated at a time: a batch and its values stay in the cache.
 constexpr std::size_t batchSize = 1024;
+/// Values of a basis at a time: 256 KiB of double.
+constexpr std::size_t keptValues = 32768;
 
 /// Adds the radiance of one batch of f, [channel][k], under the light samples from `first` on.
 template <class Real>
@@ -104,22 +107,26 @@ Radiance outgoingRadiance(const PairEvaluator& evaluator, std::size_t channels,
 
 BasisLight::BasisLight(const Basis& basis, Quantity quantity, const LightSamples& light)
     : order_(basis.order()) {
+    static_assert(laneGroup >= 3);
     const auto slots = static_cast<std::size_t>(basis.slots());
-    for (auto& channel : slots_) channel.assign(slots, 0.0);
-    std::vector<double> table(batchSize * slots);
-    for (std::size_t first = 0; first < light.count(); first += batchSize) {
-        const std::size_t count = std::min(batchSize, light.count() - first);
-        basis.evaluate({&light.x[first], &light.y[first], &light.z[first], count}, table.data());
+    // Values of a batch, by slot, stay in the cache.
+    const std::size_t most = std::clamp<std::size_t>(keptValues / slots, 16, batchSize);
+    std::vector<double> table(most * slots), flux(most * laneGroup), sums(slots * laneGroup, 0.0);
+    for (std::size_t first = 0; first < light.count(); first += most) {
+        const std::size_t count = std::min(most, light.count() - first);
+        basis.evaluateColumns({&light.x[first], &light.y[first], &light.z[first], count},
+                              table.data());
         for (std::size_t k = 0; k < count; ++k) {
             const double cosine = quantity == Quantity::brdf ? light.z[first + k] : 1;
-            for (std::size_t c = 0; c < 3; ++c) {
-                const double flux = light.flux[c][first + k] * cosine;
-                if (flux == 0) continue;
-                for (std::size_t i = 0; i < slots; ++i) {
-                    slots_[c][i] += flux * table[k * slots + i];
-                }
-            }
+            for (std::size_t c = 0; c < 3; ++c)
+                flux[k * laneGroup + c] = light.flux[c][first + k] * cosine;
         }
+        addProducts({table.data(), slots, count}, {flux.data(), laneGroup, laneGroup}, count,
+                    sums.data(), laneGroup);
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+        slots_[c].resize(slots);
+        for (std::size_t i = 0; i < slots; ++i) slots_[c][i] = sums[i * laneGroup + c];
     }
 }
 

@@ -199,6 +199,7 @@ double extentOf(const Light& light) {
     if (const auto* disc = std::get_if<DiscLight>(&light)) return 2 * disc->radius;
     if (const auto* panel = std::get_if<PanelLight>(&light))
         return std::max(panel->width, panel->height);
+    if (std::holds_alternative<CoefficientLight>(light)) return pi;
     return 0;
 }
 
@@ -226,7 +227,7 @@ struct DirectIntegral::Parts {
         }
     }
     LightCells cells;
-    std::vector<Light> compact;  ///< discs, panels, directional lights
+    std::vector<Light> compact;  ///< discs, panels, directional lights, series
 };
 
 DirectIntegral::DirectIntegral(std::span<const Light> lights)
