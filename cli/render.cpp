@@ -28,7 +28,7 @@ struct RenderArguments {
     std::vector<int> orders;
     std::string output, exposure = "auto", mesh, up = "y", by = "both", view = "75,0", outgoing;
     int size = SphereOptions{}.size, samples = 0;
-    double dome = SphereRig{}.dome, tolerance = jobs::RenderOptions{}.tolerance;
+    double fieldOfView = 0, dome = SphereRig{}.dome, tolerance = jobs::RenderOptions{}.tolerance;
     bool cosine = false;
     /// Whether an option was given that the spheres under point lights do not have.
     bool surface = false, domeGiven = false;
@@ -191,6 +191,7 @@ jobs::RenderOptions optionsOf(const RenderArguments& arguments) {
     const auto view = parseView(arguments.view);
     options.viewTheta = view[0];
     options.viewPhi = view[1];
+    options.fieldOfView = arguments.fieldOfView;
     options.tolerance = arguments.tolerance;
     return options;
 }
@@ -226,6 +227,7 @@ Json surfaceDocument(const RenderArguments& arguments, const jobs::RenderOptions
     for (const std::string& light : options.lights) document["lights"].push_back(light);
     document["dome"] = options.rig.dome;
     document["view"] = {{"theta", options.viewTheta}, {"phi", options.viewPhi}};
+    document["field_of_view"] = options.fieldOfView;
     document["mesh"] = nullptr;
     if (!rendered.mesh.empty()) {
         document["mesh"] = {{"file", rendered.mesh},
@@ -295,6 +297,12 @@ void addSurfaceOptions(CLI::App& command, RenderArguments& arguments) {
         ->capture_default_str();
     command.add_option("--view", arguments.view, "THETA,PHI: the direction to the viewer, degrees")
         ->capture_default_str()
+        ->each(given);
+    command
+        .add_option("--field-of-view", arguments.fieldOfView,
+                    "Degrees from edge to edge of a perspective picture (default: lines of sight "
+                    "are parallel)")
+        ->check(CLI::Range(0.1, 170.0))
         ->each(given);
     command.add_option("--by", arguments.by, "The way in which light and material meet")
         ->check(CLI::IsMember({"coefficients", "integration", "both"}))

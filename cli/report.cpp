@@ -39,6 +39,11 @@ std::string summary(const ReportEntry& entry) {
                             reached ? fmt::format("{} coefficients (order {})",
                                                   reached->coefficients, reached->order)
                                     : fmt::format("more than {}", last.coefficients));
+        // The square root of the missing energy is the error in L2.
+        if (const auto within = firstReaching(curve, 0.9999); within && !curve.bestTerms) {
+            text.pop_back();
+            text += fmt::format("; within 1 %: order {}\n", within->order);
+        }
     }
     return text;
 }

@@ -168,7 +168,7 @@ public:
         : options_(options),
           listener_(listener),
           result_(result),
-          view_(radians(options.viewTheta), radians(options.viewPhi)),
+          view_(radians(options.viewTheta), radians(options.viewPhi), radians(options.fieldOfView)),
           columns_(columnsOf(options)),
           lights_(lightsOf(options, view_)),
           points_(pointsOf(options, view_, result)),

@@ -33,6 +33,7 @@ struct RenderOptions {
     int size = 256;
     int samples = 2;                     ///< n: n x n a pixel
     double viewTheta = 75, viewPhi = 0;  ///< direction to the viewer in the world, degrees
+    double fieldOfView = 0;              ///< of perspective, degrees; 0: parallel lines of sight
     double tolerance = IntegrationOptions{}.tolerance;
 };
 

@@ -87,6 +87,60 @@ TEST_F(Cli, RenderComparesCoefficientsWithIntegration) {
     EXPECT_GT(pictures[1]["mean_radiance"], 0.5);
 }
 
+/// The least order of hsh whose coefficients of f cos(theta_i) miss at most 1 %: a captured energy
+/// of 0.9999.
+int enoughFor(const Json& report) {
+    for (const Json& point : report["reports"][0]["curves"][0]["points"])
+        if (point["accuracy"] >= 0.9999) return point["order"];
+    return 0;
+}
+
+/// A sample of docs/figures/render_within.py.
+TEST_F(Cli, RenderIsWithinOnePercentAtTheOrderThatTheReportCallsEnough) {
+    for (const char* material : {"oren-nayar:sigma=30", "minnaert:k=1.5", "phong:exponent=22"}) {
+        const Answer report = run(std::string("report ") + material +
+                                  " --bases hsh --max-order 16 --outgoing 64 --cosine --json");
+        ASSERT_EQ(report.code, 0) << report.err;
+        const int order = enoughFor(Json::parse(report.out));
+        ASSERT_GT(order, 1) << material;
+        for (const char* light : {"uniform", "sun:elevation=40,azimuth=20", "panel:elevation=50"}) {
+            const Answer answer = run(std::string("render ") + material + " --cosine --order " +
+                                      std::to_string(order) + " --light " + light +
+                                      " --size 24 --samples 1 --json -o " + path("a.exr"));
+            ASSERT_EQ(answer.code, 0) << answer.err;
+            EXPECT_LT(Json::parse(answer.out)["pictures"][1]["relative_l2"], 0.01)
+                << material << " under " << light;
+            EXPECT_EQ(answer.err, "") << material << " under " << light;
+        }
+    }
+}
+
+TEST_F(Cli, RenderSaysThatAnOrderWhichIsEnoughMissesThePicture) {
+    // Eight outgoing elevations are too few to interpolate a lobe between.
+    const Answer answer =
+        run("render phong:exponent=22 --cosine --order 14 --outgoing 8 --light sun:elevation=40 "
+            "--size 24 --samples 1 --json -o " +
+            path("a.exr"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const Json picture = Json::parse(answer.out)["pictures"][1];
+    EXPECT_LT(picture["missed"], 0.01);
+    EXPECT_GT(picture["relative_l2"], 0.01);
+    EXPECT_NE(answer.err.find("although the coefficients are within"), std::string::npos);
+    EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1);
+}
+
+TEST_F(Cli, RenderInPerspective) {
+    const Answer answer = run(
+        "render lambert --light uniform --by integration --size 16 --samples 1 --field-of-view 60 "
+        "--json -o " +
+        path("s.exr"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "render"));
+    EXPECT_EQ(Json::parse(answer.out)["field_of_view"], 60);
+    expectError("render lambert --light uniform --field-of-view 180 -o " + path("t.png"), 2,
+                "--field-of-view", 1);
+}
+
 TEST_F(Cli, RenderLightsMeshes) {
     write("quad.obj", "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 1 4 3 2\n");
     const Answer answer = run("render lambert --mesh " + path("quad.obj") +

@@ -76,8 +76,8 @@ private:
 /// Coefficients of materials met with light at single points.
 class CoefficientShader {
 public:
-    CoefficientShader(std::span<const Coefficients* const> materials, const View& view)
-        : materials_(materials), view_(view) {
+    explicit CoefficientShader(std::span<const Coefficients* const> materials)
+        : materials_(materials) {
         const Coefficients& one = *materials.front();
         basis_ = bases::make(one.basis, one.order, {.condonShortley = one.condonShortley});
         quantity_ = one.quantity;
@@ -89,11 +89,12 @@ public:
     }
 
     /// [material]; returns the number of light samples.
-    std::size_t radiance(const LightAbove& light, const Direction& normal, Rgb* out) const {
+    std::size_t radiance(const LightAbove& light, const Direction& normal, const Direction& viewer,
+                         Rgb* out) const {
         const Frame frame = frameAt(normal);
         const LightSamples samples = light.at(frame);
         const BasisLight inBasis(*basis_, quantity_, samples);
-        const Direction wo = frame.toLocal(view_.towards);
+        const Direction wo = frame.toLocal(viewer);
         std::vector<double> c;
         for (std::size_t k = 0; k < materials_.size(); ++k) {
             const Coefficients& material = *materials_[k];
@@ -111,7 +112,6 @@ public:
 
 private:
     std::span<const Coefficients* const> materials_;
-    const View& view_;
     std::unique_ptr<Basis> basis_;
     Quantity quantity_ = Quantity::brdf;
 };
@@ -134,17 +134,18 @@ struct ChosenLight {
 };
 
 ChosenLight chooseLight(const CoefficientShader& shader, std::size_t materials,
-                        const SurfacePoints& points, std::span<const Light> lights,
-                        double tolerance) {
-    std::vector<Direction> normals;
+                        const SurfacePoints& points, const View& view,
+                        std::span<const Light> lights, double tolerance) {
+    std::vector<std::size_t> compared;
     const std::size_t step = std::max<std::size_t>(1, points.count() / comparedPoints);
     for (std::size_t k = step / 2; k < points.count(); k += step) {
-        normals.push_back(points.normals[k]);
+        compared.push_back(k);
     }
     const auto shaded = [&](const LightAbove& light) {
-        std::vector<Rgb> radiance(normals.size() * materials);
-        tbb::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t k) {
-            shader.radiance(light, normals[k], radiance.data() + k * materials);
+        std::vector<Rgb> radiance(compared.size() * materials);
+        tbb::parallel_for(std::size_t{0}, compared.size(), [&](std::size_t k) {
+            shader.radiance(light, points.normals[compared[k]], points.viewer(compared[k], view),
+                            radiance.data() + k * materials);
         });
         return radiance;
     };
@@ -173,7 +174,7 @@ LitPicture renderByIntegration(const Brdf& brdf, const SurfacePoints& points, co
     forBlocks(points.count(), progress, [&](std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k) {
             const Frame frame = frameAt(points.normals[k]);
-            facts[k] = light.at(brdf, frame, frame.toLocal(view.towards), options);
+            facts[k] = light.at(brdf, frame, frame.toLocal(points.viewer(k, view)), options);
             radiance[k] = facts[k].radiance;
         }
     });
@@ -197,16 +198,17 @@ std::vector<LitPicture> renderByCoefficients(std::span<const Coefficients* const
                                              const SurfacePoints& points, const View& view,
                                              std::span<const Light> lights,
                                              const CoefficientShading& options) {
-    const CoefficientShader shader(materials, view);
+    const CoefficientShader shader(materials);
     const std::vector<Light> pictured = withoutCostlySkies(lights);
     const ChosenLight chosen =
-        chooseLight(shader, materials.size(), points, pictured, options.tolerance);
+        chooseLight(shader, materials.size(), points, view, pictured, options.tolerance);
     std::vector<Radiance> radiance(materials.size(), Radiance(points.count()));
     std::vector<std::size_t> samples(points.count());
     forBlocks(points.count(), options.progress, [&](std::size_t first, std::size_t last) {
         std::vector<Rgb> at(materials.size());
         for (std::size_t k = first; k < last; ++k) {
-            samples[k] = shader.radiance(chosen.light, points.normals[k], at.data());
+            samples[k] =
+                shader.radiance(chosen.light, points.normals[k], points.viewer(k, view), at.data());
             for (std::size_t i = 0; i < at.size(); ++i) radiance[i][k] = at[i];
         }
     });

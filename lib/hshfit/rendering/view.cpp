@@ -29,37 +29,78 @@ Direction directionOf(const MeshVector& v) {
     return {v[0], v[1], v[2]};
 }
 
-/// The normal at (x, y) of the picture in units of the sphere's radius, up and to the right of its
-/// middle; none beside the surface.
-using NormalAt = std::function<std::optional<Direction>(double x, double y)>;
+/// The normal that a line of sight meets, and the direction back to the viewer.
+struct Seen {
+    Direction normal, viewer;
+};
+/// At (x, y) of the picture in units of the sphere's radius, up and to the right of its middle;
+/// none beside the surface.
+using SeenAt = std::function<std::optional<Seen>(double x, double y)>;
 
-SurfacePoints pointsBy(const NormalAt& normalAt, int size, int samples) {
+SurfacePoints pointsBy(const SeenAt& seenAt, const View& view, int size, int samples) {
     const auto edge = static_cast<std::size_t>(size);
     const double n = samples, scale = 2 / (size * sphereRadius);
-    std::vector<std::vector<Direction>> rows(edge);
+    std::vector<std::vector<Seen>> rows(edge);
     std::vector<std::size_t> counts(edge * edge);
     tbb::parallel_for(std::size_t{0}, edge, [&](std::size_t row) {
         for (std::size_t column = 0; column < edge; ++column) {
             for (int i = 0; i < samples * samples; ++i) {
                 const double across = (i % samples + 0.5) / n, down = (i / samples + 0.5) / n;
-                const auto normal =
-                    normalAt(scale * (static_cast<double>(column) + across) - 1 / sphereRadius,
-                             1 / sphereRadius - scale * (static_cast<double>(row) + down));
-                if (!normal) continue;
-                rows[row].push_back(*normal);
+                const auto seen =
+                    seenAt(scale * (static_cast<double>(column) + across) - 1 / sphereRadius,
+                           1 / sphereRadius - scale * (static_cast<double>(row) + down));
+                if (!seen) continue;
+                rows[row].push_back(*seen);
                 ++counts[row * edge + column];
             }
         }
     });
-    SurfacePoints points{.size = size, .coverage = {}, .first = {0}, .normals = {}};
+    SurfacePoints points{.size = size, .coverage = {}, .first = {0}, .normals = {}, .viewers = {}};
     for (const std::size_t count : counts) {
         points.coverage.push_back(static_cast<float>(static_cast<double>(count) / (n * n)));
         points.first.push_back(points.first.back() + count);
     }
     for (const auto& row : rows) {
-        points.normals.insert(points.normals.end(), row.begin(), row.end());
+        for (const Seen& seen : row) {
+            points.normals.push_back(seen.normal);
+            if (view.fieldOfView > 0) points.viewers.push_back(seen.viewer);
+        }
     }
     return points;
+}
+
+/// Lines of sight in the picture's axes, about the middle of a surface of extent 1 that reaches
+/// `front` towards the viewer: parallel, or from an eye whose distance frames the surface.
+class Sight {
+public:
+    Sight(const View& view, double front) : front_(front) {
+        if (view.fieldOfView > 0) {
+            slope_ = sphereRadius * std::tan(view.fieldOfView / 2);
+            eye_ = front + 1 / slope_;
+        }
+    }
+    /// The eye of a sphere, whose outline is seen under the slope.
+    static Sight ofSphere(const View& view) {
+        Sight sight(view, 1);
+        if (view.fieldOfView > 0) sight.eye_ = std::hypot(1.0, 1 / sight.slope_);
+        return sight;
+    }
+    Direction origin(double x, double y) const {
+        if (!(slope_ > 0)) return {x, y, front_ + 1};
+        // A distant eye costs digits of single precision: from a plane before the surface.
+        const double gap = std::max(0.0, eye_ - front_ - 1);
+        return {slope_ * x * gap, slope_ * y * gap, eye_ - gap};
+    }
+    Direction along(double x, double y) const {
+        return slope_ > 0 ? normalised({slope_ * x, slope_ * y, -1}) : Direction{0, 0, -1};
+    }
+
+private:
+    double front_, slope_ = 0, eye_ = 0;
+};
+
+Direction opposite(const Direction& d) {
+    return {-d.x, -d.y, -d.z};
 }
 
 /// The place of a mesh in the picture's axes.
@@ -112,23 +153,29 @@ Direction seenNormal(const Mesh& mesh, const RayHit& hit, const Direction& towar
 
 }  // namespace
 
-View::View(double theta, double phi)
+View::View(double theta, double phi, double angle)
     : right{-std::sin(phi), std::cos(phi), 0},
       up{-std::cos(theta) * std::cos(phi), -std::cos(theta) * std::sin(phi), std::sin(theta)},
-      towards(directionFromAngles(theta, phi)) {}
+      towards(directionFromAngles(theta, phi)),
+      fieldOfView(angle) {}
 
 Direction View::toWorld(const Direction& d) const {
     return sum(d.x, right, d.y, up, d.z, towards);
 }
 
 SurfacePoints spherePoints(const View& view, int size, int samples) {
+    const Sight sight = Sight::ofSphere(view);
     return pointsBy(
-        [&](double x, double y) -> std::optional<Direction> {
-            const double squared = x * x + y * y;
-            if (squared >= 1) return std::nullopt;
-            return view.toWorld({x, y, std::sqrt(1 - squared)});
+        [&](double x, double y) -> std::optional<Seen> {
+            const Direction from = sight.origin(x, y), along = sight.along(x, y);
+            const double nearest = dot(from, along), squared = dot(from, from);
+            const double root = nearest * nearest - squared + 1;
+            if (!(root > 0)) return std::nullopt;
+            const double far = -nearest - std::sqrt(root);
+            const Direction normal = sum(1, from, far, along, 0, from);
+            return Seen{view.toWorld(normalised(normal)), view.toWorld(opposite(along))};
         },
-        size, samples);
+        view, size, samples);
 }
 
 SurfacePoints meshPoints(const Mesh& mesh, const View& view, int size, int samples) {
@@ -143,16 +190,16 @@ SurfacePoints meshPoints(const Mesh& mesh, const View& view, int size, int sampl
              static_cast<float>((p[2] - middle.z) / extent.half)};
     }
     const RayScene scene(centred);
-    const double start = extent.depth / extent.half + 1;
-    const Direction away{-view.towards.x, -view.towards.y, -view.towards.z};
+    const Sight sight(view, extent.depth / extent.half);
     return pointsBy(
-        [&](double x, double y) -> std::optional<Direction> {
-            const Direction origin = view.toWorld({x, y, start});
-            const auto hit = scene.firstHit({origin.x, origin.y, origin.z}, away);
+        [&](double x, double y) -> std::optional<Seen> {
+            const Direction origin = view.toWorld(sight.origin(x, y));
+            const Direction along = view.toWorld(sight.along(x, y)), back = opposite(along);
+            const auto hit = scene.firstHit({origin.x, origin.y, origin.z}, along);
             if (!hit) return std::nullopt;
-            return seenNormal(centred, *hit, view.towards);
+            return Seen{seenNormal(centred, *hit, back), back};
         },
-        size, samples);
+        view, size, samples);
 }
 
 Frame frameAt(const Direction& normal) {

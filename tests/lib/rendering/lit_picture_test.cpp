@@ -77,6 +77,37 @@ std::vector<Light> checkeredPicture() {
     return {picture};
 }
 
+TEST(View, PerspectiveSightsOfASphereEndAtTheEye) {
+    const double angle = radians(50);
+    const View near(radians(70), radians(25), angle);
+    const SurfacePoints points = spherePoints(near, size, 1);
+    // The outline is seen under sphereRadius of the edge: 1 / sqrt(d^2 - 1) = slope.
+    const double slope = sphereRadius * std::tan(angle / 2), d = std::sqrt(1 + 1 / (slope * slope));
+    ASSERT_EQ(points.viewers.size(), points.count());
+    ASSERT_GT(points.count(), 300U);
+    for (std::size_t k = 0; k < points.count(); ++k) {
+        const Direction &n = points.normals[k], &v = points.viewers[k];
+        EXPECT_NEAR(dot(n, n), 1, 1e-12);
+        EXPECT_GT(dot(n, v), 0);
+        const Direction gap{d * near.towards.x - n.x, d * near.towards.y - n.y,
+                            d * near.towards.z - n.z};
+        EXPECT_NEAR(dot(gap, v), std::sqrt(dot(gap, gap)), 1e-12);
+    }
+    // Less of the sphere is seen, in as many pixels.
+    EXPECT_NEAR(static_cast<double>(points.count()), static_cast<double>(sphere().count()),
+                0.03 * static_cast<double>(sphere().count()));
+    for (const Direction& n : points.normals) EXPECT_GT(dot(n, near.towards), 1 / d - 1e-12);
+}
+
+TEST(View, PerspectiveOfADistantEyeIsParallel) {
+    const Mesh mesh = sphereMesh(4);
+    const SurfacePoints far = meshPoints(mesh, View(1, 0.4, radians(0.1)), size, 1),
+                        parallel = meshPoints(mesh, View(1, 0.4), size, 1);
+    ASSERT_EQ(far.count(), parallel.count());
+    for (std::size_t k = 0; k < far.count(); ++k)
+        EXPECT_GT(dot(far.normals[k], parallel.normals[k]), 0.999);
+}
+
 TEST(LitPicture, AWhiteFurnaceHasRadianceOne) {
     const std::vector<Light> furnace = {SkyLight{.zenith = {1, 1, 1}, .ground = {1, 1, 1}}};
     const auto white = lambert(1);
