@@ -8,6 +8,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+
 namespace hshfit::cli {
 namespace {
 
@@ -53,6 +55,15 @@ std::string text(const Json& document) {
                     document["texel_bytes"].get<std::size_t>());
     for (const Json& file : document["files"])
         out += fmt::format("  {}\n", file["path"].get<std::string>());
+    for (const Json& light : document.value("lights", Json::array())) {
+        out += fmt::format(
+            "  light {}: {} bands{}, picture of {} bytes, within {:.2g} %\n",
+            light["light"].get<std::string>(), light["bands"].get<int>(),
+            light["captured"].is_null() ? std::string()
+                                        : fmt::format(" have {:.3g} % of its energy",
+                                                      100 * light["captured"].get<double>()),
+            light["picture_bytes"].get<std::size_t>(), 100 * light["picture_error"].get<double>());
+    }
     const Json& error = document["fit_error"];
     if (error.contains("reason")) {
         out += fmt::format("no error: {}\n", error["reason"].get<std::string>());
@@ -84,6 +95,14 @@ Json document(const jobs::Exported& exported, const std::string& folder) {
     if (exported.poor) document["poor"] = jobs::poorJson(*exported.poor);
     document["files"] = Json::array({{{"role", "sidecar"}, {"path", exported.sidecar}},
                                      {{"role", "test"}, {"path", exported.test}}});
+    for (const gpu::ViewerLight& light : exported.lights) {
+        document["lights"].push_back(
+            {{"light", light.name},
+             {"bands", light.coefficients.order},
+             {"captured", std::isfinite(light.captured) ? Json(light.captured) : Json()},
+             {"picture_bytes", light.rgbe.size()},
+             {"picture_error", light.pictureError}});
+    }
     for (const gpu::ExportedFile& file : exported.textures) {
         document["files"].push_back({{"role", gpu::roleName(file.role)},
                                      {"target", file.container},
@@ -159,6 +178,10 @@ void addExport(CLI::App& command, Globals& globals) {
     command.add_option("--source", options.source,
                        "BRDF that the error is measured against (default: as COEFFS says)");
     command.add_flag("--no-error", arguments->noError, "Do not measure the error");
+    command.add_option(
+        "--light", options.lights,
+        "Environment of the viewer: a light of hshfit list lights, a picture, or a sum "
+        "by '+'; repeated: several to choose from (default: a studio)");
     command.add_flag("--zstd", options.zstd, "Compress KTX2 with Zstandard");
     command.add_flag("--force", options.force, "Replace files that are there");
     command.callback([arguments, &globals] { runExport(*arguments, globals); });

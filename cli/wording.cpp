@@ -21,6 +21,7 @@ constexpr OptionRow options[] = {
     {"ConvertOptions::format", "--to"},
     {"ConvertOptions::measureLoss", "--report-loss"},
     {"ExportOptions::force", "--force"},
+    {"ExportOptions::lights", "--light"},
     {"ExportOptions::source", "--source"},
     {"FileSet::force", "--force"},
     {"FitOptions::accept", "--accept"},

@@ -8,6 +8,7 @@
 #include <hshfit/files/json_fields.h>
 #include <hshfit/gpu/containers/targets.h>
 #include <hshfit/gpu/viewer.h>
+#include <hshfit/light/catalog.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/wording.h>
 
@@ -135,14 +136,29 @@ void writeShaders(const Targets& chosen, const ExportOptions& options, const Lis
     }
 }
 
-void writeViewer(const Targets& chosen, const Brdf* source, const Listener& listener,
-                 FileSet& files, Exported& exported) {
-    const bool wanted = std::ranges::any_of(
+/// Early, so that a wrong light costs no measurement.
+std::vector<LightSpecification> lightsOf(const Targets& chosen, const ExportOptions& options) {
+    const bool viewer = std::ranges::any_of(
         chosen, [](const Target* target) { return target->kind == Target::Kind::viewer; });
-    if (!wanted) return;
+    std::vector<LightSpecification> lights;
+    for (const std::string& text : options.lights) lights.push_back(parseLights(text));
+    if (!viewer && !lights.empty()) {
+        throw UsageError(fmt::format("{} is for the target viewer, which is not among '{}'",
+                                     Setting{"ExportOptions::lights"}, options.targets));
+    }
+    if (viewer && lights.empty()) lights.push_back(parseLights(std::string(gpu::studioLight)));
+    return lights;
+}
+
+void writeViewer(const std::vector<LightSpecification>& lights, const Brdf* source,
+                 const Listener& listener, FileSet& files, Exported& exported) {
+    if (lights.empty()) return;
     const std::string file = exported.name + "_viewer.html";
-    files.write(
-        file, gpu::viewerPage(gpu::viewerInput(exported.payload, source, listener.part("viewer"))));
+    gpu::ViewerInput input = gpu::viewerInput(exported.payload, source, listener.part("viewer"));
+    for (const LightSpecification& light : lights)
+        input.lights.push_back(gpu::viewerLight(light, input.environmentOrder));
+    files.write(file, gpu::viewerPage(input));
+    exported.lights = std::move(input.lights);
     exported.texts.push_back({"viewer", "viewer", file});
 }
 
@@ -164,6 +180,7 @@ nlohmann::ordered_json errorJson(const ExportError& error) {
 Exported exportCoefficients(const std::string& path, const std::string& folder,
                             const ExportOptions& options, const Listener& listener) {
     const Targets chosen = gpu::selectTargets(options.targets);
+    const std::vector<LightSpecification> lights = lightsOf(chosen, options);
     const Exportable given = coefficientsOf(path, options, listener);
     const Coefficients& coefficients = given.coefficients;
     Exported exported;
@@ -185,7 +202,7 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
          .fitError = exported.error.split ? jsonText(errorJson(exported.error)) : std::string()},
         files);
     writeShaders(chosen, options, listener, files, exported);
-    writeViewer(chosen, source.brdf.get(), listener, files, exported);
+    writeViewer(lights, source.brdf.get(), listener, files, exported);
     files.commit();
     return exported;
 }

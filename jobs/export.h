@@ -7,6 +7,7 @@
 #include <hshfit/gpu/error_split.h>
 #include <hshfit/gpu/payload.h>
 #include <hshfit/gpu/shader.h>
+#include <hshfit/gpu/viewer_light.h>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -24,6 +25,9 @@ struct ExportOptions {
     std::string outgoing = {};  ///< set of the textures; empty: that of the coefficients
     std::string basis = "hsh";  ///< for the form halfway
     int order = 7;              ///< for the form halfway
+    /// Specifications of lights (light/catalog.h) that the viewer offers as its environment, each
+    /// on its own; empty: gpu::studioLight.
+    std::vector<std::string> lights = {};
     gpu::PackOptions pack = {};
     gpu::ShaderOptions shader = {};
     bool measureError = true;
@@ -52,6 +56,7 @@ struct Exported {
     std::string sidecar, test;  ///< names of files in the folder, as those below
     std::vector<gpu::ExportedFile> textures;
     std::vector<ExportedText> texts;
+    std::vector<gpu::ViewerLight> lights;  ///< of the viewer
 };
 
 /// Exports a coefficient file to `folder` as textures, shaders and a viewer with their error:

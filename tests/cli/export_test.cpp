@@ -56,6 +56,24 @@ TEST_F(Export, EveryTargetIsWrittenAndListed) {
     EXPECT_EQ(document["texel_bytes"], 12 * 12 * 8 * 4 * 2);
 }
 
+TEST_F(Export, ViewersCarryTheLightsThatAreGiven) {
+    const std::string job = "export " + path("ward.json") + " -o " + path("lit") + " --json ";
+    const Answer answer = run(job +
+                              "--target viewer --light sun:elevation=40 --light "
+                              "'sky:type=5+panel:width=20'");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "export"));
+    const Json lights = Json::parse(answer.out)["lights"];
+    ASSERT_EQ(lights.size(), 2u);
+    EXPECT_EQ(lights[1]["light"], "sky:type=5+panel:width=20");
+    EXPECT_EQ(lights[0]["picture_bytes"], 256 * 128 * 4);
+    const std::string page = read(path("lit/ward_viewer.html"));
+    EXPECT_NE(page.find("sun:elevation=40"), std::string::npos);
+    EXPECT_EQ(run(job + "--target glsl --light uniform").code, 2);
+    EXPECT_EQ(run(job + "--target viewer --light moon --force").code, 2);
+    EXPECT_EQ(run(job + "--target viewer --light absent.hdr --force").code, 3);
+}
+
 TEST_F(Export, SameBytesFromRunToRunWhateverTheThreads) {
     const std::string job = "export " + path("ward.json") +
                             " --basis-textures 16 --target "

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <random>
 #include <sstream>
 
@@ -127,6 +128,79 @@ TEST(Viewer, RefusesWhatItCannotShow) {
     const Payload grey = payloadOf(Channels::grey());
     EXPECT_THROW(viewerPage({.title = "", .payloads = {grey, grey, grey}}), UsageError);
     EXPECT_THROW(viewerPage({.title = "", .payloads = {grey}, .environmentOrder = 11}), UsageError);
+}
+
+TEST(Viewer, NamesAreThoseOfTheMaterialAndNotOfFolders) {
+    for (const auto& [source, name] : std::map<std::string, std::string>{
+             {"/some/where/cc_ibiza_sunset_rgb.bsdf", "cc_ibiza_sunset_rgb"},
+             {"gold-metallic.binary", "gold-metallic"},
+             {"rgb:data/x/paper.v2.bsdf", "paper.v2"},
+             {"maps/hall.hdr:turn=30,scale=0.5", "hall"},
+             {"ward:kd=0.1/0.2/0.3,ax=0.2", "ward:kd=0.1/0.2/0.3,ax=0.2"},
+             {"ggx:alpha=0.05", "ggx:alpha=0.05"},
+             {"lambert", "lambert"},
+             {"preset:hsh-phong", "preset:hsh-phong"},
+             {"", ""}})
+        EXPECT_EQ(shownName(source), name);
+    Payload payload = payloadOf(Channels::grey());
+    payload.head.source = "/somewhere/secret/satin.bsdf";
+    const ViewerInput input = viewerInput(payload, nullptr);
+    EXPECT_EQ(input.title, "satin");
+    EXPECT_EQ(viewerPage(input).find("secret"), std::string::npos);
+}
+
+/// Flux of the picture's texels, by their solid angles.
+Rgb fluxOf(const ViewerLight& light) {
+    const std::vector<float> radiance = decodeRgbe(light.rgbe);
+    Rgb flux{};
+    for (int row = 0; row < light.height; ++row) {
+        const double angle =
+            2 * pi / light.width *
+            (std::cos(pi * row / light.height) - std::cos(pi * (row + 1) / light.height));
+        for (int k = 3 * row * light.width; k < 3 * (row + 1) * light.width; ++k)
+            flux[static_cast<std::size_t>(k % 3)] +=
+                angle * static_cast<double>(radiance[static_cast<std::size_t>(k)]);
+    }
+    return flux;
+}
+
+TEST(ViewerLight, PicturesOfSmallLightsKeepTheirFlux) {
+    // The flux of light from one direction is its irradiance of a surface across; so is that of a
+    // sun, but for the cosine over half a degree.
+    for (const char* spec : {"directional:elevation=33,azimuth=71,irradiance=1/2/4",
+                             "sun:elevation=33,azimuth=71,irradiance=1/2/4"}) {
+        const Rgb flux = fluxOf(viewerLight(parseLights(spec), 4));
+        EXPECT_NEAR(flux[0], 1, 0.01) << spec;
+        EXPECT_NEAR(flux[1], 2, 0.01) << spec;
+        EXPECT_NEAR(flux[2], 4, 0.02) << spec;
+    }
+}
+
+TEST(ViewerLight, UniformLightIsOneCoefficientAndOneValue) {
+    const ViewerLight light = viewerLight(parseLights("uniform:radiance=3"), 5, 16);
+    EXPECT_EQ(light.rgbe.size(), 4 * 32 * 16u);
+    for (const float value : decodeRgbe(light.rgbe)) EXPECT_NEAR(value, 3, 3.0 / 255);
+    EXPECT_NEAR(light.coefficients.at(1)[0], 3 * std::sqrt(4 * pi), 1e-5);
+    EXPECT_NEAR(light.captured, 1, 1e-6);
+    EXPECT_LT(light.pictureError, 2.0 / 255);
+}
+
+TEST(ViewerLight, PicturesOfWideLightsHaveTheirCoefficients) {
+    for (const char* spec : {"sky:type=12,elevation=40,azimuth=70,radiance=2/3/5",
+                             "panel:elevation=20,azimuth=200,width=60,height=30,radiance=5/1/2",
+                             "sun:elevation=60,angle=25,radiance=4+uniform:radiance=0.2"}) {
+        const ViewerLight light = viewerLight(parseLights(spec), 7);
+        EXPECT_LT(light.pictureError, 0.01) << spec;
+        EXPECT_EQ(light.width, 256);
+    }
+}
+
+TEST(Viewer, LightsOfAnotherOrderAreRefused) {
+    const ViewerInput input{.title = "order",
+                            .payloads = {payloadOf(Channels::grey())},
+                            .environmentOrder = 5,
+                            .lights = {viewerLight(parseLights("uniform"), 4, 4)}};
+    EXPECT_THROW(viewerPage(input), UsageError);
 }
 
 TEST(Viewer, ReplacesAFileOnlyWithForce) {

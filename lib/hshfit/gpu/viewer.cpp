@@ -19,8 +19,8 @@
 
 namespace hshfit::embedded {
 extern const std::string_view viewer_page, viewer_style;
-extern const std::string_view viewer_shapes, viewer_sky, viewer_renderer, viewer_controls,
-    viewer_panes, viewer_main;
+extern const std::string_view viewer_parse_hdr, viewer_harmonics, viewer_environment, viewer_shapes,
+    viewer_renderer, viewer_controls, viewer_panes, viewer_light_panel, viewer_main;
 extern const std::string_view viewer_geometry_vert, viewer_geometry_frag, viewer_screen_vert,
     viewer_environment_glsl, viewer_exact_glsl, viewer_fit_glsl, viewer_shade_frag,
     viewer_composite_frag;
@@ -33,7 +33,7 @@ using Json = nlohmann::ordered_json;
 using kainjow::mustache::data;
 
 /// Directions a pixel and frame with which the exact pane integrates the environment.
-constexpr int exactSamples = 32;
+constexpr int exactSamples = 36;
 
 std::string paneName(const Payload& payload) {
     std::string name = payload.head.basis;
@@ -46,8 +46,9 @@ std::string_view asText(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// The payload that the page uploads: float16, without basis textures.
+/// The payload that the page uploads: float16, without basis textures or folders in its source.
 Payload shownPayload(Payload payload) {
+    payload.head.source = shownName(payload.head.source);
     payload.basisTexels.reset();
     if (payload.coefficients.number == Number::float16) return payload;
     const Texels& from = payload.coefficients;
@@ -103,6 +104,39 @@ Json exactJson(const ViewerInput& input) {
             {"texels", base64(asText(std::as_bytes(std::span(table.cubeRoots))))}};
 }
 
+std::string noteOf(const ViewerLight& light) {
+    const std::string energy =
+        std::isfinite(light.captured)
+            ? fmt::format("have {:.3g} % of its energy", 100 * light.captured)
+            : std::string("have a share of its energy that does not exist, as for every point");
+    return fmt::format(
+        "{}: {} bands {}. The picture, {} x {} in {:.0f} kB, has the same coefficients to {:.2g} "
+        "%.",
+        light.name, light.coefficients.order, energy, light.width, light.height,
+        static_cast<double>(light.rgbe.size()) / 1000, 100 * light.pictureError);
+}
+
+/// Coefficients of SH, [slot][R, G, B].
+Json lightJson(const ViewerLight& light) {
+    std::vector<double> values;
+    for (std::size_t j = 0; j < light.coefficients.slots(); ++j)
+        for (std::size_t c = 0; c < 3; ++c) values.push_back(light.coefficients.at(c)[j]);
+    return {
+        {"name", light.name},     {"width", light.width},
+        {"height", light.height}, {"coefficients", values},
+        {"note", noteOf(light)},  {"texels", base64(asText(std::as_bytes(std::span(light.rgbe))))}};
+}
+
+Json lightsJson(const ViewerInput& input) {
+    Json lights = Json::array();
+    for (const ViewerLight& light : input.lights) lights.push_back(lightJson(light));
+    if (lights.empty()) {
+        lights.push_back(
+            lightJson(viewerLight(parseLights(std::string(studioLight)), input.environmentOrder)));
+    }
+    return lights;
+}
+
 Json shadersJson() {
     using namespace embedded;
     return {{"geometryVertex", viewer_geometry_vert},
@@ -139,7 +173,7 @@ data notesOf(const ViewerInput& input) {
         "{} of {}, outgoing directions {}; half floats, and the shader as it is exported. No "
         "shadows and no light from one part to another.",
         first.head.quantity == Quantity::brdf ? "f" : "f cos θi",
-        first.head.source.empty() ? "an unnamed source" : first.head.source,
+        first.head.source.empty() ? "an unnamed source" : shownName(first.head.source),
         first.head.outgoing.spec()));
     return notes;
 }
@@ -159,6 +193,11 @@ void check(const ViewerInput& input) {
         throw UsageError(fmt::format("an environment of {} bands; the viewer takes 2 to 10",
                                      input.environmentOrder));
     }
+    for (const ViewerLight& light : input.lights) {
+        if (light.coefficients.order == input.environmentOrder) continue;
+        throw UsageError(fmt::format("{}: a light of {} bands in a viewer of {}", light.name,
+                                     light.coefficients.order, input.environmentOrder));
+    }
 }
 
 }  // namespace
@@ -174,11 +213,13 @@ std::string viewerPage(const ViewerInput& input) {
         document["order"] = std::max(document["order"].get<int>(), input.payloads[i].head.order);
     }
     document["exact"] = exactJson(input);
+    document["lights"] = lightsJson(input);
     document["shaders"] = shadersJson();
     std::string script;
     for (const std::string_view part :
-         {embedded::viewer_shapes, embedded::viewer_sky, embedded::viewer_renderer,
-          embedded::viewer_controls, embedded::viewer_panes, embedded::viewer_main}) {
+         {embedded::viewer_parse_hdr, embedded::viewer_harmonics, embedded::viewer_environment,
+          embedded::viewer_shapes, embedded::viewer_renderer, embedded::viewer_controls,
+          embedded::viewer_panes, embedded::viewer_light_panel, embedded::viewer_main}) {
         script += part;
     }
     data page;

@@ -2,6 +2,7 @@
 
 #include <hshfit/brdf/brdf.h>
 #include <hshfit/gpu/payload.h>
+#include <hshfit/gpu/viewer_light.h>
 #include <hshfit/gpu/viewer_reference.h>
 
 #include <functional>
@@ -21,15 +22,18 @@ struct ViewerInput {
     std::optional<ReferenceTable> reference = {};
     std::string noReference = "The source is not known.";  ///< shown where there is none
     /// Bands of the environment, which all panes share: 2 to 10.
-    int environmentOrder = 7;
+    int environmentOrder = 10;
+    /// Those that the page can choose from, in `environmentOrder` bands; none: studioLight.
+    std::vector<ViewerLight> lights = {};
 };
 
 /// One self-contained HTML page (WebGL 2, no network): a sphere and a teapot under a point
-/// light and an environment. It shows exact, both bases and their difference, side by side or
-/// divided, with controls for order and exposure, and numbers (docs/viewer.md). The panes
+/// light and an environment, one of `lights` or a picture that is dropped in. It shows exact, both
+/// bases and their difference, side by side or divided, with controls for order and exposure, and
+/// numbers (docs/viewer.md). The environment is turned by rotating its coefficients. The panes
 /// of the payloads run `shaderSource` of GLSL ES as it is exported; lower orders set stored
 /// bands to 0, which equals a lower order for every basis but lsosh. Throws UsageError for
-/// spectral payloads, more than two, or none.
+/// spectral payloads, more than two, or none, and for lights of another order.
 std::string viewerPage(const ViewerInput& input);
 
 /// Writes viewerPage(input) to `path`, complete or not at all. An existing file is replaced

@@ -28,7 +28,7 @@ Payload inOtherBasis(const Payload& payload, const Brdf& source,
 ViewerInput viewerInput(Payload payload, const Brdf* source,
                         std::function<void(std::size_t, std::size_t)> progress) {
     ViewerInput input;
-    input.title = payload.head.source.empty() ? "Coefficients" : payload.head.source;
+    input.title = payload.head.source.empty() ? "Coefficients" : shownName(payload.head.source);
     input.payloads.push_back(std::move(payload));
     if (!source) return input;
     try {

@@ -14,7 +14,7 @@ const shots = [
     name: 'viewer-phong',
     spec: 'phong:exponent=22',
     outgoing: '32',
-    view: 'frames=16&order=5&clamp=false&lightElevation=24',
+    view: 'frames=16&order=5&clamp=false&lighting=point&lightElevation=24',
   },
   {
     name: 'viewer-ward',
@@ -31,6 +31,17 @@ const shots = [
       'frames=8&cycles=4&order=10&layout=split&dividers=36,52,68&lighting=both' +
       '&azimuth=0&lightAzimuth=-52&lightElevation=36',
   },
+  {
+    name: 'viewer-light',
+    spec: 'ggx:alpha=0.35,F0=0.9/0.6/0.3',
+    outgoing: '32',
+    lights: [
+      'preetham:turbidity=3,elevation=25,azimuth=-110,radiance=2+uniform:radiance=0.1+' +
+        'sun:elevation=25,azimuth=-110,angle=3,irradiance=5/4.5/3.6',
+      'sky:type=12,elevation=40',
+    ],
+    view: 'frames=8&cycles=16&order=10&shape=teapot&lighting=sky&skyTurn=20&azimuth=-8&elevation=18',
+  },
 ];
 
 await finish(async () => {
@@ -38,11 +49,12 @@ await finish(async () => {
   const run = (...words) =>
     execFileSync(program, [...words, '--quiet'], { cwd: dirname(measured) });
   try {
-    for (const { name, spec, outgoing, view, dark } of shots) {
+    for (const { name, spec, outgoing, view, dark, lights = [] } of shots) {
       if (wanted.length > 0 && !wanted.includes(name)) continue;
       const coefficients = join(work, `${name}.json`);
       run('project', spec, '-o', coefficients, '--cosine', '--order', '10', '--outgoing', outgoing);
-      run('export', coefficients, '-o', work, '--target', 'viewer');
+      const light = lights.flatMap((one) => ['--light', one]);
+      run('export', coefficients, '-o', work, '--target', 'viewer', '--no-error', ...light);
       await withBrowser(
         'llvmpipe',
         async (page, complaints) => {

@@ -5,13 +5,13 @@ import { decoded, expect, finish, readJson, withBrowser } from './browser.mjs';
 
 const [driver, folder] = process.argv.slice(2);
 const address = pathToFileURL(join(folder, 'viewer.html')).href;
-const viewport = { width: 760, height: 560 };
+const viewport = { width: 600, height: 480 };
 
 const settled = (page) => page.waitForFunction(() => window.viewer?.settled);
 
 async function open(page, state) {
   await page.goto('about:blank');
-  await page.goto(`${address}#frames=1&cycles=1&${state}`);
+  await page.goto(`${address}#frames=1&cycles=1&lighting=point&${state}`);
   await settled(page);
 }
 
@@ -81,12 +81,139 @@ async function provePage(page, complaints) {
   expect(complaints.length === 0, `console: ${complaints.join('; ')}`);
 }
 
-// Under the environment `shade` has to agree with the quadrature of the exact pane.
-async function proveEnvironment(page) {
-  await open(page, 'order=8&lighting=sky&cycles=12');
+// The studio's light, whose bands beyond those of the page the pictures by coefficients miss.
+async function proveStudio(page) {
+  await open(page, 'order=8&lighting=sky&cycles=24');
   const { numbers, names } = await facts(page);
-  console.log(`environment: ${names[0]}: r.m.s. ${numbers[0].relative}`);
-  expect(numbers[0].relative < 0.04, 'shade and quadrature disagree');
+  console.log(`studio: ${names[0]}: r.m.s. ${numbers[0].relative}`);
+  expect(numbers[0].relative < 0.12, 'the studio differs');
+}
+
+// A Radiance file of two bands: radiance 1 + 0.9 d . axis, with an axis for each colour.
+function radianceFile(width, axes) {
+  const height = width / 2;
+  const head = Buffer.from(`#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y ${height} +X ${width}\n`);
+  const pixels = Buffer.alloc(4 * width * height);
+  for (let row = 0; row < height; ++row) {
+    const theta = (Math.PI * (row + 0.5)) / height;
+    for (let column = 0; column < width; ++column) {
+      const phi = Math.PI - (2 * Math.PI * (column + 0.5)) / width;
+      const d = [Math.sin(theta) * Math.cos(phi), Math.sin(theta) * Math.sin(phi), Math.cos(theta)];
+      const at = 4 * (row * width + column);
+      axes.forEach((axis, c) => {
+        const value = 1 + 0.9 * axis.reduce((sum, x, i) => sum + x * d[i], 0);
+        pixels[at + c] = Math.round(value * 128);
+      });
+      pixels[at + 3] = 129;
+    }
+  }
+  return Buffer.concat([head, pixels]);
+}
+
+const dropped = async (page, name, bytes) => {
+  const count = await page.evaluate(() => window.viewer.renderer.environments.length);
+  await page.evaluate(
+    ([text, fileName]) => {
+      const file = new File([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))], fileName);
+      const dataTransfer = new DataTransfer();
+      dataTransfer.items.add(file);
+      document.body.dispatchEvent(
+        new DragEvent('drop', { dataTransfer, bubbles: true, cancelable: true }),
+      );
+    },
+    [bytes.toString('base64'), name],
+  );
+  await page.waitForFunction(
+    (old) =>
+      window.viewer.renderer.environments.length > old ||
+      document.querySelector('#skyNote').classList.contains('warning'),
+    count,
+  );
+  await settled(page);
+  return page.textContent('#skyNote');
+};
+
+// A picture dropped in is projected and turned; what coefficients give agrees with the quadrature
+// of the exact pane, which reads the picture itself.
+async function proveDrop(page) {
+  const axes = [
+    [0.6, 0, 0.8],
+    [0, -0.6, 0.8],
+    [-0.48, 0.6, -0.64],
+  ];
+  await open(page, 'order=8&lighting=sky&cycles=12&skyTurn=70&skyTilt=-35');
+  const note = await dropped(page, 'two-bands.hdr', radianceFile(256, axes));
+  expect(/256 x 128 pixels, projected to 10 bands/.test(note), `note: ${note}`);
+  // radiance = sqrt(4 pi) Y_00 + 0.9 sqrt(4 pi / 3) (axis . (Y_11, Y_1-1, Y_10)).
+  const coefficients = await page.evaluate(() => [
+    ...window.viewer.renderer.environments.at(-1).coefficients,
+  ]);
+  const one = 0.9 * Math.sqrt((4 * Math.PI) / 3);
+  const expected = coefficients.map((_, k) => {
+    const slot = Math.floor(k / 3),
+      axis = axes[k % 3];
+    if (slot === 0) return Math.sqrt(4 * Math.PI);
+    return slot < 4 ? one * axis[[1, 2, 0][slot - 1]] : 0;
+  });
+  const gap = Math.max(...expected.map((x, k) => Math.abs(x - coefficients[k])));
+  // Mantissas of 8 bits, means of pixels taken at their middles.
+  console.log(`dropped: coefficients differ by ${gap}`);
+  expect(gap < 2e-3, `coefficients differ by ${gap}`);
+  const { numbers, names } = await facts(page);
+  console.log(`dropped: ${names[0]}: r.m.s. ${numbers[0].relative}`);
+  expect(numbers[0].relative < 0.04, 'shadeWorld and quadrature disagree');
+
+  // Turned with the mouse: other coefficients by rotation, no new projection, and still right.
+  const before = await page.evaluate(() => [...window.viewer.renderer.sky.light]);
+  await page.locator('#skyPicture').scrollIntoViewIfNeeded();
+  const box = await page.locator('#skyPicture').boundingBox();
+  await page.mouse.move(box.x + 60, box.y + 40);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 150, box.y + 60, { steps: 4 });
+  await page.mouse.up();
+  await settled(page);
+  const turned = await page.evaluate(() => ({
+    light: [...window.viewer.renderer.sky.light],
+    state: [window.viewer.state.skyTurn, window.viewer.state.skyTilt],
+  }));
+  const wanted = [70 - (90 * 360) / box.width, -35 - (20 * 180) / box.height];
+  expect(
+    turned.state.every((x, k) => Math.abs(x - wanted[k]) < 2),
+    `turned to ${turned.state} instead of ${wanted}`,
+  );
+  expect(
+    turned.light.some((x, k) => Math.abs(x - before[k]) > 0.1),
+    'the mouse turns nothing',
+  );
+  const after = await facts(page);
+  console.log(`turned: r.m.s. ${after.numbers[0].relative}`);
+  expect(after.numbers[0].relative < 0.04, 'wrong after a turn with the mouse');
+
+  for (const [name, bytes, reason] of [
+    ['text.txt', Buffer.from('no picture'), /no picture that this browser reads/],
+    ['short.hdr', radianceFile(64, axes).subarray(0, 5000), /cannot be used/],
+    ['square.hdr', Buffer.concat([Buffer.from('#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n'),
+      Buffer.alloc(16, 100)]), /twice as wide as high/],
+    ['a.exr', Buffer.from([0x76, 0x2f, 0x31, 1, 2, 0, 0, 0]), /OpenEXR/],
+  ]) {
+    const text = await dropped(page, name, bytes);
+    expect(reason.test(text), `${name}: '${text}'`);
+  }
+}
+
+// The page says that it is rendering until the first picture is there, and opens with both lights.
+async function proveOpening(page) {
+  await page.addInitScript(() => {
+    const next = window.requestAnimationFrame.bind(window);
+    window.requestAnimationFrame = (draw) => setTimeout(() => next(draw), 700);
+  });
+  await page.goto(`${address}#frames=1&cycles=1`, { waitUntil: 'domcontentloaded' });
+  expect(await page.isVisible('#rendering'), 'the page says nothing before the first picture');
+  await settled(page);
+  expect(await page.isHidden('#rendering'), 'the page says that it is rendering after it has');
+  const { means } = await facts(page);
+  expect((await page.evaluate(() => window.viewer.state.lighting)) === 'both', 'one light only');
+  expect(means.every((mean) => mean > 1e-2), `black: ${means}`);
 }
 
 // All numbers are finite on the teapot under both kinds of light.
@@ -109,7 +236,7 @@ function lookUp(inputs) {
     side = 64;
   const image = renderer.images.find(({ exact }) => exact),
     { exact } = image;
-  const sky = renderer.data.shaders.environment.replace('{{lights}}', renderer.lights.length);
+  const sky = renderer.data.shaders.environment;
   const program = makeProgram(
     gl,
     renderer.data.shaders.screenVertex,
@@ -195,12 +322,14 @@ await finish(async () => {
     driver,
     async (page, complaints) => {
       await provePage(page, complaints);
-      await proveEnvironment(page);
+      await proveStudio(page);
+      await proveDrop(page);
       await proveFinite(page);
       await proveTable(page, 'viewer');
       await proveTable(page, 'viewer_ward');
     },
     { viewport },
   );
+  await withBrowser(driver, proveOpening, { viewport });
   await withBrowser(driver, proveMessage, { viewport });
 });

@@ -33,11 +33,13 @@ class Viewer {
     this.state = stateFromAddress({
       order: data.order,
       shape: 'sphere',
-      lighting: 'point',
+      lighting: 'both',
       layout: 'panes',
       clamp: true,
       intensity: 0,
+      sky: 0,
       skyTurn: 0,
+      skyTilt: 0,
       exposure: 0,
       exposureSet: false,
       pair: 0,
@@ -86,11 +88,12 @@ class Viewer {
           event.target.type === 'checkbox' ? event.target.checked : +event.target.value;
         if (key === 'exposure') this.autoExposure = false;
         if (key === 'scale') this.state.scaleSet = true;
+        if (key.startsWith('skyT')) this.showLight();
         if (['exposure', 'scale', 'pair'].includes(key)) this.shown();
         else this.changed();
       });
     };
-    ['order', 'clamp', 'intensity', 'skyTurn', 'exposure', 'scale', 'pair'].forEach((key) =>
+    ['order', 'clamp', 'intensity', 'skyTurn', 'skyTilt', 'exposure', 'scale', 'pair'].forEach((key) =>
       redraw(key),
     );
     for (const key of ['shape', 'lighting', 'layout']) {
@@ -119,6 +122,7 @@ class Viewer {
       showMessage('The graphics device was reset. Reload the page to go on.');
     });
     bindCamera(this);
+    this.bindLight();
   }
 
   // Something that every picture depends on.
@@ -157,6 +161,7 @@ class Viewer {
     const due = done || !this.numbers || renderer.frame % 16 === 0;
     if (due && this.measured !== renderer.frame) this.measure();
     renderer.show(this.panes, this.look());
+    element('rendering').hidden = true;
     this.writeTexts(done ? '' : `averaging, frame ${renderer.frame} of ${frames}`);
     this.settled = done && !this.coarse;
     if (!this.settled) this.schedule();
@@ -198,7 +203,9 @@ class Viewer {
       shape: state.shape,
       order: state.order,
       clamp: state.clamp,
+      sky: state.sky,
       skyTurn: state.skyTurn * rad,
+      skyTilt: state.skyTilt * rad,
       eye: towards.map((x) => x * reach),
       camera: lookAt(towards, reach, half, aspect, radius),
       light: around(state.lightAzimuth, state.lightElevation).map((x) => x * lightDistance),
@@ -249,7 +256,7 @@ class Viewer {
     const text = (id, value) => {
       if (element(id).textContent !== value) element(id).textContent = value;
     };
-    for (const key of ['order', 'intensity', 'skyTurn', 'exposure', 'scale', 'pair']) {
+    for (const key of ['order', 'intensity', 'skyTurn', 'skyTilt', 'exposure', 'scale', 'pair']) {
       element(key).value = state[key];
     }
     element('clamp').checked = state.clamp;
@@ -257,7 +264,8 @@ class Viewer {
     const signed = (x) => `${x < 0 ? '−' : '+'}${Math.abs(x).toFixed(1)}`;
     text('orderText', `${state.order}, ${state.order ** 2} coefficients`);
     text('intensityText', `× ${significant(2 ** state.intensity)}`);
-    text('skyTurnText', `${state.skyTurn}°`);
+    text('skyTurnText', `${Math.round(state.skyTurn)}°`);
+    text('skyTiltText', `${Math.round(state.skyTilt)}°`);
     text('exposureText', `${signed(state.exposure)} stops`);
     const factor = 2 ** state.exposure;
     const row = this.numbers?.[state.pair];

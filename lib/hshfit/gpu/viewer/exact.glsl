@@ -61,46 +61,47 @@ vec3 exactBrdf(vec3 wo, vec3 wi) {
 
 vec3 pointResponse(vec3 wo, vec3 wi) { return exactBrdf(wo, wi) * wi.z; }
 
-vec3 skyRadiance(vec3 direction) {
-    vec3 sum = vec3(0.0);
-    for (int k = 0; k < SKY_LIGHTS; ++k) {
-        // Rounding can leave a cosine below -1, of which pow makes NaN.
-        float share = max(0.5 + 0.5 * dot(direction, skyAxis[k]), 1e-6);
-        sum += skyColour[k] * pow(share, SKY_POWER[k]);
-    }
-    return sum;
-}
-
 uint scrambled(uint x) {
     x ^= x >> 16; x *= 0x7feb352du; x ^= x >> 15; x *= 0x846ca68bu; x ^= x >> 16;
     return x;
 }
 
-// Half the directions by the cosine, half about the mirror direction by the slopes of a GGX lobe;
-// weighted by the mean of both densities (balance heuristic, Veach & Guibas 1995).
+vec2 unit(uvec2 x) { return vec2(x >> 8) / 16777216.0; }
+
+// A third of the directions by the cosine, a third about the mirror direction by the slopes of a GGX
+// lobe, a third by the light; weighted by the mean of the densities (balance heuristic, Veach &
+// Guibas 1995).
 vec3 environmentResponse(vec3 wo, mat3 frame) {
     uvec2 pixel = uvec2(gl_FragCoord.xy);
     uint seed = scrambled(pixel.x * 9277u + scrambled(pixel.y));
-    vec2 shift = vec2(seed & 0xffffu, seed >> 16) / 65536.0;
+    uvec2 shift = uvec2(seed, scrambled(seed + 1u));
     float alpha2 = exactRoughness * exactRoughness;
     vec3 sum = vec3(0.0);
     for (int i = 0; i < EXACT_SAMPLES; ++i) {
-        // The R2 sequence (Roberts 2018), turned per pixel.
-        float number = float(frameIndex * EXACT_SAMPLES + i);
-        vec2 u = fract(shift + number * vec2(0.7548776662466927, 0.5698402909980532));
-        bool aboutMirror = (i & 1) == 1;
-        float phi = 2.0 * PI * u.y;
-        float slope2 = aboutMirror ? alpha2 * u.x / max(1.0 - u.x, 1e-6) : 0.0;
-        float z = aboutMirror ? inversesqrt(1.0 + slope2) : sqrt(1.0 - u.x);
-        float r = sqrt(max(0.0, 1.0 - z * z));
-        vec3 d = vec3(r * cos(phi), r * sin(phi), z);
-        vec3 wi = aboutMirror ? reflect(-wo, d) : d;
+        // The R2 sequence (Roberts 2018), turned per pixel, in units of 2^-32.
+        uvec2 place = shift + uint(frameIndex * EXACT_SAMPLES + i) * uvec2(3242174889u, 2447445414u);
+        vec2 u = unit(place);
+        vec3 wi;
+        if (i % 3 == 2) {
+            uint other = scrambled(place.x);
+            vec2 rest = unit(uvec2(other, scrambled(other)));
+            wi = transpose(frame) * skyDirection(u.x, rest.x, vec2(rest.y, u.y));
+        } else {
+            bool aboutMirror = i % 3 == 1;
+            float phi = 2.0 * PI * u.y;
+            float slope2 = aboutMirror ? alpha2 * u.x / max(1.0 - u.x, 1e-6) : 0.0;
+            float z = aboutMirror ? inversesqrt(1.0 + slope2) : sqrt(1.0 - u.x);
+            float r = sqrt(max(0.0, 1.0 - z * z));
+            vec3 d = vec3(r * cos(phi), r * sin(phi), z);
+            wi = aboutMirror ? reflect(-wo, d) : d;
+        }
         if (wi.z <= 0.0) continue;
         vec3 h = normalize(wi + wo);
         float c = h.z * h.z * (alpha2 - 1.0) + 1.0;
         float lobe = alpha2 / (PI * c * c) * h.z / (4.0 * max(dot(wo, h), 1e-4));
-        float density = 0.5 * (wi.z / PI + lobe);
-        sum += exactBrdf(wo, wi) * (wi.z / density) * skyRadiance(frame * wi);
+        vec4 sky = skyTexel(frame * wi);
+        float density = (wi.z / PI + lobe + sky.a) / 3.0;
+        sum += exactBrdf(wo, wi) * (wi.z / density) * sky.rgb;
     }
     return sum / float(EXACT_SAMPLES);
 }

@@ -1,8 +1,7 @@
 // What the exported snippet above gives, as the viewer asks for it.
 uniform bool clampNegative;
-uniform float skyZonal[SKY_LIGHTS * SKY_ORDER];  // [light][l]
+uniform vec3 skyLight[SKY_ORDER * SKY_ORDER];  // coefficients in the world of the pictures
 
-{{addLight}}
 vec3 asColour(float value) { return vec3(value); }
 vec3 asColour(vec3 value) { return value; }
 
@@ -12,11 +11,6 @@ vec3 pointResponse(vec3 wo, vec3 wi) {
 }
 
 vec3 environmentResponse(vec3 wo, mat3 frame) {
-    vec3 sky[SKY_ORDER * SKY_ORDER];
-    for (int j = 0; j < SKY_ORDER * SKY_ORDER; ++j) sky[j] = vec3(0.0);
-    for (int k = 0; k < SKY_LIGHTS; ++k) {
-        addLight(transpose(frame) * skyAxis[k], skyColour[k], k * SKY_ORDER, sky);
-    }
-    vec3 value = asColour(FIT_SHADE(wo, sky));
+    vec3 value = asColour(FIT_SHADE(frame * wo, frame[0], frame[1], frame[2], skyLight));
     return clampNegative ? max(value, vec3(0.0)) : value;
 }

@@ -1,10 +1,7 @@
 // Starts the page: the data, then the viewer, or a message that says what is missing.
 
 function decoded(base64) {
-  const text = atob(base64),
-    bytes = new Uint8Array(text.length);
-  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
-  return new Uint16Array(bytes.buffer);
+  return new Uint16Array(bytesOf(base64).buffer);
 }
 
 // One or three numbers a texel as four.

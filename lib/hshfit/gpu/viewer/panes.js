@@ -224,13 +224,16 @@ function bindCamera(viewer) {
     canvas.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
   });
+  canvas.addEventListener('contextmenu', (event) => event.preventDefault());
   canvas.addEventListener('pointermove', (event) => {
     const old = pointers.get(event.pointerId);
     if (!old) return;
     const before = pointers.size === 2 ? spread() : 0;
     pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
     if (pointers.size === 2) viewer.zoom(before / Math.max(spread(), 1));
-    else viewer.turn(-0.4 * (event.clientX - old.x), 0.4 * (event.clientY - old.y));
+    else if (event.shiftKey || event.buttons & 2) {
+      viewer.turnSky(0.5 * (event.clientX - old.x), 0.5 * (event.clientY - old.y));
+    } else viewer.turn(-0.4 * (event.clientX - old.x), 0.4 * (event.clientY - old.y));
   });
   for (const kind of ['pointerup', 'pointercancel']) {
     canvas.addEventListener(kind, (event) => pointers.delete(event.pointerId));
@@ -245,7 +248,8 @@ function bindCamera(viewer) {
   );
   canvas.addEventListener('keydown', (event) => {
     const arrow = arrows[event.key];
-    if (arrow) viewer.turn(5 * arrow[0], 5 * arrow[1]);
+    if (arrow && event.shiftKey) viewer.turnSky(5 * arrow[0], -5 * arrow[1]);
+    else if (arrow) viewer.turn(5 * arrow[0], 5 * arrow[1]);
     else if (event.key === '+' || event.key === '=') viewer.zoom(0.9);
     else if (event.key === '-') viewer.zoom(1 / 0.9);
     else return;
@@ -253,15 +257,20 @@ function bindCamera(viewer) {
   });
 }
 
-// Calls `moved(x, y)` with client coordinates while `handle` is dragged.
+// Calls `moved(x, y, dx, dy)` with client coordinates while `handle` is dragged.
 function onDrag(handle, moved) {
+  let last = null;
   handle.addEventListener('pointerdown', (event) => {
     handle.setPointerCapture(event.pointerId);
     event.preventDefault();
     handle.focus();
+    last = event;
   });
   handle.addEventListener('pointermove', (event) => {
-    if (handle.hasPointerCapture(event.pointerId)) moved(event.clientX, event.clientY);
+    if (!handle.hasPointerCapture(event.pointerId)) return;
+    const { clientX: x, clientY: y } = event;
+    moved(x, y, x - last.clientX, y - last.clientY);
+    last = event;
   });
 }
 
@@ -331,6 +340,7 @@ function makeDivider(viewer, index) {
 }
 
 function showMessage(text) {
+  element('rendering').hidden = true;
   element('message').textContent = text;
   element('message').hidden = false;
 }

@@ -105,17 +105,17 @@ class Renderer {
   constructor(canvas, data) {
     const gl = (this.gl = openContext(canvas));
     this.canvas = canvas;
-    this.lights = studio(data.skyOrder);
+    this.environments = data.lights.map((light) => Environment.embedded(light));
     this.data = data;
-    const file = data.shaders;
-    const sky = file.environment.replace('{{lights}}', this.lights.length);
+    const file = data.shaders,
+      sky = file.environment;
     this.geometry = makeProgram(gl, file.geometryVertex, file.geometryFragment, 'geometry');
     this.composite = makeProgram(gl, file.screenVertex, file.compositeFragment, 'panes');
     this.images = data.fits.map((fit) => ({
       name: fit.name,
       fit,
       order: 0,
-      shader: makeProgram(gl, file.screenVertex, this.fitSource(fit, sky), fit.name),
+      shader: makeProgram(gl, file.screenVertex, this.fitSource(fit), fit.name),
       texture: halfArray(gl, fit.width, fit.height, fit.layers, fit.halves),
     }));
     if (data.exact.halves) {
@@ -137,19 +137,18 @@ class Renderer {
     this.frame = 0;
   }
 
-  fitSource(fit, sky) {
+  fitSource(fit) {
     const order = this.data.skyOrder;
     return (
       `${this.head()}${fit.shader}\n#define SKY_ORDER ${order}\n` +
       `#define FIT_EVAL ${fit.prefix}_eval\n#define FIT_RAW ${fit.prefix}_evalRaw\n` +
-      `#define FIT_SHADE ${fit.prefix}_shade\n#define FIT_HAS_COSINE ${fit.hasCosine}\n` +
-      `${sky}${this.data.shaders.fit.replace('{{addLight}}', skySource(order, fit.oddSign))}` +
+      `#define FIT_SHADE ${fit.prefix}_shadeWorld\n#define FIT_HAS_COSINE ${fit.hasCosine}\n` +
+      this.data.shaders.fit +
       this.data.shaders.shadeFragment
     );
   }
 
   exactSource(e, sky) {
-    const powers = this.lights.map(({ power }) => power.toFixed(1)).join(', ');
     const mirrored = e.isotropic && e.bilateral;
     const range = (Math.PI * (e.reciprocal ? 1 : 2)) / (mirrored ? 2 : 1);
     return (
@@ -158,7 +157,6 @@ class Renderer {
       `#define EXACT_MIRRORED ${mirrored}\n#define EXACT_RANGE ${range.toFixed(15)}\n` +
       `#define EXACT_AZIMUTHS ${e.azimuths}\n#define EXACT_REST ${e.rest}\n` +
       `#define EXACT_LAST_THETA ${e.lastTheta.toFixed(15)}\n${sky}` +
-      `const float SKY_POWER[SKY_LIGHTS] = float[](${powers});\n` +
       this.data.shaders.exact
     );
   }
@@ -273,11 +271,51 @@ class Renderer {
       } else if (value.triples) gl.uniform3fv(place, value.triples);
       else if (value.singles) gl.uniform1fv(place, value.singles);
       else if (value.integer !== undefined) gl.uniform1i(place, value.integer);
+      else if (value.length === 9) gl.uniformMatrix3fv(place, true, value);
       else if (value.length === 16) gl.uniformMatrix4fv(place, false, value);
       else if (value.length === 3) gl.uniform3fv(place, value);
       else if (typeof value === 'boolean') gl.uniform1i(place, value ? 1 : 0);
       else gl.uniform1f(place, value);
     }
+  }
+
+  // The coefficients of the light in the world of the pictures: rotated, not projected again.
+  turnedSky({ sky, skyTurn, skyTilt }) {
+    const environment = this.environments[sky];
+    const key = [sky, skyTurn, skyTilt].join();
+    if (this.sky?.key === key && this.sky.environment === environment) return this.sky;
+    if (this.sky?.environment !== environment) this.uploadSky(environment);
+    const order = this.data.skyOrder;
+    const matrix = multiplied(zUpToYUp, turnAndTilt(skyTurn, skyTilt));
+    const light = rotated(order, matrix, environment.coefficients);
+    const odd = light.map((x, k) => {
+      const slot = Math.floor(k / 3),
+        l = Math.floor(Math.sqrt(slot));
+      return (slot - l * (l + 1)) % 2 === 0 ? x : -x;
+    });
+    this.sky = { key, environment, matrix, light: [...light], oddSigned: [...odd] };
+    return this.sky;
+  }
+
+  uploadSky(environment) {
+    const gl = this.gl,
+      { texels, alias } = environment.textures();
+    for (const texture of Object.values(this.skyTextures ?? {})) gl.deleteTexture(texture);
+    const make = (internal, format, values) => {
+      const texture = gl.createTexture();
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+      gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
+      gl.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, false);
+      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+      gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+      const { width, height } = environment;
+      gl.texImage2D(gl.TEXTURE_2D, 0, internal, width, height, 0, format, gl.FLOAT, values);
+      return texture;
+    };
+    this.skyTextures = {
+      picture: make(gl.RGBA32F, gl.RGBA, texels),
+      alias: make(gl.RG32F, gl.RG, alias),
+    };
   }
 
   // One more frame of the average: `scene` as controls.js makes it. After `cycle` frames only the
@@ -291,8 +329,7 @@ class Renderer {
     this.drawSurface(scene, this.frame % cycle);
     gl.disable(gl.DEPTH_TEST);
     gl.bindVertexArray(this.empty);
-    const lights = turnedSky(this.lights, scene.skyTurn);
-    const order = this.data.skyOrder;
+    const sky = this.turnedSky(scene);
     const shared = {
       positions: this.surface.textures[0],
       normals: this.surface.textures[1],
@@ -304,16 +341,19 @@ class Renderer {
       frameShare: 1 / (this.frame + 1),
       frameIndex: { integer: this.frame },
       clampNegative: scene.clamp,
-      skyAxis: { triples: lights.flatMap(({ axis }) => axis) },
-      skyColour: { triples: lights.flatMap(({ colour }) => colour) },
-      skyZonal: { singles: lights.flatMap(({ power }) => zonal(power, order)) },
+      skyPicture: this.skyTextures.picture,
+      skyAlias: this.skyTextures.alias,
+      skyToWorld: sky.matrix,
     };
     for (const image of this.images) {
       if (image.fit && this.frame >= cycle) continue;
       const [from, to] = image.targets;
       gl.bindFramebuffer(gl.FRAMEBUFFER, to.framebuffer);
       const own = image.fit
-        ? { [image.fit.sampler]: { array: image.texture } }
+        ? {
+            [image.fit.sampler]: { array: image.texture },
+            skyLight: { triples: image.fit.oddSign < 0 ? sky.oddSigned : sky.light },
+          }
         : { exactTable: { array: image.texture }, exactRoughness: image.exact.roughness };
       this.use(image.shader, { ...shared, ...own, before: from.textures[0] });
       gl.drawArrays(gl.TRIANGLES, 0, 3);

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <hshfit/coefficients/light_coefficients.h>
+#include <hshfit/light/catalog.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::gpu {
+
+/// The light of a viewer for which none is given: a sky and three soft panels.
+inline constexpr std::string_view studioLight =
+    "sky:type=3,elevation=35,azimuth=-138,radiance=0.3/0.35/0.45+"
+    "panel:elevation=33,azimuth=-138,width=50,height=40,radiance=6/5.6/5+"
+    "panel:elevation=15,azimuth=-21,width=30,height=60,radiance=1.8/2.1/2.6+"
+    "panel:elevation=20,azimuth=84,width=60,height=30,radiance=3/2.7/2.2+"
+    "uniform:radiance=0.06";
+
+/// A light as a page carries it: a latitude-longitude picture of mean radiances, and coefficients.
+struct ViewerLight {
+    std::string name;  ///< the specification, without the folders of its files
+    int width = 0, height = 0;
+    /// [row][column]: R, G, B and an exponent, radiance = value 2^(exponent - 136); steps of at
+    /// most 1/128 of the largest of the three. Row 0 is the zenith; columns as PictureLight has.
+    std::vector<std::uint8_t> rgbe;
+    /// SH over the sphere, of the light itself and not of the picture.
+    LightCoefficients coefficients;
+    double captured = 0;  ///< share of the energy within the order; NaN for light from points
+    /// Of the picture's own coefficients: root mean square of their difference, relative.
+    double pictureError = 0;
+};
+
+/// `light` in `order` bands and a picture of 2 `height` x `height` pixels. Discs, panels and light
+/// from one direction keep their flux, which falls into the nearest pixels. Throws as projectLight
+/// does.
+ViewerLight viewerLight(const LightSpecification& light, int order, int height = 128);
+
+/// Radiance [row][column][R, G, B] from ViewerLight::rgbe.
+std::vector<float> decodeRgbe(const std::vector<std::uint8_t>& rgbe);
+
+/// The name in a specification for readers: a path loses its folders, its extension and its
+/// parameters; other text stays as it is.
+std::string shownName(const std::string& specification);
+
+}  // namespace hshfit::gpu
