@@ -16,6 +16,7 @@
 #include <cerrno>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <mutex>
@@ -51,19 +52,30 @@ void addQuadrature(CLI::App& command, double& tolerance, double& maxEvaluations)
         ->capture_default_str();
 }
 
-Direction parseDirection(const std::string& text, std::string_view option, double mostTheta) {
+std::vector<double> parseNumbers(const std::string& text, std::size_t count,
+                                 std::string_view option, std::string_view form) {
+    std::vector<double> numbers;
     const char *at = text.data(), *end = at + text.size();
-    double theta = 0, phi = 0;
-    const auto first = std::from_chars(at, end, theta);
-    const bool comma = first.ec == std::errc() && first.ptr != end && *first.ptr == ',';
-    const auto second = comma ? std::from_chars(first.ptr + 1, end, phi) : first;
-    if (!comma || second.ec != std::errc() || second.ptr != end || !(theta >= 0) ||
-        !(theta <= mostTheta) || !std::isfinite(phi)) {
-        throw UsageError(
-            fmt::format("{} '{}': give THETA,PHI in degrees, theta from 0 to {} (for example 45,0)",
-                        option, text, mostTheta));
+    for (bool more = true; more && numbers.size() < count;) {
+        double number = 0;
+        const auto [next, error] = std::from_chars(at, end, number);
+        if (error != std::errc() || !std::isfinite(number)) break;
+        numbers.push_back(number);
+        more = next != end && *next == ',' && numbers.size() < count;
+        at = more ? next + 1 : next;
     }
-    return directionFromAngles(radians(theta), radians(phi));
+    if (numbers.size() != count || at != end)
+        throw UsageError(fmt::format("{} '{}': give {}", option, text, form));
+    return numbers;
+}
+
+Direction parseDirection(const std::string& text, std::string_view option, double mostTheta) {
+    const std::string form =
+        fmt::format("THETA,PHI in degrees, theta from 0 to {} (for example 45,0)", mostTheta);
+    const auto angles = parseNumbers(text, 2, option, form);
+    if (!(angles[0] >= 0 && angles[0] <= mostTheta))
+        throw UsageError(fmt::format("{} '{}': give {}", option, text, form));
+    return directionFromAngles(radians(angles[0]), radians(angles[1]));
 }
 
 void printText(std::string_view given) {

@@ -38,6 +38,11 @@ void addRgb(CLI::App& command, bool& rgb);
 /// The options --tolerance and --max-evaluations of a projection.
 void addQuadrature(CLI::App& command, double& tolerance, double& maxEvaluations);
 
+/// `count` finite numbers with commas between them. Throws UsageError that names `option` and asks
+/// for `form`.
+std::vector<double> parseNumbers(const std::string& text, std::size_t count,
+                                 std::string_view option, std::string_view form);
+
 /// "THETA,PHI" in degrees, theta from 0 to `mostTheta`. Throws UsageError naming `option`.
 Direction parseDirection(const std::string& text, std::string_view option, double mostTheta = 90);
 

@@ -83,22 +83,12 @@ std::optional<double> parseExposure(const std::string& text) {
 }
 
 /// The direction to the viewer, degrees: "THETA,PHI", theta from the zenith to 180.
-std::array<double, 2> parseView(const std::string& text) {
-    std::array<double, 2> angles{};
-    const char *at = text.data(), *end = at + text.size();
-    bool good = true;
-    for (std::size_t k = 0; k < 2 && good; ++k) {
-        const auto [next, error] = std::from_chars(at, end, angles[k]);
-        good = error == std::errc() && std::isfinite(angles[k]) &&
-               (k == 1 ? next == end : next != end && *next == ',');
-        at = next + 1;
-    }
-    if (!good || !(angles[0] >= 0 && angles[0] <= 180)) {
-        throw UsageError(
-            fmt::format("--view '{}': give THETA,PHI, degrees from the zenith (0 to "
-                        "180) and from +x towards +y (for example 75,0)",
-                        text));
-    }
+std::vector<double> parseView(const std::string& text) {
+    constexpr std::string_view form =
+        "THETA,PHI, degrees from the zenith (0 to 180) and from +x towards +y (for example 75,0)";
+    auto angles = parseNumbers(text, 2, "--view", form);
+    if (!(angles[0] >= 0 && angles[0] <= 180))
+        throw UsageError(fmt::format("--view '{}': give {}", text, form));
     return angles;
 }
 

@@ -9,27 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <charconv>
-#include <cmath>
-
 namespace hshfit::cli {
-
-std::vector<double> parseNumbers(const std::string& text, std::size_t count,
-                                 std::string_view option, std::string_view form) {
-    std::vector<double> numbers;
-    const char *at = text.data(), *end = at + text.size();
-    for (bool more = true; more && numbers.size() < count;) {
-        double number = 0;
-        const auto [next, error] = std::from_chars(at, end, number);
-        if (error != std::errc() || !std::isfinite(number)) break;
-        numbers.push_back(number);
-        more = next != end && *next == ',' && numbers.size() < count;
-        at = more ? next + 1 : next;
-    }
-    if (numbers.size() != count || at != end)
-        throw UsageError(fmt::format("{} '{}': give {}", option, text, form));
-    return numbers;
-}
 
 Rotation parseEuler(const std::string& text) {
     const auto angles = parseNumbers(text, 3, "--euler",

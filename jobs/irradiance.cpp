@@ -10,6 +10,7 @@
 #include <hshfit/transfer/windows.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -71,9 +72,8 @@ void writeByNormal(const std::string& path, std::span<const Direction> normals,
 
 LitSurface irradianceOfLight(const std::vector<std::string>& specs,
                              const IrradianceOptions& options) {
-    std::string text;
-    for (const std::string& spec : specs) text += (text.empty() ? "" : " + ") + spec;
-    const LightSpecification specification = parseLights(text);
+    const LightSpecification specification =
+        parseLights(fmt::format("{}", fmt::join(specs, " + ")));
     LightCoefficients light =
         projectLight(specification.lights, *bases::makeSh(options.order, {}), {.tolerance = 1e-6});
     LitSurface result;

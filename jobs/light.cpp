@@ -8,6 +8,9 @@
 #include <hshfit/light/light_wavelets.h>
 #include <hshfit/wavelets/slices.h>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 namespace hshfit::jobs {
 namespace {
 
@@ -41,9 +44,8 @@ ProjectedLight light(const std::vector<std::string>& specs, const std::string& o
                      const LightOptions& options) {
     const auto basis =
         bases::make(options.basis, options.order, {.condonShortley = options.condonShortley});
-    std::string text;
-    for (const std::string& spec : specs) text += (text.empty() ? "" : " + ") + spec;
-    const LightSpecification specification = parseLights(text);
+    const LightSpecification specification =
+        parseLights(fmt::format("{}", fmt::join(specs, " + ")));
     ProjectedLight result;
     result.light =
         projectLight(specification.lights, *basis,

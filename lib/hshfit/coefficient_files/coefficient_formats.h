@@ -30,6 +30,9 @@ void appendJsonNumbers(std::span<const double> values, std::string& out);
 /// Radians in degrees, to 1e-10: 51.99999999999999 is what 52 comes back as from a unit vector.
 double tidyDegrees(double angle);
 
+/// Throws InputError unless the root says this "format" and a "version" of at most `newest`.
+void requireFormat(const JsonFields& root, std::string_view format, int newest);
+
 /// The object "basis" of a file.
 struct BasisName {
     std::string name;

@@ -69,19 +69,6 @@ const char* kindName(Channels::Kind kind) {
 
 using Fields = JsonFields;
 
-void checkVersion(const Fields& root) {
-    if (const std::string format = root.word("format"); format != formatName) {
-        root.fail(fmt::format("is '{}'; it has to be '{}'", format.substr(0, 40), formatName),
-                  "format");
-    }
-    const int version = root.integer("version", 1, std::numeric_limits<int>::max());
-    if (version > formatVersion) {
-        root.fail(fmt::format("is {}: written by a newer hshfit; this one reads version {}",
-                              version, formatVersion),
-                  "version");
-    }
-}
-
 Channels readChannels(const Fields& root) {
     const std::string kind = root.word("channel_kind");
     Channels channels;
@@ -182,6 +169,18 @@ Energy readEnergy(const Fields& root) {
 
 }  // namespace
 
+void requireFormat(const JsonFields& root, std::string_view format, int newest) {
+    if (const std::string named = root.word("format"); named != format) {
+        root.fail(fmt::format("is '{}'; it has to be '{}'", named.substr(0, 40), format), "format");
+    }
+    const int version = root.integer("version", 1, std::numeric_limits<int>::max());
+    if (version > newest) {
+        root.fail(fmt::format("is {}: written by a newer hshfit; this one reads version {}",
+                              version, newest),
+                  "version");
+    }
+}
+
 double tidyDegrees(double angle) {
     const double rounded = std::round(degrees(angle) * 1e10) / 1e10;
     return rounded == 0 ? 0 : rounded;
@@ -280,7 +279,7 @@ CoefficientHead readSharedHead(const Fields& root, std::size_t outgoingCount) {
 }
 
 CoefficientHead readHead(const Fields& root, std::size_t outgoingCount) {
-    checkVersion(root);
+    requireFormat(root, formatName, formatVersion);
     CoefficientHead result = readSharedHead(root, outgoingCount);
     result.tolerance = root.numberOrNull("tolerance").value_or(none);
     if (root.has("least_squares")) {

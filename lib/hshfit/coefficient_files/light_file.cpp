@@ -69,19 +69,6 @@ CoefficientMetadata headOf(const LightCoefficients& light) {
             {"curves", text(curvesJson(light.curves))}};
 }
 
-void checkHead(const JsonFields& root) {
-    if (const std::string format = root.word("format"); format != lightFormat) {
-        root.fail(fmt::format("is '{}'; it has to be '{}'", format.substr(0, 40), lightFormat),
-                  "format");
-    }
-    const int version = root.integer("version", 1, std::numeric_limits<int>::max());
-    if (version > lightVersion) {
-        root.fail(fmt::format("is {}: written by a newer hshfit; this one reads version {}",
-                              version, lightVersion),
-                  "version");
-    }
-}
-
 void readDomain(const JsonFields& root, LightCoefficients& light) {
     const std::string domain = root.word("domain");
     if (domain == "hemisphere") {
@@ -164,7 +151,7 @@ std::string lightToJson(const LightCoefficients& light) {
 LightCoefficients lightFromJson(std::string_view text, const std::string& file) {
     const Json tree = parseJson(text, file, deepestJson);
     const JsonFields root(tree, "", file);
-    checkHead(root);
+    requireFormat(root, lightFormat, lightVersion);
     LightCoefficients light;
     light.generator = root.word("generator");
     light.source = root.object("source").word("light");

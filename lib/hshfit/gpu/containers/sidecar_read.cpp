@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
@@ -20,19 +19,6 @@ using Fields = JsonFields;
 constexpr int formatVersion = 1, maxDepth = 8;
 constexpr int maxSide = 1 << 14;   // the limit of OutgoingSet
 constexpr double maxCount = 9e15;  // integers that a double holds
-
-void checkVersion(const Fields& root) {
-    if (const std::string format = root.word("format"); format != "hshfit-gpu") {
-        root.fail(fmt::format("is '{}'; it has to be 'hshfit-gpu'", format.substr(0, 40)),
-                  "format");
-    }
-    const int version = root.integer("version", 1, std::numeric_limits<int>::max());
-    if (version > formatVersion) {
-        root.fail(fmt::format("is {}: written by a newer hshfit; this one reads version {}",
-                              version, formatVersion),
-                  "version");
-    }
-}
 
 /// The head, checked as in coefficient files, and against the size of the texels.
 CoefficientHead readHeadOf(const Texels& texels, const Fields& root, const std::string& file) {
@@ -197,7 +183,7 @@ std::vector<TestTriple> readTests(const Fields& root, std::size_t channels) {
 SidecarIndex parseSidecarIndex(std::string_view text, const std::string& file) {
     const Json document = parseJson(text, file, maxDepth);
     const Fields root(document, "", file);
-    checkVersion(root);
+    requireFormat(root, "hshfit-gpu", formatVersion);
     SidecarIndex index;
     index.coefficients = readTexels(root.object("data"));
     index.coefficientsSha256 = readSha256(root.object("data"));
