@@ -3,6 +3,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/gpu/shader_data.h>
+#include <hshfit/gpu/shader_text.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -112,29 +113,8 @@ Words wordsOf(Language language, const std::string& prefix) {
             .text = embedded::shader_osl};
 }
 
-/// Text for a comment: printable ASCII on one line, so that nothing can end the comment.
-std::string commentText(std::string text) {
-    for (char& c : text) {
-        const auto code = static_cast<unsigned char>(c);
-        if (code < 32 || code > 126 || c == '\\') c = '?';
-    }
-    return text;
-}
-
 void checkOptions(const ShaderOptions& options) {
-    const auto isLetter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
-    const std::string& prefix = options.prefix;
-    bool good = !prefix.empty() && isLetter(prefix[0]) && prefix.back() != '_' &&
-                prefix.find("__") == std::string::npos && prefix.substr(0, 3) != "gl_";
-    for (const char c : prefix) {
-        good = good && (isLetter(c) || (c >= '0' && c <= '9') || c == '_');
-    }
-    if (!good) {
-        throw UsageError(fmt::format(
-            "shader prefix '{}'; it has to be letters, digits and single underscores, begin with a "
-            "letter, not end with '_' and not begin with 'gl_'",
-            commentText(prefix)));
-    }
+    checkPrefix(options.prefix);
     if (options.environmentOrder < 0 || options.environmentOrder > maxEnvironmentOrder) {
         throw UsageError(fmt::format("environment of order {}; it has to be 0 (none) to {}",
                                      options.environmentOrder, maxEnvironmentOrder));
@@ -169,6 +149,27 @@ void setMap(const OutgoingSet& set, data& page) {
     }
 }
 
+void setLanguageWords(const Words& words, const std::string& prefix, data& page) {
+    page.set("let", words.let);
+    page.set("let2", words.let2);
+    page.set("let3", words.let3);
+    page.set("real", words.real);
+    page.set("let4", words.let4);
+    page.set("var", words.var);
+    page.set("vec2", words.vec2);
+    page.set("vec3", words.vec3);
+    page.set("vec4", words.vec4);
+    page.set("env", words.environment);
+    page.set("light", words.light);
+    page.set("dot", words.dot);
+    std::string upper = prefix;
+    for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    page.set("prefix", prefix);
+    page.set("PREFIX", upper);
+    page.set("texel", words.macros ? upper + "_TEXEL" : prefix + "_texel");
+    page.set("basisTexel", words.macros ? upper + "_BASIS_TEXEL" : prefix + "_basisTexel");
+}
+
 void setWords(const Words& words, const Payload& payload, const std::string& prefix, data& page) {
     const bool grey = payload.head.channels.kind == Channels::Kind::grey;
     const bool spectral = payload.head.channels.kind == Channels::Kind::spectral;
@@ -184,22 +185,7 @@ void setWords(const Words& words, const Payload& payload, const std::string& pre
     page.set("lightZero", zero3);
     page.set("environmentType", !spectral ? words.vec3 : words.flat ? words.real : values);
     page.set("letLight", spectral ? words.let : words.let3);
-    page.set("let", words.let);
-    page.set("let2", words.let2);
-    page.set("let4", words.let4);
-    page.set("var", words.var);
-    page.set("vec2", words.vec2);
-    page.set("vec3", words.vec3);
-    page.set("vec4", words.vec4);
-    page.set("env", words.environment);
-    page.set("light", words.light);
-    page.set("dot", words.dot);
-    std::string upper = prefix;
-    for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    page.set("prefix", prefix);
-    page.set("PREFIX", upper);
-    page.set("texel", words.macros ? upper + "_TEXEL" : prefix + "_texel");
-    page.set("basisTexel", words.macros ? upper + "_BASIS_TEXEL" : prefix + "_basisTexel");
+    setLanguageWords(words, prefix, page);
 }
 
 void setHeader(const Payload& payload, int environmentOrder, data& page) {
@@ -246,30 +232,14 @@ void setPartials(data& page) {
     }
 }
 
-/// Omitted sections leave blank lines behind. One is kept before each line that starts at the
-/// margin.
-std::string withoutGaps(const std::string& text) {
-    std::string result;
-    bool gap = false;
-    for (std::size_t first = 0; first < text.size();) {
-        const std::size_t end = std::min(text.find('\n', first), text.size());
-        const std::string line = text.substr(first, end - first);
-        first = end + 1;
-        if (line.find_first_not_of(' ') == std::string::npos) {
-            gap = true;
-            continue;
-        }
-        if (gap && line[0] != ' ' && line[0] != '}') result += '\n';
-        gap = false;
-        result += line + '\n';
-    }
-    return result;
-}
-
 }  // namespace
 
 std::span<const LanguageEntry> languages() {
     return table;
+}
+
+void setLanguageWords(Language language, const std::string& prefix, data& page) {
+    setLanguageWords(wordsOf(language, prefix), prefix, page);
 }
 
 std::string shaderSource(Language language, const Payload& payload, const ShaderOptions& options) {

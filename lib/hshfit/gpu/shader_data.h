@@ -23,6 +23,9 @@ struct Band {
 };
 Band bandOf(int slot);
 
+/// The names of types, declarations and lookups in a language, and the prefix.
+void setLanguageWords(Language language, const std::string& prefix, kainjow::mustache::data& data);
+
 // The parts of a snippet that do not depend on the language, as the templates name them.
 
 /// Constants of the basis: scale, powers, columns with their steps, functions.

@@ -159,6 +159,22 @@ GLuint storage(GLuint binding, std::size_t bytes, const void* data) {
     return buffer;
 }
 
+/// The uniform block of a form, if it has one, at binding 0.
+void uploadBlock(GLuint program, const ShaderJob& job) {
+    const std::vector<float> numbers = blockNumbers(job);
+    if (numbers.empty()) return;
+    GLuint buffer = 0;
+    GL(PFNGLGENBUFFERSPROC, glGenBuffers)(1, &buffer);
+    GL(PFNGLBINDBUFFERPROC, glBindBuffer)(GL_UNIFORM_BUFFER, buffer);
+    GL(PFNGLBUFFERDATAPROC, glBufferData)
+    (GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(numbers.size() * 4), numbers.data(),
+     GL_STATIC_DRAW);
+    GL(PFNGLBINDBUFFERBASEPROC, glBindBufferBase)(GL_UNIFORM_BUFFER, 0, buffer);
+    const GLuint at =
+        GL(PFNGLGETUNIFORMBLOCKINDEXPROC, glGetUniformBlockIndex)(program, "hsh_Block");
+    GL(PFNGLUNIFORMBLOCKBINDINGPROC, glUniformBlockBinding)(program, at, 0);
+}
+
 std::vector<float> components(const std::vector<Direction>& directions) {
     std::vector<float> result;
     for (const Direction& d : directions)
@@ -170,7 +186,7 @@ std::vector<float> components(const std::vector<Direction>& directions) {
 
 std::vector<float> runOpenGl(const ShaderJob& job, const std::string& source) {
     const Context context(false);
-    link({compile(GL_COMPUTE_SHADER, source)});
+    uploadBlock(link({compile(GL_COMPUTE_SHADER, source)}), job);
     upload(0, job.payload.coefficients);
     if (job.payload.basisTexels) upload(2, *job.payload.basisTexels);
     const std::vector<float> inputs = inputNumbers(job);
@@ -195,6 +211,7 @@ std::vector<float> runOpenGlEs(const ShaderJob& job, const std::string& source) 
     const GLuint program =
         link({compile(GL_VERTEX_SHADER, corners), compile(GL_FRAGMENT_SHADER, source)});
     upload(0, job.payload.coefficients);
+    uploadBlock(program, job);
     setSampler(program, "hsh_coefficients", 0);
     if (job.payload.basisTexels) upload(1, *job.payload.basisTexels);
     setSampler(program, "hsh_basis", 1);
@@ -207,7 +224,7 @@ std::vector<float> runOpenGlEs(const ShaderJob& job, const std::string& source) 
     for (std::size_t i = 0; i < job.lights(); ++i)
         for (std::size_t j = 0; j < static_cast<std::size_t>(slots); ++j)
             lights.push_back(static_cast<float>(job.environment.values[j * job.lights() + i]));
-    uploadNumbers(4, slots, static_cast<int>(job.lights()), lights);
+    if (!lights.empty()) uploadNumbers(4, slots, static_cast<int>(job.lights()), lights);
     setSampler(program, "lights", 4);
 
     GLuint frame = 0;

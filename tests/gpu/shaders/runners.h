@@ -24,6 +24,10 @@ struct Refused : std::runtime_error {
 /// environment.
 std::vector<float> inputNumbers(const ShaderJob& job);
 
+/// The uniform block of a form that has one (binding 0 in place of the texture), else nothing: the
+/// texels as a sampler returns them.
+std::vector<float> blockNumbers(const ShaderJob& job);
+
 /// Vulkan: texture arrays at bindings 0 (coefficients) and 2 (basis), combined with their sampler
 /// or not (then at 1), storage buffers at 3 (input) and 4 (output).
 std::vector<float> runVulkan(const ShaderJob& job, const std::vector<std::uint32_t>& spirv,

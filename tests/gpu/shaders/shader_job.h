@@ -41,6 +41,9 @@ struct ShaderJob {
     /// `shadeWorld` instead of `shade`: the surface of a pair has the normal wi and the tangent of
     /// `frameOf`, wo is in that frame, and the environment in the world.
     bool world = false;
+    /// Of a form (gpu/forms): where its numbers are, "constants", "block" or "texture"; it has no
+    /// light, and evalRaw is eval. `payload` has the head and the texels.
+    std::string form = {};
 
     std::size_t channels() const { return payload.head.channels.count(); }
     std::size_t lights() const { return environment.colours; }

@@ -140,6 +140,12 @@ std::vector<float> inputNumbers(const ShaderJob& job) {
     return numbers;
 }
 
+std::vector<float> blockNumbers(const ShaderJob& job) {
+    if (job.form != "block") return {};
+    const std::vector<double> values = gpu::decode(job.payload.coefficients);
+    return {values.begin(), values.end()};
+}
+
 std::string wrapped(gpu::Language language, const ShaderJob& job, const std::string& snippet) {
     using kainjow::mustache::data;
     const bool grey = job.payload.head.channels.kind == Channels::Kind::grey;
@@ -168,7 +174,9 @@ std::string wrapped(gpu::Language language, const ShaderJob& job, const std::str
     number("channels", job.channels());
     number("lights", job.lights());
     number("outputs", job.outputs());
-    number("environment", job.environment.values.size() / job.lights());
+    page.set("form", !job.form.empty());
+    page.set("bare", job.form == "constants");
+    number("environment", job.form.empty() ? job.environment.values.size() / job.lights() : 0);
     number("first", 6 * job.pairs.wo.size());
     kainjow::mustache::mustache wrapper(textOf(here / "wrappers" / wrapperOf(language)));
     wrapper.set_custom_escape([](const std::string& s) { return s; });

@@ -2,6 +2,7 @@
 
 #include <vulkan/vulkan.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <cstring>
@@ -427,10 +428,17 @@ std::vector<float> runVulkan(const ShaderJob& job, const std::vector<std::uint32
             combined ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
         const auto buffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
         const auto ready = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-        std::vector<Pipeline::Resource> resources{
-            {0, imageType, {sampler, coefficients.view, ready}, {}},
-            {3, buffer, {}, {in.buffer, 0, VK_WHOLE_SIZE}},
-            {4, buffer, {}, {out.buffer, 0, VK_WHOLE_SIZE}}};
+        const std::vector<float> numbers = blockNumbers(job);
+        Buffer block(device, std::max<std::size_t>(numbers.size(), 4) * 4,
+                     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+        std::memcpy(block.data, numbers.data(), numbers.size() * 4);
+        std::vector<Pipeline::Resource> resources{{3, buffer, {}, {in.buffer, 0, VK_WHOLE_SIZE}},
+                                                  {4, buffer, {}, {out.buffer, 0, VK_WHOLE_SIZE}}};
+        if (numbers.empty())
+            resources.push_back({0, imageType, {sampler, coefficients.view, ready}, {}});
+        else
+            resources.push_back(
+                {0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, {}, {block.buffer, 0, VK_WHOLE_SIZE}});
         if (!combined) resources.push_back({1, VK_DESCRIPTOR_TYPE_SAMPLER, {sampler, {}, {}}, {}});
         if (basis) resources.push_back({2, imageType, {sampler, basis->view, ready}, {}});
         const Pipeline pipeline(device, spirv, resources);

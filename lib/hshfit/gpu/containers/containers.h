@@ -4,6 +4,7 @@
 #include <hshfit/gpu/payload.h>
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -69,6 +70,20 @@ struct ExportOptions {
     /// JSON object for the key "fit_error"; empty: null.
     std::string fitError = {};
 };
+
+/// Texels and all that is written about them: a payload of any form as containers see it.
+struct TexelExport {
+    std::vector<std::pair<Role, const Texels*>> sets;        ///< coefficients first
+    std::vector<std::pair<std::string, std::string>> facts;  ///< TexelFile::facts
+    /// The sidecar's text; `holds` is for one within a container.
+    std::function<std::string(std::span<const ExportedFile>, std::optional<Role> holds)> sidecar;
+    std::string tests;  ///< text of NAME_test.json
+};
+
+/// writeContainers for texels of any form.
+std::vector<ExportedFile> writeTexels(const TexelExport& texels,
+                                      std::span<const Container* const> containers,
+                                      const std::string& name, bool zstd, FileSet& files);
 
 /// Adds to `files` NAME.hsh.json (the sidecar), NAME_test.json (the test triples alone), and for
 /// each container the coefficients and, if the payload has them, the basis textures. Nothing

@@ -50,37 +50,48 @@ ExportedFile described(const Container& container, Role role, const std::string&
 
 }  // namespace
 
-std::vector<ExportedFile> writeContainers(const Payload& payload,
-                                          std::span<const Container* const> chosen,
-                                          const std::string& name, const ExportOptions& options,
-                                          FileSet& files) {
+std::vector<ExportedFile> writeTexels(const TexelExport& texels,
+                                      std::span<const Container* const> chosen,
+                                      const std::string& name, bool zstd, FileSet& files) {
     checkName(name);
     for (const Container* container : chosen) {
-        for (const auto& [role, texels] : texelSets(payload)) {
-            checkNumber(*container, texels->number);
-        }
+        for (const auto& [role, set] : texels.sets) checkNumber(*container, set->number);
     }
-    const auto tests = testTriples(payload);
-    const auto facts = payloadFacts(payload);
     std::vector<ExportedFile> written;
-    for (const auto& [role, texels] : texelSets(payload)) {
-        const std::string sidecar = sidecarText(payload, {}, role, tests, options.fitError);
+    for (const auto& [role, set] : texels.sets) {
+        const std::string sidecar = texels.sidecar({}, role);
         for (const Container* container : chosen) {
-            const std::string path = container->fileName(name, role, texels->number);
+            const std::string path = container->fileName(name, role, set->number);
             AtomicFile& file = files.add(path);
             container->write({.role = role,
-                              .texels = *texels,
+                              .texels = *set,
                               .name = name,
                               .sidecar = sidecar,
-                              .facts = facts,
-                              .zstd = options.zstd},
+                              .facts = texels.facts,
+                              .zstd = zstd},
                              file);
             written.push_back(described(*container, role, path, file));
         }
     }
-    files.write(name + ".hsh.json", sidecarText(payload, written, {}, tests, options.fitError));
-    files.write(name + "_test.json", testText(payload, tests));
+    files.write(name + ".hsh.json", texels.sidecar(written, std::nullopt));
+    files.write(name + "_test.json", texels.tests);
     return written;
+}
+
+std::vector<ExportedFile> writeContainers(const Payload& payload,
+                                          std::span<const Container* const> chosen,
+                                          const std::string& name, const ExportOptions& options,
+                                          FileSet& files) {
+    const auto tests = testTriples(payload);
+    return writeTexels({.sets = texelSets(payload),
+                        .facts = payloadFacts(payload),
+                        .sidecar =
+                            [&](std::span<const ExportedFile> written, std::optional<Role> holds) {
+                                return sidecarText(payload, written, holds, tests,
+                                                   options.fitError);
+                            },
+                        .tests = testText(payload, tests)},
+                       chosen, name, options.zstd, files);
 }
 
 }  // namespace hshfit::gpu::inline containers

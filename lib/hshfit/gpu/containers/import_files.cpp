@@ -69,25 +69,26 @@ void checkFinite(const Texels& texels, const std::string& file) {
                                  at % 4));
 }
 
-void loadTexels(const Container& container, std::string_view bytes, Role role,
-                const std::string& sum, const std::string& file, Texels& texels) {
+void loadInto(const Container& container, std::string_view bytes, Role role, const std::string& sum,
+              const std::string& file, Texels& texels) {
     texels.bytes = container.texels(bytes, role, texels, file);
     checkSum(texels.bytes, sum, file);
     checkFinite(texels, file);
 }
 
-/// The part of the pipeline that all forms share, once coefficients (and basis) are there.
-ImportedPayload assemble(std::string_view text, const std::string& sidecar, SidecarIndex index) {
+ImportedPayload assemble(LoadedTexels loaded) {
     ImportedPayload result;
-    result.sidecar = sidecar;
+    result.container = loaded.container;
+    result.file = loaded.file;
+    result.sidecar = loaded.sidecar;
     std::vector<TestTriple> tests;
-    result.payload = parseSidecar(text, sidecar, std::move(index), tests);
+    result.payload = parseSidecar(loaded.text, loaded.sidecar, std::move(loaded.index), tests);
     result.tests = tests.size();
     result.testDifference = largestDifference(result.payload, tests);
     if (!(result.testDifference <= testTolerance)) {
         throw InputError(
             fmt::format("{}: the tests differ from the coefficients by {:.2g} of the largest value",
-                        sidecar, result.testDifference));
+                        result.sidecar, result.testDifference));
     }
     return result;
 }
@@ -109,13 +110,12 @@ void loadListed(const ExportedFile& listed, const fs::path& folder, const std::s
                                      file.size(), listed.bytes));
     }
     checkSum(std::as_bytes(file.bytes()), listed.sha256, file.path());
-    loadTexels(findContainer(listed.container), textOf(file), listed.role, sum, file.path(),
-               texels);
+    loadInto(findContainer(listed.container), textOf(file), listed.role, sum, file.path(), texels);
     file.checkIntact();
 }
 
 /// From a sidecar: `only` names one of its files, or is empty for the first one of coefficients.
-ImportedPayload fromSidecar(const fs::path& path, const std::string& only) {
+LoadedTexels fromSidecar(const fs::path& path, const std::string& only) {
     const MappedFile sidecar(path.string());
     SidecarIndex index = parseSidecarIndex(textOf(sidecar), sidecar.path());
     const fs::path folder = path.parent_path();
@@ -146,10 +146,31 @@ ImportedPayload fromSidecar(const fs::path& path, const std::string& only) {
     } else {
         index.basisTexels.reset();
     }
-    ImportedPayload result = assemble(textOf(sidecar), sidecar.path(), std::move(index));
+    LoadedTexels result{.text = std::string(textOf(sidecar)),
+                        .index = std::move(index),
+                        .container = chosen.container,
+                        .file = (folder / chosen.path).string(),
+                        .sidecar = sidecar.path()};
     sidecar.checkIntact();
-    result.container = chosen.container;
-    result.file = (folder / chosen.path).string();
+    return result;
+}
+
+/// From a container that holds its sidecar.
+LoadedTexels fromContainer(std::string_view bytes, const Container& container,
+                           const std::string& path) {
+    LoadedTexels result{.text = container.sidecar(bytes, path),
+                        .index = {},
+                        .container = std::string(container.name),
+                        .file = path,
+                        .sidecar = path};
+    result.index = parseSidecarIndex(result.text, path);
+    if (result.index.holds != Role::coefficients) {
+        throw InputError(fmt::format(
+            "{}: holds basis textures, which anyone can compute; import the coefficients", path));
+    }
+    loadInto(container, bytes, Role::coefficients, result.index.coefficientsSha256, path,
+             result.index.coefficients);
+    result.index.basisTexels.reset();
     return result;
 }
 
@@ -157,28 +178,16 @@ ImportedPayload fromSidecar(const fs::path& path, const std::string& only) {
 
 ImportedPayload readTexelFile(std::string_view bytes, const Container& container,
                               const std::string& path) {
-    const std::string text = container.sidecar(bytes, path);
-    SidecarIndex index = parseSidecarIndex(text, path);
-    if (index.holds != Role::coefficients) {
-        throw InputError(fmt::format(
-            "{}: holds basis textures, which anyone can compute; import the coefficients", path));
-    }
-    loadTexels(container, bytes, Role::coefficients, index.coefficientsSha256, path,
-               index.coefficients);
-    index.basisTexels.reset();
-    ImportedPayload result = assemble(text, path, std::move(index));
-    result.container = container.name;
-    result.file = path;
-    return result;
+    return assemble(fromContainer(bytes, container, path));
 }
 
-ImportedPayload readPayload(const std::string& path) {
+LoadedTexels loadTexels(const std::string& path) {
     const MappedFile file(path);
     const std::string_view bytes = textOf(file);
     if (isSidecar(bytes)) return fromSidecar(path, {});
     const Container* container = recognised(bytes);
     if (container && container->holdsSidecar) {
-        ImportedPayload result = readTexelFile(bytes, *container, path);
+        LoadedTexels result = fromContainer(bytes, *container, path);
         file.checkIntact();
         return result;
     }
@@ -195,6 +204,10 @@ ImportedPayload readPayload(const std::string& path) {
     throw InputError(fmt::format(
         "{}: is no file of an export; those are sidecars (NAME.hsh.json) and what they list",
         path));
+}
+
+ImportedPayload readPayload(const std::string& path) {
+    return assemble(loadTexels(path));
 }
 
 bool looksLikePayload(const std::string& path) {

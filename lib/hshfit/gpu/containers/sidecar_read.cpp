@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::json;
 using Fields = JsonFields;
 
-constexpr int formatVersion = 1, maxDepth = 8;
+constexpr int maxDepth = 8;
 constexpr int maxSide = 1 << 14;   // the limit of OutgoingSet
 constexpr double maxCount = 9e15;  // integers that a double holds
 
@@ -169,7 +169,9 @@ Direction readDirection(const Fields& row, const char* key) {
     return {v[0], v[1], v[2]};
 }
 
-std::vector<TestTriple> readTests(const Fields& root, std::size_t channels) {
+}  // namespace
+
+std::vector<TestTriple> readSidecarTests(const JsonFields& root, std::size_t channels) {
     std::vector<TestTriple> tests;
     for (const Fields& row : root.objects("tests")) {
         tests.push_back(
@@ -178,12 +180,10 @@ std::vector<TestTriple> readTests(const Fields& root, std::size_t channels) {
     return tests;
 }
 
-}  // namespace
-
 SidecarIndex parseSidecarIndex(std::string_view text, const std::string& file) {
     const Json document = parseJson(text, file, maxDepth);
     const Fields root(document, "", file);
-    requireFormat(root, "hshfit-gpu", formatVersion);
+    requireFormat(root, "hshfit-gpu", formSidecarVersion);
     SidecarIndex index;
     index.coefficients = readTexels(root.object("data"));
     index.coefficientsSha256 = readSha256(root.object("data"));
@@ -194,6 +194,7 @@ SidecarIndex parseSidecarIndex(std::string_view text, const std::string& file) {
     }
     index.files = readFiles(root);
     if (root.has("holds")) index.holds = readRole(root, "holds");
+    if (root.has("form")) index.form = root.word("form");
     return index;
 }
 
@@ -201,6 +202,7 @@ Payload parseSidecar(std::string_view text, const std::string& file, SidecarInde
                      std::vector<TestTriple>& tests) {
     const Json document = parseJson(text, file, maxDepth);
     const Fields root(document, "", file);
+    if (root.has("form")) root.fail("is no set of coefficients per outgoing direction", "form");
     Payload payload;
     payload.coefficients = std::move(index.coefficients);
     payload.head = readHeadOf(payload.coefficients, root, file);
@@ -216,7 +218,7 @@ Payload parseSidecar(std::string_view text, const std::string& file, SidecarInde
         }
         payload.basisTexels = std::move(index.basisTexels);
     }
-    tests = readTests(root, payload.head.channels.count());
+    tests = readSidecarTests(root, payload.head.channels.count());
     return payload;
 }
 

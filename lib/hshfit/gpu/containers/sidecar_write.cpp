@@ -21,23 +21,6 @@ std::string compact(const Json& value) {
     return jsonText(value);
 }
 
-/// Prints one key per line, and one element per line for arrays of arrays or objects.
-std::string readable(const Json& document) {
-    std::string text = "{";
-    for (const auto& [key, value] : document.items()) {
-        text += fmt::format("{}\n  {}: ", text.size() > 1 ? "," : "", compact(key));
-        if (!value.is_array() || value.empty() || !value[0].is_structured()) {
-            text += compact(value);
-            continue;
-        }
-        for (std::size_t i = 0; i < value.size(); ++i) {
-            text += fmt::format("{}\n    {}", i == 0 ? "[" : ",", compact(value[i]));
-        }
-        text += "\n  ]";
-    }
-    return text + "\n}\n";
-}
-
 Json basisJson(const Payload& payload) {
     const bases::Entry& entry = bases::find(payload.head.basis);
     const auto basis =
@@ -134,6 +117,42 @@ std::pair<double, double> rangeOf(const Texels& texels, bool marked) {
     return {*low, *high};
 }
 
+Json storedJson(const Payload& payload) {
+    Json rows = Json::array();
+    for (const StoredChannel& channel : payload.stored) {
+        rows.push_back({{"name", channel.name},
+                        {"slots", channel.slots},
+                        {"first_layer", channel.firstLayer}});
+    }
+    return rows;
+}
+
+/// Keys that describe the numbers, copied verbatim from the coefficient file.
+void addCoefficientKeys(const Payload& payload, Json& document) {
+    for (const auto& [key, text] : metadataOf(payload.head)) {
+        if (key == "format" || key == "version" || key == "tolerance") continue;
+        if (key == "least_squares") continue;
+        document[key] = key == "basis" ? basisJson(payload) : Json::parse(text);
+    }
+}
+
+/// Prints one key per line, and one element per line for arrays of arrays or objects.
+std::string readable(const Json& document) {
+    std::string text = "{";
+    for (const auto& [key, value] : document.items()) {
+        text += fmt::format("{}\n  {}: ", text.size() > 1 ? "," : "", compact(key));
+        if (!value.is_array() || value.empty() || !value[0].is_structured()) {
+            text += compact(value);
+            continue;
+        }
+        for (std::size_t i = 0; i < value.size(); ++i) {
+            text += fmt::format("{}\n    {}", i == 0 ? "[" : ",", compact(value[i]));
+        }
+        text += "\n  ]";
+    }
+    return text + "\n}\n";
+}
+
 Json texelsJson(const Texels& texels, const char* layout, bool marked) {
     const auto [low, high] = rangeOf(texels, marked);
     return {{"layout", layout},
@@ -149,16 +168,6 @@ Json texelsJson(const Texels& texels, const char* layout, bool marked) {
             {"scale", scalesJson(texels)}};
 }
 
-Json storedJson(const Payload& payload) {
-    Json rows = Json::array();
-    for (const StoredChannel& channel : payload.stored) {
-        rows.push_back({{"name", channel.name},
-                        {"slots", channel.slots},
-                        {"first_layer", channel.firstLayer}});
-    }
-    return rows;
-}
-
 Json filesJson(std::span<const ExportedFile> files) {
     Json rows = Json::array();
     for (const ExportedFile& file : files) {
@@ -171,6 +180,12 @@ Json filesJson(std::span<const ExportedFile> files) {
     return rows;
 }
 
+Json frameJson() {
+    return {{"handedness", "right"}, {"normal", "+z"},
+            {"tangent", "+x"},       {"bitangent", "+y"},
+            {"phi", "atan2(y, x)"},  {"directions", "both point away from the surface"}};
+}
+
 Json testsJson(std::span<const TestTriple> tests) {
     Json rows = Json::array();
     for (const TestTriple& test : tests) {
@@ -181,16 +196,23 @@ Json testsJson(std::span<const TestTriple> tests) {
     return rows;
 }
 
-/// Keys that describe the numbers, copied verbatim from the coefficient file.
-void addCoefficientKeys(const Payload& payload, Json& document) {
-    for (const auto& [key, text] : metadataOf(payload.head)) {
-        if (key == "format" || key == "version" || key == "tolerance") continue;
-        if (key == "least_squares") continue;
-        document[key] = key == "basis" ? basisJson(payload) : Json::parse(text);
-    }
-}
-
 }  // namespace
+
+std::string readableSidecar(const std::string& document) {
+    return readable(Json::parse(document));
+}
+std::string dataText(const Texels& texels, const char* layout) {
+    return jsonText(texelsJson(texels, layout, false));
+}
+std::string filesText(std::span<const ExportedFile> files) {
+    return jsonText(filesJson(files));
+}
+std::string frameText() {
+    return jsonText(frameJson());
+}
+std::string testsText(std::span<const TestTriple> tests) {
+    return jsonText(testsJson(tests));
+}
 
 std::string sidecarText(const Payload& payload, std::span<const ExportedFile> files,
                         std::optional<Role> holds, std::span<const TestTriple> tests,
@@ -203,10 +225,7 @@ std::string sidecarText(const Payload& payload, std::span<const ExportedFile> fi
     document["cos_included"] = payload.head.quantity == Quantity::brdfCosine;
     document["unit"] = "1/sr";
     document["lobe"] = "wo looks up the coefficients, wi goes into the basis";
-    document["frame"] = {
-        {"handedness", "right"}, {"normal", "+z"},
-        {"tangent", "+x"},       {"bitangent", "+y"},
-        {"phi", "atan2(y, x)"},  {"directions", "both point away from the surface"}};
+    document["frame"] = frameJson();
     document["sum"] = "q_i = sum_c to_channels[i][c] sum_j C_cj(wo) B_slots[j](wi)";
     document["slots"] = payload.slots;
     document["stored"] = storedJson(payload);
@@ -233,14 +252,20 @@ std::string sidecarText(const Payload& payload, std::span<const ExportedFile> fi
     return readable(document);
 }
 
-std::string testText(const Payload& payload, std::span<const TestTriple> tests) {
+std::string testText(const CoefficientHead& head, std::span<const TestTriple> tests,
+                     const std::string& value) {
     return readable({{"format", "hshfit-gpu-test"},
                      {"version", 1},
-                     {"source", {{"brdf", payload.head.source}}},
-                     {"quantity", quantityName(payload.head.quantity)},
-                     {"channels", payload.head.channels.names()},
-                     {"value", "the sum before it is clamped, in double precision, analytic basis"},
+                     {"source", {{"brdf", head.source}}},
+                     {"quantity", quantityName(head.quantity)},
+                     {"channels", head.channels.names()},
+                     {"value", value},
                      {"tests", testsJson(tests)}});
+}
+
+std::string testText(const Payload& payload, std::span<const TestTriple> tests) {
+    return testText(payload.head, tests,
+                    "the sum before it is clamped, in double precision, analytic basis");
 }
 
 std::vector<std::pair<std::string, std::string>> payloadFacts(const Payload& payload) {

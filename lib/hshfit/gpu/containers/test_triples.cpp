@@ -19,7 +19,15 @@ Direction rounded(double z, double phi) {
             static_cast<double>(static_cast<float>(z))};
 }
 
-std::vector<TestTriple> pairs() {
+std::vector<double> valueAt(const Reconstruction& sum, const TestTriple& triple) {
+    std::vector<double> value(sum.channels().count());
+    sum.evalQuantity(triple.wo, {&triple.wi.x, &triple.wi.y, &triple.wi.z, 1}, value.data());
+    return value;
+}
+
+}  // namespace
+
+std::vector<TestTriple> testPairs() {
     std::vector<TestTriple> result;
     double root = 1;  // of x^5 = x + 1
     for (int i = 0; i < 64; ++i) root = std::pow(1 + root, 0.2);
@@ -45,17 +53,9 @@ std::vector<TestTriple> pairs() {
     return result;
 }
 
-std::vector<double> valueAt(const Reconstruction& sum, const TestTriple& triple) {
-    std::vector<double> value(sum.channels().count());
-    sum.evalQuantity(triple.wo, {&triple.wi.x, &triple.wi.y, &triple.wi.z, 1}, value.data());
-    return value;
-}
-
-}  // namespace
-
 std::vector<TestTriple> testTriples(const Payload& payload) {
     const Reconstruction sum(unpack(payload));
-    std::vector<TestTriple> triples = pairs();
+    std::vector<TestTriple> triples = testPairs();
     for (TestTriple& triple : triples) {
         if (payload.head.outgoing.map == OutgoingSet::Map::direction) {
             const Direction& d = payload.head.outgoing.directions[0];

@@ -14,9 +14,12 @@ struct TestTriple {
     std::vector<double> value;  ///< per channel, the sum before it is clamped
 };
 
-/// 72 pairs: 64 spread evenly over the two hemispheres by Roberts' R sequence (the additive
-/// recurrence in powers of the root of x^5 = x + 1), 8 near the pole or within half a degree of the
-/// horizon. For the map `direction` wo is that direction. Values: Reconstruction of
+/// 72 pairs without values: 64 spread evenly over the two hemispheres by Roberts' R sequence (the
+/// additive recurrence in powers of the root of x^5 = x + 1), 8 near the pole or within half a
+/// degree of the horizon.
+std::vector<TestTriple> testPairs();
+
+/// testPairs() with values. For the map `direction` wo is that direction. Values: Reconstruction of
 /// unpack(payload), that is the stored, rounded texels, in double precision with the analytic
 /// basis.
 std::vector<TestTriple> testTriples(const Payload& payload);

@@ -42,14 +42,27 @@ inline float sqrt(float a) {
     return stub::root(a);
 }
 
+inline float exp(float a) {
+    return __builtin_expf(a);
+}
+inline float floor(float a) {
+    return __builtin_floorf(a);
+}
+
 /// Keys and modes are those of OSL (stdlib.md, "Texture"); OSL itself ignores an unknown mode.
 inline color texture(string map, float u, float v, float, float, float, float, const char* key,
                      int subimage, const char* interp, const char* mode, const char* wrap,
                      const char* wrapMode, const char* rest, float& alpha) {
-    const char* found[] = {key, interp, mode, wrap, wrapMode, rest};
+    const bool closest = __builtin_strcmp(mode, "closest") == 0;
+    const char* found[] = {key, interp, closest ? "linear" : mode, wrap, wrapMode, rest};
     const char* wanted[] = {"subimage", "interp", "linear", "wrap", "clamp", "alpha"};
     for (int i = 0; i < 6; ++i)
         if (__builtin_strcmp(found[i], wanted[i]) != 0) exit(4);
+    if (closest) {
+        const int x = static_cast<int>(u * map->width), y = static_cast<int>(v * map->height);
+        alpha = map->at(x, y, subimage, 3);
+        return {map->at(x, y, subimage, 0), map->at(x, y, subimage, 1), map->at(x, y, subimage, 2)};
+    }
     alpha = map->sample(u, v, subimage, 3);
     return {map->sample(u, v, subimage, 0), map->sample(u, v, subimage, 1),
             map->sample(u, v, subimage, 2)};

@@ -1,0 +1,167 @@
+#include <hshfit/gpu/forms/form_shader.h>
+
+#include <hshfit/error.h>
+#include <hshfit/gpu/forms/form_table.h>
+#include <hshfit/gpu/forms/internal/form_text.h>
+#include <hshfit/gpu/shader_text.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+namespace hshfit::embedded {
+extern const std::string_view form_eval, form_expm1, form_glsl, form_glsl_es, form_glsl_functions,
+    form_header, form_hlsl, form_metal, form_osl, form_sums, form_wgsl;
+}  // namespace hshfit::embedded
+
+namespace hshfit::gpu::inline forms {
+namespace {
+
+using kainjow::mustache::data;
+using kainjow::mustache::mustache;
+using kainjow::mustache::partial;
+
+constexpr std::array storages{std::pair{Storage::automatic, std::string_view("auto")},
+                              std::pair{Storage::constants, std::string_view("constants")},
+                              std::pair{Storage::block, std::string_view("block")},
+                              std::pair{Storage::texture, std::string_view("texture")}};
+
+/// The words that forms need of a language beyond setLanguageWords: its template, a declaration of
+/// a whole number, a conversion to one, and a declaration of a vector that changes.
+struct FormLanguage {
+    std::string_view text, letInt, toInt, varVector;
+};
+FormLanguage formLanguage(Language language) {
+    switch (language) {
+        case Language::glslEs:
+            return {embedded::form_glsl_es, "int", "int", "vec3"};
+        case Language::glsl:
+            return {embedded::form_glsl, "int", "int", "vec3"};
+        case Language::hlsl:
+            return {embedded::form_hlsl, "int", "int", "float3"};
+        case Language::metal:
+            return {embedded::form_metal, "int", "int", "float3"};
+        case Language::wgsl:
+            return {embedded::form_wgsl, "let", "i32", "var"};
+        case Language::osl:
+            break;
+    }
+    return {embedded::form_osl, "int", "(int)", "vector"};
+}
+
+void checkLanguage(Language language, const FormPayload& payload, Storage storage) {
+    if (language != Language::osl) return;
+    if (storage == Storage::block)
+        throw UsageError("OSL has no uniform blocks: store the form as constants or as a texture");
+    if (storage == Storage::texture && isNormalised(payload.texels.number)) {
+        throw UsageError(
+            "OSL reads EXR, which holds no normalised integers: use float16 or float32");
+    }
+}
+
+void setStorage(const FormPayload& payload, Storage storage, data& page) {
+    for (const auto& [each, name] : storages) page.set(std::string(name), each == storage);
+    page.set("width", std::to_string(payload.texels.width));
+    page.set("height", std::to_string(payload.texels.height));
+    page.set("texels", std::to_string(payload.texelCount()));
+    page.set("table", false);
+}
+
+void setChannels(const Channels& channels, const std::string& prefix, Language language,
+                 data& page) {
+    const bool grey = channels.kind == Channels::Kind::grey;
+    const bool spectral = channels.kind == Channels::Kind::spectral;
+    page.set("grey", grey);
+    page.set("colour", !grey && !spectral);
+    page.set("spectral", spectral);
+    page.set("channelCount", std::to_string(channels.count()));
+    page.set("channelNames", fmt::format("{}", fmt::join(channels.names(), " ")));
+    const std::string vector =
+        language == Language::wgsl ? "vec3<f32>" : std::string(formLanguage(language).varVector);
+    const std::string real = language == Language::wgsl ? "f32" : "float";
+    page.set("type", spectral ? prefix + "_Values" : grey ? real : vector);
+    page.set("zero", grey ? "0.0" : vector + "(0.0, 0.0, 0.0)");
+}
+
+void setHeader(const FormPayload& payload, const FormRow& row, data& page) {
+    const Representation& form = payload.form;
+    page.set("generator", commentText(form.head.generator));
+    page.set("source", commentText(form.head.source));
+    page.set("kind", std::string(kindName(form.kind())));
+    page.set("orders", data(false));
+    if (form.kind() == Representation::Kind::halfway) {
+        page.set("orders", fmt::format("{},{},{}", form.halfway.half, form.halfway.difference,
+                                       form.halfway.azimuth));
+    }
+    page.set("numbers", std::to_string(form.numbers()));
+    page.set("bytes", std::to_string(form.bytes()));
+    page.set("number", numberName(payload.texels.number));
+    page.set("formula", std::string(row.formula));
+}
+
+void setPartials(std::string_view body, data& page) {
+    const std::pair<const char*, std::string_view> parts[] = {
+        {"header", embedded::form_header},
+        {"sumsBody", embedded::form_sums},
+        {"evalBody", embedded::form_eval},
+        {"expm1Body", embedded::form_expm1},
+        {"formBody", body},
+        {"glslFunctions", embedded::form_glsl_functions},
+    };
+    for (const auto& [name, text] : parts) {
+        // The last newline is dropped, because the line that names a partial has one of its own.
+        std::string part(text);
+        if (part.ends_with('\n')) part.pop_back();
+        page.set(name, data(partial([part] { return part; })));
+    }
+}
+
+}  // namespace
+
+std::string_view storageName(Storage storage) {
+    return std::ranges::find(storages, storage, &decltype(storages)::value_type::first)->second;
+}
+
+Storage parseStorage(std::string_view name) {
+    for (const auto& [storage, known] : storages) {
+        if (known == name) return storage;
+    }
+    throw UsageError(
+        fmt::format("'{}' is no storage; known: auto, constants, block, texture", name));
+}
+
+Storage storageFor(const FormPayload& payload, Storage asked) {
+    if (asked != Storage::automatic) return asked;
+    return payload.stream.size() <= mostConstants ? Storage::constants : Storage::texture;
+}
+
+std::string formShaderSource(Language language, const FormPayload& payload,
+                             const FormShaderOptions& options) {
+    checkPrefix(options.prefix);
+    const Storage storage = storageFor(payload, options.storage);
+    checkLanguage(language, payload, storage);
+    const FormRow& row = formRow(payload.form.kind());
+    const FormLanguage words = formLanguage(language);
+    data page;
+    setLanguageWords(language, options.prefix, page);
+    page.set("letInt", std::string(words.letInt));
+    page.set("toInt", std::string(words.toInt));
+    page.set("varVector", std::string(words.varVector));
+    setStorage(payload, storage, page);
+    setChannels(payload.form.head.channels, options.prefix, language, page);
+    setHeader(payload, row, page);
+    page.set("expm1", row.kind == Representation::Kind::halfway);
+    ShaderCost cost;
+    FormText text{payload, storage == Storage::constants, page, cost};
+    row.fill(text);
+    page.set("evalFetches", std::to_string(cost.fetches));
+    page.set("evalProducts", std::to_string(cost.products));
+    setPartials(row.body, page);
+    mustache frame{std::string(words.text)};
+    frame.set_custom_escape([](const std::string& s) { return s; });
+    return withoutGaps(frame.render(page));
+}
+
+}  // namespace hshfit::gpu::inline forms

@@ -1,0 +1,38 @@
+#include <hshfit/gpu/forms/form_table.h>
+
+#include <hshfit/error.h>
+#include <hshfit/gpu/forms/internal/form_rows.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace hshfit::embedded {
+extern const std::string_view form_halfway;
+}  // namespace hshfit::embedded
+
+namespace hshfit::gpu::inline forms {
+
+std::span<const FormRow> formTable() {
+    static const std::array rows{
+        FormRow{Representation::Kind::halfway, "f = min(E, max(0, exp(sum_t c_t P_t(wi, wo)) - 1))",
+                halfwayStream, embedded::form_halfway, fillHalfway},
+    };
+    return rows;
+}
+
+bool hasShader(const Representation& form) {
+    return form.added.empty() && std::ranges::any_of(formTable(), [&](const FormRow& row) {
+               return row.kind == form.kind();
+           });
+}
+
+const FormRow& formRow(Representation::Kind kind) {
+    for (const FormRow& row : formTable()) {
+        if (row.kind == kind) return row;
+    }
+    throw UsageError(fmt::format("the form '{}' has no shader of its own", kindName(kind)));
+}
+
+}  // namespace hshfit::gpu::inline forms

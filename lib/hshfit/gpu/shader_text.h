@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+namespace hshfit::gpu {
+
+/// Text for a comment: printable ASCII on one line, so that nothing can end the comment.
+std::string commentText(std::string text);
+
+/// Throws UsageError for a prefix that no shading language takes for the beginning of a name.
+void checkPrefix(const std::string& prefix);
+
+/// Omitted sections leave blank lines behind. One is kept before each line that starts at the
+/// margin.
+std::string withoutGaps(const std::string& text);
+
+}  // namespace hshfit::gpu

@@ -1,0 +1,157 @@
+// Exports of forms are read back as the coefficient files that they came from.
+
+#include "../containers/container_samples.h"
+#include "form_samples.h"
+
+#include <hshfit/coefficient_files/coefficient_formats.h>
+#include <hshfit/error.h>
+#include <hshfit/gpu/forms/form_files.h>
+#include <hshfit/gpu/forms/form_table.h>
+#include <hshfit/representation/named_arrays.h>
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace hshfit::gpu {
+namespace {
+
+using samples::contentOf;
+using samples::Folder;
+
+std::unique_ptr<Brdf> nothingToOpen(const std::string& spec) {
+    throw UsageError("opens " + spec);
+}
+
+std::vector<ExportedFile> exportForm(const std::string& folder, const FormPayload& payload) {
+    std::vector<const Container*> chosen;
+    for (const Container& container : containers::catalog())
+        if (container.holds(payload.texels.number)) chosen.push_back(&container);
+    FileSet files(folder, true);
+    auto written = writeForm(payload, chosen, "sample", {}, nothingToOpen, files);
+    files.commit();
+    return written;
+}
+
+TEST(FormFiles, EveryContainerGivesTheCoefficientFileAgain) {
+    for (const samples::FormSample& sample : samples::halfwaySamples()) {
+        const Folder folder;
+        const FormPayload payload = packForm(sample.form);
+        const std::string before = representationToJson(sample.form);
+        const std::vector<ExportedFile> files = exportForm(folder.path(), payload);
+        const ImportedForm beside = readForm(folder / "sample.hsh.json", nothingToOpen);
+        EXPECT_EQ(representationToJson(beside.payload.form), before) << sample.name;
+        for (const ExportedFile& file : files) {
+            EXPECT_TRUE(looksLikeForm(folder / file.path)) << file.path;
+            const ImportedForm read = readForm(folder / file.path, nothingToOpen);
+            // Parts for one layer are one part: an EXR like any other.
+            const bool parts = file.container == "exr-parts";
+            EXPECT_EQ(read.container, parts ? "exr" : file.container);
+            EXPECT_EQ(representationToJson(read.payload.form), before)
+                << sample.name << ", " << file.container;
+            EXPECT_EQ(read.payload.texels.bytes, payload.texels.bytes);
+        }
+    }
+}
+
+TEST(FormPayload, TheNumberTypeIsTheSmallestThatHoldsTheFile) {
+    const std::map<std::string, Number> wanted{{"12,6,3 rgb, float32", Number::float32},
+                                               {"12,6,3 rgb, half", Number::float16},
+                                               {"12,6,3 rgb, unorm16", Number::unorm16},
+                                               {"12,6,3 rgb, unorm8", Number::unorm8}};
+    std::size_t found = 0;
+    for (const samples::FormSample& sample : samples::halfwaySamples()) {
+        if (!wanted.contains(sample.name)) continue;
+        EXPECT_EQ(packForm(sample.form).texels.number, wanted.at(sample.name)) << sample.name;
+        ++found;
+    }
+    EXPECT_EQ(found, wanted.size());
+}
+
+TEST(FormPayload, EveryKeptNumberIsInTheStreamOnce) {
+    for (const samples::FormSample& sample : samples::halfwaySamples()) {
+        std::set<std::pair<std::uint32_t, std::uint32_t>> places;
+        for (const StreamNumber& number : packForm(sample.form).stream) {
+            if (number.array == StreamNumber::nothing) continue;
+            EXPECT_TRUE(places.emplace(number.array, number.value).second) << sample.name;
+        }
+        // The ridge of an envelope is a number beside the arrays.
+        const auto* content = sample.form.as<HalfwayArray>();
+        EXPECT_EQ(places.size(), sample.form.numbers() - (content->envelope ? 1 : 0));
+    }
+}
+
+/// value = texel * scale + offset, for every type of texel and of array that it holds.
+TEST(FormPayload, TexelsDecodeToTheValuesOfTheFile) {
+    for (const samples::FormSample& sample : samples::halfwaySamples()) {
+        for (const Number number :
+             {Number::float32, Number::float16, Number::unorm16, Number::unorm8}) {
+            const FormPayload payload = packForm(sample.form, number);
+            const std::vector<double> texels = decode(payload.texels);
+            for (std::size_t n = 0; n < payload.stream.size(); ++n) {
+                if (payload.stream[n].array == StreamNumber::nothing) continue;
+                const LaneScale lane = payload.scaleOf(payload.stream[n]);
+                const double value = payload.valueOf(payload.stream[n]);
+                ASSERT_NEAR(texels[n] * lane.scale + lane.offset, value, 1e-12)
+                    << sample.name << ", " << numberName(number);
+            }
+        }
+    }
+}
+
+TEST(FormPayload, RoundingToAnotherTypeIsRecordedAsAStep) {
+    const Representation form = samples::halfwaySamples()[0].form;
+    EXPECT_TRUE(packForm(form).form.steps.empty());
+    const auto steps = packForm(form, Number::unorm8).form.steps;
+    ASSERT_EQ(steps.size(), 1u);
+    EXPECT_EQ(steps[0].what, "unorm8");
+    EXPECT_GT(steps[0].change, 0);
+}
+
+/// Sidecars that lie: each change is refused with the name of the file.
+TEST(FormFiles, ChangedSidecarsAreRefused) {
+    const Folder folder;
+    exportForm(folder.path(), packForm(samples::halfwaySamples()[1].form));
+    const std::string path = folder / "sample.hsh.json", text = contentOf(path);
+    const std::pair<const char*, const char*> changes[] = {
+        {"\"form\": \"halfway\"", "\"form\": \"basis\""},
+        {"\"form\": \"halfway\"", "\"form\": 3"},
+        {"\"half\":12", "\"half\":11"},
+        {"\"half\":12", "\"half\":1000000"},
+        {"\"precision\":\"half\"", "\"precision\":\"unorm8\""},
+        {"\"precision\":\"half\"", "\"precision\":\"quarter\""},
+        {"\"numbers\":", "\"numbers\":1"},
+        {"\"ridge\":0.1", "\"ridge\":-1"},
+        {"\"width\":64", "\"width\":63"},
+        {"\"head\":\"\"", "\"head\":\"AAAA\""},
+        {"\"version\": 2", "\"version\": 3"},
+        {"\"isotropic\":true", "\"isotropic\":false"},
+    };
+    for (const auto& [from, to] : changes) {
+        std::string changed = text;
+        const std::size_t at = changed.find(from);
+        ASSERT_NE(at, std::string::npos) << from;
+        changed.replace(at, std::string(from).size(), to);
+        samples::put(path, changed);
+        try {
+            readForm(path, nothingToOpen);
+            ADD_FAILURE() << "accepted: " << to;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find("sample"), std::string::npos) << error.what();
+        }
+    }
+}
+
+TEST(FormTable, FormsWithoutAShaderAreRefused) {
+    Representation outgoing;
+    outgoing.content = CoefficientArray{};
+    EXPECT_FALSE(hasShader(outgoing));
+    EXPECT_THROW(packForm(outgoing), UsageError);
+    Representation split = samples::halfwaySamples()[0].form;
+    EXPECT_TRUE(hasShader(split));
+    split.added = "lambert";
+    EXPECT_FALSE(hasShader(split));
+}
+
+}  // namespace
+}  // namespace hshfit::gpu

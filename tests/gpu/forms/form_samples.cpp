@@ -1,0 +1,91 @@
+#include "form_samples.h"
+
+#include <hshfit/representation/halfway/halfway_terms.h>
+
+#include <cmath>
+#include <random>
+
+namespace hshfit::samples {
+namespace {
+
+struct Envelope {
+    std::size_t alongA = 0, alongB = 0;  ///< 0: none
+    double ridge = 0.1;
+};
+
+struct Asked {
+    HalfwayOrders orders;
+    Channels channels;
+    HalfwaySymmetry symmetry;
+    Precision precision = Precision::float32;
+    Envelope envelope = {5, 4};
+    std::size_t keep = 0;
+};
+
+FormSample sample(const std::string& name, const Asked& asked, unsigned seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    Representation r;
+    r.head.channels = asked.channels;
+    r.head.isotropic = asked.symmetry.isotropic;
+    r.head.bilateral = asked.symmetry.bilateral;
+    r.head.reciprocal = asked.symmetry.reciprocal;
+    r.head.source = "random";
+    r.head.generator = "hshfit test";
+    r.halfway = asked.orders;
+    const HalfwayTerms terms(asked.orders, asked.symmetry);
+    const std::size_t channels = asked.channels.count();
+    HalfwayArray content{{.shape = {channels, terms.size()}, .values = {}}};
+    for (std::size_t c = 0; c < channels; ++c) {
+        for (const HalfwayTerm& t : terms.list()) {
+            const int degree = t.i + t.j + t.k + t.q;
+            const double fall = 1 + degree * degree;
+            content.halfway.values.push_back((degree == 0 ? 1.5 : 0) + uniform(random) / fall);
+        }
+    }
+    if (asked.keep > 0) keepLargest(content.halfway, asked.keep);
+    quantise(content.halfway, asked.precision);
+    if (asked.envelope.alongA > 0) {
+        EnvelopeArray envelope{
+            {.shape = {asked.envelope.alongB, asked.envelope.alongA, channels}, .values = {}},
+            asked.envelope.ridge};
+        const std::size_t count = asked.envelope.alongB * asked.envelope.alongA * channels;
+        for (std::size_t i = 0; i < count; ++i)
+            envelope.logs.values.push_back(1.5 + 1.5 * uniform(random));
+        quantise(envelope.logs, Precision::unorm8);
+        content.envelope = std::move(envelope);
+    }
+    r.content = std::move(content);
+    return {name, std::move(r)};
+}
+
+}  // namespace
+
+std::vector<FormSample> halfwaySamples() {
+    const Channels rgb = Channels::rgb(), grey = Channels::grey(),
+                   spectrum = Channels::spectral({420, 480, 550, 610, 690});
+    const HalfwaySymmetry measured{true, true, false}, modelled{true, true, true};
+    using enum Precision;
+    return {
+        sample("12,6,3 rgb, float32", {{12, 6, 3}, rgb, measured}, 1),
+        sample("12,6,3 rgb, half", {{12, 6, 3}, rgb, measured, half}, 2),
+        sample("12,6,3 rgb, unorm16", {{12, 6, 3}, rgb, measured, unorm16}, 3),
+        sample("12,6,3 rgb, unorm8", {{12, 6, 3}, rgb, measured, unorm8}, 4),
+        sample("8,4,3 rgb, half, masked", {{8, 4, 3}, rgb, measured, half, {3, 3}, 60}, 5),
+        sample("8,4,2 grey, reciprocal", {{8, 4, 2}, grey, modelled}, 6),
+        sample("7,5,4 rgb, twisted", {{7, 5, 4}, rgb, {true, false, false}, half, {7, 6, 0.02}}, 7),
+        sample("7,5,4 rgb, anisotropic, half",
+               {{7, 5, 4}, rgb, {false, false, false}, half, {9, 1}}, 8),
+        sample("6,4,3 grey, anisotropic, bilateral",
+               {{6, 4, 3}, grey, {false, true, false}, float32, {1, 3}}, 9),
+        sample("6,4,4 rgb, anisotropic, reciprocal",
+               {{6, 4, 4}, rgb, {false, false, true}, float32, {1, 1}}, 10),
+        sample("5,3,2 spectral, half", {{5, 3, 2}, spectrum, measured, half, {4, 3}}, 11),
+        sample("5,3,2 spectral, unorm8, masked",
+               {{5, 3, 2}, spectrum, measured, unorm8, {4, 3}, 40}, 12),
+        sample("6,3,2 rgb, no envelope", {{6, 3, 2}, rgb, modelled, half, {0, 0}}, 13),
+        sample("1,1,1 grey", {{1, 1, 1}, grey, modelled, float32, {0, 0}}, 14),
+    };
+}
+
+}  // namespace hshfit::samples

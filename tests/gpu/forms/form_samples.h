@@ -1,0 +1,20 @@
+#pragma once
+
+#include <hshfit/representation/representation.h>
+
+#include <string>
+#include <vector>
+
+/// Representations with random numbers, on which a swapped or missing term changes values.
+namespace hshfit::samples {
+
+struct FormSample {
+    std::string name;
+    Representation form;
+};
+
+/// The halfway form with every symmetry, kind of channels, precision, mask and shape of the
+/// envelope, at orders up to 12.
+std::vector<FormSample> halfwaySamples();
+
+}  // namespace hshfit::samples

@@ -1,0 +1,129 @@
+#include "../shaders/runners.h"
+#include "form_samples.h"
+
+#include <hshfit/gpu/forms/form_shader.h>
+#include <hshfit/representation/forms/represented_brdf.h>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <iostream>
+
+namespace hshfit::shaders {
+namespace {
+
+using gpu::Language;
+using gpu::Storage;
+using samples::FormSample;
+
+std::unique_ptr<Brdf> nothingToOpen(const std::string& spec) {
+    throw std::runtime_error("opens " + spec);
+}
+
+ShaderJob jobOf(const gpu::FormPayload& payload, Storage storage) {
+    ShaderJob job{{}, directionPairs(), {.order = 0, .colours = 0, .values = {}}};
+    job.payload.head = payload.form.head;
+    job.payload.coefficients = payload.texels;
+    job.form = gpu::storageName(storage);
+    return job;
+}
+
+/// f of the library in double precision, [pair][channel].
+std::vector<double> expected(const gpu::FormPayload& payload, const Pairs& pairs) {
+    const auto brdf = reconstruct(payload.form, nothingToOpen);
+    const std::size_t channels = brdf->channels().count();
+    std::vector<double> values(pairs.wo.size() * channels);
+    for (std::size_t k = 0; k < pairs.wo.size(); ++k) {
+        const Direction& wi = pairs.wi[k];
+        brdf->eval(pairs.wo[k], {&wi.x, &wi.y, &wi.z, 1}, values.data() + k * channels);
+    }
+    return values;
+}
+
+/// Largest |difference| over 1 + |f|: the form keeps ln(1 + f), which single precision rounds.
+double relativeDifference(const std::vector<double>& expected, const std::vector<float>& found,
+                          std::size_t channels) {
+    double worst = 0;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        const std::size_t at = i / channels * 2 * channels + i % channels;
+        double d = std::abs(static_cast<double>(found[at]) - expected[i]);
+        // A NaN counts as infinitely far.
+        if (!(d < 1e30)) d = 1e30;
+        worst = std::max(worst, d / (1 + std::abs(expected[i])));
+    }
+    return worst;
+}
+
+using Run = std::function<std::vector<float>(const ShaderJob&, const std::string&)>;
+
+bool takes(Language language, const gpu::FormPayload& payload, Storage storage) {
+    const bool integers = storage == Storage::texture && isNormalised(payload.texels.number);
+    if (language == Language::osl) return storage != Storage::block && !integers;
+    // The C++ stub of Metal has no buffers.
+    return language != Language::metal || storage != Storage::block;
+}
+
+void prove(Language language, const std::vector<FormSample>& samples, Run runner = {}) {
+    if (!runner) {
+        runner = [language](const auto& job, const auto& source) {
+            return run(language, job, source);
+        };
+    }
+    std::size_t index = static_cast<std::size_t>(language);
+    for (const FormSample& sample : samples) {
+        const gpu::FormPayload payload = gpu::packForm(sample.form);
+        const Storage all[] = {Storage::constants, Storage::block, Storage::texture};
+        const std::vector<double> values = expected(payload, directionPairs());
+        // Two of the three take turns; compilers need most of the time.
+        const Storage leftOut = all[index++ % 3];
+        for (const Storage storage : all) {
+            if (!takes(language, payload, storage) || storage == leftOut) continue;
+            const ShaderJob job = jobOf(payload, storage);
+            std::vector<float> found;
+            try {
+                found = runner(
+                    job, wrapped(language, job,
+                                 gpu::formShaderSource(language, payload, {.storage = storage})));
+            } catch (const Missing& reason) {
+                GTEST_SKIP() << reason.what();
+            } catch (const Refused& reason) {
+                FAIL() << sample.name << ", " << job.form << ": " << reason.what();
+            }
+            const double difference = relativeDifference(values, found, job.channels());
+            std::cout << fmt::format("{:<40} {:<10} {:.1e}\n", sample.name, job.form, difference);
+            EXPECT_LE(difference, 1e-5) << sample.name << ", " << job.form;
+        }
+    }
+}
+
+class HalfwayShader : public testing::Test {
+protected:
+    const std::vector<FormSample> samples = samples::halfwaySamples();
+};
+
+TEST_F(HalfwayShader, GlslOnVulkan) {
+    prove(Language::glsl, samples);
+}
+TEST_F(HalfwayShader, HlslOnVulkan) {
+    prove(Language::hlsl, samples);
+}
+TEST_F(HalfwayShader, WgslOnVulkan) {
+    prove(Language::wgsl, samples);
+}
+TEST_F(HalfwayShader, GlslOnOpenGl) {
+    prove(Language::glsl, samples, runOpenGl);
+}
+TEST_F(HalfwayShader, GlslEsOnOpenGlEs) {
+    prove(Language::glslEs, samples);
+}
+TEST_F(HalfwayShader, MetalAsCpp) {
+    prove(Language::metal, samples);
+}
+TEST_F(HalfwayShader, OslAsCpp) {
+    prove(Language::osl, samples);
+}
+
+}  // namespace
+}  // namespace hshfit::shaders
