@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct ExportArguments {
-    std::string coefficients, output, number = "float16", packing = "coef4";
+    std::string coefficients, output, number, storage = "auto", packing = "coef4";
     bool chroma = false, noError = false;
     jobs::ExportOptions options;
 };
@@ -46,7 +46,37 @@ Json describe(const gpu::Payload& payload) {
     return document;
 }
 
+Json describeExportedForm(const jobs::Exported& exported) {
+    const gpu::FormPayload& payload = *exported.form;
+    return {{"brdf", payload.form.head.source},
+            {"form", kindName(payload.form.kind())},
+            {"channels", payload.form.head.channels.names()},
+            {"number", gpu::numberName(payload.texels.number)},
+            {"storage", gpu::storageName(exported.storage)},
+            {"numbers", payload.form.numbers()},
+            {"bytes", payload.form.bytes()},
+            {"texel_bytes", payload.texels.bytes.size()}};
+}
+
+std::string exportedFormText(const Json& document) {
+    std::string out = fmt::format(
+        "{}: form {}, {} numbers in {} bytes, texels of {} in {} bytes; shaders with {}\n",
+        document["folder"].get<std::string>(), document["form"].get<std::string>(),
+        document["numbers"].get<std::size_t>(), document["bytes"].get<std::size_t>(),
+        document["number"].get<std::string>(), document["texel_bytes"].get<std::size_t>(),
+        document["storage"].get<std::string>());
+    for (const Json& file : document["files"])
+        out += fmt::format("  {}\n", file["path"].get<std::string>());
+    const Json& error = document["fit_error"];
+    if (error.contains("reason"))
+        return out + fmt::format("no error: {}\n", error["reason"].get<std::string>());
+    return out + fmt::format("mean log error against {}: {:.3g}, of the file {:.3g}\n",
+                             document["brdf"].get<std::string>(), error["mean_log"].get<double>(),
+                             error["file"].get<double>());
+}
+
 std::string text(const Json& document) {
+    if (document.contains("form")) return exportedFormText(document);
     std::string out =
         fmt::format("{}: {} order {}, {}, {}, {} layers, {} bytes of texels\n",
                     document["folder"].get<std::string>(), document["basis"].get<std::string>(),
@@ -90,7 +120,7 @@ std::string text(const Json& document) {
 Json document(const jobs::Exported& exported, const std::string& folder) {
     Json document = {
         {"format", "hshfit-export"}, {"version", 1}, {"folder", folder}, {"name", exported.name}};
-    document.update(describe(exported.payload));
+    document.update(exported.form ? describeExportedForm(exported) : describe(exported.payload));
     document["fit_error"] = jobs::errorJson(exported.error);
     if (exported.poor) document["poor"] = jobs::poorJson(*exported.poor);
     document["files"] = Json::array({{{"role", "sidecar"}, {"path", exported.sidecar}},
@@ -119,7 +149,11 @@ Json document(const jobs::Exported& exported, const std::string& folder) {
 
 void runExport(ExportArguments& arguments, const Globals& globals) {
     jobs::ExportOptions& options = arguments.options;
-    options.pack.number = gpu::parseNumber(arguments.number);
+    if (!arguments.number.empty()) {
+        options.number = gpu::parseNumber(arguments.number);
+        options.pack.number = *options.number;
+    }
+    options.storage = gpu::parseStorage(arguments.storage);
     options.pack.packing = arguments.packing == "rgb" ? gpu::Packing::rgb : gpu::Packing::coef4;
     options.pack.luminanceChroma = arguments.chroma || options.pack.chromaOrder > 0;
     options.measureError = !arguments.noError;
@@ -150,13 +184,21 @@ void addExport(CLI::App& command, Globals& globals) {
         ->capture_default_str();
     command.add_option("--outgoing", options.outgoing,
                        "Outgoing set of the textures, WxH or N; other than COEFFS' own: projected "
-                       "anew (default: its own; 16 or 16x16 for forms that have none)");
-    command.add_option("--basis", options.basis, "For the form halfway: what it is projected to")
+                       "anew (default: its own; the form halfway is exported as it is)");
+    command
+        .add_option("--basis", options.basis,
+                    "With --outgoing, of the form halfway: what it is projected to")
         ->capture_default_str();
     command.add_option("--order", options.order, "With --basis")->capture_default_str();
     command.add_option("--name", options.name,
                        "What the files' names begin with (default: that of COEFFS)");
-    command.add_option("--number", arguments->number, "float16, float32, unorm16 or unorm8")
+    command.add_option("--number", arguments->number,
+                       "float16, float32, unorm16 or unorm8 (default: float16; for the form "
+                       "halfway, the least that holds the file)");
+    command
+        .add_option("--storage", arguments->storage,
+                    "Numbers of the form halfway in shaders: constants, block (one uniform block), "
+                    "texture, or auto: constants up to 4096 numbers")
         ->capture_default_str();
     command
         .add_option("--packing", arguments->packing,
@@ -177,6 +219,8 @@ void addExport(CLI::App& command, Globals& globals) {
         ->capture_default_str();
     command.add_option("--source", options.source,
                        "BRDF that the error is measured against (default: as COEFFS says)");
+    command.add_flag("--allow-loss", options.allowLoss,
+                     "Accept an export more than twice as far from its source as COEFFS is");
     command.add_flag("--no-error", arguments->noError, "Do not measure the error");
     command.add_option(
         "--light", options.lights,

@@ -6,6 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <variant>
+
 namespace hshfit::cli {
 namespace {
 
@@ -16,8 +18,8 @@ struct ImportArguments {
     jobs::ImportOptions options;
 };
 
-Json answer(const jobs::Imported& imported, const ImportArguments& arguments) {
-    const gpu::ImportedPayload& read = imported.read;
+Json answer(const gpu::ImportedPayload& read, std::uintmax_t bytes,
+            const ImportArguments& arguments) {
     const gpu::Payload& payload = read.payload;
     return {{"format", "hshfit-import"},
             {"version", 1},
@@ -26,7 +28,7 @@ Json answer(const jobs::Imported& imported, const ImportArguments& arguments) {
             {"file", read.file},
             {"sidecar", read.sidecar},
             {"output", arguments.output},
-            {"bytes", imported.bytes},
+            {"bytes", bytes},
             {"brdf", payload.head.source},
             {"basis", payload.head.basis},
             {"order", payload.head.order},
@@ -49,14 +51,47 @@ std::string importedText(const Json& document) {
         document["tests"]["largest_difference"].get<double>());
 }
 
+Json answer(const gpu::ImportedForm& read, std::uintmax_t bytes,
+            const ImportArguments& arguments) {
+    const Representation& form = read.payload.form;
+    return {{"format", "hshfit-import"},
+            {"version", 1},
+            {"input", arguments.input},
+            {"container", read.container},
+            {"file", read.file},
+            {"sidecar", read.sidecar},
+            {"output", arguments.output},
+            {"bytes", bytes},
+            {"brdf", form.head.source},
+            {"form", kindName(form.kind())},
+            {"channels", form.head.channels.names()},
+            {"number", gpu::numberName(read.payload.texels.number)},
+            {"numbers", form.numbers()},
+            {"tests", {{"count", read.tests}, {"largest_difference", read.testDifference}}}};
+}
+
+std::string importedFormText(const Json& document) {
+    return fmt::format(
+        "{}: form {}, {} numbers, from {} ({}, {}); SHA-256 right, {} tests within "
+        "{:.1g}\n",
+        document["output"].get<std::string>(), document["form"].get<std::string>(),
+        document["numbers"].get<std::size_t>(), document["file"].get<std::string>(),
+        document["container"].get<std::string>(), document["number"].get<std::string>(),
+        document["tests"]["count"].get<std::size_t>(),
+        document["tests"]["largest_difference"].get<double>());
+}
+
 void runImport(const ImportArguments& arguments, const Globals& globals) {
     const jobs::Imported imported =
         jobs::importCoefficients(arguments.input, arguments.output, arguments.options);
-    const Json document = answer(imported, arguments);
+    const Json document =
+        std::visit([&](const auto& read) { return answer(read, imported.bytes, arguments); },
+                   imported.read);
+    const bool form = std::holds_alternative<gpu::ImportedForm>(imported.read);
     if (globals.json) {
         printJson(document);
     } else {
-        printText(importedText(document));
+        printText(form ? importedFormText(document) : importedText(document));
     }
 }
 

@@ -20,8 +20,10 @@ struct OptionRow {
 constexpr OptionRow options[] = {
     {"ConvertOptions::format", "--to"},
     {"ConvertOptions::measureLoss", "--report-loss"},
+    {"ExportOptions::allowLoss", "--allow-loss"},
     {"ExportOptions::force", "--force"},
     {"ExportOptions::lights", "--light"},
+    {"ExportOptions::outgoing", "--outgoing"},
     {"ExportOptions::source", "--source"},
     {"FileSet::force", "--force"},
     {"FitOptions::accept", "--accept"},

@@ -1,5 +1,6 @@
 #include "export.h"
 
+#include "export_form.h"
 #include "source.h"
 
 #include <hshfit/coefficient_files/representation_file.h>
@@ -7,6 +8,8 @@
 #include <hshfit/files/file_set.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/gpu/containers/targets.h>
+#include <hshfit/gpu/forms/form_files.h>
+#include <hshfit/gpu/forms/form_table.h>
 #include <hshfit/gpu/viewer.h>
 #include <hshfit/light/catalog.h>
 #include <hshfit/representation/forms/represented_brdf.h>
@@ -34,7 +37,7 @@ struct Source {
     std::string reason;  ///< why there is none
 };
 
-Source openSourceOf(const ExportOptions& options, const Coefficients& coefficients) {
+Source openSourceOf(const ExportOptions& options, const CoefficientHead& coefficients) {
     if (!options.source.empty()) return {brdfs::open(options.source), {}};
     try {
         return {brdfs::open(coefficients.source), {}};
@@ -50,9 +53,8 @@ struct Exportable {
     Coefficients coefficients;
     bool plain = true;  ///< a projection, with nothing done to it since
 };
-Exportable coefficientsOf(const std::string& path, const ExportOptions& options,
-                          const Listener& listener) {
-    const Representation stored = readRepresentation(path);
+Exportable coefficientsOf(const Representation& stored, const std::string& path,
+                          const ExportOptions& options, const Listener& listener) {
     ExpandOptions expansion{.basis = options.basis, .order = options.order};
     std::optional<OutgoingSet> outgoing;
     if (!options.outgoing.empty()) outgoing = OutgoingSet::parse(options.outgoing);
@@ -94,14 +96,14 @@ void refuseToReplace(const std::string& folder, const std::string& sidecar, bool
 }
 
 std::vector<const gpu::Container*> containersOf(const Targets& chosen, const ExportOptions& options,
-                                                const Listener& listener) {
+                                                gpu::Number number, const Listener& listener) {
     std::vector<const gpu::Container*> containers;
     for (const Target* target : chosen) {
         if (target->kind != Target::Kind::container) continue;
         const gpu::Container& container = gpu::findContainer(target->name);
-        if (options.targets == "all" && !container.holds(options.pack.number)) {
+        if (options.targets == "all" && !container.holds(number)) {
             listener.say(fmt::format("left out: {} cannot hold {}", container.name,
-                                     gpu::numberName(options.pack.number)));
+                                     gpu::numberName(number)));
         } else {
             containers.push_back(&container);
         }
@@ -115,6 +117,14 @@ std::string shaderFile(const std::string& name, const gpu::LanguageEntry& langua
     return fmt::format("{}_{}.{}{}", name, prefix, es ? "es." : "", language.extension);
 }
 
+/// The shader of a language for what is exported.
+std::string sourceOf(gpu::Language language, const Exported& exported,
+                     const ExportOptions& options) {
+    if (!exported.form) return gpu::shaderSource(language, exported.payload, options.shader);
+    return gpu::formShaderSource(language, *exported.form,
+                                 {.prefix = options.shader.prefix, .storage = exported.storage});
+}
+
 void writeShaders(const Targets& chosen, const ExportOptions& options, const Listener& listener,
                   FileSet& files, Exported& exported) {
     for (const gpu::LanguageEntry& language : gpu::languages()) {
@@ -124,7 +134,7 @@ void writeShaders(const Targets& chosen, const ExportOptions& options, const Lis
         if (!wanted) continue;
         std::string source;
         try {
-            source = gpu::shaderSource(language.language, exported.payload, options.shader);
+            source = sourceOf(language.language, exported, options);
         } catch (const UsageError& error) {
             if (options.targets != "all") throw;
             listener.say(fmt::format("left out: {}", error.what()));
@@ -162,9 +172,75 @@ void writeViewer(const std::vector<LightSpecification>& lights, const Brdf* sour
     exported.texts.push_back({"viewer", "viewer", file});
 }
 
+/// Throws UsageError for what only coefficients per outgoing direction have.
+void requireFormOptions(const Targets& chosen, const ExportOptions& options,
+                        const Listener& listener) {
+    const gpu::PackOptions plain{.number = options.pack.number};
+    if (options.pack.packing != plain.packing || options.pack.luminanceChroma ||
+        options.pack.basisSize > 0) {
+        throw UsageError(fmt::format(
+            "packing, chroma and basis textures are for coefficients per outgoing direction, which "
+            "{} makes of this form",
+            Setting{"ExportOptions::outgoing"}));
+    }
+    const bool viewer = std::ranges::any_of(
+        chosen, [](const Target* target) { return target->kind == Target::Kind::viewer; });
+    if (!viewer) return;
+    const std::string reason = fmt::format(
+        "the viewer shows coefficients per outgoing direction, which {} makes of this form",
+        Setting{"ExportOptions::outgoing"});
+    if (options.targets != "all") throw UsageError(reason);
+    listener.say("left out: " + reason);
+}
+
+/// The error of a form, which is refused where it is large; the reason why there is none.
+ExportError formErrorOf(const Source& source, const Representation& stored,
+                        const Exported& exported, const std::string& path,
+                        const ExportOptions& options) {
+    if (!options.measureError) return {{}, "not asked for"};
+    if (!source.brdf) return {{}, source.reason};
+    ExportError error;
+    try {
+        const auto again = reconstruct(exported.form->form, sourceOpener());
+        error.loss = std::make_shared<const ExportLoss>(exportLoss(*source.brdf, stored, *again));
+    } catch (const Error& failure) {
+        if (!options.source.empty()) throw;
+        return {{}, failure.what()};
+    }
+    if (!options.allowLoss) refuseLoss(*error.loss, path, Setting{"PackOptions::number"});
+    return error;
+}
+
+/// A form with a shader of its own, as it is.
+void exportForm(const Representation& stored, const std::string& path, const std::string& folder,
+                const Targets& chosen, const ExportOptions& options, const Listener& listener,
+                Exported& exported) {
+    requireFormOptions(chosen, options, listener);
+    exported.form = gpu::packForm(stored, options.number);
+    exported.storage = gpu::storageFor(*exported.form, options.storage);
+    FileSet files(folder, options.force);
+    refuseToReplace(folder, exported.sidecar, options.force);
+    const Source source = openSourceOf(options, stored.head);
+    exported.error = formErrorOf(source, stored, exported, path, options);
+    exported.textures = gpu::writeForm(
+        *exported.form, containersOf(chosen, options, exported.form->texels.number, listener),
+        exported.name,
+        {.zstd = options.zstd,
+         .fitError = exported.error.loss ? jsonText(errorJson(exported.error)) : std::string()},
+        sourceOpener(), files);
+    writeShaders(chosen, options, listener, files, exported);
+    files.commit();
+}
+
 }  // namespace
 
 nlohmann::ordered_json errorJson(const ExportError& error) {
+    if (error.loss) {
+        return {{"metric", "mean |ln(1 + f cos(theta_i)) - ln(1 + g cos(theta_i))|"},
+                {"pairs", error.loss->pairs},
+                {"file", error.loss->file},
+                {"mean_log", error.loss->exported}};
+    }
     if (!error.split) return {{"reason", error.reason}};
     const gpu::ErrorSplit& split = *error.split;
     return {{"metric", "rms of the difference times cos(theta_i), over that of f"},
@@ -181,23 +257,36 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
                             const ExportOptions& options, const Listener& listener) {
     const Targets chosen = gpu::selectTargets(options.targets);
     const std::vector<LightSpecification> lights = lightsOf(chosen, options);
-    const Exportable given = coefficientsOf(path, options, listener);
-    const Coefficients& coefficients = given.coefficients;
+    const Representation stored = readRepresentation(path);
     Exported exported;
-    exported.payload = gpu::pack(coefficients, options.pack);
     exported.name =
         options.name.empty() ? std::filesystem::path(path).stem().string() : options.name;
     exported.sidecar = exported.name + ".hsh.json";
     exported.test = exported.name + "_test.json";
+    if (gpu::hasShader(stored) && options.outgoing.empty()) {
+        exportForm(stored, path, folder, chosen, options, listener, exported);
+        return exported;
+    }
+    const Exportable given = coefficientsOf(stored, path, options, listener);
+    const Coefficients& coefficients = given.coefficients;
+    exported.payload = gpu::pack(coefficients, options.pack);
 
     FileSet files(folder, options.force);
     refuseToReplace(folder, exported.sidecar, options.force);
     const Source source = openSourceOf(options, coefficients);
     exported.error = errorOf(source, given, exported.payload, options, listener);
+    const bool anew = stored.kind() != Representation::Kind::outgoing || !stored.added.empty();
+    if (exported.error.split && anew && !options.allowLoss) {
+        const auto again =
+            reconstruct(fromCoefficients(gpu::unpack(exported.payload)), sourceOpener());
+        refuseLoss(exportLoss(*source.brdf, stored, *again), path,
+                   Setting{"ExportOptions::outgoing"});
+    }
     if (exported.error.split)
         exported.poor = judge(*exported.error.split, exported.payload, path, folder);
     exported.textures = gpu::writeContainers(
-        exported.payload, containersOf(chosen, options, listener), exported.name,
+        exported.payload, containersOf(chosen, options, options.pack.number, listener),
+        exported.name,
         {.zstd = options.zstd,
          .fitError = exported.error.split ? jsonText(errorJson(exported.error)) : std::string()},
         files);

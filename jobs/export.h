@@ -5,12 +5,14 @@
 
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/error_split.h>
+#include <hshfit/gpu/forms/form_shader.h>
 #include <hshfit/gpu/payload.h>
 #include <hshfit/gpu/shader.h>
 #include <hshfit/gpu/viewer_light.h>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,12 +24,19 @@ struct ExportOptions {
     std::string name = {};                ///< of the files; empty: that of the coefficient file
     /// The BRDF that the error is measured against; empty: the one that the coefficients name.
     std::string source = {};
-    std::string outgoing = {};  ///< set of the textures; empty: that of the coefficients
-    std::string basis = "hsh";  ///< for the form halfway
-    int order = 7;              ///< for the form halfway
+    /// Set of the textures; empty: that of the coefficients, and forms that have a shader of their
+    /// own (gpu/forms) are exported as they are. Given, those are projected anew.
+    std::string outgoing = {};
+    std::string basis = "hsh";  ///< of the form halfway projected anew
+    int order = 7;              ///< likewise
     /// Specifications of lights (light/catalog.h) that the viewer offers as its environment, each
     /// on its own; empty: gpu::studioLight.
     std::vector<std::string> lights = {};
+    /// Number type of a form exported as it is; none: that of least bytes which holds the file.
+    std::optional<gpu::Number> number = {};
+    gpu::Storage storage = gpu::Storage::automatic;  ///< of such a form in shaders
+    /// Accept an export that is more than twice as far from its source as its file.
+    bool allowLoss = false;
     gpu::PackOptions pack = {};
     gpu::ShaderOptions shader = {};
     bool measureError = true;
@@ -35,10 +44,14 @@ struct ExportOptions {
     bool force = false;  ///< replace existing files
 };
 
-/// The error of what was exported, or why it is not known.
+struct ExportLoss;
+
+/// The error of what was exported, or why it is not known. `loss` is there for forms exported as
+/// they are, `split` for coefficients per outgoing direction.
 struct ExportError {
     std::optional<gpu::ErrorSplit> split;
     std::string reason;
+    std::shared_ptr<const ExportLoss> loss = {};
 };
 /// The object "fit_error" of sidecars and answers.
 nlohmann::ordered_json errorJson(const ExportError& error);
@@ -50,7 +63,9 @@ struct ExportedText {
 
 struct Exported {
     std::string name;
-    gpu::Payload payload;
+    gpu::Payload payload;                            ///< empty for a form exported as it is
+    std::optional<gpu::FormPayload> form;            ///< a form exported as it is
+    gpu::Storage storage = gpu::Storage::automatic;  ///< of its shaders
     ExportError error;
     std::optional<Poor> poor;
     std::string sidecar, test;  ///< names of files in the folder, as those below
@@ -60,9 +75,11 @@ struct Exported {
 };
 
 /// Exports a coefficient file to `folder` as textures, shaders and a viewer with their error:
-/// all files or none. Forms other than coefficients per outgoing direction are projected anew.
+/// all files or none. Forms without a shader of their own, or with `outgoing`, are projected to
+/// coefficients per outgoing direction.
 /// With the targets "all", those that cannot hold the coefficients are left out, with a note.
-/// Throws UsageError for contradictory options, InputError, NumericError and OutputError. A
+/// Throws UsageError for contradictory options, InputError, NumericError (for an export more than
+/// twice as far from its source as its file, too) and OutputError. A
 /// failed measurement of the error is thrown only if `source` is given.
 Exported exportCoefficients(const std::string& coefficients, const std::string& folder,
                             const ExportOptions& options, const Listener& listener = {});

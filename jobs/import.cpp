@@ -1,6 +1,9 @@
 #include "import.h"
 
+#include "source.h"
+
 #include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/error.h>
 #include <hshfit/wording.h>
 
@@ -8,6 +11,7 @@
 
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 namespace hshfit::jobs {
 
@@ -18,8 +22,16 @@ Imported importCoefficients(const std::string& input, const std::string& output,
         throw OutputError(fmt::format("'{}' exists; nothing is written without {}", output,
                                       Setting{"ImportOptions::force"}));
     }
-    Imported imported{.read = gpu::readPayload(input)};
-    writeCoefficients(gpu::unpack(imported.read.payload), output);
+    Imported imported;
+    if (gpu::looksLikeForm(input)) {
+        gpu::ImportedForm read = gpu::readForm(input, sourceOpener());
+        writeRepresentation(read.payload.form, output);
+        imported.read = std::move(read);
+    } else {
+        gpu::ImportedPayload read = gpu::readPayload(input);
+        writeCoefficients(gpu::unpack(read.payload), output);
+        imported.read = std::move(read);
+    }
     imported.bytes = std::filesystem::file_size(output);
     return imported;
 }

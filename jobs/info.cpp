@@ -4,6 +4,7 @@
 
 #include <hshfit/accuracy/isotropy.h>
 #include <hshfit/coefficients/reconstruction.h>
+#include <hshfit/gpu/forms/form_files.h>
 #include <hshfit/quadrature/quadrature.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 
@@ -108,7 +109,8 @@ BrdfInfo describeSource(const std::string& source, bool rgb, const Listener& lis
     }
     findRange(info);
     warn(info, likeness);
-    if (gpu::looksLikePayload(source)) info.exported = gpu::readPayload(source);
+    if (gpu::looksLikePayload(source) && !gpu::looksLikeForm(source))
+        info.exported = gpu::readPayload(source);
     requireReadable(brdf);  // NaN values are in the census
     return info;
 }

@@ -7,6 +7,7 @@
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
 #include <hshfit/gpu/containers/containers.h>
+#include <hshfit/gpu/forms/form_files.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 
 #include <brdfs/catalog.h>
@@ -34,6 +35,10 @@ std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb) {
 }
 
 std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb) {
+    if (gpu::looksLikeForm(spec)) {
+        Representation form = gpu::readForm(spec, sourceOpener()).payload.form;
+        return seenAsRgb(reconstruct(std::move(form), sourceOpener()), rgb);
+    }
     if (gpu::looksLikePayload(spec)) {
         auto coefficients = gpu::unpack(gpu::readPayload(spec).payload);
         return seenAsRgb(std::make_unique<Reconstruction>(std::move(coefficients)), rgb);

@@ -162,5 +162,62 @@ TEST_F(Export, AMissingSourceIsReported) {
     EXPECT_NE(reason.find("--source"), std::string::npos) << reason;
 }
 
+class ExportForm : public Cli {
+protected:
+    void SetUp() override {
+        Cli::SetUp();
+        ASSERT_EQ(run("project ward:ax=.4,ay=.4,kd=.1/.2/.3 --form halfway --halfway 5,3,2 "
+                      "--precision half -o " +
+                      path("form.json"))
+                      .code,
+                  0);
+    }
+};
+
+TEST_F(ExportForm, HalfwayIsExportedAsItIsAndImportedByteByByte) {
+    const Answer answer = run("export " + path("form.json") + " -o " + path("out") +
+                              " --target bin,ktx2,glsl,hlsl,wgsl --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "export"));
+    const Json document = Json::parse(answer.out);
+    EXPECT_EQ(document["form"], "halfway");
+    // Nothing was rounded.
+    EXPECT_EQ(document["fit_error"]["mean_log"], document["fit_error"]["file"]);
+    EXPECT_TRUE(keepsSchema(read(path("out/form.hsh.json")), "gpu_form"));
+    EXPECT_TRUE(keepsSchema(read(path("out/form_test.json")), "gpu_test"));
+    for (const char* file : {"form.hsh.json", "form.coef.ktx2", "form.coef.f16.bin"}) {
+        const Answer again =
+            run("import " + path("out") + "/" + file + " --force --json -o " + path("again.json"));
+        ASSERT_EQ(again.code, 0) << again.err;
+        EXPECT_TRUE(keepsSchema(again.out, "import"));
+        EXPECT_EQ(read(path("again.json")), read(path("form.json"))) << file;
+    }
+    // A file of the export is a BRDF like the coefficient file.
+    const auto value = [&](const std::string& file) {
+        return run("eval " + path(file) + " --wi 30,20 --wo 50,200").out;
+    };
+    EXPECT_EQ(value("out/form.coef.ktx2"), value("form.json"));
+}
+
+TEST_F(ExportForm, ALossOfMoreThanTwiceTheErrorIsRefusedUnlessAccepted) {
+    const std::string anew = "export " + path("form.json") + " -o " + path("out") +
+                             " --target bin --basis hsh --order 1 --outgoing 2";
+    const Answer refused = run(anew);
+    EXPECT_EQ(refused.code, 4);
+    EXPECT_NE(refused.err.find("leave out --outgoing, or accept it with --allow-loss"),
+              std::string::npos)
+        << refused.err;
+    EXPECT_FALSE(fs::exists(path("out/form.hsh.json")));
+    EXPECT_EQ(run(anew + " --allow-loss").code, 0);
+}
+
+TEST_F(ExportForm, OptionsOfOutgoingCoefficientsAreRefused) {
+    for (const char* option : {" --packing rgb", " --chroma", " --basis-textures 16"}) {
+        const Answer answer = run("export " + path("form.json") + " -o " + path("out") + option);
+        EXPECT_EQ(answer.code, 2) << option;
+        EXPECT_NE(answer.err.find("--outgoing"), std::string::npos) << answer.err;
+    }
+}
+
 }  // namespace
 }  // namespace hshfit::test
