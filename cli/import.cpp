@@ -51,8 +51,7 @@ std::string importedText(const Json& document) {
         document["tests"]["largest_difference"].get<double>());
 }
 
-Json answer(const gpu::ImportedForm& read, std::uintmax_t bytes,
-            const ImportArguments& arguments) {
+Json answer(const gpu::ImportedForm& read, std::uintmax_t bytes, const ImportArguments& arguments) {
     const Representation& form = read.payload.form;
     return {{"format", "hshfit-import"},
             {"version", 1},
@@ -84,9 +83,8 @@ std::string importedFormText(const Json& document) {
 void runImport(const ImportArguments& arguments, const Globals& globals) {
     const jobs::Imported imported =
         jobs::importCoefficients(arguments.input, arguments.output, arguments.options);
-    const Json document =
-        std::visit([&](const auto& read) { return answer(read, imported.bytes, arguments); },
-                   imported.read);
+    const Json document = std::visit(
+        [&](const auto& read) { return answer(read, imported.bytes, arguments); }, imported.read);
     const bool form = std::holds_alternative<gpu::ImportedForm>(imported.read);
     if (globals.json) {
         printJson(document);

@@ -87,6 +87,7 @@ struct Draw {
     Raster& raster;
 
     void operator()(const SkyLight& light) const { raster.addMeans(light, 4); }
+    void operator()(const CoefficientLight& light) const { raster.addMeans(light, 4); }
     void operator()(const DirectionalLight& light) const {
         raster.add(raster.pixelOf(light.towards), light.irradiance);
     }
