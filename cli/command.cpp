@@ -92,7 +92,7 @@ void printJson(const nlohmann::ordered_json& document) {
 
 namespace {
 
-/// Writes to standard error, where a failure has nobody to be told to.
+/// Writes to standard error. Failures are ignored, since nothing could report them.
 void writeError(const std::string& text) {
     std::fwrite(text.data(), 1, text.size(), stderr);
     std::fflush(stderr);

@@ -47,7 +47,7 @@ void runMatrix(const MatrixArguments& arguments, const Globals& globals) {
     std::string text;
     for (const auto& row : rows) {
         for (const double entry : row) {
-            // No sign for what prints as 0.
+            // Numbers that print as 0 have no sign.
             text += fmt::format("{:10.6f}", std::abs(entry) < 5e-7 ? 0 : entry);
         }
         text += "\n";

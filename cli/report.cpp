@@ -21,7 +21,7 @@ struct ReportArguments {
     jobs::ReportOptions options;
 };
 
-/// Order needed for 99 % of the energy, per basis: the figure that people ask for first.
+/// The energy, and for each basis the order that captures 99 % of it.
 std::string summary(const ReportEntry& entry) {
     if (!entry.energy.finite) {
         return fmt::format("{}: no energy: {}\n", entry.brdf, entry.energy.reason);

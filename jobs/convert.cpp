@@ -66,8 +66,8 @@ ConversionLoss measureLoss(const Brdf& input, const brdfs::Writer& writer,
                                      {.progress = listener.part("loss")})};
 }
 
-/// Relative L2 of f c, as a matter of course: few directions and a coarse quadrature will do. None
-/// where the two do not compare.
+/// Relative L2 of f c over few directions with a coarse quadrature, so that every conversion can
+/// state it. None where the channels differ.
 std::optional<double> errorOf(const Brdf& input, const std::string& output) {
     const OutgoingSet outgoing =
         input.laws().isotropic ? OutgoingSet::elevations(6) : OutgoingSet::parabolic(6, 6);

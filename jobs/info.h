@@ -38,7 +38,7 @@ struct BrdfInfo {
     std::vector<SuggestedRepair> repairs = {};
     /// f over 12 outgoing directions and the grid that quadrature would use.
     double least = std::numeric_limits<double>::infinity(), greatest = -least;
-    std::vector<std::string> warnings = {};  ///< a sentence each, where it is not what it seems
+    std::vector<std::string> warnings = {};  ///< a sentence each, where values contradict the kind
 };
 
 /// Of a source as in openSource. Stored values that are not finite are counted, not refused.

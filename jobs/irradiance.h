@@ -10,7 +10,7 @@
 namespace hshfit::jobs {
 
 struct IrradianceOptions {
-    int order = 3;                ///< bands that the irradiance is made of
+    int order = 3;                ///< bands of the irradiance
     std::string window = "none";  ///< none, hann, lanczos or least-negative
     std::size_t normals = 2000;   ///< of the lattice on which errors are taken
     std::string byNormal;         ///< CSV of the irradiances at them; empty: none

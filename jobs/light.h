@@ -29,7 +29,7 @@ struct ProjectedLight {
     double waveletError = 0;
 };
 
-/// Captured energies that `enough` is for.
+/// Shares of the energy, one for each order in `enough`.
 inline constexpr double lightShares[] = {0.9, 0.99, 0.999};
 
 /// Coefficients of the sum of all specifications (light/catalog.h), to a file unless `output` is

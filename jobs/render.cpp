@@ -128,7 +128,7 @@ private:
     std::vector<std::vector<SpherePicture>> rows_;
 };
 
-/// The lines that a picture deserves.
+/// Tells the listener about values left out, integrals cut short and pictures far off.
 void remark(const RenderedPicture& picture, std::size_t points, const Listener& listener) {
     if (picture.notFinite > 0) {
         listener.say(fmt::format("{}: {} values that are not finite were left out", picture.brdf,
@@ -161,7 +161,7 @@ std::map<std::string, std::string> attributesOf(const Rendered& rendered) {
     return attributes;
 }
 
-/// The work in its order, on what all materials share.
+/// The steps of `render`, in order, with the points and lights that all materials share.
 class Renderer {
 public:
     Renderer(const RenderOptions& options, const Listener& listener, Rendered& result)

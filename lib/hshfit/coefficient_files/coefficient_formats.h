@@ -27,7 +27,7 @@ std::string readRegularFile(const std::string& path, std::size_t limit);
 /// The values with commas between them, so that reading gives the same doubles.
 void appendJsonNumbers(std::span<const double> values, std::string& out);
 
-/// Radians in degrees, to 1e-10: 51.99999999999999 is what 52 comes back as from a unit vector.
+/// Radians in degrees, rounded to 1e-10: 52 comes back from a unit vector as 51.99999999999999.
 double tidyDegrees(double angle);
 
 /// Throws InputError unless the root says this "format" and a "version" of at most `newest`.

@@ -82,7 +82,7 @@ std::vector<double> valueWeights(const Representation& representation) {
     return weights;
 }
 
-/// Eight bits are what a bound takes, whatever the precision of the rest.
+/// The envelope is a bound, stored in eight bits at any precision of the other arrays.
 bool isEnvelope(const std::string& name) {
     return name == "envelope";
 }
