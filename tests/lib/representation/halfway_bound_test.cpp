@@ -7,6 +7,7 @@
 #include <hshfit/representation/forms/pair_evaluators.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/representation/halfway/halfway.h>
+#include <hshfit/representation/halfway/halfway_rounding.h>
 
 #include <gtest/gtest.h>
 
@@ -134,6 +135,120 @@ TEST_P(HalfwayBound, HoldsAtEveryPairOfElevationsInEveryPrecision) {
     }
 }
 
+/// The greatest f over all azimuths of the cases above, from below, over a cell of elevations: the
+/// cosine of the lower one is at most high^4, and the other is apart from it by at most d1. All the
+/// formulas fall with the slope of the half vector, least at the mirror azimuth: tan(d / 2); and
+/// with the cosines.
+double leastGreatest(const Case& each, double high, double d1, bool outgoingLower) {
+    const double lower = std::pow(high, 4);
+    const double lowest = std::acos(std::min(1.0, std::pow(high, 4)));
+    const double upper = std::cos(std::max(0.0, lowest - d1));
+    const double t2 = std::pow(std::tan(d1 / 2), 2);
+    const double sum = lower + upper;
+    const auto lobe = [&](double alpha, double power) {
+        const double t = 1 + t2 / (alpha * alpha);
+        return 1 / (pi * alpha * alpha * t * t) / (4 * std::pow(sum, power));
+    };
+    if (each.name == "lambert") return 0.2;
+    if (each.name == "rough facets") return 0.05 + lobe(0.4, 1);
+    if (each.name == "narrow facets") return 0.02 + lobe(0.05, 1);
+    if (each.name == "without shadowing") return lobe(0.2, 2);
+    if (each.name == "flat") return 0.1 + lobe(0.2, 0);
+    if (each.name == "minnaert") return 0.1 / std::sqrt(lower * upper);
+    return (0.1 + lobe(0.2, 0)) / (outgoingLower ? lower : upper);
+}
+
+/// ln E is bilinear over x and b: its greatest value over a rectangle is at a corner or where a
+/// line of nodes meets an edge.
+double greatestLog(const HalfwayEnvelope& envelope, double a0, double a1, double b0, double b1) {
+    const double r = envelope.ridge();
+    const auto xOf = [&](double a) { return a * (1 + r) / (std::abs(a) + r); };
+    const auto aOf = [&](double x) { return x * r / (1 + r - std::abs(x)); };
+    const auto cuts = [](double from, double to, double first, std::size_t nodes) {
+        std::vector<double> at{from, to};
+        for (std::size_t n = 0; n < nodes && nodes > 1; ++n) {
+            const double node = first + (1 - first) * double(n) / double(nodes - 1);
+            if (node > from && node < to) at.push_back(node);
+        }
+        return at;
+    };
+    double most = -1e300;
+    for (const double x :
+         cuts(xOf(a0), xOf(a1), envelope.reciprocal() ? 0 : -1, envelope.nodesAlongA())) {
+        for (const double b : cuts(b0, b1, 0, envelope.nodesAlongB()))
+            most = std::max(most, envelope.logAt(envelope.mixAt({aOf(x), b}), 0));
+    }
+    return most;
+}
+
+/// The largest E over the greatest f at the same elevations, bracketed from above over the whole
+/// domain: a cell that is not within `allowed` is divided into four, down to 2^-deepest of the
+/// axes.
+struct Bracket {
+    static constexpr int deepest = 11;
+    const Case& each;
+    const HalfwayEnvelope& envelope;
+    double dark, allowed, worst = 0;
+    std::size_t cells = 0, beyond = 0;
+    double worstB = 0, worstD = 0;
+
+    /// The coordinate b of the lower direction: t from 0 to 1 is its elevation, to 60 degrees; from
+    /// there to 2 it is b, down to the horizon. Cells are small at either end.
+    static double placeOf(double t) {
+        const double edge = std::pow(0.5, 0.25);
+        return t < 1 ? std::pow(std::cos(t * pi / 3), 0.25) : edge * (2 - t);
+    }
+    /// t in [t0, t1], distance of elevations in [d0, d1].
+    void over(double t0, double t1, double d0, double d1, int depth) {
+        const double b0 = placeOf(t1), b1 = placeOf(t0);
+        // The other direction would be above the normal.
+        if (d0 > std::acos(std::pow(b0, 4))) return;
+        double ratio = 0;
+        const double a0 = std::sqrt(1 - std::cos(d0)), a1 = std::sqrt(1 - std::cos(d1));
+        for (const bool outgoingLower : {true, false}) {
+            double source = leastGreatest(each, b1, d1, outgoingLower);
+            if (envelope.reciprocal())
+                source = std::max(source, leastGreatest(each, b1, d1, !outgoingLower));
+            const bool negative = outgoingLower && !envelope.reciprocal();
+            const double log = negative ? greatestLog(envelope, -a1, -a0, b0, b1)
+                                        : greatestLog(envelope, a0, a1, b0, b1);
+            ratio = std::max(ratio, std::exp(log) / std::max(source, dark));
+        }
+        if (ratio <= allowed || depth == deepest) {
+            ++cells;
+            beyond += ratio > allowed;
+            if (ratio > worst) {
+                worst = ratio;
+                worstB = b0;
+                worstD = d0;
+            }
+            return;
+        }
+        const double t = (t0 + t1) / 2, d = (d0 + d1) / 2;
+        over(t0, t, d0, d, depth + 1);
+        over(t, t1, d0, d, depth + 1);
+        over(t0, t, d, d1, depth + 1);
+        over(t, t1, d, d1, depth + 1);
+    }
+};
+
+TEST_P(HalfwayBound, IsBracketedOverAllElevations) {
+    const Case& each = cases()[GetParam()];
+    const FormulaBrdf brdf = brdfOf(each);
+    const double dark = 1.2e-3 * meanAlbedoByPi(brdf);
+    for (const HalfwayOrders& orders : {HalfwayOrders{6, 3, 2}, HalfwayOrders{12, 6, 3}}) {
+        const Representation fitted =
+            projectHalfway(brdf, orders, {.maxEvaluations = 1 << 14}, each.reciprocal);
+        const HalfwayExpansion expansion(fitted);
+        Bracket bracket{
+            .each = each, .envelope = expansion.envelope(), .dark = dark, .allowed = 1.5};
+        bracket.over(0, 2, 0, pi / 2, 0);
+        EXPECT_EQ(bracket.beyond, 0)
+            << each.name << ": up to " << bracket.worst << " in " << bracket.cells
+            << " cells, at b " << bracket.worstB << ", distance " << bracket.worstD;
+    }
+}
+
 /// The share of uniform light that is reflected: the mean of f cos(theta_i) cos(theta_o), times 4
 /// pi.
 double reflectance(const Brdf& brdf) {
@@ -146,14 +261,33 @@ double reflectance(const Brdf& brdf) {
     return 4 * pi * sum;
 }
 
-TEST_P(HalfwayBound, LeavesTheReflectance) {
+TEST_P(HalfwayBound, LeavesTheReflectanceInEveryPrecision) {
     const Case& each = cases()[GetParam()];
     const FormulaBrdf brdf = brdfOf(each);
     const Representation fitted =
         projectHalfway(brdf, {12, 6, 3}, {.maxEvaluations = 1 << 15}, each.reciprocal);
     const double expected = reflectance(brdf);
-    EXPECT_NEAR(reflectance(*reconstruct(fitted, opensNothing)), expected, 0.02 * expected)
-        << each.name;
+    for (const Precision precision :
+         {Precision::float32, Precision::half, Precision::unorm16, Precision::unorm8}) {
+        Representation stored = fitted;
+        quantiseHalfway(stored, precision, brdf);
+        EXPECT_NEAR(reflectance(*reconstruct(stored, opensNothing)), expected, 0.02 * expected)
+            << each.name << " in " << precisionName(precision);
+        // As many bytes as by itself, and no more of the loss but what albedo takes.
+        Representation plain = fitted;
+        quantise(plain.as<HalfwayArray>()->halfway, precision);
+        EXPECT_EQ(stored.bytes(), plain.bytes());
+        EXPECT_LE(halfwayError(brdf, stored), 1.1 * halfwayError(brdf, plain) + 1e-6)
+            << each.name << " in " << precisionName(precision);
+        // The bytes decode to the same numbers.
+        StoredArray& array = stored.as<HalfwayArray>()->halfway;
+        const std::vector<double> values = array.values;
+        const std::vector<std::byte> bytes = packed(array);
+        unpackInto(array, bytes, false, "packed");
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            EXPECT_NEAR(array.values[k], values[k], 1e-12 * (1 + std::abs(values[k])));
+        }
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryCase, HalfwayBound, testing::Range(std::size_t{0}, cases().size()));

@@ -7,6 +7,7 @@
 #include <hshfit/representation/constraints/constraints.h>
 #include <hshfit/representation/factoring/factoring.h>
 #include <hshfit/representation/halfway/halfway.h>
+#include <hshfit/representation/halfway/halfway_rounding.h>
 #include <hshfit/representation/named_arrays.h>
 #include <hshfit/representation/split.h>
 
@@ -96,10 +97,14 @@ void keep(Representation& representation, std::size_t count) {
     addStep(representation, before, fmt::format("keep {}", count));
 }
 
-void quantise(Representation& representation, Precision precision) {
+void quantise(Representation& representation, Precision precision, const Brdf& source) {
     const Representation before = representation;
-    for (const auto& each : namedArrays(representation)) {
-        if (!isEnvelope(each.name)) quantise(*each.array, precision, each.name);
+    if (representation.kind() == Kind::halfway) {
+        quantiseHalfway(representation, precision, source);
+    } else {
+        for (const auto& each : namedArrays(representation)) {
+            quantise(*each.array, precision, each.name);
+        }
     }
     if (precision == Precision::float64) return;
     addStep(representation, before, std::string(precisionName(precision)));
@@ -248,7 +253,7 @@ Representation represent(ProjectionSource& source, const Form& form, const std::
             {.rank = form.rank, .error = form.rankError, .nonNegative = form.nonNegativeFactors});
     }
     if (form.keep > 0) keep(result, form.keep);
-    quantise(result, form.precision);
+    quantise(result, form.precision, source.remainder());
     return result;
 }
 

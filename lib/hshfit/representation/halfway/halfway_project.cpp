@@ -1,6 +1,7 @@
 #include <hshfit/representation/halfway/halfway.h>
 
 #include <hshfit/error.h>
+#include <hshfit/representation/halfway/halfway_rounding.h>
 #include <hshfit/representation/halfway/internal/halfway_fit.h>
 #include <hshfit/representation/halfway/internal/halfway_limit.h>
 #include <hshfit/version.h>
@@ -203,7 +204,7 @@ OrdersFound ordersWithin(const Brdf& brdf, std::size_t room, Precision precision
     OrdersFound best;
     for (std::size_t n = 0; n < std::min(fitted, ranked.size()); ++n) {
         Representation r = projectHalfway(brdf, ranked[n].second, options, reciprocal);
-        quantise(r.as<HalfwayArray>()->halfway, precision);
+        quantiseHalfway(r, precision, brdf);
         const double error = halfwayError(brdf, r);
         if (error < least) {
             least = error;

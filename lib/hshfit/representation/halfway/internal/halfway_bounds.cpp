@@ -12,8 +12,10 @@
 namespace hshfit::inline representation::inline halfway {
 namespace {
 
-/// Points along the axes, and the cosine that stands for the horizon: 89.9994 degrees.
-constexpr int pointsAlongA = 64, pointsAlongB = 40;
+/// Points along the axes, close enough for powers of the cosine and for lobes of a roughness of
+/// 0.05 (IsBracketedOverAllElevations in halfway_bound_test), and the cosine that stands for the
+/// horizon: 89.9994 degrees.
+constexpr int pointsAlongA = 96, pointsAlongB = 80;
 /// Where f depends on the azimuth of wo too, there are half as many of each, so that evaluations
 /// stay within a million.
 constexpr int anisotropicDivisor = 2;
@@ -39,8 +41,10 @@ std::vector<Elevations> elevationsOver(bool both, int divisor) {
     const int alongA = pointsAlongA / divisor, alongB = pointsAlongB / divisor;
     std::vector<Elevations> found;
     // By the root of the axis a: the ridge is where f changes most.
-    const auto add = [&](double a, double lower, double upper) {
-        const double b = std::sqrt(std::sqrt(std::max(0.0, std::cos(lower))));
+    const auto bOf = [](double lower) {
+        return std::sqrt(std::sqrt(std::max(0.0, std::cos(lower))));
+    };
+    const auto add = [&](double a, double b, double lower, double upper) {
         found.push_back({{a * a, b}, lower, upper});
         if (both && a > 0) found.push_back({{-a * a, b}, upper, lower});
     };
@@ -51,13 +55,15 @@ std::vector<Elevations> elevationsOver(bool both, int divisor) {
         for (int j = 0; j <= alongB; ++j) {
             const double cosine = std::pow(static_cast<double>(j) / alongB, 4);
             const double lower = std::acos(std::clamp(cosine, leastCosine, 1.0));
-            if (lower >= apart) add(a, lower, lower - apart);
+            // Below the least cosine f counts as it is there, down to b = 0.
+            const double b = cosine < leastCosine ? static_cast<double>(j) / alongB : bOf(lower);
+            if (lower >= apart) add(a, b, lower, lower - apart);
         }
-        add(a, apart, 0);
+        add(a, bOf(apart), apart, 0);
     }
     for (int j = 0; j <= alongB; ++j) {
         const double cosine = std::max(std::pow(static_cast<double>(j) / alongB, 4), leastCosine);
-        add(std::sqrt(std::sqrt(1 - cosine)), std::acos(cosine), 0);
+        add(std::sqrt(std::sqrt(1 - cosine)), bOf(std::acos(cosine)), std::acos(cosine), 0);
     }
     return found;
 }
