@@ -179,7 +179,7 @@ std::optional<double> capturedBy(const Representation& kept) {
     return captured / head.energy.value;
 }
 
-/// What `result` captures of f cos(theta_i): at its own outgoing directions if they are few.
+/// The share of f cos(theta_i) that `result` captures: at its own outgoing directions if few.
 std::optional<double> measuredShare(const Brdf& source, const Brdf& result, const OutgoingSet& set,
                                     const std::optional<PairSummary>& pairs) {
     constexpr std::size_t few = 64;

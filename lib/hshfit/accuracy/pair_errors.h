@@ -95,8 +95,8 @@ struct PairSummary {
         double value = 0, error = 0;  ///< with its standard error
     };
     std::size_t pairs = 0;
-    Value meanLog;                        ///< mean |ln(1 + f c) - ln(1 + g c)|
-    Value relativeL2;                     ///< root of the integral of ((g - f) c)^2 over (f c)^2
+    Value meanLog;     ///< mean |ln(1 + f c) - ln(1 + g c)|
+    Value relativeL2;  ///< root of the integral of ((g - f) c)^2 over (f c)^2
     /// The share that g misses of the energy of f cos(theta_i) cos(theta_o), which exists for every
     /// BRDF of finite albedo: the integral of the squared difference over that of the square.
     Value energyLeft;
