@@ -13,8 +13,8 @@ DegreeErrors rotationErrors(int order, Precision precision = Precision::twice);
 
 /// The same for rotations of a basis of the hemisphere, whose matrix M(R) deletes what leaves
 /// (hemisphere_rotation.h); `order` is at most 32, where matrices end.
-/// double  the column norms of M(R) - M(R^-1)^T, which is 0 for an orthonormal basis: two
-///         quadratures, over the lune that stays and over its image
+/// double  the column norms of M(R) - M(R^-1)^T, which is 0 for a basis that is orthonormal over
+///         solid angle: two quadratures, over the lune that stays and over its image
 /// float   M(R) c in single precision against that in double, over the norm of the band of c
 DegreeErrors hemisphereRotationErrors(const Basis& basis, Precision precision);
 

@@ -58,7 +58,8 @@ void addAlgebra(const bases::Entry& entry, const bases::JacobiBasis& basis, Stre
             report.rotation.push_back(rotationErrors(order, precision));
             continue;
         }
-        report.rotation.push_back(hemisphereRotationErrors(*small, precision));
+        if (precision == Precision::single || basis.inner() == Basis::Inner::solidAngle)
+            report.rotation.push_back(hemisphereRotationErrors(*small, precision));
         report.basisChange.push_back(
             basisChangeErrors(asJacobi(*harmonics), asJacobi(*same), precision));
         if (entry.name == "hsh")
