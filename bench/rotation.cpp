@@ -3,7 +3,7 @@
 //              instruction set, the textbook recurrence (ivanic_ruedenberg.h), and as many
 //              multiply-adds in registers as the products of the bands' matrices and the vectors
 //              have (the sum of (2l+1)^2), which leaves out the making of the matrices; a copy of
-//              the 8 MB, which exceed the second cache
+//              the 8 MB, which exceed the second cache; as many rotations of vectors that do not
 //     one/…    one vector of order 300: the library with and without the making of its tables, and
 //              rotate_alm of HEALPix
 // `error` is the largest difference from the library's direct route, relative to the vector's norm.
@@ -90,6 +90,17 @@ void batchInPlace(benchmark::State& state) {
     const ShRotation rotate(batchOrder);
     for (auto _ : state) {
         rotate.rotate(batch.rotations, 1, batch.in.data(), batch.in.data());
+        benchmark::ClobberMemory();
+    }
+}
+
+/// The same number of rotations of 200 vectors, which stay in the second cache.
+void batchInCache(benchmark::State& state) {
+    Batch batch(200, batchOrder);
+    const ShRotation rotate(batchOrder);
+    for (auto _ : state) {
+        for (std::size_t done = 0; done < batchCount; done += 200)
+            rotate.rotate(batch.rotations, 1, batch.in.data(), batch.out.data());
         benchmark::ClobberMemory();
     }
 }
@@ -185,6 +196,7 @@ int main(int argc, char** argv) {
         add("batch/multiply-adds@" + on, [=](auto& state) { batchMultiplyAdds(state, target); });
     }
     add("batch/in place", batchInPlace);
+    add("batch/in cache", batchInCache);
     add("batch/copy", batchCopy);
     add("batch/textbook", batchByTextbook);
     add("one/library", [](auto& state) { oneByLibrary(state, false); });
