@@ -98,6 +98,12 @@ struct HemisphereRotation::Parts {
         return columnsOf(out, c.rows());
     }
 
+    /// True where the moments over the lune are the result.
+    bool deletesDigon(double beta) const {
+        return options.method == HemisphereMethod::exact && orthonormal &&
+               !(beta == 0 && basis->name() != "sh");
+    }
+
     Matrix exact(double beta, const Matrix& c) const {
         if (beta == 0 && !(basis->name() == "sh")) return c;
         if (orthonormal) return luneIntegrals(*basis, beta, c).moments;
@@ -185,8 +191,11 @@ HemisphereRotation::HemisphereRotation(const Basis& basis, const HemisphereRotat
     parts_->options = options;
     parts_->orthonormal = bases::find(name).orthonormal;
     if (basis.order() > exactOrders)
-        throw UsageError(fmt::format("rotation on the hemisphere at order {}; at most {}",
-                                     basis.order(), exactOrders));
+        throw UsageError(fmt::format(
+            "rotation on the hemisphere at order {}; at most {}, since the integrals over "
+            "what stays above the horizon take order^4 operations, about a minute there "
+            "on two cores",
+            basis.order(), exactOrders));
     const bool exact = options.method == HemisphereMethod::exact;
     if (!exact && !parts_->orthonormal)
         throw UsageError(
@@ -218,11 +227,11 @@ HemisphereRotated HemisphereRotation::rotate(const Rotation& rotation,
     Matrix before = p.columns(c);
     turn(p.basis->order(), t.cosGamma, t.sinGamma, before);
     HemisphereRotated result;
-    Matrix after = p.tilt(beta, before, &result.bands);
+    const LuneIntegrals lune = luneIntegrals(*p.basis, beta, before);
+    Matrix after = p.deletesDigon(beta) ? lune.moments : p.tilt(beta, before, &result.bands);
     const double energy = before.cwiseProduct(p.byGram(before)).sum();
     if (energy > 0) {
         // |f' - g|^2 = |f'|^2 - 2 <f', g> + |g|^2
-        const LuneIntegrals lune = luneIntegrals(*p.basis, beta, before);
         double stayed = 0, kept = 0;
         for (std::size_t v = 0; v < lune.stayed.size(); ++v) {
             stayed += lune.stayed[v];

@@ -108,7 +108,12 @@ Matrix valuesAt(const Basis& basis, DirectionBatch directions, bool analysis) {
 
 LuneIntegrals luneIntegrals(const Basis& basis, double beta, const Matrix& c,
                             LuneFunctions functions, double density) {
-    constexpr std::size_t chunk = 256, parts = 16;
+    constexpr std::size_t parts = 16;
+    // Nodes together: their values of all functions stay in the cache, where they are fetched from
+    // six times.
+    constexpr std::size_t valuesInCache = std::size_t{1} << 17;
+    const std::size_t chunk = std::clamp<std::size_t>(
+        valuesInCache / static_cast<std::size_t>(basis.slots()) / 8 * 8, 8, 256);
     const int degree = basis.name() == "slepian" ? 2 * basis.order() : basis.order();
     const LuneNodes nodes = luneNodes(beta, degree, density);
     const bool projected = basis.inner() == Basis::Inner::projectedSolidAngle;
