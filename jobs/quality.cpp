@@ -210,7 +210,8 @@ std::optional<double> capturedShare(const Projection& projection, const Brdf& so
     const Coefficients& c = projection.coefficients;
     if (c.leastSquares) return std::nullopt;
     if (!c.energy.finite) return measuredShare(source, Reconstruction(c), c.outgoing, {});
-    if (!(c.energy.value > 0) || projection.captured.empty()) return std::nullopt;
+    if (!(c.energy.value > 0) || !std::isfinite(c.energy.value) || projection.captured.empty())
+        return std::nullopt;
     return projection.captured.back() / c.energy.value;
 }
 

@@ -213,6 +213,19 @@ TEST_F(Quality, HostileFilesHaveAlbedosWithTheirError) {
     }
 }
 
+// Finite values whose squares are not: one line, and no refinement.
+TEST_F(Quality, ValuesWhoseSquaresOverflowAreRefused) {
+    write("huge.brdf",
+          "2\n500 600\n.1 0 .2 0 4e297 .1\n.3 0 .5 1 .1 .1\n.8 0 .9 2 .1 .2\n1.2 0 1 3 .2 .1\n");
+    for (const char* how : {"", " --cosine"}) {
+        const Answer answer = run("project " + path("huge.brdf") + " --order 3 --outgoing 4" + how +
+                                  " -o " + path("x.json"));
+        EXPECT_EQ(answer.code, 4) << how;
+        EXPECT_NE(answer.err.find("beyond double precision"), std::string::npos) << answer.err;
+        EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1) << answer.err;
+    }
+}
+
 // Incidences of 15, 30 and 60 degrees, and outgoing directions among which these are, too.
 TEST_F(Quality, ContradictionsOfSamplesAreReported) {
     const std::string file = test::sharedFolder() + "/data/alta/retro-gray-tape.dat";

@@ -237,19 +237,25 @@ private:
         return foldSqueezedRing(values, weights, table.count, to, even_ ? nullptr : to + part);
     }
 
-    /// Squares overflow before values do, so that the values are checked.
+    /// Refuses values that are not finite, or whose squares are not: no refinement would end well.
     void requireFinite(const Workspace& w, std::size_t points) const {
-        const double* end = w.values.data() + result_.channels * points;
-        const double* bad = std::find_if_not(static_cast<const double*>(w.values.data()), end,
-                                             [](double v) { return std::isfinite(v); });
-        if (bad == end) return;
+        const auto end = w.values.begin() + static_cast<std::ptrdiff_t>(result_.channels * points);
+        auto bad =
+            std::find_if_not(w.values.begin(), end, [](double v) { return std::isfinite(v); });
+        const bool finite = bad == end;
+        if (finite) {
+            bad = std::max_element(w.values.begin(), end,
+                                   [](double a, double b) { return std::abs(a) < std::abs(b); });
+        }
         brdf_.checkIntact();  // bad data has its own, more exact message
-        const std::size_t k = static_cast<std::size_t>(bad - w.values.data()) % points;
+        const std::size_t k = static_cast<std::size_t>(bad - w.values.begin()) % points;
         const Direction wi{w.x[k], w.y[k], w.z[k]};
         throw NumericError(fmt::format(
-            "{}: not finite at theta_i = {:.9g}, phi_i = {:.9g}, theta_o = {:.9g}, phi_o = {:.9g} "
-            "degrees",
-            brdf_.name(), degrees(polarAngle(wi)), degrees(azimuth(wi)), degrees(polarAngle(wo_)),
+            "{}: {} at theta_i = {:.9g}, phi_i = {:.9g}, theta_o = {:.9g}, phi_o = {:.9g} degrees",
+            brdf_.name(),
+            finite ? fmt::format("{:.4g}, whose square is beyond double precision,", *bad)
+                   : "not finite",
+            degrees(polarAngle(wi)), degrees(azimuth(wi)), degrees(polarAngle(wo_)),
             degrees(azimuth(wo_))));
     }
 
