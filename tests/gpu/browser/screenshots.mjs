@@ -21,7 +21,7 @@ const shots = [
     spec: 'ward:kd=0.05,ks=0.3,ax=0.15,ay=0.5',
     outgoing: '32x32',
     dark: true,
-    view: 'frames=16&cycles=8&order=7&shape=teapot&lighting=both&azimuth=-8&elevation=18',
+    view: 'frames=8&cycles=6&order=7&shape=teapot&lighting=both&azimuth=-8&elevation=18',
   },
   {
     name: 'viewer-measured',
@@ -40,7 +40,7 @@ const shots = [
         'sun:elevation=25,azimuth=-110,angle=3,irradiance=5/4.5/3.6',
       'sky:type=12,elevation=40',
     ],
-    view: 'frames=8&cycles=16&order=10&shape=teapot&lighting=sky&skyTurn=20&azimuth=-8&elevation=18',
+    view: 'frames=4&cycles=12&order=10&shape=teapot&skyTurn=20&azimuth=-8&elevation=18',
   },
 ];
 
