@@ -94,7 +94,8 @@ constexpr std::array table{
           true,
           false,
           {"#4D4D4D", 3, 10},
-          makeSlepian},
+          makeSlepian,
+          2},
 };
 
 std::string knownNames() {

@@ -27,6 +27,8 @@ struct Entry {
     bool nested;              ///< coefficients of order n are the first of those of order n + 1
     Style style;
     std::unique_ptr<Basis> (*make)(int order, BasisOptions options);
+    /// Theta parts of order n are polynomials in mu of degrees below this times n, times roots.
+    int degreesPerOrder = 1;
 };
 
 /// The table, in the order in which listings and reports show it.

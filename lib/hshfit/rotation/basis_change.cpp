@@ -24,9 +24,8 @@ using Matrix = linear_algebra::RowMajor;
 constexpr std::size_t keptDoubles = std::size_t{1} << 22;
 constexpr std::size_t denseDoubles = std::size_t{1} << 26;
 
-/// Twice the order covers the harmonics that a Slepian function is made of.
 int degreeOf(const Basis& basis) {
-    return basis.name() == "slepian" ? 2 * basis.order() : basis.order();
+    return bases::find(basis.name()).degreesPerOrder * basis.order();
 }
 
 /// Theta parts of one m are polynomials in mu times sqrt(mu)^k, sqrt(1 - mu)^m and, for functions
