@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/brdf/brdf.h>
+#include <hshfit/sampling/sampler.h>
 #include <hshfit/specification/parameters.h>
 
 #include <functional>
@@ -34,6 +35,8 @@ struct Model {
     std::unique_ptr<Brdf> (*make)(const Parameters& parameters);
     /// The columns of fits (brdfs/analytic/model_columns.h), from the formula of `make`.
     std::unique_ptr<ModelColumns> (*columns)(const ColumnRequest& request) = nullptr;
+    /// The densities of its lobes (hshfit/sampling), for drawing directions. None: f is tabulated.
+    HasSamplers::Known (*sampling)(const Parameters& parameters) = nullptr;
 };
 
 /// One row of the table of measured formats.

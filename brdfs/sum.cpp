@@ -191,6 +191,20 @@ std::vector<double> Sum::kinks(const Direction& wo) const {
     return all;
 }
 
+HasSamplers::Known Sum::samplers() const {
+    Known all{.all = true, .samplers = {}};
+    for (const Term& term : terms_) {
+        if (term.weight == 0) continue;
+        const auto* own = dynamic_cast<const HasSamplers*>(term.brdf.get());
+        const Known known = own ? own->samplers() : Known{};
+        all.all = all.all && known.all;
+        all.samplers.insert(all.samplers.end(), known.samplers.begin(), known.samplers.end());
+    }
+    // Every part costs a density a sample.
+    constexpr std::size_t most = 8;
+    return all.samplers.size() <= most ? all : Known{};
+}
+
 std::vector<KinkCurve> Sum::kinkCurves(const Direction& wo) const {
     std::vector<KinkCurve> all;
     for (const Term& term : terms_)

@@ -2,6 +2,7 @@
 
 #include <hshfit/brdf/brdf.h>
 #include <hshfit/brdf/kink_curve.h>
+#include <hshfit/sampling/sampler.h>
 
 #include <cstddef>
 #include <memory>
@@ -37,7 +38,7 @@ std::vector<WeightedSpec> splitSum(std::string_view spec, bool (*isWhole)(std::s
 ///   coverage   where all terms are covered
 ///   lobes, kinks, facts   those of all terms; the tolerance is the largest
 /// Throws UsageError for rgb with spectral terms and for spectra of different wavelengths.
-class Sum final : public Brdf, public HasKinkCurves {
+class Sum final : public Brdf, public HasKinkCurves, public HasSamplers {
 public:
     struct Term {
         double weight = 1;
@@ -54,6 +55,8 @@ public:
     std::vector<double> kinks(const Direction& wo) const override;
     std::vector<KinkCurve> kinkCurves(const Direction& wo) const override;
     double defaultTolerance() const override;
+    /// Those of all terms, if all have some; none for more than 8 of them.
+    Known samplers() const override;
     std::vector<Fact> facts() const override;
     void checkIntact() const override;
 

@@ -3,6 +3,7 @@
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 #include <hshfit/error.h>
+#include <hshfit/sampling/visible_normals.h>
 
 #include <cmath>
 
@@ -82,6 +83,11 @@ Parameter reflectance(std::string_view name, std::string_view help, double fallb
             .linear = linearUnderStatedScale};
 }
 
+/// The half vectors of section 4 of the paper, times h.z for the area.
+HasSamplers::Known sampling(const Parameters& p) {
+    return {true, {grooveSampler(powerNormals(p.number("nu") + 1, p.number("nv") + 1))}};
+}
+
 }  // namespace
 
 const Model& ashikhminShirleyModel() {
@@ -104,7 +110,8 @@ const Model& ashikhminShirleyModel() {
                        ksParameter("scale of the lobe")},
         .laws = claims,
         .make = make,
-        .columns = columns};
+        .columns = columns,
+        .sampling = sampling};
     return model;
 }
 

@@ -1,6 +1,7 @@
 #include <brdfs/analytic/beckmann.h>
 
 #include <brdfs/analytic/microfacet.h>
+#include <hshfit/sampling/visible_normals.h>
 
 #include <algorithm>
 #include <cmath>
@@ -51,6 +52,12 @@ std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
     return HWY_DYNAMIC_DISPATCH(beckmannColumns)(request);
 }
 
+/// Exact up to Fresnel's factor and the masking of wi.
+HasSamplers::Known sampling(const Parameters& p) {
+    const Roughness r = roughnessOf(beckmannModel(), p);
+    return {true, {beckmannSampler(r.ax, r.ay)}};
+}
+
 }  // namespace
 
 const Model& beckmannModel() {
@@ -63,7 +70,8 @@ const Model& beckmannModel() {
         .parameters = microfacetParameters(),
         .laws = microfacetClaims,
         .make = make,
-        .columns = columns};
+        .columns = columns,
+        .sampling = sampling};
     return model;
 }
 

@@ -2,6 +2,7 @@
 
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
+#include <hshfit/sampling/visible_normals.h>
 
 #include <cmath>
 
@@ -66,6 +67,12 @@ std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
     return HWY_DYNAMIC_DISPATCH(blinnPhongColumns)(request);
 }
 
+/// D h.z is the power, times h.z for the area.
+HasSamplers::Known sampling(const Parameters& p) {
+    const double power = p.number("exponent") + 1;
+    return {true, {grooveSampler(powerNormals(power, power))}};
+}
+
 }  // namespace
 
 const Model& blinnPhongModel() {
@@ -82,7 +89,8 @@ const Model& blinnPhongModel() {
                         .choices = {"false", "true", "phong"}}},
         .laws = claims,
         .make = make,
-        .columns = columns};
+        .columns = columns,
+        .sampling = sampling};
     return model;
 }
 

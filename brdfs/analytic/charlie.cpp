@@ -2,6 +2,7 @@
 
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
+#include <hshfit/sampling/axis_lobes.h>
 
 #include <cmath>
 
@@ -73,6 +74,11 @@ std::unique_ptr<Brdf> make(const Parameters& p) {
     return std::make_unique<Charlie>(p);
 }
 
+/// The uniform hemisphere: the sheen is broad, and bright near the horizon.
+HasSamplers::Known sampling(const Parameters&) {
+    return {true, {powerCosineSampler(normalAxis, 0)}};
+}
+
 }  // namespace
 
 const Model& charlieModel() {
@@ -91,7 +97,8 @@ const Model& charlieModel() {
                         .kind = Parameter::Kind::choice,
                         .choices = {"fitted", "soft"}}},
         .laws = claims,
-        .make = make};
+        .make = make,
+        .sampling = sampling};
     return model;
 }
 

@@ -4,6 +4,7 @@
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 #include <hshfit/error.h>
+#include <hshfit/sampling/visible_normals.h>
 
 #include <algorithm>
 #include <cmath>
@@ -111,6 +112,11 @@ std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
     return HWY_DYNAMIC_DISPATCH(cookTorranceColumns)(request);
 }
 
+/// Exact up to Fresnel's factor and the masking of wi: these are the visible normals of grooves.
+HasSamplers::Known sampling(const Parameters& p) {
+    return {true, {grooveSampler(gaussianNormals(p.number("m"), p.number("m")))}};
+}
+
 }  // namespace
 
 const Model& cookTorranceModel() {
@@ -150,7 +156,8 @@ const Model& cookTorranceModel() {
               .choices = {"exact", "schlick", "conductor"}}},
         .laws = claims,
         .make = make,
-        .columns = columns};
+        .columns = columns,
+        .sampling = sampling};
     return model;
 }
 

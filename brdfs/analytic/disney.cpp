@@ -2,6 +2,7 @@
 
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
+#include <hshfit/sampling/visible_normals.h>
 
 #include <algorithm>
 #include <cmath>
@@ -101,6 +102,14 @@ Parameter unitParameter(std::string_view name, std::string_view help, double fal
     return fitted(unitParameter(name, help, fallback), {fit});
 }
 
+/// Visible normals of both lobes; diffuse, flat and sheen parts fall to the cosine.
+HasSamplers::Known sampling(const Parameters& p) {
+    const DisneyShape<double> shape = DisneyFormula::shape(Values<double>(p, 0));
+    HasSamplers::Known known{true, {ggxSampler(shape.axes.ax, shape.axes.ay)}};
+    if (shape.clearcoat > 0) known.samplers.push_back(grooveSampler(gtrNormals(shape.gloss, 1)));
+    return known;
+}
+
 }  // namespace
 
 const Model& disneyModel() {
@@ -141,7 +150,8 @@ const Model& disneyModel() {
               .choices = {"2014", "2012"}}},
         .laws = claims,
         .make = make,
-        .columns = columns};
+        .columns = columns,
+        .sampling = sampling};
     return model;
 }
 

@@ -1,6 +1,7 @@
 #include <brdfs/analytic/ggx.h>
 
 #include <brdfs/analytic/microfacet.h>
+#include <hshfit/sampling/visible_normals.h>
 
 #include <algorithm>
 #include <cmath>
@@ -50,6 +51,12 @@ std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
     return HWY_DYNAMIC_DISPATCH(ggxColumns)(request);
 }
 
+/// Exact up to Fresnel's factor and the masking of wi.
+HasSamplers::Known sampling(const Parameters& p) {
+    const Roughness r = roughnessOf(ggxModel(), p);
+    return {true, {ggxSampler(r.ax, r.ay)}};
+}
+
 }  // namespace
 
 const Model& ggxModel() {
@@ -62,7 +69,8 @@ const Model& ggxModel() {
         .parameters = microfacetParameters(),
         .laws = microfacetClaims,
         .make = make,
-        .columns = columns};
+        .columns = columns,
+        .sampling = sampling};
     return model;
 }
 

@@ -2,6 +2,7 @@
 
 #include <brdfs/analytic/microfacet.h>
 #include <brdfs/analytic/parameters.h>
+#include <hshfit/sampling/visible_normals.h>
 
 #include <algorithm>
 #include <cmath>
@@ -80,6 +81,13 @@ std::vector<Parameter> parameters() {
     return all;
 }
 
+/// D of the model; masking of grooves in place of its own, but for GGX.
+HasSamplers::Known sampling(const Parameters& p) {
+    const double alpha = p.number("alpha"), gamma = p.number("gamma");
+    if (gamma == 2) return {true, {ggxSampler(alpha, alpha)}};
+    return {true, {grooveSampler(gtrNormals(alpha, gamma))}};
+}
+
 }  // namespace
 
 const Model& gtrModel() {
@@ -95,7 +103,8 @@ const Model& gtrModel() {
                  .isotropic = true,
                  .mirrorSymmetric = true},
         .make = make,
-        .columns = columns};
+        .columns = columns,
+        .sampling = sampling};
     return model;
 }
 

@@ -3,6 +3,7 @@
 #include <brdfs/analytic/kink_curves.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
+#include <hshfit/sampling/axis_lobes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -88,6 +89,12 @@ Parameter weightParameter(std::string_view name, double fallback) {
             .max = 10};
 }
 
+/// Exact up to cos(theta_i): (a . wi)^exponent about the axis a = C wo.
+HasSamplers::Known sampling(const Parameters& p) {
+    const LobeAxis axis{p.number("Cx"), p.number("Cy"), p.number("Cz")};
+    return {true, {powerCosineSampler(axis, p.number("exponent"))}};
+}
+
 }  // namespace
 
 const Model& lafortuneModel() {
@@ -105,7 +112,8 @@ const Model& lafortuneModel() {
                        switchParameter("normalized", "scale the lobe to a largest albedo of ks")},
         .laws = claims,
         .make = make,
-        .columns = columns};
+        .columns = columns,
+        .sampling = sampling};
     return model;
 }
 

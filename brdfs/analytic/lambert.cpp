@@ -51,6 +51,10 @@ std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
     return HWY_DYNAMIC_DISPATCH(lambertColumns)(request);
 }
 
+HasSamplers::Known sampling(const Parameters&) {
+    return {.all = true};
+}
+
 }  // namespace
 
 const Model& lambertModel() {
@@ -60,7 +64,8 @@ const Model& lambertModel() {
                              .parameters = {kdParameter(1, 1)},
                              .laws = claims,
                              .make = make,
-                             .columns = columns};
+                             .columns = columns,
+                             .sampling = sampling};
     return model;
 }
 

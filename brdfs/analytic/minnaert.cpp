@@ -2,6 +2,7 @@
 
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
+#include <hshfit/sampling/axis_lobes.h>
 
 #include <cmath>
 
@@ -48,6 +49,11 @@ std::unique_ptr<Brdf> make(const Parameters& p) {
     return std::make_unique<Minnaert>(p);
 }
 
+/// Exact: f cos(theta_i) is a power of cos(theta_i).
+HasSamplers::Known sampling(const Parameters& p) {
+    return {true, {powerCosineSampler(normalAxis, p.number("k"))}};
+}
+
 }  // namespace
 
 const Model& minnaertModel() {
@@ -62,7 +68,8 @@ const Model& minnaertModel() {
                         .max = 100,
                         .fit = {{.low = 0.1, .high = 3}}}},
         .laws = claims,
-        .make = make};
+        .make = make,
+        .sampling = sampling};
     return model;
 }
 

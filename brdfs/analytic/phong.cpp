@@ -3,6 +3,7 @@
 #include <brdfs/analytic/kink_curves.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
+#include <hshfit/sampling/axis_lobes.h>
 
 #include <cmath>
 
@@ -69,6 +70,11 @@ std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
     return HWY_DYNAMIC_DISPATCH(phongColumns)(request);
 }
 
+/// Exact up to cos(theta_i).
+HasSamplers::Known sampling(const Parameters& p) {
+    return {true, {powerCosineSampler(mirrorAxis, p.number("exponent"))}};
+}
+
 }  // namespace
 
 const Model& phongModel() {
@@ -82,7 +88,8 @@ const Model& phongModel() {
                        switchParameter("normalized", "multiply ks by (exponent + 2) / (2 pi)")},
         .laws = claims,
         .make = make,
-        .columns = columns};
+        .columns = columns,
+        .sampling = sampling};
     return model;
 }
 

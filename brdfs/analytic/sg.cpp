@@ -2,6 +2,8 @@
 
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
+#include <hshfit/sampling/axis_lobes.h>
+#include <hshfit/sampling/visible_normals.h>
 
 #include <cmath>
 
@@ -70,6 +72,14 @@ std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
     return HWY_DYNAMIC_DISPATCH(sphericalGaussianColumns)(request);
 }
 
+/// Exact up to cos(theta_i) about the mirror direction; about the normal the power of the same
+/// width, cos^lambda = exp(-lambda versine) to first order.
+HasSamplers::Known sampling(const Parameters& p) {
+    const double sharpness = p.number("sharpness");
+    if (p.choice("axis") == "mirror") return {true, {gaussianLobeSampler(mirrorAxis, sharpness)}};
+    return {true, {grooveSampler(powerNormals(sharpness + 1, sharpness + 1))}};
+}
+
 }  // namespace
 
 const Model& sgModel() {
@@ -88,7 +98,8 @@ const Model& sgModel() {
                        switchParameter("normalized", "scale the lobe to an albedo of up to ks")},
         .laws = claims,
         .make = make,
-        .columns = columns};
+        .columns = columns,
+        .sampling = sampling};
     return model;
 }
 

@@ -58,7 +58,8 @@ TermBrdf::TermBrdf(const Model& model, const Parameters& parameters, Laws laws,
       model_(model.name),
       source_(model.source),
       laws_(laws),
-      termCount_(weights.size()) {
+      termCount_(weights.size()),
+      known_(model.sampling ? model.sampling(parameters) : Known{}) {
     assert(weights.size() <= TermBatch::maxTerms);
     const std::string values = parameters.canonical();
     if (!values.empty()) name_ += ":" + values;

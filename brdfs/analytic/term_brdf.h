@@ -52,7 +52,7 @@ struct TermBatch {
 /// A model states its terms as a formula in any number type T (term_batch.h). `eval` uses the
 /// widest vector instructions of the machine, for a single direction too: f of a direction has
 /// the same bits at every position in a batch.
-class TermBrdf : public Brdf {
+class TermBrdf : public Brdf, public HasSamplers {
 public:
     std::string name() const override { return name_; }
     const Channels& channels() const override { return channels_; }
@@ -61,6 +61,7 @@ public:
     /// The same with double and the C++ library's functions, as a reference for tests of `eval`.
     void evalScalar(const Direction& wo, DirectionBatch wi, double* out) const;
     std::vector<Fact> facts() const override;
+    Known samplers() const override { return known_; }
 
 protected:
     /// `laws` are those of this instance: the table line's, or more. `weights` has at most
@@ -84,6 +85,7 @@ private:
     std::vector<double> constant_;  ///< [channel]
     std::vector<double> weights_;   ///< [channel][term]
     std::size_t termCount_;
+    Known known_;
 };
 
 /// A TermBrdf whose terms follow from a `Shape`, by functions (shape, batch) over vectors and over
