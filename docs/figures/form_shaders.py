@@ -1,13 +1,13 @@
 #!/usr/bin/python3
-"""The table of docs/shaders.md: forms as shaders beside a published network written by the same rules.
+"""The table of docs/shaders.md: forms as shaders, and a published network by the same rules.
 
     docs/figures/form_shaders.py build/hshfit FILE.json…
 
 For each coefficient file: its error and that of its export, bytes, and the instructions of a SPIR-V
 function around `eval`, with numbers as constants and as a texture. The last row is the network of
-Sztrajman et al. 2021 (6, 21, 21 and 3 values a layer, 675 weights in single precision, ReLU), unrolled
-as constants, with the half and the difference vector that it takes; the count does not depend on
-the weights. Programs: glslangValidator (with --target-env vulkan1.1) and spirv-opt -O, spirv-dis.
+Sztrajman et al. 2021 (6, 21, 21 and 3 values a layer, 675 weights in single precision, ReLU),
+unrolled as constants, with the half and the difference vector that it takes; the count does not
+depend on the weights. Programs: glslangValidator (with --target-env vulkan1.1) and spirv-opt -O, spirv-dis.
 """
 
 import json
