@@ -23,6 +23,7 @@ void addMatrix(CLI::App& command, Globals& globals);
 void addRotate(CLI::App& command, Globals& globals);
 void addLight(CLI::App& command, Globals& globals);
 void addIrradiance(CLI::App& command, Globals& globals);
+void addSample(CLI::App& command, Globals& globals);
 
 namespace {
 
@@ -167,6 +168,12 @@ constexpr Command table[] = {
      .file = "irradiance.cpp",
      .example = "hshfit irradiance sky:type=12,elevation=40,radiance=1 --convention three",
      .add = addIrradiance},
+    {.name = "sample",
+     .group = inspection,
+     .help = "Incident directions drawn after a BRDF or coefficients, and how efficient they are",
+     .file = "sample.cpp",
+     .example = "hshfit sample ggx:alpha=.2 --outgoing 45,0 --count 100 -o samples.csv",
+     .add = addSample},
 };
 
 }  // namespace

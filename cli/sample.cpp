@@ -1,0 +1,148 @@
+#include "command.h"
+#include "documents.h"
+
+#include <hshfit/files/atomic_file.h>
+
+#include <jobs/sample.h>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <iterator>
+
+namespace hshfit::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct SampleArguments {
+    std::string spec, outgoing = "45,0", method = "auto", output;
+    jobs::SampleOptions options;
+};
+
+Json rowJson(const jobs::SampleRow& row) {
+    const Efficiency& e = row.efficiency;
+    return {{"outgoing", directionJson(e.wo)},
+            {"samples", e.samples},
+            {"mean", e.mean},
+            {"standard_error", e.standardError},
+            {"variance", e.variance},
+            {"largest", e.largest},
+            {"wasted", e.wasted},
+            {"estimate", e.albedo},
+            {"estimate_error", e.albedoError},
+            {"albedo", row.albedo ? Json(*row.albedo) : Json(nullptr)},
+            {"shares", row.shares}};
+}
+
+Json answerJson(const jobs::Sampled& done, const SampleArguments& arguments) {
+    Json rows = Json::array(), samples = Json::array();
+    for (const jobs::SampleRow& row : done.rows) rows.push_back(rowJson(row));
+    if (arguments.output.empty())
+        for (const jobs::DrawnDirection& one : done.drawn)
+            samples.push_back({{"wi", {one.wi.x, one.wi.y, one.wi.z}},
+                               {"pdf", one.pdf},
+                               {"weights", one.weights}});
+    Json document = {{"format", "hshfit-sample"},
+                     {"version", 1},
+                     {"brdf", done.brdf},
+                     {"method", jobs::sampleMethodName(arguments.options.method)},
+                     {"outgoing", directionJson(arguments.options.outgoing)},
+                     {"seed", arguments.options.seed},
+                     {"channels", done.channels},
+                     {"parts", done.parts},
+                     {"reflects", done.reflects},
+                     {"build_seconds", done.buildSeconds},
+                     {"nanoseconds", done.nanosecondsPerSample},
+                     {"efficiency", rowJson(done.here)},
+                     {"elevations", rows},
+                     {"count", done.drawn.size()}};
+    if (arguments.output.empty())
+        document["samples"] = samples;
+    else
+        document["output"] = arguments.output;
+    return document;
+}
+
+std::string csvOf(const jobs::Sampled& done) {
+    std::string csv = "wi_x,wi_y,wi_z,pdf";
+    for (const std::string& name : done.channels) csv += ",weight_" + name;
+    csv += "\n";
+    for (const jobs::DrawnDirection& one : done.drawn) {
+        fmt::format_to(std::back_inserter(csv), "{},{},{},{}", one.wi.x, one.wi.y, one.wi.z,
+                       one.pdf);
+        for (const double weight : one.weights)
+            fmt::format_to(std::back_inserter(csv), ",{}", weight);
+        csv += "\n";
+    }
+    return csv;
+}
+
+double meanOf(const std::vector<double>& values) {
+    double sum = 0;
+    for (const double value : values) sum += value;
+    return sum / static_cast<double>(values.size());
+}
+
+std::string tableOf(const jobs::Sampled& done) {
+    std::string parts;
+    for (const std::string& part : done.parts) parts += (parts.empty() ? "" : " | ") + part;
+    std::string text = fmt::format(
+        "{}\nparts: {}\n theta_o    albedo  estimate  +-         variance  largest  wasted  "
+        "shares\n",
+        done.brdf, parts);
+    for (const jobs::SampleRow& row : done.rows) {
+        const Efficiency& e = row.efficiency;
+        std::string shares;
+        for (const double share : row.shares)
+            shares += fmt::format("{}{:.2f}", shares.empty() ? "" : " ", share);
+        text += fmt::format(
+            "{:8.1f}  {:>8}  {:8.5f}  {:<9.2g}  {:<8.3g}  {:<7.3g}  {:5.1f} %  {}\n",
+            degrees(polarAngle(e.wo)),
+            row.albedo ? fmt::format("{:.5f}", meanOf(*row.albedo)) : "none", meanOf(e.albedo),
+            e.standardError, e.variance, e.largest, 100 * e.wasted, shares);
+    }
+    return text;
+}
+
+void runSample(SampleArguments& arguments, const Globals& globals) {
+    arguments.options.outgoing = parseDirection(arguments.outgoing, "--outgoing");
+    arguments.options.method = jobs::sampleMethod(arguments.method);
+    const jobs::Sampled done = jobs::sample(arguments.spec, arguments.options);
+    if (!done.reflects)
+        note(globals, "f is 0 for this outgoing direction: the samples are the cosine's");
+    if (!arguments.output.empty()) writeFile(arguments.output, csvOf(done));
+    if (globals.json) return printJson(answerJson(done, arguments));
+    printText(tableOf(done));
+}
+
+}  // namespace
+
+void addSample(CLI::App& command, Globals& globals) {
+    auto arguments = std::make_shared<SampleArguments>();
+    jobs::SampleOptions& options = arguments->options;
+    command.add_option("SPEC", arguments->spec, "BRDF or coefficient file")->required();
+    command.add_option("--outgoing", arguments->outgoing, "Outgoing direction THETA,PHI, degrees")
+        ->capture_default_str();
+    command.add_option("--count", options.count, "Directions to draw")
+        ->check(CLI::Range(0, 10000000))
+        ->capture_default_str();
+    command.add_option("-o,--output", arguments->output,
+                       "CSV of the directions, densities and weights");
+    command
+        .add_option("--method", arguments->method,
+                    "auto: the model's own densities, or a fitted one and a table; table; "
+                    "proposal: the fitted one; cosine")
+        ->capture_default_str();
+    command.add_option("--seed", options.seed, "Of the random numbers")->capture_default_str();
+    command.add_option("--elevations", options.elevations, "Rows of the efficiency report")
+        ->check(CLI::Range(0, 1000))
+        ->capture_default_str();
+    command.add_option("--trials", options.trials, "Samples behind each row of the report")
+        ->check(CLI::Range(1, 100000000))
+        ->capture_default_str();
+    command.callback([arguments, &globals] { runSample(*arguments, globals); });
+}
+
+}  // namespace hshfit::cli

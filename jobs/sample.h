@@ -1,0 +1,61 @@
+#pragma once
+
+#include <hshfit/brdf/brdf.h>
+#include <hshfit/sampling/efficiency.h>
+#include <hshfit/sampling/make_sampler.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hshfit::jobs {
+
+/// The densities that samples come from.
+enum class SampleMethod { best, table, proposal, cosine };
+/// "auto" (the BRDF's own, or a fitted one and a table), "table", "proposal" or "cosine". Throws
+/// UsageError.
+SampleMethod sampleMethod(const std::string& name);
+std::string sampleMethodName(SampleMethod method);
+
+struct SampleOptions {
+    SampleMethod method = SampleMethod::best;
+    Direction outgoing = {};
+    std::size_t count = 1000;  ///< directions that are kept
+    std::uint64_t seed = 1;
+    std::size_t elevations = 7;  ///< of the report, from 0 to 89 degrees; 0: none
+    std::size_t trials = 20000;  ///< samples behind each row of the report
+    bool albedo = true;          ///< compare with the albedo by quadrature
+};
+
+/// A sample and its weight f cos(theta_i) / pdf, per channel.
+struct DrawnDirection {
+    Direction wi;
+    double pdf = 0;
+    std::vector<double> weights;
+};
+
+struct SampleRow {
+    Efficiency efficiency;
+    /// The directional albedo by quadrature, per channel; none if it did not converge to 1e-4.
+    std::optional<std::vector<double>> albedo;
+    std::vector<double> shares;  ///< of each part
+};
+
+struct Sampled {
+    std::string brdf;
+    std::vector<std::string> channels;
+    std::vector<std::string> parts;  ///< names
+    bool reflects = true;            ///< false: f is 0 at `outgoing`, as far as was looked
+    std::vector<DrawnDirection> drawn;
+    SampleRow here;               ///< the report at `outgoing`
+    std::vector<SampleRow> rows;  ///< by elevation, at the azimuth of `outgoing`
+    double buildSeconds = 0, nanosecondsPerSample = 0;
+};
+
+/// Draws directions after a BRDF, and reports the efficiency by elevation.
+/// Throws UsageError for an outgoing direction that is not above the horizon, and as openSource.
+Sampled sample(const std::string& spec, const SampleOptions& options);
+
+}  // namespace hshfit::jobs
