@@ -7,7 +7,8 @@ For each coefficient file: its error and that of its export, bytes, and the inst
 function around `eval`, with numbers as constants and as a texture. The last row is the network of
 Sztrajman et al. 2021 (6, 21, 21 and 3 values a layer, 675 weights in single precision, ReLU),
 unrolled as constants, with the half and the difference vector that it takes; the count does not
-depend on the weights. Programs: glslangValidator (with --target-env vulkan1.1) and spirv-opt -O, spirv-dis.
+depend on the weights. Programs: glslangValidator (with --target-env vulkan1.1), spirv-opt -O and
+spirv-dis.
 """
 
 import json

@@ -210,11 +210,12 @@ void expectSameBits(const char* name, int order) {
             std::vector<Real> some = byDirection<Real>(*basis, directions.batch(first, size));
             ASSERT_EQ(some.size(), size * slots);
             // An empty vector has no bytes to compare, and memcmp takes no null pointer.
-            if (size > 0)
+            if (size > 0) {
                 ASSERT_EQ(std::memcmp(some.data(), all.data() + first * slots,
                                       some.size() * sizeof(Real)),
                           0)
                     << name << " order " << order << ", " << size << " from " << first;
+            }
             std::vector<Real> columns(size * slots);
             basis->evaluateColumns(directions.batch(first, size), columns.data());
             for (std::size_t k = 0; k < size; ++k)

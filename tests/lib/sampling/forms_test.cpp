@@ -74,8 +74,8 @@ TEST_P(SamplingForms, SamplesFollowTheDensityAndGiveTheAlbedo) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Forms, SamplingForms, testing::ValuesIn(cases()), [](const auto& info) {
-    std::string name = info.param.name;
+INSTANTIATE_TEST_SUITE_P(Forms, SamplingForms, testing::ValuesIn(cases()), [](const auto& form) {
+    std::string name = form.param.name;
     std::erase_if(name, [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); });
     return name;
 });
