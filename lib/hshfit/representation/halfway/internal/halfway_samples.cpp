@@ -77,7 +77,7 @@ DirectionPair pairAt(const Sequence& sequence, std::size_t n, bool isotropic,
 [[noreturn]] void refuse(const Brdf& brdf, const DirectionPair& pair, double value) {
     throw NumericError(fmt::format(
         "{}: f is {} at theta_i {:.6g}, phi_i {:.6g}, theta_o {:.6g}, phi_o {:.6g} degrees; the "
-        "halfway form needs finite values",
+        "halfway form needs finite values with finite squares",
         brdf.name(), value, degrees(polarAngle(pair.wi)), degrees(azimuth(pair.wi)),
         degrees(polarAngle(pair.wo)), degrees(azimuth(pair.wo))));
 }
@@ -111,7 +111,7 @@ void appendSamples(const Brdf& brdf, HalfwayPart part, std::size_t first, std::s
             }
         });
     for (std::size_t k = 0; k < pairs.size() * channels; ++k) {
-        if (!std::isfinite(values[k])) refuse(brdf, pairs[k / channels], values[k]);
+        if (!std::isfinite(values[k] * values[k])) refuse(brdf, pairs[k / channels], values[k]);
         values[k] = std::max(values[k], 0.0);
     }
 }
