@@ -182,9 +182,10 @@ void addExport(CLI::App& command, Globals& globals) {
             "all that is possible, or containers, languages, renderers and viewer from hshfit "
             "list targets")
         ->capture_default_str();
-    command.add_option("--outgoing", options.outgoing,
-                       "Outgoing set of the textures, WxH or N; other than COEFFS' own: projected "
-                       "anew (default: its own; the form halfway is exported as it is)");
+    command.add_option(
+        "--outgoing", options.outgoing,
+        "Outgoing set of the textures, WxH or N; other than COEFFS' own: projected "
+        "anew (default: its own; the forms halfway and basis are exported as they are)");
     command
         .add_option("--basis", options.basis,
                     "With --outgoing, of the form halfway: what it is projected to")
@@ -193,11 +194,11 @@ void addExport(CLI::App& command, Globals& globals) {
     command.add_option("--name", options.name,
                        "What the files' names begin with (default: that of COEFFS)");
     command.add_option("--number", arguments->number,
-                       "float16, float32, unorm16 or unorm8 (default: float16; for the form "
-                       "halfway, the least that holds the file)");
+                       "float16, float32, unorm16 or unorm8 (default: float16; for the "
+                       "forms halfway and basis, the least that holds the file)");
     command
         .add_option("--storage", arguments->storage,
-                    "Numbers of the form halfway in shaders: constants, block (one uniform block), "
+                    "Numbers of these forms in shaders: constants, block (one uniform block), "
                     "texture, or auto: constants up to 4096 numbers")
         ->capture_default_str();
     command

@@ -1,5 +1,7 @@
 #include "form_samples.h"
 
+#include <hshfit/bases/catalog.h>
+#include <hshfit/representation/basis_matrix.h>
 #include <hshfit/representation/halfway/halfway_terms.h>
 
 #include <cmath>
@@ -59,7 +61,61 @@ FormSample sample(const std::string& name, const Asked& asked, unsigned seed) {
     return {name, std::move(r)};
 }
 
+struct AskedBasis {
+    std::string basis;
+    int order;
+    Channels channels;
+    ProductSymmetry symmetry;
+    Precision precision = Precision::float32;
+    Quantity quantity = Quantity::brdf;
+    std::size_t keep = 0;
+};
+
+FormSample basisSample(const std::string& name, const AskedBasis& asked, unsigned seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    Representation r;
+    r.head.basis = asked.basis;
+    r.head.order = asked.order;
+    r.head.quantity = asked.quantity;
+    r.head.channels = asked.channels;
+    r.head.isotropic = asked.symmetry.isotropic;
+    r.head.bilateral = asked.symmetry.bilateral;
+    r.head.reciprocal = asked.symmetry.reciprocal;
+    r.head.source = "random";
+    r.head.generator = "hshfit test";
+    const auto terms = productTerms(*bases::make(asked.basis, asked.order), asked.symmetry);
+    MatrixArray content{{.shape = {asked.channels.count(), terms.size()}, .values = {}}};
+    for (std::size_t c = 0; c < asked.channels.count(); ++c) {
+        for (const ProductTerm& t : terms) {
+            const double value = t.l + t.k == 0 ? 2 : uniform(random);
+            content.matrix.values.push_back(value / (1 + t.l + t.k));
+        }
+    }
+    if (asked.keep > 0) keepLargest(content.matrix, asked.keep);
+    quantise(content.matrix, asked.precision);
+    r.content = std::move(content);
+    return {name, std::move(r)};
+}
+
 }  // namespace
+
+std::vector<FormSample> basisSamples() {
+    const Channels rgb = Channels::rgb(), grey = Channels::grey();
+    using enum Precision;
+    return {
+        basisSample("hsh 4 rgb, anisotropic", {"hsh", 4, rgb, {false, false, false}, half}, 21),
+        basisSample("hsh 5 rgb, isotropic", {"hsh", 5, rgb, {true, true, false}}, 22),
+        basisSample("zernike 6 grey, reciprocal", {"zernike", 6, grey, {true, true, true}}, 23),
+        basisSample("hsh 4 rgb, twisted, reciprocal, unorm16",
+                    {"hsh", 4, rgb, {true, false, true}, unorm16}, 24),
+        basisSample("makhotkin 4 rgb, f cos, masked",
+                    {"makhotkin", 4, rgb, {true, false, false}, half, Quantity::brdfCosine, 30},
+                    25),
+        basisSample("hsh 3 grey, anisotropic, bilateral, reciprocal",
+                    {"hsh", 3, grey, {false, true, true}, unorm8}, 26),
+    };
+}
 
 std::vector<FormSample> halfwaySamples() {
     const Channels rgb = Channels::rgb(), grey = Channels::grey(),
@@ -68,9 +124,9 @@ std::vector<FormSample> halfwaySamples() {
     using enum Precision;
     return {
         sample("12,6,3 rgb, float32", {{12, 6, 3}, rgb, measured}, 1),
-        sample("12,6,3 rgb, half", {{12, 6, 3}, rgb, measured, half}, 2),
-        sample("12,6,3 rgb, unorm16", {{12, 6, 3}, rgb, measured, unorm16}, 3),
-        sample("12,6,3 rgb, unorm8", {{12, 6, 3}, rgb, measured, unorm8}, 4),
+        sample("7,4,2 rgb, half", {{7, 4, 2}, rgb, measured, half}, 2),
+        sample("7,4,2 rgb, unorm16", {{7, 4, 2}, rgb, measured, unorm16}, 3),
+        sample("7,4,2 rgb, unorm8", {{7, 4, 2}, rgb, measured, unorm8}, 4),
         sample("8,4,3 rgb, half, masked", {{8, 4, 3}, rgb, measured, half, {3, 3}, 60}, 5),
         sample("8,4,2 grey, reciprocal", {{8, 4, 2}, grey, modelled}, 6),
         sample("7,5,4 rgb, twisted", {{7, 5, 4}, rgb, {true, false, false}, half, {7, 6, 0.02}}, 7),

@@ -17,4 +17,7 @@ struct FormSample {
 /// envelope, at orders up to 12.
 std::vector<FormSample> halfwaySamples();
 
+/// The form basis likewise.
+std::vector<FormSample> basisSamples();
+
 }  // namespace hshfit::samples

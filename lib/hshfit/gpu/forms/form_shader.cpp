@@ -12,6 +12,7 @@
 #include <array>
 
 namespace hshfit::embedded {
+extern const std::string_view shader_basis, shader_ends, shader_turn;
 extern const std::string_view form_eval, form_expm1, form_glsl, form_glsl_es, form_glsl_functions,
     form_header, form_hlsl, form_metal, form_osl, form_sums, form_wgsl;
 }  // namespace hshfit::embedded
@@ -90,7 +91,7 @@ void setHeader(const FormPayload& payload, const FormRow& row, data& page) {
     page.set("generator", commentText(form.head.generator));
     page.set("source", commentText(form.head.source));
     page.set("kind", std::string(kindName(form.kind())));
-    page.set("orders", data(false));
+    page.set("orders", fmt::format("{} {}", form.head.basis, form.head.order));
     if (form.kind() == Representation::Kind::halfway) {
         page.set("orders", fmt::format("{},{},{}", form.halfway.half, form.halfway.difference,
                                        form.halfway.azimuth));
@@ -109,6 +110,9 @@ void setPartials(std::string_view body, data& page) {
         {"expm1Body", embedded::form_expm1},
         {"formBody", body},
         {"glslFunctions", embedded::form_glsl_functions},
+        {"basisBody", embedded::shader_basis},
+        {"ends", embedded::shader_ends},
+        {"turnBody", embedded::shader_turn},
     };
     for (const auto& [name, text] : parts) {
         // The last newline is dropped, because the line that names a partial has one of its own.

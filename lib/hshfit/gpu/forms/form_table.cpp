@@ -9,7 +9,7 @@
 #include <array>
 
 namespace hshfit::embedded {
-extern const std::string_view form_halfway;
+extern const std::string_view form_basis, form_halfway;
 }  // namespace hshfit::embedded
 
 namespace hshfit::gpu::inline forms {
@@ -18,11 +18,14 @@ std::span<const FormRow> formTable() {
     static const std::array rows{
         FormRow{Representation::Kind::halfway, "f = min(E, max(0, exp(sum_t c_t P_t(wi, wo)) - 1))",
                 halfwayStream, embedded::form_halfway, fillHalfway},
+        FormRow{Representation::Kind::basis, "q = sum_t c_t P_t(wi, wo)", basisStream,
+                embedded::form_basis, fillBasis},
     };
     return rows;
 }
 
 bool hasShader(const Representation& form) {
+    if (form.as<MatrixFactors>()) return false;
     return form.added.empty() && std::ranges::any_of(formTable(), [&](const FormRow& row) {
                return row.kind == form.kind();
            });

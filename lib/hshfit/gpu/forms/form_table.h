@@ -20,7 +20,7 @@ struct FormRow {
     void (*fill)(FormText& text);
 };
 std::span<const FormRow> formTable();
-/// Whether the table has a row for the form, and the form adds no BRDF.
+/// Whether the table has a row for the form, which adds no BRDF and is not factored.
 bool hasShader(const Representation& form);
 /// Throws UsageError for a form that the table lacks.
 const FormRow& formRow(Representation::Kind kind);
