@@ -11,6 +11,8 @@
 #include <boost/multiprecision/mpfr.hpp>
 #include <nlohmann/json.hpp>
 
+#include <fstream>
+
 #include "places.h"
 
 namespace {
