@@ -240,6 +240,12 @@ TEST_F(Lights, ScenesTakeSpecificationsAndEveryFormat) {
     EXPECT_EQ(a["choice"]["error"], b["choice"]["error"]);
     EXPECT_TRUE(a["choice"]["error"].is_number());
 
+    // Coefficients of light are one too, found beside the scene.
+    ASSERT_EQ(run("light " + path("room.pfm") + " --order 3 -o " + path("series.json")).code, 0);
+    const Answer series = plan("by-series", R"([{"light": "series.json:scale=2"}])");
+    EXPECT_TRUE(series.code != 0 ||
+                Json::parse(series.out)["materials"][0]["choice"]["error"].is_number());
+
     std::ofstream(path("bad.json"))
         << R"({"format": "hshfit-scene", "version": 1, "materials": [{"name": "grey", )"
         << R"("brdf": "lambert"}], "lights": [{"light": "sky:type=77"}], )"
