@@ -19,7 +19,7 @@
 
 namespace hshfit::embedded {
 extern const std::string_view viewer_page, viewer_style;
-extern const std::string_view viewer_parse_hdr, viewer_harmonics, viewer_environment, viewer_shapes,
+extern const std::string_view viewer_radiance, viewer_harmonics, viewer_environment, viewer_shapes,
     viewer_renderer, viewer_controls, viewer_panes, viewer_light_panel, viewer_main;
 extern const std::string_view viewer_geometry_vert, viewer_geometry_frag, viewer_screen_vert,
     viewer_environment_glsl, viewer_exact_glsl, viewer_fit_glsl, viewer_shade_frag,
@@ -217,7 +217,7 @@ std::string viewerPage(const ViewerInput& input) {
     document["shaders"] = shadersJson();
     std::string script;
     for (const std::string_view part :
-         {embedded::viewer_parse_hdr, embedded::viewer_harmonics, embedded::viewer_environment,
+         {embedded::viewer_radiance, embedded::viewer_harmonics, embedded::viewer_environment,
           embedded::viewer_shapes, embedded::viewer_renderer, embedded::viewer_controls,
           embedded::viewer_panes, embedded::viewer_light_panel, embedded::viewer_main}) {
         script += part;

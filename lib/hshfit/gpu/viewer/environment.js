@@ -115,14 +115,15 @@ function reduced(width, height, values, stride, most) {
 
 class Refused extends Error {}
 
-// Pixels of a picture file: Radiance by parseHdr, everything else by the browser.
+// Pixels of a picture file: Radiance by readRadiance, everything else by the browser.
 async function pixelsOf(file) {
   const bytes = new Uint8Array(await file.arrayBuffer());
   if (bytes[0] === 35 && bytes[1] === 63) {
-    const { shape, data } = parseHdr(bytes);
-    // parseHdr divides mantissas by 255; the format by 256.
-    for (let k = 0; k < data.length; ++k) data[k] *= 255 / 256;
-    return { width: shape[0], height: shape[1], values: data, stride: 4 };
+    try {
+      return readRadiance(bytes);
+    } catch (error) {
+      throw error instanceof RadianceError ? new Refused(error.message) : error;
+    }
   }
   if (bytes[0] === 0x76 && bytes[1] === 0x2f && bytes[2] === 0x31 && bytes[3] === 1) {
     throw new Refused(
