@@ -17,7 +17,7 @@ namespace {
 
 using Matrix = linear_algebra::RowMajor;
 
-constexpr int exactOrders = 100, matrixOrders = 32;
+constexpr int exactOrders = 150, matrixOrders = 32;
 
 struct MethodRow {
     HemisphereMethod method;
@@ -193,8 +193,8 @@ HemisphereRotation::HemisphereRotation(const Basis& basis, const HemisphereRotat
     if (basis.order() > exactOrders)
         throw UsageError(fmt::format(
             "rotation on the hemisphere at order {}; at most {}, since the integrals over "
-            "what stays above the horizon take order^4 operations, about a minute there "
-            "on two cores",
+            "what stays above the horizon take order^4 operations, about a minute of "
+            "CPU there",
             basis.order(), exactOrders));
     const bool exact = options.method == HemisphereMethod::exact;
     if (!exact && !parts_->orthonormal)

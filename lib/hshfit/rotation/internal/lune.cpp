@@ -21,7 +21,14 @@ struct AzimuthNode {
 
 constexpr double smallestPanel = 1e-6;  // adds errors of its square
 
-/// Twice the degree is the frequency of a product of two functions.
+/// By how much the angle of shifted functions, arccos(2 z - 1), turns between the horizon and a
+/// distance from it: some 2 sqrt(distance), much more than the distance itself where it is small.
+double shiftedTurn(double distance) {
+    return pi - std::acos(2 * std::sin(std::min(distance, pi / 2)) - 1);
+}
+
+/// Twice the degree is the frequency of a product of two functions, in the angle or, next to the
+/// horizon, in the shifted angle.
 std::vector<AzimuthNode> azimuthNodes(double length, double beta, int order, double density) {
     std::vector<double> breaks = {0};
     for (double end = std::max(beta, smallestPanel); end < length / 2; end *= 4)
@@ -30,7 +37,7 @@ std::vector<AzimuthNode> azimuthNodes(double length, double beta, int order, dou
     std::vector<AzimuthNode> nodes;
     for (std::size_t p = 0; p + 1 < breaks.size(); ++p) {
         const double low = breaks[p], width = breaks[p + 1] - low;
-        const double share = order * width * (p == 0 ? 2 : 1);
+        const double share = order * (p == 0 ? std::max(2 * width, shiftedTurn(width)) : width);
         const GaussRule& rule = gaussLegendre(static_cast<int>(std::ceil(density * (16 + share))));
         for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
             const double s = (1 + rule.nodes[i]) / 2;
