@@ -37,7 +37,7 @@ TEST_F(Cli, SampleWritesDirectionsWithWeights) {
     const Answer answer = run("sample lambert:kd=.8/.4/.2 --outgoing 20,0 --count 50 -o " +
                               path("s.csv") + " --elevations 0 --trials 10");
     ASSERT_EQ(answer.code, 0) << answer.err;
-    std::istringstream rows(read("s.csv"));
+    std::istringstream rows(read(path("s.csv")));
     std::string line;
     std::getline(rows, line);
     EXPECT_EQ(line, "wi_x,wi_y,wi_z,pdf,weight_R,weight_G,weight_B");
@@ -64,7 +64,8 @@ TEST_F(Cli, SampleIsTheSameForAnyNumberOfThreads) {
         "sample he:sigma=.15,tau=3 --count 20 --elevations 3 --trials 100 -o ";
     ASSERT_EQ(run(command + path("a.csv") + " --threads 1").code, 0);
     ASSERT_EQ(run(command + path("b.csv") + " --threads 2").code, 0);
-    EXPECT_EQ(read("a.csv"), read("b.csv"));
+    ASSERT_FALSE(read(path("a.csv")).empty());
+    EXPECT_EQ(read(path("a.csv")), read(path("b.csv")));
 }
 
 TEST_F(Cli, SampleSaysWhereNothingIsReflected) {
@@ -76,9 +77,9 @@ TEST_F(Cli, SampleSaysWhereNothingIsReflected) {
 }
 
 TEST_F(Cli, SampleRefusesWhatItCannotDo) {
-    expectError("sample lambert --outgoing 90,0", 2, "horizon", 1);
-    expectError("sample lambert --method magic", 2, "proposal", 1);
-    expectError("sample absent.binary", 3, "absent.binary", 1);
+    expectError("sample lambert --outgoing 90,0", 2, "horizon", 0);
+    expectError("sample lambert --method magic", 2, "proposal", 0);
+    expectError("sample absent.binary", 3, "absent.binary", 0);
 }
 
 }  // namespace
