@@ -46,6 +46,9 @@ std::string testsText(std::span<const TestTriple> tests);
 std::string testText(const CoefficientHead& head, std::span<const TestTriple> tests,
                      const std::string& value);
 
+/// The version of sidecars of coefficients per outgoing direction, which have no key "form".
+inline constexpr int payloadSidecarVersion = 1;
+
 /// The version of sidecars with a form other than coefficients per outgoing direction, which has
 /// the name of the form in the key "form" (gpu/forms).
 inline constexpr int formSidecarVersion = 2;

@@ -183,7 +183,8 @@ std::vector<TestTriple> readSidecarTests(const JsonFields& root, std::size_t cha
 SidecarIndex parseSidecarIndex(std::string_view text, const std::string& file) {
     const Json document = parseJson(text, file, maxDepth);
     const Fields root(document, "", file);
-    requireFormat(root, "hshfit-gpu", formSidecarVersion);
+    requireFormat(root, "hshfit-gpu",
+                  root.has("form") ? formSidecarVersion : payloadSidecarVersion);
     SidecarIndex index;
     index.coefficients = readTexels(root.object("data"));
     index.coefficientsSha256 = readSha256(root.object("data"));

@@ -217,7 +217,7 @@ std::string testsText(std::span<const TestTriple> tests) {
 std::string sidecarText(const Payload& payload, std::span<const ExportedFile> files,
                         std::optional<Role> holds, std::span<const TestTriple> tests,
                         const std::string& fitError) {
-    Json document = {{"format", "hshfit-gpu"}, {"version", 1}};
+    Json document = {{"format", "hshfit-gpu"}, {"version", payloadSidecarVersion}};
     if (holds) document["holds"] = roleName(*holds);
     addCoefficientKeys(payload, document);
     const bool rgb = payload.head.channels.kind == Channels::Kind::rgb;
