@@ -113,3 +113,5 @@ BENCHMARK_CAPTURE(draw, fitted_and_table, "fitted");
 BENCHMARK_CAPTURE(draw, regular_table, "regular");
 
 }  // namespace
+
+BENCHMARK_MAIN();
