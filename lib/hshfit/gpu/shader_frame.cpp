@@ -56,7 +56,8 @@ std::vector<std::vector<double>> exchange(int order) {
 std::vector<Term> turn(const std::string& angle, double direction, int slot,
                        const std::string& of) {
     const auto [l, m] = bandOf(slot);
-    const auto name = [&](int k) { return fmt::format("{}{}", of, l * (l + 1) + k); };
+    const int zonal = l * (l + 1);
+    const auto name = [&](int k) { return fmt::format("{}{}", of, zonal + k); };
     if (m == 0) return {{1, "1.0", name(0)}};
     const int k = std::abs(m);
     return {{1, fmt::format("{}c{}", angle, k), name(m)},
