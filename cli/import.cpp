@@ -18,18 +18,9 @@ struct ImportArguments {
     jobs::ImportOptions options;
 };
 
-Json answer(const gpu::ImportedPayload& read, std::uintmax_t bytes,
-            const ImportArguments& arguments) {
-    const gpu::Payload& payload = read.payload;
-    return {{"format", "hshfit-import"},
-            {"version", 1},
-            {"input", arguments.input},
-            {"container", read.container},
-            {"file", read.file},
-            {"sidecar", read.sidecar},
-            {"output", arguments.output},
-            {"bytes", bytes},
-            {"brdf", payload.head.source},
+/// The facts of the coefficients in an export.
+Json contentOf(const gpu::Payload& payload) {
+    return {{"brdf", payload.head.source},
             {"basis", payload.head.basis},
             {"order", payload.head.order},
             {"quantity", quantityName(payload.head.quantity)},
@@ -37,47 +28,38 @@ Json answer(const gpu::ImportedPayload& read, std::uintmax_t bytes,
             {"outgoing", payload.head.outgoing.spec()},
             {"number", gpu::numberName(payload.coefficients.number)},
             {"packing", gpu::packingName(payload.packing)},
-            {"layers", payload.coefficients.layers},
-            {"tests", {{"count", read.tests}, {"largest_difference", read.testDifference}}}};
+            {"layers", payload.coefficients.layers}};
+}
+
+Json contentOf(const gpu::FormPayload& payload) {
+    return {{"brdf", payload.form.head.source},
+            {"form", kindName(payload.form.kind())},
+            {"channels", payload.form.head.channels.names()},
+            {"number", gpu::numberName(payload.texels.number)},
+            {"numbers", payload.form.numbers()}};
+}
+
+/// `read`: gpu::ImportedPayload or gpu::ImportedForm.
+Json answer(const auto& read, std::uintmax_t bytes, const ImportArguments& arguments) {
+    Json document = {{"format", "hshfit-import"},   {"version", 1},      {"input", arguments.input},
+                     {"container", read.container}, {"file", read.file}, {"sidecar", read.sidecar},
+                     {"output", arguments.output},  {"bytes", bytes}};
+    document.update(contentOf(read.payload));
+    document["tests"] = {{"count", read.tests}, {"largest_difference", read.testDifference}};
+    return document;
 }
 
 std::string importedText(const Json& document) {
-    return fmt::format(
-        "{}: {} order {}, {}, from {} ({}, {}); SHA-256 right, {} tests within {:.1g}\n",
-        document["output"].get<std::string>(), document["basis"].get<std::string>(),
-        document["order"].get<int>(), document["outgoing"].get<std::string>(),
-        document["file"].get<std::string>(), document["container"].get<std::string>(),
-        document["number"].get<std::string>(), document["tests"]["count"].get<std::size_t>(),
-        document["tests"]["largest_difference"].get<double>());
-}
-
-Json answer(const gpu::ImportedForm& read, std::uintmax_t bytes, const ImportArguments& arguments) {
-    const Representation& form = read.payload.form;
-    return {{"format", "hshfit-import"},
-            {"version", 1},
-            {"input", arguments.input},
-            {"container", read.container},
-            {"file", read.file},
-            {"sidecar", read.sidecar},
-            {"output", arguments.output},
-            {"bytes", bytes},
-            {"brdf", form.head.source},
-            {"form", kindName(form.kind())},
-            {"channels", form.head.channels.names()},
-            {"number", gpu::numberName(read.payload.texels.number)},
-            {"numbers", form.numbers()},
-            {"tests", {{"count", read.tests}, {"largest_difference", read.testDifference}}}};
-}
-
-std::string importedFormText(const Json& document) {
-    return fmt::format(
-        "{}: form {}, {} numbers, from {} ({}, {}); SHA-256 right, {} tests within "
-        "{:.1g}\n",
-        document["output"].get<std::string>(), document["form"].get<std::string>(),
-        document["numbers"].get<std::size_t>(), document["file"].get<std::string>(),
-        document["container"].get<std::string>(), document["number"].get<std::string>(),
-        document["tests"]["count"].get<std::size_t>(),
-        document["tests"]["largest_difference"].get<double>());
+    const auto text = [&](const char* key) { return document[key].get<std::string>(); };
+    const std::string content = document.contains("form")
+                                    ? fmt::format("form {}, {} numbers", text("form"),
+                                                  document["numbers"].get<std::size_t>())
+                                    : fmt::format("{} order {}, {}", text("basis"),
+                                                  document["order"].get<int>(), text("outgoing"));
+    return fmt::format("{}: {}, from {} ({}, {}); SHA-256 right, {} tests within {:.1g}\n",
+                       text("output"), content, text("file"), text("container"), text("number"),
+                       document["tests"]["count"].get<std::size_t>(),
+                       document["tests"]["largest_difference"].get<double>());
 }
 
 void runImport(const ImportArguments& arguments, const Globals& globals) {
@@ -85,11 +67,10 @@ void runImport(const ImportArguments& arguments, const Globals& globals) {
         jobs::importCoefficients(arguments.input, arguments.output, arguments.options);
     const Json document = std::visit(
         [&](const auto& read) { return answer(read, imported.bytes, arguments); }, imported.read);
-    const bool form = std::holds_alternative<gpu::ImportedForm>(imported.read);
     if (globals.json) {
         printJson(document);
     } else {
-        printText(form ? importedFormText(document) : importedText(document));
+        printText(importedText(document));
     }
 }
 

@@ -42,10 +42,6 @@ const Row& rowOf(Precision precision) {
 bool isKept(const StoredArray& array, std::size_t i) {
     return array.kept.empty() || array.kept[i];
 }
-std::size_t keptCount(const StoredArray& array) {
-    if (array.kept.empty()) return array.values.size();
-    return static_cast<std::size_t>(std::count(array.kept.begin(), array.kept.end(), true));
-}
 std::size_t groupOf(const StoredArray& array, std::size_t i) {
     return i % array.columns() / array.groupColumns();
 }
@@ -86,42 +82,6 @@ void append(std::vector<std::byte>& bytes, Stored value) {
     bytes.insert(bytes.end(), from, from + sizeof(Stored));
 }
 
-/// The length has been checked.
-double takeNumber(ByteCursor& cursor, Precision precision) {
-    switch (precision) {
-        case Precision::float64:
-            return *cursor.number<double>();
-        case Precision::float32:
-            return static_cast<double>(*cursor.number<float>());
-        case Precision::half: {
-            Imath::half value;
-            value.setBits(*cursor.number<std::uint16_t>());
-            return static_cast<double>(static_cast<float>(value));
-        }
-        case Precision::unorm16:
-            return *cursor.number<std::uint16_t>();
-        case Precision::unorm8:
-            break;
-    }
-    return *cursor.number<std::uint8_t>();
-}
-
-void appendNumber(std::vector<std::byte>& bytes, const StoredArray& array, std::size_t i) {
-    const double value = array.values[i];
-    switch (array.precision) {
-        case Precision::float64:
-            return append(bytes, value);
-        case Precision::float32:
-            return append(bytes, static_cast<float>(value));
-        case Precision::half:
-            return append(bytes, Imath::half(static_cast<float>(value)).bits());
-        case Precision::unorm16:
-            return append(bytes, static_cast<std::uint16_t>(integerOf(array, i, 65535)));
-        case Precision::unorm8:
-            return append(bytes, static_cast<std::uint8_t>(integerOf(array, i, 255)));
-    }
-}
-
 std::size_t overhead(const StoredArray& array) {
     const std::size_t scales = rowOf(array.precision).steps > 0 ? array.groups() * 8 : 0;
     return scales + (array.kept.empty() ? 0 : (array.values.size() + 7) / 8);
@@ -143,6 +103,49 @@ Precision parsePrecision(std::string_view name) {
 
 std::size_t numberBytes(Precision precision) {
     return rowOf(precision).bytes;
+}
+
+double largestInteger(Precision precision) {
+    return rowOf(precision).steps;
+}
+
+std::size_t keptCount(const StoredArray& array) {
+    if (array.kept.empty()) return array.values.size();
+    return static_cast<std::size_t>(std::count(array.kept.begin(), array.kept.end(), true));
+}
+
+double takeNumber(ByteCursor& cursor, Precision precision) {
+    switch (precision) {
+        case Precision::float64:
+            return *cursor.number<double>();
+        case Precision::float32:
+            return static_cast<double>(*cursor.number<float>());
+        case Precision::half: {
+            Imath::half value;
+            value.setBits(*cursor.number<std::uint16_t>());
+            return static_cast<double>(static_cast<float>(value));
+        }
+        case Precision::unorm16:
+            return *cursor.number<std::uint16_t>();
+        case Precision::unorm8:
+            break;
+    }
+    return *cursor.number<std::uint8_t>();
+}
+
+void appendNumber(std::vector<std::byte>& bytes, Precision precision, double value) {
+    switch (precision) {
+        case Precision::float64:
+            return append(bytes, value);
+        case Precision::float32:
+            return append(bytes, static_cast<float>(value));
+        case Precision::half:
+            return append(bytes, Imath::half(static_cast<float>(value)).bits());
+        case Precision::unorm16:
+            return append(bytes, static_cast<std::uint16_t>(value));
+        case Precision::unorm8:
+            return append(bytes, static_cast<std::uint8_t>(value));
+    }
 }
 
 std::size_t StoredArray::groupColumns() const {
@@ -206,8 +209,11 @@ std::vector<std::byte> packed(const StoredArray& array) {
         }
         append(bytes, static_cast<std::uint8_t>(bits));
     }
+    const double steps = largestInteger(array.precision);
     for (std::size_t i = 0; i < array.values.size(); ++i) {
-        if (isKept(array, i)) appendNumber(bytes, array, i);
+        if (!isKept(array, i)) continue;
+        appendNumber(bytes, array.precision,
+                     steps > 0 ? integerOf(array, i, steps) : array.values[i]);
     }
     return bytes;
 }

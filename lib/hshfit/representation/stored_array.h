@@ -7,6 +7,10 @@
 #include <string_view>
 #include <vector>
 
+namespace hshfit {
+class ByteCursor;
+}
+
 namespace hshfit::inline representation {
 
 /// The number type of a stored array; little-endian.
@@ -63,5 +67,12 @@ std::size_t entropyBytes(const StoredArray& array);
 /// a mask. Throws InputError that starts with `where` if the length or a number is wrong.
 void unpackInto(StoredArray& array, std::span<const std::byte> bytes, bool masked,
                 const std::string& where);
+
+/// For those who keep the numbers elsewhere than at the end of `packed`, such as in texels.
+std::size_t keptCount(const StoredArray& array);  ///< how many there are
+double largestInteger(Precision precision);       ///< of a normalised number; 0: floating point
+/// A number as it is stored: a whole one for normalised types. The bytes have to be there.
+double takeNumber(ByteCursor& cursor, Precision precision);
+void appendNumber(std::vector<std::byte>& bytes, Precision precision, double value);
 
 }  // namespace hshfit::inline representation

@@ -23,12 +23,6 @@ using Json = nlohmann::ordered_json;
 /// As for coefficients per outgoing direction (containers/import_files.cpp).
 constexpr double testTolerance = 1e-9;
 
-/// Numbers of an array in the stream.
-std::size_t keptOf(const StoredArray& array) {
-    if (array.kept.empty()) return array.values.size();
-    return static_cast<std::size_t>(std::ranges::count(array.kept, true));
-}
-
 /// The member "representation" of the coefficient file. In place of an array's bytes stands what
 /// precedes its numbers: scales, offsets and mask.
 Json representationJson(const Representation& form, const Json& file) {
@@ -37,10 +31,10 @@ Json representationJson(const Representation& form, const Json& file) {
     for (std::size_t a = 0; a < arrays.size(); ++a) {
         const StoredArray& array = *arrays[a].array;
         std::vector<std::byte> head = packed(array);
-        head.resize(head.size() - keptOf(array) * numberBytes(array.precision));
+        head.resize(head.size() - keptCount(array) * numberBytes(array.precision));
         Json& row = part["arrays"][a];
         row.erase("base64");
-        row["numbers"] = keptOf(array);
+        row["numbers"] = keptCount(array);
         row["scales"] = array.scales;
         row["offsets"] = array.offsets;
         row["head"] = base64(head);

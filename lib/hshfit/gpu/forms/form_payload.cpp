@@ -6,7 +6,6 @@
 #include <hshfit/representation/change.h>
 #include <hshfit/representation/named_arrays.h>
 
-#include <Imath/half.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,15 +35,12 @@ const std::array<Holding, 4>& holdings() {
 const Holding& holdingOf(Number number) {
     return *std::ranges::find(holdings(), number, &Holding::number);
 }
+/// The precision of which a texel is a stored number.
+Precision precisionOf(Number number) {
+    return holdingOf(number).rounds;
+}
 bool holds(const Holding& row, Precision precision) {
     return std::ranges::find(row.holds, precision) != row.holds.end();
-}
-
-double stepsOf(Precision precision) {
-    return precision == Precision::unorm8 ? 255 : precision == Precision::unorm16 ? 65535 : 0;
-}
-double stepsOf(Number number) {
-    return number == Number::unorm8 ? 255 : number == Number::unorm16 ? 65535 : 0;
 }
 
 /// Every value's place among those that are kept.
@@ -57,70 +53,15 @@ std::vector<std::size_t> ranksOf(const StoredArray& array) {
     }
     return ranks;
 }
-std::size_t keptOf(const StoredArray& array) {
-    if (array.kept.empty()) return array.values.size();
-    return static_cast<std::size_t>(std::ranges::count(array.kept, true));
-}
 /// The bytes of `packed` before its numbers.
 std::size_t headOf(const StoredArray& array) {
-    return storedBytes(array) - keptOf(array) * numberBytes(array.precision);
-}
-
-/// A stored number as it is: whole, for normalised ones.
-double storedNumber(ByteCursor& cursor, Precision precision) {
-    switch (precision) {
-        case Precision::float64:
-            return *cursor.number<double>();
-        case Precision::float32:
-            return static_cast<double>(*cursor.number<float>());
-        case Precision::half: {
-            Imath::half value;
-            value.setBits(*cursor.number<std::uint16_t>());
-            return static_cast<double>(static_cast<float>(value));
-        }
-        case Precision::unorm16:
-            return *cursor.number<std::uint16_t>();
-        case Precision::unorm8:
-            break;
-    }
-    return *cursor.number<std::uint8_t>();
-}
-
-template <class Value>
-void put(std::vector<std::byte>& bytes, Value value) {
-    const auto* from = reinterpret_cast<const std::byte*>(&value);
-    bytes.insert(bytes.end(), from, from + sizeof value);
-}
-
-void putTexel(std::vector<std::byte>& bytes, Number number, double value) {
-    switch (number) {
-        case Number::float16:
-            return put(bytes, Imath::half(static_cast<float>(value)).bits());
-        case Number::float32:
-            return put(bytes, static_cast<float>(value));
-        case Number::unorm16:
-            return put(bytes, static_cast<std::uint16_t>(value));
-        case Number::unorm8:
-            return put(bytes, static_cast<std::uint8_t>(value));
-    }
-}
-double texelNumber(ByteCursor& cursor, Number number) {
-    switch (number) {
-        case Number::float16:
-            return storedNumber(cursor, Precision::half);
-        case Number::float32:
-            return storedNumber(cursor, Precision::float32);
-        case Number::unorm16:
-            return storedNumber(cursor, Precision::unorm16);
-        case Number::unorm8:
-            break;
-    }
-    return storedNumber(cursor, Precision::unorm8);
+    return storedBytes(array) - keptCount(array) * numberBytes(array.precision);
 }
 
 /// The factor between a stored number and its texel: 257 for 8 bits in 16.
 double widening(Precision precision, Number number) {
-    return stepsOf(number) > 0 ? stepsOf(number) / stepsOf(precision) : 1;
+    const double steps = largestInteger(precisionOf(number));
+    return steps > 0 ? steps / largestInteger(precision) : 1;
 }
 
 Texels emptyTexels(Number number, std::size_t count) {
@@ -141,26 +82,10 @@ std::vector<std::vector<double>> storedNumbers(const Representation& form) {
         const std::vector<std::byte> bytes = packed(*each.array);
         ByteCursor cursor(std::span<const std::byte>(bytes).subspan(headOf(*each.array)));
         std::vector<double>& numbers = all.emplace_back();
-        for (std::size_t k = keptOf(*each.array); k > 0; --k)
-            numbers.push_back(storedNumber(cursor, each.array->precision));
+        for (std::size_t k = keptCount(*each.array); k > 0; --k)
+            numbers.push_back(takeNumber(cursor, each.array->precision));
     }
     return all;
-}
-
-void appendStored(std::vector<std::byte>& bytes, Precision precision, double value) {
-    switch (precision) {
-        case Precision::float32:
-            return put(bytes, static_cast<float>(value));
-        case Precision::half:
-            return put(bytes, Imath::half(static_cast<float>(value)).bits());
-        case Precision::unorm16:
-            return put(bytes, static_cast<std::uint16_t>(value));
-        case Precision::unorm8:
-            return put(bytes, static_cast<std::uint8_t>(value));
-        case Precision::float64:
-            break;
-    }
-    put(bytes, value);
 }
 
 }  // namespace
@@ -168,7 +93,7 @@ void appendStored(std::vector<std::byte>& bytes, Precision precision, double val
 LaneScale FormPayload::scaleOf(const StreamNumber& number) const {
     if (number.array == StreamNumber::nothing) return {};
     const StoredArray& array = *namedArrays(form)[number.array].array;
-    const double steps = stepsOf(array.precision);
+    const double steps = largestInteger(array.precision);
     if (steps == 0) return {};
     const std::size_t group = number.value % array.columns() / array.groupColumns();
     const double scale = static_cast<double>(array.scales[group]);
@@ -216,7 +141,7 @@ FormPayload packForm(Representation form, std::optional<Number> wanted) {
             value = numbers[place.array][ranks[place.array][place.value]] *
                     widening(arrays[place.array].array->precision, holding.number);
         }
-        putTexel(payload.texels.bytes, holding.number, value);
+        appendNumber(payload.texels.bytes, holding.rounds, value);
     }
     payload.texels.bytes.resize(payload.texels.count() * gpu::numberBytes(holding.number));
     return payload;
@@ -242,16 +167,16 @@ FormPayload unpackForm(Representation skeleton, Texels texels, const std::string
     std::vector<std::vector<double>> numbers;
     std::vector<std::vector<std::size_t>> ranks;
     for (const auto& each : arrays) {
-        numbers.emplace_back(keptOf(*each.array), 0.0);
+        numbers.emplace_back(keptCount(*each.array), 0.0);
         ranks.push_back(ranksOf(*each.array));
     }
     ByteCursor cursor(std::span<const std::byte>(payload.texels.bytes));
     for (const StreamNumber& place : payload.stream) {
-        const double texel = texelNumber(cursor, payload.texels.number);
+        const double texel = takeNumber(cursor, precisionOf(payload.texels.number));
         if (place.array == StreamNumber::nothing) continue;
         const Precision precision = arrays[place.array].array->precision;
         const double value = texel / widening(precision, payload.texels.number);
-        const double steps = stepsOf(precision);
+        const double steps = largestInteger(precision);
         if (!std::isfinite(value) ||
             (steps > 0 && (value < 0 || value > steps || value != std::floor(value)))) {
             throw InputError(fmt::format("{}: {} is no {} number of the array '{}'", file, texel,
@@ -263,7 +188,7 @@ FormPayload unpackForm(Representation skeleton, Texels texels, const std::string
         StoredArray& array = *namedArrays(payload.form)[a].array;
         std::vector<std::byte> bytes = packed(array);
         bytes.resize(headOf(array));
-        for (const double value : numbers[a]) appendStored(bytes, array.precision, value);
+        for (const double value : numbers[a]) appendNumber(bytes, array.precision, value);
         unpackInto(array, bytes, !array.kept.empty(), file);
     }
     return payload;
