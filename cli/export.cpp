@@ -149,10 +149,7 @@ Json document(const jobs::Exported& exported, const std::string& folder) {
 
 void runExport(ExportArguments& arguments, const Globals& globals) {
     jobs::ExportOptions& options = arguments.options;
-    if (!arguments.number.empty()) {
-        options.number = gpu::parseNumber(arguments.number);
-        options.pack.number = *options.number;
-    }
+    if (!arguments.number.empty()) options.number = gpu::parseNumber(arguments.number);
     options.storage = gpu::parseStorage(arguments.storage);
     options.pack.packing = arguments.packing == "rgb" ? gpu::Packing::rgb : gpu::Packing::coef4;
     options.pack.luminanceChroma = arguments.chroma || options.pack.chromaOrder > 0;

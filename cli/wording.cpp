@@ -25,6 +25,7 @@ constexpr OptionRow options[] = {
     {"ExportOptions::lights", "--light"},
     {"ExportOptions::outgoing", "--outgoing"},
     {"ExportOptions::source", "--source"},
+    {"ExportOptions::storage", "--storage"},
     {"FileSet::force", "--force"},
     {"FitOptions::accept", "--accept"},
     {"FitOptions::model", "--model", Value::quoted},

@@ -1,6 +1,6 @@
 #include "export.h"
 
-#include "export_form.h"
+#include "export_loss.h"
 #include "source.h"
 
 #include <hshfit/coefficient_files/representation_file.h>
@@ -70,15 +70,14 @@ Exportable coefficientsOf(const Representation& stored, const std::string& path,
     return {expand(stored, sourceOpener(), expansion), plain};
 }
 
-/// The error, or the reason why there is none. A failure of an explicitly named source is thrown.
-ExportError errorOf(const Source& source, const Exportable& given, const gpu::Payload& payload,
-                    const ExportOptions& options, const Listener& listener) {
+/// The error that `measure` finds against the source, or the reason why there is none. A failure
+/// of an explicitly named source is thrown.
+template <class Measure>
+ExportError errorBy(const Source& source, const ExportOptions& options, const Measure& measure) {
     if (!options.measureError) return {{}, "not asked for"};
     if (!source.brdf) return {{}, source.reason};
     try {
-        return {gpu::splitError(*source.brdf, given.coefficients, payload,
-                                {.plain = given.plain, .progress = listener.part("error")}),
-                {}};
+        return measure(*source.brdf);
     } catch (const Error& error) {
         if (!options.source.empty()) throw;
         return {{}, error.what()};
@@ -146,10 +145,14 @@ void writeShaders(const Targets& chosen, const ExportOptions& options, const Lis
     }
 }
 
+bool hasViewer(const Targets& chosen) {
+    return std::ranges::any_of(
+        chosen, [](const Target* target) { return target->kind == Target::Kind::viewer; });
+}
+
 /// Early, so that a wrong light costs no measurement.
 std::vector<LightSpecification> lightsOf(const Targets& chosen, const ExportOptions& options) {
-    const bool viewer = std::ranges::any_of(
-        chosen, [](const Target* target) { return target->kind == Target::Kind::viewer; });
+    const bool viewer = hasViewer(chosen);
     std::vector<LightSpecification> lights;
     for (const std::string& text : options.lights) lights.push_back(parseLights(text));
     if (!viewer && !lights.empty()) {
@@ -175,40 +178,22 @@ void writeViewer(const std::vector<LightSpecification>& lights, const Brdf* sour
 /// Throws UsageError for what only coefficients per outgoing direction have.
 void requireFormOptions(const Targets& chosen, const ExportOptions& options,
                         const Listener& listener) {
-    const gpu::PackOptions plain{.number = options.pack.number};
-    if (options.pack.packing != plain.packing || options.pack.luminanceChroma ||
-        options.pack.basisSize > 0) {
+    const ExportOptions plain;
+    if (options.pack.packing != plain.pack.packing || options.pack.luminanceChroma ||
+        options.pack.basisSize > 0 || options.basis != plain.basis ||
+        options.order != plain.order ||
+        options.shader.environmentOrder != plain.shader.environmentOrder) {
         throw UsageError(fmt::format(
-            "packing, chroma and basis textures are for coefficients per outgoing direction, which "
-            "{} makes of this form",
+            "basis, order, packing, chroma, basis textures and the light of shaders are for "
+            "coefficients per outgoing direction, which {} makes of this form",
             Setting{"ExportOptions::outgoing"}));
     }
-    const bool viewer = std::ranges::any_of(
-        chosen, [](const Target* target) { return target->kind == Target::Kind::viewer; });
-    if (!viewer) return;
+    if (!hasViewer(chosen)) return;
     const std::string reason = fmt::format(
         "the viewer shows coefficients per outgoing direction, which {} makes of this form",
         Setting{"ExportOptions::outgoing"});
     if (options.targets != "all") throw UsageError(reason);
     listener.say("left out: " + reason);
-}
-
-/// The error of a form, which is refused where it is large; the reason why there is none.
-ExportError formErrorOf(const Source& source, const Representation& stored,
-                        const Exported& exported, const std::string& path,
-                        const ExportOptions& options) {
-    if (!options.measureError) return {{}, "not asked for"};
-    if (!source.brdf) return {{}, source.reason};
-    ExportError error;
-    try {
-        const auto again = reconstruct(exported.form->form, sourceOpener());
-        error.loss = std::make_shared<const ExportLoss>(exportLoss(*source.brdf, stored, *again));
-    } catch (const Error& failure) {
-        if (!options.source.empty()) throw;
-        return {{}, failure.what()};
-    }
-    if (!options.allowLoss) refuseLoss(*error.loss, path, Setting{"PackOptions::number"});
-    return error;
 }
 
 /// A form with a shader of its own, as it is.
@@ -221,7 +206,14 @@ void exportForm(const Representation& stored, const std::string& path, const std
     FileSet files(folder, options.force);
     refuseToReplace(folder, exported.sidecar, options.force);
     const Source source = openSourceOf(options, stored.head);
-    exported.error = formErrorOf(source, stored, exported, path, options);
+    exported.error = errorBy(source, options, [&](const Brdf& brdf) {
+        const auto again = reconstruct(exported.form->form, sourceOpener());
+        return ExportError{{}, {}, exportLoss(brdf, stored, *again)};
+    });
+    if (exported.error.loss && !options.allowLoss) {
+        refuseLoss(*exported.error.loss, path,
+                   options.number ? std::optional(Setting{"PackOptions::number"}) : std::nullopt);
+    }
     exported.textures = gpu::writeForm(
         *exported.form, containersOf(chosen, options, exported.form->texels.number, listener),
         exported.name,
@@ -267,26 +259,37 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
         exportForm(stored, path, folder, chosen, options, listener, exported);
         return exported;
     }
+    if (options.storage != gpu::Storage::automatic) {
+        throw UsageError(fmt::format("{} is for forms that have a shader of their own",
+                                     Setting{"ExportOptions::storage"}));
+    }
     const Exportable given = coefficientsOf(stored, path, options, listener);
     const Coefficients& coefficients = given.coefficients;
-    exported.payload = gpu::pack(coefficients, options.pack);
+    gpu::PackOptions pack = options.pack;
+    pack.number = options.number.value_or(pack.number);
+    exported.payload = gpu::pack(coefficients, pack);
 
     FileSet files(folder, options.force);
     refuseToReplace(folder, exported.sidecar, options.force);
     const Source source = openSourceOf(options, coefficients);
-    exported.error = errorOf(source, given, exported.payload, options, listener);
+    exported.error = errorBy(source, options, [&](const Brdf& brdf) {
+        return ExportError{
+            gpu::splitError(brdf, coefficients, exported.payload,
+                            {.plain = given.plain, .progress = listener.part("error")}),
+            {}};
+    });
     const bool anew = stored.kind() != Representation::Kind::outgoing || !stored.added.empty();
     if (exported.error.split && anew && !options.allowLoss) {
         const auto again =
             reconstruct(fromCoefficients(gpu::unpack(exported.payload)), sourceOpener());
         refuseLoss(exportLoss(*source.brdf, stored, *again), path,
-                   Setting{"ExportOptions::outgoing"});
+                   options.outgoing.empty() ? std::nullopt
+                                            : std::optional(Setting{"ExportOptions::outgoing"}));
     }
     if (exported.error.split)
         exported.poor = judge(*exported.error.split, exported.payload, path, folder);
     exported.textures = gpu::writeContainers(
-        exported.payload, containersOf(chosen, options, options.pack.number, listener),
-        exported.name,
+        exported.payload, containersOf(chosen, options, pack.number, listener), exported.name,
         {.zstd = options.zstd,
          .fitError = exported.error.split ? jsonText(errorJson(exported.error)) : std::string()},
         files);

@@ -12,7 +12,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <memory>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,7 +32,8 @@ struct ExportOptions {
     /// Specifications of lights (light/catalog.h) that the viewer offers as its environment, each
     /// on its own; empty: gpu::studioLight.
     std::vector<std::string> lights = {};
-    /// Number type of a form exported as it is; none: that of least bytes which holds the file.
+    /// Number type of the texels; none: that of `pack`, and for a form exported as it is, that of
+    /// least bytes which holds the file.
     std::optional<gpu::Number> number = {};
     gpu::Storage storage = gpu::Storage::automatic;  ///< of such a form in shaders
     /// Accept an export that is more than twice as far from its source as its file.
@@ -44,14 +45,19 @@ struct ExportOptions {
     bool force = false;  ///< replace existing files
 };
 
-struct ExportLoss;
+/// Mean |ln(1 + f cos(theta_i)) - ln(1 + g cos(theta_i))| over spreadPairs() against the BRDF that
+/// was projected, of the coefficient file and of its export.
+struct ExportLoss {
+    std::size_t pairs = 0;
+    double file = 0, exported = 0;
+};
 
 /// The error of what was exported, or why it is not known. `loss` is there for forms exported as
 /// they are, `split` for coefficients per outgoing direction.
 struct ExportError {
     std::optional<gpu::ErrorSplit> split;
     std::string reason;
-    std::shared_ptr<const ExportLoss> loss = {};
+    std::optional<ExportLoss> loss = {};
 };
 /// The object "fit_error" of sidecars and answers.
 nlohmann::ordered_json errorJson(const ExportError& error);
@@ -79,8 +85,8 @@ struct Exported {
 /// coefficients per outgoing direction.
 /// With the targets "all", those that cannot hold the coefficients are left out, with a note.
 /// Throws UsageError for contradictory options, InputError, NumericError (for an export more than
-/// twice as far from its source as its file, too) and OutputError. A
-/// failed measurement of the error is thrown only if `source` is given.
+/// twice as far from its source as its file, too) and OutputError.
+/// A failed measurement of the error is thrown only if `source` is given.
 Exported exportCoefficients(const std::string& coefficients, const std::string& folder,
                             const ExportOptions& options, const Listener& listener = {});
 

@@ -211,8 +211,28 @@ TEST_F(ExportForm, ALossOfMoreThanTwiceTheErrorIsRefusedUnlessAccepted) {
     EXPECT_EQ(run(anew + " --allow-loss").code, 0);
 }
 
+/// Lambert is exact but for the rounding of float16, which is many times the error of its file.
+TEST_F(ExportForm, RoundingAloneIsNoLoss) {
+    ASSERT_EQ(run("project lambert --form halfway --halfway 4,3,2 -o " + path("even.json")).code,
+              0);
+    const Answer answer =
+        run("export " + path("even.json") + " -o " + path("out") + " --target bin --outgoing 8");
+    EXPECT_EQ(answer.code, 0) << answer.err;
+}
+
+/// A file of which the split leaves nothing is read like any other.
+TEST_F(ExportForm, AFileWithoutANumberIsExported) {
+    const std::string file = path("split.json");
+    ASSERT_EQ(run("project lambert --order 3 --outgoing 8 --split diffuse -o " + file).code, 0);
+    const Answer value = run("eval " + file + " --wi 30,20 --wo 50,200 --json");
+    ASSERT_EQ(value.code, 0) << value.err;
+    EXPECT_NEAR(Json::parse(value.out)["values"][0].get<double>(), 1 / M_PI, 1e-7) << value.out;
+    EXPECT_EQ(run("export " + file + " -o " + path("out") + " --target bin").code, 0);
+}
+
 TEST_F(ExportForm, OptionsOfOutgoingCoefficientsAreRefused) {
-    for (const char* option : {" --packing rgb", " --chroma", " --basis-textures 16"}) {
+    for (const char* option : {" --packing rgb", " --chroma", " --basis-textures 16",
+                               " --basis esh", " --order 5", " --environment-order 3"}) {
         const Answer answer = run("export " + path("form.json") + " -o " + path("out") + option);
         EXPECT_EQ(answer.code, 2) << option;
         EXPECT_NE(answer.err.find("--outgoing"), std::string::npos) << answer.err;

@@ -236,7 +236,8 @@ void unpackInto(StoredArray& array, std::span<const std::byte> bytes, bool maske
     const Row& row = rowOf(array.precision);
     // The bytes of the smallest file of this shape: nothing is allocated for more than there is.
     const std::size_t room = bytes.size() * (masked ? 8 : 1);
-    std::size_t count = array.shape.empty() ? 0 : 1;
+    const bool none = array.shape.empty() || std::ranges::count(array.shape, 0U) > 0;
+    std::size_t count = none ? 0 : 1;
     for (std::size_t length : array.shape) {
         if (length > 0 && count > room / length) {
             throw InputError(fmt::format("{}: {} bytes cannot hold an array of this shape", where,
