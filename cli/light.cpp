@@ -47,6 +47,13 @@ std::string shareName(double share) {
     return fmt::format("{:g}", 100 * share);
 }
 
+Json enoughJson(const std::vector<std::optional<int>>& enough) {
+    Json json = Json::object();
+    for (std::size_t k = 0; k < enough.size(); ++k)
+        json[shareName(jobs::lightShares[k])] = enough[k] ? Json(*enough[k]) : Json(nullptr);
+    return json;
+}
+
 Json answer(const jobs::ProjectedLight& result, const std::string& output) {
     const LightCoefficients& light = result.light;
     Json normal = nullptr;
@@ -58,12 +65,8 @@ Json answer(const jobs::ProjectedLight& result, const std::string& output) {
         Json curve = curveJson(*result.wavelets);
         curve["selection"] = "best_terms";
         curve["error"] = finiteOrNull(result.waveletError);
+        curve["enough"] = enoughJson(result.enoughWavelets);
         curves.push_back(curve);
-    }
-    Json enough = Json::object();
-    for (std::size_t k = 0; k < result.enough.size(); ++k) {
-        enough[shareName(jobs::lightShares[k])] =
-            result.enough[k] ? Json(*result.enough[k]) : Json(nullptr);
     }
     return {{"format", "hshfit-light-answer"},
             {"version", 1},
@@ -77,7 +80,7 @@ Json answer(const jobs::ProjectedLight& result, const std::string& output) {
             {"energy", energyJson(light.energy)},
             {"error", finiteOrNull(light.error)},
             {"bands", result.bands},
-            {"enough", enough},
+            {"enough", enoughJson(result.enough)},
             {"curves", curves}};
 }
 
@@ -97,14 +100,11 @@ std::string waveletText(const jobs::ProjectedLight& result) {
     const LightCurve::Point& last = result.wavelets->points.back();
     std::string out = fmt::format("  soho, best {} terms: {:.6f} of the energy, error {:.1e}\n",
                                   last.coefficients, last.accuracy, result.waveletError);
-    for (const double share : jobs::lightShares) {
-        const auto& points = result.wavelets->points;
-        const auto first = std::ranges::find_if(
-            points, [&](const LightCurve::Point& point) { return point.accuracy >= share; });
-        out +=
-            fmt::format("  {:>5} % of the energy: {}\n", shareName(share),
-                        first == points.end() ? fmt::format("more than {} terms", last.coefficients)
-                                              : fmt::format("{} terms", first->coefficients));
+    for (std::size_t k = 0; k < result.enoughWavelets.size(); ++k) {
+        const auto& count = result.enoughWavelets[k];
+        out += fmt::format("  {:>5} % of the energy: {}\n", shareName(jobs::lightShares[k]),
+                           count ? fmt::format("{} terms", *count)
+                                 : fmt::format("more than {} terms", last.coefficients));
     }
     return out;
 }

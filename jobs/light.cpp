@@ -36,6 +36,10 @@ void addWavelets(ProjectedLight& result, const std::vector<Light>& lights,
         result.wavelets->points.push_back(
             {order, count, terms.captured[static_cast<std::size_t>(count)] / energy.value});
     }
+    for (const double share : lightShares) {
+        const auto order = orderReaching(*result.wavelets, share);
+        result.enoughWavelets.push_back(order ? std::optional(*order * *order) : std::nullopt);
+    }
 }
 
 }  // namespace

@@ -27,6 +27,8 @@ struct ProjectedLight {
     /// and the energy exists.
     std::optional<LightCurve> wavelets = {};
     double waveletError = 0;
+    /// The least number of wavelets among those that captures each share.
+    std::vector<std::optional<int>> enoughWavelets = {};
 };
 
 /// Shares of the energy, one for each order in `enough`.

@@ -4,6 +4,7 @@
 #include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/coefficient_files/light_file.h>
 #include <hshfit/error.h>
+#include <hshfit/gpu/shader_data.h>
 #include <hshfit/rotation/band_matrix.h>
 #include <hshfit/rotation/basis_change.h>
 #include <hshfit/rotation/sh_rotation.h>
@@ -176,13 +177,12 @@ Rotated rotate(const std::string& input, const std::string& output, const Rotate
 std::vector<std::vector<double>> matrix(const MatrixOptions& options) {
     Rows rows = unsignedMatrix(options);
     if (!options.condonShortley) return rows;
-    const auto isOdd = [](std::size_t slot) {
-        const auto l = static_cast<std::size_t>(std::sqrt(static_cast<double>(slot) + 0.5));
-        return (slot - l * l - l) % 2 != 0;
+    const auto sign = [](std::size_t slot) {
+        return azimuthSign(gpu::bandOf(static_cast<int>(slot)).m, true);
     };
     for (std::size_t i = 0; i < rows.size(); ++i)
         for (std::size_t j = 0; j < rows[i].size(); ++j)
-            if (isOdd(i) != isOdd(j) && rows[i][j] != 0) rows[i][j] = -rows[i][j];
+            if (sign(i) != sign(j) && rows[i][j] != 0) rows[i][j] = -rows[i][j];
     return rows;
 }
 
