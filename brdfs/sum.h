@@ -55,7 +55,8 @@ public:
     std::vector<double> kinks(const Direction& wo) const override;
     std::vector<KinkCurve> kinkCurves(const Direction& wo) const override;
     double defaultTolerance() const override;
-    /// Those of all terms, if all have some; none for more than 8 of them.
+    /// The densities of all terms; `all` is false if a term has none of its own. More than 8
+    /// densities give an empty list.
     Known samplers() const override;
     std::vector<Fact> facts() const override;
     void checkIntact() const override;

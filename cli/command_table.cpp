@@ -170,7 +170,7 @@ constexpr Command table[] = {
      .add = addIrradiance},
     {.name = "sample",
      .group = inspection,
-     .help = "Incident directions drawn after a BRDF or coefficients, and how efficient they are",
+     .help = "Incident directions in proportion to f cos(theta_i), and their efficiency",
      .file = "sample.cpp",
      .example = "hshfit sample ggx:alpha=.2 --outgoing 45,0 --count 100 -o samples.csv",
      .add = addSample},

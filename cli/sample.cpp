@@ -1,15 +1,12 @@
 #include "command.h"
 #include "documents.h"
 
-#include <hshfit/files/atomic_file.h>
-
 #include <jobs/sample.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-
-#include <iterator>
 
 namespace hshfit::cli {
 namespace {
@@ -65,56 +62,41 @@ Json answerJson(const jobs::Sampled& done, const SampleArguments& arguments) {
     return document;
 }
 
-std::string csvOf(const jobs::Sampled& done) {
-    std::string csv = "wi_x,wi_y,wi_z,pdf";
-    for (const std::string& name : done.channels) csv += ",weight_" + name;
-    csv += "\n";
-    for (const jobs::DrawnDirection& one : done.drawn) {
-        fmt::format_to(std::back_inserter(csv), "{},{},{},{}", one.wi.x, one.wi.y, one.wi.z,
-                       one.pdf);
-        for (const double weight : one.weights)
-            fmt::format_to(std::back_inserter(csv), ",{}", weight);
-        csv += "\n";
-    }
-    return csv;
-}
-
 double meanOf(const std::vector<double>& values) {
     double sum = 0;
     for (const double value : values) sum += value;
     return sum / static_cast<double>(values.size());
 }
 
-std::string tableOf(const jobs::Sampled& done) {
-    std::string parts;
-    for (const std::string& part : done.parts) parts += (parts.empty() ? "" : " | ") + part;
+std::string rowText(const jobs::SampleRow& row) {
+    const Efficiency& e = row.efficiency;
+    return fmt::format("{:8.1f}  {:>8}  {:8.5f}  {:<9.2g}  {:<8.3g}  {:<7.3g}  {:5.1f} %  {:.2f}\n",
+                       degrees(polarAngle(e.wo)),
+                       row.albedo ? fmt::format("{:.5f}", meanOf(*row.albedo)) : "none",
+                       meanOf(e.albedo), e.standardError, e.variance, e.largest, 100 * e.wasted,
+                       fmt::join(row.shares, " "));
+}
+
+std::string textOf(const jobs::Sampled& done, const std::string& output) {
     std::string text = fmt::format(
         "{}\nparts: {}\n theta_o    albedo  estimate  +-         variance  largest  wasted  "
         "shares\n",
-        done.brdf, parts);
-    for (const jobs::SampleRow& row : done.rows) {
-        const Efficiency& e = row.efficiency;
-        std::string shares;
-        for (const double share : row.shares)
-            shares += fmt::format("{}{:.2f}", shares.empty() ? "" : " ", share);
-        text += fmt::format(
-            "{:8.1f}  {:>8}  {:8.5f}  {:<9.2g}  {:<8.3g}  {:<7.3g}  {:5.1f} %  {}\n",
-            degrees(polarAngle(e.wo)),
-            row.albedo ? fmt::format("{:.5f}", meanOf(*row.albedo)) : "none", meanOf(e.albedo),
-            e.standardError, e.variance, e.largest, 100 * e.wasted, shares);
-    }
+        done.brdf, fmt::join(done.parts, " | "));
+    text += rowText(done.here);
+    if (!done.rows.empty()) text += "by elevation:\n";
+    for (const jobs::SampleRow& row : done.rows) text += rowText(row);
+    if (!output.empty()) text += fmt::format("{}: {} directions\n", output, done.drawn.size());
     return text;
 }
 
 void runSample(SampleArguments& arguments, const Globals& globals) {
     arguments.options.outgoing = parseDirection(arguments.outgoing, "--outgoing");
     arguments.options.method = jobs::sampleMethod(arguments.method);
-    const jobs::Sampled done = jobs::sample(arguments.spec, arguments.options);
+    const jobs::Sampled done = jobs::sample(arguments.spec, arguments.output, arguments.options);
     if (!done.reflects)
-        note(globals, "f is 0 for this outgoing direction: the samples are the cosine's");
-    if (!arguments.output.empty()) writeFile(arguments.output, csvOf(done));
+        note(globals, "f is 0 at this outgoing direction: samples are drawn from the cosine");
     if (globals.json) return printJson(answerJson(done, arguments));
-    printText(tableOf(done));
+    printText(textOf(done, arguments.output));
 }
 
 }  // namespace
@@ -132,14 +114,18 @@ void addSample(CLI::App& command, Globals& globals) {
                        "CSV of the directions, densities and weights");
     command
         .add_option("--method", arguments->method,
-                    "auto: the model's own densities, or a fitted one and a table; table; "
-                    "proposal: the fitted one; cosine")
+                    "Densities to draw from: auto (the model's own; else proposal and table), "
+                    "table, proposal (two fitted GGX lobes) or cosine")
         ->capture_default_str();
-    command.add_option("--seed", options.seed, "Of the random numbers")->capture_default_str();
-    command.add_option("--elevations", options.elevations, "Rows of the efficiency report")
+    command.add_option("--seed", options.seed, "Seed of the random numbers")->capture_default_str();
+    command
+        .add_option("--elevations", options.elevations,
+                    "Outgoing elevations in the efficiency report")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
-    command.add_option("--trials", options.trials, "Samples behind each row of the report")
+    command
+        .add_option("--trials", options.trials,
+                    "Samples that each row of the report is measured with")
         ->check(CLI::Range(1, 100000000))
         ->capture_default_str();
     command.callback([arguments, &globals] { runSample(*arguments, globals); });

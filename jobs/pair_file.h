@@ -4,19 +4,22 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace hshfit::jobs {
 
-/// A row of a CSV of direction pairs: the columns wi_x, wi_y, wi_z, wo_x, wo_y, wo_z as text, and
-/// as unit vectors.
+/// A row of a CSV of direction pairs: the columns wi_x, wi_y, wi_z, wo_x, wo_y, wo_z as text and
+/// as unit vectors, and the column `weight` if there is one.
 struct PairRow {
     std::array<std::string, 6> cells;
     Direction wi, wo;
+    std::optional<double> weight = {};
 };
 
 /// Calls `take` for each row of the file; other columns are ignored. Throws InputError for a file
-/// that cannot be read, a missing column, and cells that are no unit vectors within 0.001.
+/// that cannot be read, a missing column, and cells that are no unit vectors within 0.001 or, for
+/// the weight, no number.
 void readPairs(const std::string& path, const std::function<void(const PairRow&)>& take);
 
 /// The pairs of such a file as a sample, weighted by its column `weight` if there is one.

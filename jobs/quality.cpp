@@ -107,7 +107,7 @@ std::optional<int> sufficientOrder(const Brdf& source, const CoefficientHead& he
 /// Whether most of the energy of f cos cos has its half vector within 20 degrees of the normal: the
 /// halfway form resolves lobes there, and no others.
 bool isAboutTheMirror(const Brdf& source) {
-    const double within = std::cos(20 * pi / 180);
+    const double within = std::cos(radians(20));
     const PairSample pairs = spreadPairs({.replicates = 2});
     const std::vector<double> f = evaluateOn(source, pairs);
     double near = 0, all = 0;

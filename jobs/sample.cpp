@@ -3,14 +3,18 @@
 #include "source.h"
 
 #include <hshfit/error.h>
+#include <hshfit/files/atomic_file.h>
 #include <hshfit/projection/albedo.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <iterator>
+#include <ranges>
 #include <utility>
 
 namespace hshfit::jobs {
@@ -37,7 +41,6 @@ SampleRow rowAt(const Brdf& brdf, const MixtureSampler& sampler, const Direction
     SampleRow row;
     row.efficiency = efficiencyAt(brdf, sampler, wo, options.trials, options.seed);
     row.shares = sampler.row(wo).shares;
-    if (!options.albedo) return row;
     const AlbedoEstimate found =
         estimateAlbedo(brdf, wo, {.tolerance = 1e-4, .maxEvaluations = std::size_t{1} << 22});
     if (found.converged) row.albedo = found.values;
@@ -60,13 +63,23 @@ void draw(const Brdf& brdf, const MixtureSampler& sampler, const SampleOptions& 
     }
 }
 
+std::string csvOf(const Sampled& done) {
+    std::string csv = "wi_x,wi_y,wi_z,pdf";
+    for (const std::string& name : done.channels) csv += ",weight_" + name;
+    csv += "\n";
+    for (const DrawnDirection& one : done.drawn)
+        fmt::format_to(std::back_inserter(csv), "{},{},{},{},{}\n", one.wi.x, one.wi.y, one.wi.z,
+                       one.pdf, fmt::join(one.weights, ","));
+    return csv;
+}
+
 }  // namespace
 
 SampleMethod sampleMethod(const std::string& name) {
     for (const auto& [known, method] : methods)
         if (known == name) return method;
-    throw UsageError(
-        fmt::format("no way to sample is named '{}'; known: auto, table, proposal, cosine", name));
+    throw UsageError(fmt::format("unknown method '{}'; known: {}", name,
+                                 fmt::join(methods | std::views::keys, ", ")));
 }
 
 std::string sampleMethodName(SampleMethod method) {
@@ -75,7 +88,7 @@ std::string sampleMethodName(SampleMethod method) {
     return {};
 }
 
-Sampled sample(const std::string& spec, const SampleOptions& options) {
+Sampled sample(const std::string& spec, const std::string& output, const SampleOptions& options) {
     // The cosine of 90 degrees is 6e-17 in double precision.
     if (!(options.outgoing.z > 1e-15))
         throw UsageError(
@@ -100,6 +113,7 @@ Sampled sample(const std::string& spec, const SampleOptions& options) {
         result.rows[k] = rowAt(*brdf, *sampler, wo, options);
     });
     requireReadable(*brdf);
+    if (!output.empty()) writeFile(output, csvOf(result));
     return result;
 }
 

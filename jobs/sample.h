@@ -26,7 +26,6 @@ struct SampleOptions {
     std::uint64_t seed = 1;
     std::size_t elevations = 7;  ///< of the report, from 0 to 89 degrees; 0: none
     std::size_t trials = 20000;  ///< samples behind each row of the report
-    bool albedo = true;          ///< compare with the albedo by quadrature
 };
 
 /// A sample and its weight f cos(theta_i) / pdf, per channel.
@@ -40,7 +39,7 @@ struct SampleRow {
     Efficiency efficiency;
     /// The directional albedo by quadrature, per channel; none if it did not converge to 1e-4.
     std::optional<std::vector<double>> albedo;
-    std::vector<double> shares;  ///< of each part
+    std::vector<double> shares;  ///< the probability of each part
 };
 
 struct Sampled {
@@ -54,8 +53,10 @@ struct Sampled {
     double buildSeconds = 0, nanosecondsPerSample = 0;
 };
 
-/// Draws directions after a BRDF, and reports the efficiency by elevation.
-/// Throws UsageError for an outgoing direction that is not above the horizon, and as openSource.
-Sampled sample(const std::string& spec, const SampleOptions& options);
+/// Draws incident directions in proportion to f cos(theta_i), and reports the efficiency by
+/// elevation. Unless `output` is empty, the directions are written there as CSV.
+/// Throws UsageError for an outgoing direction that is not above the horizon, OutputError, and as
+/// openSource.
+Sampled sample(const std::string& spec, const std::string& output, const SampleOptions& options);
 
 }  // namespace hshfit::jobs

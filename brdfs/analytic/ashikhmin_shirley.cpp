@@ -83,9 +83,10 @@ Parameter reflectance(std::string_view name, std::string_view help, double fallb
             .linear = linearUnderStatedScale};
 }
 
-/// The half vectors of section 4 of the paper, times h.z for the area.
+/// Half vectors of section 4 of the paper. The exponents are 1 higher, for the projected area.
 HasSamplers::Known sampling(const Parameters& p) {
-    return {true, {grooveSampler(powerNormals(p.number("nu") + 1, p.number("nv") + 1))}};
+    return {.all = true,
+            .samplers = {grooveSampler(powerNormals(p.number("nu") + 1, p.number("nv") + 1))}};
 }
 
 }  // namespace

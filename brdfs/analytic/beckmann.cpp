@@ -55,7 +55,7 @@ std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
 /// Exact up to Fresnel's factor and the masking of wi.
 HasSamplers::Known sampling(const Parameters& p) {
     const Roughness r = roughnessOf(beckmannModel(), p);
-    return {true, {beckmannSampler(r.ax, r.ay)}};
+    return {.all = true, .samplers = {beckmannSampler(r.ax, r.ay)}};
 }
 
 }  // namespace

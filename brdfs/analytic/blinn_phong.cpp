@@ -67,10 +67,10 @@ std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
     return HWY_DYNAMIC_DISPATCH(blinnPhongColumns)(request);
 }
 
-/// D h.z is the power, times h.z for the area.
+/// D h.z is cos^exponent; the further h.z turns surface area into projected area.
 HasSamplers::Known sampling(const Parameters& p) {
     const double power = p.number("exponent") + 1;
-    return {true, {grooveSampler(powerNormals(power, power))}};
+    return {.all = true, .samplers = {grooveSampler(powerNormals(power, power))}};
 }
 
 }  // namespace

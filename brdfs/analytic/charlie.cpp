@@ -76,7 +76,7 @@ std::unique_ptr<Brdf> make(const Parameters& p) {
 
 /// The uniform hemisphere: the sheen is broad, and bright near the horizon.
 HasSamplers::Known sampling(const Parameters&) {
-    return {true, {powerCosineSampler(normalAxis, 0)}};
+    return {.all = true, .samplers = {powerCosineSampler(normalAxis, 0)}};
 }
 
 }  // namespace

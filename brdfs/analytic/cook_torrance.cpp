@@ -114,7 +114,8 @@ std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
 
 /// Exact up to Fresnel's factor and the masking of wi: these are the visible normals of grooves.
 HasSamplers::Known sampling(const Parameters& p) {
-    return {true, {grooveSampler(gaussianNormals(p.number("m"), p.number("m")))}};
+    return {.all = true,
+            .samplers = {grooveSampler(gaussianNormals(p.number("m"), p.number("m")))}};
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
 /// Exact up to Fresnel's factor and the masking of wi.
 HasSamplers::Known sampling(const Parameters& p) {
     const Roughness r = roughnessOf(ggxModel(), p);
-    return {true, {ggxSampler(r.ax, r.ay)}};
+    return {.all = true, .samplers = {ggxSampler(r.ax, r.ay)}};
 }
 
 }  // namespace

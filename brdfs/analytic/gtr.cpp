@@ -81,11 +81,11 @@ std::vector<Parameter> parameters() {
     return all;
 }
 
-/// D of the model; masking of grooves in place of its own, but for GGX.
+/// The D of the model. GGX (gamma = 2) has its own masking, other gammas that of V-shaped grooves.
 HasSamplers::Known sampling(const Parameters& p) {
     const double alpha = p.number("alpha"), gamma = p.number("gamma");
-    if (gamma == 2) return {true, {ggxSampler(alpha, alpha)}};
-    return {true, {grooveSampler(gtrNormals(alpha, gamma))}};
+    if (gamma == 2) return {.all = true, .samplers = {ggxSampler(alpha, alpha)}};
+    return {.all = true, .samplers = {grooveSampler(gtrNormals(alpha, gamma))}};
 }
 
 }  // namespace

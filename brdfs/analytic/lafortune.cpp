@@ -92,7 +92,7 @@ Parameter weightParameter(std::string_view name, double fallback) {
 /// Exact up to cos(theta_i): (a . wi)^exponent about the axis a = C wo.
 HasSamplers::Known sampling(const Parameters& p) {
     const LobeAxis axis{p.number("Cx"), p.number("Cy"), p.number("Cz")};
-    return {true, {powerCosineSampler(axis, p.number("exponent"))}};
+    return {.all = true, .samplers = {powerCosineSampler(axis, p.number("exponent"))}};
 }
 
 }  // namespace

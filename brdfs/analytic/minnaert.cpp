@@ -51,7 +51,7 @@ std::unique_ptr<Brdf> make(const Parameters& p) {
 
 /// Exact: f cos(theta_i) is a power of cos(theta_i).
 HasSamplers::Known sampling(const Parameters& p) {
-    return {true, {powerCosineSampler(normalAxis, p.number("k"))}};
+    return {.all = true, .samplers = {powerCosineSampler(normalAxis, p.number("k"))}};
 }
 
 }  // namespace

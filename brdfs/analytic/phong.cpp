@@ -72,7 +72,7 @@ std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
 
 /// Exact up to cos(theta_i).
 HasSamplers::Known sampling(const Parameters& p) {
-    return {true, {powerCosineSampler(mirrorAxis, p.number("exponent"))}};
+    return {.all = true, .samplers = {powerCosineSampler(mirrorAxis, p.number("exponent"))}};
 }
 
 }  // namespace

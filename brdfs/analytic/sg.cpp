@@ -76,8 +76,9 @@ std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
 /// width, cos^lambda = exp(-lambda versine) to first order.
 HasSamplers::Known sampling(const Parameters& p) {
     const double sharpness = p.number("sharpness");
-    if (p.choice("axis") == "mirror") return {true, {gaussianLobeSampler(mirrorAxis, sharpness)}};
-    return {true, {grooveSampler(powerNormals(sharpness + 1, sharpness + 1))}};
+    if (p.choice("axis") == "mirror")
+        return {.all = true, .samplers = {gaussianLobeSampler(mirrorAxis, sharpness)}};
+    return {.all = true, .samplers = {grooveSampler(powerNormals(sharpness + 1, sharpness + 1))}};
 }
 
 }  // namespace

@@ -37,6 +37,8 @@ TEST_F(Cli, SampleWritesDirectionsWithWeights) {
     const Answer answer = run("sample lambert:kd=.8/.4/.2 --outgoing 20,0 --count 50 -o " +
                               path("s.csv") + " --elevations 0 --trials 10");
     ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_NE(answer.out.find("\n    20.0 "), std::string::npos) << answer.out;
+    EXPECT_NE(answer.out.find("s.csv: 50 directions"), std::string::npos) << answer.out;
     std::istringstream rows(read(path("s.csv")));
     std::string line;
     std::getline(rows, line);

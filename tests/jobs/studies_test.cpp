@@ -20,6 +20,7 @@
 #include <jobs/plot.h>
 #include <jobs/project.h>
 #include <jobs/rotate.h>
+#include <jobs/sample.h>
 #include <jobs/spheres.h>
 #include <jobs/stress.h>
 #include <jobs/tradeoff.h>
@@ -168,6 +169,17 @@ TEST_F(Studies, StressWritesTheTablesOfTheProgram) {
     runProgram("stress lambert --bases hsh --max-order 3 -o " + path("program"));
     EXPECT_EQ(filesIn("job").size(), 3u);
     EXPECT_EQ(filesIn("job"), filesIn("program"));
+}
+
+TEST_F(Studies, SampleWritesTheDirectionsOfTheProgram) {
+    jobs::sample("ggx:alpha=.3", path("job.csv"),
+                 {.outgoing = directionFromAngles(radians(40), radians(30)),
+                  .count = 20,
+                  .elevations = 0,
+                  .trials = 10});
+    runProgram("sample ggx:alpha=.3 --outgoing 40,30 --count 20 --elevations 0 --trials 10 -o " +
+               path("program.csv"));
+    EXPECT_EQ(read(path("job.csv")), read(path("program.csv")));
 }
 
 TEST_F(Studies, ImportWritesTheCoefficientsOfTheProgram) {

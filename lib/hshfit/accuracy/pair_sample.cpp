@@ -1,5 +1,6 @@
 #include <hshfit/accuracy/pair_sample.h>
 
+#include <hshfit/brdf/uniform.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -23,11 +24,6 @@ constexpr std::array<double, 4> lowest{0, 1.0 / 64, 1.0 / 8, 1};
 constexpr int givenReplicates = 8;
 const double slopeRange = std::log(greatestSlope / leastSlope);
 const double cosineRange = std::log(1 / leastCosine);
-
-/// In [0, 1); unlike std::uniform_real_distribution the same everywhere.
-double uniform(std::mt19937_64& random) {
-    return std::ldexp(static_cast<double>(random() >> 11), -53);
-}
 
 double fraction(double x) {
     return x - std::floor(x);

@@ -9,7 +9,8 @@
 namespace hshfit::inline sampling {
 namespace {
 
-/// The disc's square root of the area: concentric squares to concentric circles.
+/// A point of the unit square mapped to the disc with constant area ratio, then raised to the
+/// hemisphere.
 Direction cosineDirection(double u, double v) {
     const double a = 2 * u - 1, b = 2 * v - 1;
     double radius = 0, phi = 0;

@@ -1,24 +1,16 @@
 #include <hshfit/sampling/efficiency.h>
 
+#include <hshfit/brdf/uniform.h>
 #include <hshfit/sampling/internal/target.h>
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 namespace hshfit::inline sampling {
 
-struct UniformNumbers::State {
-    std::mt19937_64 generator;
-};
-
-UniformNumbers::UniformNumbers(std::uint64_t seed)
-    : state_(std::make_unique<State>(State{std::mt19937_64(seed)})) {}
-UniformNumbers::~UniformNumbers() = default;
-
 Uniforms UniformNumbers::next() {
     Uniforms u;
-    for (double& value : u) value = std::ldexp(static_cast<double>(state_->generator() >> 11), -53);
+    for (double& value : u) value = uniform(random_);
     return u;
 }
 

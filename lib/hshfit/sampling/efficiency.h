@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <random>
 #include <vector>
 
 namespace hshfit::inline sampling {
@@ -27,16 +28,14 @@ struct Efficiency {
 Efficiency efficiencyAt(const Brdf& brdf, const Sampler& sampler, const Direction& wo,
                         std::size_t samples, std::uint64_t seed = 1);
 
-/// The numbers behind samples, the same on every machine: Mersenne twister, 53 bits each.
+/// The numbers behind samples, the same on every machine (brdf/uniform.h).
 class UniformNumbers {
 public:
-    explicit UniformNumbers(std::uint64_t seed);
-    ~UniformNumbers();
+    explicit UniformNumbers(std::uint64_t seed) : random_(seed) {}
     Uniforms next();
 
 private:
-    struct State;
-    std::unique_ptr<State> state_;
+    std::mt19937_64 random_;
 };
 
 }  // namespace hshfit::inline sampling

@@ -24,11 +24,7 @@ SamplerList partsOf(const Brdf& brdf, const SamplerOptions& options) {
     return parts;
 }
 
-MixtureRow rowOf(const Brdf& brdf, const SamplerList& parts, double s, double leastCosine) {
-    std::vector<Target> targets;
-    const bool isotropic = brdf.laws().isotropic;
-    for (const double phi : isotropic ? std::vector<double>{0} : std::vector<double>{0.3, 1.2, 2.5})
-        targets.push_back(targetAt(brdf, directionOfBin(s, phi)));
+MixtureRow rowOf(const std::vector<Target>& targets, const SamplerList& parts, double leastCosine) {
     MixtureRow row{std::vector<double>(parts.size(), 0.0), true};
     row.reflects = std::ranges::any_of(targets, [](const Target& t) { return t.total > 0; });
     row.shares[0] = 1;
@@ -54,8 +50,7 @@ std::unique_ptr<MixtureSampler> makeSampler(const Brdf& brdf, const SamplerOptio
     const SamplerList parts = partsOf(brdf, options);
     std::vector<MixtureRow> rows(options.elevations);
     tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t bin) {
-        const double s = (static_cast<double>(bin) + 0.5) / static_cast<double>(rows.size());
-        rows[bin] = rowOf(brdf, parts, s, options.leastCosine);
+        rows[bin] = rowOf(targetsOfBin(brdf, bin, rows.size()), parts, options.leastCosine);
     });
     return std::make_unique<MixtureSampler>(parts, std::move(rows));
 }

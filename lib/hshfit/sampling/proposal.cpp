@@ -64,8 +64,7 @@ public:
         double before = 0;
         for (std::size_t k = 0; k < bin.count; before += bin.shares[k++]) {
             if (u[2] >= before + bin.shares[k]) continue;
-            const double rest = std::max(0.0, (u[2] - before) / bin.shares[k]);
-            const Direction wi = bin.lobes[k]->sample(wo, {u[0], u[1], rest}).wi;
+            const Direction wi = bin.lobes[k]->sample(wo, u).wi;
             return {wi, pdf(wo, wi)};
         }
         const Direction wi = cosineSampler()->sample(wo, u).wi;
@@ -199,14 +198,9 @@ double proposalWidth(std::uint8_t code) {
 Proposal fitProposal(const Brdf& brdf, const ProposalOptions& options) {
     Proposal proposal;
     proposal.rows.resize(options.elevations);
-    const bool isotropic = brdf.laws().isotropic;
-    const std::vector<double> azimuths =
-        isotropic ? std::vector<double>{0} : std::vector<double>{0.3, 1.2, 2.5};
     tbb::parallel_for(std::size_t{0}, options.elevations, [&](std::size_t bin) {
-        std::vector<Target> targets;
-        const double s = (static_cast<double>(bin) + 0.5) / static_cast<double>(options.elevations);
-        for (const double phi : azimuths) targets.push_back(targetAt(brdf, directionOfBin(s, phi)));
-        proposal.rows[bin] = Search(std::move(targets), isotropic).best();
+        proposal.rows[bin] =
+            Search(targetsOfBin(brdf, bin, options.elevations), brdf.laws().isotropic).best();
     });
     return proposal;
 }

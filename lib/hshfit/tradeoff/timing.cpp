@@ -1,5 +1,7 @@
 #include <hshfit/tradeoff/timing.h>
 
+#include <hshfit/brdf/uniform.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -16,9 +18,8 @@ struct Directions {
 
     Directions(std::size_t count, unsigned seed) {
         std::mt19937_64 random(seed);
-        const auto uniform = [&] { return std::ldexp(static_cast<double>(random() >> 11), -53); };
         for (std::size_t k = 0; k < count; ++k) {
-            const double mu = 1 - uniform(), phi = 2 * pi * uniform();
+            const double mu = 1 - uniform(random), phi = 2 * pi * uniform(random);
             const double s = std::sqrt((1 - mu) * (1 + mu));
             x.push_back(s * std::cos(phi));
             y.push_back(s * std::sin(phi));

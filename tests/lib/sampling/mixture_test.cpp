@@ -149,8 +149,8 @@ TEST(Efficiency, WeightsAreBoundedByTheShareOfTheCosine) {
     for (const Direction& wo : outgoing())
         for (int k = 0; k < 20000; ++k) {
             const Sample s = sampler->sample(wo, numbers.next());
-            const double f = evaluate(brdf, s.wi, wo)[0];
-            ASSERT_LE(f * s.wi.z / s.pdf, pi * f * 32 * (1 + 1e-12));
+            ASSERT_TRUE(std::isfinite(s.pdf));
+            ASSERT_GE(s.pdf, s.wi.z / pi / 32 * (1 - 1e-12));
         }
 }
 

@@ -2,6 +2,7 @@
 
 #include <hshfit/quadrature/quadrature.h>
 #include <hshfit/quadrature/ring_points.h>
+#include <hshfit/sampling/elevation_bins.h>
 #include <hshfit/sampling/internal/mirror_cells.h>
 
 #include <algorithm>
@@ -19,7 +20,8 @@ double meanMagnitude(std::span<const double> f, std::size_t k, std::size_t count
 
 namespace {
 
-/// Adds f cos(theta_i) at some nodes; the solid angles count half.
+/// Adds f cos(theta_i) at the nodes of one of the two quadratures. Solid angles are halved, since
+/// the target is their mean.
 void addNodes(const Brdf& brdf, DirectionBatch wi, const std::vector<double>& solidAngles,
               Target& target) {
     const std::size_t channels = brdf.channels().count();
@@ -78,6 +80,16 @@ Target targetAt(const Brdf& brdf, const Direction& wo) {
     addRings(brdf, target);
     addMirrorCells(brdf, target);
     return target;
+}
+
+std::vector<Target> targetsOfBin(const Brdf& brdf, std::size_t bin, std::size_t bins) {
+    const double s = (static_cast<double>(bin) + 0.5) / static_cast<double>(bins);
+    std::vector<Target> targets;
+    for (const double phi : {0.3, 1.2, 2.5}) {
+        targets.push_back(targetAt(brdf, directionOfBin(s, phi)));
+        if (brdf.laws().isotropic) break;
+    }
+    return targets;
 }
 
 NodeDensities densitiesAt(const Sampler& sampler, std::span<const Target> targets) {

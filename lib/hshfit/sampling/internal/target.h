@@ -19,6 +19,9 @@ struct Target {
     double total = 0;  ///< integral of `value`
 };
 Target targetAt(const Brdf& brdf, const Direction& wo);
+/// Targets at the middle of a bin of elevation_bins.h: at one azimuth if f is isotropic, else at
+/// three.
+std::vector<Target> targetsOfBin(const Brdf& brdf, std::size_t bin, std::size_t bins);
 
 /// The mean over channels of |f|, 0 where it is not finite; f as `Brdf::eval` lays it out.
 double meanMagnitude(std::span<const double> f, std::size_t k, std::size_t count,
