@@ -127,6 +127,10 @@ std::unique_ptr<Basis> make(std::string_view name, int order, BasisOptions optio
     return entry.make(order, options);
 }
 
+int highestDegree(const Basis& basis) {
+    return find(basis.name()).degreesPerOrder * basis.order() - 1;
+}
+
 std::vector<const Entry*> select(std::string_view names) {
     std::vector<const Entry*> rows;
     const auto add = [&](const Entry& entry) {

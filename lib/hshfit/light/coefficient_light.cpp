@@ -50,7 +50,7 @@ bool covers(const CoefficientLight& light, const Direction& world) {
 std::vector<Rgb> radianceOf(const CoefficientLight& light, const std::vector<Direction>& world) {
     const LightCoefficients& c = *light.coefficients;
     std::vector<Rgb> radiance(world.size());
-    std::vector<double> x, y, z, values(batchSize * c.slots());
+    std::vector<double> x, y, z, values(std::min(batchSize, world.size()) * c.slots());
     for (std::size_t first = 0; first < world.size(); first += batchSize) {
         const std::size_t count = std::min(batchSize, world.size() - first);
         x.clear(), y.clear(), z.clear();

@@ -2,6 +2,7 @@
 
 #include <hshfit/light/coefficient_light.h>
 #include <hshfit/light/internal/cap_nodes.h>
+#include <hshfit/light/internal/node_levels.h>
 #include <hshfit/light/internal/sky_nodes.h>
 #include <hshfit/light/picture_light.h>
 #include <hshfit/light/sky.h>
@@ -16,13 +17,6 @@ namespace {
 Direction sum(double a, const Direction& u, double b, const Direction& v, double c,
               const Direction& w) {
     return {a * u.x + b * v.x + c * w.x, a * u.y + b * v.y + c * w.y, a * u.z + b * v.z + c * w.z};
-}
-Direction cross(const Direction& a, const Direction& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-Direction normalised(const Direction& d) {
-    const double length = std::sqrt(dot(d, d));
-    return {d.x / length, d.y / length, d.z / length};
 }
 
 /// Axes with `towards` as the pole, the first along growing theta and the second along phi.

@@ -21,10 +21,6 @@ Direction sum(double a, const Direction& u, double b, const Direction& v, double
               const Direction& w) {
     return {a * u.x + b * v.x + c * w.x, a * u.y + b * v.y + c * w.y, a * u.z + b * v.z + c * w.z};
 }
-Direction normalised(const Direction& d) {
-    const double length = std::sqrt(dot(d, d));
-    return {d.x / length, d.y / length, d.z / length};
-}
 Direction directionOf(const MeshVector& v) {
     return {v[0], v[1], v[2]};
 }

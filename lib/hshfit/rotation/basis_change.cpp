@@ -24,10 +24,6 @@ using Matrix = linear_algebra::RowMajor;
 constexpr std::size_t keptDoubles = std::size_t{1} << 22;
 constexpr std::size_t denseDoubles = std::size_t{1} << 26;
 
-int degreeOf(const Basis& basis) {
-    return bases::find(basis.name()).degreesPerOrder * basis.order();
-}
-
 /// Theta parts of one m are polynomials in mu times sqrt(mu)^k, sqrt(1 - mu)^m and, for functions
 /// of the whole sphere, sqrt(1 + mu)^m: k modulo 2, if it is known.
 std::optional<int> rootsOfCosine(const Basis& basis, int m) {
@@ -53,7 +49,7 @@ Nodes nodesFor(const Basis& from, const Basis& to, Basis::Inner weighting, int m
         nodes.weights.push_back(weight * (projected ? mu : 1));
     };
     const auto a = rootsOfCosine(from, m), b = rootsOfCosine(to, m);
-    const int degree = degreeOf(from) + degreeOf(to);
+    const int degree = bases::highestDegree(from) + bases::highestDegree(to) + 2;
     if (a && b && (*a + *b) % 2 == 0) {
         // A polynomial in mu.
         const GaussRule& rule = gaussLegendre(degree / 2 + 24);

@@ -1,5 +1,6 @@
 #include <hshfit/transfer/products.h>
 
+#include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/transfer/internal/ring_transform.h>
 
@@ -39,7 +40,7 @@ std::vector<double> transferMatrix(const Basis& basis, const Basis& factorBasis,
     requireFamily(basis, factorBasis);
     requireSize(factorBasis, factor);
     const int order = basis.order(), factorOrder = factorBasis.order();
-    const RingGrid grid = RingGrid::exactFor(basis, 2 * degreeOf(basis) + degreeOf(factorBasis), 0);
+    const RingGrid grid = RingGrid::exactFor(basis, 2 * bases::highestDegree(basis) + bases::highestDegree(factorBasis), 0);
     const RingTransform rows(basis, grid), parts(factorBasis, grid);
     const std::size_t rings = grid.elevations.size();
     const auto width = static_cast<std::size_t>(2 * factorOrder - 1);
@@ -95,10 +96,10 @@ Multiplied multiplied(const Basis& result, const Basis& first, std::span<const d
     requireSize(first, a);
     requireSize(second, b);
     // Degrees and harmonics of (a b) B, and of (a b)^2.
-    const int degree = degreeOf(first) + degreeOf(second);
+    const int degree = bases::highestDegree(first) + bases::highestDegree(second);
     const int harmonics = first.order() + second.order() - 2;
     const RingGrid grid =
-        RingGrid::exactFor(result, std::max(degree + degreeOf(result), 2 * degree),
+        RingGrid::exactFor(result, std::max(degree + bases::highestDegree(result), 2 * degree),
                            std::max(harmonics + result.order() - 1, 2 * harmonics));
     std::vector<double> values(grid.points()), other(grid.points());
     RingTransform(first, grid).synthesise(a.data(), values.data());

@@ -1,5 +1,6 @@
 #include <hshfit/transfer/triple_products.h>
 
+#include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/transfer/internal/ring_transform.h>
 #include <hshfit/transfer/wigner.h>
@@ -88,7 +89,7 @@ void eachGaunt(int order, Take&& take) {
 template <class Take>
 void eachIntegral(const Basis& basis, Take&& take) {
     const int order = basis.order();
-    const RingGrid grid = RingGrid::exactFor(basis, 3 * degreeOf(basis), 0);
+    const RingGrid grid = RingGrid::exactFor(basis, 3 * bases::highestDegree(basis), 0);
     const std::size_t rings = grid.elevations.size();
     std::vector<std::vector<double>> theta;
     for (int m = 0; m < order; ++m) {

@@ -10,10 +10,6 @@ Direction minus(const Direction& a, const Direction& b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
-Direction cross(const Direction& a, const Direction& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 /// tan(c / 2) of the arc c between two corners.
 double halfTangent(const Direction& a, const Direction& b) {
     const Direction chord = minus(b, a);
@@ -25,9 +21,7 @@ double halfTangent(const Direction& a, const Direction& b) {
 Direction onArc(const Direction& a, const Direction& b, double c, double t) {
     const double whole = 2 * std::atan(c), x = 2 * std::atan(t);
     const double u = std::sin(whole - x) / std::sin(whole), v = std::sin(x) / std::sin(whole);
-    const Direction d{u * a.x + v * b.x, u * a.y + v * b.y, u * a.z + v * b.z};
-    const double length = std::sqrt(dot(d, d));
-    return {d.x / length, d.y / length, d.z / length};
+    return normalised({u * a.x + v * b.x, u * a.y + v * b.y, u * a.z + v * b.z});
 }
 
 /// t -> (a t + b) / (c t + d).

@@ -1,5 +1,6 @@
 #include <hshfit/light/internal/cap_nodes.h>
 
+#include <hshfit/light/internal/node_levels.h>
 #include <hshfit/quadrature/quadrature.h>
 
 #include <algorithm>
@@ -15,14 +16,6 @@ Direction scaled(double a, const Direction& u) {
 Direction plus(const Direction& u, const Direction& v) {
     return {u.x + v.x, u.y + v.y, u.z + v.z};
 }
-Direction cross(const Direction& a, const Direction& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-int grown(double nodes, int level) {
-    return std::max(2, static_cast<int>(std::ceil(nodes * std::pow(1.5, level))));
-}
-
 /// Rings about the axis in panels that end where the plane touches a ring; each ring is whole, or
 /// an arc with Gauss nodes.
 class CapNodes {
@@ -67,7 +60,7 @@ private:
         if (arc <= 0) return;
         const bool whole = arc >= pi;
         const GaussRule& rule =
-            gaussLegendre(grown(6 + order_ * half * (whole ? 0.8 : 1.2), level_));
+            gaussLegendre(nodesAtLevel(6 + order_ * half * (whole ? 0.8 : 1.2), level_));
         for (std::size_t r = 0; r < rule.nodes.size(); ++r) {
             // Arcs grow like a root from the ends of their panel: clustered there.
             const double t = rule.nodes[r];
@@ -81,7 +74,7 @@ private:
     void ring(double chi, double arc, double weight) const {
         const double s = std::sin(chi), c = std::cos(chi);
         const bool whole = arc >= pi;
-        const int count = grown(
+        const int count = nodesAtLevel(
             (whole ? 2 : 1.2 * arc / pi + 0.4) * order_ * std::min(1.0, s + .1) + (whole ? 8 : 6),
             level_);
         const GaussRule& rule = gaussLegendre(count);

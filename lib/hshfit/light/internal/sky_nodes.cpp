@@ -1,5 +1,6 @@
 #include <hshfit/light/internal/sky_nodes.h>
 
+#include <hshfit/light/internal/node_levels.h>
 #include <hshfit/light/sky.h>
 #include <hshfit/quadrature/quadrature.h>
 
@@ -133,10 +134,6 @@ private:
 };
 
 }  // namespace
-
-int nodesAtLevel(double nodes, int level) {
-    return std::max(2, static_cast<int>(std::ceil(nodes * std::pow(1.5, level))));
-}
 
 void addSkyNodes(const SkyLight& light, const Frame& frame, int level, LightSamples& samples) {
     SkyNodes(light, frame, level, samples).add();

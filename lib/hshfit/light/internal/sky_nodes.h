@@ -9,7 +9,4 @@ namespace hshfit::inline light {
 /// Radiance has a kink at the sun, towards which panels and arcs shrink by factors of 4.
 void addSkyNodes(const SkyLight& light, const Frame& frame, int level, LightSamples& samples);
 
-/// Number of nodes at a level, from the number at level 0.
-int nodesAtLevel(double nodes, int level);
-
 }  // namespace hshfit::inline light

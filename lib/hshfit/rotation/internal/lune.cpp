@@ -121,7 +121,7 @@ LuneIntegrals luneIntegrals(const Basis& basis, double beta, const Matrix& c,
     constexpr std::size_t valuesInCache = std::size_t{1} << 17;
     const std::size_t chunk = std::clamp<std::size_t>(
         valuesInCache / static_cast<std::size_t>(basis.slots()) / 8 * 8, 8, 256);
-    const int degree = basis.name() == "slepian" ? 2 * basis.order() : basis.order();
+    const int degree = bases::highestDegree(basis) + 1;
     const LuneNodes nodes = luneNodes(beta, degree, density);
     const bool projected = basis.inner() == Basis::Inner::projectedSolidAngle;
     const Eigen::Index vectors = c.cols();

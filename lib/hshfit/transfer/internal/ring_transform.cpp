@@ -13,10 +13,6 @@
 
 namespace hshfit::inline transfer {
 
-int degreeOf(const Basis& basis) {
-    return basis.name() == "slepian" ? 2 * basis.order() - 1 : basis.order() - 1;
-}
-
 void requireOrthonormal(const Basis& basis) {
     if (bases::find(basis.name()).orthonormal) return;
     throw UsageError(fmt::format(

@@ -24,9 +24,6 @@ struct RingGrid {
     static RingGrid exactFor(const Basis& basis, int degree, int harmonics);
 };
 
-/// The degree in cos(theta) of the highest band: for `slepian` and `lsosh` of the harmonics that
-/// they are made of.
-int degreeOf(const Basis& basis);
 /// Throws UsageError for a basis that is not orthonormal: sums of its functions have no single
 /// inner product.
 void requireOrthonormal(const Basis& basis);
