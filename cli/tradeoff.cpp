@@ -24,7 +24,8 @@ struct TradeoffArguments {
     jobs::TradeoffOptions options;
     double maxBytes = 0, maxNanoseconds = 0, tolerance = 0;
     double maxEvaluations = static_cast<double>(TradeoffOptions{}.projection.maxEvaluations);
-    bool cosine = false, noTiming = false;
+    bool cosine = false, noTiming = false, gpu = false;
+    std::string device;
 };
 
 /// Replaces the sweep's default values with those on the command line, if there are any.
@@ -52,6 +53,14 @@ std::vector<std::string> basisNames(const std::vector<std::string>& asked) {
     return names;
 }
 
+gpu::DeviceChoice deviceFrom(const std::string& text) {
+    using Device = gpu::DeviceChoice::Kind;
+    if (text.empty() || text == "any") return {};
+    if (text == "gpu") return {.kind = Device::gpu};
+    if (text == "software") return {.kind = Device::software};
+    return {.name = text};
+}
+
 jobs::TradeoffOptions optionsFrom(const TradeoffArguments& arguments) {
     jobs::TradeoffOptions all = arguments.options;
     TradeoffOptions& options = all.measurement;
@@ -71,6 +80,9 @@ jobs::TradeoffOptions optionsFrom(const TradeoffArguments& arguments) {
     if (arguments.maxBytes > 0) options.maxBytes = static_cast<std::size_t>(arguments.maxBytes);
     if (arguments.maxNanoseconds > 0) options.maxNanoseconds = arguments.maxNanoseconds;
     options.timing = !arguments.noTiming;
+    if (arguments.gpu) options.gpu = deviceFrom(arguments.device);
+    if (!arguments.gpu && !arguments.device.empty())
+        throw UsageError("--device names what --gpu runs on: add --gpu");
     options.projection.tolerance = arguments.tolerance;
     options.projection.maxEvaluations = static_cast<std::size_t>(arguments.maxEvaluations);
     return all;
@@ -145,6 +157,11 @@ void addTradeoff(CLI::App& command, Globals& globals) {
                     "Leave out of the front over time what takes longer for a pair; with --by-time")
         ->check(CLI::Range(1e-3, 1e12));
     command.add_flag("--no-timing", arguments->noTiming, "Measure no times");
+    command.add_flag("--gpu", arguments->gpu,
+                     "Time the shaders of the fronts' forms on a Vulkan device");
+    command.add_option("--device", arguments->device,
+                       "any (a GPU if there is one), gpu, software, or a part of its name; with "
+                       "--gpu");
     command.add_flag("--by-time", arguments->options.measurement.byTime,
                      "Print the front over time instead of that over bytes");
     command

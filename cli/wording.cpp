@@ -57,6 +57,7 @@ constexpr OptionRow options[] = {
     {"ProjectionOptions::quantity", "--cosine", Value::none},
     {"ProjectionOptions::tolerance", "--tolerance"},
     {"TradeoffOptions::byTime", "--by-time"},
+    {"TradeoffOptions::gpu", "--gpu"},
     {"TradeoffOptions::maxBytes", "--max-bytes"},
     {"TradeoffOptions::maxNanoseconds", "--max-ns"},
     {"TradeoffOptions::metric", "--metric"},

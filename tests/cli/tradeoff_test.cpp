@@ -63,6 +63,39 @@ TEST_F(TradeoffCommand, AnswersWithJsonThatKeepsItsSchema) {
     EXPECT_EQ(with, document["tradeoffs"]);
 }
 
+/// On the software renderer, which tests have; its times are labelled as such.
+TEST_F(TradeoffCommand, TimesTheShadersOfItsFronts) {
+    const Answer answer = trade("--json --gpu --device software");
+    if (answer.code == 4 && answer.err.find("Vulkan") != std::string::npos)
+        GTEST_SKIP() << answer.err;
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "tradeoff"));
+    const json document = json::parse(answer.out);
+    const json &trade = document["tradeoffs"][0], &timed = document["timing"]["tradeoffs"][0];
+    EXPECT_TRUE(timed["gpu"]["software"]);
+    std::set<int> fronts, measured;
+    for (const json& point : trade["front"]) fronts.insert(point["form"].get<int>());
+    for (const json& point : timed["front"]) fronts.insert(point["form"].get<int>());
+    std::size_t times = 0;
+    for (const json& form : timed["gpu"]["forms"]) {
+        measured.insert(form["form"].get<int>());
+        EXPECT_NE(form["ns_per_million_pixels"].is_null(), form["reason"].is_null());
+        if (form["reason"].is_null()) ++times;
+    }
+    EXPECT_EQ(measured, fronts);
+    EXPECT_GT(times, 0u);
+    ASSERT_EQ(this->trade("--gpu --device software -o " + path("gpu")).code, 0);
+    EXPECT_NE(read(path("gpu/timing_gpu.csv")).find("\n1,"), std::string::npos);
+    EXPECT_NE(read(path("gpu/timing.html")).find("a renderer in software"), std::string::npos);
+}
+
+TEST_F(TradeoffCommand, SaysWhyNoShaderCanBeTimed) {
+    expectError("tradeoff lambert --json --device software", 2, "--device", 0);
+    expectError("tradeoff lambert --json --gpu --no-timing", 2, "--no-timing", 0);
+    expectError(std::string("tradeoff lambert --json --gpu --device nowhere ") + smallSweep, 4,
+                "Vulkan", 0);
+}
+
 /// The commands that name the points of the front make files of the size and error that it states.
 TEST_F(TradeoffCommand, NamesCommandsThatMakeItsForms) {
     const json trade = json::parse(

@@ -40,8 +40,8 @@ const Entry& find(std::string_view name);
 /// Throws UsageError if the name is unknown or the order is outside 1 .. maxOrder.
 std::unique_ptr<Basis> make(std::string_view name, int order, BasisOptions options = {});
 
-/// The highest degree in mu of the polynomials in the theta parts of `basis`, roots left out. Throws
-/// UsageError for a basis that is not in the table.
+/// The highest degree in mu of the polynomials in the theta parts of `basis`, roots left out.
+/// Throws UsageError for a basis that is not in the table.
 int highestDegree(const Basis& basis);
 
 /// "all" or a comma-separated list of names, as rows of the table.

@@ -29,15 +29,6 @@ double dot(const Direction& a, const Direction& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-Direction cross(const Direction& a, const Direction& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-Direction normalised(const Direction& d) {
-    const double length = std::sqrt(dot(d, d));
-    return {d.x / length, d.y / length, d.z / length};
-}
-
 Direction rotateAboutZ(const Direction& d, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
     return {c * d.x - s * d.y, s * d.x + c * d.y, d.z};

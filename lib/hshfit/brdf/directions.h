@@ -42,12 +42,6 @@ Elevation<double> elevationOf(const Direction& d);
 
 double dot(const Direction& a, const Direction& b);
 
-/// a x b, of length sin(angle between them).
-Direction cross(const Direction& a, const Direction& b);
-
-/// d / |d|; not finite for a vector that is 0.
-Direction normalised(const Direction& d);
-
 /// `d` turned about +z by `angle` radians.
 Direction rotateAboutZ(const Direction& d, double angle);
 

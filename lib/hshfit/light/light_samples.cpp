@@ -1,5 +1,6 @@
 #include <hshfit/light/light_samples.h>
 
+#include <hshfit/brdf/vectors.h>
 #include <hshfit/light/coefficient_light.h>
 #include <hshfit/light/internal/cap_nodes.h>
 #include <hshfit/light/internal/node_levels.h>

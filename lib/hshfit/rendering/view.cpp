@@ -1,5 +1,6 @@
 #include <hshfit/rendering/view.h>
 
+#include <hshfit/brdf/vectors.h>
 #include <hshfit/rays/ray_scene.h>
 
 #include <tbb/parallel_for.h>

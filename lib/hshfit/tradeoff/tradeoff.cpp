@@ -18,6 +18,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <set>
 
 namespace hshfit::tradeoff {
 namespace {
@@ -222,6 +223,31 @@ std::size_t timedCount(const std::vector<Form>& forms) {
     return keys.size();
 }
 
+void timeShadersOfFronts(Tradeoff& trade, const Maker& maker, const gpu::DeviceChoice& choice) {
+    const gpu::ComputeDevice device(choice);
+    MeasuredShaders& measured = trade.shaders.emplace();
+    measured.device = device.name();
+    measured.software = device.software();
+    std::set<std::size_t> forms(trade.byteFront.begin(), trade.byteFront.end());
+    forms.insert(trade.timeFront.begin(), trade.timeFront.end());
+    std::vector<gpu::TimedShader> shaders{gpu::bareShader()};
+    for (const std::size_t k : forms) {
+        MeasuredShader& form = measured.forms.emplace_back();
+        form.form = k;
+        try {
+            shaders.push_back(gpu::timedShader(maker.make(trade.forms[k].form)));
+            form.time.emplace();
+        } catch (const Error& error) {
+            form.reason = error.what();
+        }
+    }
+    const std::vector<gpu::ShaderTime> times = gpu::timeShaders(device, shaders);
+    measured.bare = times[0];
+    std::size_t next = 1;
+    for (MeasuredShader& form : measured.forms)
+        if (form.time) form.time = times[next++];
+}
+
 void findFronts(Tradeoff& trade, const TradeoffOptions& options) {
     std::vector<double> bytes, nanoseconds, errors;
     for (std::size_t k = 0; k < trade.forms.size(); ++k) {
@@ -242,6 +268,11 @@ std::vector<Form> formsFor(const Brdf& brdf, const TradeoffOptions& options) {
     if (!options.timing && options.byTime) {
         throw UsageError(fmt::format("{} needs the times that {} leaves out",
                                      Setting{"TradeoffOptions::byTime"},
+                                     Setting{"TradeoffOptions::timing", "false"}));
+    }
+    if (!options.timing && options.gpu) {
+        throw UsageError(fmt::format("{} needs the times that {} leaves out",
+                                     Setting{"TradeoffOptions::gpu"},
                                      Setting{"TradeoffOptions::timing", "false"}));
     }
     if (!options.byTime && std::isfinite(options.maxNanoseconds)) {
@@ -274,6 +305,13 @@ double Tradeoff::bandErrorOf(std::size_t form, std::size_t band) const {
 
 std::optional<double> Tradeoff::uncertaintyOf(std::size_t form) const {
     return forms[form].errors.uncertainty[metricIndex(metric)];
+}
+
+std::optional<double> Tradeoff::shaderTimeOf(std::size_t form) const {
+    if (!shaders) return {};
+    const auto row = std::ranges::find(shaders->forms, form, &MeasuredShader::form);
+    if (row == shaders->forms.end() || !row->time) return {};
+    return row->time->median;
 }
 
 double Tradeoff::waveletErrorOf(std::size_t form) const {
@@ -335,6 +373,7 @@ Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& opti
     }
     if (options.timing) timeForms(trade, maker, open, steps);
     findFronts(trade, options);
+    if (options.gpu) timeShadersOfFronts(trade, maker, *options.gpu);
     brdf.checkIntact();
     return trade;
 }

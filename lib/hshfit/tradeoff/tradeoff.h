@@ -2,6 +2,7 @@
 
 #include <hshfit/accuracy/pair_errors.h>
 #include <hshfit/error.h>
+#include <hshfit/gpu/timing/shader_time.h>
 #include <hshfit/tradeoff/sweep.h>
 #include <hshfit/tradeoff/timing.h>
 #include <hshfit/tradeoff/wavelet_forms.h>
@@ -22,6 +23,8 @@ struct TradeoffOptions {
     /// Slower forms are left out of the front over time; takes `byTime`.
     double maxNanoseconds = std::numeric_limits<double>::infinity();
     bool timing = true;
+    /// Time the shaders of the fronts' forms on this device; takes `timing`.
+    std::optional<gpu::DeviceChoice> gpu = {};
     bool wavelets = false;  ///< measure the best terms of spherical wavelets too
     bool byTime = false;    ///< the choice is the knee over time instead of that over bytes
     ProjectionOptions projection = {};
@@ -46,6 +49,21 @@ struct MeasuredTime {
     double projectionSeconds = 0;
     double derivationSeconds = 0;  ///< everything after it, on one thread
     FormTime evaluation;
+};
+
+/// The shader of one form of the fronts.
+struct MeasuredShader {
+    std::size_t form = 0;                 ///< into `forms`
+    std::optional<gpu::ShaderTime> time;  ///< none: it has no shader
+    std::string reason;                   ///< why it has none
+};
+
+/// The shaders of the forms of both fronts on one device, by form.
+struct MeasuredShaders {
+    std::string device;
+    bool software = false;  ///< a renderer on the processor, whose times say nothing of a GPU
+    gpu::ShaderTime bare;   ///< of a shader that makes the directions alone
+    std::vector<MeasuredShader> forms = {};
 };
 
 /// Forms that could not be had, and why: one line for each reason.
@@ -80,6 +98,10 @@ struct Tradeoff {
     std::vector<MeasuredTime> times = {};     ///< like `forms`; empty without timing
     std::vector<std::size_t> timeFront = {};  ///< by rising nanoseconds a pair, batch of 4096
     std::optional<std::size_t> timeKnee = {};
+    std::optional<MeasuredShaders> shaders = {};  ///< if asked for
+
+    /// The time of the shader of a form; none where it was not measured.
+    std::optional<double> shaderTimeOf(std::size_t form) const;
 
     /// The error that the fronts weigh; NaN where it does not exist.
     double errorOf(std::size_t form) const;

@@ -14,6 +14,7 @@ namespace hshfit::tradeoff {
 /// which are the same bytes whenever the same trade is measured, and, if it was timed, those that
 /// hold times:
 ///     timing.json, timing.csv, timing_front.csv, timing.svg, timing.html
+/// and timing_gpu.csv where shaders were timed.
 /// They appear together or not at all. Throws OutputError where a file cannot be written or a
 /// figure is cut short; also NoFigures where gnuplot is missing or fails, and then everything but
 /// the figures has been written.
@@ -36,6 +37,10 @@ std::string frontCsv(std::span<const Tradeoff> trades);
 std::string timingCsv(std::span<const Tradeoff> trades);
 /// As frontCsv, by rising nanoseconds.
 std::string timingFrontCsv(std::span<const Tradeoff> trades);
+
+/// The shaders of the forms of the fronts: brdf, ns_per_million_pixels, quartiles, that of the
+/// shader without a form, error, bytes, device, software (1 or 0), options.
+std::string shadersCsv(std::span<const Tradeoff> trades);
 
 /// Draws front.svg from forms.csv and front.csv, and timing.svg where there is a timing.csv.
 std::string tradeoffScript(std::span<const Tradeoff> trades);

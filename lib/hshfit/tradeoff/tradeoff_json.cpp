@@ -98,6 +98,24 @@ Json pairTimeJson(const PairTime& time) {
     return {{"median", time.median}, {"low", time.low}, {"high", time.high}};
 }
 
+Json shaderTimeJson(const gpu::ShaderTime& time) {
+    return {{"median", time.median}, {"low", time.low}, {"high", time.high}};
+}
+
+Json shadersJson(const MeasuredShaders& shaders) {
+    Json forms = Json::array();
+    for (const MeasuredShader& form : shaders.forms) {
+        forms.push_back(
+            {{"form", form.form},
+             {"ns_per_million_pixels", form.time ? shaderTimeJson(*form.time) : Json(nullptr)},
+             {"reason", form.reason.empty() ? Json(nullptr) : Json(form.reason)}});
+    }
+    return {{"device", shaders.device},
+            {"software", shaders.software},
+            {"bare_ns_per_million_pixels", shaderTimeJson(shaders.bare)},
+            {"forms", forms}};
+}
+
 Json tradeTimingJson(const Tradeoff& trade) {
     Json forms = Json::array(), front = Json::array();
     for (std::size_t k = 0; k < trade.times.size(); ++k) {
@@ -111,10 +129,12 @@ Json tradeTimingJson(const Tradeoff& trade) {
     for (const std::size_t k : trade.timeFront) {
         front.push_back({{"form", k}, {"command", commandOf(trade, k)}});
     }
-    return {{"brdf", trade.brdf},
-            {"front", front},
-            {"knee", trade.timeKnee ? Json(*trade.timeKnee) : Json(nullptr)},
-            {"forms", forms}};
+    Json json = {{"brdf", trade.brdf},
+                 {"front", front},
+                 {"knee", trade.timeKnee ? Json(*trade.timeKnee) : Json(nullptr)},
+                 {"forms", forms}};
+    if (trade.shaders) json["gpu"] = shadersJson(*trade.shaders);
+    return json;
 }
 
 Json timingDocument(std::span<const Tradeoff> trades) {

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 #include <kainjow/mustache.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -170,6 +171,37 @@ data timeRows(const Tradeoff& trade, const std::vector<std::size_t>& front) {
     return rows;
 }
 
+std::string millions(double nanoseconds) {
+    return fmt::format("{:.3f}", 1e-6 * nanoseconds);
+}
+
+/// The shaders of the fronts, the fastest first; those that a form lacks last.
+data shaderTable(const Tradeoff& trade) {
+    const MeasuredShaders& shaders = *trade.shaders;
+    std::vector<const MeasuredShader*> order;
+    for (const MeasuredShader& shader : shaders.forms) order.push_back(&shader);
+    std::ranges::stable_sort(order, {}, [](const MeasuredShader* shader) {
+        return shader->time ? shader->time->median : HUGE_VAL;
+    });
+    data rows{data::type::list}, table;
+    for (const MeasuredShader* shader : order) {
+        data row;
+        row.set("time", shader->time
+                            ? fmt::format("{} ({}–{})", millions(shader->time->median),
+                                          millions(shader->time->low), millions(shader->time->high))
+                            : shader->reason);
+        row.set("error", numberText(trade.errorOf(shader->form)));
+        row.set("bytes", std::to_string(trade.forms[shader->form].bytes));
+        row.set("command", commandOf(trade, shader->form));
+        rows.push_back(row);
+    }
+    table.set("rows", rows);
+    table.set("device", shaders.device);
+    table.set("software", shaders.software);
+    table.set("bare", millions(shaders.bare.median));
+    return table;
+}
+
 data timeEntry(const Tradeoff& trade) {
     data tables{data::type::list}, byTime, byBytes;
     byTime.set("title", "The front over time");
@@ -180,6 +212,7 @@ data timeEntry(const Tradeoff& trade) {
     tables.push_back(byBytes);
     data entry;
     entry.set("tables", tables);
+    if (trade.shaders) entry.set("shaders", shaderTable(trade));
     return entry;
 }
 

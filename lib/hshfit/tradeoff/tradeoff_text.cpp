@@ -72,20 +72,40 @@ std::string frontTable(const Tradeoff& trade, const std::vector<std::size_t>& fr
     const auto percent = [](double error, double value) {
         return fmt::format("{:.0f}%", 100 * error / value);
     };
-    std::string text = fmt::format("  {:>9} {:>11} {:>5} {:>9} {:>9} {:>9} {:>9} {:>9}  options\n",
-                                   "bytes", "error", "+-", zoneNames[0], zoneNames[1], "maximum",
-                                   "albedo", timed ? "ns" : "");
+    std::string text =
+        fmt::format("  {:>9} {:>11} {:>5} {:>9} {:>9} {:>9} {:>9} {:>9}{}  options\n", "bytes",
+                    "error", "+-", zoneNames[0], zoneNames[1], "maximum", "albedo",
+                    timed ? "ns" : "", trade.shaders ? fmt::format(" {:>10}", "gpu ns/Mpx") : "");
     for (const std::size_t k : front) {
         const std::string ns =
             timed ? fmt::format("{:.1f}", trade.times[k].evaluation.batch.median) : "";
+        std::string gpu;
+        if (trade.shaders) {
+            const auto time = trade.shaderTimeOf(k);
+            gpu = fmt::format(" {:>10}", time ? fmt::format("{:.3g}", *time) : "–");
+        }
         const PairSummary& summary = trade.forms[k].summary;
         const double error = trade.errorOf(k);
         text +=
-            fmt::format("  {:>9} {:>11.4g} {:>5} {:>9.3g} {:>9.3g} {:>9.3g} {:>9.2g} {:>9}  {}\n",
+            fmt::format("  {:>9} {:>11.4g} {:>5} {:>9.3g} {:>9.3g} {:>9.3g} {:>9.2g} {:>9}{}  {}\n",
                         trade.forms[k].bytes, error,
                         percent(trade.uncertaintyOf(k).value_or(std::nan("")), error),
                         summary.zones[0].value, summary.zones[1].value, summary.maximum,
-                        summary.albedo.value, ns, trade.forms[k].options);
+                        summary.albedo.value, ns, gpu, trade.forms[k].options);
+    }
+    return text;
+}
+
+/// The device, and forms of the fronts that it did not run.
+std::string shadersText(const Tradeoff& trade) {
+    const MeasuredShaders& shaders = *trade.shaders;
+    std::string text = fmt::format(
+        "  gpu: {}{}; a million pixels of a sphere under one light; without the form "
+        "{:.3g} ns\n",
+        shaders.device, shaders.software ? ", a renderer in software" : "", shaders.bare.median);
+    for (const MeasuredShader& form : shaders.forms) {
+        if (form.time) continue;
+        text += fmt::format("  gpu: {}: {}\n", trade.forms[form.form].options, form.reason);
     }
     return text;
 }
@@ -198,10 +218,30 @@ std::string timingFrontCsv(std::span<const Tradeoff> trades) {
                      });
 }
 
+std::string shadersCsv(std::span<const Tradeoff> trades) {
+    std::string csv =
+        "brdf,ns_per_million_pixels,low,high,bare,error,bytes,device,software,options\n";
+    for (std::size_t t = 0; t < trades.size(); ++t) {
+        if (!trades[t].shaders) continue;
+        const MeasuredShaders& shaders = *trades[t].shaders;
+        for (const MeasuredShader& form : shaders.forms) {
+            if (!form.time) continue;
+            const Measured& measured = trades[t].forms[form.form];
+            csv +=
+                fmt::format("{},{:.0f},{:.0f},{:.0f},{:.0f},{},{},{},{:d},{}\n", t + 1,
+                            form.time->median, form.time->low, form.time->high, shaders.bare.median,
+                            cell(trades[t].errorOf(form.form)), measured.bytes,
+                            quoted(shaders.device), shaders.software, quoted(measured.options));
+        }
+    }
+    return csv;
+}
+
 std::string tradeoffText(const Tradeoff& trade, bool byTime) {
     std::string text = fmt::format("{}: {} forms, {} pairs, error: {}\n", trade.brdf,
                                    trade.forms.size(), trade.pairs, metricText(trade.metric));
     text += frontTable(trade, byTime ? trade.timeFront : trade.byteFront);
+    if (trade.shaders) text += shadersText(trade);
     for (const LeftOut& line : trade.leftOut) {
         text += fmt::format("  left out: {} ({}): {}\n", line.forms, line.example, line.reason);
     }

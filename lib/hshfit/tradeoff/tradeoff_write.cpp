@@ -114,6 +114,7 @@ void writeTradeoffs(std::span<const Tradeoff> trades, FileSet& files) {
         files.write("timing.json", timingJson(trades));
         timing = &files.write("timing.csv", timingCsv(trades));
         timingFront = &files.write("timing_front.csv", timingFrontCsv(trades));
+        if (trades[0].shaders) files.write("timing_gpu.csv", shadersCsv(trades));
     }
     std::optional<NoFigures> undrawn;
     std::vector<std::string> figures, timeFigures;

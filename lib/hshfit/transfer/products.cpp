@@ -40,7 +40,8 @@ std::vector<double> transferMatrix(const Basis& basis, const Basis& factorBasis,
     requireFamily(basis, factorBasis);
     requireSize(factorBasis, factor);
     const int order = basis.order(), factorOrder = factorBasis.order();
-    const RingGrid grid = RingGrid::exactFor(basis, 2 * bases::highestDegree(basis) + bases::highestDegree(factorBasis), 0);
+    const RingGrid grid = RingGrid::exactFor(
+        basis, 2 * bases::highestDegree(basis) + bases::highestDegree(factorBasis), 0);
     const RingTransform rows(basis, grid), parts(factorBasis, grid);
     const std::size_t rings = grid.elevations.size();
     const auto width = static_cast<std::size_t>(2 * factorOrder - 1);

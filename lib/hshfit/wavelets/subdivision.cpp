@@ -1,5 +1,7 @@
 #include <hshfit/wavelets/subdivision.h>
 
+#include <hshfit/brdf/vectors.h>
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,6 @@
 #include <hshfit/light/internal/cap_nodes.h>
 
+#include <hshfit/brdf/vectors.h>
 #include <hshfit/light/internal/node_levels.h>
 #include <hshfit/quadrature/quadrature.h>
 

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <hshfit/brdf/directions.h>
+
+#include <cmath>
+
+namespace hshfit::inline brdf {
+
+/// a x b, of length sin(angle between them).
+inline Direction cross(const Direction& a, const Direction& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// d / |d|; not finite for a vector that is 0.
+inline Direction normalised(const Direction& d) {
+    const double length = std::sqrt(dot(d, d));
+    return {d.x / length, d.y / length, d.z / length};
+}
+
+}  // namespace hshfit::inline brdf
