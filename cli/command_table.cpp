@@ -16,6 +16,7 @@ void addRender(CLI::App& command, Globals& globals);
 void addLtc(CLI::App& command, Globals& globals);
 void addGaussians(CLI::App& command, Globals& globals);
 void addTradeoff(CLI::App& command, Globals& globals);
+void addIlluminate(CLI::App& command, Globals& globals);
 void addPlan(CLI::App& command, Globals& globals);
 void addStress(CLI::App& command, Globals& globals);
 void addImport(CLI::App& command, Globals& globals);
@@ -168,6 +169,12 @@ constexpr Command table[] = {
      .file = "irradiance.cpp",
      .example = "hshfit irradiance sky:type=12,elevation=40,radiance=1 --convention three",
      .add = addIrradiance},
+    {.name = "illuminate",
+     .group = inspection,
+     .help = "Pictures of a scene with global illumination, by path tracing",
+     .file = "illuminate.cpp",
+     .example = "hshfit illuminate examples/scenes/box.json -o box --samples 16",
+     .add = addIlluminate},
     {.name = "sample",
      .group = inspection,
      .help = "Incident directions in proportion to f cos(theta_i), and their efficiency",

@@ -56,6 +56,8 @@ constexpr OptionRow options[] = {
     {"ProjectionOptions::maxEvaluations", "--max-evaluations"},
     {"ProjectionOptions::quantity", "--cosine", Value::none},
     {"ProjectionOptions::tolerance", "--tolerance"},
+    {"IlluminateOptions::camera", "--camera"},
+    {"IlluminateOptions::reference", "--reference"},
     {"TradeoffOptions::byTime", "--by-time"},
     {"TradeoffOptions::gpu", "--gpu"},
     {"TradeoffOptions::maxBytes", "--max-bytes"},

@@ -68,8 +68,9 @@ show rotate out/sky.json -o out/sky_turned.json --axis 0,1,0,30
 show irradiance sky:type=12,elevation=40,radiance=1 --convention three
 
 echo
-echo "9. Directions drawn after a material, with the efficiency by elevation."
+echo "9. Directions drawn after a material, with the efficiency by elevation, and a scene by them."
 show sample ggx:alpha=.2,F0=.9 --outgoing 45,0 --count 1000 -o out/samples.csv
+show illuminate examples/scenes/box.json -o out/box --samples 16 --force
 
 echo
 echo "Captured energy of f cos with order 7 (49 slots) and the files it went to:"

@@ -9,9 +9,9 @@
 
 namespace hshfit::jobs {
 
-plan::Plan planScene(const std::string& scene, const std::string& output,
+plan::Plan planScene(const std::string& path, const std::string& output,
                      const plan::PlanOptions& options, const Listener& listener) {
-    const plan::Scene read = plan::readScene(scene);
+    const scene::Scene read = scene::readScene(path, scene::Purpose::plan);
     if (read.limits.nanoseconds && !options.byTime) {
         listener.say(
             fmt::format("the limit in nanoseconds counts with {} only: no times were taken",

@@ -8,10 +8,10 @@
 
 namespace hshfit::jobs {
 
-/// The plan of a scene file (plan::readScene), whose files are written to a folder
+/// The plan of a scene file (scene::readScene), whose files are written to a folder
 /// (plan::writePlan). Materials are BRDF specifications. `options.progress` is not called: the
 /// listener is. Throws UsageError, InputError and OutputError.
-plan::Plan planScene(const std::string& scene, const std::string& output,
+plan::Plan planScene(const std::string& path, const std::string& output,
                      const plan::PlanOptions& options, const Listener& listener = {});
 
 }  // namespace hshfit::jobs

@@ -1,10 +1,10 @@
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/exr_picture.h>
+#include <hshfit/pictures/rgb_picture.h>
 #include <hshfit/pictures/sphere_picture.h>
 
 #include <fmt/format.h>
-#include <png.h>
 
 #include <algorithm>
 #include <array>
@@ -31,13 +31,6 @@ double quantileOfPixels(std::span<const SpherePicture> spheres, double share) {
     const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(largest.size() - 1));
     std::nth_element(largest.begin(), largest.begin() + at, largest.end());
     return largest[static_cast<std::size_t>(at)];
-}
-
-/// IEC 61966-2-1, to 8 bits.
-std::uint8_t encoded(double linear) {
-    const double x = std::clamp(linear, 0.0, 1.0);
-    const double s = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
-    return static_cast<std::uint8_t>(std::lround(255 * s));
 }
 
 bool endsWith(const std::string& path, std::string_view extension) {
@@ -146,19 +139,7 @@ std::string sheetPng(const Sheet& sheet, double stops) {
             }
             pixel[3] = static_cast<std::uint8_t>(std::lround(255 * sphere.coverage[i]));
         });
-    png_image image{};
-    image.version = PNG_IMAGE_VERSION;
-    image.width = static_cast<png_uint_32>(width);
-    image.height = static_cast<png_uint_32>(size * sheet.size());
-    image.format = PNG_FORMAT_RGBA;
-    std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(image), '\0');
-    png_alloc_size_t length = bytes.size();
-    if (!png_image_write_to_memory(&image, bytes.data(), &length, 0, pixels.data(), 0, nullptr)) {
-        throw OutputError(fmt::format("the picture could not be encoded as PNG: {}",
-                                      static_cast<const char*>(image.message)));
-    }
-    bytes.resize(length);
-    return bytes;
+    return pngOf(pixels, width, size * sheet.size());
 }
 
 void checkSpheresPath(const std::string& path) {

@@ -1,14 +1,18 @@
 #pragma once
 
 #include <hshfit/brdf/brdf.h>
-#include <hshfit/plan/scene.h>
 #include <hshfit/representation/forms/form.h>
+#include <hshfit/scene/scene.h>
 
 #include <span>
 #include <string>
 #include <vector>
 
 namespace hshfit::plan {
+
+using scene::Limits;
+using scene::Material;
+using scene::Scene;
 
 /// A candidate form of a material, before it has been tried.
 struct Rung {

@@ -3,13 +3,17 @@
 #include <hshfit/light/light_samples.h>
 #include <hshfit/light/radiance.h>
 #include <hshfit/light/views.h>
-#include <hshfit/plan/scene.h>
+#include <hshfit/scene/scene.h>
 
 #include <map>
 #include <string>
 #include <vector>
 
 namespace hshfit::plan {
+
+using scene::Limits;
+using scene::Material;
+using scene::Scene;
 
 /// The light on one material in all of its orientations, with samples refined until outgoing
 /// radiance converges, and quantities that follow from it.

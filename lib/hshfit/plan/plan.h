@@ -1,8 +1,8 @@
 #pragma once
 
 #include <hshfit/accuracy/pair_errors.h>
-#include <hshfit/plan/scene.h>
 #include <hshfit/representation/forms/form.h>
+#include <hshfit/scene/scene.h>
 
 #include <functional>
 #include <optional>
@@ -10,6 +10,10 @@
 #include <vector>
 
 namespace hshfit::plan {
+
+using scene::Limits;
+using scene::Material;
+using scene::Scene;
 
 /// One form of a material and its error in the scene's light.
 struct Choice {

@@ -382,7 +382,7 @@ TEST(SceneFile, NamesTheFieldThatIsWrong) {
          std::to_string(getpid()) + ".json");
     const auto read = [&](const std::string& text) {
         std::ofstream(path) << text;
-        return readScene(path.string());
+        return scene::readScene(path.string(), scene::Purpose::plan);
     };
     const Scene scene = read(good);
     EXPECT_NEAR(std::get<DiscLight>(scene.lights[0]).radiance[1],

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <hshfit/files/atomic_file.h>
+
+#include <cstddef>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hshfit::inline pictures {
+
+/// Radiance, linear Rec. 709, row 0 at the top.
+struct RgbPicture {
+    int width = 0, height = 0;
+    std::vector<float> values = {};  ///< [row][column][R, G, B]
+};
+
+/// The exposure, in stops, at which 95 % of the pixels have their largest channel at or below 0.8
+/// of white, rounded to a tenth; 0 for black.
+double automaticExposure(const RgbPicture& picture);
+
+/// A PNG file, sRGB, 8 bits. `stops` doubles the radiance that often; values outside of [0, 1] are
+/// then clamped.
+std::string rgbPng(const RgbPicture& picture, double stops);
+
+/// An OpenEXR file of 32-bit floats, R, G, B; pictures beside the first have channels with their
+/// name and a dot before the colour. All of the same size.
+struct NamedPicture {
+    std::string name;
+    const RgbPicture* picture;
+};
+void writeRgbExr(const RgbPicture& picture, std::span<const NamedPicture> more, AtomicFile& file,
+                 const std::map<std::string, std::string>& attributes = {});
+/// Reads R, G, B of such a file, or of any flat OpenEXR picture. Throws InputError that starts with
+/// `path`.
+RgbPicture readRgbExr(const std::string& path);
+
+/// Eight-bit pixels with alpha as PNG. Throws OutputError where that fails.
+std::string pngOf(std::span<const unsigned char> rgba, std::size_t width, std::size_t height);
+/// IEC 61966-2-1, to 8 bits; values outside of [0, 1] are clamped.
+unsigned char encoded(double linear);
+
+}  // namespace hshfit::inline pictures

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <hshfit/transport/surface_scene.h>
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace hshfit::inline transport {
+
+/// Receives the finished and the total amount of the work, from any thread.
+using TransportProgress = std::function<void(std::size_t done, std::size_t total)>;
+
+struct PathOptions {
+    int samples = 64;  ///< paths through a pixel, stratified over it as far as the number allows
+    /// Reflections after which a path ends, which leaves light out; far more than matter below an
+    /// albedo of 0.99.
+    int mostBounces = 1000;
+    /// Light that comes from an emitter or from far away on this many reflections is the first that
+    /// counts: 0 all of it, 2 without what is seen directly and without direct light.
+    int fewestBounces = 0;
+    /// Reflections after which a path goes on with a probability, which is the largest component
+    /// of its weight, at most 0.95.
+    int sureBounces = 4;
+    std::uint64_t seed = 1;
+    TransportProgress progress = {};
+};
+
+/// A picture and the standard error of each of its numbers.
+struct PathPicture {
+    int width = 0, height = 0;
+    std::vector<float> radiance = {};  ///< [row][column][R, G, B], row 0 at the top
+    std::vector<float> error = {};     ///< likewise: the standard error of the mean over samples
+    std::size_t rays = 0;              ///< traced
+    std::size_t cut = 0;               ///< paths ended by mostBounces
+};
+
+/// Radiance towards a camera by path tracing (Kajiya 1986): at each meeting with a surface light is
+/// sampled, and the path goes on by the material's sampler; the two are weighted by the power
+/// heuristic (Veach 1997). Without bias but for mostBounces and f values that are not finite, which
+/// count as 0. The picture does not depend on the number of threads.
+PathPicture tracePaths(const SurfaceScene& scene, const Camera& camera,
+                       const PathOptions& options = {});
+
+/// Radiance along one ray: the mean of `samples` paths.
+struct PathEstimate {
+    Rgb radiance{}, error{};
+};
+PathEstimate tracePaths(const SurfaceScene& scene, const Point& origin, const Direction& direction,
+                        const PathOptions& options = {});
+
+}  // namespace hshfit::inline transport

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <hshfit/brdf/brdf.h>
+#include <hshfit/light/light_samples.h>
+#include <hshfit/meshes/mesh.h>
+#include <hshfit/rays/ray_scene.h>
+#include <hshfit/sampling/sampler.h>
+#include <hshfit/transport/camera.h>
+#include <hshfit/transport/environment_sampler.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hshfit::inline transport {
+
+/// The material of surfaces. The BRDF is grey or RGB.
+struct SurfaceMaterial {
+    std::string name;
+    std::shared_ptr<const Brdf> brdf;
+    std::shared_ptr<const Sampler> sampler;  ///< of the BRDF
+};
+
+/// A mesh in the world. Both sides reflect alike; the front emits.
+struct SurfaceObject {
+    std::string name;
+    Mesh mesh;
+    std::size_t material = 0;
+    Rgb emission{};  ///< radiance that the front emits, the same in every direction
+};
+
+/// A ray's meeting with a surface.
+struct SurfaceHit {
+    Point position{};
+    Direction flat;  ///< the triangle's normal, on the side of the ray
+    Frame frame;     ///< with the interpolated normal, on the same side; frameAt (view.h)
+    Direction wo;    ///< back along the ray, in the frame
+    Rgb emission{};  ///< towards the ray
+    double distance = 0;
+    std::uint32_t triangle = 0;  ///< of the scene
+    std::size_t object = 0;
+};
+
+/// A point of an emitting triangle.
+struct EmitterSample {
+    Point position{};
+    Direction normal;  ///< of its front
+    Rgb radiance{};
+    double pdf = 0;  ///< per area
+};
+
+/// Meshes with materials and the light on them. Immutable; safe to use from many threads.
+class SurfaceScene {
+public:
+    /// Throws UsageError for an object without such a material and a BRDF of spectra, NumericError
+    /// where Embree cannot take the meshes.
+    SurfaceScene(std::vector<SurfaceMaterial> materials, std::vector<SurfaceObject> objects,
+                 std::vector<Light> lights);
+    ~SurfaceScene();
+    SurfaceScene(const SurfaceScene&) = delete;
+    SurfaceScene& operator=(const SurfaceScene&) = delete;
+
+    std::optional<SurfaceHit> firstHit(const Point& origin, const Direction& direction) const;
+    /// Of a ray that leaves a surface; `direction` on the side of its `flat`.
+    std::optional<SurfaceHit> firstHit(const SurfaceHit& from, const Direction& direction) const;
+    /// Whether nothing lies between a surface and a point, or, without one, infinity.
+    bool visible(const SurfaceHit& from, const Direction& direction,
+                 const std::optional<Point>& to = {}) const;
+
+    /// f(wi, wo) at a hit, `wi` in its frame; values that are not finite count as 0.
+    Rgb reflectance(const SurfaceHit& hit, const Direction& wi) const;
+    const SurfaceMaterial& material(const SurfaceHit& hit) const;
+
+    const EnvironmentSampler& environment() const { return environment_; }
+    bool hasEmitters() const { return !emitters_.empty(); }
+    /// In proportion to area times radiance. Three independent numbers, uniform in [0, 1).
+    EmitterSample sampleEmitters(const std::array<double, 3>& u) const;
+    /// The density of `sampleEmitters` at a hit, per area; 0 where it emits nothing.
+    double emitterPdf(const SurfaceHit& hit) const;
+
+    std::size_t triangles() const { return all_.triangles.size(); }
+    const std::vector<SurfaceObject>& objects() const { return objects_; }
+
+private:
+    SurfaceHit hitOf(const RayHit& hit, const Direction& direction) const;
+    Point leaving(const SurfaceHit& from) const;
+
+    std::vector<SurfaceMaterial> materials_;
+    std::vector<SurfaceObject> objects_;  ///< their meshes moved to `all_`
+    Mesh all_;
+    std::vector<std::uint32_t> objectOf_;  ///< of each triangle
+    std::unique_ptr<RayScene> rays_;
+    EnvironmentSampler environment_;
+    std::vector<std::uint32_t> emitters_;  ///< triangles
+    std::vector<double> power_;            ///< of them, cumulative
+};
+
+}  // namespace hshfit::inline transport
