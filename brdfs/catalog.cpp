@@ -9,6 +9,7 @@
 #include <brdfs/analytic/disney.h>
 #include <brdfs/analytic/eon.h>
 #include <brdfs/analytic/ggx.h>
+#include <brdfs/analytic/gltf_pbr.h>
 #include <brdfs/analytic/gtr.h>
 #include <brdfs/analytic/he.h>
 #include <brdfs/analytic/lafortune.h>
@@ -199,6 +200,7 @@ std::span<const Model> models() {
         ggxModel(),
         gtrModel(),
         disneyModel(),
+        gltfPbrModel(),
         charlieModel(),
         sgModel(),
     };

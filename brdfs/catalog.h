@@ -23,6 +23,13 @@ using hshfit::Parameters;
 class ModelColumns;
 struct ColumnRequest;
 
+/// An optional part of a model: parameters whose defaults together leave it out.
+struct ModelPart {
+    std::string_view name;
+    std::string_view help;
+    std::vector<std::string_view> parameters;
+};
+
 /// One row of the table of analytic models.
 struct Model {
     std::string_view name;
@@ -37,6 +44,8 @@ struct Model {
     std::unique_ptr<ModelColumns> (*columns)(const ColumnRequest& request) = nullptr;
     /// The densities of its lobes (hshfit/sampling), for drawing directions. None: f is tabulated.
     HasSamplers::Known (*sampling)(const Parameters& parameters) = nullptr;
+    /// Parts that a fit may add or leave out (fit/choose_parts.h).
+    std::vector<ModelPart> parts = {};
 };
 
 /// One row of the table of measured formats.

@@ -1,5 +1,6 @@
 #include <brdfs/analytic/charlie.h>
 
+#include <brdfs/analytic/charlie_shape.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 #include <hshfit/sampling/axis_lobes.h>
@@ -9,10 +10,8 @@
 namespace hshfit::brdfs {
 
 struct CharlieShape {
-    double power;
+    CharlieCurve<double> curve;
     bool soft;
-    /// Of the authors' fit of Lambda over cos theta and r; their table, r = 0 and r = 1.
-    double a = 0, b = 0, c = 0, d = 0, e = 0;
 };
 
 }  // namespace hshfit::brdfs
@@ -38,13 +37,7 @@ Laws lawsOf(const Parameters& p) {
 }
 
 CharlieShape shapeOf(const Parameters& p) {
-    constexpr double smooth[] = {25.3245, 3.32435, 0.16801, -1.27393, -4.85967};
-    constexpr double rough[] = {21.5473, 3.82987, 0.19823, -1.97760, -4.32054};
-    const double r = p.number("r"), share = (1 - r) * (1 - r);
-    CharlieShape shape{.power = 1 / r, .soft = isSoft(p)};
-    double* const mixed[] = {&shape.a, &shape.b, &shape.c, &shape.d, &shape.e};
-    for (int i = 0; i < 5; ++i) *mixed[i] = share * smooth[i] + (1 - share) * rough[i];
-    return shape;
+    return {HWY_NAMESPACE::charlieCurve(p.number("r")), isSoft(p)};
 }
 
 void evalByVectors(const CharlieShape& shape, const TermBatch& batch) {

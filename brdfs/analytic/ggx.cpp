@@ -1,23 +1,11 @@
 #include <brdfs/analytic/ggx.h>
 
+#include <brdfs/analytic/ggx_shape.h>
 #include <brdfs/analytic/microfacet.h>
 #include <hshfit/sampling/visible_normals.h>
 
 #include <algorithm>
 #include <cmath>
-
-namespace hshfit::brdfs {
-
-template <class N>
-struct GgxShape {
-    RoughnessOf<N> r;
-
-    /// D has a pole at the slope i alpha.
-    N widthX() const { return r.ax; }
-    N widthY() const { return r.ay; }
-};
-
-}  // namespace hshfit::brdfs
 
 #define HWY_TARGET_INCLUDE "brdfs/analytic/ggx_terms.h"
 #include <brdfs/lanes/each_target.h>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <brdfs/analytic/facet_fresnel.h>
+#include <brdfs/analytic/ggx_shape.h>
 #include <brdfs/analytic/kink_curves.h>
 #include <brdfs/analytic/term_brdf.h>
 
@@ -8,11 +9,6 @@
 
 namespace hshfit::brdfs {
 
-/// Roughness along the two axes: both equal to `alpha`, or `ax` and `ay`.
-template <class N>
-struct RoughnessOf {
-    N ax, ay;
-};
 using Roughness = RoughnessOf<double>;
 
 /// The parameters that all microfacet models have: kd, ks, F0 | ior, k (facet_fresnel.h), alpha

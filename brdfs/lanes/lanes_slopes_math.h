@@ -52,6 +52,20 @@ HWY_INLINE Slopes<double, n> exp2(const Slopes<double, n>& a) {
     const double power = std::exp2(a.value);
     return Slopes<double, n>::chained(power, power * std::numbers::ln2, a);
 }
+HWY_INLINE double sin(double a) {
+    return std::sin(a);
+}
+HWY_INLINE double cos(double a) {
+    return std::cos(a);
+}
+template <int n>
+HWY_INLINE Slopes<double, n> sin(const Slopes<double, n>& a) {
+    return Slopes<double, n>::chained(std::sin(a.value), std::cos(a.value), a);
+}
+template <int n>
+HWY_INLINE Slopes<double, n> cos(const Slopes<double, n>& a) {
+    return Slopes<double, n>::chained(std::cos(a.value), -std::sin(a.value), a);
+}
 template <class V, int n>
 HWY_INLINE Slopes<V, n> expm1(const Slopes<V, n>& a) {
     const V less = expm1(a.value);

@@ -1,0 +1,152 @@
+// Terms of gltf_pbr.h. Included by gltf_pbr.cpp once for each instruction set.
+
+#include <brdfs/analytic/charlie_lobe.h>
+#include <brdfs/analytic/fresnel_terms.h>
+#include <brdfs/analytic/ggx_facets.h>
+#include <brdfs/analytic/sheen_albedo.h>
+#include <brdfs/analytic/term_columns.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace hshfit::brdfs::HWY_NAMESPACE {
+
+/// A vector turned about the normal; x and y depend on the parameters.
+template <class T>
+struct Turned {
+    T x, y;
+    RealOf<T> z, squared;
+
+    HWY_INLINE RealOf<T> squaredLength() const { return squared; }
+};
+
+template <class T>
+class GltfPbrTerms {
+    using R = RealOf<T>;
+    using N = ParameterOf<T>;
+
+public:
+    static constexpr std::size_t count = 5;
+
+    HWY_INLINE GltfPbrTerms(const GltfPbrShape<N>& shape, const OutgoingOf<T>& wo)
+        : shape_(shape),
+          wo_(wo),
+          z_(wo.z),
+          base_(shape.base),
+          coat_(shape.coat),
+          cosine_(shape.cosine),
+          sine_(shape.sine),
+          sheen_(shape.curve, R(wo.z)) {
+        const Incoming<R> outgoing{R(wo.x), R(wo.y), R(wo.z)};
+        outgoing_ = base_.scaledLambda(turned(outgoing, R(1.0)));
+        coatOutgoing_ = coat_.scaledLambda(outgoing);
+        coatFresnel_ = 0.04 + 0.96 * schlickWeightOf(z_);
+        under_ = 1.0 - T(shape.clearcoat) * coatFresnel_;
+        if (!isZero(shape.sheen)) outgoingAlbedo_ = albedo(z_);
+    }
+
+    HWY_INLINE void operator()(const Incoming<R>& wi, T* term) const {
+        const Incoming<R> above{wi.x, wi.y, max(wi.z, R(0.0))};
+        const HalfVector<R> h(wo_, above);
+        const R rise = schlickWeightOf(h.dotOutgoing());
+        T under = under_;
+        term[3] = T(0.0);
+        if (!isZero(shape_.sheen)) {
+            term[3] = under_ * bounded(sheen_(above.z, sheen_.lambda(above.z), h.squaredSlope()));
+            under = under * (1.0 - T(shape_.sheenPeak) * max(albedo(above.z), outgoingAlbedo_));
+        }
+        const Incoming<R> half{h.x, h.y, h.z};
+        const T lobe = base_.lobe(turned(half, h.squaredLength()), turned(above, R(1.0)), z_,
+                                  outgoing_);
+        const T specular(shape_.specular), transmitted(1 - shape_.f0);
+        term[0] = under * (1.0 - specular + specular * transmitted * (1.0 - rise));
+        term[1] = under * lobe * (1.0 - rise);
+        term[2] = under * lobe * rise;
+        term[4] = isZero(shape_.clearcoat)
+                      ? T(0.0)
+                      : coatFresnel_ * coat_.lobe(h, above, z_, coatOutgoing_);
+    }
+
+private:
+    HWY_INLINE Turned<T> turned(const Incoming<R>& w, R squaredLength) const {
+        return {cosine_ * w.x + sine_ * w.y, cosine_ * w.y - sine_ * w.x, w.z, squaredLength};
+    }
+    /// E from the table of the shape (sheen_albedo.h).
+    HWY_INLINE T albedo(R z) const {
+        constexpr int steps = SheenAlbedoTable::steps;
+        const R x = sqrt(max(z, R(0.0))) * steps;
+        const R at = truncated(min(x, R(steps - 1.0))), t = x - at;
+        const N* row = shape_.albedo.data();
+        const T a = gather(row, at), b = gather(row + 1, at), c = gather(row + 2, at),
+                d = gather(row + 3, at);
+        const T third = 3.0 * (b - c) + d - a, second = 2.0 * a - 5.0 * b + 4.0 * c - d;
+        return b + 0.5 * t * (c - a + t * (second + t * third));
+    }
+
+    const GltfPbrShape<N>& shape_;
+    OutgoingOf<T> wo_;
+    R z_;
+    GgxFacets<T> base_, coat_;
+    T cosine_, sine_, outgoing_, coatOutgoing_, under_, outgoingAlbedo_;
+    R coatFresnel_;
+    CharlieLobe<T> sheen_;
+};
+
+struct GltfPbrFormula {
+    template <class T>
+    using Terms = GltfPbrTerms<T>;
+
+    template <class N>
+    static N widthOf(const N& roughness) {
+        return max(N(1e-4), roughness * roughness);
+    }
+    /// Of one channel; gltf_pbr.cpp puts in the largest of all.
+    template <class N>
+    static GltfPbrShape<N> shape(const Values<N>& p) {
+        const N alpha = widthOf(p("roughnessFactor")), coat = widthOf(p("clearcoatRoughnessFactor"));
+        const N strength = p("anisotropyStrength"), rotation = p("anisotropyRotation");
+        const N along = alpha + (1 - alpha) * strength * strength;
+        const N least(SheenAlbedoTable::leastRoughness),
+            sheenRoughness = max(least, p("sheenRoughnessFactor"));
+        GltfPbrShape<N> shape{.base = {{along, alpha}},
+                              .coat = {{coat, coat}},
+                              .cosine = cos(rotation),
+                              .sine = sin(rotation),
+                              .specular = p("specularFactor"),
+                              .f0 = min(N(1.0), normalReflectanceOf(p("ior"), N(0.0)) *
+                                                    p("specularColorFactor")),
+                              .clearcoat = p("clearcoatFactor"),
+                              .sheen = p("sheenColorFactor"),
+                              .sheenPeak = p("sheenColorFactor"),
+                              .curve = charlieCurve(sheenRoughness * sheenRoughness),
+                              .albedo = {}};
+        if (!isZero(shape.sheen)) setAlbedo(sheenRoughness, shape);
+        return shape;
+    }
+    template <class N>
+    static void setAlbedo(const N& roughness, GltfPbrShape<N>& shape) {
+        SheenAlbedoTable::Row values, slopes;
+        SheenAlbedoTable::instance().at(plain(roughness), values, slopes);
+        for (std::size_t k = 0; k < values.size(); ++k)
+            shape.albedo[k] = values[k] + slopes[k] * (roughness - plain(roughness));
+    }
+    /// Weights of the diffuse part, F0 and the white rest of the lobe, the sheen and the coat.
+    template <class N>
+    static Weights<N> weights(const Values<N>& p) {
+        const N metallic = p("metallicFactor"), base = p("baseColorFactor");
+        const N dielectric = (1 - metallic) * p("specularFactor");
+        const N f0 =
+            min(N(1.0), normalReflectanceOf(p("ior"), N(0.0)) * p("specularColorFactor"));
+        return {N(0.0),
+                {(1 - metallic) * base / pi, dielectric * f0 + metallic * base,
+                 dielectric + metallic, p("sheenColorFactor"), p("clearcoatFactor")}};
+    }
+};
+
+void evalGltfPbr(const GltfPbrShape<double>& shape, const TermBatch& batch) {
+    evalLanes<GltfPbrTerms>(shape, batch);
+}
+std::unique_ptr<ModelColumns> gltfPbrColumns(const ColumnRequest& request) {
+    return columnsOf<GltfPbrFormula, 4>(request);
+}
+
+}  // namespace hshfit::brdfs::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();

@@ -1,0 +1,3 @@
+#pragma once
+
+#include <brdfs/catalog.h>

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <brdfs/catalog.h>
+#include <brdfs/fit/fit.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// A specification of a fit with the optional parts of its model that are named: parameters of
+/// the other parts are stated with their defaults, unless they are stated already. Throws
+/// UsageError for a model without parts, a sum, and unknown names.
+std::string withParts(std::string_view spec, const std::vector<std::string>& parts);
+
+/// The row of the model of a specification that is no sum, if it has parts; else null.
+const Model* modelWithParts(std::string_view spec);
+
+/// One step of a search for parts.
+struct PartTrial {
+    std::vector<std::string> parts;  ///< in the model
+    double heldOut = 0;              ///< ModelRank::heldOut
+    bool taken = false;              ///< the search went on from here
+    std::string failure = {};        ///< why there is no fit
+};
+
+struct PartSearch {
+    std::vector<std::string> parts;  ///< found worth it
+    std::vector<PartTrial> trials;   ///< the first has no parts
+};
+
+struct PartOptions {
+    /// A part is worth it if it lowers the held-out loss by this share. Folds of the same data
+    /// differ by less.
+    double leastGain = 0.02;
+    /// Samples that the search draws; the fit that follows takes all.
+    std::size_t samples = 8192;
+    std::function<void(std::size_t, std::size_t)> progress = {};
+};
+
+/// Adds the part that lowers the held-out loss (compare_models.h) most, again and again, while it
+/// gains `leastGain`. Parts whose parameters are all held or stated are not tried.
+PartSearch chooseParts(const FitSamples& samples, const FitOptions& fit,
+                       const PartOptions& options = {});
+
+}  // namespace hshfit::brdfs
