@@ -15,6 +15,7 @@
 #include <brdfs/analytic/lafortune.h>
 #include <brdfs/analytic/lambert.h>
 #include <brdfs/analytic/minnaert.h>
+#include <brdfs/analytic/openpbr.h>
 #include <brdfs/analytic/oren_nayar.h>
 #include <brdfs/analytic/phong.h>
 #include <brdfs/analytic/sg.h>
@@ -201,6 +202,7 @@ std::span<const Model> models() {
         gtrModel(),
         disneyModel(),
         gltfPbrModel(),
+        openpbrModel(),
         charlieModel(),
         sgModel(),
     };

@@ -1,4 +1,5 @@
 #include "command.h"
+#include "export_material.h"
 
 #include <hshfit/gpu/error_split.h>
 
@@ -8,7 +9,9 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace hshfit::cli {
 namespace {
@@ -19,6 +22,7 @@ struct ExportArguments {
     std::string coefficients, output, number, storage = "auto", packing = "coef4";
     bool chroma = false, noError = false;
     jobs::ExportOptions options;
+    jobs::MaterialExportOptions material;
 };
 
 Json describe(const gpu::Payload& payload) {
@@ -147,8 +151,38 @@ Json document(const jobs::Exported& exported, const std::string& folder) {
     return document;
 }
 
-void runExport(ExportArguments& arguments, const Globals& globals) {
+/// Refuses options that do not go with the targets: materials have some of their own, and none of
+/// those of coefficients.
+void requireOptions(const CLI::App& command, bool materials) {
+    constexpr std::string_view both[] = {"COEFFS", "--output", "--target", "--name", "--source",
+                                         "--force",  "--json",   "--quiet",  "--threads",
+                                         "--help"};
+    constexpr std::string_view own[] = {"--mesh", "--extensions"};
+    for (const CLI::Option* option : command.get_options()) {
+        const std::string name = option->get_lnames().empty() ? option->get_name()
+                                                              : "--" + option->get_lnames().front();
+        const auto isIn = [&](const auto& names) {
+            return std::ranges::find(names, name) != std::end(names);
+        };
+        if (option->count() == 0 || isIn(both) || isIn(own) == materials) continue;
+        throw UsageError(fmt::format("export: {} is for {}", name,
+                                     isIn(own) ? "the targets gltf and materialx"
+                                               : "other targets than gltf and materialx"));
+    }
+}
+
+void runExport(ExportArguments& arguments, const CLI::App& command, const Globals& globals) {
     jobs::ExportOptions& options = arguments.options;
+    const bool materials = jobs::areMaterials(options.targets);
+    requireOptions(command, materials);
+    if (materials) {
+        jobs::MaterialExportOptions& material = arguments.material;
+        material.targets = options.targets;
+        material.name = options.name;
+        material.source = options.source;
+        material.force = options.force;
+        return runMaterialExport(arguments.coefficients, arguments.output, material, globals);
+    }
     if (!arguments.number.empty()) options.number = gpu::parseNumber(arguments.number);
     options.storage = gpu::parseStorage(arguments.storage);
     options.pack.packing = arguments.packing == "rgb" ? gpu::Packing::rgb : gpu::Packing::coef4;
@@ -170,14 +204,14 @@ void runExport(ExportArguments& arguments, const Globals& globals) {
 void addExport(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ExportArguments>();
     jobs::ExportOptions& options = arguments->options;
-    command.add_option("COEFFS", arguments->coefficients, "Coefficient file of hshfit project")
+    command.add_option("COEFFS", arguments->coefficients, "Coefficient file of hshfit project; for gltf and materialx a BRDF too")
         ->required();
     command.add_option("-o,--output", arguments->output, "Folder, made if absent")->required();
     command
         .add_option(
             "--target", options.targets,
             "all that is possible, or containers, languages, renderers and viewer from hshfit "
-            "list targets")
+            "list targets; or gltf, materialx: a material fitted to the source")
         ->capture_default_str();
     command.add_option(
         "--outgoing", options.outgoing,
@@ -226,7 +260,16 @@ void addExport(CLI::App& command, Globals& globals) {
         "by '+'; repeated: several to choose from (default: a studio)");
     command.add_flag("--zstd", options.zstd, "Compress KTX2 with Zstandard");
     command.add_flag("--force", options.force, "Replace files that are there");
-    command.callback([arguments, &globals] { runExport(*arguments, globals); });
+    command.add_option("--mesh", arguments->material.mesh,
+                       "With gltf: OBJ or PLY file, +y up (default: a sphere)");
+    command
+        .add_option("--extensions", arguments->material.parts,
+                    "With gltf and materialx, of a fit: auto for the extensions (of OpenPBR: "
+                    "lobes) that held-out directions find worth it, none, all, or names with "
+                    "commas")
+        ->capture_default_str();
+    command.callback(
+        [arguments, &command, &globals] { runExport(*arguments, command, globals); });
 }
 
 }  // namespace hshfit::cli

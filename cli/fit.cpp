@@ -34,6 +34,16 @@ std::string text(const jobs::Fitted& fitted, const std::string& output) {
                                                      : "not determined by the data";
         lines += fmt::format("  {:<24} {:>2} {:<14.8g} {}\n", p.name, p.channel, p.value, error);
     }
+    if (fitted.search) {
+        for (const brdfs::PartTrial& trial : fitted.search->trials) {
+            const std::string name = trial.parts.empty() ? "no extension"
+                                                         : fmt::format("{}",
+                                                                       fmt::join(trial.parts, " + "));
+            lines += trial.failure.empty() ? fmt::format("  {:<40} held out {:.6g}{}\n", name,
+                                                         trial.heldOut, trial.taken ? ", taken" : "")
+                                           : fmt::format("  {:<40} {}\n", name, trial.failure);
+        }
+    }
     for (const auto& set : result.ambiguous)
         lines += fmt::format("  ambiguous together: {}\n", fmt::join(set, ", "));
     lines += fmt::format("  rms residual {:.6g} over {} values, {} iterations, {}\n", result.loss,
@@ -141,6 +151,9 @@ void addFit(CLI::App& command, Globals& globals) {
         "is not fitted again");
     command.add_option("--model", options.model,
                        "MODEL[:key=value,...][+MODEL...]: what is given is not fitted");
+    command.add_option("--extensions", options.parts,
+                       "Of gltf-pbr and openpbr: auto (default) for the optional parts that "
+                       "held-out directions find worth it, none, all, or names with commas");
     command.add_option("--compare-models", arguments->models,
                        "Fit each of these models and rank them by held-out directions");
     command.add_option("-o,--output", arguments->output,

@@ -29,6 +29,7 @@ constexpr OptionRow options[] = {
     {"FileSet::force", "--force"},
     {"FitOptions::accept", "--accept"},
     {"FitOptions::model", "--model", Value::quoted},
+    {"FitOptions::parts", "--extensions"},
     {"Form::basis", "--basis"},
     {"Form::condonShortley", "--condon-shortley"},
     {"Form::energyPreserving", "--energy-preserving"},

@@ -14,6 +14,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 namespace hshfit::jobs {
 namespace {
 
@@ -47,6 +51,50 @@ double explainedBy(const brdfs::FitResult& result, const brdfs::FitSamples& samp
     return black > 0 ? 1 - (result.loss / black) * (result.loss / black) : 1;
 }
 
+std::vector<std::string> namesIn(const std::string& list) {
+    std::vector<std::string> names;
+    for (std::size_t first = 0; first <= list.size();) {
+        const std::size_t last = std::min(list.find(',', first), list.size());
+        names.push_back(list.substr(first, last - first));
+        first = last + 1;
+    }
+    return names;
+}
+
+/// Restricts a model to the parts that are asked for, or that are worth it.
+std::optional<brdfs::PartSearch> restrictParts(const FitOptions& options,
+                                               const brdfs::FitSamples& samples,
+                                               brdfs::FitOptions& how, const Listener& listener) {
+    const brdfs::Model* model = brdfs::modelWithParts(how.model);
+    if (!model || how.model.find('+') != how.model.npos) {
+        if (options.parts.empty()) return {};
+        throw UsageError(fmt::format("{}: {} is for models with optional parts", how.model,
+                                     Setting{"FitOptions::parts"}));
+    }
+    if (options.parts == "all") return {};
+    brdfs::PartSearch search;
+    if (options.parts.empty() || options.parts == "auto")
+        search = brdfs::chooseParts(samples, how, {.progress = listener.part("parts")});
+    else if (options.parts != "none")
+        search.parts = namesIn(options.parts);
+    how.model = brdfs::withParts(how.model, search.parts);
+    return search;
+}
+
+nlohmann::ordered_json searchJson(const brdfs::PartSearch& search) {
+    nlohmann::ordered_json trials = nlohmann::ordered_json::array();
+    for (const brdfs::PartTrial& trial : search.trials) {
+        trials.push_back({{"parts", trial.parts}, {"taken", trial.taken}});
+        if (trial.failure.empty())
+            trials.back()["held_out_rms"] = trial.heldOut;
+        else
+            trials.back()["failure"] = trial.failure;
+    }
+    return {{"chosen", search.parts},
+            {"least_gain", brdfs::PartOptions{}.leastGain},
+            {"trials", trials}};
+}
+
 /// Writes a page that compares data and fit into the fit's folder. Returns the number of files.
 std::size_t writePage(const std::string& data, const Fitted& fit, const std::string& folder,
                       bool rgb, const Listener& listener) {
@@ -72,8 +120,9 @@ Fitted fit(const std::string& data, const std::string& output, const FitOptions&
            const Listener& listener) {
     brdfs::FitOptions how = optionsOf(options);
     const brdfs::FitSamples samples = samplesOf(options, data);
+    const auto search = restrictParts(options, samples, how, listener);
     how.progress = listener.part("fit");
-    Fitted fitted{.result = brdfs::fit(samples, how), .preset = {}};
+    Fitted fitted{.result = brdfs::fit(samples, how), .search = search, .preset = {}};
     if (!fitted.result.converged && !options.accept) {
         throw NumericError(
             fmt::format("{}: the fit of {} did not converge ({}); {} takes it as it "
@@ -84,6 +133,7 @@ Fitted fit(const std::string& data, const std::string& output, const FitOptions&
     fitted.explained = explainedBy(fitted.result, samples, how.loss);
     fitted.poor = judgeFit(fitted.explained, data, options.model);
     fitted.preset["fit"]["explained"] = fitted.explained;
+    if (search) fitted.preset["fit"]["parts"] = searchJson(*search);
     if (isPresetPath(output)) {
         writeFile(output, jsonText(fitted.preset, 2) + "\n");
     } else if (!output.empty()) {

@@ -4,6 +4,7 @@
 #include "listener.h"
 #include "quality.h"
 
+#include <brdfs/fit/choose_parts.h>
 #include <brdfs/fit/compare_models.h>
 #include <brdfs/fit/fit.h>
 #include <brdfs/fit/fit_samples.h>
@@ -33,10 +34,15 @@ struct FitOptions {
     std::size_t samples = 0;  ///< to draw; 0: all
     bool accept = false;      ///< accept a fit that did not converge
     bool rgb = false;         ///< wavelengths as linear Rec. 709
+    /// Optional parts of the model (brdfs::ModelPart): "auto" for those that held-out directions
+    /// find worth it, "none", "all", or names with commas. Empty: auto where the model has parts.
+    std::string parts = {};
 };
 
 struct Fitted {
     brdfs::FitResult result;
+    std::optional<brdfs::PartSearch> search = {};  ///< of a model with parts
+
     nlohmann::ordered_json preset;  ///< docs/schemas/fit.schema.json
     std::size_t pageFiles = 0;      ///< of the page, where one was asked for
     /// 1 - (loss / loss of a black surface)^2: the share of the data, in units of the loss.

@@ -1,21 +1,12 @@
 #include <brdfs/analytic/eon.h>
 
+#include <brdfs/analytic/eon_shape.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 #include <hshfit/brdf/kink_curve.h>
 
 #include <algorithm>
 #include <cmath>
-
-namespace hshfit::brdfs {
-
-struct EonShape {
-    double roughness;
-    bool exact;
-    double single, scale;
-};
-
-}  // namespace hshfit::brdfs
 
 #define HWY_TARGET_INCLUDE "brdfs/analytic/eon_terms.h"
 #include <brdfs/lanes/each_target.h>
@@ -28,22 +19,8 @@ HWY_EXPORT(evalEon);
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
 
-struct Settings {
-    double roughness;
-    bool exact;
-
-    double single() const { return 1 / (1 + (0.5 - 2 / (3 * pi)) * roughness); }
-    double mean() const { return single() * (1 + (2. / 3 - 28 / (15 * pi)) * roughness); }
-};
-
-/// The weight of multiple scattering between facets.
-Colour multiple(const Colour& kd, double mean) {
-    return mapped(
-        kd, [&](double value) { return value * value * mean / (1 - value * (1 - mean)) / pi; });
-}
-
 /// The polynomial's albedo exceeds kd by up to 1.5e-4 of kd.
-Laws lawsOf(const Colour& kd, const Settings& settings) {
+Laws lawsOf(const Colour& kd, const EonSettings& settings) {
     Laws laws = claims;
     laws.energyConserving = settings.exact || largest(kd) <= 0.9998 || settings.roughness == 0;
     return laws;
@@ -58,11 +35,10 @@ class Eon final
                         HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::EonTerms, EonShape>>,
       public HasKinkCurves {
 public:
-    Eon(const Model& model, const Parameters& p, const Colour& kd, const Settings& settings)
+    Eon(const Model& model, const Parameters& p, const Colour& kd, const EonSettings& settings)
         : ShapedBrdf(model, p, lawsOf(kd, settings),
-                     TermWeights{{0.0}, {overPi(kd), multiple(kd, settings.mean())}},
-                     EonShape{settings.roughness, settings.exact, settings.single(),
-                              settings.roughness > 0 ? 1 / (1 - settings.mean()) : 0}) {}
+                     TermWeights{{0.0}, {overPi(kd), settings.multiple(kd)}},
+                     settings.shape()) {}
 
     /// The kink at equal heights, where max(cos_i, cos_o) changes branches.
     std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
@@ -76,7 +52,7 @@ public:
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     return std::make_unique<Eon>(eonModel(), p, p.colour("kd"),
-                                 Settings{p.number("roughness"), p.choice("albedo") == "exact"});
+                                 EonSettings{p.number("roughness"), p.choice("albedo") == "exact"});
 }
 
 std::unique_ptr<Brdf> makeOpenpbr(const Parameters& p) {
@@ -84,7 +60,7 @@ std::unique_ptr<Brdf> makeOpenpbr(const Parameters& p) {
     const Colour kd =
         mapped(p.colour("base_color"), [&](double colour) { return weight * colour; });
     return std::make_unique<Eon>(openpbrDiffuseModel(), p, kd,
-                                 Settings{p.number("base_diffuse_roughness"), true});
+                                 EonSettings{p.number("base_diffuse_roughness"), true});
 }
 
 Parameter unitParameter(std::string_view name, std::string_view help, double fallback) {

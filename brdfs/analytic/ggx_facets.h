@@ -30,7 +30,7 @@ public:
     }
 
     /// z Lambda(w), finite at the horizon, where Lambda is not.
-    template <class W>
+    template <class W = Incoming<RealOf<T>>>
     HWY_INLINE T scaledLambda(const W& w) const {
         const T x = w.x * ax_, y = w.y * ay_, s = x * x + y * y;
         return 0.5 * s / (w.z + sqrt(w.z * w.z + s));

@@ -141,8 +141,8 @@ std::vector<Parameter> parameters() {
          .fit = {{.low = 1.1, .high = 2.5}}},
         unit("specularFactor", "strength of the dielectric's lobe", 1,
              {{.low = 0.1, .high = 0.9}}),
-        // A colour here darkens the diffuse parts of all channels, which no column does.
-        colour("specularColorFactor", "scale of the dielectric's F0", 1, {FitRange{}}),
+        // Not fitted: a colour here darkens the diffuse parts of all channels, which no column does.
+        colour("specularColorFactor", "scale of the dielectric's F0", 1, {}),
         colour("sheenColorFactor", "of the cloth's fibres", 0, {{.low = 0.02, .high = 0.8}}),
         unit("sheenRoughnessFactor", "square root of charlie's r", 0, {{.low = 0.2, .high = 0.9}}),
         unit("clearcoatFactor", "strength of the coat", 0, {{.low = 0.1, .high = 0.9}}),

@@ -167,13 +167,15 @@ TEST(Albedo, ExceedsOneSomewhereWhereNotClaimed) {
         {"gtr", {"gtr:gamma=1,kd=1,alpha=.3", .3, .3}},
         {"disney", {"disney:baseColor=1,sheen=1"}},
         {"charlie", {"charlie:r=.01"}},  // by the fit of Lambda
+        {"gltf-pbr", {"gltf-pbr:metallicFactor=0,roughnessFactor=.1", .01, .01}},
         {"sg", {"sg:sharpness=2"}},
         {"beckmann", {"beckmann:kd=1,alpha=.3", .3, .3}},
         {"ggx", {"ggx:kd=1,alpha=.3", .3, .3}},
     };
     for (const Model& model : models()) {
         if (model.laws.energyConserving) continue;
-        if (model.name == "eon") continue;  // by 1e-4: models_formulas_diffuse.cpp
+        if (model.name == "eon") continue;      // by 1e-4: models_formulas_diffuse.cpp
+        if (model.name == "openpbr") continue;  // by 1e-3 at most: its layers' albedos are a table
         const auto found = offenders.find(std::string(model.name));
         ASSERT_NE(found, offenders.end()) << model.name;
         const auto brdf = open(found->second.spec);

@@ -74,6 +74,32 @@ inline void addLobes(std::vector<Case>& grid) {
     }
 }
 
+/// Standard materials, with each of their parts.
+inline void addStandard(std::vector<Case>& grid) {
+    for (const char* roughness : {"0", ".3", "1"})
+        for (const char* rest :
+             {"", ",metallicFactor=0", ",metallicFactor=.4,baseColorFactor=.9/.5/.1",
+              ",metallicFactor=0,ior=2.2,specularFactor=.6,specularColorFactor=1/.7/.2",
+              ",clearcoatFactor=.8,clearcoatRoughnessFactor=.2",
+              ",metallicFactor=0,sheenColorFactor=.5/.3/.8,sheenRoughnessFactor=.4",
+              ",anisotropyStrength=.5", ",anisotropyStrength=.7,anisotropyRotation=.6"}) {
+            const double alpha = std::max(1e-4, std::stod(roughness) * std::stod(roughness));
+            grid.push_back(
+                {"gltf-pbr:roughnessFactor=" + std::string(roughness) + rest, alpha, alpha});
+        }
+    for (const char* roughness : {"0", ".3", "1"})
+        for (const char* rest :
+             {"", ",base_metalness=1,base_color=.9/.6/.2,specular_color=.9/.8/.7",
+              ",base_metalness=.5,base_diffuse_roughness=.7,base_color=.9/.5/.1",
+              ",specular_weight=.4,specular_ior=2.5", ",coat_weight=.7,coat_color=.9/.5/.3",
+              ",fuzz_weight=.6,fuzz_color=.3/.5/1,fuzz_roughness=.3",
+              ",base_metalness=1,specular_roughness_anisotropy=.6"}) {
+            const double alpha = std::max(1e-4, std::stod(roughness) * std::stod(roughness));
+            grid.push_back(
+                {"openpbr:specular_roughness=" + std::string(roughness) + rest, alpha, alpha});
+        }
+}
+
 /// Sums of models and of colours, with weights; some conserve energy, others do not.
 inline std::vector<Case> sumGrid() {
     return {{"lambert:kd=.1 + ggx:alpha=.2", .2, .2},
@@ -172,6 +198,7 @@ inline std::vector<Case> modelGrid() {
                             1 / std::sqrt(std::stod(n.x) + 1), 1 / std::sqrt(std::stod(n.y) + 1)});
     addDiffuse(grid);
     addLobes(grid);
+    addStandard(grid);
     addFitted(grid);
     return grid;
 }

@@ -50,6 +50,14 @@ std::vector<Target> makeTargets() {
     for (const Renderer& renderer : renderers) {
         rows.push_back({Target::Kind::renderer, renderer.name, renderer.summary, renderer.parts});
     }
+    rows.push_back({Target::Kind::material,
+                    "gltf",
+                    "a .glb: glTF 2.0's material, fitted, on a sphere or a mesh",
+                    {}});
+    rows.push_back({Target::Kind::material,
+                    "materialx",
+                    "a .mtlx: open_pbr_surface or gltf_pbr of MaterialX 1.39, fitted",
+                    {}});
     return rows;
 }
 
@@ -66,7 +74,8 @@ const Target& find(std::string_view name) {
 }  // namespace
 
 std::string_view kindName(Target::Kind kind) {
-    constexpr std::array<std::string_view, 4> names = {"container", "shader", "viewer", "renderer"};
+    constexpr std::array<std::string_view, 5> names = {"container", "shader", "viewer", "renderer",
+                                                       "material"};
     return names[static_cast<std::size_t>(kind)];
 }
 
@@ -85,7 +94,8 @@ std::vector<const Target*> selectTargets(std::string_view names) {
         const std::size_t last = std::min(names.find(',', first), names.size());
         const std::string_view name = names.substr(first, last - first);
         if (name == "all") {
-            for (const Target& target : targets()) want(target);
+            for (const Target& target : targets())
+                if (target.kind != Target::Kind::material) want(target);
         } else {
             want(find(name));
         }

@@ -6,10 +6,10 @@
 
 namespace hshfit::gpu::inline containers {
 
-/// A choice of an export: a container, a shader language, the viewer, or the set of
-/// them that suits one renderer.
+/// A choice of an export: a container, a shader language, the viewer, the set of them that suits
+/// one renderer, or a standard material, which has parameters in place of coefficients.
 struct Target {
-    enum class Kind { container, shader, viewer, renderer };
+    enum class Kind { container, shader, viewer, renderer, material };
 
     Kind kind = Kind::container;
     std::string name, summary;
@@ -17,11 +17,12 @@ struct Target {
 };
 std::string_view kindName(Target::Kind kind);  ///< "container", …
 
-/// The containers, the languages, the viewer and the renderers, in this order.
+/// The containers, the languages, the viewer, the renderers and the materials, in this order.
 const std::vector<Target>& targets();
 
 /// Containers, languages and the viewer named in a comma-separated list, renderers replaced by
-/// their parts, each once and in the order of the table; "all" is everything.
+/// their parts, and materials, each once and in the order of the table; "all" is everything but
+/// the materials.
 /// Throws UsageError that lists the known ones.
 std::vector<const Target*> selectTargets(std::string_view names);
 

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "listener.h"
+
+#include <brdfs/fit/choose_parts.h>
+#include <hshfit/accuracy/pair_errors.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hshfit::jobs {
+
+struct MaterialExportOptions {
+    std::string targets = "gltf";  ///< gpu::selectTargets, materials alone
+    std::string name = {};         ///< of the files; empty: from the input
+    /// The BRDF that the loss is measured against; empty: that of the coefficient file or of the
+    /// fit, or the input itself.
+    std::string source = {};
+    std::string mesh = {};        ///< path, +y up; empty: a sphere
+    std::string parts = "auto";   ///< FitOptions::parts
+    std::string fitLoss = "log";  ///< brdfs::findLoss: that of the stated mean
+    std::size_t samples = 40000;  ///< of the fit, drawn; 0: all
+    bool force = false;           ///< replace existing files
+};
+
+/// One file: a standard material.
+struct ExportedMaterial {
+    std::string target, path;
+    std::size_t bytes = 0;
+    std::string spec;    ///< of the material, which opens it as a BRDF
+    bool fitted = false; ///< to the input, rather than being the input
+    bool converged = true;
+    std::optional<brdfs::PartSearch> search = {};
+    std::optional<PairSummary> loss = {};  ///< against the source
+    std::string reason = {};               ///< why there is no loss
+};
+
+struct ExportedMaterials {
+    std::string name, source;
+    std::size_t vertices = 0, triangles = 0;
+    std::vector<ExportedMaterial> files;
+};
+
+/// Whether a list of targets names materials; throws UsageError for a mixture with other targets.
+bool areMaterials(const std::string& targets);
+
+/// The loss of a material as JSON: mean log error, maximum with its directions, albedo.
+nlohmann::ordered_json lossJson(const PairSummary& loss);
+
+/// Writes `input` as standard materials to `folder`: all files or none. A specification or preset
+/// of the models gltf-pbr and openpbr is written as it is; anything else, and the source of a
+/// coefficient file, is fitted first. The target gltf takes gltf-pbr; materialx takes either, and
+/// openpbr for anything else. Colours are linear Rec. 709.
+/// Throws UsageError, InputError, NumericError and OutputError.
+ExportedMaterials exportMaterials(const std::string& input, const std::string& folder,
+                                  const MaterialExportOptions& options,
+                                  const Listener& listener = {});
+
+}  // namespace hshfit::jobs

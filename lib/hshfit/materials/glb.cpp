@@ -1,0 +1,160 @@
+#include <hshfit/materials/glb.h>
+
+#include <hshfit/error.h>
+#include <hshfit/files/json_fields.h>
+#include <hshfit/version.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string_view>
+
+namespace hshfit::inline materials {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Numbers of the specification (3.6.2, 3.7.2.1, 4.4).
+constexpr int arrayBuffer = 34962, elementBuffer = 34963, float32 = 5126, uint32 = 5125;
+constexpr std::uint32_t magic = 0x46546C67, jsonChunk = 0x4E4F534A, binaryChunk = 0x004E4942;
+
+void append(std::string& bytes, std::uint32_t value) {
+    for (int shift = 0; shift < 32; shift += 8)
+        bytes += static_cast<char>((value >> shift) & 0xff);
+}
+
+/// The binary chunk, with the views and accessors that describe it.
+struct Buffer {
+    std::string bytes;
+    Json views = Json::array(), accessors = Json::array();
+
+    /// `Item` is an array of floats, or an index; both little-endian.
+    template <class Item>
+    std::size_t add(const std::vector<Item>& items, std::string_view type, int component,
+                    int target) {
+        const std::size_t offset = bytes.size();
+        for (const Item& item : items) {
+            std::array<std::uint32_t, sizeof(Item) / 4> words;
+            std::memcpy(words.data(), &item, sizeof(Item));
+            for (const std::uint32_t word : words) append(bytes, word);
+        }
+        views.push_back({{"buffer", 0},
+                         {"byteOffset", offset},
+                         {"byteLength", bytes.size() - offset},
+                         {"target", target}});
+        accessors.push_back({{"bufferView", views.size() - 1},
+                             {"componentType", component},
+                             {"count", items.size()},
+                             {"type", type}});
+        return accessors.size() - 1;
+    }
+};
+
+/// The bounds of an accessor, which positions have to have.
+void addBounds(const std::vector<std::array<float, 3>>& positions, Json& accessor) {
+    std::array<float, 3> least = positions.front(), most = least;
+    for (const auto& position : positions) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            least[axis] = std::min(least[axis], position[axis]);
+            most[axis] = std::max(most[axis], position[axis]);
+        }
+    }
+    accessor["min"] = least;
+    accessor["max"] = most;
+}
+
+void requireFinite(const Json& json, const std::string& place) {
+    if (json.is_number_float() && !std::isfinite(json.get<double>()))
+        throw NumericError(fmt::format("{} is not finite, which glTF cannot hold", place));
+    if (!json.is_structured()) return;
+    for (const auto& [key, value] : json.items()) requireFinite(value, place + "." + key);
+}
+
+}  // namespace
+
+Json gltfJson(const GltfMaterial& material) {
+    const MaterialColour& base = material.baseColour;
+    Json extensions = Json::object();
+    if (material.ior) extensions["KHR_materials_ior"] = {{"ior", *material.ior}};
+    if (material.specular) {
+        extensions["KHR_materials_specular"] = {
+            {"specularFactor", material.specular->factor},
+            {"specularColorFactor", material.specular->colour}};
+    }
+    if (material.sheen) {
+        extensions["KHR_materials_sheen"] = {
+            {"sheenColorFactor", material.sheen->colour},
+            {"sheenRoughnessFactor", material.sheen->roughness}};
+    }
+    if (material.clearcoat) {
+        extensions["KHR_materials_clearcoat"] = {
+            {"clearcoatFactor", material.clearcoat->factor},
+            {"clearcoatRoughnessFactor", material.clearcoat->roughness}};
+    }
+    if (material.anisotropy) {
+        extensions["KHR_materials_anisotropy"] = {
+            {"anisotropyStrength", material.anisotropy->strength},
+            {"anisotropyRotation", material.anisotropy->rotation}};
+    }
+    Json json = {{"name", material.name},
+                 {"pbrMetallicRoughness",
+                  {{"baseColorFactor", Json::array({base[0], base[1], base[2], 1.0})},
+                   {"metallicFactor", material.metallic},
+                   {"roughnessFactor", material.roughness}}}};
+    if (!extensions.empty()) json["extensions"] = std::move(extensions);
+    requireFinite(json, material.name);
+    return json;
+}
+
+std::string glbBytes(const GltfMaterial& material, const Surface& surface, const Json& extras,
+                     const Json& source) {
+    if (surface.indices.empty()) throw UsageError("a surface without triangles");
+    Json json = gltfJson(material);
+    if (!extras.empty()) json["extras"] = extras;
+    Buffer buffer;
+    const std::size_t position = buffer.add(surface.positions, "VEC3", float32, arrayBuffer);
+    addBounds(surface.positions, buffer.accessors.back());
+    Json attributes = {{"POSITION", position},
+                       {"NORMAL", buffer.add(surface.normals, "VEC3", float32, arrayBuffer)}};
+    // Tangents matter to anisotropic materials alone.
+    if (material.anisotropy)
+        attributes["TANGENT"] = buffer.add(surface.tangents, "VEC4", float32, arrayBuffer);
+    const std::size_t indices = buffer.add(surface.indices, "SCALAR", uint32, elementBuffer);
+    Json asset = {{"version", "2.0"}, {"generator", fmt::format("hshfit {}", version)}};
+    if (!source.empty()) asset["extras"] = source;
+    const Json primitive = {{"attributes", attributes}, {"indices", indices}, {"material", 0}};
+    Json document = {
+        {"asset", asset},
+        {"scene", 0},
+        {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
+        {"nodes", Json::array({{{"name", material.name}, {"mesh", 0}}})},
+        {"meshes", Json::array({{{"primitives", Json::array({primitive})}}})},
+        {"materials", Json::array({json})},
+        {"buffers", Json::array({{{"byteLength", buffer.bytes.size()}}})},
+        {"bufferViews", buffer.views},
+        {"accessors", buffer.accessors}};
+    if (json.contains("extensions")) {
+        for (const auto& [name, value] : json["extensions"].items())
+            document["extensionsUsed"].push_back(name);
+    }
+    std::string text = jsonText(document);
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    const std::size_t length = 12 + 8 + text.size() + 8 + buffer.bytes.size();
+    if (length > std::numeric_limits<std::uint32_t>::max())
+        throw UsageError("a mesh of more than 4 GiB, which a .glb file cannot hold");
+    std::string bytes;
+    for (const std::uint32_t word : {magic, 2u, static_cast<std::uint32_t>(length),
+                                     static_cast<std::uint32_t>(text.size()), jsonChunk})
+        append(bytes, word);
+    bytes += text;
+    append(bytes, static_cast<std::uint32_t>(buffer.bytes.size()));
+    append(bytes, binaryChunk);
+    return bytes + buffer.bytes;
+}
+
+}  // namespace hshfit::inline materials
