@@ -154,13 +154,12 @@ Json document(const jobs::Exported& exported, const std::string& folder) {
 /// Refuses options that do not go with the targets: materials have some of their own, and none of
 /// those of coefficients.
 void requireOptions(const CLI::App& command, bool materials) {
-    constexpr std::string_view both[] = {"COEFFS", "--output", "--target", "--name", "--source",
-                                         "--force",  "--json",   "--quiet",  "--threads",
-                                         "--help"};
+    constexpr std::string_view both[] = {"COEFFS",  "--output", "--target", "--name",    "--source",
+                                         "--force", "--json",   "--quiet",  "--threads", "--help"};
     constexpr std::string_view own[] = {"--mesh", "--extensions"};
     for (const CLI::Option* option : command.get_options()) {
-        const std::string name = option->get_lnames().empty() ? option->get_name()
-                                                              : "--" + option->get_lnames().front();
+        const std::string name =
+            option->get_lnames().empty() ? option->get_name() : "--" + option->get_lnames().front();
         const auto isIn = [&](const auto& names) {
             return std::ranges::find(names, name) != std::end(names);
         };
@@ -204,7 +203,9 @@ void runExport(ExportArguments& arguments, const CLI::App& command, const Global
 void addExport(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ExportArguments>();
     jobs::ExportOptions& options = arguments->options;
-    command.add_option("COEFFS", arguments->coefficients, "Coefficient file of hshfit project; for gltf and materialx a BRDF too")
+    command
+        .add_option("COEFFS", arguments->coefficients,
+                    "Coefficient file of hshfit project; for gltf and materialx a BRDF too")
         ->required();
     command.add_option("-o,--output", arguments->output, "Folder, made if absent")->required();
     command
@@ -268,8 +269,7 @@ void addExport(CLI::App& command, Globals& globals) {
                     "lobes) that held-out directions find worth it, none, all, or names with "
                     "commas")
         ->capture_default_str();
-    command.callback(
-        [arguments, &command, &globals] { runExport(*arguments, command, globals); });
+    command.callback([arguments, &command, &globals] { runExport(*arguments, command, globals); });
 }
 
 }  // namespace hshfit::cli

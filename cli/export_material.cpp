@@ -31,8 +31,9 @@ Json document(const jobs::ExportedMaterials& exported, const std::string& folder
                      {"triangles", exported.triangles},
                      {"files", Json::array()}};
     for (const jobs::ExportedMaterial& file : exported.files) {
-        Json json = {{"target", file.target}, {"path", file.path},     {"bytes", file.bytes},
-                     {"spec", file.spec},     {"fitted", file.fitted}, {"converged", file.converged}};
+        Json json = {{"target", file.target}, {"path", file.path},
+                     {"bytes", file.bytes},   {"spec", file.spec},
+                     {"fitted", file.fitted}, {"converged", file.converged}};
         if (file.search) {
             json["parts"] = {{"chosen", file.search->parts}, {"trials", trialsJson(*file.search)}};
         }
@@ -53,24 +54,24 @@ std::string text(const jobs::ExportedMaterials& exported, const std::string& fol
         if (!file.converged) out += "  the fit did not converge\n";
         if (file.search) {
             for (const brdfs::PartTrial& trial : file.search->trials)
-                out += trial.failure.empty()
-                           ? fmt::format("  extensions {}: held out {:.6g}{}\n",
-                                         nameOf(trial.parts), trial.heldOut,
-                                         trial.taken ? ", taken" : "")
-                           : fmt::format("  extensions {}: {}\n", nameOf(trial.parts),
-                                         trial.failure);
+                out +=
+                    trial.failure.empty()
+                        ? fmt::format("  extensions {}: held out {:.6g}{}\n", nameOf(trial.parts),
+                                      trial.heldOut, trial.taken ? ", taken" : "")
+                        : fmt::format("  extensions {}: {}\n", nameOf(trial.parts), trial.failure);
         }
         if (!file.loss) {
             out += fmt::format("  no loss: {}\n", file.reason);
             continue;
         }
         const PairSummary& loss = *file.loss;
-        out += fmt::format("  against {}: mean log error {:.4g} +- {:.2g}, albedo off by at most "
-                           "{:.3g}\n  largest error of f cos(theta_i) {:.4g} at wi {:.4f} {:.4f} "
-                           "{:.4f}, wo {:.4f} {:.4f} {:.4f}\n",
-                           exported.source, loss.meanLog.value, loss.meanLog.error,
-                           loss.albedo.value, loss.maximum, loss.at.wi.x, loss.at.wi.y,
-                           loss.at.wi.z, loss.at.wo.x, loss.at.wo.y, loss.at.wo.z);
+        out += fmt::format(
+            "  against {}: mean log error {:.4g} +- {:.2g}, albedo off by at most "
+            "{:.3g}\n  largest error of f cos(theta_i) {:.4g} at wi {:.4f} {:.4f} "
+            "{:.4f}, wo {:.4f} {:.4f} {:.4f}\n",
+            exported.source, loss.meanLog.value, loss.meanLog.error, loss.albedo.value,
+            loss.maximum, loss.at.wi.x, loss.at.wi.y, loss.at.wi.z, loss.at.wo.x, loss.at.wo.y,
+            loss.at.wo.z);
     }
     return out;
 }

@@ -36,12 +36,13 @@ std::string text(const jobs::Fitted& fitted, const std::string& output) {
     }
     if (fitted.search) {
         for (const brdfs::PartTrial& trial : fitted.search->trials) {
-            const std::string name = trial.parts.empty() ? "no extension"
-                                                         : fmt::format("{}",
-                                                                       fmt::join(trial.parts, " + "));
-            lines += trial.failure.empty() ? fmt::format("  {:<40} held out {:.6g}{}\n", name,
-                                                         trial.heldOut, trial.taken ? ", taken" : "")
-                                           : fmt::format("  {:<40} {}\n", name, trial.failure);
+            const std::string name = trial.parts.empty()
+                                         ? "no extension"
+                                         : fmt::format("{}", fmt::join(trial.parts, " + "));
+            lines += trial.failure.empty()
+                         ? fmt::format("  {:<40} held out {:.6g}{}\n", name, trial.heldOut,
+                                       trial.taken ? ", taken" : "")
+                         : fmt::format("  {:<40} {}\n", name, trial.failure);
         }
     }
     for (const auto& set : result.ambiguous)

@@ -168,10 +168,9 @@ std::vector<MaterialXInput> inputsOf(std::string_view model, const Parameters& p
     std::vector<MaterialXInput> inputs;
     for (const Parameter& parameter : row->parameters) {
         const bool colour = parameter.kind == Parameter::Kind::colour;
-        const bool optional =
-            std::ranges::any_of(row->parts, [&](const brdfs::ModelPart& part) {
-                return std::ranges::find(part.parameters, parameter.name) != part.parameters.end();
-            });
+        const bool optional = std::ranges::any_of(row->parts, [&](const brdfs::ModelPart& part) {
+            return std::ranges::find(part.parameters, parameter.name) != part.parameters.end();
+        });
         const std::vector<double> values = p.colour(parameter.name);
         if (optional && values == std::vector<double>{*parameter.fallback}) continue;
         MaterialXInput input{nodeInput(parameter.name), values};
@@ -235,12 +234,12 @@ std::string sentence(const ExportedMaterial& material, const std::string& source
     if (!material.loss) return text + fmt::format("; no loss stated: {}", material.reason);
     const PairSummary& loss = *material.loss;
     const Direction &wi = loss.at.wi, &wo = loss.at.wo;
-    return text +
-           fmt::format("; against {}: mean log error {:.4g}, largest error of f cos(theta_i) {:.4g} "
-                       "at wi ({:.4g}, {:.4g}, {:.4g}), wo ({:.4g}, {:.4g}, {:.4g}), albedo off by "
-                       "at most {:.4g}",
-                       source, loss.meanLog.value, loss.maximum, wi.x, wi.y, wi.z, wo.x, wo.y,
-                       wo.z, loss.albedo.value);
+    return text + fmt::format(
+                      "; against {}: mean log error {:.4g}, largest error of f cos(theta_i) {:.4g} "
+                      "at wi ({:.4g}, {:.4g}, {:.4g}), wo ({:.4g}, {:.4g}, {:.4g}), albedo off by "
+                      "at most {:.4g}",
+                      source, loss.meanLog.value, loss.maximum, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z,
+                      loss.albedo.value);
 }
 
 std::string nameOf(const std::string& input, const MaterialExportOptions& options) {
@@ -298,14 +297,14 @@ ExportedMaterials exportMaterials(const std::string& text, const std::string& fo
         std::string bytes;
         if (target->name == "gltf") {
             material.path = exported.name + ".glb";
-            bytes = glbBytes(gltfOf(exported.name, parameters), surface,
-                             {{"hshfit", statement(material, input.source)}}, Json::object());
+            const Json extras = {{"hshfit", statement(material, input.source)}};
+            bytes = glbBytes(gltfOf(exported.name, parameters), surface, jsonText(extras));
         } else {
             const std::string_view model = modelOf(material.spec);
             material.path = exported.name + ".mtlx";
-            bytes = materialXText(exported.name,
-                                  model == "openpbr" ? "open_pbr_surface" : "gltf_pbr",
-                                  inputsOf(model, parameters), sentence(material, input.source));
+            bytes =
+                materialXText(exported.name, model == "openpbr" ? "open_pbr_surface" : "gltf_pbr",
+                              inputsOf(model, parameters), sentence(material, input.source));
         }
         material.bytes = bytes.size();
         files.write(material.path, bytes);

@@ -31,8 +31,8 @@ struct MaterialExportOptions {
 struct ExportedMaterial {
     std::string target, path;
     std::size_t bytes = 0;
-    std::string spec;    ///< of the material, which opens it as a BRDF
-    bool fitted = false; ///< to the input, rather than being the input
+    std::string spec;     ///< of the material, which opens it as a BRDF
+    bool fitted = false;  ///< to the input, rather than being the input
     bool converged = true;
     std::optional<brdfs::PartSearch> search = {};
     std::optional<PairSummary> loss = {};  ///< against the source

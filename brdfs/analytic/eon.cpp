@@ -37,8 +37,7 @@ class Eon final
 public:
     Eon(const Model& model, const Parameters& p, const Colour& kd, const EonSettings& settings)
         : ShapedBrdf(model, p, lawsOf(kd, settings),
-                     TermWeights{{0.0}, {overPi(kd), settings.multiple(kd)}},
-                     settings.shape()) {}
+                     TermWeights{{0.0}, {overPi(kd), settings.multiple(kd)}}, settings.shape()) {}
 
     /// The kink at equal heights, where max(cos_i, cos_o) changes branches.
     std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }

@@ -17,10 +17,10 @@ namespace hshfit::brdfs {
 template <class N>
 struct GltfPbrShape {
     GgxShape<N> base, coat;
-    N cosine, sine;     ///< of the anisotropy's rotation
-    N specular, f0;     ///< of the dielectric; f0 the largest of the channels
+    N cosine, sine;  ///< of the anisotropy's rotation
+    N specular, f0;  ///< of the dielectric; f0 the largest of the channels
     N clearcoat;
-    N sheen, sheenPeak; ///< whether there is sheen; the largest channel of its colour
+    N sheen, sheenPeak;  ///< whether there is sheen; the largest channel of its colour
     CharlieCurve<N> curve;
     std::array<N, SheenAlbedoTable::Row().size()> albedo;
 };
@@ -44,7 +44,7 @@ Laws lawsOf(const Parameters& p) {
     Laws laws = claims;
     const bool coated = p.number("clearcoatFactor") > 0;
     laws.reciprocal = !coated;
-    laws.isotropic = p.number("anisotropyStrength") == 0;
+    laws.isotropic = p.number("anisotropyStrength") == 0 || p.number("roughnessFactor") == 1;
     laws.mirrorSymmetric = laws.isotropic || p.number("anisotropyRotation") == 0;
     laws.energyConserving =
         p.number("metallicFactor") == 1 && largest(p.colour("sheenColorFactor")) == 0;
@@ -53,8 +53,8 @@ Laws lawsOf(const Parameters& p) {
 
 GltfPbrShape<double> shapeOf(const Parameters& p) {
     GltfPbrShape<double> shape = GltfPbrFormula::shape(Values<double>(p, 0));
-    shape.f0 = std::min(1.0, normalReflectanceOf(p.number("ior"), 0.0) *
-                                 largest(p.colour("specularColorFactor")));
+    shape.f0 = std::min(
+        1.0, normalReflectanceOf(p.number("ior"), 0.0) * largest(p.colour("specularColorFactor")));
     shape.sheen = shape.sheenPeak = largest(p.colour("sheenColorFactor"));
     if (shape.sheen > 0) {
         GltfPbrFormula::setAlbedo(
@@ -107,8 +107,7 @@ HasSamplers::Known sampling(const Parameters& p) {
     const GltfPbrShape<double> shape = shapeOf(p);
     const RoughnessOf<double>& r = shape.base.r;
     HasSamplers::Known known{true, {ggxSampler(r.ax, shape.sine == 0 ? r.ay : r.ax)}};
-    if (shape.clearcoat > 0)
-        known.samplers.push_back(ggxSampler(shape.coat.r.ax, shape.coat.r.ay));
+    if (shape.clearcoat > 0) known.samplers.push_back(ggxSampler(shape.coat.r.ax, shape.coat.r.ay));
     if (shape.sheen > 0) known.samplers.push_back(powerCosineSampler(normalAxis, 0));
     return known;
 }
@@ -139,9 +138,8 @@ std::vector<Parameter> parameters() {
          .min = 1,
          .max = 100,
          .fit = {{.low = 1.1, .high = 2.5}}},
-        unit("specularFactor", "strength of the dielectric's lobe", 1,
-             {{.low = 0.1, .high = 0.9}}),
-        // Not fitted: a colour here darkens the diffuse parts of all channels, which no column does.
+        unit("specularFactor", "strength of the dielectric's lobe", 1, {{.low = 0.1, .high = 0.9}}),
+        // Not fitted: a colour here darkens the diffuse parts of all channels, as no column does.
         colour("specularColorFactor", "scale of the dielectric's F0", 1, {}),
         colour("sheenColorFactor", "of the cloth's fibres", 0, {{.low = 0.02, .high = 0.8}}),
         unit("sheenRoughnessFactor", "square root of charlie's r", 0, {{.low = 0.2, .high = 0.9}}),
@@ -172,9 +170,7 @@ const Model& gltfPbrModel() {
         .columns = columns,
         .sampling = sampling,
         .parts = {{"ior", "KHR_materials_ior", {"ior"}},
-                  {"specular",
-                   "KHR_materials_specular",
-                   {"specularFactor", "specularColorFactor"}},
+                  {"specular", "KHR_materials_specular", {"specularFactor", "specularColorFactor"}},
                   {"sheen", "KHR_materials_sheen", {"sheenColorFactor", "sheenRoughnessFactor"}},
                   {"clearcoat",
                    "KHR_materials_clearcoat",

@@ -54,15 +54,14 @@ public:
             under = under * (1.0 - T(shape_.sheenPeak) * max(albedo(above.z), outgoingAlbedo_));
         }
         const Incoming<R> half{h.x, h.y, h.z};
-        const T lobe = base_.lobe(turned(half, h.squaredLength()), turned(above, R(1.0)), z_,
-                                  outgoing_);
+        const T lobe =
+            base_.lobe(turned(half, h.squaredLength()), turned(above, R(1.0)), z_, outgoing_);
         const T specular(shape_.specular), transmitted(1 - shape_.f0);
         term[0] = under * (1.0 - specular + specular * transmitted * (1.0 - rise));
         term[1] = under * lobe * (1.0 - rise);
         term[2] = under * lobe * rise;
-        term[4] = isZero(shape_.clearcoat)
-                      ? T(0.0)
-                      : coatFresnel_ * coat_.lobe(h, above, z_, coatOutgoing_);
+        term[4] = isZero(shape_.clearcoat) ? T(0.0)
+                                           : coatFresnel_ * coat_.lobe(h, above, z_, coatOutgoing_);
     }
 
 private:
@@ -101,23 +100,24 @@ struct GltfPbrFormula {
     /// Of one channel; gltf_pbr.cpp puts in the largest of all.
     template <class N>
     static GltfPbrShape<N> shape(const Values<N>& p) {
-        const N alpha = widthOf(p("roughnessFactor")), coat = widthOf(p("clearcoatRoughnessFactor"));
+        const N alpha = widthOf(p("roughnessFactor")),
+                coat = widthOf(p("clearcoatRoughnessFactor"));
         const N strength = p("anisotropyStrength"), rotation = p("anisotropyRotation");
         const N along = alpha + (1 - alpha) * strength * strength;
         const N least(SheenAlbedoTable::leastRoughness),
             sheenRoughness = max(least, p("sheenRoughnessFactor"));
-        GltfPbrShape<N> shape{.base = {{along, alpha}},
-                              .coat = {{coat, coat}},
-                              .cosine = cos(rotation),
-                              .sine = sin(rotation),
-                              .specular = p("specularFactor"),
-                              .f0 = min(N(1.0), normalReflectanceOf(p("ior"), N(0.0)) *
-                                                    p("specularColorFactor")),
-                              .clearcoat = p("clearcoatFactor"),
-                              .sheen = p("sheenColorFactor"),
-                              .sheenPeak = p("sheenColorFactor"),
-                              .curve = charlieCurve(sheenRoughness * sheenRoughness),
-                              .albedo = {}};
+        GltfPbrShape<N> shape{
+            .base = {{along, alpha}},
+            .coat = {{coat, coat}},
+            .cosine = cos(rotation),
+            .sine = sin(rotation),
+            .specular = p("specularFactor"),
+            .f0 = min(N(1.0), normalReflectanceOf(p("ior"), N(0.0)) * p("specularColorFactor")),
+            .clearcoat = p("clearcoatFactor"),
+            .sheen = p("sheenColorFactor"),
+            .sheenPeak = p("sheenColorFactor"),
+            .curve = charlieCurve(sheenRoughness * sheenRoughness),
+            .albedo = {}};
         if (!isZero(shape.sheen)) setAlbedo(sheenRoughness, shape);
         return shape;
     }
@@ -133,8 +133,7 @@ struct GltfPbrFormula {
     static Weights<N> weights(const Values<N>& p) {
         const N metallic = p("metallicFactor"), base = p("baseColorFactor");
         const N dielectric = (1 - metallic) * p("specularFactor");
-        const N f0 =
-            min(N(1.0), normalReflectanceOf(p("ior"), N(0.0)) * p("specularColorFactor"));
+        const N f0 = min(N(1.0), normalReflectanceOf(p("ior"), N(0.0)) * p("specularColorFactor"));
         return {N(0.0),
                 {(1 - metallic) * base / pi, dielectric * f0 + metallic * base,
                  dielectric + metallic, p("sheenColorFactor"), p("clearcoatFactor")}};

@@ -56,8 +56,8 @@ private:
             for (int j = 0; j < azimuths; ++j) {
                 const double phi = 2 * pi * (j + 0.5) / azimuths;
                 const double t1 = radius * std::cos(phi), half = 0.5 * (1 + vz);
-                const double t2 = (1 - half) * std::sqrt(1 - t1 * t1) +
-                                  half * radius * std::sin(phi);
+                const double t2 =
+                    (1 - half) * std::sqrt(1 - t1 * t1) + half * radius * std::sin(phi);
                 const double t3 = std::sqrt(std::max(0.0, 1 - t1 * t1 - t2 * t2));
                 // T1 is +y, T2 the rest of the frame about the stretched direction.
                 double x = alpha * (-t2 * vz + t3 * vx), y = alpha * t1,
@@ -105,12 +105,11 @@ private:
     OpenpbrFuzz fuzzAt(const Direction& wo) const {
         if (fuzzWeight == 0) return {0, 1, 0, 1, 0};
         const double x = wo.z, y = fuzzRoughness;
-        const double width =
-            y * (0.0206607 + 1.58491 * y) / (0.0379424 + y * (1.32227 + y));
-        const double middle = y * (-0.193854 + y * (-1.14885 + y * (1.7932 - 0.95943 * y * y))) /
-                              (0.046391 + y);
-        const double rest = y * (0.000654023 + (-0.0207818 + 0.119681 * y) * y) /
-                            (1.26264 + y * (-1.92021 + y));
+        const double width = y * (0.0206607 + 1.58491 * y) / (0.0379424 + y * (1.32227 + y));
+        const double middle =
+            y * (-0.193854 + y * (-1.14885 + y * (1.7932 - 0.95943 * y * y))) / (0.046391 + y);
+        const double rest =
+            y * (0.000654023 + (-0.0207818 + 0.119681 * y) * y) / (1.26264 + y * (-1.92021 + y));
         const double away = (x - middle) / width;
         const double albedo = std::exp(-0.5 * away * away) / (width * std::sqrt(2 * pi)) + rest;
         const double a =
@@ -133,19 +132,6 @@ namespace {
 
 HWY_EXPORT(evalOpenpbr);
 
-constexpr Laws claims{.nonNegative = true, .mirrorSymmetric = true};
-
-Laws lawsOf(const Parameters& p) {
-    Laws laws = claims;
-    const bool bare = p.number("coat_weight") == 0 && p.number("fuzz_weight") == 0;
-    laws.isotropic = p.number("specular_roughness_anisotropy") == 0 &&
-                     p.number("coat_roughness_anisotropy") == 0;
-    laws.reciprocal = bare && p.number("base_metalness") == 1;
-    // Under layers the sum is that of their albedos, which are known to 1e-3.
-    laws.energyConserving = bare && p.number("base_metalness") == 1;
-    return laws;
-}
-
 double mix(double a, double b, double share) {
     return a + (b - a) * share;
 }
@@ -165,8 +151,8 @@ double averageOf(const RoughnessOf<double>& r) {
 double etaOf(const Parameters& p) {
     const double ior = p.number("specular_ior"), ratio = ior / p.number("coat_ior");
     const double eta = mix(ior, std::max(ratio, 1 / ratio), p.number("coat_weight"));
-    const double root = std::sqrt(
-        std::min(p.number("specular_weight") * normalReflectance(eta), 0.99999));
+    const double root =
+        std::sqrt(std::min(p.number("specular_weight") * normalReflectance(eta), 0.99999));
     return (1 + root) / (1 - root);
 }
 
@@ -191,7 +177,21 @@ OpenpbrShape shapeOf(const Parameters& p) {
     return shape;
 }
 
-/// How the coat colours what is under it.
+constexpr Laws claims{.nonNegative = true, .mirrorSymmetric = true};
+
+Laws lawsOf(const Parameters& p) {
+    Laws laws = claims;
+    const bool bare = p.number("coat_weight") == 0 && p.number("fuzz_weight") == 0;
+    const OpenpbrShape shape = shapeOf(p);
+    laws.isotropic = shape.base.r.ax == shape.base.r.ay &&
+                     (shape.coatWeight == 0 || shape.coat.r.ax == shape.coat.r.ay);
+    laws.reciprocal = bare && p.number("base_metalness") == 1;
+    // Under layers the sum is that of their albedos, which are known to 1e-3.
+    laws.energyConserving = bare && p.number("base_metalness") == 1;
+    return laws;
+}
+
+/// The colour that the coat gives to the layers under it.
 Colour tintOf(const Parameters& p) {
     const double weight = p.number("coat_weight"), ior = p.number("coat_ior");
     const double inside = 1 - (1 - normalReflectance(ior)) / (ior * ior);
@@ -205,9 +205,8 @@ Colour tintOf(const Parameters& p) {
 TermWeights weightsOf(const Parameters& p) {
     const double metal = p.number("base_metalness"), specular = p.number("specular_weight");
     const Colour tint = tintOf(p), edge = p.colour("specular_color");
-    const Colour base = mapped(p.colour("base_color"), [&](double colour) {
-        return p.number("base_weight") * colour;
-    });
+    const Colour base = mapped(p.colour("base_color"),
+                               [&](double colour) { return p.number("base_weight") * colour; });
     const auto under = [&](const Colour& colour, double weight) {
         return mapped(colour, tint, [&](double a, double b) { return weight * a * b; });
     };
@@ -219,9 +218,12 @@ TermWeights weightsOf(const Parameters& p) {
     });
     const double fuzzed = p.number("fuzz_weight");
     return {{0.0},
-            {under(overPi(base), 1 - metal), under(diffuse.multiple(base), 1 - metal),
-             under(edge, 1 - metal), under(base, metal * specular),
-             under({1.0}, metal * specular), under(dip, metal * specular),
+            {under(overPi(base), 1 - metal),
+             under(diffuse.multiple(base), 1 - metal),
+             under(edge, 1 - metal),
+             under(base, metal * specular),
+             under({1.0}, metal * specular),
+             under(dip, metal * specular),
              {p.number("coat_weight")},
              mapped(p.colour("fuzz_color"), [&](double colour) { return fuzzed * colour; })}};
 }
@@ -240,8 +242,7 @@ public:
 
     std::vector<Lobe> lobes(const Direction&) const override {
         std::vector<Lobe> lobes{halfwayLobe(shape_.base.r.ax, shape_.base.r.ay)};
-        if (shape_.coatWeight > 0)
-            lobes.push_back(halfwayLobe(shape_.coat.r.ax, shape_.coat.r.ay));
+        if (shape_.coatWeight > 0) lobes.push_back(halfwayLobe(shape_.coat.r.ax, shape_.coat.r.ay));
         return lobes;
     }
     /// Those of the rough diffuse part, as in eon.cpp.
@@ -294,38 +295,36 @@ Parameter index(std::string_view name, std::string_view help, double fallback) {
 /// Multiple scattering and the coat's darkening are not linear in base_color.
 bool linearBase(const Parameters& stated) {
     const bool bare = stated.given("coat_weight") && stated.number("coat_weight") == 0;
-    return stated.given("base_diffuse_roughness") &&
-           stated.number("base_diffuse_roughness") == 0 &&
+    return stated.given("base_diffuse_roughness") && stated.number("base_diffuse_roughness") == 0 &&
            (bare || stated.number("coat_darkening") == 0);
 }
 
 std::vector<Parameter> parameters() {
     constexpr FitRange stretched{.low = 0.1, .high = 0.9, .data = FitRange::Data::anisotropic};
-    return {unit("base_weight", "scale of base_color", 1),
-            linearIf(colour("base_color", "diffuse albedo, or a metal's F0; linear", 0.8,
-                            {{.low = 0.05, .high = 0.9}}),
-                     linearBase),
-            // Fits hold it, and the darkening, at 0, which makes f linear in base_color.
-            unit("base_diffuse_roughness", "0 is Lambert", 0, {FitRange{}}),
-            unit("base_metalness", "from a dielectric to a metal", 0, {{.low = 0.05, .high = 0.95}}),
-            unit("specular_weight", "scale of the reflectance at normal incidence", 1,
-                 {{.low = 0.1, .high = 0.9}}),
-            colour("specular_color", "of the dielectric's lobe; a metal's at 82 degrees", 1),
-            unit("specular_roughness", "square root of GGX's alpha", 0.3,
-                 {{.low = 0.05, .high = 0.95}}),
-            unit("specular_roughness_anisotropy", "widens the lobe along x", 0, {stretched}),
-            index("specular_ior", "of the dielectric", 1.5),
-            unit("coat_weight", "presence of the coat", 0, {{.low = 0.1, .high = 0.9}}),
-            colour("coat_color", "of what passes the coat twice", 1),
-            unit("coat_roughness", "square root of the coat's alpha", 0,
-                 {{.low = 0.05, .high = 0.8}}),
-            unit("coat_roughness_anisotropy", "widens the coat's lobe along x", 0),
-            index("coat_ior", "of the coat", 1.6),
-            unit("coat_darkening", "share of the reflections inside the coat", 1, {FitRange{}}),
-            unit("fuzz_weight", "presence of the fuzz", 0, {{.low = 0.1, .high = 0.9}}),
-            linearIf(colour("fuzz_color", "of the fuzz", 1, {{.low = 0.1, .high = 1}}),
-                     alwaysLinear),
-            unit("fuzz_roughness", "of its fibres", 0.5, {{.low = 0.1, .high = 0.9}})};
+    return {
+        unit("base_weight", "scale of base_color", 1),
+        linearIf(colour("base_color", "diffuse albedo, or a metal's F0; linear", 0.8,
+                        {{.low = 0.05, .high = 0.9}}),
+                 linearBase),
+        // Fits hold it, and the darkening, at 0, which makes f linear in base_color.
+        unit("base_diffuse_roughness", "0 is Lambert", 0, {FitRange{}}),
+        unit("base_metalness", "from a dielectric to a metal", 0, {{.low = 0.05, .high = 0.95}}),
+        unit("specular_weight", "scale of the reflectance at normal incidence", 1,
+             {{.low = 0.1, .high = 0.9}}),
+        colour("specular_color", "of the dielectric's lobe; a metal's at 82 degrees", 1),
+        unit("specular_roughness", "square root of GGX's alpha", 0.3,
+             {{.low = 0.05, .high = 0.95}}),
+        unit("specular_roughness_anisotropy", "widens the lobe along x", 0, {stretched}),
+        index("specular_ior", "of the dielectric", 1.5),
+        unit("coat_weight", "presence of the coat", 0, {{.low = 0.1, .high = 0.9}}),
+        colour("coat_color", "of what passes the coat twice", 1),
+        unit("coat_roughness", "square root of the coat's alpha", 0, {{.low = 0.05, .high = 0.8}}),
+        unit("coat_roughness_anisotropy", "widens the coat's lobe along x", 0),
+        index("coat_ior", "of the coat", 1.6),
+        unit("coat_darkening", "share of the reflections inside the coat", 1, {FitRange{}}),
+        unit("fuzz_weight", "presence of the fuzz", 0, {{.low = 0.1, .high = 0.9}}),
+        linearIf(colour("fuzz_color", "of the fuzz", 1, {{.low = 0.1, .high = 1}}), alwaysLinear),
+        unit("fuzz_roughness", "of its fibres", 0.5, {{.low = 0.1, .high = 0.9}})};
 }
 
 }  // namespace

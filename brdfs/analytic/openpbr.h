@@ -7,9 +7,10 @@ namespace hshfit::brdfs {
 /// The reflecting part of OpenPBR Surface 1.1 (Academy Software Foundation), with the layering of
 /// its reference graph in MaterialX 1.39, under its names and defaults. E: directional albedos.
 ///     f = fuzz + (1 - fuzz_weight E_z(cos_o)) (coat + (1 - coat_weight E_c(cos_o)) tint under)
-///     tint = mix(1, coat_color, coat_weight) mix(1, (1 - K)/(1 - K E_b), coat_weight coat_darkening)
-///     K = 1 - (1 - F0(coat_ior))/coat_ior^2,  E_b = base_color mix(1, specular_weight, base_metalness)
-///     under = mix(specular_color S F(eta) + (1 - E_s(cos_o)) D, specular_weight S M, base_metalness)
+///     tint = mix(1, coat_color, coat_weight) mix(1, (1 - K)/(1 - K E_b), share),
+///     share = coat_weight coat_darkening,  K = 1 - (1 - F0(coat_ior))/coat_ior^2,
+///     E_b = base_color mix(1, specular_weight, metalness)
+///     under = mix(specular_color S F(eta) + (1 - E_s(cos_o)) D, specular_weight S M, metalness)
 /// D: eon of base_weight base_color. S: ggx with ax = r^2 sqrt(2/(1 + (1 - a)^2)), ay = (1 - a) ax,
 /// heights correlated, r roughened by the coat. F: exact, of specular_ior (by coat_ior under a
 /// coat), scaled by specular_weight at normal incidence. M: Schlick's form that specular_color

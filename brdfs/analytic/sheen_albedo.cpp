@@ -64,8 +64,7 @@ Cubic cubic(double a, double b, double c, double d, double t) {
 SheenAlbedoTable::SheenAlbedoTable() {
     const Nodes nodes;
     for (int j = 0; j < roughnesses; ++j) {
-        const double roughness =
-            leastRoughness + (1 - leastRoughness) * j / (roughnesses - 1);
+        const double roughness = leastRoughness + (1 - leastRoughness) * j / (roughnesses - 1);
         const auto lobe = openModel(fmt::format("charlie:r={}", roughness * roughness));
         Row& row = rows_[j + 1];
         for (int k = 0; k <= steps; ++k) {

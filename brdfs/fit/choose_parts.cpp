@@ -53,8 +53,7 @@ const Model* modelWithParts(std::string_view spec) {
 
 std::string withParts(std::string_view spec, const std::vector<std::string>& parts) {
     const Model* model = modelWithParts(spec);
-    if (!model)
-        throw UsageError(fmt::format("'{}': no model with optional parts", nameIn(spec)));
+    if (!model) throw UsageError(fmt::format("'{}': no model with optional parts", nameIn(spec)));
     for (const std::string& part : parts) partNamed(*model, part);
     const Parameters stated = statedIn(spec, *model);
     std::string result(spec);
@@ -101,7 +100,8 @@ PartSearch chooseParts(const FitSamples& all, const FitOptions& fit, const PartO
             parts.push_back(name);
             search.trials.push_back(tried(std::move(parts)));
             const PartTrial& trial = search.trials.back();
-            if (trial.failure.empty() && (!winner || trial.heldOut < search.trials[*winner].heldOut))
+            if (trial.failure.empty() &&
+                (!winner || trial.heldOut < search.trials[*winner].heldOut))
                 winner = search.trials.size() - 1;
         }
         if (!winner || search.trials[*winner].heldOut > (1 - options.leastGain) * best) break;

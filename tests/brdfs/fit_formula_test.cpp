@@ -130,10 +130,10 @@ INSTANTIATE_TEST_SUITE_P(
                     "ggx:masking=separable", "ggx:ks=1", "ggx:F0=.1", "ggx:alpha=.2", "gtr",
                     "gtr:masking=separable", "gtr:gamma=1.5,ks=.5", "disney", "disney:masking=2012",
                     "disney:metallic=1", "gltf-pbr", "gltf-pbr:metallicFactor=0",
-                    "gltf-pbr:sheenColorFactor=0,clearcoatFactor=0", "beckmann", "beckmann:ks=.7", "beckmann:masking=separable",
-                    "cook-torrance", "cook-torrance:norm=4,fresnel=schlick",
-                    "cook-torrance:norm=pi2", "abc", "abc:variant=microfacet", "sgd",
-                    "lambert+ggx"));
+                    "gltf-pbr:sheenColorFactor=0,clearcoatFactor=0", "beckmann", "beckmann:ks=.7",
+                    "beckmann:masking=separable", "cook-torrance",
+                    "cook-torrance:norm=4,fresnel=schlick", "cook-torrance:norm=pi2", "abc",
+                    "abc:variant=microfacet", "sgd", "lambert+ggx"));
 
 /// A specification of every model, of what its fits would call free, with three channels.
 std::string colouredSpec(const Model& model) {

@@ -110,8 +110,7 @@ TEST(StandardMaterials, GltfIorSpecularAndAnisotropyAreTheExtensions) {
             const double lobe = anisotropicLobe(p, along, alpha, rotation);
             Vector fresnel, f;
             for (int c = 0; c < 3; ++c)
-                fresnel[c] =
-                    schlick(std::min(square((1 - ior) / (1 + ior)) * tint[c], 1.), cosine);
+                fresnel[c] = schlick(std::min(square((1 - ior) / (1 + ior)) * tint[c], 1.), cosine);
             const double largest = *std::ranges::max_element(fresnel);
             for (int c = 0; c < 3; ++c) {
                 const double dielectric =
@@ -136,8 +135,8 @@ TEST(StandardMaterials, GltfSheenAndClearcoatAreTheExtensions) {
         "clearcoatRoughnessFactor=.25",
         [&](const Pair& p) {
             const double cosine = dotOf(vectorOf(p.wo), halfOf(p));
-            const double base = mix(0.6 / pi, appendixLobe(p, roughness * roughness),
-                                    schlick(0.04, cosine));
+            const double base =
+                mix(0.6 / pi, appendixLobe(p, roughness * roughness), schlick(0.04, cosine));
             const double scale = std::min(1 - 0.8 * albedo(p.wo), 1 - 0.8 * albedo(p.wi));
             const double cloth = evaluate(*lobe, p.wi, p.wo)[0];
             const double coat = clearcoat * schlick(0.04, p.wo.z);
@@ -152,8 +151,7 @@ TEST(StandardMaterials, GltfSheenAndClearcoatAreTheExtensions) {
 
 double dielectric(double c, double ior) {
     const double g = std::sqrt(ior * ior + c * c - 1);
-    return 0.5 * square((g - c) / (g + c)) *
-           (1 + square(((g + c) * c - 1) / ((g - c) * c + 1)));
+    return 0.5 * square((g - c) / (g + c)) * (1 + square(((g + c) * c - 1) / ((g - c) * c + 1)));
 }
 
 TEST(StandardMaterials, OpenpbrMetalIsSchlickBentAt82Degrees) {
@@ -169,9 +167,10 @@ TEST(StandardMaterials, OpenpbrMetalIsSchlickBentAt82Degrees) {
             Vector f;
             for (int k = 0; k < 3; ++k) {
                 const double f0 = weight * base[k], max = 1. / 7;
-                const double a = schlick(f0, max) * (1 - specular * edge[k]) /
-                                 (max * std::pow(1 - max, 6));
-                f[k] = std::max(0., specular * lobe * (schlick(f0, c) - a * c * std::pow(1 - c, 6)));
+                const double a =
+                    schlick(f0, max) * (1 - specular * edge[k]) / (max * std::pow(1 - max, 6));
+                f[k] =
+                    std::max(0., specular * lobe * (schlick(f0, c) - a * c * std::pow(1 - c, 6)));
             }
             return f;
         });
@@ -185,8 +184,8 @@ TEST(StandardMaterials, OpenpbrDielectricIsLayeredByAlbedo) {
     const double root = std::sqrt(specular * square((ior - 1) / (ior + 1)));
     const double eta = (1 + root) / (1 - root);
     const auto eon = open("eon:kd=.8/.5/.2,roughness=.4");
-    const auto facets = open(fmt::format("ggx:alpha={},fresnel=dielectric,ior={:.17g}",
-                                         roughness * roughness, eta));
+    const auto facets = open(
+        fmt::format("ggx:alpha={},fresnel=dielectric,ior={:.17g}", roughness * roughness, eta));
     expectClose(
         "openpbr:base_color=.8/.5/.2,base_diffuse_roughness=.4,specular_weight=.6,"
         "specular_color=1/.8/.6,specular_ior=1.7,specular_roughness=.5",
@@ -209,8 +208,8 @@ TEST(StandardMaterials, OpenpbrCoatAndFuzzLieAboveTheBase) {
     const double fourth = std::pow(metalRoughness, 4) + 2 * std::pow(coatRoughness, 4);
     const double rough = mix(metalRoughness, std::pow(std::min(1., fourth), 0.25), coatWeight);
     const double inside = 1 - (1 - square((coatIor - 1) / (coatIor + 1))) / square(coatIor);
-    const auto facets = open(fmt::format("ggx:alpha={},fresnel=dielectric,ior={}",
-                                         square(coatRoughness), coatIor));
+    const auto facets =
+        open(fmt::format("ggx:alpha={},fresnel=dielectric,ior={}", square(coatRoughness), coatIor));
     expectClose(
         "openpbr:base_color=.6,base_metalness=1,specular_roughness=.5,coat_weight=.7,"
         "coat_color=.9/.7/.5,coat_roughness=.3,coat_darkening=.5,fuzz_weight=.4,"
@@ -222,22 +221,19 @@ TEST(StandardMaterials, OpenpbrCoatAndFuzzLieAboveTheBase) {
             const double wx = (p.wi.x * p.wo.x + p.wi.y * p.wo.y) / sine,
                          wy = (p.wi.y * p.wo.x - p.wi.x * p.wo.y) / sine;
             const double s = y * (0.0206607 + 1.58491 * y) / (0.0379424 + y * (1.32227 + y));
-            const double m = y *
-                             (-0.193854 + y * (-1.14885 + y * (1.7932 - 0.95943 * y * y))) /
-                             (0.046391 + y);
+            const double m =
+                y * (-0.193854 + y * (-1.14885 + y * (1.7932 - 0.95943 * y * y))) / (0.046391 + y);
             const double o = y * (0.000654023 + (-0.0207818 + 0.119681 * y) * y) /
                              (1.26264 + y * (-1.92021 + y));
-            const double cloth =
-                std::exp(-0.5 * square((x - m) / s)) / (s * std::sqrt(2 * pi)) + o;
+            const double cloth = std::exp(-0.5 * square((x - m) / s)) / (s * std::sqrt(2 * pi)) + o;
             const double a =
                 (2.58126 * x + 0.813703 * y) * y / (1 + 0.310327 * x * x + 2.60994 * x * y);
-            const double b =
-                std::sqrt(1 - x) * (y - 1) * y * y * y /
-                (0.0000254053 + 1.71228 * x - 1.71506 * x * y + 1.34174 * y * y);
+            const double b = std::sqrt(1 - x) * (y - 1) * y * y * y /
+                             (0.0000254053 + 1.71228 * x - 1.71506 * x * y + 1.34174 * y * y);
             const double squared = square(a * wx + b * p.wi.z) + square(a * wy) + square(p.wi.z);
             const double fuzz = cloth * square(a / squared) / pi;
-            const double coat = coatWeight * appendixLobe(p, square(coatRoughness)) *
-                                dielectric(c, coatIor);
+            const double coat =
+                coatWeight * appendixLobe(p, square(coatRoughness)) * dielectric(c, coatIor);
             const double left = 1 - coatWeight * directionalAlbedo(*facets, p.wo, 1e-4)[0];
             const double metal = appendixLobe(p, square(rough)) * schlick(base, c);
             const double dark = mix(1, (1 - inside) / (1 - base * inside), coatWeight * darkening);

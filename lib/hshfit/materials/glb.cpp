@@ -24,8 +24,7 @@ constexpr int arrayBuffer = 34962, elementBuffer = 34963, float32 = 5126, uint32
 constexpr std::uint32_t magic = 0x46546C67, jsonChunk = 0x4E4F534A, binaryChunk = 0x004E4942;
 
 void append(std::string& bytes, std::uint32_t value) {
-    for (int shift = 0; shift < 32; shift += 8)
-        bytes += static_cast<char>((value >> shift) & 0xff);
+    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>((value >> shift) & 0xff);
 }
 
 /// The binary chunk, with the views and accessors that describe it.
@@ -75,21 +74,18 @@ void requireFinite(const Json& json, const std::string& place) {
     for (const auto& [key, value] : json.items()) requireFinite(value, place + "." + key);
 }
 
-}  // namespace
-
+/// The object of a material (5.19).
 Json gltfJson(const GltfMaterial& material) {
     const MaterialColour& base = material.baseColour;
     Json extensions = Json::object();
     if (material.ior) extensions["KHR_materials_ior"] = {{"ior", *material.ior}};
     if (material.specular) {
-        extensions["KHR_materials_specular"] = {
-            {"specularFactor", material.specular->factor},
-            {"specularColorFactor", material.specular->colour}};
+        extensions["KHR_materials_specular"] = {{"specularFactor", material.specular->factor},
+                                                {"specularColorFactor", material.specular->colour}};
     }
     if (material.sheen) {
-        extensions["KHR_materials_sheen"] = {
-            {"sheenColorFactor", material.sheen->colour},
-            {"sheenRoughnessFactor", material.sheen->roughness}};
+        extensions["KHR_materials_sheen"] = {{"sheenColorFactor", material.sheen->colour},
+                                             {"sheenRoughnessFactor", material.sheen->roughness}};
     }
     if (material.clearcoat) {
         extensions["KHR_materials_clearcoat"] = {
@@ -111,11 +107,13 @@ Json gltfJson(const GltfMaterial& material) {
     return json;
 }
 
-std::string glbBytes(const GltfMaterial& material, const Surface& surface, const Json& extras,
-                     const Json& source) {
+}  // namespace
+
+std::string glbBytes(const GltfMaterial& material, const Surface& surface,
+                     const std::string& extras) {
     if (surface.indices.empty()) throw UsageError("a surface without triangles");
     Json json = gltfJson(material);
-    if (!extras.empty()) json["extras"] = extras;
+    if (!extras.empty()) json["extras"] = Json::parse(extras);
     Buffer buffer;
     const std::size_t position = buffer.add(surface.positions, "VEC3", float32, arrayBuffer);
     addBounds(surface.positions, buffer.accessors.back());
@@ -125,19 +123,17 @@ std::string glbBytes(const GltfMaterial& material, const Surface& surface, const
     if (material.anisotropy)
         attributes["TANGENT"] = buffer.add(surface.tangents, "VEC4", float32, arrayBuffer);
     const std::size_t indices = buffer.add(surface.indices, "SCALAR", uint32, elementBuffer);
-    Json asset = {{"version", "2.0"}, {"generator", fmt::format("hshfit {}", version)}};
-    if (!source.empty()) asset["extras"] = source;
+    const Json asset = {{"version", "2.0"}, {"generator", fmt::format("hshfit {}", version)}};
     const Json primitive = {{"attributes", attributes}, {"indices", indices}, {"material", 0}};
-    Json document = {
-        {"asset", asset},
-        {"scene", 0},
-        {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
-        {"nodes", Json::array({{{"name", material.name}, {"mesh", 0}}})},
-        {"meshes", Json::array({{{"primitives", Json::array({primitive})}}})},
-        {"materials", Json::array({json})},
-        {"buffers", Json::array({{{"byteLength", buffer.bytes.size()}}})},
-        {"bufferViews", buffer.views},
-        {"accessors", buffer.accessors}};
+    Json document = {{"asset", asset},
+                     {"scene", 0},
+                     {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
+                     {"nodes", Json::array({{{"name", material.name}, {"mesh", 0}}})},
+                     {"meshes", Json::array({{{"primitives", Json::array({primitive})}}})},
+                     {"materials", Json::array({json})},
+                     {"buffers", Json::array({{{"byteLength", buffer.bytes.size()}}})},
+                     {"bufferViews", buffer.views},
+                     {"accessors", buffer.accessors}};
     if (json.contains("extensions")) {
         for (const auto& [name, value] : json["extensions"].items())
             document["extensionsUsed"].push_back(name);

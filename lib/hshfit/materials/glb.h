@@ -2,8 +2,6 @@
 
 #include <hshfit/materials/surface.h>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <array>
 #include <optional>
 #include <string>
@@ -39,14 +37,11 @@ struct GltfMaterial {
     std::optional<Anisotropy> anisotropy;
 };
 
-/// The JSON object of a material (glTF 2.0, 5.19), with its KHR_materials_* extensions.
-nlohmann::ordered_json gltfJson(const GltfMaterial& material);
-
 /// The bytes of a binary glTF 2.0 file (.glb): one scene with one node, whose mesh is `surface`
-/// with `material`. `extras` becomes the material's "extras" and `source` the "extras" of "asset".
+/// with `material`. `extras`, the text of a JSON object or empty, becomes the material's "extras".
 /// Throws NumericError for a number that is not finite, and UsageError for a surface without
 /// triangles or above 4 GiB.
 std::string glbBytes(const GltfMaterial& material, const Surface& surface,
-                     const nlohmann::ordered_json& extras, const nlohmann::ordered_json& source);
+                     const std::string& extras = {});
 
 }  // namespace hshfit::inline materials

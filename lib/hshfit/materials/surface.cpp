@@ -36,15 +36,13 @@ Surface sphereSurface(int rings) {
                                 static_cast<float>(-sine * std::cos(phi))};
             surface.positions.push_back(normal);
             surface.normals.push_back(normal);
-            surface.tangents.push_back({static_cast<float>(-std::cos(phi)), 0,
-                                        static_cast<float>(std::sin(phi)), 1});
+            surface.tangents.push_back(
+                {static_cast<float>(-std::cos(phi)), 0, static_cast<float>(std::sin(phi)), 1});
             surface.coordinates.push_back({static_cast<float>(j) / static_cast<float>(around),
                                            static_cast<float>(i) / static_cast<float>(rings)});
         }
     }
-    const auto at = [&](int i, int j) {
-        return static_cast<std::uint32_t>(i * (around + 1) + j);
-    };
+    const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(i * (around + 1) + j); };
     for (int i = 0; i < rings; ++i) {
         for (int j = 0; j < around; ++j) {
             if (i > 0)

@@ -1,0 +1,137 @@
+// Standard materials as a user meets them: the files' contents, stated losses, refusals.
+
+#include "places.h"
+
+#include <cli/program.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace {
+
+using hshfit::test::Answer;
+using hshfit::test::Cli;
+using Json = nlohmann::json;
+
+std::uint32_t wordAt(const std::string& bytes, std::size_t at) {
+    std::uint32_t word = 0;
+    for (int k = 3; k >= 0; --k) word = word << 8 | static_cast<unsigned char>(bytes.at(at + k));
+    return word;
+}
+
+/// The JSON chunk of a .glb file, by the layout of the specification (4.4).
+Json jsonOf(const std::string& bytes) {
+    EXPECT_EQ(bytes.substr(0, 4), "glTF");
+    EXPECT_EQ(wordAt(bytes, 4), 2u);
+    EXPECT_EQ(wordAt(bytes, 8), bytes.size());
+    const std::uint32_t length = wordAt(bytes, 12);
+    EXPECT_EQ(length % 4, 0u);
+    EXPECT_EQ(bytes.substr(16, 4), "JSON");
+    EXPECT_EQ(bytes.substr(24 + length, 4), std::string("BIN\0", 4));
+    EXPECT_EQ(28 + length + wordAt(bytes, 20 + length), bytes.size());
+    return Json::parse(bytes.substr(20, length));
+}
+
+TEST_F(Cli, GltfHasTheParametersThatAreGiven) {
+    const Answer answer = run(
+        "export gltf-pbr:baseColorFactor=.9/.5/.1,metallicFactor=.25,roughnessFactor=.4,ior=1.7,"
+        "clearcoatFactor=.5,clearcoatRoughnessFactor=.125 --target gltf --name paint --json -o " +
+        path("out"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "export_materials"));
+    EXPECT_EQ(Json::parse(answer.out)["files"][0]["path"], "paint.glb");
+    const Json json = jsonOf(read(path("out/paint.glb")));
+    const Json& material = json["materials"][0];
+    EXPECT_EQ(material["name"], "paint");
+    EXPECT_EQ(material["pbrMetallicRoughness"],
+              Json::parse(R"({"baseColorFactor": [0.9, 0.5, 0.1, 1.0], "metallicFactor": 0.25,
+                              "roughnessFactor": 0.4})"));
+    EXPECT_EQ(material["extensions"], Json::parse(R"({"KHR_materials_ior": {"ior": 1.7},
+        "KHR_materials_clearcoat": {"clearcoatFactor": 0.5, "clearcoatRoughnessFactor": 0.125}})"));
+    EXPECT_EQ(json["extensionsUsed"].size(), 2u);
+    EXPECT_TRUE(material["extras"]["hshfit"]["loss"].contains("reason"));
+}
+
+// A preset of a fit states its data; another model is fitted; both losses are those of compare's
+// pairs, and name a maximum.
+TEST_F(Cli, LossIsStatedInAnswerAndFiles) {
+    const Answer answer =
+        run("export ggx:alpha=.3,F0=.9/.6/.3,kd=.05 --target gltf,materialx --extensions none "
+            "--name g --json -o " +
+            path("out"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "export_materials"));
+    const Json files = Json::parse(answer.out)["files"];
+    ASSERT_EQ(files.size(), 2u);
+    for (const Json& file : files) {
+        EXPECT_TRUE(file["fitted"]);
+        EXPECT_LT(file["loss"]["mean_log"], 0.05) << file;
+        EXPECT_GT(file["loss"]["mean_log"], 0) << file;
+        EXPECT_GE(file["loss"]["maximum"]["value"], file["loss"]["mean_log"]);
+    }
+    const Json json = jsonOf(read(path("out/g.glb")));
+    EXPECT_EQ(json["materials"][0]["extras"]["hshfit"]["loss"], files[0]["loss"]);
+    EXPECT_EQ(json["materials"][0]["extras"]["hshfit"]["spec"], files[0]["spec"]);
+    EXPECT_NE(read(path("out/g.mtlx")).find("mean log error"), std::string::npos);
+}
+
+// A material of the model itself is found again without any extension.
+TEST_F(Cli, FitFindsAGltfMaterialWithoutExtensions) {
+    const std::string material =
+        "gltf-pbr:baseColorFactor=0.7/0.4/0.2,metallicFactor=0.3,roughnessFactor=0.6";
+    const Answer answer =
+        run("fit '" + material + "' --model gltf-pbr --samples 3000 --starts 4 --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "fit"));
+    const Json fit = Json::parse(answer.out)["fit"];
+    EXPECT_EQ(fit["parts"]["trials"][0]["parts"].size(), 0u);
+    EXPECT_TRUE(fit["parts"]["trials"][0]["taken"]);
+    EXPECT_LT(fit["rms"], 1e-6);
+    for (const Json& parameter : fit["parameters"]) {
+        if (parameter["name"] == "roughnessFactor") {
+            EXPECT_NEAR(parameter["value"], 0.6, 1e-4);
+        }
+    }
+}
+
+TEST_F(Cli, MeshIsTheUsers) {
+    write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n");
+    const Answer answer = run("export gltf-pbr --target gltf --name t --mesh " + path("t.obj") +
+                              " -o " + path("out"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const Json json = jsonOf(read(path("out/t.glb")));
+    EXPECT_EQ(json["accessors"][0]["count"], 3);
+    EXPECT_EQ(json["accessors"][0]["max"], Json::parse("[1.0, 2.0, 0.0]"));
+}
+
+TEST_F(Cli, MaterialsRefuseWhatTheyCannotTake) {
+    write("broken.obj", "v 0 0 0\nf 1 2 3\n");
+    write("broken.json", R"({"format": "hshfit-preset", "version": 1, "spec": 3})");
+    const std::string out = " -o " + path("out");
+    expectError("export gltf-pbr --target gltf --mesh " + path("broken.obj") + out, 3, "broken.obj",
+                2);
+    expectError("export gltf-pbr --target gltf --mesh " + path("absent.obj") + out, 3, "absent.obj",
+                2);
+    expectError("export " + path("broken.json") + " --target gltf" + out, 3, "broken.json", 2);
+    expectError("export " + path("absent.json") + " --target materialx" + out, 3, "absent.json", 2);
+    expectError("export gltf-pbr:roughnessFactor=2 --target gltf" + out, 2, "0 to 1", 2);
+    expectError("export gltf-pbr --target gltf,bin" + out, 2, "apart from", 2);
+    expectError("export gltf-pbr --target gltf --order 5" + out, 2, "--order", 2);
+    expectError("export x.json --target bin --mesh y.obj" + out, 2, "--mesh", 2);
+    expectError("export lambert --target gltf --extensions coat" + out, 2, "clearcoat", 2);
+    expectError("fit lambert --model ggx --extensions auto", 2, "--extensions", 2);
+}
+
+TEST_F(Cli, MaterialsAreReplacedByForceAlone) {
+    const std::string command = "export gltf-pbr --target gltf --name a -o " + path("out");
+    ASSERT_EQ(run(command).code, 0);
+    const std::string first = read(path("out/a.glb"));
+    EXPECT_EQ(run(command).code, 5);
+    EXPECT_EQ(run(command + " --force").code, 0);
+    EXPECT_EQ(read(path("out/a.glb")), first);
+}
+
+}  // namespace
