@@ -44,6 +44,7 @@ show convert preset:ngan-ward/blue-acrylic out/blue-acrylic.xml --to bsdf-klems 
 echo
 echo "4. For a renderer: textures, a shader, and a page that shows what they are worth."
 show export out/ward_cosine.json -o out/export --target three,viewer --force
+show export $ward -o out/materials --target gltf,materialx --force
 
 echo
 echo "5. Accuracy reports: the energy that each basis captures, by order (Eq. 15)."

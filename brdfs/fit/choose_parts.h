@@ -37,7 +37,7 @@ struct PartOptions {
     /// differ by less.
     double leastGain = 0.02;
     /// Samples that the search draws; the fit that follows takes all.
-    std::size_t samples = 8192;
+    std::size_t samples = 4096;
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
 

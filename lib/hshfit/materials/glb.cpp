@@ -20,7 +20,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Numbers of the specification (3.6.2, 3.7.2.1, 4.4).
-constexpr int arrayBuffer = 34962, elementBuffer = 34963, float32 = 5126, uint32 = 5125;
+constexpr int arrayBuffer = 34962, elementBuffer = 34963, float32 = 5126, uint16 = 5123,
+              uint32 = 5125;
 constexpr std::uint32_t magic = 0x46546C67, jsonChunk = 0x4E4F534A, binaryChunk = 0x004E4942;
 
 void append(std::string& bytes, std::uint32_t value) {
@@ -53,6 +54,19 @@ struct Buffer {
         return accessors.size() - 1;
     }
 };
+
+/// Indices in two bytes where that suffices. The primitive restart value is no index.
+std::size_t addIndices(const Surface& surface, Buffer& buffer) {
+    if (surface.positions.size() > 0xffff)
+        return buffer.add(surface.indices, "SCALAR", uint32, elementBuffer);
+    std::vector<std::uint32_t> pairs((surface.indices.size() + 1) / 2);
+    for (std::size_t k = 0; k < surface.indices.size(); ++k)
+        pairs[k / 2] |= surface.indices[k] << (k % 2 * 16);
+    const std::size_t accessor = buffer.add(pairs, "SCALAR", uint16, elementBuffer);
+    buffer.accessors.back()["count"] = surface.indices.size();
+    buffer.views.back()["byteLength"] = 2 * surface.indices.size();
+    return accessor;
+}
 
 /// The bounds of an accessor, which positions have to have.
 void addBounds(const std::vector<std::array<float, 3>>& positions, Json& accessor) {
@@ -122,7 +136,7 @@ std::string glbBytes(const GltfMaterial& material, const Surface& surface,
     // Tangents matter to anisotropic materials alone.
     if (material.anisotropy)
         attributes["TANGENT"] = buffer.add(surface.tangents, "VEC4", float32, arrayBuffer);
-    const std::size_t indices = buffer.add(surface.indices, "SCALAR", uint32, elementBuffer);
+    const std::size_t indices = addIndices(surface, buffer);
     const Json asset = {{"version", "2.0"}, {"generator", fmt::format("hshfit {}", version)}};
     const Json primitive = {{"attributes", attributes}, {"indices", indices}, {"material", 0}};
     Json document = {{"asset", asset},

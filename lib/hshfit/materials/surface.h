@@ -20,7 +20,7 @@ struct Surface {
 /// A unit sphere about the origin, +y up, of `rings` rings of twice as many quads. Texture
 /// coordinate u grows with the longitude from -z over -x, v downwards from the pole; the tangent
 /// is the direction of growing u. Throws UsageError below 2 or above 1024 rings.
-Surface sphereSurface(int rings = 48);
+Surface sphereSurface(int rings = 96);
 
 /// A mesh (+y up); a vertex for each different pair of position and normal. Tangents have growing
 /// longitude about +y; at poles they are +x.

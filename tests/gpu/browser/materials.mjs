@@ -87,6 +87,7 @@ async function plane({ file, pairs, strict }) {
     values.push([...pixels.slice(0, 3)]);
   }
   renderer.dispose();
+  renderer.forceContextLoss();
   return { values, type: material.type };
 }
 
@@ -108,6 +109,7 @@ async function mesh({ file, wi, size, strict }) {
   const pixels = new Float32Array(4 * size * size);
   renderer.readRenderTargetPixels(target, 0, 0, size, size, pixels);
   renderer.dispose();
+  renderer.forceContextLoss();
   return [...pixels];
 }
 
