@@ -39,10 +39,11 @@ public:
     }
 
 private:
-    static constexpr int steps = 32;
+    static constexpr int steps = 24;
 
     static double at(double alpha, double ior, double zo) {
-        constexpr int rings = 24, azimuths = 24;
+        // Of one half: the other is its mirror image.
+        constexpr int rings = 16, azimuths = 10;
         const double xo = std::sqrt(1 - zo * zo);
         const auto lambda = [&](double x2, double z) {
             return 0.5 * (std::sqrt(1 + alpha * alpha * x2 / (z * z)) - 1);
@@ -54,7 +55,7 @@ private:
         for (int i = 0; i < rings; ++i) {
             const double radius = std::sqrt((i + 0.5) / rings);
             for (int j = 0; j < azimuths; ++j) {
-                const double phi = 2 * pi * (j + 0.5) / azimuths;
+                const double phi = pi * ((j + 0.5) / azimuths - 0.5);
                 const double t1 = radius * std::cos(phi), half = 0.5 * (1 + vz);
                 const double t2 =
                     (1 - half) * std::sqrt(1 - t1 * t1) + half * radius * std::sin(phi);
