@@ -1,0 +1,46 @@
+#pragma once
+
+#include <hshfit/brdf/brdf.h>
+
+#include <vector>
+
+namespace hshfit::lighting {
+
+/// The lobe of a BRDF at normal incidence as a kernel about an axis: (f - even part) cos(theta_i),
+/// the mean over channels, as a function of t = tan(alpha / 2), alpha the angle from the axis.
+/// Wider and narrower kernels have the same shape in t / scale: a stereographic map of the lobe.
+/// Each integrates to 1 over the sphere.
+class LobeKernel {
+public:
+    /// `brdf` is isotropic. A BRDF without a lobe gets the cosine's.
+    explicit LobeKernel(const Brdf& brdf);
+    /// From values at t = tan(alpha / 2), ascending and at most 1; 0 beyond.
+    LobeKernel(std::vector<double> t, std::vector<double> values);
+
+    /// Mean of cos(alpha) under the kernel: 1 for a mirror's, falling with `scale`.
+    double meanCosine(double scale) const;
+    /// The scale of that mean cosine, from 1e-3 to 30.
+    double scaleFor(double meanCosine) const;
+
+    /// The kernel at one scale, tabulated for many lookups.
+    class Scaled {
+    public:
+        double at(double cosine) const;  ///< per steradian
+
+    private:
+        friend class LobeKernel;
+        std::vector<float> table_;  ///< over sin(alpha / 2), from 0 to 1
+    };
+    Scaled scaled(double scale) const;
+
+private:
+    double shape(double t) const;
+    struct Moments {
+        double integral = 0, meanCosine = 0;
+    };
+    Moments moments(double scale) const;
+
+    std::vector<double> t_, values_;
+};
+
+}  // namespace hshfit::lighting
