@@ -1,4 +1,5 @@
 #include "command.h"
+#include "export_lighting.h"
 #include "export_material.h"
 
 #include <hshfit/gpu/error_split.h>
@@ -6,6 +7,7 @@
 #include <jobs/export.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
@@ -20,6 +22,7 @@ using Json = nlohmann::ordered_json;
 
 struct ExportArguments {
     std::string coefficients, output, number, storage = "auto", packing = "coef4";
+    std::string lighting;  ///< models; empty: none
     bool chroma = false, noError = false;
     jobs::ExportOptions options;
     jobs::MaterialExportOptions material;
@@ -170,10 +173,30 @@ void requireOptions(const CLI::App& command, bool materials) {
     }
 }
 
+/// The options of textures that lighting shares.
+void runLighting(const ExportArguments& arguments, const Globals& globals) {
+    const jobs::ExportOptions& shared = arguments.options;
+    jobs::LightingExportOptions options{.models = arguments.lighting,
+                                        .targets = shared.targets,
+                                        .name = shared.name,
+                                        .source = shared.source,
+                                        .prefix = shared.shader.prefix,
+                                        .measureError = !arguments.noError,
+                                        .force = shared.force};
+    options.errors.tables.order = shared.shader.environmentOrder;
+    if (!shared.lights.empty()) options.light = fmt::format("{}", fmt::join(shared.lights, "+"));
+    // Errors under the light that is written, and under those of the catalog.
+    options.errors.lights = jobs::catalogLights();
+    if (!shared.lights.empty())
+        options.errors.lights.insert(options.errors.lights.begin(), options.light);
+    runExportLighting(arguments.coefficients, arguments.output, options, globals);
+}
+
 void runExport(ExportArguments& arguments, const CLI::App& command, const Globals& globals) {
     jobs::ExportOptions& options = arguments.options;
     const bool materials = jobs::areMaterials(options.targets);
     requireOptions(command, materials);
+    if (!arguments.lighting.empty()) return runLighting(arguments, globals);
     if (materials) {
         jobs::MaterialExportOptions& material = arguments.material;
         material.targets = options.targets;
@@ -259,6 +282,10 @@ void addExport(CLI::App& command, Globals& globals) {
         "--light", options.lights,
         "Environment of the viewer: a light of hshfit list lights, a picture, or a sum "
         "by '+'; repeated: several to choose from (default: a studio)");
+    command.add_option("--lighting", arguments->lighting,
+                       "Tables, light and shaders for environments and area lights in place of "
+                       "textures: all, or of coefficients, split-sum and ltc those named; with "
+                       "--light the light that is written");
     command.add_flag("--zstd", options.zstd, "Compress KTX2 with Zstandard");
     command.add_flag("--force", options.force, "Replace files that are there");
     command.add_option("--mesh", arguments->material.mesh,

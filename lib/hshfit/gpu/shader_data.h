@@ -45,6 +45,10 @@ void setShading(const Payload& payload, const Basis& basis, int environmentOrder
 void setFrameTurn(const Payload& payload, int environmentOrder, bool flat,
                   kainjow::mustache::data& data, ShaderCost& cost);
 
+/// The same for light of R, G, B without the Condon-Shortley sign, with the template `worldBody`
+/// of the statements that fill `env` from `light` in the frame t, b, n.
+void setFrameTurn(int environmentOrder, kainjow::mustache::data& data);
+
 /// A row of `Payload::toChannels`, without its zeros.
 kainjow::mustache::data outputTerms(const std::vector<double>& factors, ShaderCost& cost);
 /// Scale and offset of a layer's lanes, where numbers are normalised.

@@ -6,7 +6,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <string>
+#include <string_view>
 #include <vector>
+
+namespace hshfit::embedded {
+extern const std::string_view shader_shade_world;
+}  // namespace hshfit::embedded
 
 namespace hshfit::gpu {
 namespace {
@@ -144,6 +149,17 @@ void setFrameTurn(const Payload& payload, int environmentOrder, bool flat, data&
         passes.push_back(pass);
     }
     page.set("framePasses", passes);
+}
+
+void setFrameTurn(int environmentOrder, data& page) {
+    Payload payload;
+    payload.head.channels = Channels::rgb();
+    ShaderCost cost;
+    setFrameTurn(payload, environmentOrder, false, page, cost);
+    page.set("letLight", page.get("let3")->string_value());
+    std::string body(embedded::shader_shade_world);
+    if (body.ends_with('\n')) body.pop_back();
+    page.set("worldBody", data(kainjow::mustache::partial([body] { return body; })));
 }
 
 }  // namespace hshfit::gpu

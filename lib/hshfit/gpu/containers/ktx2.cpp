@@ -3,85 +3,22 @@
 
 #include <hshfit/gpu/containers/internal/byte_fields.h>
 #include <hshfit/gpu/containers/internal/container_files.h>
-#include <hshfit/version.h>
+#include <hshfit/gpu/containers/internal/ktx2_formats.h>
+#include <hshfit/gpu/containers/ktx2_image.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <map>
 
 #include <zstd.h>
 
 namespace hshfit::gpu::inline containers {
 namespace {
 
-constexpr std::string_view magic("\xabKTX 20\xbb\r\n\x1a\n", 12);
 constexpr std::string_view sidecarKey = "hshfit:sidecar";
 constexpr std::uint32_t zstdScheme = 2;
 constexpr int zstdLevel = 19;  // the highest that needs no large window
 /// Data that would shrink further are stored uncompressed, and readers refuse such a ratio, so
 /// that a small file cannot make them allocate without bounds.
 constexpr std::uint64_t maxInflation = 1000;
-constexpr std::size_t headerBytes = 80, levelIndexBytes = 24;
-
-struct PixelFormat {
-    Number number;
-    std::uint32_t vulkan;  ///< VkFormat
-    bool floating;
-    std::uint32_t lower, upper;  ///< of the samples
-};
-constexpr std::array pixelFormats{
-    PixelFormat{Number::float16, 97, true, std::bit_cast<std::uint32_t>(-1.0F),
-                std::bit_cast<std::uint32_t>(1.0F)},
-    PixelFormat{Number::float32, 109, true, std::bit_cast<std::uint32_t>(-1.0F),
-                std::bit_cast<std::uint32_t>(1.0F)},
-    PixelFormat{Number::unorm16, 91, false, 0, 65535},
-    PixelFormat{Number::unorm8, 37, false, 0, 255},
-};
-const PixelFormat& formatOf(Number number) {
-    return *std::find_if(pixelFormats.begin(), pixelFormats.end(),
-                         [&](const PixelFormat& row) { return row.number == number; });
-}
-
-std::string dataFormatDescriptor(Number number) {
-    const PixelFormat& format = formatOf(number);
-    const auto bytes = static_cast<std::uint32_t>(numberBytes(number));
-    constexpr std::uint32_t blockBytes = 24 + 4 * 16;
-    std::string out;
-    put(out, std::uint32_t{4 + blockBytes});
-    put(out, std::uint32_t{0});  // Khronos, basic descriptor
-    put(out, std::uint16_t{2});  // KDF 1.3
-    put(out, static_cast<std::uint16_t>(blockBytes));
-    for (const int octet : {1, 0, 1, 0}) put(out, static_cast<std::uint8_t>(octet));
-    // model RGBSDA, primaries unspecified, transfer linear, alpha straight
-    put(out, std::uint32_t{0});                         // texel block 1 x 1 x 1 x 1
-    put(out, std::uint64_t{bytes * 4});                 // bytes of plane 0
-    constexpr std::uint8_t channels[] = {0, 1, 2, 15};  // R, G, B, A
-    for (std::uint32_t i = 0; i < 4; ++i) {
-        put(out, static_cast<std::uint16_t>(i * bytes * 8));
-        put(out, static_cast<std::uint8_t>(bytes * 8 - 1));
-        put(out, static_cast<std::uint8_t>(channels[i] | (format.floating ? 0xc0 : 0)));
-        put(out, std::uint32_t{0});
-        put(out, format.lower);
-        put(out, format.upper);
-    }
-    return out;
-}
-
-/// Ascending keys, every value ended by NUL, entries padded to 4 bytes.
-std::string keyValueData(const TexelFile& file) {
-    std::map<std::string, std::string> pairs = {{"KTXorientation", "rd"},
-                                                {"KTXwriter", std::string("hshfit ") + version}};
-    for (const auto& [key, value] : file.facts) pairs["hshfit:" + key] = value;
-    pairs[std::string(sidecarKey)] = file.sidecar;
-    std::string out;
-    for (const auto& [key, value] : pairs) {
-        put(out, static_cast<std::uint32_t>(key.size() + 1 + value.size() + 1));
-        out += key + '\0' + value + '\0';
-        out.resize((out.size() + 3) / 4 * 4, '\0');
-    }
-    return out;
-}
 
 std::string compressed(const Texels& texels) {
     std::string out(ZSTD_compressBound(texels.bytes.size()), '\0');
@@ -96,34 +33,18 @@ std::string compressed(const Texels& texels) {
 
 void write(const TexelFile& file, AtomicFile& out) {
     const Texels& texels = file.texels;
-    std::string data = file.zstd ? compressed(texels) : std::string();
+    const std::string data = file.zstd ? compressed(texels) : std::string();
     const bool zstd = !data.empty() && texels.bytes.size() / data.size() < maxInflation;
-    const std::string descriptor = dataFormatDescriptor(texels.number);
-    const std::string pairs = keyValueData(file);
-    constexpr std::size_t descriptorOffset = headerBytes + levelIndexBytes;
-    const std::size_t pairsOffset = descriptorOffset + descriptor.size();
-    const std::size_t end = pairsOffset + pairs.size();
-    // the least common multiple of 4 and the bytes of a texel, which is a power of two
-    const std::size_t alignment =
-        zstd ? 1 : std::max<std::size_t>(4, numberBytes(texels.number) * 4);
-    const std::size_t dataOffset = (end + alignment - 1) / alignment * alignment;
-
-    std::string head(magic);
-    for (const std::size_t word :
-         {std::size_t{formatOf(texels.number).vulkan}, numberBytes(texels.number),
-          static_cast<std::size_t>(texels.width), static_cast<std::size_t>(texels.height),
-          std::size_t{0}, texels.layers, std::size_t{1}, std::size_t{1},
-          std::size_t{zstd ? zstdScheme : 0}, descriptorOffset, descriptor.size(), pairsOffset,
-          pairs.size()}) {
-        put(head, static_cast<std::uint32_t>(word));
-    }
-    for (const std::size_t word : {std::size_t{0}, std::size_t{0}, dataOffset,
-                                   zstd ? data.size() : texels.bytes.size(), texels.bytes.size()}) {
-        put(head, std::uint64_t{word});
-    }
-    head += descriptor + pairs;
-    head.resize(dataOffset, '\0');
-    out.write(head);
+    Ktx2Image image{.number = texels.number,
+                    .width = static_cast<std::size_t>(texels.width),
+                    .height = static_cast<std::size_t>(texels.height),
+                    .layers = texels.layers,
+                    .zstd = zstd,
+                    .levels = {{.stored = zstd ? data.size() : texels.bytes.size(),
+                                .uncompressed = texels.bytes.size()}}};
+    for (const auto& [key, value] : file.facts) image.pairs["hshfit:" + key] = value;
+    image.pairs[std::string(sidecarKey)] = file.sidecar;
+    out.write(ktx2Head(image));
     if (zstd) {
         out.write(data);
     } else {
@@ -208,7 +129,7 @@ const Container& ktx2Container() {
         .numbers = {Number::float16, Number::float32, Number::unorm16, Number::unorm8},
         .holdsSidecar = true,
         .write = write,
-        .recognises = [](std::string_view bytes) { return bytes.starts_with(magic); },
+        .recognises = [](std::string_view bytes) { return bytes.starts_with(ktx2Magic); },
         .sidecar = sidecar,
         .texels = texels};
     return row;

@@ -1,0 +1,61 @@
+#include "export_lighting.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+
+namespace hshfit::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The sidecar without what its readers alone need.
+Json answerOf(const jobs::LightingExport& exported, const std::string& folder) {
+    Json answer = exported.sidecar;
+    answer["folder"] = folder;
+    answer["files"] = exported.files;
+    for (Json& model : answer["models"])
+        for (const char* array : {"light", "irradiance", "areas", "cube"}) model.erase(array);
+    answer["tests"] = answer["tests"].size();
+    return answer;
+}
+
+std::string text(const Json& answer) {
+    std::string out =
+        fmt::format("{}: lighting of {} under {}\n", answer["folder"].get<std::string>(),
+                    answer["brdf"].get<std::string>(), answer["light"].get<std::string>());
+    for (const Json& model : answer["models"])
+        out +=
+            fmt::format("  {:12}  table of {} bytes in {:.2g} s, light of {} bytes in {:.2g} s\n",
+                        model["model"].get<std::string>(), model["bytes"].get<std::size_t>(),
+                        model["seconds"].get<double>(), model["light_bytes"].get<std::size_t>(),
+                        model["light_seconds"].get<double>());
+    for (const Json& file : answer["files"]) out += "  " + file.get<std::string>() + "\n";
+    if (answer["errors"].empty()) return out;
+    out +=
+        "against direct integration on a sphere: relative L2, largest difference of a pixel over\n"
+        "the mean radiance, nanoseconds of a point on one thread (direct integration: last)\n";
+    for (const Json& error : answer["errors"])
+        out += fmt::format("  {:12}  {:7.4f}  {:7.3f}  {:8.0f} {:10.0f}  {}\n",
+                           error["model"].get<std::string>(), error["relative_l2"].get<double>(),
+                           error["maximum"].get<double>(), error["nanoseconds"].get<double>(),
+                           error["integration_nanoseconds"].get<double>(),
+                           error["light"].get<std::string>());
+    return out;
+}
+
+}  // namespace
+
+void runExportLighting(const std::string& coefficients, const std::string& folder,
+                       const jobs::LightingExportOptions& options, const Globals& globals) {
+    const jobs::LightingExport exported =
+        jobs::exportLighting(coefficients, folder, options, listenerFor(globals));
+    const Json answer = answerOf(exported, folder);
+    if (globals.json)
+        printJson(answer);
+    else
+        printText(text(answer));
+}
+
+}  // namespace hshfit::cli

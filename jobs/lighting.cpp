@@ -1,0 +1,258 @@
+#include "lighting.h"
+
+#include "source.h"
+
+#include <hshfit/coefficient_files/representation_file.h>
+#include <hshfit/error.h>
+#include <hshfit/files/checksum.h>
+#include <hshfit/files/file_set.h>
+#include <hshfit/files/json_fields.h>
+#include <hshfit/gpu/containers/ktx2_image.h>
+#include <hshfit/gpu/containers/targets.h>
+#include <hshfit/gpu/shader.h>
+#include <hshfit/light/catalog.h>
+#include <hshfit/lighting/lighting_shader.h>
+#include <hshfit/version.h>
+#include <hshfit/wording.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace hshfit::jobs {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Kind = LightingModel::Kind;
+using Bytes = std::vector<std::byte>;
+
+std::string_view textOf(const Bytes& bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// All that is written, under one name.
+struct Output {
+    const LightingExportOptions& options;
+    std::string name;
+    FileSet files;
+    std::vector<std::string> names = {};
+
+    Json add(const std::string& suffix, std::string_view text) {
+        const std::string path = name + suffix;
+        files.write(path, text);
+        names.push_back(path);
+        return {{"path", path}, {"bytes", text.size()}, {"sha256", sha256(text)}};
+    }
+};
+
+const lighting::ElevationTable& tableOf(Kind kind, const LightingTables& tables) {
+    if (kind == Kind::coefficients) return tables.harmonics->table;
+    return kind == Kind::splitSum ? tables.splitSum->table : tables.cosines->table;
+}
+
+Json writeTable(const LightingModel& model, const lighting::ElevationTable& table, Output& output) {
+    const auto width = static_cast<int>(table.texels), height = static_cast<int>(table.rows.count);
+    const gpu::Texels texels = gpu::encode(table.values, width, height, 1, gpu::Number::float32);
+    const gpu::Ktx2Image image{.number = texels.number,
+                               .width = table.texels,
+                               .height = table.rows.count,
+                               .pairs = {{"hshfit:model", std::string(model.name)}}};
+    const std::string stem = fmt::format(".{}.table", model.name);
+    return {{"width", width},
+            {"height", height},
+            {"number", "float32"},
+            {"files",
+             {output.add(stem + ".ktx2", gpu::ktx2File(image, {&texels.bytes, 1})),
+              output.add(stem + ".f32.bin", textOf(texels.bytes))}}};
+}
+
+Json rgbRows(std::span<const Rgb> values) {
+    Json rows = Json::array();
+    for (const Rgb& value : values) rows.push_back(value);
+    return rows;
+}
+
+Json writeCube(const lighting::EnvironmentCube& cube, const std::string& light, Output& output) {
+    std::vector<Bytes> levels;
+    Json places = Json::array();
+    Bytes all;
+    for (const lighting::EnvironmentCube::Level& level : cube.levels) {
+        std::vector<double> rgba;
+        for (std::size_t k = 0; k < level.rgb.size(); k += 3) {
+            for (std::size_t c = 0; c < 3; ++c) rgba.push_back(level.rgb[k + c]);
+            rgba.push_back(1);
+        }
+        const auto face = static_cast<int>(level.face);
+        levels.push_back(gpu::encode(rgba, face, face, 6, gpu::Number::float16).bytes);
+        places.push_back({{"face", face}, {"offset", all.size()}, {"bytes", levels.back().size()}});
+        all.insert(all.end(), levels.back().begin(), levels.back().end());
+    }
+    const std::size_t face = cube.levels.front().face;
+    const gpu::Ktx2Image image{.number = gpu::Number::float16,
+                               .width = face,
+                               .height = face,
+                               .faces = 6,
+                               .pairs = {{"hshfit:light", light}}};
+    return {{"number", "float16"},
+            {"faces", "+x -x +y -y +z -z of the world, as OpenGL 4.6, section 8.13"},
+            {"levels", places},
+            {"files",
+             {output.add(".split-sum.cube.ktx2", gpu::ktx2File(image, levels)),
+              output.add(".split-sum.cube.f16.bin", textOf(all))}}};
+}
+
+Json point(const Direction& d) {
+    return {d.x, d.y, d.z};
+}
+
+/// The light as the model takes it.
+void describeLight(const LightingModel& model, const LightingEnvironment& light, Output& output,
+                   Json& document) {
+    if (model.kind == Kind::coefficients) {
+        document["light"] = rgbRows(light.harmonics->light());
+    } else if (model.kind == Kind::splitSum) {
+        document["irradiance"] = rgbRows(light.irradiance);
+        document["cube"] = writeCube(light.cube, output.options.light, output);
+    } else {
+        document["areas"] = Json::array();
+        for (const lighting::AreaLight& area : light.areas) {
+            Json corners = Json::array();
+            for (const Direction& corner : area.corners) corners.push_back(point(corner));
+            document["areas"].push_back({{"corners", corners}, {"radiance", area.radiance}});
+        }
+    }
+}
+
+Json writeShaders(const LightingModel& model, const LightingTables& tables,
+                  const std::string& source, const Listener& listener, Output& output) {
+    const lighting::ElevationTable& table = tableOf(model.kind, tables);
+    const lighting::LightingShader shader{
+        .kind = static_cast<lighting::LightingShader::Kind>(model.kind),
+        .order = tables.harmonics ? tables.harmonics->order : 0,
+        .levels = tables.splitSum ? tables.splitSum->levels : 0,
+        .rows = table.rows,
+        .texels = table.texels,
+        .prefix = output.options.prefix,
+        .source = source,
+        .generator = std::string("hshfit ") + version};
+    const auto chosen = gpu::selectTargets(output.options.targets);
+    Json shaders = Json::array();
+    for (const gpu::LanguageEntry& language : gpu::languages()) {
+        if (std::ranges::none_of(chosen, [&](const gpu::Target* target) {
+                return target->kind == gpu::Target::Kind::shader && target->name == language.name;
+            }))
+            continue;
+        if (!std::ranges::count(lighting::lightingLanguages(), language.language)) {
+            listener.say(fmt::format("left out: lighting has no shaders in {}", language.name));
+            continue;
+        }
+        const bool es = language.language == gpu::Language::glslEs;
+        const Json file = output.add(fmt::format("_{}_{}.{}{}", output.options.prefix, model.name,
+                                                 es ? "es." : "", language.extension),
+                                     lighting::lightingShaderSource(language.language, shader));
+        shaders.push_back({{"target", language.name}, {"path", file["path"]}});
+    }
+    return shaders;
+}
+
+/// Normals all over the sphere and viewers all over their hemispheres, with each model's radiance.
+Json testsOf(std::span<const LightingModel* const> models, const LightingTables& tables,
+             const LightingEnvironment& light) {
+    Json tests = Json::array();
+    constexpr std::size_t count = 64;
+    const std::vector<Direction> normals = irradiance::normalLattice(count);
+    for (std::size_t k = 0; k < count; ++k) {
+        const lighting::ViewAxes axes(normals[k], normals[(k * 37 + 5) % count]);
+        const double cosine = 0.03 + 0.97 * (static_cast<double>(k) + 0.5) / count;
+        const Direction viewer = axes.toWorld({std::sqrt(1 - cosine * cosine), 0, cosine});
+        Json test = {{"normal", point(normals[k])}, {"viewer", point(viewer)}};
+        for (const LightingModel* model : models)
+            test[std::string(model->name)] =
+                shadingOf(model->kind, tables, light)(normals[k], viewer);
+        tests.push_back(test);
+    }
+    return tests;
+}
+
+/// The BRDF that errors are measured against: the source, or the file where it does not open.
+std::unique_ptr<Brdf> truthOf(const std::string& path, const LightingExportOptions& options,
+                              std::string& name, const Listener& listener) {
+    if (!options.source.empty()) {
+        name = options.source;
+        return openBrdf(options.source, true);
+    }
+    try {
+        name = readRepresentation(path).head.source;
+        return openBrdf(name, true);
+    } catch (const Error& error) {
+        listener.say(
+            fmt::format("errors are measured against the file: its source does not open "
+                        "({}); name it with {}",
+                        error.what(), Setting{"ExportOptions::source"}));
+        name = path;
+        return openSource(path, true);
+    }
+}
+
+}  // namespace
+
+LightingExport exportLighting(const std::string& path, const std::string& folder,
+                              const LightingExportOptions& options, const Listener& listener) {
+    const auto models = selectLightingModels(options.models);
+    const std::vector<Light> lights = parseLights(options.light).lights;
+    const auto brdf = openSource(path, true);
+    Output output{options,
+                  options.name.empty() ? std::filesystem::path(path).stem().string() : options.name,
+                  FileSet(folder, options.force)};
+    const LightingTableOptions& how = options.errors.tables;
+    const LightingTables tables = fitLightingTables(*brdf, models, how);
+    const LightingEnvironment light = lightFor(tables, lights, how);
+    std::string truthName;
+    const auto truth = truthOf(path, options, truthName, listener);
+    std::vector<LightingError> errors;
+    if (options.measureError)
+        errors = lightingErrors(*truth, tables, models, options.errors, listener);
+    requireReadable(*brdf);
+
+    LightingExport result;
+    Json& document = result.sidecar;
+    document = {{"format", "hshfit-lighting"},
+                {"version", 1},
+                {"generator", std::string("hshfit ") + version},
+                {"brdf", truthName},
+                {"light", options.light},
+                {"frame", "world, right-handed, +z up; directions point away from the surface"},
+                {"rows",
+                 {{"count", how.rows},
+                  {"least_cosine", lighting::ElevationRows::leastCosine},
+                  {"formula", "row = (count - 1) sqrt((1 - cos(theta_o)) / (1 - least_cosine))"}}},
+                {"models", Json::array()}};
+    for (const LightingModel* model : models) {
+        const int k = static_cast<int>(model->kind);
+        Json entry = {{"model", model->name},
+                      {"summary", model->summary},
+                      {"bytes", tables.bytes(model->kind)},
+                      {"light_bytes", light.bytes(model->kind)},
+                      {"seconds", tables.seconds[k]},
+                      {"light_seconds", light.seconds[k]}};
+        if (model->kind == Kind::coefficients) entry["order"] = tables.harmonics->order;
+        if (model->kind == Kind::splitSum) {
+            entry["kernel_scale"] = tables.splitSum->firstScale;
+            entry["kernel_width_degrees"] = degrees(tables.splitSum->firstWidth);
+        }
+        entry["table"] = writeTable(*model, tableOf(model->kind, tables), output);
+        describeLight(*model, light, output, entry);
+        entry["shaders"] = writeShaders(*model, tables, truthName, listener, output);
+        document["models"].push_back(entry);
+    }
+    document["errors"] = lightingErrorsJson(errors);
+    document["tests"] = testsOf(models, tables, light);
+    output.add(".lighting.json", jsonText(document, 1) + "\n");
+    output.files.commit();
+    result.files = std::move(output.names);
+    return result;
+}
+
+}  // namespace hshfit::jobs

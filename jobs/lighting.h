@@ -1,0 +1,39 @@
+#pragma once
+
+#include "lighting_errors.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+namespace hshfit::jobs {
+
+struct LightingExportOptions {
+    std::string models = "all";  ///< selectLightingModels
+    /// The light that is written with the tables (light/catalog.h).
+    std::string light = "sky:type=12,elevation=40";
+    std::string targets = "glsl-es";  ///< languages of gpu::selectTargets; others are left out
+    std::string name = {};            ///< of the files; empty: that of the coefficient file
+    /// The BRDF that errors are measured against; empty: the one that the coefficients name.
+    std::string source = {};
+    std::string prefix = "hsh";  ///< of every name in a shader
+    bool measureError = true;
+    bool force = false;                ///< replace existing files
+    LightingErrorOptions errors = {};  ///< `tables` has the options of the tables
+};
+
+struct LightingExport {
+    /// The sidecar: tables, the light, shaders, tests, errors (docs/schemas/lighting.schema.json).
+    nlohmann::ordered_json sidecar;
+    std::vector<std::string> files;  ///< names in the folder
+};
+
+/// Tables by elevation of the BRDF in a coefficient file of any form, for each of the models, with
+/// one light made ready for them, as textures, shaders and a sidecar: all files or none. Spectra
+/// become RGB. Throws UsageError (for a BRDF that is not isotropic, too), InputError, NumericError
+/// and OutputError.
+LightingExport exportLighting(const std::string& coefficients, const std::string& folder,
+                              const LightingExportOptions& options, const Listener& listener = {});
+
+}  // namespace hshfit::jobs

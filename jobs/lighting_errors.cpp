@@ -1,0 +1,90 @@
+#include "lighting_errors.h"
+
+#include <hshfit/light/catalog.h>
+#include <hshfit/rendering/lit_picture.h>
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+
+namespace hshfit::jobs {
+namespace {
+
+/// Of one thread, over a few points.
+double integrationTime(const Brdf& brdf, const SurfacePoints& points, const View& view,
+                       const DirectIntegral& light, double tolerance) {
+    constexpr std::size_t timed = 20;
+    const std::size_t step = std::max<std::size_t>(1, points.count() / timed);
+    std::size_t count = 0;
+    const auto start = std::chrono::steady_clock::now();
+    for (std::size_t k = 0; k < points.count(); k += step, ++count) {
+        const Frame frame = frameAt(points.normals[k]);
+        light.at(brdf, frame, frame.toLocal(points.viewer(k, view)), {.tolerance = tolerance});
+    }
+    const std::chrono::duration<double, std::nano> time = std::chrono::steady_clock::now() - start;
+    return time.count() / static_cast<double>(std::max<std::size_t>(1, count));
+}
+
+}  // namespace
+
+std::vector<std::string> catalogLights() {
+    std::vector<std::string> lights;
+    for (const LightKind& kind : lightKinds()) lights.emplace_back(kind.example);
+    return lights;
+}
+
+std::vector<LightingError> lightingErrors(const Brdf& truth, const LightingTables& tables,
+                                          std::span<const LightingModel* const> models,
+                                          const LightingErrorOptions& options,
+                                          const Listener& listener) {
+    const View view(radians(options.viewTheta), radians(options.viewPhi));
+    const SurfacePoints points = spherePoints(view, options.size, 1);
+    const std::vector<std::string> specs =
+        options.lights.empty() ? catalogLights() : options.lights;
+    std::vector<LightingError> errors;
+    const ProgressCall progress = listener.part("lighting");
+    std::size_t done = 0;
+    for (const std::string& spec : specs) {
+        const std::vector<Light> lights = parseLights(spec).lights;
+        const DirectIntegral direct(lights);
+        const LitPicture reference =
+            renderByIntegration(truth, points, view, direct, {.tolerance = options.tolerance});
+        const double time = integrationTime(truth, points, view, direct, options.tolerance);
+        const LightingEnvironment light = lightFor(tables, lights, options.tables);
+        for (const LightingModel* model : models) {
+            const lighting::ShadedPicture shaded =
+                lighting::render(shadingOf(model->kind, tables, light), points, view);
+            errors.push_back({.light = spec,
+                              .model = std::string(model->name),
+                              .difference = differenceOf(reference.picture, shaded.picture),
+                              .reference = reference.error,
+                              .bytes = tables.bytes(model->kind),
+                              .lightBytes = light.bytes(model->kind),
+                              .nanoseconds = shaded.nanoseconds,
+                              .integration = time,
+                              .prepareSeconds = light.seconds[static_cast<int>(model->kind)]});
+        }
+        if (progress) progress(++done, specs.size());
+    }
+    return errors;
+}
+
+nlohmann::ordered_json lightingErrorsJson(std::span<const LightingError> errors) {
+    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    for (const LightingError& error : errors) {
+        rows.push_back({{"light", error.light},
+                        {"model", error.model},
+                        {"relative_l2", error.difference.relativeL2},
+                        {"maximum", error.difference.maximum},
+                        {"pixel", {error.difference.column, error.difference.row}},
+                        {"reference_error", error.reference},
+                        {"bytes", error.bytes},
+                        {"light_bytes", error.lightBytes},
+                        {"nanoseconds", error.nanoseconds},
+                        {"integration_nanoseconds", error.integration},
+                        {"prepare_seconds", error.prepareSeconds}});
+    }
+    return rows;
+}
+
+}  // namespace hshfit::jobs

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "lighting_models.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+#include <vector>
+
+namespace hshfit::jobs {
+
+struct LightingErrorOptions {
+    /// Specifications of lights; empty: the example of every kind of the catalog.
+    std::vector<std::string> lights = {};
+    int size = 48;  ///< pixels along an edge of the sphere's picture
+    double viewTheta = 75, viewPhi = 0;
+    double tolerance = 5e-3;  ///< of direct integration
+    LightingTableOptions tables = {};
+};
+
+/// A model under a light, against direct integration on a sphere.
+struct LightingError {
+    std::string light, model;
+    PictureDifference difference = {};
+    double reference = 0;   ///< estimated relative error of direct integration
+    std::size_t bytes = 0;  ///< of the table
+    std::size_t lightBytes = 0;
+    double nanoseconds = 0;     ///< of one thread, for a point
+    double integration = 0;     ///< the same of direct integration
+    double prepareSeconds = 0;  ///< of the light
+};
+
+/// Every model under every light, against renderByIntegration of `truth`: relative L2, and the
+/// largest difference of a pixel and where it is. Throws UsageError, InputError and NumericError.
+std::vector<LightingError> lightingErrors(const Brdf& truth, const LightingTables& tables,
+                                          std::span<const LightingModel* const> models,
+                                          const LightingErrorOptions& options,
+                                          const Listener& listener = {});
+
+/// One object for each: light, model, relative_l2, maximum, where, bytes and times.
+nlohmann::ordered_json lightingErrorsJson(std::span<const LightingError> errors);
+
+/// The examples of the catalog of lights.
+std::vector<std::string> catalogLights();
+
+}  // namespace hshfit::jobs

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "listener.h"
+
+#include <hshfit/lighting/harmonics.h>
+#include <hshfit/lighting/lit_surface.h>
+#include <hshfit/lighting/split_sum.h>
+#include <hshfit/lighting/transformed_cosines.h>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::jobs {
+
+/// A row of the table of models that light a BRDF in real time.
+struct LightingModel {
+    enum class Kind { coefficients, splitSum, cosines };
+    Kind kind = Kind::coefficients;
+    std::string_view name, summary;
+};
+std::span<const LightingModel> lightingModels();
+/// Models of a comma-separated list of names, or "all". Throws UsageError with the known ones.
+std::vector<const LightingModel*> selectLightingModels(std::string_view names);
+
+struct LightingTableOptions {
+    std::size_t rows = 32;   ///< elevations of wo
+    int order = 5;           ///< bands of light that meet harmonics
+    std::size_t face = 128;  ///< most texels along an edge of the cube's faces
+    std::size_t tiles = 64;  ///< quadrilaterals that skies and pictures are cut into
+};
+
+/// Tables of an isotropic BRDF, of the models that were asked for; `seconds` in the order of
+/// lightingModels().
+struct LightingTables {
+    std::optional<lighting::HarmonicTable> harmonics = {};
+    std::optional<lighting::SplitSumTable> splitSum = {};
+    std::optional<lighting::CosineTable> cosines = {};
+    double seconds[3] = {0, 0, 0};
+
+    std::size_t bytes(LightingModel::Kind kind) const;
+};
+LightingTables fitLightingTables(const Brdf& brdf, std::span<const LightingModel* const> models,
+                                 const LightingTableOptions& options);
+
+/// Transformed cosines by elevation: the even part of the lobe apart (LobeSummary), the rest fitted
+/// by brdfs::fitLtc from its own first moment and from the row before.
+lighting::CosineTable fitCosineTable(const Brdf& brdf, lighting::ElevationRows rows);
+
+/// Light made ready for the tables' models.
+struct LightingEnvironment {
+    std::shared_ptr<const lighting::HarmonicShading> harmonics = {};
+    lighting::EnvironmentCube cube = {};
+    irradiance::NineRgb irradiance = {};
+    std::vector<lighting::AreaLight> areas = {};
+    double seconds[3] = {0, 0, 0};
+
+    /// Bytes of the light: float32 of coefficients and of quadrilaterals (five texels of R, G, B),
+    /// float16 RGBA of the cube.
+    std::size_t bytes(LightingModel::Kind kind) const;
+};
+LightingEnvironment lightFor(const LightingTables& tables, std::span<const Light> lights,
+                             const LightingTableOptions& options);
+
+/// The model as a function of normal and viewer; both references have to outlive it.
+lighting::Shading shadingOf(LightingModel::Kind kind, const LightingTables& tables,
+                            const LightingEnvironment& light);
+
+}  // namespace hshfit::jobs

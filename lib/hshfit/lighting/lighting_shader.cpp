@@ -1,0 +1,155 @@
+#include <hshfit/lighting/lighting_shader.h>
+
+#include <hshfit/bases/basis.h>
+#include <hshfit/error.h>
+#include <hshfit/gpu/shader_data.h>
+#include <hshfit/gpu/shader_text.h>
+#include <hshfit/lighting/harmonics.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <utility>
+
+namespace hshfit::embedded {
+extern const std::string_view lighting_snippet, lighting_functions, lighting_row, lighting_axes,
+    lighting_coefficients, lighting_split_sum, lighting_edge, lighting_ltc;
+}  // namespace hshfit::embedded
+
+namespace hshfit::lighting {
+namespace {
+
+using gpu::Language;
+using kainjow::mustache::data;
+using kainjow::mustache::mustache;
+using kainjow::mustache::partial;
+
+constexpr std::array languages{Language::glslEs, Language::glsl, Language::hlsl, Language::wgsl};
+
+constexpr const char* functionName(LightingShader::Kind kind) {
+    return kind == LightingShader::Kind::coefficients ? "coefficients"
+           : kind == LightingShader::Kind::splitSum   ? "splitSum"
+                                                      : "ltc";
+}
+
+/// Declarations, whose order of type and name differs between the languages.
+void setDeclarations(Language language, const LightingShader& shader, data& page) {
+    const bool wgsl = language == Language::wgsl;
+    const bool hlsl = language == Language::hlsl;
+    const std::string three = wgsl ? "vec3<f32>" : hlsl ? "float3" : "vec3";
+    const std::string four = wgsl ? "vec4<f32>" : hlsl ? "float4" : "vec4";
+    page.set("type", wgsl ? "fn" : "float");
+    page.set("type3", wgsl ? "fn" : three);
+    page.set("type4", wgsl ? "fn" : four);
+    page.set("arg", wgsl ? "" : "float ");
+    page.set("arg3", wgsl ? "" : three);
+    page.set("argInt", wgsl ? "" : "int");
+    page.set("is", wgsl ? ": f32" : "");
+    page.set("is3", wgsl ? ": vec3<f32>" : "");
+    page.set("isInt", wgsl ? ": i32" : "");
+    page.set("to", wgsl ? " -> f32" : "");
+    page.set("to3", wgsl ? " -> vec3<f32>" : "");
+    page.set("to4", wgsl ? " -> vec4<f32>" : "");
+    page.set("int", wgsl ? "i32" : "int");
+    page.set("varInt", wgsl ? "var" : "int");
+    page.set("var3", wgsl ? "var" : three);
+    page.set("atan2", wgsl || hlsl ? "atan2" : "atan");
+    const auto array = [&](const char* name, int count) {
+        return wgsl ? fmt::format("{}: array<{}, {}>", name, three, count)
+                    : fmt::format("{} {}[{}]", three, name, count);
+    };
+    const char* variable = wgsl ? "var " : "";
+    page.set("corners", variable + array("corner", 4));
+    page.set("points", variable + array("above", 6));
+    const bool coefficients = shader.kind == LightingShader::Kind::coefficients;
+    page.set("environment", variable + array("env", shader.order * shader.order));
+    page.set("lightArgument",
+             coefficients ? array("light", shader.order * shader.order) : array("irradiance", 9));
+}
+
+void setTerms(const LightingShader& shader, data& page) {
+    data terms{data::type::list};
+    for (int l = 0; l < shader.order; ++l) {
+        for (int m = 0; m <= l; ++m) {
+            data term;
+            term.set("plus", l == 0 ? "" : "\n        + ");
+            term.set("column", std::to_string(harmonicTexel(l, m)));
+            term.set("slot", std::to_string(slotOf(l, m)));
+            terms.push_back(term);
+        }
+    }
+    page.set("terms", terms);
+}
+
+void setPartials(data& page) {
+    const std::pair<const char*, std::string_view> parts[] = {
+        {"functions", embedded::lighting_functions},
+        {"rowBody", embedded::lighting_row},
+        {"axes", embedded::lighting_axes},
+        {"coefficientsBody", embedded::lighting_coefficients},
+        {"splitSumBody", embedded::lighting_split_sum},
+        {"edgeBody", embedded::lighting_edge},
+        {"ltcBody", embedded::lighting_ltc},
+    };
+    for (const auto& [name, text] : parts) {
+        // The last newline is dropped, because the line that names a partial has one of its own.
+        std::string body(text);
+        if (body.ends_with('\n')) body.pop_back();
+        page.set(name, data(partial([body] { return body; })));
+    }
+}
+
+}  // namespace
+
+std::span<const Language> lightingLanguages() {
+    return languages;
+}
+
+std::string lightingShaderSource(Language language, const LightingShader& shader) {
+    gpu::checkPrefix(shader.prefix);
+    if (!std::ranges::count(languages, language))
+        throw UsageError("shaders of lighting are in GLSL ES, GLSL, HLSL and WGSL only");
+    const std::string name = shader.prefix + "_" + functionName(shader.kind);
+    std::string upper = name;
+    for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    data page;
+    gpu::setLanguageWords(language, shader.prefix, page);
+    setDeclarations(language, shader, page);
+    page.set("name", name);
+    page.set("NAME", upper);
+    const bool wgsl = language == Language::wgsl;
+    page.set("texel", wgsl ? name + "_texel" : upper + "_TEXEL");
+    page.set("cube", wgsl ? name + "_lookUp" : upper + "_CUBE");
+    page.set("glslEs", language == Language::glslEs);
+    page.set("glsl", language == Language::glsl);
+    page.set("hlsl", language == Language::hlsl);
+    page.set("wgsl", wgsl);
+    page.set("coefficients", shader.kind == LightingShader::Kind::coefficients);
+    page.set("splitSum", shader.kind == LightingShader::Kind::splitSum);
+    page.set("ltc", shader.kind == LightingShader::Kind::cosines);
+    page.set("summary", shader.kind == LightingShader::Kind::coefficients
+                            ? "harmonics by elevation against rotated coefficients of light"
+                        : shader.kind == LightingShader::Kind::splitSum
+                            ? "a split sum with its own lobes"
+                            : "linearly transformed cosines");
+    page.set("generator", gpu::commentText(shader.generator));
+    page.set("source", gpu::commentText(shader.source));
+    page.set("order", std::to_string(shader.order));
+    page.set("levels", std::to_string(shader.levels));
+    page.set("rows", std::to_string(shader.rows.count));
+    page.set("texels", std::to_string(shader.texels));
+    page.set("last", fmt::format("{}.0", shader.rows.count - 1));
+    page.set("span", gpu::shaderNumber(1 - ElevationRows::leastCosine));
+    if (shader.kind == LightingShader::Kind::coefficients) {
+        setTerms(shader, page);
+        gpu::setFrameTurn(shader.order, page);
+    }
+    setPartials(page);
+    mustache text{std::string(embedded::lighting_snippet)};
+    text.set_custom_escape([](const std::string& s) { return s; });
+    return gpu::withoutGaps(text.render(page));
+}
+
+}  // namespace hshfit::lighting

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <hshfit/gpu/shader.h>
+#include <hshfit/lighting/elevation_table.h>
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+namespace hshfit::lighting {
+
+/// A model as a shader sees it. The function is called PREFIX_coefficients(n, wo, light),
+/// PREFIX_splitSum(n, wo, irradiance) or PREFIX_ltc(n, wo, c0, c1, c2, c3), all in the world, and
+/// gives what the library's `radiance` does, in single precision.
+struct LightingShader {
+    enum class Kind { coefficients, splitSum, cosines };
+    Kind kind = Kind::coefficients;
+    int order = 0;           ///< of coefficients
+    std::size_t levels = 0;  ///< of the cube
+    ElevationRows rows = {};
+    std::size_t texels = 0;  ///< of a row
+    std::string prefix = "hsh";
+    std::string source, generator;  ///< for comments
+};
+
+/// The languages that have such shaders: GLSL ES, GLSL, HLSL and WGSL.
+std::span<const gpu::Language> lightingLanguages();
+
+/// The snippet. Throws UsageError for a language without one and for a prefix that no shading
+/// language takes.
+std::string lightingShaderSource(gpu::Language language, const LightingShader& shader);
+
+}  // namespace hshfit::lighting

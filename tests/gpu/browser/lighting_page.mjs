@@ -1,0 +1,287 @@
+// Functions that lighting.mjs runs within a page; each stands alone.
+
+// Draws normals and viewers with one model into a float target; the time is that of further draws.
+export async function drawWebGl2(job) {
+  const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const gl = document.createElement('canvas').getContext('webgl2');
+  if (!gl.getExtension('EXT_color_buffer_float')) throw new Error('no EXT_color_buffer_float');
+  const areas = job.light.length / 15;
+  const shading = {
+    coefficients: `uniform vec3 light[${job.light.length / 3}];
+      vec3 shade(vec3 n, vec3 wo) { return hsh_coefficients(n, wo, light); }`,
+    'split-sum': `uniform vec3 light[9];
+      vec3 shade(vec3 n, vec3 wo) { return hsh_splitSum(n, wo, light); }`,
+    ltc: `uniform vec3 light[${5 * areas}];
+      vec3 shade(vec3 n, vec3 wo) {
+        vec3 sum = vec3(0.0);
+        for (int k = 0; k < ${5 * areas}; k += 5)
+          sum += light[k + 4] * hsh_ltc(n, wo, light[k], light[k + 1], light[k + 2], light[k + 3]);
+        return sum;
+      }`,
+  }[job.model];
+  const fragment = `#version 300 es
+    ${job.source}
+    uniform sampler2D normals, viewers;
+    ${shading}
+    out vec4 colour;
+    void main() {
+      ivec2 at = ivec2(gl_FragCoord.xy);
+      vec4 n = texelFetch(normals, at, 0);
+      colour = vec4(n.w > 0.0 ? shade(n.xyz, texelFetch(viewers, at, 0).xyz) : vec3(0.0), n.w);
+    }`;
+  const vertex = `#version 300 es
+    void main() {
+      gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1);
+    }`;
+  const program = gl.createProgram();
+  for (const [type, source] of [
+    [gl.VERTEX_SHADER, vertex],
+    [gl.FRAGMENT_SHADER, fragment],
+  ]) {
+    const shader = gl.createShader(type);
+    gl.shaderSource(shader, source);
+    gl.compileShader(shader);
+    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS))
+      throw new Error(gl.getShaderInfoLog(shader));
+    gl.attachShader(program, shader);
+  }
+  gl.linkProgram(program);
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS))
+    throw new Error(gl.getProgramInfoLog(program));
+  gl.useProgram(program);
+  let unit = 0;
+  const bind = (name, target, least, most) => {
+    gl.activeTexture(gl.TEXTURE0 + unit);
+    gl.bindTexture(target, gl.createTexture());
+    gl.texParameteri(target, gl.TEXTURE_MIN_FILTER, least);
+    gl.texParameteri(target, gl.TEXTURE_MAG_FILTER, most);
+    gl.texParameteri(target, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+    gl.texParameteri(target, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
+    gl.uniform1i(gl.getUniformLocation(program, name), unit++);
+  };
+  const numbers = (name, width, height, text) => {
+    bind(name, gl.TEXTURE_2D, gl.NEAREST, gl.NEAREST);
+    const values = new Float32Array(bytesOf(text).buffer);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, values);
+  };
+  const name = { coefficients: 'coefficients', 'split-sum': 'splitSum', ltc: 'ltc' }[job.model];
+  numbers(`hsh_${name}_table`, job.table.width, job.table.height, job.table.bytes);
+  numbers('normals', job.width, job.height, job.normals);
+  numbers('viewers', job.width, job.height, job.viewers);
+  if (job.cube) {
+    bind('hsh_splitSum_cube', gl.TEXTURE_CUBE_MAP, gl.LINEAR_MIPMAP_LINEAR, gl.LINEAR);
+    gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MAX_LEVEL, job.cube.levels.length - 1);
+    const texels = new Uint16Array(bytesOf(job.cube.bytes).buffer);
+    job.cube.levels.forEach(({ face, offset }, level) => {
+      for (let k = 0; k < 6; ++k) {
+        const first = offset / 2 + k * face * face * 4;
+        gl.texImage2D(
+          gl.TEXTURE_CUBE_MAP_POSITIVE_X + k,
+          level,
+          gl.RGBA16F,
+          face,
+          face,
+          0,
+          gl.RGBA,
+          gl.HALF_FLOAT,
+          texels.subarray(first, first + face * face * 4),
+        );
+      }
+    });
+  }
+  gl.uniform3fv(gl.getUniformLocation(program, 'light'), job.light);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
+  const target = gl.createTexture();
+  gl.activeTexture(gl.TEXTURE0 + unit);
+  gl.bindTexture(gl.TEXTURE_2D, target);
+  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA32F, job.width, job.height);
+  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target, 0);
+  gl.viewport(0, 0, job.width, job.height);
+  const values = new Float32Array(4 * job.width * job.height);
+  const frame = () => {
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.readPixels(0, 0, job.width, job.height, gl.RGBA, gl.FLOAT, values);
+  };
+  frame();
+  const covered = values.filter((_, i) => i % 4 === 3 && values[i] > 0).length;
+  const start = performance.now();
+  for (let k = 0; k < 4; ++k) frame();
+  const nanoseconds = ((performance.now() - start) / 4 / covered) * 1e6;
+  if (gl.getError() !== gl.NO_ERROR) throw new Error('WebGL error');
+  const info = gl.getExtension('WEBGL_debug_renderer_info');
+  const renderer = gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  gl.getExtension('WEBGL_lose_context').loseContext();
+  const bytes = new Uint8Array(values.buffer);
+  let text = '';
+  for (let i = 0; i < bytes.length; i += 8192)
+    text += String.fromCharCode(...bytes.subarray(i, i + 8192));
+  return { values: btoa(text), name: renderer, nanoseconds };
+}
+
+// The same in a compute shader of WebGPU.
+export async function drawWebGpu(job) {
+  const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const adapter = await navigator.gpu?.requestAdapter();
+  if (!adapter) throw new Error('no WebGPU adapter');
+  const device = await adapter.requestDevice();
+  device.pushErrorScope('validation');
+  const count = job.light.length / 3;
+  const shading = {
+    coefficients: 'return hsh_coefficients(n, wo, all);',
+    'split-sum': 'return hsh_splitSum(n, wo, all);',
+    ltc: `var sum = vec3<f32>(0.0);
+      for (var k = 0; k < ${count}; k += 5) {
+        sum += all[k + 4] * hsh_ltc(n, wo, all[k], all[k + 1], all[k + 2], all[k + 3]);
+      }
+      return sum;`,
+  }[job.model];
+  const code = `${job.source}
+    @group(0) @binding(3) var<storage, read> light: array<vec4<f32>>;
+    @group(0) @binding(4) var<storage, read> normals: array<vec4<f32>>;
+    @group(0) @binding(5) var<storage, read> viewers: array<vec4<f32>>;
+    @group(0) @binding(6) var<storage, read_write> results: array<vec4<f32>>;
+    fn shade(n: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
+      var all: array<vec3<f32>, ${count}>;
+      for (var i = 0; i < ${count}; i++) { all[i] = light[i].xyz; }
+      ${shading}
+    }
+    @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+      let n = normals[id.x];
+      var colour = vec3<f32>(0.0);
+      if (n.w > 0.0) { colour = shade(n.xyz, viewers[id.x].xyz); }
+      results[id.x] = vec4<f32>(colour, n.w);
+    }`;
+  const module = device.createShaderModule({ code });
+  const errors = (await module.getCompilationInfo()).messages.filter(({ type }) => type === 'error');
+  if (errors.length) throw new Error(errors.map(({ message }) => message).join('\n'));
+  const pipeline = await device.createComputePipelineAsync({
+    layout: 'auto',
+    compute: { module, entryPoint: 'main' },
+  });
+  const textureOf = (format, width, layers, levels) =>
+    device.createTexture({
+      size: [width, layers === 6 ? width : job.table.height, layers],
+      format,
+      mipLevelCount: levels,
+      usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST,
+    });
+  const table = textureOf('rgba32float', job.table.width, 1, 1);
+  device.queue.writeTexture(
+    { texture: table },
+    bytesOf(job.table.bytes),
+    { bytesPerRow: job.table.width * 16 },
+    [job.table.width, job.table.height],
+  );
+  const storage = GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_DST | GPUBufferUsage.COPY_SRC;
+  const bufferOf = (data) => {
+    const buffer = device.createBuffer({ size: data.byteLength, usage: storage });
+    device.queue.writeBuffer(buffer, 0, data);
+    return { buffer };
+  };
+  const light = new Float32Array(4 * count);
+  job.light.forEach((value, i) => (light[4 * Math.floor(i / 3) + (i % 3)] = value));
+  const pixels = job.width * job.height;
+  const results = bufferOf(new Float32Array(4 * pixels));
+  const entries = [
+    { binding: 0, resource: table.createView() },
+    { binding: 3, resource: bufferOf(light) },
+    { binding: 4, resource: bufferOf(bytesOf(job.normals)) },
+    { binding: 5, resource: bufferOf(bytesOf(job.viewers)) },
+    { binding: 6, resource: results },
+  ];
+  if (job.cube) {
+    const { levels } = job.cube;
+    const cube = textureOf('rgba16float', levels[0].face, 6, levels.length);
+    const texels = bytesOf(job.cube.bytes);
+    levels.forEach(({ face, offset, bytes }, mipLevel) =>
+      device.queue.writeTexture(
+        { texture: cube, mipLevel },
+        texels.subarray(offset, offset + bytes),
+        { bytesPerRow: face * 8, rowsPerImage: face },
+        [face, face, 6],
+      ),
+    );
+    const linear = { minFilter: 'linear', magFilter: 'linear', mipmapFilter: 'linear' };
+    entries.push({ binding: 1, resource: cube.createView({ dimension: 'cube' }) });
+    entries.push({ binding: 2, resource: device.createSampler(linear) });
+  }
+  const group = device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries });
+  const readable = device.createBuffer({
+    size: 16 * pixels,
+    usage: GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST,
+  });
+  const frame = async () => {
+    const encoder = device.createCommandEncoder(),
+      pass = encoder.beginComputePass();
+    pass.setPipeline(pipeline);
+    pass.setBindGroup(0, group);
+    pass.dispatchWorkgroups(pixels / 64);
+    pass.end();
+    encoder.copyBufferToBuffer(results.buffer, 0, readable, 0, 16 * pixels);
+    device.queue.submit([encoder.finish()]);
+    await device.queue.onSubmittedWorkDone();
+  };
+  await frame();
+  const start = performance.now();
+  for (let k = 0; k < 4; ++k) await frame();
+  const seconds = (performance.now() - start) / 4;
+  const problem = await device.popErrorScope();
+  if (problem) throw new Error(problem.message);
+  await readable.mapAsync(GPUMapMode.READ);
+  const bytes = new Uint8Array(readable.getMappedRange());
+  const values = new Float32Array(bytes.slice().buffer);
+  const covered = values.filter((_, i) => i % 4 === 3 && values[i] > 0).length;
+  let text = '';
+  for (let i = 0; i < bytes.length; i += 8192)
+    text += String.fromCharCode(...bytes.subarray(i, i + 8192));
+  const { vendor, architecture } = adapter.info;
+  device.destroy();
+  return {
+    values: btoa(text),
+    name: `${vendor} ${architecture}`,
+    nanoseconds: (seconds / covered) * 1e6,
+  };
+}
+
+// Pictures in rows, each with its difference from the first, four times as bright, below it.
+export function sheet(rows) {
+  const floatsOf = (text) =>
+    new Float32Array(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
+  const size = rows[0].size,
+    gap = 18;
+  const columns = rows[0].pictures.length;
+  const canvas = document.createElement('canvas');
+  canvas.width = columns * size;
+  canvas.height = rows.length * 2 * (size + gap);
+  const context = canvas.getContext('2d');
+  context.fillStyle = 'white';
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  context.fillStyle = 'black';
+  context.font = '12px sans-serif';
+  const srgb = (v) => 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055);
+  rows.forEach(({ mask, pictures }, r) => {
+    const normals = floatsOf(mask),
+      truth = floatsOf(pictures[0].values);
+    const bright = [...truth].sort((a, b) => a - b)[Math.floor(truth.length * 0.985)];
+    pictures.forEach(({ title, values, channels }, column) => {
+      const numbers = floatsOf(values);
+      for (const difference of [false, true]) {
+        const top = (2 * r + (difference ? 1 : 0)) * (size + gap);
+        if (difference && column === 0) continue;
+        const image = context.createImageData(size, size);
+        for (let k = 0; k < size * size; ++k) {
+          if (normals[4 * k + 3] === 0) continue;
+          for (let c = 0; c < 3; ++c) {
+            const value = numbers[channels * k + c];
+            const shown = difference ? 4 * Math.abs(value - truth[3 * k + c]) : value;
+            image.data[4 * k + c] = srgb(Math.min(1, Math.max(0, (0.8 * shown) / bright)));
+          }
+          image.data[4 * k + 3] = 255;
+        }
+        context.putImageData(image, column * size, top + gap);
+        context.fillText(difference ? '4 x difference' : title, column * size + 4, top + 13);
+      }
+    });
+  });
+  return canvas.toDataURL('image/png');
+}
