@@ -44,8 +44,8 @@ void setDeclarations(Language language, const LightingShader& shader, data& page
     page.set("type3", wgsl ? "fn" : three);
     page.set("type4", wgsl ? "fn" : four);
     page.set("arg", wgsl ? "" : "float ");
-    page.set("arg3", wgsl ? "" : three);
-    page.set("argInt", wgsl ? "" : "int");
+    page.set("arg3", wgsl ? "" : three + " ");
+    page.set("argInt", wgsl ? "" : "int ");
     page.set("is", wgsl ? ": f32" : "");
     page.set("is3", wgsl ? ": vec3<f32>" : "");
     page.set("isInt", wgsl ? ": i32" : "");

@@ -118,7 +118,8 @@ export async function drawWebGl2(job) {
   return { values: btoa(text), name: renderer, nanoseconds };
 }
 
-// The same in a compute shader of WebGPU.
+// The same in a fragment shader of WebGPU. (In compute shaders, SwiftShader filters cube maps without
+// the neighbouring faces.)
 export async function drawWebGpu(job) {
   const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   const adapter = await navigator.gpu?.requestAdapter();
@@ -139,24 +140,28 @@ export async function drawWebGpu(job) {
     @group(0) @binding(3) var<storage, read> light: array<vec4<f32>>;
     @group(0) @binding(4) var<storage, read> normals: array<vec4<f32>>;
     @group(0) @binding(5) var<storage, read> viewers: array<vec4<f32>>;
-    @group(0) @binding(6) var<storage, read_write> results: array<vec4<f32>>;
     fn shade(n: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
       var all: array<vec3<f32>, ${count}>;
       for (var i = 0; i < ${count}; i++) { all[i] = light[i].xyz; }
       ${shading}
     }
-    @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-      let n = normals[id.x];
+    @vertex fn corner(@builtin(vertex_index) k: u32) -> @builtin(position) vec4<f32> {
+      return vec4<f32>(select(-1.0, 3.0, k == 1), select(-1.0, 3.0, k == 2), 0.0, 1.0);
+    }
+    @fragment fn pixel(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
+      let k = u32(at.y) * ${job.width} + u32(at.x);
+      let n = normals[k];
       var colour = vec3<f32>(0.0);
-      if (n.w > 0.0) { colour = shade(n.xyz, viewers[id.x].xyz); }
-      results[id.x] = vec4<f32>(colour, n.w);
+      if (n.w > 0.0) { colour = shade(n.xyz, viewers[k].xyz); }
+      return vec4<f32>(colour, n.w);
     }`;
   const module = device.createShaderModule({ code });
   const errors = (await module.getCompilationInfo()).messages.filter(({ type }) => type === 'error');
   if (errors.length) throw new Error(errors.map(({ message }) => message).join('\n'));
-  const pipeline = await device.createComputePipelineAsync({
+  const pipeline = await device.createRenderPipelineAsync({
     layout: 'auto',
-    compute: { module, entryPoint: 'main' },
+    vertex: { module, entryPoint: 'corner' },
+    fragment: { module, entryPoint: 'pixel', targets: [{ format: 'rgba32float' }] },
   });
   const textureOf = (format, width, layers, levels) =>
     device.createTexture({
@@ -181,13 +186,16 @@ export async function drawWebGpu(job) {
   const light = new Float32Array(4 * count);
   job.light.forEach((value, i) => (light[4 * Math.floor(i / 3) + (i % 3)] = value));
   const pixels = job.width * job.height;
-  const results = bufferOf(new Float32Array(4 * pixels));
+  const target = device.createTexture({
+    size: [job.width, job.height],
+    format: 'rgba32float',
+    usage: GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.COPY_SRC,
+  });
   const entries = [
     { binding: 0, resource: table.createView() },
     { binding: 3, resource: bufferOf(light) },
     { binding: 4, resource: bufferOf(bytesOf(job.normals)) },
     { binding: 5, resource: bufferOf(bytesOf(job.viewers)) },
-    { binding: 6, resource: results },
   ];
   if (job.cube) {
     const { levels } = job.cube;
@@ -206,18 +214,24 @@ export async function drawWebGpu(job) {
     entries.push({ binding: 2, resource: device.createSampler(linear) });
   }
   const group = device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries });
+  const rowBytes = Math.ceil((16 * job.width) / 256) * 256;
   const readable = device.createBuffer({
-    size: 16 * pixels,
+    size: rowBytes * job.height,
     usage: GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST,
   });
   const frame = async () => {
     const encoder = device.createCommandEncoder(),
-      pass = encoder.beginComputePass();
+      pass = encoder.beginRenderPass({
+        colorAttachments: [{ view: target.createView(), loadOp: 'clear', storeOp: 'store' }],
+      });
     pass.setPipeline(pipeline);
     pass.setBindGroup(0, group);
-    pass.dispatchWorkgroups(pixels / 64);
+    pass.draw(3);
     pass.end();
-    encoder.copyBufferToBuffer(results.buffer, 0, readable, 0, 16 * pixels);
+    encoder.copyTextureToBuffer({ texture: target }, { buffer: readable, bytesPerRow: rowBytes }, [
+      job.width,
+      job.height,
+    ]);
     device.queue.submit([encoder.finish()]);
     await device.queue.onSubmittedWorkDone();
   };
@@ -228,8 +242,14 @@ export async function drawWebGpu(job) {
   const problem = await device.popErrorScope();
   if (problem) throw new Error(problem.message);
   await readable.mapAsync(GPUMapMode.READ);
-  const bytes = new Uint8Array(readable.getMappedRange());
-  const values = new Float32Array(bytes.slice().buffer);
+  const bytes = new Uint8Array(16 * pixels),
+    mapped = readable.getMappedRange();
+  for (let y = 0; y < job.height; ++y)
+    bytes.set(
+      new Uint8Array(mapped, y * rowBytes, 16 * job.width).slice(),
+      16 * y * job.width,
+    );
+  const values = new Float32Array(bytes.buffer);
   const covered = values.filter((_, i) => i % 4 === 3 && values[i] > 0).length;
   let text = '';
   for (let i = 0; i < bytes.length; i += 8192)

@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -53,7 +54,9 @@ void run(const std::vector<std::string>& words) {
                                         .force = true};
     jobs::exportLighting(file, folder, options);
 
-    const auto source = jobs::openBrdf(readRepresentation(file).head.source, true);
+    const bool coefficients = std::filesystem::exists(file);
+    const auto source =
+        jobs::openBrdf(coefficients ? readRepresentation(file).head.source : file, true);
     const std::vector<Light> lights = parseLights(lightText).lights;
     const DirectIntegral direct(lights);
     const auto models = jobs::selectLightingModels("all");
@@ -96,7 +99,7 @@ void run(const std::vector<std::string>& words) {
 int main(int count, char** words) {
     try {
         const std::vector<std::string> all(words + 1, words + count);
-        if (all.size() < 4) throw UsageError("write_lighting FOLDER COEFFS LIGHT SIZE [MESH]");
+        if (all.size() < 4) throw UsageError("write_lighting FOLDER SPEC LIGHT SIZE [MESH]");
         run(all);
         return 0;
     } catch (const std::exception& error) {
