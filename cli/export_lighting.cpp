@@ -11,7 +11,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The sidecar without what its readers alone need.
-Json answerOf(const jobs::LightingExport& exported, const std::string& folder) {
+Json lightingAnswer(const jobs::LightingExport& exported, const std::string& folder) {
     Json answer = exported.sidecar;
     answer["folder"] = folder;
     answer["files"] = exported.files;
@@ -21,7 +21,7 @@ Json answerOf(const jobs::LightingExport& exported, const std::string& folder) {
     return answer;
 }
 
-std::string text(const Json& answer) {
+std::string lightingText(const Json& answer) {
     std::string out =
         fmt::format("{}: lighting of {} under {}\n", answer["folder"].get<std::string>(),
                     answer["brdf"].get<std::string>(), answer["light"].get<std::string>());
@@ -51,11 +51,11 @@ void runExportLighting(const std::string& coefficients, const std::string& folde
                        const jobs::LightingExportOptions& options, const Globals& globals) {
     const jobs::LightingExport exported =
         jobs::exportLighting(coefficients, folder, options, listenerFor(globals));
-    const Json answer = answerOf(exported, folder);
+    const Json answer = lightingAnswer(exported, folder);
     if (globals.json)
         printJson(answer);
     else
-        printText(text(answer));
+        printText(lightingText(answer));
 }
 
 }  // namespace hshfit::cli

@@ -1,4 +1,5 @@
 #include "command.h"
+#include "trade_lighting.h"
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
@@ -26,6 +27,8 @@ struct TradeoffArguments {
     double maxEvaluations = static_cast<double>(TradeoffOptions{}.projection.maxEvaluations);
     bool cosine = false, noTiming = false, gpu = false;
     std::string device;
+    std::string lighting;  ///< models; empty: forms are measured
+    std::vector<std::string> lights;
 };
 
 /// Replaces the sweep's default values with those on the command line, if there are any.
@@ -89,6 +92,11 @@ jobs::TradeoffOptions optionsFrom(const TradeoffArguments& arguments) {
 }
 
 void runTradeoff(const TradeoffArguments& arguments, Globals& globals) {
+    if (!arguments.lighting.empty()) {
+        jobs::LightingTradeOptions options{.models = arguments.lighting};
+        options.errors.lights = arguments.lights;
+        return runTradeLighting(arguments.specs, options, globals);
+    }
     if (arguments.output.empty() && !globals.json) {
         throw UsageError("tradeoff: give -o DIR for the files, or --json");
     }
@@ -175,6 +183,13 @@ void addTradeoff(CLI::App& command, Globals& globals) {
                        "CSV to write: the pairs, their weights and the values of SPEC");
     command.add_flag("--wavelets", arguments->options.measurement.wavelets,
                      "Measure the best terms of SOHO wavelets too, for comparison");
+    command.add_option("--lighting", arguments->lighting,
+                       "Measure, in place of forms, the models of lighting of hshfit export: all, "
+                       "or of coefficients, split-sum and ltc those named");
+    command
+        .add_option("--light", arguments->lights,
+                    "With --lighting, a light; repeated (default: an example of every kind)")
+        ->allow_extra_args(false);
     command.add_flag("--cosine", arguments->cosine, "Project f cos(theta_i) instead of f");
     addRgb(command, arguments->options.rgb);
     addQuadrature(command, arguments->tolerance, arguments->maxEvaluations);

@@ -28,7 +28,7 @@ using Json = nlohmann::ordered_json;
 using Kind = LightingModel::Kind;
 using Bytes = std::vector<std::byte>;
 
-std::string_view textOf(const Bytes& bytes) {
+std::string_view lightingBytes(const Bytes& bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
@@ -65,7 +65,7 @@ Json writeTable(const LightingModel& model, const lighting::ElevationTable& tabl
             {"number", "float32"},
             {"files",
              {output.add(stem + ".ktx2", gpu::ktx2File(image, {&texels.bytes, 1})),
-              output.add(stem + ".f32.bin", textOf(texels.bytes))}}};
+              output.add(stem + ".f32.bin", lightingBytes(texels.bytes))}}};
 }
 
 Json rgbRows(std::span<const Rgb> values) {
@@ -100,16 +100,16 @@ Json writeCube(const lighting::EnvironmentCube& cube, const std::string& light, 
             {"levels", places},
             {"files",
              {output.add(".split-sum.cube.ktx2", gpu::ktx2File(image, levels)),
-              output.add(".split-sum.cube.f16.bin", textOf(all))}}};
+              output.add(".split-sum.cube.f16.bin", lightingBytes(all))}}};
 }
 
-Json point(const Direction& d) {
+Json pointJson(const Direction& d) {
     return {d.x, d.y, d.z};
 }
 
 /// The light as the model takes it.
-void describeLight(const LightingModel& model, const LightingEnvironment& light, Output& output,
-                   Json& document) {
+void describeLighting(const LightingModel& model, const LightingEnvironment& light, Output& output,
+                      Json& document) {
     if (model.kind == Kind::coefficients) {
         document["light"] = rgbRows(light.harmonics->light());
     } else if (model.kind == Kind::splitSum) {
@@ -119,14 +119,14 @@ void describeLight(const LightingModel& model, const LightingEnvironment& light,
         document["areas"] = Json::array();
         for (const lighting::AreaLight& area : light.areas) {
             Json corners = Json::array();
-            for (const Direction& corner : area.corners) corners.push_back(point(corner));
+            for (const Direction& corner : area.corners) corners.push_back(pointJson(corner));
             document["areas"].push_back({{"corners", corners}, {"radiance", area.radiance}});
         }
     }
 }
 
-Json writeShaders(const LightingModel& model, const LightingTables& tables,
-                  const std::string& source, const Listener& listener, Output& output) {
+Json writeLightingShaders(const LightingModel& model, const LightingTables& tables,
+                          const std::string& source, const Listener& listener, Output& output) {
     const lighting::ElevationTable& table = tableOf(model.kind, tables);
     const lighting::LightingShader shader{
         .kind = static_cast<lighting::LightingShader::Kind>(model.kind),
@@ -167,7 +167,7 @@ Json testsOf(std::span<const LightingModel* const> models, const LightingTables&
         const lighting::ViewAxes axes(normals[k], normals[(k * 37 + 5) % count]);
         const double cosine = 0.03 + 0.97 * (static_cast<double>(k) + 0.5) / count;
         const Direction viewer = axes.toWorld({std::sqrt(1 - cosine * cosine), 0, cosine});
-        Json test = {{"normal", point(normals[k])}, {"viewer", point(viewer)}};
+        Json test = {{"normal", pointJson(normals[k])}, {"viewer", pointJson(viewer)}};
         for (const LightingModel* model : models)
             test[std::string(model->name)] =
                 shadingOf(model->kind, tables, light)(normals[k], viewer);
@@ -213,7 +213,8 @@ LightingExport exportLighting(const std::string& path, const std::string& folder
     const auto truth = truthOf(path, options, truthName, listener);
     std::vector<LightingError> errors;
     if (options.measureError)
-        errors = lightingErrors(*truth, tables, models, options.errors, listener);
+        errors = lightingErrors(lightingReferences(*truth, options.errors, listener), tables,
+                                models, options.errors);
     requireReadable(*brdf);
 
     LightingExport result;
@@ -243,8 +244,8 @@ LightingExport exportLighting(const std::string& path, const std::string& folder
             entry["kernel_width_degrees"] = degrees(tables.splitSum->firstWidth);
         }
         entry["table"] = writeTable(*model, tableOf(model->kind, tables), output);
-        describeLight(*model, light, output, entry);
-        entry["shaders"] = writeShaders(*model, tables, truthName, listener, output);
+        describeLighting(*model, light, output, entry);
+        entry["shaders"] = writeLightingShaders(*model, tables, truthName, listener, output);
         document["models"].push_back(entry);
     }
     document["errors"] = lightingErrorsJson(errors);

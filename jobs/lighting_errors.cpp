@@ -11,8 +11,8 @@ namespace hshfit::jobs {
 namespace {
 
 /// Of one thread, over a few points.
-double integrationTime(const Brdf& brdf, const SurfacePoints& points, const View& view,
-                       const DirectIntegral& light, double tolerance) {
+double lightingIntegrationTime(const Brdf& brdf, const SurfacePoints& points, const View& view,
+                               const DirectIntegral& light, double tolerance) {
     constexpr std::size_t timed = 20;
     const std::size_t step = std::max<std::size_t>(1, points.count() / timed);
     std::size_t count = 0;
@@ -25,6 +25,10 @@ double integrationTime(const Brdf& brdf, const SurfacePoints& points, const View
     return time.count() / static_cast<double>(std::max<std::size_t>(1, count));
 }
 
+View lightingView(const LightingErrorOptions& options) {
+    return View(radians(options.viewTheta), radians(options.viewPhi));
+}
+
 }  // namespace
 
 std::vector<std::string> catalogLights() {
@@ -33,38 +37,50 @@ std::vector<std::string> catalogLights() {
     return lights;
 }
 
-std::vector<LightingError> lightingErrors(const Brdf& truth, const LightingTables& tables,
-                                          std::span<const LightingModel* const> models,
-                                          const LightingErrorOptions& options,
-                                          const Listener& listener) {
-    const View view(radians(options.viewTheta), radians(options.viewPhi));
+std::vector<LightingReference> lightingReferences(const Brdf& truth,
+                                                  const LightingErrorOptions& options,
+                                                  const Listener& listener) {
+    const View view = lightingView(options);
     const SurfacePoints points = spherePoints(view, options.size, 1);
+    const IntegrationOptions how{.tolerance = options.tolerance};
+    std::vector<LightingReference> references;
+    const ProgressCall progress = listener.part("integration");
     const std::vector<std::string> specs =
         options.lights.empty() ? catalogLights() : options.lights;
-    std::vector<LightingError> errors;
-    const ProgressCall progress = listener.part("lighting");
-    std::size_t done = 0;
     for (const std::string& spec : specs) {
-        const std::vector<Light> lights = parseLights(spec).lights;
-        const DirectIntegral direct(lights);
-        const LitPicture reference =
-            renderByIntegration(truth, points, view, direct, {.tolerance = options.tolerance});
-        const double time = integrationTime(truth, points, view, direct, options.tolerance);
-        const LightingEnvironment light = lightFor(tables, lights, options.tables);
+        LightingReference reference{.light = spec, .lights = parseLights(spec).lights};
+        const DirectIntegral direct(reference.lights);
+        reference.picture = renderByIntegration(truth, points, view, direct, how);
+        reference.nanoseconds =
+            lightingIntegrationTime(truth, points, view, direct, options.tolerance);
+        references.push_back(std::move(reference));
+        if (progress) progress(references.size(), specs.size());
+    }
+    return references;
+}
+
+std::vector<LightingError> lightingErrors(std::span<const LightingReference> references,
+                                          const LightingTables& tables,
+                                          std::span<const LightingModel* const> models,
+                                          const LightingErrorOptions& options) {
+    const View view = lightingView(options);
+    const SurfacePoints points = spherePoints(view, options.size, 1);
+    std::vector<LightingError> errors;
+    for (const LightingReference& reference : references) {
+        const LightingEnvironment light = lightFor(tables, reference.lights, options.tables);
         for (const LightingModel* model : models) {
             const lighting::ShadedPicture shaded =
                 lighting::render(shadingOf(model->kind, tables, light), points, view);
-            errors.push_back({.light = spec,
+            errors.push_back({.light = reference.light,
                               .model = std::string(model->name),
-                              .difference = differenceOf(reference.picture, shaded.picture),
-                              .reference = reference.error,
+                              .difference = differenceOf(reference.picture.picture, shaded.picture),
+                              .reference = reference.picture.error,
                               .bytes = tables.bytes(model->kind),
                               .lightBytes = light.bytes(model->kind),
                               .nanoseconds = shaded.nanoseconds,
-                              .integration = time,
+                              .integration = reference.nanoseconds,
                               .prepareSeconds = light.seconds[static_cast<int>(model->kind)]});
         }
-        if (progress) progress(++done, specs.size());
     }
     return errors;
 }

@@ -30,12 +30,24 @@ struct LightingError {
     double prepareSeconds = 0;  ///< of the light
 };
 
-/// Every model under every light, against renderByIntegration of `truth`: relative L2, and the
-/// largest difference of a pixel and where it is. Throws UsageError, InputError and NumericError.
-std::vector<LightingError> lightingErrors(const Brdf& truth, const LightingTables& tables,
+/// A sphere under one light by direct integration.
+struct LightingReference {
+    std::string light;          ///< its specification
+    std::vector<Light> lights;  ///< that it stands for
+    LitPicture picture = {};
+    double nanoseconds = 0;  ///< of one thread, for a point
+};
+/// renderByIntegration of `truth` under every light. Throws UsageError, InputError, NumericError.
+std::vector<LightingReference> lightingReferences(const Brdf& truth,
+                                                  const LightingErrorOptions& options,
+                                                  const Listener& listener = {});
+
+/// Every model under every light against the references, which have the same options: relative L2,
+/// and the largest difference of a pixel and where it is.
+std::vector<LightingError> lightingErrors(std::span<const LightingReference> references,
+                                          const LightingTables& tables,
                                           std::span<const LightingModel* const> models,
-                                          const LightingErrorOptions& options,
-                                          const Listener& listener = {});
+                                          const LightingErrorOptions& options);
 
 /// One object for each: light, model, relative_l2, maximum, where, bytes and times.
 nlohmann::ordered_json lightingErrorsJson(std::span<const LightingError> errors);

@@ -19,7 +19,7 @@ namespace {
 
 using Kind = LightingModel::Kind;
 
-constexpr std::array table{
+constexpr std::array lightingTable{
     LightingModel{Kind::coefficients, "coefficients",
                   "harmonics of f cos by elevation against rotated coefficients of light"},
     LightingModel{Kind::splitSum, "split-sum",
@@ -67,7 +67,7 @@ brdfs::Ltc startOf(const lighting::LobeSummary& lobe) {
                          std::atan2(lobe.axis.x, lobe.axis.z));
 }
 
-double timed(const std::function<void()>& work) {
+double secondsOf(const std::function<void()>& work) {
     const auto start = std::chrono::steady_clock::now();
     work();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -76,19 +76,19 @@ double timed(const std::function<void()>& work) {
 }  // namespace
 
 std::span<const LightingModel> lightingModels() {
-    return table;
+    return lightingTable;
 }
 
 std::vector<const LightingModel*> selectLightingModels(std::string_view names) {
     std::vector<std::string_view> known;
-    for (const LightingModel& model : table) known.push_back(model.name);
-    std::vector<bool> wanted(table.size(), names == "all");
+    for (const LightingModel& model : lightingTable) known.push_back(model.name);
+    std::vector<bool> wanted(lightingTable.size(), names == "all");
     for (std::size_t from = 0; names != "all" && from <= names.size();) {
         const std::size_t to = std::min(names.find(',', from), names.size());
         const std::string_view name = names.substr(from, to - from);
         bool found = false;
-        for (std::size_t k = 0; k < table.size(); ++k) {
-            if (table[k].name != name) continue;
+        for (std::size_t k = 0; k < lightingTable.size(); ++k) {
+            if (lightingTable[k].name != name) continue;
             wanted[k] = found = true;
         }
         if (!found)
@@ -97,8 +97,8 @@ std::vector<const LightingModel*> selectLightingModels(std::string_view names) {
         from = to + 1;
     }
     std::vector<const LightingModel*> models;
-    for (std::size_t k = 0; k < table.size(); ++k)
-        if (wanted[k]) models.push_back(&table[k]);
+    for (std::size_t k = 0; k < lightingTable.size(); ++k)
+        if (wanted[k]) models.push_back(&lightingTable[k]);
     return models;
 }
 
@@ -147,7 +147,7 @@ LightingTables fitLightingTables(const Brdf& brdf, std::span<const LightingModel
         throw UsageError(fmt::format("{} elevations: from 2 to 1024 are possible", options.rows));
     LightingTables tables;
     for (const LightingModel* model : models) {
-        tables.seconds[static_cast<int>(model->kind)] = timed([&] {
+        tables.seconds[static_cast<int>(model->kind)] = secondsOf([&] {
             if (model->kind == Kind::coefficients)
                 tables.harmonics = lighting::fitHarmonics(brdf, options.order, rows);
             else if (model->kind == Kind::splitSum)
@@ -176,21 +176,21 @@ LightingEnvironment lightFor(const LightingTables& tables, std::span<const Light
                              const LightingTableOptions& options) {
     LightingEnvironment result;
     if (tables.harmonics) {
-        result.seconds[0] = timed([&] {
+        result.seconds[0] = secondsOf([&] {
             result.harmonics = std::make_shared<lighting::HarmonicShading>(
                 *tables.harmonics,
                 projectLight(lights, *bases::make("sh", tables.harmonics->order)));
         });
     }
     if (tables.splitSum) {
-        result.seconds[1] = timed([&] {
+        result.seconds[1] = secondsOf([&] {
             result.cube = lighting::prefilter(*tables.splitSum, lights, options.face);
             result.irradiance = lighting::irradianceNine(lights);
         });
     }
     if (tables.cosines)
         result.seconds[2] =
-            timed([&] { result.areas = lighting::areaLights(lights, options.tiles); });
+            secondsOf([&] { result.areas = lighting::areaLights(lights, options.tiles); });
     return result;
 }
 

@@ -1,0 +1,78 @@
+#include "places.h"
+#include "program.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <cstring>
+
+namespace hshfit::test {
+namespace {
+
+using Json = nlohmann::json;
+
+class Lighting : public Cli {
+protected:
+    void project(const std::string& spec, const std::string& file, const std::string& options) {
+        ASSERT_EQ(run("project " + spec + " -o " + path(file) + " " + options).code, 0);
+    }
+    /// The number at a place of a file.
+    std::uint32_t word(const std::string& bytes, std::size_t offset) const {
+        std::uint32_t value = 0;
+        std::memcpy(&value, bytes.data() + offset, sizeof value);
+        return value;
+    }
+};
+
+TEST_F(Lighting, TablesLightAndShadersOfAFormAreWrittenWithTheirErrors) {
+    project("lambert:kd=.5", "grey.json", "--order 2 --outgoing 8");
+    const Answer answer = run("export " + path("grey.json") + " -o " + path("out") +
+                              " --lighting all --target glsl,hlsl,wgsl,glsl-es --light "
+                              "uniform:radiance=2 --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "lighting"));
+    const std::string sidecar = read(path("out/grey.lighting.json"));
+    EXPECT_TRUE(keepsSchema(sidecar, "lighting"));
+    const Json document = Json::parse(answer.out);
+    for (const Json& file : document["files"])
+        EXPECT_TRUE(fs::exists(path("out/" + file.get<std::string>()))) << file;
+    // Under uniform light of radiance 2, albedo 0.5 reflects 1 everywhere.
+    for (const Json& test : Json::parse(sidecar)["tests"])
+        for (const char* model : {"coefficients", "split-sum", "ltc"})
+            EXPECT_NEAR(test[model][1].get<double>(), 1, 2e-3) << model;
+    std::size_t uniform = 0;
+    for (const Json& error : document["errors"]) {
+        if (error["light"] != "uniform:radiance=2") continue;
+        ++uniform;
+        EXPECT_LT(error["relative_l2"].get<double>(), 5e-3) << error;
+    }
+    EXPECT_EQ(uniform, 3u);
+    for (const Json& model : document["models"]) EXPECT_EQ(model["shaders"].size(), 4u);
+    // KTX 2.0: vkFormat, faceCount, levelCount; the level index names the largest level first,
+    // which lies last.
+    const std::string cube = read(path("out/grey.split-sum.cube.ktx2"));
+    EXPECT_EQ(word(cube, 12), 97u);
+    EXPECT_EQ(word(cube, 36), 6u);
+    const std::size_t levels = word(cube, 40);
+    for (std::size_t k = 0; k < levels; ++k) {
+        const std::size_t face = word(cube, 20) >> k;
+        EXPECT_EQ(word(cube, 80 + 24 * k + 8), face * face * 6 * 8);
+        EXPECT_EQ(word(cube, 80 + 24 * k) % 8, 0u);
+    }
+    EXPECT_EQ(word(cube, 80) + word(cube, 88), cube.size());
+}
+
+TEST_F(Lighting, BadInputIsRefused) {
+    project("ward:ax=.2,ay=.6", "ward.json", "--order 3 --outgoing 8x8");
+    project("lambert", "plain.json", "--order 2 --outgoing 4");
+    const std::string out = " -o " + path("out");
+    expectError("export " + path("ward.json") + out + " --lighting ltc", 2, "isotropic", 1);
+    expectError("export " + path("plain.json") + out + " --lighting fog", 2, "split-sum", 1);
+    expectError("export " + path("plain.json") + out + " --lighting coefficients " +
+                    "--environment-order 40",
+                2, "40 bands", 1);
+    EXPECT_FALSE(fs::exists(path("out")));
+}
+
+}  // namespace
+}  // namespace hshfit::test
