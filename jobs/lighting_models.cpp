@@ -102,28 +102,68 @@ std::vector<const LightingModel*> selectLightingModels(std::string_view names) {
     return models;
 }
 
+namespace {
+
+/// The better of fits from the lobe's first moment and from the row before.
+struct CosineFit {
+    lighting::CosineRow row;
+    brdfs::Ltc ltc = {};
+    double misplaced = 0;
+    bool any = false;  ///< there is something above the even part
+};
+CosineFit fitCosine(const Brdf& brdf, const lighting::LobeNodes& nodes, double evenShare,
+                    const std::optional<brdfs::Ltc>& before) {
+    const lighting::LobeSummary lobe = lighting::summarise(nodes, evenShare);
+    CosineFit fit{.row = {.even = lobe.even, .rest = lobe.rest}};
+    if (lobe.meanCosine >= 1) return fit;
+    fit.any = true;
+    const LobeRest rest(brdf, lobe.even);
+    const brdfs::LtcFitOptions how{.symmetric = nodes.wo.x < 1e-6};
+    brdfs::LtcLobe best = brdfs::fitLtc(rest, nodes.wo, startOf(lobe), how);
+    if (before) {
+        const brdfs::LtcLobe other = brdfs::fitLtc(rest, nodes.wo, *before, how);
+        if (other.error < best.error) best = other;
+    }
+    fit.ltc = best.ltc;
+    fit.row.lobe = {.a = best.ltc.a, .b = best.ltc.b, .c = best.ltc.c, .d = best.ltc.d};
+    const double share = fit.row.lobe.share();
+    fit.misplaced = lighting::misplaced(
+        nodes, lobe, [&](const Direction& d) { return best.ltc.density(d) / share; });
+    return fit;
+}
+
+/// The one of evenShares that misplaces the least light, over some rows.
+double chooseEvenShare(const Brdf& brdf, std::span<const lighting::LobeNodes> nodes) {
+    double best = 0, least = HUGE_VAL;
+    for (const double share : lighting::evenShares) {
+        double sum = 0;
+        for (const std::size_t k : {nodes.size() / 4, nodes.size() / 2, 3 * nodes.size() / 4})
+            sum += fitCosine(brdf, nodes[k], share, {}).misplaced;
+        if (sum >= least) continue;
+        least = sum;
+        best = share;
+    }
+    return best;
+}
+
+}  // namespace
+
 lighting::CosineTable fitCosineTable(const Brdf& brdf, lighting::ElevationRows rows) {
     lighting::requireIsotropic(brdf);
-    std::vector<lighting::CosineRow> result(rows.count);
+    std::vector<lighting::LobeNodes> nodes;
+    for (std::size_t k = 0; k < rows.count; ++k)
+        nodes.push_back(
+            lighting::lobeNodes(brdf, directionFromAngles(std::acos(rows.cosine(k)), 0), 2));
+    const double share = chooseEvenShare(brdf, nodes);
+    std::vector<lighting::CosineRow> result;
     std::optional<brdfs::Ltc> before;
-    double thetaBefore = 0;
     for (std::size_t k = 0; k < rows.count; ++k) {
-        const double theta = std::acos(rows.cosine(k));
-        const Direction wo = directionFromAngles(theta, 0);
-        const auto lobe = lighting::summarise(lighting::lobeNodes(brdf, wo, 2));
-        result[k] = {.even = lobe.even, .rest = lobe.rest};
-        if (lobe.meanCosine >= 1) continue;  // nothing above the even part
-        const LobeRest rest(brdf, lobe.even);
-        const brdfs::LtcFitOptions how{.symmetric = k == 0};
-        brdfs::LtcLobe best = brdfs::fitLtc(rest, wo, startOf(lobe), how);
-        if (before) {
-            const brdfs::LtcLobe other =
-                brdfs::fitLtc(rest, wo, brdfs::turned(*before, thetaBefore - theta), how);
-            if (other.error < best.error) best = other;
-        }
-        before = best.ltc;
-        thetaBefore = theta;
-        result[k].lobe = {.a = best.ltc.a, .b = best.ltc.b, .c = best.ltc.c, .d = best.ltc.d};
+        if (before && k > 0)
+            before =
+                brdfs::turned(*before, std::acos(rows.cosine(k - 1)) - std::acos(rows.cosine(k)));
+        const CosineFit fit = fitCosine(brdf, nodes[k], share, before);
+        if (fit.any) before = fit.ltc;
+        result.push_back(fit.row);
     }
     return lighting::cosineTable(result);
 }

@@ -47,8 +47,9 @@ struct LightingTables {
 LightingTables fitLightingTables(const Brdf& brdf, std::span<const LightingModel* const> models,
                                  const LightingTableOptions& options);
 
-/// Transformed cosines by elevation: the even part of the lobe apart (LobeSummary), the rest fitted
-/// by brdfs::fitLtc from its own first moment and from the row before.
+/// Transformed cosines by elevation: the even part of the lobe apart (LobeSummary, with the one of
+/// evenShares that misplaces the least light), the rest fitted by brdfs::fitLtc from its own first
+/// moment and from the row before.
 lighting::CosineTable fitCosineTable(const Brdf& brdf, lighting::ElevationRows rows);
 
 /// Light made ready for the tables' models.

@@ -16,9 +16,9 @@ constexpr double leastScale = 1e-3, mostScale = 30;
 
 }  // namespace
 
-LobeKernel::LobeKernel(const Brdf& brdf) {
+LobeKernel::LobeKernel(const Brdf& brdf, double evenShare) {
     const Direction normal{0, 0, 1};
-    const LobeSummary upright = summarise(lobeNodes(brdf, normal, 2));
+    const LobeSummary upright = summarise(lobeNodes(brdf, normal, 2), evenShare);
     std::vector<double> x, y, z;
     for (std::size_t k = 0; k < samples; ++k) {
         const double t =

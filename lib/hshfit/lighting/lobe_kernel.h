@@ -13,7 +13,8 @@ namespace hshfit::lighting {
 class LobeKernel {
 public:
     /// `brdf` is isotropic. A BRDF without a lobe gets the cosine's.
-    explicit LobeKernel(const Brdf& brdf);
+    /// `evenShare`: of summarise().
+    LobeKernel(const Brdf& brdf, double evenShare);
     /// From values at t = tan(alpha / 2), ascending and at most 1; 0 beyond.
     LobeKernel(std::vector<double> t, std::vector<double> values);
 

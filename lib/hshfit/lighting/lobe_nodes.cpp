@@ -51,15 +51,16 @@ Rgb albedoOf(const LobeNodes& nodes) {
     return albedo;
 }
 
-/// The value that a quarter of the projected solid angle is below.
-double firstQuartile(const LobeNodes& nodes, const std::vector<double>& f) {
+/// The value that a share of the projected solid angle is below; 0 for no share.
+double quantile(const LobeNodes& nodes, const std::vector<double>& f, double share) {
+    if (!(share > 0)) return 0;
     std::vector<std::size_t> order(f.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::sort(order, {}, [&](std::size_t k) { return f[k]; });
     double below = 0;
     for (const std::size_t k : order) {
         below += nodes.weights[k] * nodes.z[k];
-        if (below >= pi / 4) return f[k];
+        if (below >= share * pi) return f[k];
     }
     return f.empty() ? 0 : f[order.back()];
 }
@@ -95,13 +96,13 @@ LobeNodes lobeNodes(const Brdf& brdf, const Direction& wo, int order) {
     return nodes;
 }
 
-LobeSummary summarise(const LobeNodes& nodes) {
+LobeSummary summarise(const LobeNodes& nodes, double evenShare) {
     LobeSummary result;
     result.albedo = albedoOf(nodes);
     std::array<double, 3> level{};
     for (std::size_t c = 0; c < 3; ++c) {
         const double mean = result.albedo[c] / pi;
-        level[c] = std::clamp(firstQuartile(nodes, nodes.f[c]), 0.0, std::max(0.0, mean));
+        level[c] = std::clamp(quantile(nodes, nodes.f[c], evenShare), 0.0, std::max(0.0, mean));
         result.even[c] = pi * level[c];
         result.rest[c] = result.albedo[c] - result.even[c];
     }
@@ -125,6 +126,19 @@ LobeSummary summarise(const LobeNodes& nodes) {
     result.axis = {mean.x / length, 0, mean.z / length};
     result.meanCosine = std::min(length, 1.0);
     return result;
+}
+
+double misplaced(const LobeNodes& nodes, const LobeSummary& lobe,
+                 const std::function<double(const Direction&)>& density) {
+    double sum = 0, albedo = 0;
+    for (std::size_t k = 0; k < nodes.count(); ++k) {
+        const double shape = density({nodes.x[k], nodes.y[k], nodes.z[k]});
+        for (std::size_t c = 0; c < 3; ++c)
+            sum += nodes.weights[k] * std::abs(nodes.z[k] * (nodes.f[c][k] - lobe.even[c] / pi) -
+                                               lobe.rest[c] * shape);
+    }
+    for (const double value : lobe.albedo) albedo += value;
+    return albedo > 0 ? sum / (2 * albedo) : 0;
 }
 
 }  // namespace hshfit::lighting

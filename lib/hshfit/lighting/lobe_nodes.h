@@ -4,6 +4,7 @@
 #include <hshfit/light/lights.h>
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace hshfit::lighting {
@@ -25,8 +26,8 @@ LobeNodes lobeNodes(const Brdf& brdf, const Direction& wo, int order);
 /// A lobe f cos(theta_i) as an even part and a rest with its first moment.
 struct LobeSummary {
     Rgb albedo{};  ///< integral of f cos(theta_i)
-    /// The even part of the albedo: pi times the level that f does not fall below on the greater
-    /// part of the hemisphere (its first quartile by projected solid angle), at most the albedo.
+    /// The even part of the albedo: pi times the level that f falls below on a share of the
+    /// hemisphere (a quantile by projected solid angle), at most the albedo.
     Rgb even{};
     Rgb rest{};  ///< albedo - even
     /// Of the rest, the mean over channels: unit vector of its mean direction, and that vector's
@@ -34,6 +35,15 @@ struct LobeSummary {
     Direction axis;
     double meanCosine = 1;
 };
-LobeSummary summarise(const LobeNodes& nodes);
+LobeSummary summarise(const LobeNodes& nodes, double evenShare);
+
+/// Shares to choose from: none for lobes with long tails, which would count as even; a quarter for
+/// a lobe over a diffuse part that fades towards the horizon.
+inline constexpr double evenShares[] = {0, 0.05, 0.25};
+
+/// Half the integral of |f cos - even cos / pi - rest density(wi)| over the albedo, the mean over
+/// channels: the share of the light that is misplaced.
+double misplaced(const LobeNodes& nodes, const LobeSummary& lobe,
+                 const std::function<double(const Direction&)>& density);
 
 }  // namespace hshfit::lighting

@@ -10,6 +10,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
 
 namespace hshfit::lighting {
 namespace {
@@ -25,15 +28,12 @@ double levelOf(double cosine, const std::vector<double>& cosines) {
     return static_cast<double>(k) + std::clamp(share, 0.0, 1.0);
 }
 
-}  // namespace
-
-SplitSumTable fitSplitSum(const Brdf& brdf, ElevationRows rows) {
-    requireIsotropic(brdf);
-    SplitSumTable result{.kernel = LobeKernel(brdf), .table = ElevationTable(rows, 2)};
-    std::vector<LobeSummary> lobes(rows.count);
-    tbb::parallel_for(std::size_t{0}, rows.count, [&](std::size_t k) {
-        lobes[k] = summarise(lobeNodes(brdf, directionFromAngles(std::acos(rows.cosine(k)), 0), 2));
-    });
+/// A table whose even part is the share `evenShare`.
+SplitSumTable tableWith(const Brdf& brdf, const std::vector<LobeNodes>& nodes, ElevationRows rows,
+                        double evenShare) {
+    SplitSumTable result{.kernel = LobeKernel(brdf, evenShare), .table = ElevationTable(rows, 2)};
+    std::vector<LobeSummary> lobes;
+    for (const LobeNodes& row : nodes) lobes.push_back(summarise(row, evenShare));
     double narrow = 1e30, wide = 0;
     for (const LobeSummary& lobe : lobes) {
         if (lobe.meanCosine >= 1) continue;  // no rest
@@ -60,8 +60,30 @@ SplitSumTable fitSplitSum(const Brdf& brdf, ElevationRows rows) {
         }
         row[3] = levelOf(lobes[k].meanCosine, cosines);
         row[7] = std::atan2(-lobes[k].axis.x, lobes[k].axis.z);
+        const LobeKernel::Scaled kernel = result.kernel.scaled(
+            lobes[k].meanCosine < 1 ? result.kernel.scaleFor(lobes[k].meanCosine) : 1);
+        result.misplaced +=
+            misplaced(nodes[k], lobes[k],
+                      [&](const Direction& d) { return kernel.at(dot(d, lobes[k].axis)); }) /
+            static_cast<double>(rows.count);
     }
     return result;
+}
+
+}  // namespace
+
+SplitSumTable fitSplitSum(const Brdf& brdf, ElevationRows rows) {
+    requireIsotropic(brdf);
+    std::vector<LobeNodes> nodes(rows.count);
+    tbb::parallel_for(std::size_t{0}, rows.count, [&](std::size_t k) {
+        nodes[k] = lobeNodes(brdf, directionFromAngles(std::acos(rows.cosine(k)), 0), 2);
+    });
+    std::optional<SplitSumTable> best;
+    for (const double share : evenShares) {
+        SplitSumTable table = tableWith(brdf, nodes, rows, share);
+        if (!best || table.misplaced < best->misplaced) best = std::move(table);
+    }
+    return *std::move(best);
 }
 
 EnvironmentCube prefilter(const SplitSumTable& table, std::span<const Light> lights,

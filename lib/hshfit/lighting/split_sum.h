@@ -21,6 +21,7 @@ namespace hshfit::lighting {
 /// `rest` and the axis' angle from the normal, away from the viewer, radians.
 struct SplitSumTable {
     LobeKernel kernel;
+    double misplaced = 0;    ///< the share of the light, the mean over rows
     double firstScale = 1;   ///< of the kernel at level 0
     std::size_t levels = 1;  ///< scale doubles from each to the next
     double firstWidth = 1;   ///< acos of the mean cosine at level 0, radians
@@ -29,6 +30,7 @@ struct SplitSumTable {
     std::size_t bytes() const { return table.values.size() * sizeof(float); }
 };
 
+/// The even part is taken with the one of evenShares that misplaces the least light.
 /// Throws UsageError for a BRDF that is not isotropic; NumericError where f is not finite.
 SplitSumTable fitSplitSum(const Brdf& brdf, ElevationRows rows = {});
 

@@ -229,7 +229,7 @@ TEST(SplitSum, UniformLightReflectsTheAlbedoOfEachElevation) {
         const auto nine = irradianceNine(lights);
         for (std::size_t k = 0; k < rows.count; ++k) {
             const Direction wo = directionFromAngles(std::acos(rows.cosine(k)), 0);
-            const double albedo = summarise(lobeNodes(brdf, wo, 2)).albedo[0];
+            const double albedo = summarise(lobeNodes(brdf, wo, 2), 0).albedo[0];
             const Direction viewer = viewerAt(normals[1], rows.cosine(k));
             EXPECT_NEAR(radiance(table, cube, nine, normals[1], viewer)[0], albedo, 2e-3 * albedo);
         }
