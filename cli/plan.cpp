@@ -4,21 +4,53 @@
 #include <hshfit/plan/plan_files.h>
 
 #include <jobs/plan.h>
+#include <jobs/plan_lighting.h>
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 namespace hshfit::cli {
 namespace {
 
 struct PlanArguments {
     std::string scene, output;
+    std::string lighting;  ///< models; empty: none
     plan::PlanOptions options;
 };
+
+std::string plannedLightingText(const std::vector<jobs::PlannedLighting>& planned) {
+    std::string out;
+    for (const jobs::PlannedLighting& row : planned) {
+        if (!row.choice) {
+            out += fmt::format("{}: lighting: {}\n", row.material,
+                               row.refused.empty() ? "no model is within the budget" : row.refused);
+            continue;
+        }
+        const jobs::LightingError& error = row.choice->error;
+        out += fmt::format(
+            "{}: lighting by {}, {}: {} + {} bytes, {:.0f} ns a point, error {:.4f} of {:.4f}\n",
+            row.material, error.model, row.choice->settings, error.bytes, error.lightBytes,
+            error.nanoseconds, error.difference.relativeL2, row.budget);
+    }
+    return out;
+}
 
 void runPlan(const PlanArguments& arguments, Globals& globals) {
     const plan::Plan result =
         jobs::planScene(arguments.scene, arguments.output, arguments.options, listenerFor(globals));
-    printText(globals.json ? plan::planJson(result) : plan::planText(result));
+    std::vector<jobs::PlannedLighting> lighting;
+    if (!arguments.lighting.empty())
+        lighting = jobs::planLighting(result.scene, arguments.lighting, arguments.options.byTime,
+                                      listenerFor(globals));
+    if (globals.json && !arguments.lighting.empty()) {
+        auto document = nlohmann::ordered_json::parse(plan::planJson(result));
+        document["lighting"] = jobs::plannedLightingJson(lighting);
+        printJson(document);
+    } else {
+        printText(globals.json ? plan::planJson(result)
+                               : plan::planText(result) + plannedLightingText(lighting));
+    }
     for (const plan::MaterialPlan& each : result.materials) {
         if (!each.accepted) globals.exitCode = static_cast<int>(ExitCode::numeric);
     }
@@ -43,6 +75,10 @@ void addPlan(CLI::App& command, Globals& globals) {
     command.add_flag("--by-time", arguments->options.byTime,
                      "Of the forms within the budget, the fastest instead of the smallest; what is "
                      "measured may differ between runs");
+    command.add_option("--lighting", arguments->lighting,
+                       "Choose a model of lighting for each material too (hshfit tradeoff "
+                       "--lighting), within the number of its budget: all, or of coefficients, "
+                       "split-sum and ltc those named");
     command.callback([arguments, &globals] { runPlan(*arguments, globals); });
 }
 

@@ -45,10 +45,12 @@ std::vector<LightingReference> lightingReferences(const Brdf& truth,
     const IntegrationOptions how{.tolerance = options.tolerance};
     std::vector<LightingReference> references;
     const ProgressCall progress = listener.part("integration");
-    const std::vector<std::string> specs =
-        options.lights.empty() ? catalogLights() : options.lights;
-    for (const std::string& spec : specs) {
-        LightingReference reference{.light = spec, .lights = parseLights(spec).lights};
+    std::vector<LightSpecification> specs = options.given;
+    if (specs.empty())
+        for (const std::string& spec : options.lights.empty() ? catalogLights() : options.lights)
+            specs.push_back(parseLights(spec));
+    for (const LightSpecification& spec : specs) {
+        LightingReference reference{.light = spec.text, .lights = spec.lights};
         const DirectIntegral direct(reference.lights);
         reference.picture = renderByIntegration(truth, points, view, direct, how);
         reference.nanoseconds =

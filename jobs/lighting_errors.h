@@ -2,6 +2,8 @@
 
 #include "lighting_models.h"
 
+#include <hshfit/light/catalog.h>
+
 #include <nlohmann/json_fwd.hpp>
 
 #include <string>
@@ -12,7 +14,8 @@ namespace hshfit::jobs {
 struct LightingErrorOptions {
     /// Specifications of lights; empty: the example of every kind of the catalog.
     std::vector<std::string> lights = {};
-    int size = 48;  ///< pixels along an edge of the sphere's picture
+    std::vector<LightSpecification> given = {};  ///< in place of `lights`, if there are any
+    int size = 48;                               ///< pixels along an edge of the sphere's picture
     double viewTheta = 75, viewPhi = 0;
     double tolerance = 5e-3;  ///< of direct integration
     LightingTableOptions tables = {};

@@ -29,7 +29,7 @@ constexpr std::array lightingTable{
                   "linearly transformed cosines of the BRDF for polygons of light"},
 };
 
-/// What a lobe has above its even part, as grey: the mean of the channels, at least 0.
+/// The lobe above its even part, as grey: the mean of the channels, at least 0.
 class LobeRest final : public Brdf {
 public:
     LobeRest(const Brdf& whole, const Rgb& even) : whole_(whole) {

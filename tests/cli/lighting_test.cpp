@@ -62,6 +62,33 @@ TEST_F(Lighting, TablesLightAndShadersOfAFormAreWrittenWithTheirErrors) {
     EXPECT_EQ(word(cube, 80) + word(cube, 88), cube.size());
 }
 
+TEST_F(Lighting, TradeAndPlanChooseAmongTheModels) {
+    const Answer answer =
+        run("tradeoff lambert:kd=.5 --lighting all --light uniform:radiance=1 "
+            "--light panel:width=60,height=60,elevation=50 --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "tradeoff_lighting"));
+    std::size_t front = 0;
+    for (const Json& trade : Json::parse(answer.out)["brdfs"][0]["trades"]) {
+        front += trade["front"] ? 1 : 0;
+        // Of a diffuse surface, quadrilaterals are exact for both lights, up to direct integration.
+        if (trade["model"] == "ltc") {
+            EXPECT_LT(trade["relative_l2"].get<double>(), 6e-3) << trade;
+        }
+    }
+    EXPECT_GT(front, 1u);
+
+    write("scene.json", R"({"format":"hshfit-scene","version":1,"materials":[{"name":"wall",
+        "brdf":"lambert:kd=.5","budget":{"metric":"relative_l2","error":0.02}}],
+        "lights":[{"type":"sky","model":"uniform","radiance":1}]})");
+    const Answer planned =
+        run("plan " + path("scene.json") + " -o " + path("plan") + " --lighting all --json");
+    ASSERT_EQ(planned.code, 0) << planned.err;
+    EXPECT_TRUE(keepsSchema(planned.out, "plan"));
+    const Json choice = Json::parse(planned.out)["lighting"][0]["choice"];
+    EXPECT_LE(choice["relative_l2"].get<double>(), 0.02);
+}
+
 TEST_F(Lighting, BadInputIsRefused) {
     project("ward:ax=.2,ay=.6", "ward.json", "--order 3 --outgoing 8x8");
     project("lambert", "plain.json", "--order 2 --outgoing 4");
