@@ -234,8 +234,8 @@ void addExport(CLI::App& command, Globals& globals) {
     command
         .add_option(
             "--target", options.targets,
-            "all that is possible, or containers, languages, renderers and viewer from hshfit "
-            "list targets; or gltf, materialx: a material fitted to the source")
+            "all that is possible, or containers, languages, renderers, three and viewer from "
+            "hshfit list targets; or gltf, materialx: a material fitted to the source")
         ->capture_default_str();
     command.add_option(
         "--outgoing", options.outgoing,
@@ -286,6 +286,9 @@ void addExport(CLI::App& command, Globals& globals) {
                        "Tables, light and shaders for environments and area lights in place of "
                        "textures: all, or of coefficients, split-sum and ltc those named; with "
                        "--light the light that is written");
+    command.add_option("--library", options.library,
+                       "Of the target three: where its page finds three.js, a path from the folder "
+                       "or an address (default: ./node_modules/three)");
     command.add_flag("--zstd", options.zstd, "Compress KTX2 with Zstandard");
     command.add_flag("--force", options.force, "Replace files that are there");
     command.add_option("--mesh", arguments->material.mesh,

@@ -1,6 +1,7 @@
 #include "export.h"
 
 #include "export_loss.h"
+#include "export_three.h"
 #include "source.h"
 
 #include <hshfit/coefficient_files/representation_file.h>
@@ -145,9 +146,12 @@ void writeShaders(const Targets& chosen, const ExportOptions& options, const Lis
     }
 }
 
+bool has(const Targets& chosen, Target::Kind kind) {
+    return std::ranges::any_of(chosen, [&](const Target* target) { return target->kind == kind; });
+}
+
 bool hasViewer(const Targets& chosen) {
-    return std::ranges::any_of(
-        chosen, [](const Target* target) { return target->kind == Target::Kind::viewer; });
+    return has(chosen, Target::Kind::viewer);
 }
 
 /// Early, so that a wrong light costs no measurement.
@@ -221,6 +225,10 @@ void exportForm(const Representation& stored, const std::string& path, const std
          .fitError = exported.error.loss ? jsonText(errorJson(exported.error)) : std::string()},
         sourceOpener(), files);
     writeShaders(chosen, options, listener, files, exported);
+    if (has(chosen, Target::Kind::module)) {
+        const auto again = reconstruct(exported.form->form, sourceOpener());
+        writeThree(source.brdf ? *source.brdf : *again, options, listener, files, exported);
+    }
     files.commit();
 }
 
@@ -294,6 +302,10 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
          .fitError = exported.error.split ? jsonText(errorJson(exported.error)) : std::string()},
         files);
     writeShaders(chosen, options, listener, files, exported);
+    if (has(chosen, Target::Kind::module)) {
+        const auto again = reconstruct(stored, sourceOpener());
+        writeThree(source.brdf ? *source.brdf : *again, options, listener, files, exported);
+    }
     writeViewer(lights, source.brdf.get(), listener, files, exported);
     files.commit();
     return exported;

@@ -32,6 +32,9 @@ struct ExportOptions {
     /// Specifications of lights (light/catalog.h) that the viewer offers as its environment, each
     /// on its own; empty: gpu::studioLight.
     std::vector<std::string> lights = {};
+    /// The place of three.js for the page of the target three, a path or an address; empty: that of
+    /// gpu::ThreeOptions.
+    std::string library = {};
     /// Number type of the texels; none: that of `pack`, and for a form exported as it is, that of
     /// least bytes which holds the file.
     std::optional<gpu::Number> number = {};
@@ -62,7 +65,7 @@ struct ExportError {
 /// The object "fit_error" of sidecars and answers.
 nlohmann::ordered_json errorJson(const ExportError& error);
 
-/// A shader or a viewer.
+/// A shader, a viewer or a file of a module.
 struct ExportedText {
     std::string role, target, path;
 };

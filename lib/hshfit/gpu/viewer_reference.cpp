@@ -1,6 +1,7 @@
 #include <hshfit/gpu/viewer_reference.h>
 
 #include <hshfit/error.h>
+#include <hshfit/gpu/highlight.h>
 
 #include <Imath/half.h>
 #include <fmt/format.h>
@@ -118,16 +119,6 @@ std::array<Cell, 4> cellsOf(const ReferenceTable& table, const Direction& wi, co
             between(thetaD / ReferenceTable::lastThetaDifference, table.rest)};
 }
 
-/// The roughness from the hints of lobes: GGX's alpha, or half the angle to an axis.
-double roughnessOf(const Brdf& brdf) {
-    double narrowest = 1;
-    for (const Lobe& lobe : brdf.lobes(directionFromAngles(pi / 4, 0))) {
-        const double half = lobe.about == Lobe::About::halfway ? 1 : 0.5;
-        narrowest = std::min(narrowest, half * std::max(lobe.width, lobe.spread));
-    }
-    return std::clamp(narrowest, 0.02, 1.0);
-}
-
 /// Terms of van der Corput's sequence in a base.
 double radicalInverse(int n, int base) {
     double result = 0, digit = 1;
@@ -216,7 +207,7 @@ ReferenceTable tabulate(const Brdf& brdf, const ReferenceOptions& options) {
     table.bilateral = brdf.laws().mirrorSymmetric;
     table.reciprocal = brdf.laws().reciprocal;
     table.channels = static_cast<int>(brdf.channels().count());
-    table.roughness = roughnessOf(brdf);
+    table.roughness = highlightRoughness(brdf);
     const int side = table.bilateral ? options.half : 2 * options.half - 1;
     table.width = table.isotropic ? options.thetaHalf : side;
     table.height = table.isotropic ? options.thetaDifference : side;

@@ -19,7 +19,6 @@ struct Renderer {
 
 /// docs/renderers/ has a page for each.
 const Renderer renderers[] = {
-    {"three", "three.js: data for a DataArrayTexture, a GLSL ES snippet", {"bin", "js", "glsl-es"}},
     {"babylon", "Babylon.js: data for a RawTexture2DArray", {"bin", "js", "glsl-es", "wgsl"}},
     {"godot", "Godot 4: a texture array, or a strip to import as one", {"dds", "exr", "glsl-es"}},
     {"unity", "Unity: data for a Texture2DArray", {"bin", "hlsl"}},
@@ -47,6 +46,10 @@ std::vector<Target> makeTargets() {
                     "viewer",
                     "a page that shows the material: exact, HSH, SH and their difference",
                     {}});
+    rows.push_back({Target::Kind::module,
+                    "three",
+                    "three.js: modules with a material for WebGL and WebGPU, their types, a page",
+                    {"bin", "glsl-es"}});
     for (const Renderer& renderer : renderers) {
         rows.push_back({Target::Kind::renderer, renderer.name, renderer.summary, renderer.parts});
     }
@@ -74,8 +77,8 @@ const Target& find(std::string_view name) {
 }  // namespace
 
 std::string_view kindName(Target::Kind kind) {
-    constexpr std::array<std::string_view, 5> names = {"container", "shader", "viewer", "renderer",
-                                                       "material"};
+    constexpr std::array<std::string_view, 6> names = {"container", "shader",   "viewer",
+                                                       "renderer",  "material", "module"};
     return names[static_cast<std::size_t>(kind)];
 }
 

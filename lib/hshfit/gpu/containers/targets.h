@@ -7,23 +7,24 @@
 namespace hshfit::gpu::inline containers {
 
 /// A choice of an export: a container, a shader language, the viewer, the set of them that suits
-/// one renderer, or a standard material, which has parameters in place of coefficients.
+/// one renderer, a standard material, which has parameters in place of coefficients, or a module
+/// with a material.
 struct Target {
-    enum class Kind { container, shader, viewer, renderer, material };
+    enum class Kind { container, shader, viewer, renderer, material, module };
 
     Kind kind = Kind::container;
     std::string name, summary;
-    std::vector<std::string> parts;  ///< of a renderer: names of the other kinds
+    std::vector<std::string> parts;  ///< of a renderer or a module: names of the other kinds
 };
 std::string_view kindName(Target::Kind kind);  ///< "container", …
 
-/// The containers, the languages, the viewer, the renderers and the materials, in this order.
+/// The containers, the languages, the viewer, the modules, the renderers and the materials, in this
+/// order.
 const std::vector<Target>& targets();
 
-/// Containers, languages and the viewer named in a comma-separated list, renderers replaced by
-/// their parts, and materials, each once and in the order of the table; "all" is everything but
-/// the materials.
-/// Throws UsageError that lists the known ones.
+/// Containers, languages, modules and the viewer named in a comma-separated list, renderers
+/// replaced by their parts, and materials, each once and in the order of the table; "all" is
+/// everything but the materials. Throws UsageError that lists the known ones.
 std::vector<const Target*> selectTargets(std::string_view names);
 
 }  // namespace hshfit::gpu::inline containers

@@ -1,0 +1,278 @@
+#include <hshfit/gpu/three/three_files.h>
+
+#include <hshfit/error.h>
+#include <hshfit/files/checksum.h>
+#include <hshfit/files/json_fields.h>
+#include <hshfit/files/printable.h>
+#include <hshfit/gpu/shader_text.h>
+#include <hshfit/gpu/three/internal/three_input.h>
+#include <hshfit/gpu/viewer_light.h>
+#include <hshfit/light/catalog.h>
+#include <hshfit/version.h>
+
+#include <fmt/format.h>
+#include <kainjow/mustache.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+namespace hshfit::embedded {
+extern const std::string_view three_data, three_fragment, three_light, three_material, three_nodes,
+    three_package, three_page, three_response, three_surroundings, three_types, three_vertex;
+extern const std::string_view viewer_harmonics;
+}  // namespace hshfit::embedded
+
+namespace hshfit::gpu::inline three {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using kainjow::mustache::data;
+
+/// Bands of the light that comes with materials whose shader sums over directions.
+constexpr int sampledBands = 10;
+
+/// Omitted sections leave blank lines behind; one is kept.
+std::string rendered(std::string_view text, const data& page) {
+    kainjow::mustache::mustache frame{std::string(text)};
+    frame.set_custom_escape([](const std::string& s) { return s; });
+    std::string result = frame.render(page);
+    for (std::size_t at = result.find("\n\n\n"); at != result.npos; at = result.find("\n\n\n", at))
+        result.erase(at, 1);
+    return result;
+}
+
+/// Text within backquotes.
+std::string quoted(const std::string& text) {
+    std::string result;
+    for (const char c : text) {
+        if (c == '\\' || c == '`' || c == '$') result += '\\';
+        result += c;
+    }
+    return result;
+}
+
+/// Text of an element of the page.
+std::string escaped(const std::string& text) {
+    std::string result;
+    for (const char c : text) {
+        if (c == '<')
+            result += "&lt;";
+        else if (c == '&')
+            result += "&amp;";
+        else
+            result += c;
+    }
+    return result;
+}
+
+/// Text of a comment of either kind.
+std::string remark(const std::string& text) {
+    std::string result = commentText(text);
+    std::ranges::replace(result, '*', '?');
+    return result;
+}
+
+std::string packageName(const std::string& name) {
+    std::string result;
+    for (const char c : name) {
+        const auto code = static_cast<unsigned char>(c);
+        result += std::isalnum(code) && code < 128 ? static_cast<char>(std::tolower(code)) : '-';
+    }
+    return "hshfit-" + result;
+}
+
+/// As text within a script: no '<' ends it early.
+std::string scriptText(const Json& value) {
+    std::string text = jsonText(value);
+    for (std::size_t at = text.find('<'); at != text.npos; at = text.find('<', at))
+        text.replace(at, 1, "\\u003c");
+    return text;
+}
+
+int bandsOf(const ThreeInput& input, const ThreeOptions& options) {
+    return input.shade ? options.shader.environmentOrder : sampledBands;
+}
+
+/// The slots l(l+1)+m of those m.
+template <class Wanted>
+data slotsWhere(int slots, const Wanted& wanted) {
+    data rows{data::type::list};
+    for (int j = 0; j < slots; ++j) {
+        const int l = static_cast<int>(std::sqrt(j + 0.5));
+        if (!wanted(j - l * (l + 1))) continue;
+        data row;
+        row.set("slot", std::to_string(j));
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+/// The words of all templates.
+data wordsOf(const ThreeInput& input, const ThreeOptions& options) {
+    const int bands = bandsOf(input, options), slots = bands * bands;
+    data page;
+    page.set("title", remark(input.title));
+    page.set("generator", std::string("hshfit ") + version);
+    page.set("file", options.name);
+    page.set("prefix", input.prefix);
+    page.set("sampler", input.prefix + "_coefficients");
+    page.set("cosine", input.cosine);
+    page.set("shade", input.shade);
+    page.set("bands", std::to_string(bands));
+    page.set("slots", std::to_string(slots));
+    page.set("probeSlots", std::to_string(std::min(slots, 9)));
+    page.set("samples", std::to_string(options.samples));
+    page.set("roughness2", fmt::format("{:.8f}", options.roughness * options.roughness));
+    page.set("texels", input.texels.has_value());
+    page.set("filtered", input.texels && input.filtered);
+    page.set("odd", slotsWhere(slots, [&](int m) { return input.oddSign && m % 2 != 0; }));
+    page.set("sines", slotsWhere(slots, [](int m) { return m < 0; }));
+    return page;
+}
+
+std::string environmentOf(const ThreeInput& input, const ThreeOptions& options) {
+    if (input.shade) {
+        return fmt::format("{} bands of spherical harmonics, multiplied with the coefficients",
+                           options.shader.environmentOrder);
+    }
+    return fmt::format("a sum over {} directions in the shader", options.samples);
+}
+
+Json factsOf(const ThreeInput& input, const ThreeOptions& options) {
+    return {{"name", input.title},
+            {"form", input.form},
+            {"number", input.number},
+            {"bytes", input.bytes},
+            {"channels", input.channels},
+            {"environment", environmentOf(input, options)},
+            {"error", options.fitError.empty() ? Json() : Json::parse(options.fitError)}};
+}
+
+void setTexels(const Texels& texels, bool filtered, data& page) {
+    data row;
+    row.set("base64", base64(texels.bytes));
+    row.set("width", std::to_string(texels.width));
+    row.set("height", std::to_string(texels.height));
+    row.set("layers", std::to_string(texels.layers));
+    row.set("filter", filtered ? "LinearFilter" : "NearestFilter");
+    const bool half = texels.number == Number::float16, whole = texels.number == Number::unorm8;
+    row.set("array", half ? "Uint16Array" : whole ? "Uint8Array" : "Float32Array");
+    row.set("type", half ? "HalfFloatType" : whole ? "UnsignedByteType" : "FloatType");
+    page.set("texels", row);
+}
+
+std::string dataModule(const ThreeInput& input, const ThreeOptions& options) {
+    data page = wordsOf(input, options);
+    page.set("facts", jsonText(factsOf(input, options), 2));
+    if (input.texels) setTexels(*input.texels, input.filtered, page);
+    const int bands = bandsOf(input, options);
+    const ViewerLight light =
+        viewerLight(parseLights(std::string(studioLight)), std::max(bands, 2), 8);
+    std::string numbers;
+    for (std::size_t j = 0; j < static_cast<std::size_t>(bands * bands); ++j) {
+        for (std::size_t c = 0; c < 3; ++c)
+            numbers += fmt::format("{:.7g},{}", light.coefficients.at(c)[j], c == 2 ? "\n  " : " ");
+    }
+    page.set("studio", numbers);
+    page.set("functions",
+             std::string(embedded::viewer_harmonics) + std::string(embedded::three_light));
+    return rendered(embedded::three_data, page);
+}
+
+std::string materialModule(const ThreeInput& input, const ThreeOptions& options) {
+    data page = wordsOf(input, options);
+    page.set("snippet", input.glsl);
+    page.set("fragment", quoted(rendered(embedded::three_fragment, page)));
+    page.set("vertex", std::string(embedded::three_vertex));
+    return rendered(embedded::three_material, page);
+}
+
+std::string nodeModule(const ThreeInput& input, const ThreeOptions& options) {
+    data page = wordsOf(input, options);
+    page.set("snippet", quoted(input.wgsl));
+    page.set("response", rendered(embedded::three_response, page));
+    page.set("surroundings", rendered(embedded::three_surroundings, page));
+    return rendered(embedded::three_nodes, page);
+}
+
+std::string typesOf(const ThreeInput& input, const ThreeOptions& options, bool nodes) {
+    data page = wordsOf(input, options);
+    page.set("shader", !nodes);
+    page.set("suffix", nodes ? "_webgpu" : "");
+    page.set("class", nodes ? "HshfitNodeMaterial" : "HshfitMaterial");
+    page.set("base", nodes ? "NodeMaterial" : "ShaderMaterial");
+    return rendered(embedded::three_types, page);
+}
+
+std::string errorText(const ThreeOptions& options) {
+    if (options.fitError.empty()) return "The error was not measured.";
+    const Json error = Json::parse(options.fitError);
+    if (error.contains("file")) {
+        return fmt::format("Mean log error against the source: {:.3g} ({:.3g} in the file).",
+                           error["mean_log"].get<double>(), error["file"].get<double>());
+    }
+    return fmt::format("Error against the source: {:.3g} % (r.m.s.), mean log {:.3g}.",
+                       100 * error["total"].get<double>(), error["mean_log"].get<double>());
+}
+
+std::string pageText(const ThreeInput& input, const ThreeOptions& options) {
+    data page = wordsOf(input, options);
+    page.set("title", escaped(input.title));
+    page.set("library", escaped(options.library));
+    for (const auto& [word, file] : {std::pair{"libraryModule", "/build/three.module.js"},
+                                     std::pair{"libraryWebgpu", "/build/three.webgpu.js"},
+                                     std::pair{"libraryTsl", "/build/three.tsl.js"},
+                                     std::pair{"libraryAddons", "/examples/jsm/"}})
+        page.set(word, scriptText(options.library + file));
+    page.set("summary", fmt::format("{}, {} numbers, {} bytes", escaped(input.form), input.number,
+                                    input.bytes));
+    page.set("note", fmt::format("{} Light from all around: {}.", errorText(options),
+                                 environmentOf(input, options)));
+    return printableLines(rendered(embedded::three_page, page));
+}
+
+std::string packageText(const ThreeInput& input, const ThreeOptions& options) {
+    data page;
+    const auto text = [](const std::string& value) { return jsonText(Json(value)); };
+    const std::string file = "./" + options.name + "_three";
+    page.set("package", text(packageName(options.name)));
+    page.set("description", text(input.title + " as a material for three.js"));
+    page.set("types", text(file + ".d.ts"));
+    page.set("module", text(file + ".js"));
+    page.set("nodeTypes", text(file + "_webgpu.d.ts"));
+    page.set("nodes", text(file + "_webgpu.js"));
+    return rendered(embedded::three_package, page);
+}
+
+std::vector<TextFile> filesOf(const ThreeInput& input, const ThreeOptions& options) {
+    const auto isPlain = [](unsigned char c) {
+        return std::isalnum(c) || c == '_' || c == '-' || c == '.';
+    };
+    if (options.name.empty() || !std::ranges::all_of(options.name, isPlain)) {
+        throw UsageError(fmt::format(
+            "'{}' as the name of a module; letters, digits, '_', '-' and '.' are safe in imports",
+            options.name));
+    }
+    const std::string file = options.name + "_three";
+    return {{file + ".js", materialModule(input, options)},
+            {file + ".d.ts", typesOf(input, options, false)},
+            {file + "_webgpu.js", nodeModule(input, options)},
+            {file + "_webgpu.d.ts", typesOf(input, options, true)},
+            {file + "_data.js", dataModule(input, options)},
+            {file + ".html", pageText(input, options)},
+            {"package.json", packageText(input, options)}};
+}
+
+}  // namespace
+
+std::vector<TextFile> threeFiles(const Payload& payload, const ThreeOptions& options) {
+    return filesOf(threeInput(payload, options), options);
+}
+
+std::vector<TextFile> threeFiles(const FormPayload& payload, const ThreeOptions& options) {
+    return filesOf(threeInput(payload, options), options);
+}
+
+}  // namespace hshfit::gpu::inline three

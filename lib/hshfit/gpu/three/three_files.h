@@ -1,0 +1,38 @@
+#pragma once
+
+#include <hshfit/gpu/forms/form_shader.h>
+#include <hshfit/gpu/payload.h>
+#include <hshfit/gpu/shader.h>
+
+#include <string>
+#include <vector>
+
+namespace hshfit::gpu::inline three {
+
+struct ThreeOptions {
+    std::string name;           ///< what the files' names begin with
+    ShaderOptions shader = {};  ///< `environmentOrder`: bands of the light from all around
+    Storage storage = Storage::automatic;  ///< of a form; `block` becomes `texture`
+    /// GGX roughness about as wide as the highlight (highlightRoughness), for the directions over
+    /// which a material without `shade` sums the light from all around.
+    double roughness = 0.3;
+    int samples = 128;                             ///< as many directions; even
+    std::string library = "./node_modules/three";  ///< where the page finds three.js
+    std::string fitError = {};                     ///< JSON, as in the sidecar
+};
+
+struct TextFile {
+    std::string path, text;
+};
+
+/// A material for three.js from release 187 on: NAME_three.js (ShaderMaterial, WebGL 2),
+/// NAME_three_webgpu.js (NodeMaterial with WGSL), NAME_three_data.js, which both import, their
+/// types, a page that shows a sphere, and last a package.json. The shaders are shaderSource() and
+/// formShaderSource(); numbers beyond what both APIs filter become float32 as a sampler returns
+/// them. Throws UsageError for spectral material and basis textures.
+///
+/// Units: radiance = f cos(theta_i) times the colour and intensity of a light, as in three.js.
+std::vector<TextFile> threeFiles(const Payload& payload, const ThreeOptions& options);
+std::vector<TextFile> threeFiles(const FormPayload& payload, const ThreeOptions& options);
+
+}  // namespace hshfit::gpu::inline three

@@ -1,0 +1,125 @@
+#include <hshfit/gpu/three/internal/three_input.h>
+
+#include <hshfit/error.h>
+#include <hshfit/gpu/viewer_light.h>
+#include <hshfit/wording.h>
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstring>
+
+namespace hshfit::gpu::inline three {
+namespace {
+
+/// Texels as both APIs take them: 16-bit integers, which are no core format, as the quotients that
+/// a sampler would return. Scales and offsets are in the shader.
+Texels readable(const Texels& texels) {
+    if (texels.number != Number::unorm16) return texels;
+    Texels result = texels;
+    result.number = Number::float32;
+    result.scales.clear();
+    result.bytes.resize(2 * texels.bytes.size());
+    for (std::size_t k = 0; k < texels.count(); ++k) {
+        std::uint16_t stored = 0;
+        std::memcpy(&stored, texels.bytes.data() + 2 * k, sizeof stored);
+        const float value = static_cast<float>(stored) / 65535.0F;
+        std::memcpy(result.bytes.data() + 4 * k, &value, sizeof value);
+    }
+    return result;
+}
+
+/// WGSL snippets declare texture and sampler for the whole module, where three.js puts its own:
+/// here every function that needs them has them as its first arguments; the sampler if `filtered`.
+std::string withArguments(const std::string& wgsl, const std::string& prefix, bool filtered) {
+    std::string text;
+    for (std::size_t first = 0; first < wgsl.size();) {
+        const std::size_t end = std::min(wgsl.find('\n', first), wgsl.size());
+        const std::string line = wgsl.substr(first, end - first);
+        first = end + 1;
+        if (!line.starts_with("@group(")) text += line + '\n';
+    }
+    const std::array<std::string, 5> names{"texel", "evalRaw", "eval", "shade", "shadeWorld"};
+    for (const std::string& name : names) {
+        const std::string call = fmt::format("{}_{}(", prefix, name);
+        for (std::size_t at = text.find(call); at != text.npos; at = text.find(call, at)) {
+            const bool declared = at >= 3 && text.compare(at - 3, 3, "fn ") == 0;
+            std::string arguments =
+                prefix + "_coefficients" + (declared ? ": texture_2d_array<f32>, " : ", ");
+            if (filtered) arguments += prefix + "_sampler" + (declared ? ": sampler, " : ", ");
+            at += call.size();
+            text.insert(at, arguments);
+        }
+    }
+    return text;
+}
+
+void refuseSpectral(const CoefficientHead& head) {
+    if (head.channels.kind != Channels::Kind::spectral) return;
+    throw UsageError(
+        fmt::format("{}: a material of three.js is grey or RGB; project the spectral BRDF with {}",
+                    head.source, Call{.function = "asRgb"}));
+}
+
+void setHead(const CoefficientHead& head, const ThreeOptions& options, ThreeInput& input) {
+    input.title = head.source.empty() ? "Material" : shownName(head.source);
+    input.generator = head.generator;
+    input.prefix = options.shader.prefix;
+    input.channels = head.channels.names();
+    input.cosine = false;
+}
+
+}  // namespace
+
+ThreeInput threeInput(const Payload& given, const ThreeOptions& options) {
+    refuseSpectral(given.head);
+    if (given.basisTexels) {
+        throw UsageError(fmt::format("a material of three.js evaluates the basis: without {}",
+                                     Setting{"PackOptions::basisSize"}));
+    }
+    Payload payload = given;
+    payload.head.source = shownName(payload.head.source);
+    ThreeInput input;
+    setHead(payload.head, options, input);
+    input.form = fmt::format("{} order {} over outgoing directions {}", payload.head.basis,
+                             payload.head.order, payload.head.outgoing.spec());
+    input.number = numberName(payload.coefficients.number);
+    input.bytes = payload.coefficients.bytes.size();
+    input.cosine = payload.head.quantity == Quantity::brdfCosine;
+    input.shade = options.shader.environmentOrder > 0;
+    input.oddSign = payload.head.condonShortley;
+    input.glsl = shaderSource(Language::glslEs, payload, options.shader);
+    input.wgsl =
+        withArguments(shaderSource(Language::wgsl, payload, options.shader), input.prefix, true);
+    input.texels = readable(payload.coefficients);
+    return input;
+}
+
+ThreeInput threeInput(const FormPayload& given, const ThreeOptions& options) {
+    refuseSpectral(given.form.head);
+    FormPayload payload = given;
+    payload.form.head.source = shownName(payload.form.head.source);
+    ThreeInput input;
+    setHead(payload.form.head, options, input);
+    const Representation& form = payload.form;
+    input.form = form.kind() == Representation::Kind::halfway
+                     ? fmt::format("halfway {},{},{}", form.halfway.half, form.halfway.difference,
+                                   form.halfway.azimuth)
+                     : fmt::format("{} {} order {}", kindName(form.kind()), form.head.basis,
+                                   form.head.order);
+    input.number = numberName(payload.texels.number);
+    input.bytes = form.bytes();
+    FormShaderOptions shader{.prefix = input.prefix,
+                             .storage = storageFor(payload, options.storage)};
+    if (shader.storage == Storage::block) shader.storage = Storage::texture;
+    input.glsl = formShaderSource(Language::glslEs, payload, shader);
+    input.wgsl = formShaderSource(Language::wgsl, payload, shader);
+    input.filtered = false;
+    if (shader.storage == Storage::texture) {
+        input.wgsl = withArguments(input.wgsl, input.prefix, false);
+        input.texels = readable(payload.texels);
+    }
+    return input;
+}
+
+}  // namespace hshfit::gpu::inline three

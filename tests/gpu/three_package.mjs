@@ -1,0 +1,90 @@
+// three_package.mjs PROGRAM: exports of the target three as npm packages: TypeScript accepts their types
+// and refuses wrong uses, and Node imports them by name. Ends with 77 where npm packages are missing.
+import { execFileSync, spawnSync } from 'node:child_process';
+import { existsSync, mkdirSync, mkdtempSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { dirname, join, resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+const modules = join(dirname(fileURLToPath(import.meta.url)), 'node_modules');
+if (!['three', 'typescript', '@types/three'].every((name) => existsSync(join(modules, name)))) {
+  console.log('skipped: the npm packages are not installed: npm ci --ignore-scripts in tests/gpu');
+  process.exit(77);
+}
+const program = resolve(process.argv[2]);
+const folder = mkdtempSync(join(tmpdir(), 'hshfit-package-'));
+const run = (...words) => execFileSync(program, [...words, '--quiet'], { cwd: folder });
+let failures = 0;
+function expect(condition, text) {
+  if (condition) return;
+  ++failures;
+  console.log(`FAILED: ${text}`);
+}
+
+const good = `
+import { DataTexture, LightProbe, Mesh, SphereGeometry, Vector3 } from 'three';
+import { environmentFromProbe, facts, HshfitMaterial, material, studio } from 'hshfit-ward';
+import { material as nodeMaterial } from 'hshfit-ward/webgpu';
+import { material as form } from 'hshfit-ggx';
+const one: HshfitMaterial = material({ tangents: true, axis: new Vector3(0, 0, 1), side: 2 });
+one.setEnvironment(studio).setEnvironment(environmentFromProbe(new LightProbe()));
+new Mesh(new SphereGeometry(), nodeMaterial({ axis: [0, 1, 0], environment: null }));
+form().setEnvironment(null).setEnvironmentMap(new DataTexture());
+const bytes: number = facts.bytes;
+console.log(bytes);
+`;
+const bad = [
+  ["import { material } from 'hshfit-ward'; material({ tangents: 'yes' });", 'a wrong type'],
+  ["import { material } from 'hshfit-ward'; material().setEnvironmentMap(null);", 'no such function'],
+  ["import { nothing } from 'hshfit-ward/webgpu'; console.log(nothing);", 'no such export'],
+];
+
+// Exit code and text of the compiler.
+function compiled(text) {
+  writeFileSync(join(folder, 'use.ts'), text);
+  const { status, stdout } = spawnSync(process.execPath, [join(modules, 'typescript/bin/tsc'), '--noEmit',
+    '--strict', '--target', 'es2022', '--module', 'nodenext', '--moduleResolution', 'nodenext',
+    '--lib', 'es2022,dom', 'use.ts'], { cwd: folder, encoding: 'utf8' });
+  return { ok: status === 0, text: stdout };
+}
+
+try {
+  mkdirSync(join(folder, 'node_modules'));
+  for (const name of ['three', '@types', '@dimforge', '@tweenjs', 'fflate', 'meshoptimizer'])
+    if (existsSync(join(modules, name))) symlinkSync(join(modules, name), join(folder, 'node_modules', name));
+  writeFileSync(join(folder, 'package.json'), '{"type": "module"}');
+  run('project', 'ward:ax=.3,ay=.6,kd=.1/.2/.3', '-o', 'ward.json', '--order', '4', '--outgoing', '8x8');
+  run('project', 'ggx:alpha=.4', '-o', 'ggx.json', '--form', 'halfway', '--halfway', '4,2,2', '--precision', 'half');
+  for (const name of ['ward', 'ggx'])
+    run('export', `${name}.json`, '-o', `node_modules/hshfit-${name}`, '--target', 'three', '--no-error');
+
+  const accepted = compiled(good);
+  expect(accepted.ok, `types: ${accepted.text}`);
+  for (const [text, name] of bad) {
+    const { ok, text: said } = compiled(text);
+    expect(!ok, `${name} goes unnoticed`);
+    console.log(`${name}: ${said.split('\n')[0]}`);
+  }
+
+  writeFileSync(join(folder, 'use.mjs'), `
+    import { Mesh, LightProbe, ShaderMaterial } from 'three';
+    import { environmentFromFile, environmentFromProbe, facts, material, studio } from 'hshfit-ward';
+    const made = material();
+    const probe = new LightProbe(undefined, 2);
+    probe.sh.coefficients[2].set(1, 2, 3);
+    const light = environmentFromProbe(probe);
+    // A light of the program: +z up there becomes +y up.
+    const up = environmentFromFile({ format: 'hshfit-light', domain: 'sphere',
+      basis: { name: 'sh', order: 2, condon_shortley: false }, coefficients: [[1, 0, 5, 0]] });
+    console.log(JSON.stringify([made instanceof ShaderMaterial, new Mesh(undefined, made).material === made,
+      made.clone().isHshfitMaterial, facts.name, studio.length, [...light.slice(6, 9)],
+      [...up.slice(0, 12)].map((x) => Math.round(x * 1e9) / 1e9)]));`);
+  const said = JSON.parse(execFileSync(process.execPath, ['use.mjs'], { cwd: folder, encoding: 'utf8' }));
+  const wanted = [true, true, true, 'ward:kd=0.1/0.2/0.3,ax=0.3,ay=0.6', 75, [2, 4, 6],
+    [1, 1, 1, 5, 5, 5, 0, 0, 0, 0, 0, 0]];
+  expect(JSON.stringify(said) === JSON.stringify(wanted), `in Node: ${JSON.stringify(said)}`);
+  console.log('imported in Node:', JSON.stringify(said));
+} finally {
+  rmSync(folder, { recursive: true, force: true });
+}
+process.exit(failures > 0 ? 1 : 0);
