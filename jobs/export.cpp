@@ -2,6 +2,7 @@
 
 #include "export_loss.h"
 #include "export_three.h"
+#include "export_viewer.h"
 #include "source.h"
 
 #include <hshfit/coefficient_files/representation_file.h>
@@ -11,7 +12,6 @@
 #include <hshfit/gpu/containers/targets.h>
 #include <hshfit/gpu/forms/form_files.h>
 #include <hshfit/gpu/forms/form_table.h>
-#include <hshfit/gpu/viewer.h>
 #include <hshfit/light/catalog.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/wording.h>
@@ -167,21 +167,8 @@ std::vector<LightSpecification> lightsOf(const Targets& chosen, const ExportOpti
     return lights;
 }
 
-void writeViewer(const std::vector<LightSpecification>& lights, const Brdf* source,
-                 const Listener& listener, FileSet& files, Exported& exported) {
-    if (lights.empty()) return;
-    const std::string file = exported.name + "_viewer.html";
-    gpu::ViewerInput input = gpu::viewerInput(exported.payload, source, listener.part("viewer"));
-    for (const LightSpecification& light : lights)
-        input.lights.push_back(gpu::viewerLight(light, input.environmentOrder));
-    files.write(file, gpu::viewerPage(input));
-    exported.lights = std::move(input.lights);
-    exported.texts.push_back({"viewer", "viewer", file});
-}
-
 /// Throws UsageError for what only coefficients per outgoing direction have.
-void requireFormOptions(const Targets& chosen, const ExportOptions& options,
-                        const Listener& listener) {
+void requireFormOptions(const ExportOptions& options) {
     const ExportOptions plain;
     if (options.pack.packing != plain.pack.packing || options.pack.luminanceChroma ||
         options.pack.basisSize > 0 || options.basis != plain.basis ||
@@ -192,19 +179,13 @@ void requireFormOptions(const Targets& chosen, const ExportOptions& options,
             "coefficients per outgoing direction, which {} makes of this form",
             Setting{"ExportOptions::outgoing"}));
     }
-    if (!hasViewer(chosen)) return;
-    const std::string reason = fmt::format(
-        "the viewer shows coefficients per outgoing direction, which {} makes of this form",
-        Setting{"ExportOptions::outgoing"});
-    if (options.targets != "all") throw UsageError(reason);
-    listener.say("left out: " + reason);
 }
 
 /// A form with a shader of its own, as it is.
 void exportForm(const Representation& stored, const std::string& path, const std::string& folder,
-                const Targets& chosen, const ExportOptions& options, const Listener& listener,
-                Exported& exported) {
-    requireFormOptions(chosen, options, listener);
+                const Targets& chosen, const std::vector<LightSpecification>& lights,
+                const ExportOptions& options, const Listener& listener, Exported& exported) {
+    requireFormOptions(options);
     exported.form = gpu::packForm(stored, options.number);
     exported.storage = gpu::storageFor(*exported.form, options.storage);
     FileSet files(folder, options.force);
@@ -229,6 +210,7 @@ void exportForm(const Representation& stored, const std::string& path, const std
         const auto again = reconstruct(exported.form->form, sourceOpener());
         writeThree(source.brdf ? *source.brdf : *again, options, listener, files, exported);
     }
+    writeViewer(stored, source.brdf.get(), lights, options, listener, files, exported);
     files.commit();
 }
 
@@ -264,7 +246,7 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
     exported.sidecar = exported.name + ".hsh.json";
     exported.test = exported.name + "_test.json";
     if (gpu::hasShader(stored) && options.outgoing.empty()) {
-        exportForm(stored, path, folder, chosen, options, listener, exported);
+        exportForm(stored, path, folder, chosen, lights, options, listener, exported);
         return exported;
     }
     if (options.storage != gpu::Storage::automatic) {
@@ -306,7 +288,7 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
         const auto again = reconstruct(stored, sourceOpener());
         writeThree(source.brdf ? *source.brdf : *again, options, listener, files, exported);
     }
-    writeViewer(lights, source.brdf.get(), listener, files, exported);
+    writeViewer(stored, source.brdf.get(), lights, options, listener, files, exported);
     files.commit();
     return exported;
 }

@@ -195,6 +195,33 @@ TEST(ViewerLight, PicturesOfWideLightsHaveTheirCoefficients) {
     }
 }
 
+TEST(ViewerLight, FoldersWithAPlusStayOutOfItsName) {
+    const auto folder = std::filesystem::path(testing::TempDir()) / "hshfit+secret+maps";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "hall+1.hdr", std::ios::binary)
+        << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n"
+        << std::string(4 * 2 * 4, '\x80');
+    const std::string text = (folder / "hall+1.hdr").string() + ":layout=latlong+uniform";
+    EXPECT_EQ(viewerLight(parseLights(text), 3, 8).name, "hall+1+uniform");
+    std::filesystem::remove_all(folder);
+}
+
+TEST(Viewer, ShowsAFormBesideOnePayload) {
+    const ViewerForm form{.name = "Halfway 3,2,1", .shader = "float form_eval(vec3 o, vec3 i);"};
+    ViewerInput input{.title = "paint",
+                      .payloads = {payloadOf(Channels::grey())},
+                      .form = form,
+                      .details = {"12 bytes", "34 bytes"}};
+    const std::string page = viewerPage(input);
+    for (const char* text : {"Halfway 3,2,1 and HSH", "12 bytes", "34 bytes", "HSH: order"})
+        EXPECT_NE(page.find(text), page.npos) << text;
+    input.form->spectral = true;
+    EXPECT_THROW(viewerPage(input), UsageError);
+    input.form->spectral = false;
+    input.payloads.push_back(payloadOf(Channels::grey()));
+    EXPECT_THROW(viewerPage(input), UsageError);
+}
+
 TEST(Viewer, LightsOfAnotherOrderAreRefused) {
     const ViewerInput input{.title = "order",
                             .payloads = {payloadOf(Channels::grey())},

@@ -14,10 +14,6 @@ namespace {
 
 using kainjow::mustache::data;
 
-data list() {
-    return data{data::type::list};
-}
-
 /// A constant that depends on the nearer end: mean + half e, e = 1 or -1.
 data endsData(const std::array<double, 2>& values, int near, bool bothEnds) {
     data ends;
@@ -171,6 +167,10 @@ data outputTerms(const std::vector<double>& factors, ShaderCost& cost) {
         terms.push_back(term);
     }
     return terms;
+}
+
+data list() {
+    return data{data::type::list};
 }
 
 std::string shaderNumber(double value) {

@@ -10,6 +10,9 @@ namespace hshfit::gpu {
 /// A number as every shading language writes it: the nearest single-precision value.
 std::string shaderNumber(double value);
 
+/// A section of a template without rows yet.
+kainjow::mustache::data list();
+
 /// The cost of a function as emitted.
 struct ShaderCost {
     std::size_t fetches = 0;   ///< of texels, filtered

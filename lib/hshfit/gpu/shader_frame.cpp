@@ -18,10 +18,6 @@ namespace {
 
 using kainjow::mustache::data;
 
-data list() {
-    return data{data::type::list};
-}
-
 struct Term {
     double sign = 1;
     std::string factor, of;

@@ -14,10 +14,6 @@ namespace {
 
 using kainjow::mustache::data;
 
-data list() {
-    return data{data::type::list};
-}
-
 /// M by stored function: e_j = sum of value * environment coefficient.
 using Weights = std::map<std::size_t, std::vector<EnvironmentElement>>;
 

@@ -20,10 +20,10 @@
 namespace hshfit::embedded {
 extern const std::string_view viewer_page, viewer_style;
 extern const std::string_view viewer_radiance, viewer_harmonics, viewer_environment, viewer_shapes,
-    viewer_renderer, viewer_controls, viewer_panes, viewer_light_panel, viewer_main;
+    viewer_renderer, viewer_shaders, viewer_controls, viewer_panes, viewer_light_panel, viewer_main;
 extern const std::string_view viewer_geometry_vert, viewer_geometry_frag, viewer_screen_vert,
-    viewer_environment_glsl, viewer_exact_glsl, viewer_fit_glsl, viewer_shade_frag,
-    viewer_composite_frag;
+    viewer_environment_glsl, viewer_exact_glsl, viewer_fit_glsl, viewer_sampled_glsl,
+    viewer_shade_frag, viewer_composite_frag;
 }  // namespace hshfit::embedded
 
 namespace hshfit::gpu {
@@ -32,7 +32,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using kainjow::mustache::data;
 
-/// Directions a pixel and frame with which the exact pane integrates the environment.
+/// Directions a pixel and frame over which the panes of the exact material and of a form sum the
+/// environment.
 constexpr int exactSamples = 36;
 
 std::string paneName(const Payload& payload) {
@@ -85,6 +86,28 @@ Json fitJson(const Payload& given, std::size_t index, int environmentOrder) {
             {"shader", shaderSource(Language::glslEs, payload,
                                     {.prefix = prefix, .environmentOrder = environmentOrder})},
             {"texels", base64(asText(payload.coefficients.bytes))}};
+}
+
+/// The texels of a form as a sampler returns them.
+std::string samplerValues(const Texels& texels) {
+    const std::vector<double> values = decode(texels);
+    const std::vector<float> singles(values.begin(), values.end());
+    return base64(asText(std::as_bytes(std::span(singles))));
+}
+
+Json formJson(const ViewerForm& form) {
+    Json document = {{"name", form.name},
+                     {"prefix", form.prefix},
+                     {"sampler", form.prefix + "_coefficients"},
+                     {"shader", form.shader},
+                     {"roughness", form.roughness},
+                     {"samples", exactSamples}};
+    if (form.texels) {
+        document["width"] = form.texels->width;
+        document["height"] = form.texels->height;
+        document["texels"] = samplerValues(*form.texels);
+    }
+    return document;
 }
 
 Json exactJson(const ViewerInput& input) {
@@ -145,6 +168,7 @@ Json shadersJson() {
             {"environment", viewer_environment_glsl},
             {"exact", viewer_exact_glsl},
             {"fit", viewer_fit_glsl},
+            {"sampled", viewer_sampled_glsl},
             {"shadeFragment", viewer_shade_frag},
             {"compositeFragment", viewer_composite_frag}};
 }
@@ -168,6 +192,13 @@ data notesOf(const ViewerInput& input) {
             table->width, table->height, table->azimuths * table->rest,
             static_cast<double>(table->cubeRoots.size()) * 2e-6, 100 * table->error));
     }
+    if (input.form) {
+        notes.push_back(fmt::format(
+            "{}: the form's own GLSL ES shader. Under the environment it is, like the exact "
+            "picture, a mean over directions of the light's picture; {} takes the light's "
+            "coefficients.",
+            input.form->name, paneName(input.payloads.front())));
+    }
     const Payload& first = input.payloads.front();
     notes.push_back(fmt::format(
         "{} of {}, outgoing directions {}; half floats, and the shader as it is exported. No "
@@ -178,16 +209,23 @@ data notesOf(const ViewerInput& input) {
     return notes;
 }
 
+[[noreturn]] void refuseSpectral(const std::string& name) {
+    throw UsageError(
+        fmt::format("{}: the viewer shows grey or RGB; project the spectral BRDF with {}", name,
+                    Call{.function = "asRgb"}));
+}
+
 void check(const ViewerInput& input) {
-    if (input.payloads.empty() || input.payloads.size() > 2) {
-        throw UsageError(fmt::format("a viewer of {} sets of coefficients; it shows one or two",
-                                     input.payloads.size()));
+    const std::size_t most = input.form ? 1 : 2;
+    if (input.payloads.empty() || input.payloads.size() > most) {
+        throw UsageError(fmt::format("a viewer of {} sets of coefficients; it shows one{}",
+                                     input.payloads.size(),
+                                     input.form ? " beside a form" : " or two"));
     }
+    if (input.form && input.form->spectral) refuseSpectral(input.form->name);
     for (const Payload& payload : input.payloads) {
-        if (payload.head.channels.kind != Channels::Kind::spectral) continue;
-        throw UsageError(
-            fmt::format("{}: the viewer shows grey or RGB; project the spectral BRDF with {}",
-                        payload.head.source, Call{.function = "asRgb"}));
+        if (payload.head.channels.kind == Channels::Kind::spectral)
+            refuseSpectral(payload.head.source);
     }
     if (input.environmentOrder < 2 || input.environmentOrder > 10) {
         throw UsageError(fmt::format("an environment of {} bands; the viewer takes 2 to 10",
@@ -207,19 +245,25 @@ std::string viewerPage(const ViewerInput& input) {
     const Payload& first = input.payloads.front();
     Json document = {{"order", first.head.order}, {"skyOrder", input.environmentOrder}};
     std::string names;
+    if (input.form) {
+        document["form"] = formJson(*input.form);
+        names = input.form->name + " and ";
+    }
     for (std::size_t i = 0; i < input.payloads.size(); ++i) {
         document["fits"].push_back(fitJson(input.payloads[i], i, input.environmentOrder));
         names += (i > 0 ? " and " : "") + paneName(input.payloads[i]);
         document["order"] = std::max(document["order"].get<int>(), input.payloads[i].head.order);
     }
     document["exact"] = exactJson(input);
+    document["details"] = input.details;
     document["lights"] = lightsJson(input);
     document["shaders"] = shadersJson();
     std::string script;
     for (const std::string_view part :
          {embedded::viewer_radiance, embedded::viewer_harmonics, embedded::viewer_environment,
-          embedded::viewer_shapes, embedded::viewer_renderer, embedded::viewer_controls,
-          embedded::viewer_panes, embedded::viewer_light_panel, embedded::viewer_main}) {
+          embedded::viewer_shapes, embedded::viewer_shaders, embedded::viewer_renderer,
+          embedded::viewer_controls, embedded::viewer_panes, embedded::viewer_light_panel,
+          embedded::viewer_main}) {
         script += part;
     }
     data page;
@@ -227,6 +271,7 @@ std::string viewerPage(const ViewerInput& input) {
     page.set("names", names);
     page.set("summary", fmt::format("{} up to order {}, next to the material itself", names,
                                     first.head.order));
+    page.set("orderName", input.form ? paneName(first) + ": order" : "Order");
     page.set("generator", std::string("hshfit ") + version);
     page.set("order", std::to_string(document["order"].get<int>()));
     page.set("style", std::string(embedded::viewer_style));

@@ -215,11 +215,9 @@ std::vector<float> decodeRgbe(const std::vector<std::uint8_t>& rgbe) {
 
 ViewerLight viewerLight(const LightSpecification& light, int order, int height) {
     ViewerLight result;
-    for (std::size_t first = 0; first <= light.text.size();) {
-        const std::size_t end = std::min(light.text.find('+', first), light.text.size());
-        if (first > 0) result.name += '+';
-        result.name += shownName(light.text.substr(first, end - first));
-        first = end + 1;
+    for (const std::string& term : light.terms) {
+        if (!result.name.empty()) result.name += '+';
+        result.name += shownName(term);
     }
     if (light.text == studioLight) result.name = "studio";
     const auto basis = bases::make("sh", order);

@@ -463,9 +463,11 @@ LightSpecification parseLights(const std::string& text, const std::string& folde
                                InvalidPixels invalid) {
     if (trimmed(text).empty())
         throw UsageError(fmt::format("empty light specification; valid: {}", form));
-    LightSpecification specification{.text = text, .lights = {}};
-    for (const std::string_view term : splitTerms(text, folder))
+    LightSpecification specification{.text = text, .lights = {}, .terms = {}};
+    for (const std::string_view term : splitTerms(text, folder)) {
         specification.lights.push_back(parseTerm(term, folder, invalid));
+        specification.terms.emplace_back(term);
+    }
     return specification;
 }
 

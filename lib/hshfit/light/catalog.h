@@ -18,6 +18,9 @@ inline constexpr std::string_view lightSumHelp =
 struct LightSpecification {
     std::string text;
     std::vector<Light> lights;  ///< one per term, in the order of the text
+    /// The terms as the text has them. A path may contain '+', so that the text alone does not
+    /// tell.
+    std::vector<std::string> terms = {};
 };
 
 /// Parses "TERM + TERM + …", spaces or none around '+', each term

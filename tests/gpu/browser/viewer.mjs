@@ -231,16 +231,15 @@ async function proveFinite(page) {
 
 // In the page: f of the exact pane's shader for pairs of directions.
 function lookUp(inputs) {
-  const { renderer } = window.viewer,
+  const { renderer, data } = window.viewer,
     gl = renderer.gl,
     side = 64;
   const image = renderer.images.find(({ exact }) => exact),
     { exact } = image;
-  const sky = renderer.data.shaders.environment;
   const program = makeProgram(
     gl,
-    renderer.data.shaders.screenVertex,
-    `${renderer.exactSource(exact, sky)}
+    data.shaders.screenVertex,
+    `${exactTableSource(data, exact)}
     uniform sampler2D wos, wis;
     out vec4 result;
     void main() {

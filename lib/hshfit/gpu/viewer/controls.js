@@ -67,13 +67,14 @@ class Viewer {
     this.changed();
   }
 
-  // The pairs whose difference can be shown: every fit against the exact picture, and one another.
+  // The pairs whose difference can be shown: every other picture against the exact one, and the
+  // first two of them.
   makePairs() {
     const images = this.renderer.images,
       exact = images.find((image) => image.exact);
-    const fits = images.filter((image) => image.fit);
-    const pairs = exact ? fits.map((fit) => [fit, exact]) : [];
-    if (fits.length > 1) pairs.push([fits[0], fits[1]]);
+    const others = images.filter((image) => !image.exact);
+    const pairs = exact ? others.map((image) => [image, exact]) : [];
+    if (others.length > 1) pairs.push([others[0], others[1]]);
     const select = element('pair');
     pairs.forEach(([a, b], i) => select.add(new Option(`${a.name} − ${b.name}`, i)));
     select.disabled = pairs.length === 0;

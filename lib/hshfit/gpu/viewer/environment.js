@@ -113,17 +113,11 @@ function reduced(width, height, values, stride, most) {
   return { width: w, height: h, values: Float32Array.from(sums, (x, k) => x / weights[(k / 3) | 0]) };
 }
 
-class Refused extends Error {}
-
 // Pixels of a picture file: Radiance by readRadiance, everything else by the browser.
 async function pixelsOf(file) {
   const bytes = new Uint8Array(await file.arrayBuffer());
   if (bytes[0] === 35 && bytes[1] === 63) {
-    try {
-      return readRadiance(bytes);
-    } catch (error) {
-      throw error instanceof RadianceError ? new Refused(error.message) : error;
-    }
+    return readRadiance(bytes);
   }
   if (bytes[0] === 0x76 && bytes[1] === 0x2f && bytes[2] === 0x31 && bytes[3] === 1) {
     throw new Refused(

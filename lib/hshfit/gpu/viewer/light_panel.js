@@ -62,6 +62,7 @@ Object.assign(Viewer.prototype, {
 
   async drop(file) {
     const note = element('skyNote');
+    note.classList.remove('warning');
     note.textContent = `${file.name}: being read and projected …`;
     await new Promise((done) => setTimeout(done));
     try {
@@ -77,6 +78,7 @@ Object.assign(Viewer.prototype, {
     } catch (error) {
       note.textContent = `${file.name} cannot be used: ${error.message}.`;
       note.classList.add('warning');
+      if (!(error instanceof Refused)) throw error;
     }
   },
 

@@ -17,6 +17,7 @@ function asRgba(halves, channels) {
 function start() {
   const data = JSON.parse(element('data').textContent);
   for (const fit of data.fits) fit.halves = decoded(fit.texels);
+  if (data.form?.texels) data.form.values = new Float32Array(bytesOf(data.form.texels).buffer);
   if (data.exact.texels)
     data.exact.halves = asRgba(decoded(data.exact.texels), data.exact.channels);
   window.viewer = new Viewer(data);

@@ -40,17 +40,18 @@ Object.assign(Viewer.prototype, {
     this.placeSun();
   },
 
-  // Exact, first fit, second fit, difference, whether or not there is one.
+  // Exact, the form or the first fit, the next fit, difference, whether or not there is one.
   contents() {
     const images = this.renderer.images;
     const exact = images.find((image) => image.exact),
-      fits = images.filter((image) => image.fit);
-    const pair = () => this.pairs[this.state.pair];
+      others = images.filter((image) => !image.exact);
+    const pair = () => this.pairs[this.state.pair],
+      { details } = this.data;
     return [
       { name: exactName, first: () => exact, why: this.data.exact.absent },
-      { name: fits[0].name, first: () => fits[0] },
-      fits[1]
-        ? { name: fits[1].name, first: () => fits[1] }
+      { name: others[0].name, detail: details[0], first: () => others[0] },
+      others[1]
+        ? { name: others[1].name, detail: details[1], first: () => others[1] }
         : { name: 'Second basis', why: 'This page has one basis only.' },
       {
         name: 'Difference',
@@ -69,6 +70,9 @@ Object.assign(Viewer.prototype, {
       return box;
     };
     this.tags = this.panes.map((pane) => make('label', pane.name));
+    this.panes.forEach(({ detail }, i) => {
+      if (detail) this.tags[i].append(make('detail', detail));
+    });
     this.absences = this.panes.map((pane) => make('absent', pane.first ? '' : pane.why));
     this.legend = make('legend');
     this.legend.append(document.createElement('i'), document.createElement('span'));

@@ -2,7 +2,8 @@
 // of three mantissas and a common exponent (G. Ward, "Real Pixels", Graphics Gems II, 1991), each
 // row plain, or run-length encoded by pixel or by channel.
 
-class RadianceError extends Error {}
+// A file that the page cannot use, with the reason; other errors are faults of the page.
+class Refused extends Error {}
 
 class RadianceBytes {
   constructor(bytes) {
@@ -11,14 +12,14 @@ class RadianceBytes {
   }
 
   next() {
-    if (this.at >= this.bytes.length) throw new RadianceError('the picture is cut short');
+    if (this.at >= this.bytes.length) throw new Refused('the picture is cut short');
     return this.bytes[this.at++];
   }
 
   line() {
     let text = '';
     for (let byte = this.next(); byte !== 10; byte = this.next()) {
-      if (text.length > 2000) throw new RadianceError('its head is no text');
+      if (text.length > 2000) throw new Refused('its head is no text');
       text += String.fromCharCode(byte);
     }
     return text.trim();
@@ -30,15 +31,15 @@ function radianceSize(input) {
   for (let line = input.line(); line !== ''; line = input.line()) {
     const format = /^FORMAT=(.*)$/.exec(line);
     if (format && format[1].trim() !== '32-bit_rle_rgbe') {
-      throw new RadianceError(`its FORMAT is ${format[1]}; 32-bit_rle_rgbe is read`);
+      throw new Refused(`its FORMAT is ${format[1]}; 32-bit_rle_rgbe is read`);
     }
   }
   const line = input.line();
   const size = /^-Y\s+(\d+)\s+\+X\s+(\d+)$/.exec(line);
-  if (!size) throw new RadianceError(`its size is '${line}'; rows from above, -Y H +X W, are read`);
+  if (!size) throw new Refused(`its size is '${line}'; rows from above, -Y H +X W, are read`);
   const [height, width] = [Number(size[1]), Number(size[2])];
   if (width < 1 || height < 1 || width * height > 1 << 28) {
-    throw new RadianceError(`it has ${width} x ${height} pixels`);
+    throw new Refused(`it has ${width} x ${height} pixels`);
   }
   return { width, height };
 }
@@ -49,7 +50,7 @@ function channelRuns(input, row, width) {
     for (let x = 0; x < width; ) {
       const code = input.next();
       const count = code > 128 ? code - 128 : code;
-      if (count === 0 || x + count > width) throw new RadianceError('a run passes its row');
+      if (count === 0 || x + count > width) throw new Refused('a run passes its row');
       const repeated = code > 128 ? input.next() : 0;
       for (let k = 0; k < count; ++k, ++x) {
         row[4 * x + channel] = code > 128 ? repeated : input.next();
@@ -67,7 +68,7 @@ function pixelRuns(input, row, width, first) {
     if (pixel[0] === 1 && pixel[1] === 1 && pixel[2] === 1 && x > 0) {
       const count = pixel[3] * 2 ** shift;
       shift += 8;
-      if (x + count > width) throw new RadianceError('a run passes its row');
+      if (x + count > width) throw new Refused('a run passes its row');
       for (let k = 0; k < count; ++k, ++x) row.copyWithin(4 * x, 4 * (x - 1), 4 * x);
     } else {
       row.set(pixel, 4 * x++);
@@ -76,7 +77,7 @@ function pixelRuns(input, row, width, first) {
   }
 }
 
-// R, G, B of each pixel, rows from above; bytes that are no such picture throw RadianceError.
+// R, G, B of each pixel, rows from above; bytes that are no such picture throw Refused.
 function readRadiance(bytes) {
   const input = new RadianceBytes(bytes);
   const { width, height } = radianceSize(input);

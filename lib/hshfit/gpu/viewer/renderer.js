@@ -101,71 +101,67 @@ function truncated(fit, order) {
   return halves;
 }
 
+// The texels of a form, which its shader fetches without a filter.
+function singleArray(gl, width, height, values) {
+  const texture = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture);
+  gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, gl.RGBA32F, width, height, 1);
+  gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+  gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+  gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
+  const [format, type] = [gl.RGBA, gl.FLOAT];
+  gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, 0, width, height, 1, format, type, values);
+  return texture;
+}
+
+// The uniforms that only one kind of picture has.
+function ownUniforms({ fit, form, exact, texture }, sky) {
+  if (fit) {
+    const light = fit.oddSign < 0 ? sky.oddSigned : sky.light;
+    return { [fit.sampler]: { array: texture }, skyLight: { triples: light } };
+  }
+  const lobeRoughness = (form ?? exact).roughness;
+  if (exact) return { exactTable: { array: texture }, lobeRoughness };
+  return texture ? { [form.sampler]: { array: texture }, lobeRoughness } : { lobeRoughness };
+}
+
 class Renderer {
   constructor(canvas, data) {
-    const gl = (this.gl = openContext(canvas));
+    const gl = (this.gl = openContext(canvas)),
+      file = data.shaders;
     this.canvas = canvas;
     this.environments = data.lights.map((light) => Environment.embedded(light));
     this.data = data;
-    const file = data.shaders,
-      sky = file.environment;
     this.geometry = makeProgram(gl, file.geometryVertex, file.geometryFragment, 'geometry');
     this.composite = makeProgram(gl, file.screenVertex, file.compositeFragment, 'panes');
     this.images = data.fits.map((fit) => ({
       name: fit.name,
       fit,
       order: 0,
-      shader: makeProgram(gl, file.screenVertex, this.fitSource(fit), fit.name),
+      shader: makeProgram(gl, file.screenVertex, fitSource(data, fit), fit.name),
       texture: halfArray(gl, fit.width, fit.height, fit.layers, fit.halves),
     }));
+    if (data.form) {
+      const { form } = data;
+      this.images.unshift({
+        name: form.name,
+        form,
+        shader: makeProgram(gl, file.screenVertex, formSource(data, form), form.name),
+        texture: form.values ? singleArray(gl, form.width, form.height, form.values) : null,
+      });
+    }
     if (data.exact.halves) {
       const e = data.exact;
       this.images.unshift({
         name: 'exact',
         exact: e,
-        shader: makeProgram(
-          gl,
-          file.screenVertex,
-          this.exactSource(e, sky) + file.shadeFragment,
-          'exact',
-        ),
+        shader: makeProgram(gl, file.screenVertex, exactSource(data, e), 'exact'),
         texture: halfArray(gl, e.width, e.height, e.azimuths * e.rest, e.halves),
       });
     }
     this.shapes = { sphere: this.upload(sphereShape()), teapot: this.upload(teapotShape()) };
     this.empty = gl.createVertexArray();
     this.frame = 0;
-  }
-
-  fitSource(fit) {
-    const order = this.data.skyOrder;
-    return (
-      `${this.head()}${fit.shader}\n#define SKY_ORDER ${order}\n` +
-      `#define FIT_EVAL ${fit.prefix}_eval\n#define FIT_RAW ${fit.prefix}_evalRaw\n` +
-      `#define FIT_SHADE ${fit.prefix}_shadeWorld\n#define FIT_HAS_COSINE ${fit.hasCosine}\n` +
-      this.data.shaders.fit +
-      this.data.shaders.shadeFragment
-    );
-  }
-
-  exactSource(e, sky) {
-    const mirrored = e.isotropic && e.bilateral;
-    const range = (Math.PI * (e.reciprocal ? 1 : 2)) / (mirrored ? 2 : 1);
-    return (
-      `${this.head()}#define EXACT_SAMPLES ${e.samples}\n` +
-      `#define EXACT_ISOTROPIC ${e.isotropic}\n#define EXACT_BILATERAL ${e.bilateral}\n` +
-      `#define EXACT_MIRRORED ${mirrored}\n#define EXACT_RANGE ${range.toFixed(15)}\n` +
-      `#define EXACT_AZIMUTHS ${e.azimuths}\n#define EXACT_REST ${e.rest}\n` +
-      `#define EXACT_LAST_THETA ${e.lastTheta.toFixed(15)}\n${sky}` +
-      this.data.shaders.exact
-    );
-  }
-
-  head() {
-    return (
-      '#version 300 es\nprecision highp float;\nprecision highp int;\n' +
-      'precision highp sampler2D;\nprecision highp sampler2DArray;\n'
-    );
   }
 
   upload(shape) {
@@ -269,7 +265,6 @@ class Renderer {
         gl.bindTexture(gl.TEXTURE_2D_ARRAY, value.array);
         gl.uniform1i(place, unit++);
       } else if (value.triples) gl.uniform3fv(place, value.triples);
-      else if (value.singles) gl.uniform1fv(place, value.singles);
       else if (value.integer !== undefined) gl.uniform1i(place, value.integer);
       else if (value.length === 9) gl.uniformMatrix3fv(place, true, value);
       else if (value.length === 16) gl.uniformMatrix4fv(place, false, value);
@@ -349,13 +344,7 @@ class Renderer {
       if (image.fit && this.frame >= cycle) continue;
       const [from, to] = image.targets;
       gl.bindFramebuffer(gl.FRAMEBUFFER, to.framebuffer);
-      const own = image.fit
-        ? {
-            [image.fit.sampler]: { array: image.texture },
-            skyLight: { triples: image.fit.oddSign < 0 ? sky.oddSigned : sky.light },
-          }
-        : { exactTable: { array: image.texture }, exactRoughness: image.exact.roughness };
-      this.use(image.shader, { ...shared, ...own, before: from.textures[0] });
+      this.use(image.shader, { ...shared, ...ownUniforms(image, sky), before: from.textures[0] });
       gl.drawArrays(gl.TRIANGLES, 0, 3);
       image.targets = [to, from];
     }
