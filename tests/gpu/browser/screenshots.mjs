@@ -1,5 +1,6 @@
 // screenshots.mjs PROGRAM MEASURED FOLDER [NAME…]: the pictures of docs/viewer.md,
-// by the program and Chromium. MEASURED: an RGL file, whose folder the program runs in.
+// by the program and Chromium. MEASURED: an RGL file, whose folder the program runs in. Not in the
+// page, but to be looked at: viewer-form-dark, viewer-form-narrow.
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -42,6 +43,15 @@ const shots = [
     ],
     view: 'frames=4&cycles=12&order=10&shape=teapot&skyTurn=20&azimuth=-8&elevation=18',
   },
+  ...[
+    { name: 'viewer-form', view: 'frames=4&cycles=12' },
+    { name: 'viewer-form-dark', view: 'frames=4&cycles=12&shape=teapot&azimuth=-8&elevation=18', dark: true },
+    { name: 'viewer-form-narrow', view: 'frames=4&cycles=6', width: 420 },
+  ].map((shot) => ({
+    ...shot,
+    spec: basename(measured),
+    form: ['--form', 'halfway', '--halfway', '12,6,3', '--precision', 'half'],
+  })),
 ];
 
 await finish(async () => {
@@ -49,12 +59,14 @@ await finish(async () => {
   const run = (...words) =>
     execFileSync(program, [...words, '--quiet'], { cwd: dirname(measured) });
   try {
-    for (const { name, spec, outgoing, view, dark, lights = [] } of shots) {
+    for (const { name, spec, outgoing, view, dark, width = 1240, form, lights = [] } of shots) {
       if (wanted.length > 0 && !wanted.includes(name)) continue;
       const coefficients = join(work, `${name}.json`);
-      run('project', spec, '-o', coefficients, '--cosine', '--order', '10', '--outgoing', outgoing);
+      const textures = ['--cosine', '--order', '10', '--outgoing', outgoing];
+      run('project', spec, '-o', coefficients, ...(form ?? textures));
       const light = lights.flatMap((one) => ['--light', one]);
-      run('export', coefficients, '-o', work, '--target', 'viewer', '--no-error', ...light);
+      const error = form ? [] : ['--no-error'];
+      run('export', coefficients, '-o', work, '--target', 'viewer', ...error, ...light);
       await withBrowser(
         'llvmpipe',
         async (page, complaints) => {
@@ -65,7 +77,7 @@ await finish(async () => {
           console.log(name, await page.innerText('#numbers'));
           expect(complaints.length === 0, complaints.join('; '));
         },
-        { viewport: { width: 1240, height: 860 }, dark },
+        { viewport: { width, height: 860 }, dark },
       );
     }
   } finally {

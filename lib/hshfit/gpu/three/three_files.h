@@ -29,7 +29,8 @@ struct TextFile {
 /// NAME_three_webgpu.js (NodeMaterial with WGSL), NAME_three_data.js, which both import, their
 /// types, a page that shows a sphere, and last a package.json. The shaders are shaderSource() and
 /// formShaderSource(); numbers beyond what both APIs filter become float32 as a sampler returns
-/// them. Throws UsageError for spectral material and basis textures.
+/// them. Basis textures are left out. Throws UsageError for spectral materials and names that no
+/// import takes.
 ///
 /// Units: radiance = f cos(theta_i) times the colour and intensity of a light, as in three.js.
 std::vector<TextFile> threeFiles(const Payload& payload, const ThreeOptions& options);

@@ -73,11 +73,8 @@ void setHead(const CoefficientHead& head, const ThreeOptions& options, ThreeInpu
 
 ThreeInput threeInput(const Payload& given, const ThreeOptions& options) {
     refuseSpectral(given.head);
-    if (given.basisTexels) {
-        throw UsageError(fmt::format("a material of three.js evaluates the basis: without {}",
-                                     Setting{"PackOptions::basisSize"}));
-    }
     Payload payload = given;
+    payload.basisTexels.reset();
     payload.head.source = shownName(payload.head.source);
     ThreeInput input;
     setHead(payload.head, options, input);
