@@ -5,13 +5,16 @@
 
 namespace hshfit::inline sampling {
 
-Sample FoldedSampler::sample(const Direction& wo, const Uniforms& u) const {
-    if (!(wo.z > 0)) return {};
-    Direction wi = draw(wo, u);
+Direction foldedUp(const Direction& wi) {
     const double length = std::sqrt(dot(wi, wi));
     // On the horizon itself f is 0; the least height keeps the density defined.
     const double z = std::max(std::abs(wi.z) / length, std::numeric_limits<double>::min());
-    wi = {wi.x / length, wi.y / length, z};
+    return {wi.x / length, wi.y / length, z};
+}
+
+Sample FoldedSampler::sample(const Direction& wo, const Uniforms& u) const {
+    if (!(wo.z > 0)) return {};
+    const Direction wi = foldedUp(draw(wo, u));
     return {wi, pdf(wo, wi)};
 }
 

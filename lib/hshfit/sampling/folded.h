@@ -19,6 +19,9 @@ protected:
     virtual double density(const Direction& wo, const Direction& wi) const = 0;
 };
 
+/// A direction of any length, as a unit vector mirrored up if it is below the horizon.
+Direction foldedUp(const Direction& wi);
+
 /// Whether both are above the horizon; false for NaN.
 inline bool aboveHorizon(const Direction& wo, const Direction& wi) {
     return wo.z > 0 && wi.z > 0;

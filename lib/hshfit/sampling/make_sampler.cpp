@@ -19,7 +19,9 @@ SamplerList partsOf(const Brdf& brdf, const SamplerOptions& options) {
         parts.insert(parts.end(), known.samplers.begin(), known.samplers.end());
         if (known.all) return parts;
     }
-    if (options.proposal) parts.push_back(proposalSampler(fitProposal(brdf, options.fit)));
+    if (options.proposal)
+        parts.push_back(
+            proposalSampler(options.fitted ? *options.fitted : fitProposal(brdf, options.fit)));
     if (options.table) parts.push_back(tabulate(brdf, options.tabulation));
     return parts;
 }

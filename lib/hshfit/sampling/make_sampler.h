@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 
 namespace hshfit::inline sampling {
 
@@ -20,6 +21,8 @@ struct SamplerOptions {
     double leastCosine = 1.0 / 32;
     DiscTableOptions tabulation = {};
     ProposalOptions fit = {};
+    /// A proposal that is there already, instead of a fit.
+    std::optional<Proposal> fitted = {};
 };
 
 /// A sampler of f cos(theta_i), |f| averaged over channels: the shares of its parts minimise the

@@ -32,22 +32,10 @@ public:
 
 protected:
     Direction draw(const Direction& wo, const Uniforms& u) const override {
-        const double wx = ax_ * wo.x, wy = ay_ * wo.y, length = std::hypot(wx, wy, wo.z);
-        const Direction w{wx / length, wy / length, wo.z / length};
-        // The cap of mirror directions of w about the normals of the upper hemisphere: z >= -w.z.
-        const double phi = 2 * pi * u[0], above = (1 - u[1]) * (1 + w.z), z = above - w.z;
-        const double sine = std::sqrt(std::max(0.0, (1 - z) * (1 + z)));
-        const double hx = ax_ * (sine * std::cos(phi) + w.x);
-        const double hy = ay_ * (sine * std::sin(phi) + w.y), scale = std::hypot(hx, hy, above);
-        if (!(scale > 0)) return mirrored(wo);
-        return mirroredAbout(wo, hx / scale, hy / scale, above / scale);
+        return drawGgx(wo, ax_, ay_, u[0], u[1]);
     }
     double density(const Direction& wo, const Direction& wi) const override {
-        const Normal h = halfVector(wo, wi);
-        if (!(h.z > 0)) return 0;
-        const double x = h.x / ax_, y = h.y / ay_, s = x * x + y * y + h.z * h.z;
-        const double visible = wo.z + std::hypot(ax_ * wo.x, ay_ * wo.y, wo.z);
-        return 1 / (2 * pi * ax_ * ay_ * s * s * visible);
+        return ggxDensity(wo, wi, ax_, ay_);
     }
 
 private:
@@ -223,6 +211,26 @@ private:
 };
 
 }  // namespace
+
+Direction drawGgx(const Direction& wo, double ax, double ay, double u, double v) {
+    const double wx = ax * wo.x, wy = ay * wo.y, length = std::hypot(wx, wy, wo.z);
+    const Direction w{wx / length, wy / length, wo.z / length};
+    // The cap of mirror directions of w about the normals of the upper hemisphere: z >= -w.z.
+    const double phi = 2 * pi * u, above = (1 - v) * (1 + w.z), z = above - w.z;
+    const double sine = std::sqrt(std::max(0.0, (1 - z) * (1 + z)));
+    const double hx = ax * (sine * std::cos(phi) + w.x);
+    const double hy = ay * (sine * std::sin(phi) + w.y), scale = std::hypot(hx, hy, above);
+    if (!(scale > 0)) return mirrored(wo);
+    return mirroredAbout(wo, hx / scale, hy / scale, above / scale);
+}
+
+double ggxDensity(const Direction& wo, const Direction& wi, double ax, double ay) {
+    const Normal h = halfVector(wo, wi);
+    if (!(h.z > 0)) return 0;
+    const double x = h.x / ax, y = h.y / ay, s = x * x + y * y + h.z * h.z;
+    const double visible = wo.z + std::hypot(ax * wo.x, ay * wo.y, wo.z);
+    return 1 / (2 * pi * ax * ay * s * s * visible);
+}
 
 std::shared_ptr<const Sampler> ggxSampler(double ax, double ay) {
     return std::make_shared<Ggx>(ax, ay);

@@ -13,6 +13,13 @@ namespace hshfit::inline sampling {
 /// 10.1111/cgf.14867.
 std::shared_ptr<const Sampler> ggxSampler(double ax, double ay);
 
+// The same for widths that change from one wo to the next; nothing is folded, wo.z > 0.
+
+/// A direction of the sphere, of length 1 up to rounding, from two uniform numbers in [0, 1).
+Direction drawGgx(const Direction& wo, double ax, double ay, double u, double v);
+/// Per steradian; 0 where wo + wi is not above the horizon.
+double ggxDensity(const Direction& wo, const Direction& wi, double ax, double ay);
+
 /// Smith's G1 and D of Beckmann's Gaussian slopes exp(-(tx/ax)^2 - (ty/ay)^2). Heitz & d'Eon 2014,
 /// 10.1111/cgf.12417; the slope along wo is the root of its distribution, to rounding.
 std::shared_ptr<const Sampler> beckmannSampler(double ax, double ay);

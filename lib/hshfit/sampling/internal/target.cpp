@@ -82,14 +82,19 @@ Target targetAt(const Brdf& brdf, const Direction& wo) {
     return target;
 }
 
-std::vector<Target> targetsOfBin(const Brdf& brdf, std::size_t bin, std::size_t bins) {
-    const double s = (static_cast<double>(bin) + 0.5) / static_cast<double>(bins);
+std::vector<Target> targetsAtHeight(const Brdf& brdf, double cosine, double sine) {
     std::vector<Target> targets;
     for (const double phi : {0.3, 1.2, 2.5}) {
-        targets.push_back(targetAt(brdf, directionOfBin(s, phi)));
+        targets.push_back(targetAt(brdf, {sine * std::cos(phi), sine * std::sin(phi), cosine}));
         if (brdf.laws().isotropic) break;
     }
     return targets;
+}
+
+std::vector<Target> targetsOfBin(const Brdf& brdf, std::size_t bin, std::size_t bins) {
+    const double s = (static_cast<double>(bin) + 0.5) / static_cast<double>(bins);
+    const Direction middle = directionOfBin(s, 0);
+    return targetsAtHeight(brdf, middle.z, middle.x);
 }
 
 NodeDensities densitiesAt(const Sampler& sampler, std::span<const Target> targets) {

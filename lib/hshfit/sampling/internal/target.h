@@ -19,8 +19,10 @@ struct Target {
     double total = 0;  ///< integral of `value`
 };
 Target targetAt(const Brdf& brdf, const Direction& wo);
-/// Targets at the middle of a bin of elevation_bins.h: at one azimuth if f is isotropic, else at
-/// three.
+/// Targets at the outgoing direction with this cosine and sine of its polar angle: at one azimuth
+/// if f is isotropic, else at three.
+std::vector<Target> targetsAtHeight(const Brdf& brdf, double cosine, double sine);
+/// The same at the middle of a bin of elevation_bins.h.
 std::vector<Target> targetsOfBin(const Brdf& brdf, std::size_t bin, std::size_t bins);
 
 /// The mean over channels of |f|, 0 where it is not finite; f as `Brdf::eval` lays it out.
