@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 struct ExportArguments {
     std::string coefficients, output, number, storage = "auto", packing = "coef4";
     std::string lighting;  ///< models; empty: none
-    bool chroma = false, noError = false;
+    bool chroma = false, noError = false, sampling = false, noSampling = false;
     jobs::ExportOptions options;
     jobs::MaterialExportOptions material;
 };
@@ -124,12 +124,46 @@ std::string text(const Json& document) {
     return out;
 }
 
+/// The largest values over elevations, which `efficiency` has one by one.
+Json proposalJson(const jobs::Exported& exported) {
+    Json rows = Json::array();
+    for (const gpu::ProposalRow& row : exported.proposal->rows) {
+        const Efficiency& e = row.efficiency;
+        rows.push_back({{"theta", degrees(polarAngle(e.wo))},
+                        {"albedo", row.albedo ? Json(*row.albedo) : Json(nullptr)},
+                        {"estimate", e.albedo},
+                        {"variance", e.variance},
+                        {"largest", e.largest},
+                        {"wasted", e.wasted}});
+    }
+    return {{"rows", exported.proposal->proposal.rows.size()},
+            {"bytes", exported.proposal->proposal.bytes()},
+            {"seconds", exported.proposalSeconds},
+            {"efficiency", rows}};
+}
+
+std::string proposalText(const Json& proposal) {
+    double variance = 0, largest = 0, wasted = 0;
+    for (const Json& row : proposal["efficiency"]) {
+        variance = std::max(variance, row["variance"].get<double>());
+        largest = std::max(largest, row["largest"].get<double>());
+        wasted = std::max(wasted, row["wasted"].get<double>());
+    }
+    return fmt::format(
+        "sampling: proposal of {} bytes in {:.2g} s; at most, from 0 to 85 degrees, variance "
+        "{:.2g}, "
+        "weight {:.3g} times its mean, {:.2g} % wasted\n",
+        proposal["bytes"].get<std::size_t>(), proposal["seconds"].get<double>(), variance, largest,
+        100 * wasted);
+}
+
 Json document(const jobs::Exported& exported, const std::string& folder) {
     Json document = {
         {"format", "hshfit-export"}, {"version", 1}, {"folder", folder}, {"name", exported.name}};
     document.update(exported.form ? describeExportedForm(exported) : describe(exported.payload));
     document["fit_error"] = jobs::errorJson(exported.error);
     if (exported.poor) document["poor"] = jobs::poorJson(*exported.poor);
+    if (exported.proposal) document["proposal"] = proposalJson(exported);
     document["files"] = Json::array({{{"role", "sidecar"}, {"path", exported.sidecar}},
                                      {{"role", "test"}, {"path", exported.test}}});
     for (const gpu::ViewerLight& light : exported.lights) {
@@ -210,6 +244,7 @@ void runExport(ExportArguments& arguments, const CLI::App& command, const Global
     options.pack.packing = arguments.packing == "rgb" ? gpu::Packing::rgb : gpu::Packing::coef4;
     options.pack.luminanceChroma = arguments.chroma || options.pack.chromaOrder > 0;
     options.measureError = !arguments.noError;
+    if (arguments.sampling || arguments.noSampling) options.sampling = arguments.sampling;
     const jobs::Exported exported = jobs::exportCoefficients(
         arguments.coefficients, arguments.output, options, listenerFor(globals));
     if (exported.poor) note(globals, exported.poor->line());
@@ -217,7 +252,8 @@ void runExport(ExportArguments& arguments, const CLI::App& command, const Global
     if (globals.json) {
         printJson(answer);
     } else {
-        printText(text(answer));
+        printText(text(answer) +
+                  (answer.contains("proposal") ? proposalText(answer["proposal"]) : ""));
     }
 }
 
@@ -289,6 +325,10 @@ void addExport(CLI::App& command, Globals& globals) {
     command.add_option("--library", options.library,
                        "Of the target three: where its page finds three.js, a path from the folder "
                        "or an address (default: ./node_modules/three)");
+    auto* sampling = command.add_flag("--sampling", arguments->sampling,
+                                      "Fit a proposal for path tracing: in the sidecar, and as "
+                                      "sample() and pdf() in shaders (default: with shaders)");
+    command.add_flag("--no-sampling", arguments->noSampling, "No proposal")->excludes(sampling);
     command.add_flag("--zstd", options.zstd, "Compress KTX2 with Zstandard");
     command.add_flag("--force", options.force, "Replace files that are there");
     command.add_option("--mesh", arguments->material.mesh,

@@ -56,17 +56,21 @@ std::string importedText(const Json& document) {
                                                   document["numbers"].get<std::size_t>())
                                     : fmt::format("{} order {}, {}", text("basis"),
                                                   document["order"].get<int>(), text("outgoing"));
-    return fmt::format("{}: {}, from {} ({}, {}); SHA-256 right, {} tests within {:.1g}\n",
+    return fmt::format("{}: {}, from {} ({}, {}); SHA-256 right, {} tests within {:.1g}{}\n",
                        text("output"), content, text("file"), text("container"), text("number"),
                        document["tests"]["count"].get<std::size_t>(),
-                       document["tests"]["largest_difference"].get<double>());
+                       document["tests"]["largest_difference"].get<double>(),
+                       document.contains("proposal") ? "; the proposal draws as it did" : "");
 }
 
 void runImport(const ImportArguments& arguments, const Globals& globals) {
     const jobs::Imported imported =
         jobs::importCoefficients(arguments.input, arguments.output, arguments.options);
-    const Json document = std::visit(
+    Json document = std::visit(
         [&](const auto& read) { return answer(read, imported.bytes, arguments); }, imported.read);
+    if (imported.proposal)
+        document["proposal"] = {{"rows", imported.proposal->proposal.rows.size()},
+                                {"bytes", imported.proposal->proposal.bytes()}};
     if (globals.json) {
         printJson(document);
     } else {

@@ -49,6 +49,7 @@ Json answerJson(const jobs::Sampled& done, const SampleArguments& arguments) {
                      {"seed", arguments.options.seed},
                      {"channels", done.channels},
                      {"parts", done.parts},
+                     {"stored", done.stored},
                      {"reflects", done.reflects},
                      {"build_seconds", done.buildSeconds},
                      {"nanoseconds", done.nanosecondsPerSample},
@@ -79,9 +80,10 @@ std::string rowText(const jobs::SampleRow& row) {
 
 std::string textOf(const jobs::Sampled& done, const std::string& output) {
     std::string text = fmt::format(
-        "{}\nparts: {}\n theta_o    albedo  estimate  +-         variance  largest  wasted  "
+        "{}\nparts: {}{}\n theta_o    albedo  estimate  +-         variance  largest  wasted  "
         "shares\n",
-        done.brdf, fmt::join(done.parts, " | "));
+        done.brdf, fmt::join(done.parts, " | "),
+        done.stored ? " (the proposal is that of the export)" : "");
     text += rowText(done.here);
     if (!done.rows.empty()) text += "by elevation:\n";
     for (const jobs::SampleRow& row : done.rows) text += rowText(row);
@@ -104,7 +106,8 @@ void runSample(SampleArguments& arguments, const Globals& globals) {
 void addSample(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<SampleArguments>();
     jobs::SampleOptions& options = arguments->options;
-    command.add_option("SPEC", arguments->spec, "BRDF or coefficient file")->required();
+    command.add_option("SPEC", arguments->spec, "BRDF, coefficient file or sidecar of an export")
+        ->required();
     command.add_option("--outgoing", arguments->outgoing, "Outgoing direction THETA,PHI, degrees")
         ->capture_default_str();
     command.add_option("--count", options.count, "Directions to draw")
@@ -115,7 +118,8 @@ void addSample(CLI::App& command, Globals& globals) {
     command
         .add_option("--method", arguments->method,
                     "Densities to draw from: auto (the model's own; else proposal and table), "
-                    "table, proposal (two fitted GGX lobes) or cosine")
+                    "table, proposal (two fitted GGX lobes), stored (the proposal of an export, "
+                    "as its shaders draw) or cosine")
         ->capture_default_str();
     command.add_option("--seed", options.seed, "Seed of the random numbers")->capture_default_str();
     command

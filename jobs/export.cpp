@@ -3,15 +3,18 @@
 #include "export_loss.h"
 #include "export_three.h"
 #include "export_viewer.h"
+#include "proposal.h"
 #include "source.h"
 
 #include <hshfit/coefficient_files/representation_file.h>
+#include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/gpu/containers/targets.h>
 #include <hshfit/gpu/forms/form_files.h>
 #include <hshfit/gpu/forms/form_table.h>
+#include <hshfit/gpu/proposals/proposal_shader.h>
 #include <hshfit/light/catalog.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/wording.h>
@@ -22,6 +25,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -120,9 +124,31 @@ std::string shaderFile(const std::string& name, const gpu::LanguageEntry& langua
 /// The shader of a language for what is exported.
 std::string sourceOf(gpu::Language language, const Exported& exported,
                      const ExportOptions& options) {
-    if (!exported.form) return gpu::shaderSource(language, exported.payload, options.shader);
-    return gpu::formShaderSource(language, *exported.form,
-                                 {.prefix = options.shader.prefix, .storage = exported.storage});
+    const std::string& prefix = options.shader.prefix;
+    const bool cosine = !exported.form && exported.payload.head.quantity == Quantity::brdfCosine;
+    std::string source =
+        exported.form ? gpu::formShaderSource(language, *exported.form,
+                                              {.prefix = prefix, .storage = exported.storage})
+                      : gpu::shaderSource(language, exported.payload, options.shader);
+    if (exported.proposal)
+        source += gpu::proposalSource(language, *exported.proposal, {prefix, cosine});
+    return source;
+}
+
+/// Fits a proposal to what the shaders evaluate to, if it is asked for.
+void addProposal(const Targets& chosen, const ExportOptions& options, const Brdf& brdf,
+                 Exported& exported) {
+    const bool shaders = std::ranges::any_of(
+        chosen, [](const Target* target) { return target->kind == Target::Kind::shader; });
+    if (!options.sampling.value_or(shaders)) return;
+    const auto start = std::chrono::steady_clock::now();
+    exported.proposal = proposalFor(brdf);
+    exported.proposalSeconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::string proposalTextOf(const Exported& exported) {
+    return exported.proposal ? gpu::proposalText(*exported.proposal) : std::string();
 }
 
 void writeShaders(const Targets& chosen, const ExportOptions& options, const Listener& listener,
@@ -199,11 +225,13 @@ void exportForm(const Representation& stored, const std::string& path, const std
         refuseLoss(*exported.error.loss, path,
                    options.number ? std::optional(Setting{"PackOptions::number"}) : std::nullopt);
     }
+    addProposal(chosen, options, *reconstruct(exported.form->form, sourceOpener()), exported);
     exported.textures = gpu::writeForm(
         *exported.form, containersOf(chosen, options, exported.form->texels.number, listener),
         exported.name,
         {.zstd = options.zstd,
-         .fitError = exported.error.loss ? jsonText(errorJson(exported.error)) : std::string()},
+         .fitError = exported.error.loss ? jsonText(errorJson(exported.error)) : std::string(),
+         .proposal = proposalTextOf(exported)},
         sourceOpener(), files);
     writeShaders(chosen, options, listener, files, exported);
     if (has(chosen, Target::Kind::module)) {
@@ -278,10 +306,12 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
     }
     if (exported.error.split)
         exported.poor = judge(*exported.error.split, exported.payload, path, folder);
+    addProposal(chosen, options, Reconstruction(gpu::unpack(exported.payload)), exported);
     exported.textures = gpu::writeContainers(
         exported.payload, containersOf(chosen, options, pack.number, listener), exported.name,
         {.zstd = options.zstd,
-         .fitError = exported.error.split ? jsonText(errorJson(exported.error)) : std::string()},
+         .fitError = exported.error.split ? jsonText(errorJson(exported.error)) : std::string(),
+         .proposal = proposalTextOf(exported)},
         files);
     writeShaders(chosen, options, listener, files, exported);
     if (has(chosen, Target::Kind::module)) {

@@ -7,6 +7,7 @@
 #include <hshfit/gpu/error_split.h>
 #include <hshfit/gpu/forms/form_shader.h>
 #include <hshfit/gpu/payload.h>
+#include <hshfit/gpu/proposals/proposal_record.h>
 #include <hshfit/gpu/shader.h>
 #include <hshfit/gpu/viewer_light.h>
 
@@ -44,6 +45,9 @@ struct ExportOptions {
     gpu::PackOptions pack = {};
     gpu::ShaderOptions shader = {};
     bool measureError = true;
+    /// A proposal for sampling in the sidecar and functions for it in the shaders; none: if there
+    /// are shaders among the targets.
+    std::optional<bool> sampling = {};
     bool zstd = false;   ///< compress KTX2
     bool force = false;  ///< replace existing files
 };
@@ -76,6 +80,8 @@ struct Exported {
     std::optional<gpu::FormPayload> form;            ///< a form exported as it is
     gpu::Storage storage = gpu::Storage::automatic;  ///< of its shaders
     ExportError error;
+    std::optional<gpu::ProposalRecord> proposal;  ///< for sampling, where asked for
+    double proposalSeconds = 0;                   ///< that its fit and efficiency took
     std::optional<Poor> poor;
     std::string sidecar, test;  ///< names of files in the folder, as those below
     std::vector<gpu::ExportedFile> textures;

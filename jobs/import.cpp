@@ -23,6 +23,7 @@ Imported importCoefficients(const std::string& input, const std::string& output,
                                       Setting{"ImportOptions::force"}));
     }
     Imported imported;
+    imported.proposal = gpu::readProposal(input);
     if (gpu::looksLikeForm(input)) {
         gpu::ImportedForm read = gpu::readForm(input, sourceOpener());
         writeRepresentation(read.payload.form, output);

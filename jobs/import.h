@@ -2,8 +2,10 @@
 
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/forms/form_files.h>
+#include <hshfit/gpu/proposals/proposal_record.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -15,7 +17,8 @@ struct ImportOptions {
 
 struct Imported {
     std::variant<gpu::ImportedPayload, gpu::ImportedForm> read;
-    std::uintmax_t bytes = 0;  ///< of the file written
+    std::optional<gpu::ProposalRecord> proposal;  ///< for sampling, where the export keeps one
+    std::uintmax_t bytes = 0;                     ///< of the file written
 };
 
 /// The coefficients of a file of an export (gpu::readPayload, gpu::readForm), written to `output`,

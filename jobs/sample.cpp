@@ -1,10 +1,10 @@
 #include "sample.h"
 
+#include "proposal.h"
 #include "source.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
-#include <hshfit/projection/albedo.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -20,16 +20,32 @@
 namespace hshfit::jobs {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, SampleMethod>, 4> methods{
+constexpr std::array<std::pair<std::string_view, SampleMethod>, 5> methods{
     {{"auto", SampleMethod::best},
      {"table", SampleMethod::table},
      {"proposal", SampleMethod::proposal},
+     {"stored", SampleMethod::stored},
      {"cosine", SampleMethod::cosine}}};
 
-SamplerOptions optionsOf(SampleMethod method) {
-    return {.known = method == SampleMethod::best,
-            .proposal = method == SampleMethod::best || method == SampleMethod::proposal,
-            .table = method == SampleMethod::best || method == SampleMethod::table};
+SamplerOptions optionsOf(SampleMethod method, const std::optional<gpu::ProposalRecord>& stored) {
+    SamplerOptions options{
+        .known = method == SampleMethod::best,
+        .proposal = method == SampleMethod::best || method == SampleMethod::proposal,
+        .table = method == SampleMethod::best || method == SampleMethod::table};
+    if (stored) options.fitted = stored->proposal;
+    return options;
+}
+
+/// The stored proposal alone is a mixture of one part.
+std::unique_ptr<MixtureSampler> samplerFor(const Brdf& brdf, const std::string& spec,
+                                           SampleMethod method,
+                                           const std::optional<gpu::ProposalRecord>& stored) {
+    if (method != SampleMethod::stored) return makeSampler(brdf, optionsOf(method, stored));
+    if (!stored)
+        throw UsageError(
+            fmt::format("{}: keeps no proposal; sidecars of exports with a shader do", spec));
+    return std::make_unique<MixtureSampler>(SamplerList{proposalSampler(stored->proposal)},
+                                            std::vector<MixtureRow>{{{1.0}, true}});
 }
 
 double secondsOf(const std::chrono::steady_clock::time_point& start) {
@@ -38,13 +54,8 @@ double secondsOf(const std::chrono::steady_clock::time_point& start) {
 
 SampleRow rowAt(const Brdf& brdf, const MixtureSampler& sampler, const Direction& wo,
                 const SampleOptions& options) {
-    SampleRow row;
-    row.efficiency = efficiencyAt(brdf, sampler, wo, options.trials, options.seed);
-    row.shares = sampler.row(wo).shares;
-    const AlbedoEstimate found =
-        estimateAlbedo(brdf, wo, {.tolerance = 1e-4, .maxEvaluations = std::size_t{1} << 22});
-    if (found.converged) row.albedo = found.values;
-    return row;
+    gpu::ProposalRow row = efficiencyRow(brdf, sampler, wo, {options.trials, options.seed});
+    return {std::move(row.efficiency), std::move(row.albedo), sampler.row(wo).shares};
 }
 
 void draw(const Brdf& brdf, const MixtureSampler& sampler, const SampleOptions& options,
@@ -98,8 +109,11 @@ Sampled sample(const std::string& spec, const std::string& output, const SampleO
     Sampled result;
     result.brdf = brdf->name();
     result.channels = brdf->channels().names();
+    const auto stored = storedProposal(spec);
     const auto start = std::chrono::steady_clock::now();
-    const auto sampler = makeSampler(*brdf, optionsOf(options.method));
+    const auto sampler = samplerFor(*brdf, spec, options.method, stored);
+    const auto drawsProposal = [](const auto& part) { return part->name() == "proposal"; };
+    result.stored = stored && std::ranges::any_of(sampler->parts(), drawsProposal);
     result.buildSeconds = secondsOf(start);
     for (const auto& part : sampler->parts()) result.parts.emplace_back(part->name());
     result.reflects = sampler->reflects(options.outgoing);

@@ -13,9 +13,9 @@
 namespace hshfit::jobs {
 
 /// The densities that samples come from.
-enum class SampleMethod { best, table, proposal, cosine };
-/// "auto" (the BRDF's own, or a fitted one and a table), "table", "proposal" or "cosine". Throws
-/// UsageError.
+enum class SampleMethod { best, table, proposal, stored, cosine };
+/// "auto" (the BRDF's own, or a fitted one and a table), "table", "proposal", "stored" (the
+/// proposal of an export, as its shaders draw from it) or "cosine". Throws UsageError.
 SampleMethod sampleMethod(const std::string& name);
 std::string sampleMethodName(SampleMethod method);
 
@@ -50,13 +50,15 @@ struct Sampled {
     std::vector<DrawnDirection> drawn;
     SampleRow here;               ///< the report at `outgoing`
     std::vector<SampleRow> rows;  ///< by elevation, at the azimuth of `outgoing`
+    bool stored = false;          ///< the proposal is that of the export, not fitted again
     double buildSeconds = 0, nanosecondsPerSample = 0;
 };
 
 /// Draws incident directions in proportion to f cos(theta_i), and reports the efficiency by
-/// elevation. Unless `output` is empty, the directions are written there as CSV.
-/// Throws UsageError for an outgoing direction that is not above the horizon, OutputError, and as
-/// openSource.
+/// elevation. Unless `output` is empty, the directions are written there as CSV. The proposal that
+/// an export keeps takes the place of a fit.
+/// Throws UsageError for an outgoing direction that is not above the horizon and for the method
+/// `stored` of what keeps no proposal, OutputError, and as openSource.
 Sampled sample(const std::string& spec, const std::string& output, const SampleOptions& options);
 
 }  // namespace hshfit::jobs

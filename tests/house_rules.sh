@@ -90,7 +90,7 @@ matches '\.dump\(' 'lib/*.cpp' 'lib/*.h' brdfs jobs cli ':!lib/hshfit/files/json
     rule 'JSON becomes text in jsonText only (files/json_fields.h)'
 git grep -lF '.render(' -- 'lib/*.cpp' brdfs jobs cli ':!lib/hshfit/gpu/shader.cpp' \
     ':!lib/hshfit/gpu/forms/form_shader.cpp' ':!lib/hshfit/gpu/timing' \
-    ':!lib/hshfit/lighting/lighting_shader.cpp' \
+    ':!lib/hshfit/lighting/lighting_shader.cpp' ':!lib/hshfit/gpu/proposals/proposal_shader.cpp' \
     ':!cli/completion.cpp' | while read -r file; do
     grep -q 'return printableLines(' "$file" || echo "$file"
 done | rule 'pages and scripts are printable (files/printable.h)'

@@ -78,6 +78,44 @@ TEST_F(Cli, SampleSaysWhereNothingIsReflected) {
     EXPECT_NE(answer.err.find("f is 0"), std::string::npos);
 }
 
+/// An export with shaders keeps a proposal, from which `stored` draws; others keep one on request.
+TEST_F(Cli, SampleDrawsFromTheProposalOfAnExport) {
+    ASSERT_EQ(
+        run("project ggx:alpha=.3,F0=.8 --form halfway --halfway 6,3,2 -o " + path("g.json")).code,
+        0);
+    const std::string job = "export " + path("g.json") + " --json --no-error -o ";
+    const Answer with = run(job + path("with") + " --target bin,glsl");
+    ASSERT_EQ(with.code, 0) << with.err;
+    EXPECT_TRUE(keepsSchema(with.out, "export"));
+    EXPECT_EQ(Json::parse(with.out)["proposal"]["bytes"], 128);
+    EXPECT_TRUE(keepsSchema(read(path("with/g.hsh.json")), "gpu_form"));
+    EXPECT_NE(read(path("with/g_hsh.glsl")).find("vec3 hsh_sample("), std::string::npos);
+    for (const Json& row : Json::parse(with.out)["proposal"]["efficiency"]) {
+        EXPECT_LT(row["variance"], 0.5) << row;
+        EXPECT_EQ(row["wasted"], 0) << row;
+    }
+    const std::string few = " --count 3 --elevations 2 --trials 2000 --json";
+    const Answer stored = run("sample " + path("with/g.hsh.json") + " --method stored" + few);
+    ASSERT_EQ(stored.code, 0) << stored.err;
+    EXPECT_TRUE(keepsSchema(stored.out, "sample"));
+    EXPECT_EQ(Json::parse(stored.out)["parts"], Json::parse(R"(["proposal"])"));
+    EXPECT_EQ(Json::parse(stored.out)["stored"], true);
+    EXPECT_EQ(Json::parse(run("sample " + path("g.json") + few).out)["stored"], false);
+    const Answer read =
+        run("import " + path("with/g.hsh.json") + " -o " + path("h.json") + " --json");
+    EXPECT_TRUE(keepsSchema(again.out, "import"));
+    EXPECT_EQ(Json::parse(again.out)["proposal"]["rows"], 16);
+
+    ASSERT_EQ(run(job + path("bare") + " --target bin").code, 0);
+    ASSERT_EQ(run(job + path("none") + " --target glsl --no-sampling").code, 0);
+    for (const char* folder : {"bare", "none"}) {
+        const std::string sidecar = path(std::string(folder) + "/g.hsh.json");
+        expectError("sample " + sidecar + " --method stored", 2, "keeps no proposal", 0);
+    }
+    ASSERT_EQ(run(job + path("asked") + " --target bin --sampling").code, 0);
+    EXPECT_EQ(run("sample " + path("asked/g.hsh.json") + " --method stored" + few).code, 0);
+}
+
 TEST_F(Cli, SampleRefusesWhatItCannotDo) {
     expectError("sample lambert --outgoing 90,0", 2, "horizon", 0);
     expectError("sample lambert --method magic", 2, "proposal", 0);

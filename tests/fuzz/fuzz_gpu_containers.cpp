@@ -3,6 +3,7 @@
 #include <hshfit/error.h>
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/containers/sidecar.h>
+#include <hshfit/gpu/proposals/proposal_record.h>
 
 #include <cstdint>
 #include <cstdlib>
@@ -26,6 +27,7 @@ void check(const Payload& payload) {
 
 /// The second step as well, with texels of zeros in the place of a file, while they are small.
 void readSidecar(std::string_view text) {
+    parseProposal(text, "input");
     SidecarIndex index = parseSidecarIndex(text, "input");
     constexpr std::size_t most = 1 << 16;
     const auto fill = [](Texels& texels) {

@@ -44,11 +44,13 @@ struct ShaderJob {
     /// Of a form (gpu/forms): where its numbers are, "constants", "block" or "texture"; it has no
     /// light, and evalRaw is eval. `payload` has the head and the texels.
     std::string form = {};
+    /// Three uniform numbers in place of wi; outputs are those of tests/gpu/proposals.
+    bool sampling = false;
 
     std::size_t channels() const { return payload.head.channels.count(); }
     std::size_t lights() const { return environment.colours; }
     /// Per pair: evalRaw and eval for every channel, shade for every colour.
-    std::size_t outputs() const { return 2 * channels() + lights(); }
+    std::size_t outputs() const { return sampling ? 5 + channels() : 2 * channels() + lights(); }
 };
 ShaderJob makeJob(gpu::Payload payload, int environmentOrder);
 

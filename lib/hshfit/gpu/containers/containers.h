@@ -67,8 +67,8 @@ struct ExportedFile {
 
 struct ExportOptions {
     bool zstd = false;
-    /// JSON object for the key "fit_error"; empty: null.
-    std::string fitError = {};
+    std::string fitError = {};  ///< JSON object for the key "fit_error"; empty: null
+    std::string proposal = {};  ///< likewise for "proposal" (gpu/proposals); empty: no key
 };
 
 /// Texels and all that is written about them: a payload of any form as containers see it.

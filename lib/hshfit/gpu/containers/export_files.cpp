@@ -87,8 +87,7 @@ std::vector<ExportedFile> writeContainers(const Payload& payload,
                         .facts = payloadFacts(payload),
                         .sidecar =
                             [&](std::span<const ExportedFile> written, std::optional<Role> holds) {
-                                return sidecarText(payload, written, holds, tests,
-                                                   options.fitError);
+                                return sidecarText(payload, written, holds, tests, options);
                             },
                         .tests = testText(payload, tests)},
                        chosen, name, options.zstd, files);

@@ -31,7 +31,7 @@ struct SidecarIndex {
 /// is for a sidecar within a container.
 std::string sidecarText(const Payload& payload, std::span<const ExportedFile> files,
                         std::optional<Role> holds, std::span<const TestTriple> tests,
-                        const std::string& fitError);
+                        const ExportOptions& options);
 
 // Parts of sidecars that every form has, as JSON text.
 

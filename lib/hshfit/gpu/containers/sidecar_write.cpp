@@ -216,7 +216,7 @@ std::string testsText(std::span<const TestTriple> tests) {
 
 std::string sidecarText(const Payload& payload, std::span<const ExportedFile> files,
                         std::optional<Role> holds, std::span<const TestTriple> tests,
-                        const std::string& fitError) {
+                        const ExportOptions& options) {
     Json document = {{"format", "hshfit-gpu"}, {"version", payloadSidecarVersion}};
     if (holds) document["holds"] = roleName(*holds);
     addCoefficientKeys(payload, document);
@@ -246,7 +246,9 @@ std::string sidecarText(const Payload& payload, std::span<const ExportedFile> fi
             {"data", texelsJson(texels, "coef4-planar", false)}};
     }
     document["files"] = filesJson(files);
-    document["fit_error"] = fitError.empty() ? Json(nullptr) : Json::parse(fitError);
+    document["fit_error"] =
+        options.fitError.empty() ? Json(nullptr) : Json::parse(options.fitError);
+    if (!options.proposal.empty()) document["proposal"] = Json::parse(options.proposal);
     document["test_value"] = "the sum before it is clamped, in double precision, analytic basis";
     document["tests"] = testsJson(tests);
     return readable(document);

@@ -72,7 +72,7 @@ constexpr const char* testValue = "f in 1/sr as the coefficient file gives it, i
 
 std::string sidecarOf(const FormPayload& payload, std::span<const ExportedFile> files,
                       std::optional<Role> holds, std::span<const TestTriple> tests,
-                      const std::string& fitError) {
+                      const ExportOptions& options) {
     const Json file = Json::parse(representationToJson(payload.form));
     Json document = {{"format", "hshfit-gpu"},
                      {"version", formSidecarVersion},
@@ -95,7 +95,9 @@ std::string sidecarOf(const FormPayload& payload, std::span<const ExportedFile> 
     document["data"] = Json::parse(dataText(payload.texels, "stream"));
     document["basis_textures"] = nullptr;
     document["files"] = Json::parse(filesText(files));
-    document["fit_error"] = fitError.empty() ? Json(nullptr) : Json::parse(fitError);
+    document["fit_error"] =
+        options.fitError.empty() ? Json(nullptr) : Json::parse(options.fitError);
+    if (!options.proposal.empty()) document["proposal"] = Json::parse(options.proposal);
     document["test_value"] = testValue;
     document["tests"] = Json::parse(testsText(tests));
     return readableSidecar(jsonText(document));
@@ -176,7 +178,7 @@ std::vector<ExportedFile> writeForm(const FormPayload& payload,
                         .facts = factsOf(payload),
                         .sidecar =
                             [&](std::span<const ExportedFile> written, std::optional<Role> holds) {
-                                return sidecarOf(payload, written, holds, tests, options.fitError);
+                                return sidecarOf(payload, written, holds, tests, options);
                             },
                         .tests = testText(payload.form.head, tests, testValue)},
                        containers, name, options.zstd, files);

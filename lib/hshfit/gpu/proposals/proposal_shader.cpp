@@ -1,0 +1,142 @@
+#include <hshfit/gpu/proposals/proposal_shader.h>
+
+#include <hshfit/gpu/shader_data.h>
+#include <hshfit/gpu/shader_text.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <kainjow/mustache.hpp>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::embedded {
+extern const std::string_view proposal_angle, proposal_comment, proposal_density, proposal_ggx,
+    proposal_glsl, proposal_hlsl, proposal_metal, proposal_osl, proposal_row, proposal_sample,
+    proposal_wgsl;
+}  // namespace hshfit::embedded
+
+namespace hshfit::gpu::inline proposals {
+namespace {
+
+using kainjow::mustache::data;
+using kainjow::mustache::mustache;
+using kainjow::mustache::partial;
+
+/// The words of a language beyond setLanguageWords: its template, a declaration of a whole number,
+/// and a conversion to one.
+struct ProposalLanguage {
+    std::string_view text, letInt, toInt;
+};
+ProposalLanguage proposalLanguage(Language language) {
+    switch (language) {
+        case Language::glslEs:
+        case Language::glsl:
+            return {embedded::proposal_glsl, "int", "int"};
+        case Language::hlsl:
+            return {embedded::proposal_hlsl, "int", "int"};
+        case Language::metal:
+            return {embedded::proposal_metal, "int", "int"};
+        case Language::wgsl:
+            return {embedded::proposal_wgsl, "let", "i32"};
+        case Language::osl:
+            break;
+    }
+    return {embedded::proposal_osl, "int", "(int)"};
+}
+
+/// A lobe of an isotropic proposal takes two numbers of a row's one vector, of another one three of
+/// a vector of its own.
+void setTable(const Proposal& proposal, data& page) {
+    const bool isotropic = proposal.isotropic();
+    std::vector<Proposal::Row> rows = proposal.rows;
+    if (rows.size() == 1) rows.push_back(rows.front());  // every place lies between two rows
+    std::vector<std::string> vectors;
+    for (const Proposal::Row& row : rows) {
+        std::vector<std::string> lanes;
+        for (const ProposalLobe& lobe : row) {
+            lanes.push_back(shaderNumber(lobe.share / 255.0));
+            lanes.push_back(shaderNumber(proposalWidth(lobe.widthX)));
+            if (isotropic) continue;
+            lanes.push_back(shaderNumber(proposalWidth(lobe.widthY)));
+            lanes.push_back("0.0");
+        }
+        for (std::size_t k = 0; k < lanes.size(); k += 4)
+            vectors.push_back(
+                fmt::format("{}, {}, {}, {}", lanes[k], lanes[k + 1], lanes[k + 2], lanes[k + 3]));
+    }
+    data table{data::type::list};
+    for (const std::string& numbers : vectors) {
+        data row;
+        row.set("first", &numbers == &vectors.front());
+        row.set("numbers", numbers);
+        table.push_back(row);
+    }
+    page.set("table", table);
+    page.set("isotropic", isotropic);
+    page.set("count", std::to_string(vectors.size()));
+    page.set("numbersInTable", std::to_string(4 * vectors.size()));
+    const double count = static_cast<double>(proposal.rows.size());
+    page.set("rowCount", std::to_string(proposal.rows.size()));
+    page.set("rows", shaderNumber(count));
+    page.set("last", shaderNumber(count - 1));
+    page.set("lastCell", shaderNumber(std::max(0.0, count - 2)));
+    page.set("retro1", proposal.rows.front()[1].retro == 1);
+    page.set("sign1", proposal.rows.front()[1].retro == 1 ? "0.0 - " : "");
+}
+
+void setEfficiency(const std::vector<ProposalRow>& rows, data& page) {
+    data list{data::type::list};
+    for (const ProposalRow& row : rows) {
+        const Efficiency& e = row.efficiency;
+        const std::vector<double>& albedo = row.albedo ? *row.albedo : e.albedo;
+        data line;
+        line.set("theta", fmt::format("{:.0f}", degrees(polarAngle(e.wo))));
+        line.set("albedo", fmt::format("{:.4f}", fmt::join(albedo, " ")));
+        line.set("variance", fmt::format("{:.2g}", e.variance));
+        line.set("largest", fmt::format("{:.3g}", e.largest));
+        line.set("wasted", fmt::format("{:.2g}", 100 * e.wasted));
+        list.push_back(line);
+    }
+    page.set("efficiency", list);
+}
+
+void setPartials(data& page) {
+    const std::pair<const char*, std::string_view> parts[] = {
+        {"comment", embedded::proposal_comment}, {"rowBody", embedded::proposal_row},
+        {"angleBody", embedded::proposal_angle}, {"ggxBody", embedded::proposal_ggx},
+        {"pdfBody", embedded::proposal_density}, {"sampleBody", embedded::proposal_sample},
+    };
+    for (const auto& [name, text] : parts) {
+        // The last newline is dropped, because the line that names a partial has one of its own.
+        std::string part(text);
+        if (part.ends_with('\n')) part.pop_back();
+        page.set(name, data(partial([part] { return part; })));
+    }
+}
+
+}  // namespace
+
+std::string proposalSource(Language language, const ProposalRecord& record,
+                           const ProposalShaderOptions& options) {
+    checkPrefix(options.prefix);
+    checkProposal(record.proposal);
+    const ProposalLanguage words = proposalLanguage(language);
+    data page;
+    setLanguageWords(language, options.prefix, page);
+    page.set("letInt", std::string(words.letInt));
+    page.set("toInt", std::string(words.toInt));
+    const bool osl = language == Language::osl;
+    page.set("open", osl ? options.prefix + "_proposalRow(" : options.prefix + "_proposal[");
+    page.set("close", osl ? ")" : "]");
+    page.set("cosine", options.cosine);
+    setTable(record.proposal, page);
+    setEfficiency(record.rows, page);
+    setPartials(page);
+    mustache frame{std::string(words.text)};
+    frame.set_custom_escape([](const std::string& s) { return s; });
+    return fmt::format("\n{}", withoutGaps(frame.render(page)));
+}
+
+}  // namespace hshfit::gpu::inline proposals

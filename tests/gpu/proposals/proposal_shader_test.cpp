@@ -1,0 +1,235 @@
+// sample and pdf of the snippets, in every language and for every form, against the library.
+
+#include "../shaders/runners.h"
+#include "sample_cases.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <lib/sampling/sampling_laws.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <vector>
+
+namespace hshfit::shaders {
+namespace {
+
+using gpu::Language;
+
+constexpr std::size_t perJob = Pairs::side * Pairs::side;
+
+const std::vector<SampleCase>& cases() {
+    static const std::vector<SampleCase> all = sampleCases();
+    return all;
+}
+
+using Run = std::function<std::vector<float>(const ShaderJob&, const std::string&)>;
+
+/// Runners of compute shaders take all jobs at once.
+std::vector<std::vector<float>> runAll(const std::vector<ShaderJob>& jobs,
+                                       const std::string& source, const Run& runner,
+                                       bool together) {
+    std::vector<std::vector<float>> found;
+    if (!together) {
+        for (const ShaderJob& job : jobs) found.push_back(runner(job, source));
+        return found;
+    }
+    ShaderJob all = jobs.front();
+    for (std::size_t k = 1; k < jobs.size(); ++k) {
+        const Pairs& pairs = jobs[k].pairs;
+        all.pairs.wo.insert(all.pairs.wo.end(), pairs.wo.begin(), pairs.wo.end());
+        all.pairs.wi.insert(all.pairs.wi.end(), pairs.wi.begin(), pairs.wi.end());
+    }
+    const std::vector<float> outputs = runner(all, source);
+    const std::size_t size = perJob * all.outputs();
+    for (std::size_t k = 0; k < jobs.size(); ++k)
+        found.emplace_back(outputs.begin() + static_cast<std::ptrdiff_t>(k * size),
+                           outputs.begin() + static_cast<std::ptrdiff_t>((k + 1) * size));
+    return found;
+}
+
+/// The outputs of a shader for one pair.
+struct Written {
+    Direction wi;
+    double pdf, other;
+    const float* f;
+
+    Written(const ShaderJob& job, const std::vector<float>& found, std::size_t k)
+        : f(found.data() + k * job.outputs() + 5) {
+        const auto at = [&](std::size_t i) {
+            return static_cast<double>(found[k * job.outputs() + i]);
+        };
+        wi = {at(0), at(1), at(2)};
+        pdf = at(3);
+        other = at(4);
+    }
+};
+
+double apart(double found, double expected) {
+    if (found == expected) return 0;
+    const double difference = std::abs(found / expected - 1);
+    return difference < 1e30 ? difference : 1e30;  // a NaN counts as infinitely far
+}
+
+struct Agreement {
+    double wi = 0, pdf = 0, other = 0;
+};
+
+/// Directions of the same numbers, and the library's density at the shader's direction.
+void compareDraws(const SampleCase& one, const ShaderJob& job, const std::vector<float>& found,
+                  Agreement& worst) {
+    for (std::size_t k = 0; k < perJob; ++k) {
+        const Direction &wo = job.pairs.wo[k], &u = job.pairs.wi[k];
+        const Written w(job, found, k);
+        if (wo.z <= 0) {
+            EXPECT_EQ(w.wi.x * w.wi.x + w.wi.y * w.wi.y + w.wi.z * w.wi.z + w.pdf, 0);
+            continue;
+        }
+        worst.pdf = std::max(worst.pdf, apart(w.pdf, one.sampler->pdf(wo, w.wi)));
+        if (nearAChoice(one, wo, u.z)) continue;
+        const Direction wi = one.sampler->sample(wo, {u.x, u.y, u.z}).wi;
+        for (const double d : {wi.x - w.wi.x, wi.y - w.wi.y, wi.z - w.wi.z})
+            worst.wi = std::max(worst.wi, std::abs(d) < 1e30 ? std::abs(d) : 1e30);
+    }
+}
+
+void comparePairs(const SampleCase& one, const ShaderJob& job, const std::vector<float>& found,
+                  Agreement& worst) {
+    for (std::size_t k = 0; k < perJob; ++k)
+        worst.other =
+            std::max(worst.other, apart(Written(job, found, k).other,
+                                        one.sampler->pdf(job.pairs.wo[k], job.pairs.wi[k])));
+}
+
+/// Mean and standard error.
+struct Mean {
+    double count = 0, sum = 0, squares = 0;
+    void add(double value) { ++count, sum += value, squares += value * value; }
+    double mean() const { return sum / count; }
+    double error() const {
+        return std::sqrt(std::max(0.0, squares / count - mean() * mean()) / count);
+    }
+};
+
+struct Laws {
+    double probability = 1, albedo = 0;  ///< least p-value; largest distance in standard errors
+};
+
+/// Samples at one outgoing direction follow the density, which integrates to 1, and give the albedo
+/// and the integral of another density.
+void checkElevation(const SampleCase& one, const ShaderJob& job, const std::vector<float>& found,
+                    Laws& laws) {
+    const Direction wo = job.pairs.wo.front();
+    std::vector<Direction> drawn, placing;
+    UniformNumbers numbers(77);
+    const std::size_t channels = job.channels();
+    std::vector<Mean> albedo(channels);
+    Mean cosine;
+    for (std::size_t k = 0; k < perJob; ++k) {
+        const Written w(job, found, k);
+        ASSERT_GT(w.pdf, 0);
+        ASSERT_GT(w.wi.z, 0);
+        ASSERT_NEAR(dot(w.wi, w.wi), 1, 1e-6);
+        drawn.push_back(w.wi);
+        if (k % 2 == 0) placing.push_back(one.sampler->sample(wo, numbers.next()).wi);
+        for (std::size_t c = 0; c < channels; ++c)
+            albedo[c].add(static_cast<double>(w.f[c]) * (one.cosine() ? 1 : w.wi.z) / w.pdf);
+        cosine.add(w.wi.z / pi / w.pdf);
+    }
+    const test::Partition partition(*one.sampler, wo, placing, 20000);
+    EXPECT_NEAR(partition.integral(), 1, 2e-3);
+    laws.probability = std::min(laws.probability, partition.chiSquare(drawn).probability);
+    EXPECT_NEAR(cosine.mean(), 1, 4 * cosine.error() + 1e-6);
+    const std::vector<double> expected = albedoOf(*one.brdf, wo);
+    for (std::size_t c = 0; c < channels; ++c) {
+        const double error = std::max(albedo[c].error(), 1e-4 * expected[c]);
+        laws.albedo = std::max(laws.albedo, std::abs(albedo[c].mean() - expected[c]) / error);
+    }
+}
+
+void prove(Language language, Run runner = {}) {
+    const bool together = language != Language::glslEs;
+    if (!runner) {
+        runner = [language](const auto& job, const auto& source) {
+            return run(language, job, source);
+        };
+    }
+    for (const SampleCase& one : cases()) {
+        SCOPED_TRACE(one.name);
+        const std::vector<ShaderJob> jobs = sampleJobs(one);
+        std::vector<std::vector<float>> found;
+        try {
+            found = runAll(jobs, sampleProgram(language, jobs[0], sampleSnippet(language, one)),
+                           runner, together);
+        } catch (const Missing& reason) {
+            GTEST_SKIP() << reason.what();
+        } catch (const Refused& reason) {
+            FAIL() << one.name << ": " << reason.what();
+        }
+        Agreement worst;
+        comparePairs(one, jobs[0], found[0], worst);
+        compareDraws(one, jobs[1], found[1], worst);
+        Laws laws;
+        for (std::size_t k = 2; k < jobs.size(); ++k) {
+            compareDraws(one, jobs[k], found[k], worst);
+            checkElevation(one, jobs[k], found[k], laws);
+        }
+        std::cout << fmt::format(
+            "{:<24} wi {:.1e}  pdf {:.1e}, of pairs {:.1e}  chi-square p {:.3f}  albedo {:.1f} "
+            "standard errors\n",
+            one.name, worst.wi, worst.pdf, worst.other, laws.probability, laws.albedo);
+        EXPECT_LE(worst.wi, 1e-5);
+        EXPECT_LE(worst.pdf, 1e-5);
+        EXPECT_LE(worst.other, 1e-5);
+        EXPECT_GT(laws.probability, test::sidak(cases().size() * sampleElevations().size() * 7));
+        EXPECT_LE(laws.albedo, 4);
+    }
+}
+
+TEST(ProposalShader, GlslOnVulkan) {
+    prove(Language::glsl);
+}
+TEST(ProposalShader, HlslOnVulkan) {
+    prove(Language::hlsl);
+}
+TEST(ProposalShader, WgslOnVulkan) {
+    prove(Language::wgsl);
+}
+TEST(ProposalShader, GlslOnOpenGl) {
+    prove(Language::glsl, runOpenGl);
+}
+TEST(ProposalShader, GlslEsOnOpenGlEs) {
+    prove(Language::glslEs);
+}
+TEST(ProposalShader, MetalAsCpp) {
+    prove(Language::metal);
+}
+TEST(ProposalShader, OslAsCpp) {
+    prove(Language::osl);
+}
+
+/// A fault in the text of `sample` is seen by the chi-square test.
+TEST(ProposalShader, AWrongConstantFailsTheChiSquareTest) {
+    const SampleCase& one = cases().front();
+    const std::vector<ShaderJob> jobs = sampleJobs(one);
+    std::string snippet = sampleSnippet(Language::metal, one);
+    const std::string right = "(1.0 - u2) * (1.0 + cz)", wrong = "(1.0 - 0.8 * u2) * (1.0 + cz)";
+    ASSERT_NE(snippet.find(right), std::string::npos);
+    snippet.replace(snippet.find(right), right.size(), wrong);
+    std::vector<float> found;
+    try {
+        found = runStub(jobs[3], sampleProgram(Language::metal, jobs[3], snippet));
+    } catch (const Missing& reason) {
+        GTEST_SKIP() << reason.what();
+    }
+    Laws laws;
+    std::vector<Direction> drawn;
+    for (std::size_t k = 0; k < perJob; ++k) drawn.push_back(Written(jobs[3], found, k).wi);
+    const test::Partition partition(*one.sampler, jobs[3].pairs.wo.front(), drawn, 20000);
+    EXPECT_LT(partition.chiSquare(drawn).probability, 1e-9);
+}
+
+}  // namespace
+}  // namespace hshfit::shaders
