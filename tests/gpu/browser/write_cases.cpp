@@ -1,8 +1,9 @@
 // write_cases FOLDER: what the browser checks run. Per variant NAME.json (both shaders with a main
 // around them, texels, inputs and the expected outputs), the exported files of one of them in
-// three/, and pages of the viewer with
-// values of their reference tables.
+// three/, pages of the viewer with values of their reference tables, and per form that is sampled
+// samplingN.json with what the library draws and the albedo.
 
+#include "../proposals/sample_cases.h"
 #include "../shaders/runners.h"
 #include "../shaders/variants.h"
 
@@ -107,6 +108,86 @@ void writePage(const std::string& folder, const std::string& name, const std::st
               Json{{"inputs", encoded(inputs)}, {"expected", encoded(expected)}}.dump());
 }
 
+/// Directions that the library draws, with a flag where single precision may choose another lobe.
+std::vector<double> drawnBy(const shaders::SampleCase& one, const shaders::ShaderJob& job) {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < job.pairs.wo.size(); ++k) {
+        const Direction &wo = job.pairs.wo[k], &u = job.pairs.wi[k];
+        Direction wi{0, 0, 0};
+        if (wo.z > 0) wi = one.sampler->sample(wo, {u.x, u.y, u.z}).wi;
+        const bool unsure = wo.z > 0 && nearAChoice(one, wo, u.z);
+        for (const double v : {wi.x, wi.y, wi.z, unsure ? 1.0 : 0.0}) values.push_back(v);
+    }
+    return values;
+}
+
+/// Another sample of the library at each elevation, x and y.
+std::vector<double> sampleOf(const shaders::SampleCase& one, const Direction& wo) {
+    UniformNumbers numbers(99);
+    std::vector<double> values;
+    for (int k = 0; k < 16384; ++k) {
+        const Direction wi = one.sampler->sample(wo, numbers.next()).wi;
+        values.push_back(wi.x), values.push_back(wi.y);
+    }
+    return values;
+}
+
+/// The albedo at polar angles 0, 2.5, … 90 degrees of the outgoing direction; the last just above
+/// the horizon.
+Json albedoJson(const Brdf& brdf) {
+    Json rows = Json::array();
+    for (int k = 0; k <= 36; ++k) {
+        const double theta = std::min(89.9, 2.5 * k);
+        rows.push_back(shaders::albedoOf(brdf, directionFromAngles(radians(theta), 0), 200));
+    }
+    return rows;
+}
+
+Json samplingJson(const shaders::SampleCase& one) {
+    const std::vector<shaders::ShaderJob> jobs = shaders::sampleJobs(one);
+    Json inputs = Json::array(), expected = Json::array(), drawn = Json::array();
+    for (const shaders::ShaderJob& job : jobs) inputs.push_back(encoded(inputNumbers(job)));
+    std::vector<double> densities;
+    for (std::size_t k = 0; k < jobs[0].pairs.wo.size(); ++k)
+        densities.push_back(one.sampler->pdf(jobs[0].pairs.wo[k], jobs[0].pairs.wi[k]));
+    expected.push_back(encoded(densities));
+    for (std::size_t k = 1; k < jobs.size(); ++k)
+        expected.push_back(encoded(drawnBy(one, jobs[k])));
+    for (const Direction& wo : shaders::sampleElevations())
+        drawn.push_back(encoded(sampleOf(one, wo)));
+    const auto program = [&](gpu::Language language) {
+        return sampleProgram(language, jobs[0], sampleSnippet(language, one));
+    };
+    return {{"name", one.name},
+            {"side", shaders::Pairs::side},
+            {"channels", jobs[0].channels()},
+            {"outputs", jobs[0].outputs()},
+            {"textured", !one.form},
+            {"cosine", one.cosine()},
+            {"white", one.name == "basis, white"},
+            {"isotropic", one.brdf->laws().isotropic},
+            {"inputs", inputs},
+            {"expected", expected},
+            {"drawn", drawn},
+            {"albedo", one.brdf->laws().isotropic ? albedoJson(*one.brdf) : Json(nullptr)},
+            {"glsl-es", program(gpu::Language::glslEs)},
+            {"wgsl", program(gpu::Language::wgsl)},
+            {"snippet", sampleSnippet(gpu::Language::glslEs, one)},
+            {"coefficients", texelsJson(one.payload.coefficients)}};
+}
+
+void writeSampling(const std::string& folder) {
+    FileSet files(folder, true);
+    Json names = Json::array();
+    for (const shaders::SampleCase& one : shaders::sampleCases()) {
+        const std::string file = "sampling" + std::to_string(names.size()) + ".json";
+        files.write(file, samplingJson(one).dump());
+        names.push_back(file);
+    }
+    files.write("sampling.json", names.dump());
+    files.commit();
+}
+
 }  // namespace
 
 int main(int count, char** words) {
@@ -126,6 +207,7 @@ int main(int count, char** words) {
     }
     files.write("cases.json", names.dump());
     files.commit();
+    writeSampling(folder);
     writePage(folder, "viewer", "phong:exponent=22", OutgoingSet::elevations(16));
     writePage(folder, "viewer_ward", "ward:ax=0.2,ay=0.5", OutgoingSet::parabolic(16, 16));
 }
