@@ -72,6 +72,8 @@ echo
 echo "9. Directions drawn after a material, with the efficiency by elevation, and a scene by them."
 show sample ggx:alpha=.2,F0=.9 --outgoing 45,0 --count 1000 -o out/samples.csv
 show illuminate examples/scenes/box.json -o out/box --samples 16 --force
+show export out/phong.json -o out/path_tracer --target bin,glsl --no-error --force
+show sample out/path_tracer/phong.hsh.json --method stored --count 0
 
 echo
 echo "Captured energy of f cos with order 7 (49 slots) and the files it went to:"

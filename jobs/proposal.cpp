@@ -1,16 +1,18 @@
 #include "proposal.h"
 
 #include <hshfit/gpu/containers/containers.h>
-#include <hshfit/projection/albedo.h>
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 
 namespace hshfit::jobs {
 namespace {
+
+constexpr double albedoTolerance = 1e-3;
 
 class Clamped final : public Brdf {
 public:
@@ -31,13 +33,23 @@ private:
     const Brdf& brdf_;
 };
 
+/// Whether quadrature and samples agree, within 5 standard errors and the tolerance. Quadrature can
+/// agree with itself beside a peak that it does not see.
+bool agree(const std::vector<double>& albedo, const Efficiency& efficiency) {
+    const double most = *std::ranges::max_element(albedo);
+    for (std::size_t c = 0; c < albedo.size(); ++c)
+        if (!(std::abs(albedo[c] - efficiency.albedo[c]) <=
+              5 * efficiency.albedoError[c] + albedoTolerance * most))
+            return false;
+    return true;
+}
+
 }  // namespace
 
 gpu::ProposalRow efficiencyRow(const Brdf& brdf, const Sampler& sampler, const Direction& wo,
                                const EfficiencyTask& task) {
     gpu::ProposalRow row{efficiencyAt(brdf, sampler, wo, task.trials, task.seed)};
-    const AlbedoEstimate found = estimateAlbedo(
-        brdf, wo, {.tolerance = task.albedoTolerance, .maxEvaluations = std::size_t{1} << 22});
+    const AlbedoEstimate found = estimateAlbedo(brdf, wo, task.albedo);
     if (found.converged) row.albedo = found.values;
     return row;
 }
@@ -50,7 +62,11 @@ gpu::ProposalRecord proposalFor(const Brdf& brdf, const ProposalOptions& options
     record.rows.resize(elevations.size());
     tbb::parallel_for(std::size_t{0}, elevations.size(), [&](std::size_t k) {
         const Direction wo = directionFromAngles(radians(elevations[k]), pi / 4);
-        record.rows[k] = efficiencyRow(clamped, *sampler, wo, {.albedoTolerance = 1e-3});
+        gpu::ProposalRow row = efficiencyRow(
+            clamped, *sampler, wo,
+            {.albedo = {.tolerance = albedoTolerance, .maxEvaluations = std::size_t{1} << 15}});
+        if (row.albedo && !agree(*row.albedo, row.efficiency)) row.albedo.reset();
+        record.rows[k] = std::move(row);
     });
     return record;
 }

@@ -116,6 +116,51 @@ TEST(Proposal, FindsRetroReflection) {
     }
 }
 
+/// Rows that differ in everything, so that every parameter is interpolated; mirror and retro lobes,
+/// isotropic and not.
+TEST(Proposal, SamplesFollowTheDensityBetweenItsRows) {
+    for (const int retro : {0, 1})
+        for (const int aside : {0, 40}) {
+            Proposal proposal;
+            for (int row = 0; row < 4; ++row) {
+                const auto code = [&](int value) { return static_cast<std::uint8_t>(value); };
+                proposal.rows.push_back({ProposalLobe{code(30 + 30 * row), code(150 + 15 * row),
+                                                      code(150 + 15 * row + aside), 0},
+                                         ProposalLobe{code(100 - 20 * row), code(210 - 10 * row),
+                                                      code(210 - 10 * row - aside), code(retro)}});
+            }
+            EXPECT_EQ(proposal.isotropic(), aside == 0);
+            expectLaws(*proposalSampler(proposal),
+                       fmt::format("retro {}, aside {}", retro, aside).c_str());
+        }
+}
+
+/// With rows in between, shares and widths are means; at the ends they are those of the last row.
+TEST(Proposal, IsInterpolatedBetweenRowsAndContinuous) {
+    const Proposal proposal = fitProposal(visibleGgx(.1));
+    const std::size_t rows = proposal.rows.size();
+    for (std::size_t row = 0; row < rows; ++row) {
+        const Direction wo = directionOfRow(row, rows);
+        EXPECT_NEAR(dot(wo, wo), 1, 1e-14);
+        EXPECT_NEAR(proposalPlace(wo, rows), static_cast<double>(row), 1e-9);
+        EXPECT_NEAR(mixAt(proposal, wo).share[0], proposal.rows[row][0].share / 255., 1e-9);
+        EXPECT_NEAR(mixAt(proposal, wo).widthX[1], proposalWidth(proposal.rows[row][1].widthX),
+                    1e-9);
+    }
+    EXPECT_EQ(proposalPlace({0, 0, 1}, rows), 0);
+    EXPECT_EQ(proposalPlace({1, 0, 0}, rows), static_cast<double>(rows - 1));
+    const auto sampler = proposalSampler(proposal);
+    const Direction wi = directionFromAngles(radians(50), pi);
+    double before = 0;
+    for (int k = 0; k < 90000; ++k) {
+        const double pdf = sampler->pdf(directionFromAngles(radians(k * 1e-3), 0), wi);
+        if (k > 0) {
+            EXPECT_NEAR(pdf, before, 0.01 * std::max(pdf, before)) << k;
+        }
+        before = pdf;
+    }
+}
+
 TEST(Proposal, HasEightBytesPerElevation) {
     const Proposal proposal = fitProposal(lambert(), {.elevations = 5});
     EXPECT_EQ(proposal.bytes(), 40U);
@@ -123,6 +168,14 @@ TEST(Proposal, HasEightBytesPerElevation) {
     Proposal full = proposal;
     full.rows[0][0].share = full.rows[0][1].share = 128;
     EXPECT_THROW(proposalSampler(full), UsageError);
+    Proposal turned = proposal;
+    turned.rows[2][1].retro = turned.rows[2][1].retro == 0;
+    EXPECT_THROW(proposalSampler(turned), UsageError);
+    turned = proposal;
+    for (Proposal::Row& row : turned.rows) row[0].retro = 1;
+    EXPECT_THROW(proposalSampler(turned), UsageError);
+    turned.rows.assign(mostProposalRows + 1, {});
+    EXPECT_THROW(checkProposal(turned), UsageError);
 }
 
 /// A closed form: with the cosine alone, f = 1/2 / pi + a has weight pi f, variance 0 where f is
