@@ -25,14 +25,17 @@ public:
         for (std::size_t k = 0; k < 2; before += mix.share[k++]) {
             if (u[2] >= before + mix.share[k]) continue;
             const Direction wi = foldedUp(drawGgx(wo, mix.widthX[k], mix.widthY[k], u[0], u[1]));
-            return at(wo, mix.retro[k] ? mirrored(wi) : wi);
+            return at(mix, wo, mix.retro[k] ? mirrored(wi) : wi);
         }
-        return at(wo, cosineSampler()->sample(wo, u).wi);
+        return at(mix, wo, cosine_->sample(wo, u).wi);
     }
 
     double pdf(const Direction& wo, const Direction& wi) const override {
-        if (!aboveHorizon(wo, wi)) return 0;
-        const ProposalMix mix = mixAt(proposal_, wo);
+        return aboveHorizon(wo, wi) ? density(mixAt(proposal_, wo), wo, wi) : 0;
+    }
+
+private:
+    static double density(const ProposalMix& mix, const Direction& wo, const Direction& wi) {
         double sum = (1 - mix.share[0] - mix.share[1]) * wi.z / pi;
         for (std::size_t k = 0; k < 2; ++k) {
             if (mix.share[k] == 0) continue;
@@ -43,16 +46,24 @@ public:
         return sum;
     }
 
-private:
-    Sample at(const Direction& wo, const Direction& wi) const { return {wi, pdf(wo, wi)}; }
+    static Sample at(const ProposalMix& mix, const Direction& wo, const Direction& wi) {
+        return {wi, aboveHorizon(wo, wi) ? density(mix, wo, wi) : 0};
+    }
 
     Proposal proposal_;
+    std::shared_ptr<const Sampler> cosine_ = cosineSampler();
 };
 
 }  // namespace
 
 double proposalWidth(std::uint8_t code) {
-    return 1e-4 * std::pow(2e4, code / 255.0);
+    static const auto widths = [] {
+        std::array<double, 256> all{};
+        for (std::size_t k = 0; k < all.size(); ++k)
+            all[k] = 1e-4 * std::pow(2e4, static_cast<double>(k) / 255.0);
+        return all;
+    }();
+    return widths[code];
 }
 
 bool Proposal::isotropic() const {
