@@ -28,6 +28,7 @@ ShaderJob jobOf(const gpu::FormPayload& payload, Storage storage) {
     job.payload.head = payload.form.head;
     job.payload.coefficients = payload.texels;
     job.form = gpu::storageName(storage);
+    if (storage == Storage::table) job.cells = gpu::tableWords(payload);
     return job;
 }
 
@@ -62,9 +63,8 @@ using Run = std::function<std::vector<float>(const ShaderJob&, const std::string
 
 bool takes(Language language, const gpu::FormPayload& payload, Storage storage) {
     const bool integers = storage == Storage::texture && isNormalised(payload.texels.number);
-    if (language == Language::osl) return storage != Storage::block && !integers;
-    // The C++ stub of Metal has no buffers.
-    return language != Language::metal || storage != Storage::block;
+    if (language != Language::osl) return true;
+    return storage == Storage::constants || (storage == Storage::texture && !integers);
 }
 
 void prove(Language language, const std::vector<FormSample>& samples, Run runner = {}) {
@@ -76,12 +76,14 @@ void prove(Language language, const std::vector<FormSample>& samples, Run runner
     std::size_t index = static_cast<std::size_t>(language);
     for (const FormSample& sample : samples) {
         const gpu::FormPayload payload = gpu::packForm(sample.form);
-        const Storage all[] = {Storage::constants, Storage::block, Storage::texture};
+        const Storage all[] = {Storage::constants, Storage::table, Storage::block,
+                               Storage::texture};
         const std::vector<double> values = expected(payload, directionPairs());
-        // Two of the three take turns; compilers need most of the time.
-        const Storage leftOut = all[index++ % 3];
+        // Two of the four take turns; compilers need most of the time.
+        const std::size_t turn = index++;
         for (const Storage storage : all) {
-            if (!takes(language, payload, storage) || storage == leftOut) continue;
+            const bool left = (static_cast<std::size_t>(storage) + turn) % 2 == 0;
+            if (!takes(language, payload, storage) || left) continue;
             const ShaderJob job = jobOf(payload, storage);
             std::vector<float> found;
             try {

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,11 +42,12 @@ struct ShaderJob {
     /// `shadeWorld` instead of `shade`: the surface of a pair has the normal wi and the tangent of
     /// `frameOf`, wo is in that frame, and the environment in the world.
     bool world = false;
-    /// Of a form (gpu/forms): where its numbers are, "constants", "block" or "texture"; it has no
-    /// light, and evalRaw is eval. `payload` has the head and the texels.
+    /// Of a form (gpu/forms): where its numbers are, "constants", "table", "block" or "texture"; it
+    /// has no light, and evalRaw is eval. `payload` has the head and the texels.
     std::string form = {};
     /// Three uniform numbers in place of wi; outputs are those of tests/gpu/proposals.
     bool sampling = false;
+    std::vector<std::uint32_t> cells = {};  ///< the block of a form whose numbers are in a "table"
 
     std::size_t channels() const { return payload.head.channels.count(); }
     std::size_t lights() const { return environment.colours; }

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -141,6 +142,12 @@ std::vector<float> inputNumbers(const ShaderJob& job) {
 }
 
 std::vector<float> blockNumbers(const ShaderJob& job) {
+    if (job.form == "table") {
+        std::vector<float> same(job.cells.size());
+        std::copy_n(reinterpret_cast<const char*>(job.cells.data()), 4 * same.size(),
+                    reinterpret_cast<char*>(same.data()));
+        return same;
+    }
     if (job.form != "block") return {};
     const std::vector<double> values = gpu::decode(job.payload.coefficients);
     return {values.begin(), values.end()};
@@ -175,7 +182,9 @@ std::string wrapped(gpu::Language language, const ShaderJob& job, const std::str
     number("lights", job.lights());
     number("outputs", job.outputs());
     page.set("form", !job.form.empty());
-    page.set("bare", job.form == "constants");
+    page.set("bare", job.form == "constants" || (job.form == "table" && job.cells.empty()));
+    page.set("block", job.form == "block");
+    page.set("table", job.form == "table" && !job.cells.empty());
     number("environment", job.form.empty() ? job.environment.values.size() / job.lights() : 0);
     number("first", 6 * job.pairs.wo.size());
     kainjow::mustache::mustache wrapper(textOf(here / "wrappers" / wrapperOf(language)));
@@ -234,6 +243,10 @@ std::vector<float> runStub(const ShaderJob& job, const std::string& source) {
     std::string bytes;
     appendArray(bytes, job.payload.coefficients);
     appendArray(bytes, job.payload.basisTexels.value_or(gpu::Texels{}));
+    const std::vector<float> block = blockNumbers(job);
+    const int length = static_cast<int>(block.size());
+    append(bytes, &length, 1);
+    append(bytes, block.data(), block.size());
     const std::vector<float> numbers = inputNumbers(job);
     const int sizes[] = {static_cast<int>(job.pairs.wo.size()), static_cast<int>(numbers.size()),
                          static_cast<int>(job.outputs())};

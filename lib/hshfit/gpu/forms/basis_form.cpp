@@ -130,15 +130,16 @@ void fillBasis(FormText& text) {
     std::vector<StreamNumber> stream;
     const Places places = placesOf(form, terms.size(), stream);
     const Products products(basis.slots, symmetry);
-    std::vector<SumRun> runs;
+    SumGroup sum;
     for (std::size_t t = 0; t < terms.size(); ++t) {
         const bool stored = std::ranges::any_of(places[t], [](const auto& p) { return !!p; });
         if (!stored) continue;
-        if (runs.empty() || runs.back().terms.size() == termsTogether) runs.emplace_back();
-        runs.back().terms.push_back({products.text(terms[t]), places[t]});
+        if (sum.runs.empty() || sum.runs.back().terms.size() == termsTogether)
+            sum.runs.emplace_back();
+        sum.runs.back().terms.push_back({products.text(terms[t]), places[t]});
         text.cost.products += symmetry.reciprocal ? 3 : 1;
     }
-    text.setSums(runs);
+    text.setSums({sum});
     text.setOutputs();
 }
 

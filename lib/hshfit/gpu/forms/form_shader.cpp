@@ -2,6 +2,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/gpu/forms/form_table.h>
+#include <hshfit/gpu/forms/internal/envelope_text.h>
 #include <hshfit/gpu/forms/internal/form_text.h>
 #include <hshfit/gpu/shader_text.h>
 
@@ -13,8 +14,8 @@
 
 namespace hshfit::embedded {
 extern const std::string_view shader_basis, shader_ends, shader_turn;
-extern const std::string_view form_eval, form_expm1, form_glsl, form_glsl_es, form_glsl_functions,
-    form_header, form_hlsl, form_metal, form_osl, form_sums, form_wgsl;
+extern const std::string_view form_eval, form_glsl, form_glsl_es, form_glsl_functions, form_header,
+    form_hlsl, form_metal, form_osl, form_sums, form_wgsl;
 }  // namespace hshfit::embedded
 
 namespace hshfit::gpu::inline forms {
@@ -27,6 +28,7 @@ using kainjow::mustache::partial;
 constexpr std::array storages{std::pair{Storage::automatic, std::string_view("auto")},
                               std::pair{Storage::constants, std::string_view("constants")},
                               std::pair{Storage::block, std::string_view("block")},
+                              std::pair{Storage::table, std::string_view("table")},
                               std::pair{Storage::texture, std::string_view("texture")}};
 
 /// The words that forms need of a language beyond setLanguageWords: its template, a declaration of
@@ -54,7 +56,7 @@ FormLanguage formLanguage(Language language) {
 
 void checkLanguage(Language language, const FormPayload& payload, Storage storage) {
     if (language != Language::osl) return;
-    if (storage == Storage::block)
+    if (storage == Storage::block || storage == Storage::table)
         throw UsageError("OSL has no uniform blocks: store the form as constants or as a texture");
     if (storage == Storage::texture && isNormalised(payload.texels.number)) {
         throw UsageError(
@@ -67,7 +69,10 @@ void setStorage(const FormPayload& payload, Storage storage, data& page) {
     page.set("width", std::to_string(payload.texels.width));
     page.set("height", std::to_string(payload.texels.height));
     page.set("texels", std::to_string(payload.texelCount()));
-    page.set("table", false);
+    const bool constants = storage == Storage::constants || storage == Storage::table;
+    page.set("bare", storage == Storage::constants);
+    page.set("bound", !constants);
+    page.set("cells", false);
 }
 
 void setChannels(const Channels& channels, const std::string& prefix, Language language,
@@ -107,7 +112,6 @@ void setPartials(std::string_view body, data& page) {
         {"header", embedded::form_header},
         {"sumsBody", embedded::form_sums},
         {"evalBody", embedded::form_eval},
-        {"expm1Body", embedded::form_expm1},
         {"formBody", body},
         {"glslFunctions", embedded::form_glsl_functions},
         {"basisBody", embedded::shader_basis},
@@ -133,7 +137,11 @@ Storage parseStorage(std::string_view name) {
         if (known == name) return storage;
     }
     throw UsageError(
-        fmt::format("'{}' is no storage; known: auto, constants, block, texture", name));
+        fmt::format("'{}' is no storage; known: auto, constants, table, block, texture", name));
+}
+
+std::vector<std::uint32_t> tableWords(const FormPayload& payload) {
+    return envelopeCells(payload.form);
 }
 
 Storage storageFor(const FormPayload& payload, Storage asked) {
@@ -153,12 +161,12 @@ std::string formShaderSource(Language language, const FormPayload& payload,
     page.set("letInt", std::string(words.letInt));
     page.set("toInt", std::string(words.toInt));
     page.set("varVector", std::string(words.varVector));
+    page.set("flat", language == Language::osl);
     setStorage(payload, storage, page);
     setChannels(payload.form.head.channels, options.prefix, language, page);
     setHeader(payload, row, page);
-    page.set("expm1", row.kind == Representation::Kind::halfway);
     ShaderCost cost;
-    FormText text{payload, storage == Storage::constants, page, cost};
+    FormText text{payload, storage == Storage::constants || storage == Storage::table, page, cost};
     row.fill(text);
     page.set("evalFetches", std::to_string(cost.fetches));
     page.set("evalProducts", std::to_string(cost.products));

@@ -3,8 +3,10 @@
 #include <hshfit/gpu/forms/form_payload.h>
 #include <hshfit/gpu/shader.h>
 
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace hshfit::gpu::inline forms {
 
@@ -12,17 +14,24 @@ namespace hshfit::gpu::inline forms {
 enum class Storage {
     automatic,  ///< constants up to `mostConstants` numbers, else texture
     constants,  ///< in its text, rounded to single precision: no texture, no uniform
+    table,      ///< likewise, but what is looked up by computed places in one uniform block
     block,      ///< one uniform block of float32 vectors: the texels as a sampler returns them
     texture,    ///< the texels of a container, fetched without a filter
 };
 /// As many numbers as the smallest uniform block that WebGL2, OpenGL 4.5, Vulkan, Direct3D and
 /// WebGPU promise has room for: 16 KiB of float32.
 constexpr std::size_t mostConstants = 4096;
-std::string_view storageName(Storage storage);  ///< "auto", "constants", "block", "texture"
-/// Throws UsageError with the four names.
+std::string_view storageName(Storage storage);  ///< "auto", "constants", "table", …
+/// Throws UsageError with the names.
 Storage parseStorage(std::string_view name);
 /// The storage that `automatic` stands for with this payload.
 Storage storageFor(const FormPayload& payload, Storage asked);
+
+/// The uniform block of Storage::table: the cells of the envelope of the form halfway, each with a
+/// vector of four whole numbers for every four channels, 8 bits for each corner of a channel. Empty
+/// where nothing is looked up: nothing is bound then. Throws UsageError for an envelope whose
+/// numbers are not unorm8.
+std::vector<std::uint32_t> tableWords(const FormPayload& payload);
 
 struct FormShaderOptions {
     std::string prefix = "hsh";  ///< of every name in the snippet

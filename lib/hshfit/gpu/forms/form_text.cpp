@@ -14,24 +14,25 @@ data list() {
     return data{data::type::list};
 }
 
-bool isRgb(const FormText& text) {
-    return text.payload.form.head.channels.kind == Channels::Kind::rgb;
+/// The value of a constant.
+double valueAt(const FormText& text, std::size_t place) {
+    return text.values.empty() ? text.payload.valueOf(text.payload.stream[place])
+                               : text.values[place];
 }
 
 std::string numberText(const FormText& text, std::optional<std::size_t> place) {
     if (!place) return "0.0";
-    if (text.constants) return shaderNumber(text.payload.valueOf(text.payload.stream[*place]));
-    return fmt::format("x{}.{}", *place / 4, laneOf(*place % 4));
+    if (text.constants) return shaderNumber(valueAt(text, *place));
+    return fmt::format("x{}.{}", *place / 4, laneNames[*place % 4]);
 }
 
 /// Whether any channel of a group has a number that the text has to name.
 bool used(const FormText& text, const SumTerm& term, std::size_t first, std::size_t count) {
-    return std::any_of(
-        term.numbers.begin() + static_cast<std::ptrdiff_t>(first),
-        term.numbers.begin() + static_cast<std::ptrdiff_t>(first + count), [&](const auto& place) {
-            return place &&
-                   !(text.constants && text.payload.valueOf(text.payload.stream[*place]) == 0);
-        });
+    return std::any_of(term.numbers.begin() + static_cast<std::ptrdiff_t>(first),
+                       term.numbers.begin() + static_cast<std::ptrdiff_t>(first + count),
+                       [&](const auto& place) {
+                           return place && !(text.constants && valueAt(text, *place) == 0);
+                       });
 }
 
 /// The row that fetches a texel, with the scale of its lanes.
@@ -72,101 +73,106 @@ data fetchesOf(const FormText& text, const SumRun& run, std::size_t& next) {
     return rows;
 }
 
-data groupOf(const FormText& text, const SumRun& run, std::size_t first, std::size_t count) {
+/// The terms of a run for the channels of one vector; none: an empty list.
+data termsOf(const FormText& text, const SumRun& run, std::size_t first) {
     data terms = list();
     bool any = false;
     for (const SumTerm& term : run.terms) {
-        if (!used(text, term, first, count)) continue;
+        if (!used(text, term, first, text.together())) continue;
         std::vector<std::string> numbers;
-        for (std::size_t c = first; c < first + count; ++c)
+        for (std::size_t c = first; c < first + text.together(); ++c)
             numbers.push_back(numberText(text, term.numbers[c]));
         data row;
         row.set("first", !any);
         row.set("function", term.function.empty() ? data(false) : data(term.function));
         row.set("numbers", fmt::format("{}", fmt::join(numbers, ", ")));
         terms.push_back(row);
-        text.cost.products += count;
+        text.cost.products += term.function.empty() ? 0 : text.together();
         any = true;
     }
-    data group;
-    group.set("g", std::to_string(first));
-    group.set("vector", count > 1);
-    group.set("terms", terms);
-    group.set("any", any);
-    return group;
+    return terms;
+}
+
+data flagOr(const std::string& text) {
+    return text.empty() ? data(false) : data(text);
+}
+
+/// A statement that adds a run to a sum, or begins it.
+data statement(const FormText& text, const SumRun& run, const std::string& sum, bool begins,
+               const data& terms) {
+    data row;
+    row.set("sum", sum);
+    row.set("begins", begins);
+    row.set("vector", text.together() > 1);
+    row.set("factor", flagOr(run.factor));
+    row.set("terms", terms);
+    if (!run.factor.empty()) text.cost.products += text.together();
+    return row;
 }
 
 }  // namespace
 
-std::string laneOf(std::size_t index) {
-    return laneNames[index];
+std::size_t FormText::together() const {
+    return payload.form.head.channels.kind == Channels::Kind::rgb ? 3 : 1;
 }
 
-void FormText::setSums(const std::vector<SumRun>& runs) {
-    const std::size_t together = isRgb(*this) ? 3 : 1;
+void FormText::setSums(const std::vector<SumGroup>& groups) {
     data sums = list(), rows = list();
-    for (std::size_t c = 0; c < channels(); c += together) {
+    for (std::size_t c = 0; c < channels(); c += together()) {
         data sum;
         sum.set("g", std::to_string(c));
-        sum.set("vector", together > 1);
+        sum.set("vector", together() > 1);
         sums.push_back(sum);
     }
-    std::size_t next = 0, r = 0;
-    for (const SumRun& run : runs) {
-        data row;
-        row.set("r", std::to_string(r++));
-        row.set("fetches", fetchesOf(*this, run, next));
-        data groups = list();
+    std::size_t next = 0, g = 0;
+    for (const SumGroup& group : groups) {
+        const bool nested = !group.factor.empty();
+        std::vector<bool> begun(channels(), false);
+        data row, steps = list(), ends = list();
+        for (const SumRun& run : group.runs) {
+            data step, statements = list();
+            step.set("fetches", fetchesOf(*this, run, next));
+            for (std::size_t c = 0; c < channels(); c += together()) {
+                const data terms = termsOf(*this, run, c);
+                if (terms.is_empty_list()) continue;
+                const std::string sum =
+                    nested ? fmt::format("t{}_{}", g, c) : fmt::format("s{}", c);
+                statements.push_back(statement(*this, run, sum, nested && !begun[c], terms));
+                begun[c] = true;
+            }
+            step.set("statements", statements);
+            steps.push_back(step);
+        }
         bool any = false;
-        for (std::size_t c = 0; c < channels(); c += together) {
-            const bool here = std::any_of(run.terms.begin(), run.terms.end(), [&](const auto& t) {
-                return used(*this, t, c, together);
-            });
-            if (!here) continue;
-            groups.push_back(groupOf(*this, run, c, together));
+        for (std::size_t c = 0; nested && c < channels(); c += together()) {
+            if (!begun[c]) continue;
+            data end;
+            end.set("sum", fmt::format("s{}", c));
+            end.set("part", fmt::format("t{}_{}", g, c));
+            ends.push_back(end);
+            cost.products += together();
             any = true;
         }
-        row.set("groups", groups);
-        row.set("factor", run.factor.empty() || !any ? data(false) : data(run.factor));
-        if (any) cost.products += run.factorProducts + (run.factor.empty() ? 0 : channels());
+        row.set("g", std::to_string(g++));
+        row.set("steps", steps);
+        row.set("factor", any ? data(group.factor) : data(false));
+        row.set("ends", ends);
+        if (any) cost.products += group.factorProducts;
         rows.push_back(row);
     }
     page.set("sums", sums);
-    page.set("runs", rows);
+    page.set("groups", rows);
 }
 
 void FormText::setOutputs() {
     data outputs = list();
-    for (std::size_t c = 0; c < channels(); ++c) {
+    for (std::size_t c = 0; c < channels(); c += together()) {
         data row;
         row.set("i", std::to_string(c));
-        row.set("sum", isRgb(*this) ? "s0." + laneOf(c) : fmt::format("s{}", c));
+        row.set("vector", together() > 1);
         outputs.push_back(row);
     }
     page.set("outputs", outputs);
-}
-
-std::size_t FormText::setTable(std::size_t first) {
-    if (!constants) return first / 4;
-    data rows = list();
-    std::size_t count = 0;
-    for (std::size_t i = first; i < payload.stream.size(); i += 4, ++count) {
-        std::vector<std::string> lanes;
-        for (std::size_t k = i; k < i + 4; ++k) {
-            lanes.push_back(
-                shaderNumber(k < payload.stream.size() ? payload.valueOf(payload.stream[k]) : 0));
-        }
-        data row;
-        row.set("first", count == 0);
-        row.set("numbers", fmt::format("{}", fmt::join(lanes, ", ")));
-        rows.push_back(row);
-    }
-    data table;
-    table.set("rows", rows);
-    table.set("count", std::to_string(count));
-    table.set("numbersInTable", std::to_string(4 * count));
-    page.set("table", table);
-    return 0;
 }
 
 }  // namespace hshfit::gpu::inline forms

@@ -1,3 +1,5 @@
+#include <hshfit/gpu/forms/internal/chebyshev_terms.h>
+#include <hshfit/gpu/forms/internal/envelope_text.h>
 #include <hshfit/gpu/forms/internal/form_rows.h>
 #include <hshfit/gpu/forms/internal/form_text.h>
 
@@ -6,8 +8,9 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace hshfit::gpu::inline forms {
 namespace {
@@ -54,24 +57,27 @@ std::string functionName(char axis, int n) {
 }
 
 /// p_1 .. p_{count-1} of an axis by their recurrence, p_{n+1} = up t p_n - down p_{n-1}:
-/// sqrt(2 n + 1) times that of Legendre's polynomials.
-data axisSteps(char axis, int count, ShaderCost& cost) {
+/// sqrt(2 n + 1) times that of Legendre's polynomials, or Chebyshev's, where t is doubled.
+data axisSteps(char axis, int count, bool chebyshev, ShaderCost& cost) {
     data rows{data::type::list};
     for (int n = 0; n + 1 < count; ++n) {
         const double next = std::sqrt(2.0 * n + 3);
+        const double up = next * std::sqrt(2.0 * n + 1) / (n + 1);
         data row;
         row.set("name", functionName(axis, n + 1));
         row.set("axis", std::string(1, axis));
-        row.set("up", shaderNumber(next * std::sqrt(2.0 * n + 1) / (n + 1)));
+        row.set("up", !chebyshev ? data(shaderNumber(up)) : n == 0 ? data("0.5") : data(false));
         row.set("now", n == 0 ? data(false) : data(functionName(axis, n)));
         row.set("down", data(false));
         if (n > 0) {
+            const double value = next / std::sqrt(2.0 * n - 1) * n / (n + 1);
+            const bool one = chebyshev && n > 1;
             data down;
-            down.set("value", shaderNumber(next / std::sqrt(2.0 * n - 1) * n / (n + 1)));
+            down.set("value", one ? data(false) : data(shaderNumber(chebyshev ? 1 : value)));
             down.set("before", n == 1 ? data(false) : data(functionName(axis, n - 1)));
             row.set("down", down);
         }
-        cost.products += n == 0 ? 1 : 3;
+        cost.products += n == 0 || chebyshev ? 1 : 3;
         rows.push_back(row);
     }
     return rows;
@@ -85,23 +91,50 @@ std::string joined(const std::vector<std::string>& factors) {
     return text;
 }
 
-std::vector<SumRun> runsOf(const Layout& layout) {
-    std::vector<SumRun> runs;
+/// Runs that differ in j only, in brackets times the other factors.
+std::vector<SumGroup> groupsOf(const Layout& layout) {
+    std::vector<SumGroup> groups;
+    HalfwayTerm last{.k = -1};
     for (const HalfwayRun& run : layout.terms.runs()) {
         const HalfwayTerm& t = run.term;
-        SumRun sum;
-        const std::string harmonic = t.q == 0 ? "" : fmt::format("{}{}", t.sine ? "sq" : "cq", t.q);
-        sum.factor = joined({functionName('d', t.j), functionName('a', t.k),
-                             t.exchange ? "tau" : "", t.mirror ? "kappa" : "", harmonic});
-        const int factors = (t.j > 0) + (t.k > 0) + t.exchange + t.mirror + (t.q > 0);
-        sum.factorProducts = static_cast<std::size_t>(std::max(0, factors - 1));
+        if (t.k != last.k || t.q != last.q || t.exchange != last.exchange ||
+            t.mirror != last.mirror || t.sine != last.sine) {
+            SumGroup& group = groups.emplace_back();
+            const std::string harmonic =
+                t.q == 0 ? "" : fmt::format("{}{}", t.sine ? "sq" : "cq", t.q);
+            group.factor = joined({functionName('a', t.k), t.exchange ? "tau" : "",
+                                   t.mirror ? "kappa" : "", harmonic});
+            const int factors = (t.k > 0) + t.exchange + t.mirror + (t.q > 0);
+            group.factorProducts = static_cast<std::size_t>(std::max(0, factors - 1));
+            last = t;
+        }
+        SumRun sum{functionName('d', t.j), {}};
         for (std::size_t i = 0; i < run.length; ++i) {
             sum.terms.push_back(
                 {functionName('h', static_cast<int>(i)), layout.places[run.first + i]});
         }
-        runs.push_back(std::move(sum));
+        groups.back().runs.push_back(std::move(sum));
     }
-    return runs;
+    return groups;
+}
+
+/// The constants of the text: coefficients of Chebyshev polynomials for exp2 in place of exp; of
+/// the polynomials of the file where a mask leaves terms out.
+std::vector<double> constantsOf(const Layout& layout, const FormPayload& payload, bool chebyshev) {
+    const StoredArray& array = payload.form.as<HalfwayArray>()->halfway;
+    const std::size_t count = layout.terms.size();
+    std::vector<double> all = array.values;
+    for (std::size_t c = 0; chebyshev && c < payload.form.head.channels.count(); ++c) {
+        const auto first = all.begin() + static_cast<std::ptrdiff_t>(c * count);
+        const auto last = first + static_cast<std::ptrdiff_t>(count);
+        std::ranges::copy(chebyshevValues(layout.terms, {first, last}), first);
+    }
+    std::vector<double> constants(payload.stream.size(), 0.0);
+    for (std::size_t n = 0; n < constants.size(); ++n) {
+        const StreamNumber& number = payload.stream[n];
+        if (number.array == 0) constants[n] = all[number.value] * std::numbers::log2e;
+    }
+    return constants;
 }
 
 void setHarmonics(int count, FormText& text) {
@@ -117,74 +150,6 @@ void setHarmonics(int count, FormText& text) {
     text.page.set("turns", count > 0);
 }
 
-void setEnvelopeAxis(const char* name, std::size_t nodes, FormText& text) {
-    text.page.set(name, false);
-    if (nodes < 2) return;
-    data axis;
-    axis.set("last", shaderNumber(static_cast<double>(nodes - 1)));
-    axis.set("lastCell", shaderNumber(static_cast<double>(nodes - 2)));
-    text.page.set(name, axis);
-}
-
-/// Bilinear lookup of ln E: the nodes about a place, their weights, the scale of each channel.
-void setEnvelope(const HalfwayEnvelope& envelope, std::size_t first, FormText& text) {
-    text.page.set("envelope", false);
-    if (envelope.empty()) return;
-    const std::size_t base = text.setTable(first), parts = (text.channels() + 3) / 4;
-    const std::size_t alongA = envelope.nodesAlongA(), alongB = envelope.nodesAlongB();
-    setEnvelopeAxis("along", alongA, text);
-    setEnvelopeAxis("up", alongB, text);
-    data part, corners{data::type::list}, values{data::type::list};
-    for (std::size_t corner = 0; corner < 4; ++corner) {
-        const bool right = corner % 2 == 1, up = corner / 2 == 1;
-        if ((right && alongA < 2) || (up && alongB < 2)) continue;
-        data row, fetches{data::type::list};
-        row.set("corner", std::to_string(corner));
-        row.set("horizontal", alongA < 2 ? "1.0" : right ? "ex" : "(1.0 - ex)");
-        row.set("vertical", alongB < 2 ? "1.0" : up ? "ey" : "(1.0 - ey)");
-        for (std::size_t p = 0; p < parts; ++p) {
-            data fetch;
-            fetch.set("part", std::to_string(p));
-            fetch.set("place",
-                      std::to_string(base + ((right ? 1 : 0) + (up ? alongA : 0)) * parts + p));
-            fetches.push_back(fetch);
-            ++text.cost.fetches;
-        }
-        row.set("fetches", fetches);
-        corners.push_back(row);
-        text.cost.products += 1 + text.channels();
-    }
-    for (std::size_t c = 0; c < text.channels(); ++c) {
-        const LaneScale lane =
-            text.constants ? LaneScale{} : text.payload.scaleOf(text.payload.stream[first + c]);
-        data value, terms{data::type::list};
-        value.set("i", std::to_string(c));
-        value.set("scale", shaderNumber(lane.scale));
-        value.set("offset", shaderNumber(lane.offset));
-        bool any = false;
-        for (std::size_t corner = 0; corner < 4; ++corner) {
-            if ((corner % 2 == 1 && alongA < 2) || (corner / 2 == 1 && alongB < 2)) continue;
-            data term;
-            term.set("first", !any);
-            term.set("corner", std::to_string(corner));
-            term.set("part", std::to_string(c / 4));
-            term.set("lane", laneOf(c % 4));
-            terms.push_back(term);
-            any = true;
-        }
-        value.set("terms", terms);
-        values.push_back(value);
-    }
-    part.set("corners", corners);
-    part.set("values", values);
-    part.set("parts", std::to_string(parts));
-    part.set("row", shaderNumber(static_cast<double>(alongA)));
-    part.set("ridge", shaderNumber(envelope.ridge()));
-    part.set("onePlusRidge", shaderNumber(1 + envelope.ridge()));
-    part.set("reciprocal", envelope.reciprocal());
-    text.page.set("envelope", part);
-}
-
 }  // namespace
 
 std::vector<StreamNumber> halfwayStream(const Representation& form) {
@@ -193,7 +158,9 @@ std::vector<StreamNumber> halfwayStream(const Representation& form) {
 
 void fillHalfway(FormText& text) {
     const Layout layout(text.payload.form);
-    const HalfwayExpansion expansion(text.payload.form);
+    const bool chebyshev =
+        text.constants && text.payload.form.as<HalfwayArray>()->halfway.kept.empty();
+    if (text.constants) text.values = constantsOf(layout, text.payload, chebyshev);
     const HalfwayOrders& orders = layout.terms.orders();
     const auto any = [&](auto has) {
         for (const HalfwayRun& run : layout.terms.runs()) {
@@ -206,17 +173,22 @@ void fillHalfway(FormText& text) {
          {std::pair{'h', orders.half}, std::pair{'d', orders.difference},
           std::pair{'a', orders.azimuth}}) {
         data rows;
-        rows.set("steps", axisSteps(axis, count, text.cost));
+        rows.set("steps", axisSteps(axis, count, chebyshev, text.cost));
         steps.push_back(rows);
     }
     text.page.set("axes", steps);
+    text.page.set("doubled", chebyshev);
+    text.page.set("span", chebyshev ? "4.0" : "2.0");
+    text.page.set("halfSpan", chebyshev ? "2.0" : "1.0");
+    text.page.set("expOf", text.constants ? "exp2" : "exp");
+    text.page.set("bound", !text.constants);
     text.page.set("tau", any([](const HalfwayTerm& t) { return t.exchange; }));
     text.page.set("kappa", any([](const HalfwayTerm& t) { return t.mirror; }));
     setHarmonics(layout.terms.harmonics(), text);
     text.page.set("rootTwo", shaderNumber(std::sqrt(2.0)));
-    text.setSums(runsOf(layout));
+    text.setSums(groupsOf(layout));
     text.setOutputs();
-    setEnvelope(expansion.envelope(), layout.envelope, text);
+    setEnvelope(layout.envelope, text);
 }
 
 }  // namespace hshfit::gpu::inline forms

@@ -23,6 +23,9 @@ inline vector operator+(vector a, vector b) {
 inline vector operator-(vector a, vector b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
+inline vector operator/(vector a, float b) {
+    return {a.x / b, a.y / b, a.z / b};
+}
 inline float dot(vector a, vector b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
@@ -38,12 +41,24 @@ inline float max(float a, float b) {
 inline vector max(vector a, vector b) {
     return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)};
 }
+inline vector min(vector a, vector b) {
+    return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)};
+}
 inline float sqrt(float a) {
     return stub::root(a);
 }
 
 inline float exp(float a) {
     return __builtin_expf(a);
+}
+inline float exp2(float a) {
+    return __builtin_exp2f(a);
+}
+inline vector exp(vector a) {
+    return {exp(a.x), exp(a.y), exp(a.z)};
+}
+inline vector exp2(vector a) {
+    return {exp2(a.x), exp2(a.y), exp2(a.z)};
 }
 inline float floor(float a) {
     return __builtin_floorf(a);

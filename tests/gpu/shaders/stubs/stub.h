@@ -36,6 +36,7 @@ struct Job {
     Array coefficients, basis;
     int pairs, inputs, outputs;
     float* numbers;
+    float* block;  ///< a uniform block, if there is one
 };
 inline Job job;
 
@@ -62,6 +63,10 @@ int runAll(const char* from, const char* to, Evaluate evaluate) {
     if (file == nullptr) return 2;
     readArray(file, job.coefficients);
     readArray(file, job.basis);
+    int length = 0;
+    read(file, &length, 1);
+    job.block = new float[static_cast<size_t>(length)];
+    read(file, job.block, length);
     read(file, &job.pairs, 1);
     read(file, &job.inputs, 1);
     read(file, &job.outputs, 1);

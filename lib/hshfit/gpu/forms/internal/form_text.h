@@ -20,30 +20,33 @@ struct SumTerm {
 /// Terms in brackets times a common factor; empty: 1.
 struct SumRun {
     std::string factor;
-    std::size_t factorProducts = 0;  ///< multiplications that the factor takes
     std::vector<SumTerm> terms;
+};
+/// Runs in brackets times a common factor; empty: 1.
+struct SumGroup {
+    std::string factor;
+    std::size_t factorProducts = 0;  ///< multiplications that the factor takes
+    std::vector<SumRun> runs;
 };
 
 /// The page of a template that a row of the table fills in.
 struct FormText {
     const FormPayload& payload;
-    bool constants;  ///< numbers stand in the text
+    bool constants;  ///< coefficients stand in the text
     kainjow::mustache::data& page;
     ShaderCost& cost;
+    /// Constants in place of the values of the stream, where a form has better ones.
+    std::vector<double> values = {};
 
     std::size_t channels() const { return payload.form.head.channels.count(); }
+    /// Channels of a vector: 3 for RGB, else 1.
+    std::size_t together() const;
 
     /// The sums s0, s1, … of templates/sums.mustache: one three-vector for RGB, else a number
     /// per channel. Texels are loaded once, before the run that needs them first.
-    void setSums(const std::vector<SumRun>& runs);
-    /// The outputs f0, f1, …, each with the sum that it comes from.
+    void setSums(const std::vector<SumGroup>& groups);
+    /// The outputs f0, f1, …, one for each sum.
     void setOutputs();
-    /// A table of vectors from number `first` of the stream on, for lookups by computed places;
-    /// the constants of the text where there are any. Gives the number of its first vector.
-    std::size_t setTable(std::size_t first);
 };
-
-/// "x", "y", "z", "w".
-std::string laneOf(std::size_t index);
 
 }  // namespace hshfit::gpu::inline forms
