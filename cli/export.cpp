@@ -289,8 +289,9 @@ void addExport(CLI::App& command, Globals& globals) {
                        "forms halfway and basis, the least that holds the file)");
     command
         .add_option("--storage", arguments->storage,
-                    "Numbers of these forms in shaders: constants, block (one uniform block), "
-                    "texture, or auto: constants up to 4096 numbers")
+                    "Numbers of these forms in shaders: constants, table (constants, and one "
+                    "uniform block for what is looked up), block (one uniform block), texture, or "
+                    "auto: constants up to 4096 numbers")
         ->capture_default_str();
     command
         .add_option("--packing", arguments->packing,

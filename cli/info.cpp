@@ -53,6 +53,14 @@ void describeContainer(const gpu::ImportedPayload& read, Json& facts) {
     facts["functions_per_direction"] = read.payload.slots.size();
 }
 
+void describeContainer(const gpu::ImportedForm& read, Json& facts) {
+    facts["container"] = read.container;
+    facts["texels"] = read.file;
+    facts["number"] = gpu::numberName(read.payload.texels.number);
+    facts["layout"] = "stream";
+    facts["numbers"] = read.payload.stream.size();
+}
+
 Json answer(const jobs::BrdfInfo& info) {
     const Brdf& brdf = *info.brdf;
     Json document = {{"format", "hshfit-info"},
@@ -68,6 +76,7 @@ Json answer(const jobs::BrdfInfo& info) {
         document["facts"] = factsJson(brdf.facts());
     }
     if (info.exported) describeContainer(*info.exported, document["facts"]);
+    if (info.exportedForm) describeContainer(*info.exportedForm, document["facts"]);
     describeHealth(info, document);
     document["range"] = {{"min", finiteOrNull(info.least)}, {"max", finiteOrNull(info.greatest)}};
     if (!info.warnings.empty()) document["warnings"] = info.warnings;

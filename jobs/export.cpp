@@ -26,6 +26,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -151,6 +152,35 @@ std::string proposalTextOf(const Exported& exported) {
     return exported.proposal ? gpu::proposalText(*exported.proposal) : std::string();
 }
 
+/// The uniform block that shaders with a table read: the words as they lie in memory, low byte
+/// first.
+void writeTable(FileSet& files, Exported& exported) {
+    if (!exported.form || exported.storage != gpu::Storage::table) return;
+    std::string bytes;
+    for (const std::uint32_t word : gpu::tableWords(*exported.form)) {
+        for (unsigned shift = 0; shift < 32; shift += 8)
+            bytes += static_cast<char>(word >> shift & 255U);
+    }
+    if (bytes.empty()) return;
+    const std::string file = exported.name + ".table.bin";
+    files.write(file, bytes);
+    exported.texts.push_back({"table", "bin", file});
+}
+
+/// f of the BRDF that a form adds, per channel, where it is a Lambert term, whose f is the same for
+/// all directions. Empty where the form adds nothing, or anything else.
+std::vector<double> constantOf(const Representation& form) {
+    const std::string& spec = form.added;
+    if (spec.substr(0, spec.find(':')) != "lambert" || spec.find('+') != std::string::npos)
+        return {};
+    const auto added = sourceOpener()(spec);
+    const Direction up{0, 0, 1};
+    std::vector<double> values(added->channels().count());
+    added->eval(up, {&up.x, &up.y, &up.z, 1}, values.data());
+    if (values.size() == 1) values.resize(form.head.channels.count(), values[0]);
+    return values.size() == form.head.channels.count() ? values : std::vector<double>{};
+}
+
 void writeShaders(const Targets& chosen, const ExportOptions& options, const Listener& listener,
                   FileSet& files, Exported& exported) {
     for (const gpu::LanguageEntry& language : gpu::languages()) {
@@ -213,6 +243,7 @@ void exportForm(const Representation& stored, const std::string& path, const std
                 const ExportOptions& options, const Listener& listener, Exported& exported) {
     requireFormOptions(options);
     exported.form = gpu::packForm(stored, options.number);
+    exported.form->constant = constantOf(stored);
     exported.storage = gpu::storageFor(*exported.form, options.storage);
     FileSet files(folder, options.force);
     refuseToReplace(folder, exported.sidecar, options.force);
@@ -234,6 +265,7 @@ void exportForm(const Representation& stored, const std::string& path, const std
          .proposal = proposalTextOf(exported)},
         sourceOpener(), files);
     writeShaders(chosen, options, listener, files, exported);
+    writeTable(files, exported);
     if (has(chosen, Target::Kind::module)) {
         const auto again = reconstruct(exported.form->form, sourceOpener());
         writeThree(source.brdf ? *source.brdf : *again, options, listener, files, exported);
@@ -273,7 +305,7 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
         options.name.empty() ? std::filesystem::path(path).stem().string() : options.name;
     exported.sidecar = exported.name + ".hsh.json";
     exported.test = exported.name + "_test.json";
-    if (gpu::hasShader(stored) && options.outgoing.empty()) {
+    if (gpu::hasShader(stored, !constantOf(stored).empty()) && options.outgoing.empty()) {
         exportForm(stored, path, folder, chosen, lights, options, listener, exported);
         return exported;
     }

@@ -109,7 +109,8 @@ BrdfInfo describeSource(const std::string& source, bool rgb, const Listener& lis
     }
     findRange(info);
     warn(info, likeness);
-    if (gpu::looksLikePayload(source) && !gpu::looksLikeForm(source))
+    info.exportedForm = gpu::readIfForm(source, sourceOpener());
+    if (!info.exportedForm && gpu::looksLikePayload(source))
         info.exported = gpu::readPayload(source);
     requireReadable(brdf);  // NaN values are in the census
     return info;

@@ -4,6 +4,7 @@
 
 #include <hshfit/accuracy/health.h>
 #include <hshfit/gpu/containers/containers.h>
+#include <hshfit/gpu/forms/form_files.h>
 #include <hshfit/light/catalog.h>
 #include <hshfit/light/light_health.h>
 #include <hshfit/representation/representation.h>
@@ -30,8 +31,9 @@ struct BrdfInfo {
     /// Parts of `brdf`: the head of any coefficients, and the form of those that are not plain.
     const CoefficientHead* coefficients = nullptr;
     const Representation* representation = nullptr;
-    std::optional<gpu::ImportedPayload> exported = {};  ///< of a file of an export
-    std::optional<brdfs::Census> census = {};           ///< these three of a measured BRDF
+    std::optional<gpu::ImportedPayload> exported = {};   ///< of a file of an export
+    std::optional<gpu::ImportedForm> exportedForm = {};  ///< of one of a form as it is
+    std::optional<brdfs::Census> census = {};            ///< these three of a measured BRDF
     std::vector<brdfs::Axis> axes = {};
     std::optional<brdfs::BothOrders> bothOrders = {};
     Health health = {};

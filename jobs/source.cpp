@@ -35,10 +35,8 @@ std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb) {
 }
 
 std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb) {
-    if (gpu::looksLikeForm(spec)) {
-        Representation form = gpu::readForm(spec, sourceOpener()).payload.form;
-        return seenAsRgb(reconstruct(std::move(form), sourceOpener()), rgb);
-    }
+    if (auto read = gpu::readIfForm(spec, sourceOpener()))
+        return seenAsRgb(reconstruct(std::move(read->payload.form), sourceOpener()), rgb);
     if (gpu::looksLikePayload(spec)) {
         auto coefficients = gpu::unpack(gpu::readPayload(spec).payload);
         return seenAsRgb(std::make_unique<Reconstruction>(std::move(coefficients)), rgb);

@@ -29,7 +29,7 @@ data termsData(const std::vector<Term>& terms) {
         data row;
         const bool first = &term == &terms.front();
         row.set("sign", term.sign < 0 ? (first ? "-" : " - ") : (first ? "" : " + "));
-        row.set("factor", term.factor);
+        row.set("factor", term.factor.empty() ? data(false) : data(term.factor));
         row.set("of", term.of);
         rows.push_back(row);
     }
@@ -59,7 +59,7 @@ std::vector<Term> turn(const std::string& angle, double direction, int slot,
     const auto [l, m] = bandOf(slot);
     const int zonal = l * (l + 1);
     const auto name = [&](int k) { return fmt::format("{}{}", of, zonal + k); };
-    if (m == 0) return {{1, "1.0", name(0)}};
+    if (m == 0) return {{1, "", name(0)}};
     const int k = std::abs(m);
     return {{1, fmt::format("{}c{}", angle, k), name(m)},
             {m > 0 ? -direction : direction, fmt::format("{}s{}", angle, k), name(-m)}};
@@ -110,7 +110,8 @@ void setFrameTurn(const Payload& payload, int environmentOrder, bool flat, data&
                                         : static_cast<std::size_t>(slot));
         };
         const auto count = [&](const std::vector<Term>& terms) {
-            cost.products += terms.size() * (colours ? 3 : 1);
+            for (const Term& term : terms)
+                cost.products += term.factor.empty() ? 0 : colours ? 3 : 1;
             return termsData(terms);
         };
         for (int slot = 0; slot < slots; ++slot) {

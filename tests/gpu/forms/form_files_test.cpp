@@ -6,6 +6,7 @@
 #include <hshfit/coefficient_files/coefficient_formats.h>
 #include <hshfit/error.h>
 #include <hshfit/gpu/forms/form_files.h>
+#include <hshfit/gpu/forms/form_shader.h>
 #include <hshfit/gpu/forms/form_table.h>
 #include <hshfit/representation/named_arrays.h>
 
@@ -26,6 +27,7 @@ std::unique_ptr<Brdf> nothingToOpen(const std::string& spec) {
 std::vector<samples::FormSample> allSamples() {
     std::vector<samples::FormSample> all = samples::halfwaySamples();
     for (samples::FormSample& sample : samples::basisSamples()) all.push_back(std::move(sample));
+    for (samples::FormSample& sample : samples::factoredSamples()) all.push_back(std::move(sample));
     return all;
 }
 
@@ -155,8 +157,38 @@ TEST(FormTable, FormsWithoutAShaderAreRefused) {
     EXPECT_THROW(packForm(outgoing), UsageError);
     Representation split = samples::halfwaySamples()[0].form;
     EXPECT_TRUE(hasShader(split));
-    split.added = "lambert";
+    split.added = "ggx";
     EXPECT_FALSE(hasShader(split));
+    EXPECT_THROW(formShaderSource(Language::glsl, packForm(split), {}), UsageError);
+    EXPECT_TRUE(hasShader(split, true));
+}
+
+TEST(FormShader, BlocksBeyondSixteenKibibytesAreRefused) {
+    samples::FormSample large = samples::factoredSamples()[4];
+    FormPayload payload = packForm(large.form);
+    payload.stream.resize(4 * mostConstants);
+    EXPECT_THROW(formShaderSource(Language::glsl, payload, {.storage = Storage::block}),
+                 UsageError);
+}
+
+/// Arrays that claim more numbers than there are texels, and orders that no matrix goes with.
+TEST(FormFiles, HugeClaimsAreRefusedBeforeMemoryIsAllocated) {
+    const Folder folder;
+    exportForm(folder.path(), packForm(samples::basisSamples()[0].form));
+    const std::string path = folder / "sample.hsh.json", text = contentOf(path);
+    const std::pair<const char*, const char*> changes[] = {
+        {"\"order\":4", "\"order\":2000"},
+        {"\"numbers\":", "\"numbers\":99"},
+        {"\"shape\":[3,", "\"shape\":[3000000000,"},
+    };
+    for (const auto& [from, to] : changes) {
+        std::string changed = text;
+        const std::size_t at = changed.find(from);
+        ASSERT_NE(at, std::string::npos) << from;
+        changed.replace(at, std::string(from).size(), to);
+        samples::put(path, changed);
+        EXPECT_THROW(readForm(path, nothingToOpen), InputError) << to;
+    }
 }
 
 }  // namespace

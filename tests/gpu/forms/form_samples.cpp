@@ -2,7 +2,9 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/representation/basis_matrix.h>
+#include <hshfit/representation/factoring/factoring.h>
 #include <hshfit/representation/halfway/halfway_terms.h>
+#include <hshfit/representation/named_arrays.h>
 
 #include <cmath>
 #include <random>
@@ -98,7 +100,40 @@ FormSample basisSample(const std::string& name, const AskedBasis& asked, unsigne
     return {name, std::move(r)};
 }
 
+/// A form basis in factors of a rank that leaves some blocks whole.
+FormSample factoredSample(const std::string& name, const AskedBasis& asked, int rank,
+                          unsigned seed) {
+    AskedBasis exact = asked;
+    exact.precision = Precision::float64;
+    exact.keep = 0;
+    FormSample made = basisSample(name, exact, seed);
+    made.form = factored(std::move(made.form), {.rank = rank});
+    for (const auto& array : namedArrays(made.form)) {
+        if (asked.keep > 0) keepLargest(*array.array, asked.keep);
+        quantise(*array.array, asked.precision);
+    }
+    return made;
+}
+
 }  // namespace
+
+std::vector<FormSample> factoredSamples() {
+    const Channels rgb = Channels::rgb(), grey = Channels::grey();
+    using enum Precision;
+    return {
+        factoredSample("hsh 6 rgb, isotropic, rank 2", {"hsh", 6, rgb, {true, true, false}}, 2, 31),
+        factoredSample("hsh 7 rgb, reciprocal, rank 2, half",
+                       {"hsh", 7, rgb, {true, true, true}, half}, 2, 32),
+        factoredSample("hsh 6 rgb, twisted, rank 2", {"hsh", 6, rgb, {true, false, false}}, 2, 33),
+        factoredSample("zernike 7 grey, twisted, reciprocal, rank 1",
+                       {"zernike", 7, grey, {true, false, true}, unorm16}, 1, 34),
+        factoredSample("hsh 4 rgb, anisotropic, f cos, rank 3, masked",
+                       {"hsh", 4, rgb, {false, false, false}, half, Quantity::brdfCosine, 40}, 3,
+                       35),
+        factoredSample("hsh 4 rgb, anisotropic, bilateral, reciprocal, rank 3, unorm8",
+                       {"hsh", 4, rgb, {false, true, true}, unorm8}, 3, 36),
+    };
+}
 
 std::vector<FormSample> basisSamples() {
     const Channels rgb = Channels::rgb(), grey = Channels::grey();

@@ -20,4 +20,7 @@ std::vector<FormSample> halfwaySamples();
 /// The form basis likewise.
 std::vector<FormSample> basisSamples();
 
+/// The form basis in factors, likewise.
+std::vector<FormSample> factoredSamples();
+
 }  // namespace hshfit::samples

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <functional>
 #include <iostream>
+#include <memory>
 
 namespace hshfit::shaders {
 namespace {
@@ -19,7 +20,10 @@ using gpu::Language;
 using gpu::Storage;
 using samples::FormSample;
 
-std::unique_ptr<Brdf> nothingToOpen(const std::string& spec) {
+std::unique_ptr<Brdf> constantBrdf();
+
+std::unique_ptr<Brdf> onlyTheConstant(const std::string& spec) {
+    if (spec == "constant") return constantBrdf();
     throw std::runtime_error("opens " + spec);
 }
 
@@ -34,7 +38,7 @@ ShaderJob jobOf(const gpu::FormPayload& payload, Storage storage) {
 
 /// f of the library in double precision, [pair][channel].
 std::vector<double> expected(const gpu::FormPayload& payload, const Pairs& pairs) {
-    const auto brdf = reconstruct(payload.form, nothingToOpen);
+    const auto brdf = reconstruct(payload.form, onlyTheConstant);
     const std::size_t channels = brdf->channels().count();
     std::vector<double> values(pairs.wo.size() * channels);
     for (std::size_t k = 0; k < pairs.wo.size(); ++k) {
@@ -46,12 +50,16 @@ std::vector<double> expected(const gpu::FormPayload& payload, const Pairs& pairs
 }
 
 /// Largest |difference| over 1 + |f|: the form keeps ln(1 + f), which single precision rounds.
+/// Where f cos(theta_i) was projected, differences are those of f cos(theta_i).
 double relativeDifference(const std::vector<double>& expected, const std::vector<float>& found,
-                          std::size_t channels) {
+                          const ShaderJob& job) {
+    const std::size_t channels = job.channels();
+    const bool cosine = job.payload.head.quantity == Quantity::brdfCosine;
     double worst = 0;
     for (std::size_t i = 0; i < expected.size(); ++i) {
         const std::size_t at = i / channels * 2 * channels + i % channels;
         double d = std::abs(static_cast<double>(found[at]) - expected[i]);
+        if (cosine) d *= std::max(job.pairs.wi[i / channels].z, 0.0);
         // A NaN counts as infinitely far.
         if (!(d < 1e30)) d = 1e30;
         worst = std::max(worst, d / (1 + std::abs(expected[i])));
@@ -75,7 +83,9 @@ void prove(Language language, const std::vector<FormSample>& samples, Run runner
     }
     std::size_t index = static_cast<std::size_t>(language);
     for (const FormSample& sample : samples) {
-        const gpu::FormPayload payload = gpu::packForm(sample.form);
+        gpu::FormPayload payload = gpu::packForm(sample.form);
+        if (!sample.form.added.empty())
+            payload.constant.assign(payload.form.head.channels.count(), 0.25);
         const Storage all[] = {Storage::constants, Storage::table, Storage::block,
                                Storage::texture};
         const std::vector<double> values = expected(payload, directionPairs());
@@ -95,7 +105,7 @@ void prove(Language language, const std::vector<FormSample>& samples, Run runner
             } catch (const Refused& reason) {
                 FAIL() << sample.name << ", " << job.form << ": " << reason.what();
             }
-            const double difference = relativeDifference(values, found, job.channels());
+            const double difference = relativeDifference(values, found, job);
             std::cout << fmt::format("{:<40} {:<10} {:.1e}\n", sample.name, job.form, difference);
             EXPECT_LE(difference, 1e-5) << sample.name << ", " << job.form;
         }
@@ -119,6 +129,54 @@ TEST(BasisShader, MetalAsCpp) {
 }
 TEST(BasisShader, OslAsCpp) {
     prove(Language::osl, samples::basisSamples());
+}
+
+TEST(FactoredShader, GlslOnVulkan) {
+    prove(Language::glsl, samples::factoredSamples());
+}
+TEST(FactoredShader, HlslOnVulkan) {
+    prove(Language::hlsl, samples::factoredSamples());
+}
+TEST(FactoredShader, WgslOnVulkan) {
+    prove(Language::wgsl, samples::factoredSamples());
+}
+TEST(FactoredShader, GlslEsOnOpenGlEs) {
+    prove(Language::glslEs, samples::factoredSamples());
+}
+TEST(FactoredShader, MetalAsCpp) {
+    prove(Language::metal, samples::factoredSamples());
+}
+TEST(FactoredShader, OslAsCpp) {
+    prove(Language::osl, samples::factoredSamples());
+}
+
+/// f = 0.25 in every channel, for the tests of what a form adds.
+class Constant final : public Brdf {
+public:
+    std::string name() const override { return "constant"; }
+    const Channels& channels() const override { return channels_; }
+    const Laws& laws() const override { return laws_; }
+    void eval(const Direction& wo, DirectionBatch wi, double* out) const override {
+        for (std::size_t k = 0; k < wi.count; ++k) out[k] = wo.z > 0 && wi.z[k] > 0 ? 0.25 : 0;
+    }
+
+private:
+    Channels channels_ = Channels::grey();
+    Laws laws_;
+};
+
+std::unique_ptr<Brdf> constantBrdf() {
+    return std::make_unique<Constant>();
+}
+
+/// Forms of which a Lambert term was split off.
+TEST(SplitShader, AddsTheConstantInEveryLanguage) {
+    std::vector<FormSample> all{samples::halfwaySamples()[1], samples::halfwaySamples()[13],
+                                samples::basisSamples()[1], samples::basisSamples()[4]};
+    for (FormSample& sample : all) sample.form.added = "constant";
+    for (const Language language : {Language::glsl, Language::hlsl, Language::wgsl,
+                                    Language::glslEs, Language::metal, Language::osl})
+        prove(language, all);
 }
 
 class HalfwayShader : public testing::Test {

@@ -1,3 +1,4 @@
+#include <hshfit/gpu/forms/internal/factored_form.h>
 #include <hshfit/gpu/forms/internal/form_rows.h>
 #include <hshfit/gpu/forms/internal/form_text.h>
 
@@ -8,13 +9,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <memory>
+#include <optional>
 
 namespace hshfit::gpu::inline forms {
 namespace {
 
 /// As many terms as a compiler of shaders takes in a function without giving up.
 constexpr std::size_t mostTerms = 4096;
+/// As many terms as a factored form may stand for.
+constexpr std::size_t mostFactored = 1U << 18U;
 /// Terms in one statement, so that no expression is nested too deeply for a compiler.
 constexpr std::size_t termsTogether = 12;
 
@@ -23,15 +27,25 @@ std::unique_ptr<Basis> basisOf(const Representation& form) {
                        {.condonShortley = form.head.condonShortley});
 }
 
+/// Counted before they are listed: an order that no matrix of the file goes with asks for no
+/// memory.
 std::vector<ProductTerm> termsOf(const Representation& form) {
-    std::vector<ProductTerm> terms = productTerms(*basisOf(form), symmetryOf(form));
+    const auto basis = basisOf(form);
+    const ProductSymmetry symmetry = symmetryOf(form);
+    const std::size_t count = productTermCount(*basis, symmetry);
     const auto* matrix = form.as<MatrixArray>();
-    const std::vector<std::size_t> shape{form.head.channels.count(), terms.size()};
-    if (!matrix || matrix->matrix.shape != shape) {
+    const std::vector<std::size_t> shape{form.head.channels.count(), count};
+    if (matrix && matrix->matrix.shape != shape) {
         throw InputError(fmt::format("{}: the matrix has to be {} channels x {} terms",
                                      form.head.source, shape[0], shape[1]));
     }
-    return terms;
+    if (!matrix && count > mostFactored) {
+        throw InputError(
+            fmt::format("{}: {} factored terms; at most {} are exported as they are: use fewer "
+                        "bands or coefficients per outgoing direction",
+                        form.head.source, count, mostFactored));
+    }
+    return productTerms(*basis, symmetry);
 }
 
 /// Slots of the functions that the terms name.
@@ -50,39 +64,6 @@ std::vector<int> slotsOf(const std::vector<ProductTerm>& terms, bool isotropic) 
     return slots;
 }
 
-/// A product function (basis_matrix.h) in the names of the template. Isotropic forms are turned
-/// about z until wo has azimuth 0, where its sines are 0.
-class Products {
-public:
-    Products(const std::vector<int>& slots, const ProductSymmetry& symmetry)
-        : slots_(slots), symmetry_(symmetry) {}
-
-    std::string text(const ProductTerm& t) const {
-        const bool doubled = symmetry_.reciprocal && !(t.l == t.k && t.m == t.p);
-        const bool turned = symmetry_.isotropic && t.m > 0;
-        const bool sine = turned && t.sine;
-        std::string sum = onesided(t.l, sine ? -t.m : t.m, t.k, t.p);
-        // Exchanged, a sine term changes its sign, and so does the sine.
-        const std::string other = onesided(t.k, sine ? -t.m : t.p, t.l, t.m);
-        if (doubled) sum = fmt::format("({} {} {})", sum, sine ? "-" : "+", other);
-        const double root = std::sqrt(0.5);
-        const double scale = (turned ? root : 1) * (doubled ? root : 1) * (sine ? -1 : 1);
-        return scale == 1 ? sum : shaderNumber(scale) + " * " + sum;
-    }
-
-private:
-    /// The function (l, m) of wi times (k, p) of wo.
-    std::string onesided(int l, int m, int k, int p) const {
-        return fmt::format("o{} * i{}", at(slotOf(k, p)), at(slotOf(l, m)));
-    }
-    std::size_t at(int slot) const {
-        return static_cast<std::size_t>(std::ranges::lower_bound(slots_, slot) - slots_.begin());
-    }
-
-    const std::vector<int>& slots_;
-    ProductSymmetry symmetry_;
-};
-
 /// The places of the numbers in the stream, [term][channel]: channels of a term next to each other.
 using Places = std::vector<std::vector<std::optional<std::size_t>>>;
 Places placesOf(const Representation& form, std::size_t terms, std::vector<StreamNumber>& stream) {
@@ -100,23 +81,45 @@ Places placesOf(const Representation& form, std::size_t terms, std::vector<Strea
     return places;
 }
 
+/// The sum over the stored terms of a matrix.
+SumGroup matrixSums(const FormText& text, const std::vector<ProductTerm>& terms,
+                    const BasisNames& names) {
+    std::vector<StreamNumber> stream;
+    const Places places = placesOf(text.payload.form, terms.size(), stream);
+    SumGroup sum;
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+        const bool stored = std::ranges::any_of(places[t], [](const auto& p) { return !!p; });
+        if (!stored) continue;
+        if (sum.runs.empty() || sum.runs.back().terms.size() == termsTogether)
+            sum.runs.emplace_back();
+        sum.runs.back().terms.push_back({names.product(terms[t]), places[t]});
+        text.cost.products += names.symmetry.reciprocal ? 3 : 1;
+    }
+    return sum;
+}
+
 }  // namespace
 
 std::vector<StreamNumber> basisStream(const Representation& form) {
+    const std::vector<ProductTerm> terms = termsOf(form);
+    if (form.as<MatrixFactors>()) {
+        const ProductSymmetry symmetry = symmetryOf(form);
+        return factoredSums(form, terms, {slotsOf(terms, symmetry.isotropic), symmetry}).stream;
+    }
     std::vector<StreamNumber> stream;
-    placesOf(form, termsOf(form).size(), stream);
+    placesOf(form, terms.size(), stream);
     return stream;
 }
 
 void fillBasis(FormText& text) {
     const Representation& form = text.payload.form;
-    const std::vector<ProductTerm> terms = termsOf(form);
-    if (terms.size() > mostTerms) {
+    if (text.payload.stream.size() > mostTerms * std::max<std::size_t>(text.channels(), 1)) {
         throw UsageError(fmt::format(
-            "a shader of {} terms; at most {} are written: use fewer bands or coefficients per "
-            "outgoing direction",
-            terms.size(), mostTerms));
+            "a shader of {} numbers; at most {} a channel are written: use fewer bands or "
+            "coefficients per outgoing direction",
+            text.payload.stream.size(), mostTerms));
     }
+    const std::vector<ProductTerm> terms = termsOf(form);
     const ProductSymmetry symmetry = symmetryOf(form);
     Payload basis;
     basis.head = form.head;
@@ -126,20 +129,9 @@ void fillBasis(FormText& text) {
     text.cost.products += 2 * once.products;
     text.page.set("elevations", symmetry.isotropic);
     text.page.set("cosine", form.head.quantity == Quantity::brdfCosine);
-
-    std::vector<StreamNumber> stream;
-    const Places places = placesOf(form, terms.size(), stream);
-    const Products products(basis.slots, symmetry);
-    SumGroup sum;
-    for (std::size_t t = 0; t < terms.size(); ++t) {
-        const bool stored = std::ranges::any_of(places[t], [](const auto& p) { return !!p; });
-        if (!stored) continue;
-        if (sum.runs.empty() || sum.runs.back().terms.size() == termsTogether)
-            sum.runs.emplace_back();
-        sum.runs.back().terms.push_back({products.text(terms[t]), places[t]});
-        text.cost.products += symmetry.reciprocal ? 3 : 1;
-    }
-    text.setSums({sum});
+    const BasisNames names{basis.slots, symmetry};
+    text.setSums({form.as<MatrixFactors>() ? factoredSums(form, terms, names).sums
+                                           : matrixSums(text, terms, names)});
     text.setOutputs();
 }
 

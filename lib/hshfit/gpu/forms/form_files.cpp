@@ -86,7 +86,7 @@ std::string sidecarOf(const FormPayload& payload, std::span<const ExportedFile> 
     document["cos_included"] = false;
     document["unit"] = "1/sr";
     document["frame"] = Json::parse(frameText());
-    document["value"] = formRow(payload.form.kind()).formula;
+    document["value"] = formulaOf(payload.form);
     document["representation"] = representationJson(payload.form, file);
     document["sampling"] = {{"filter", "none"}, {"mip", "none"}, {"lod", 0}, {"srgb", false}};
     document["stream"] = {{"index", "number n is lane n % 4 of texel n / 4, texels row by row"},
@@ -121,10 +121,11 @@ Representation skeletonOf(const LoadedTexels& loaded) {
     const JsonFields root(document, "", loaded.sidecar);
     const JsonFields part = root.object("representation");
     std::vector<std::string> packedArrays;
-    // No array is longer than the texels.
-    const int most = static_cast<int>(loaded.index.coefficients.count());
+    // All arrays together are no longer than the texels: nothing more is allocated.
+    int left = static_cast<int>(loaded.index.coefficients.count());
     for (const JsonFields& row : part.objects("arrays")) {
-        const int numbers = row.integer("numbers", 0, most);
+        const int numbers = row.integer("numbers", 0, left);
+        left -= numbers;
         const Precision precision = [&] {
             try {
                 return parsePrecision(row.word("precision"));
@@ -184,17 +185,9 @@ std::vector<ExportedFile> writeForm(const FormPayload& payload,
                        containers, name, options.zstd, files);
 }
 
-bool looksLikeForm(const std::string& path) {
-    if (!looksLikePayload(path)) return false;
-    try {
-        return !loadTexels(path).index.form.empty();
-    } catch (const Error&) {
-        return false;
-    }
-}
+namespace {
 
-ImportedForm readForm(const std::string& path, const BrdfOpener& open) {
-    LoadedTexels loaded = loadTexels(path);
+ImportedForm formOf(LoadedTexels loaded, const BrdfOpener& open) {
     if (loaded.index.form.empty())
         throw InputError(fmt::format("{}: has no form of its own", loaded.sidecar));
     Representation skeleton = skeletonOf(loaded);
@@ -214,6 +207,34 @@ ImportedForm readForm(const std::string& path, const BrdfOpener& open) {
                         result.sidecar, result.testDifference));
     }
     return result;
+}
+
+/// The texels of an export; nothing where the file is none or cannot be read.
+std::optional<LoadedTexels> loadedIfForm(const std::string& path) {
+    if (!looksLikePayload(path)) return std::nullopt;
+    try {
+        LoadedTexels loaded = loadTexels(path);
+        if (!loaded.index.form.empty()) return loaded;
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+bool looksLikeForm(const std::string& path) {
+    return loadedIfForm(path).has_value();
+}
+
+std::optional<ImportedForm> readIfForm(const std::string& path, const BrdfOpener& open) {
+    std::optional<LoadedTexels> loaded = loadedIfForm(path);
+    if (!loaded) return std::nullopt;
+    return formOf(std::move(*loaded), open);
+}
+
+ImportedForm readForm(const std::string& path, const BrdfOpener& open) {
+    return formOf(loadTexels(path), open);
 }
 
 }  // namespace hshfit::gpu::inline forms

@@ -4,6 +4,7 @@
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/forms/form_payload.h>
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,6 +30,10 @@ struct ImportedForm {
 
 /// Whether the file is one of an export of a form. False for one that cannot be read.
 bool looksLikeForm(const std::string& path);
+
+/// The form where the file is one of an export of a form, read once; else, and where it cannot be
+/// read, nothing. Throws InputError for one that is no coefficient file's.
+std::optional<ImportedForm> readIfForm(const std::string& path, const BrdfOpener& open);
 
 /// Reads any file of such an export, as readPayload does. The form is that of the coefficient file
 /// that was exported, bit by bit, unless the export rounded it. Throws InputError.

@@ -24,6 +24,9 @@ struct FormPayload {
     Representation form;  ///< as rounded: what shaders and files give
     std::vector<StreamNumber> stream;
     Texels texels;  ///< one layer; those of normalised numbers have scale 1 and offset 0
+    /// f of the BRDF that the form adds, per channel, where it is the same for all directions; what
+    /// the shader adds to the form. Empty: nothing is added.
+    std::vector<double> constant = {};
 
     /// The factor and the addend that make of a number's texel its value.
     LaneScale scaleOf(const StreamNumber& number) const;

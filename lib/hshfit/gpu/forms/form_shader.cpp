@@ -64,6 +64,19 @@ void checkLanguage(Language language, const FormPayload& payload, Storage storag
     }
 }
 
+/// 16 KiB are what the smallest uniform block that every API promises has.
+void checkBlock(const FormPayload& payload, Storage storage) {
+    constexpr std::size_t most = mostConstants * 4;
+    const std::size_t bytes = storage == Storage::block   ? 16 * payload.texelCount()
+                              : storage == Storage::table ? 4 * tableWords(payload).size()
+                                                          : 0;
+    if (bytes <= most) return;
+    throw UsageError(
+        fmt::format("a uniform block of {} bytes; every device takes {}: store the form as a "
+                    "texture or ask for fewer numbers",
+                    bytes, most));
+}
+
 void setStorage(const FormPayload& payload, Storage storage, data& page) {
     for (const auto& [each, name] : storages) page.set(std::string(name), each == storage);
     page.set("width", std::to_string(payload.texels.width));
@@ -91,7 +104,7 @@ void setChannels(const Channels& channels, const std::string& prefix, Language l
     page.set("zero", grey ? "0.0" : vector + "(0.0, 0.0, 0.0)");
 }
 
-void setHeader(const FormPayload& payload, const FormRow& row, data& page) {
+void setHeader(const FormPayload& payload, data& page) {
     const Representation& form = payload.form;
     page.set("generator", commentText(form.head.generator));
     page.set("source", commentText(form.head.source));
@@ -104,7 +117,8 @@ void setHeader(const FormPayload& payload, const FormRow& row, data& page) {
     page.set("numbers", std::to_string(form.numbers()));
     page.set("bytes", std::to_string(form.bytes()));
     page.set("number", numberName(payload.texels.number));
-    page.set("formula", std::string(row.formula));
+    page.set("formula", std::string(formulaOf(form)));
+    page.set("added", form.added.empty() ? data(false) : data(commentText(form.added)));
 }
 
 void setPartials(std::string_view body, data& page) {
@@ -154,6 +168,11 @@ std::string formShaderSource(Language language, const FormPayload& payload,
     checkPrefix(options.prefix);
     const Storage storage = storageFor(payload, options.storage);
     checkLanguage(language, payload, storage);
+    checkBlock(payload, storage);
+    if (!payload.form.added.empty() && payload.constant.empty()) {
+        throw UsageError(fmt::format("the form adds {}, which has no closed form in shaders",
+                                     payload.form.added));
+    }
     const FormRow& row = formRow(payload.form.kind());
     const FormLanguage words = formLanguage(language);
     data page;
@@ -164,7 +183,7 @@ std::string formShaderSource(Language language, const FormPayload& payload,
     page.set("flat", language == Language::osl);
     setStorage(payload, storage, page);
     setChannels(payload.form.head.channels, options.prefix, language, page);
-    setHeader(payload, row, page);
+    setHeader(payload, page);
     ShaderCost cost;
     FormText text{payload, storage == Storage::constants || storage == Storage::table, page, cost};
     row.fill(text);

@@ -17,18 +17,23 @@ namespace hshfit::gpu::inline forms {
 std::span<const FormRow> formTable() {
     static const std::array rows{
         FormRow{Representation::Kind::halfway, "f = min(E, max(0, exp(sum_t c_t P_t(wi, wo)) - 1))",
-                halfwayStream, embedded::form_halfway, fillHalfway},
-        FormRow{Representation::Kind::basis, "q = sum_t c_t P_t(wi, wo)", basisStream,
+                "", halfwayStream, embedded::form_halfway, fillHalfway},
+        FormRow{Representation::Kind::basis, "f = sum_t c_t P_t(wi, wo)",
+                "f = q / cos(theta_i), q = f cos(theta_i) = sum_t c_t P_t(wi, wo)", basisStream,
                 embedded::form_basis, fillBasis},
     };
     return rows;
 }
 
-bool hasShader(const Representation& form) {
-    if (form.as<MatrixFactors>()) return false;
-    return form.added.empty() && std::ranges::any_of(formTable(), [&](const FormRow& row) {
-               return row.kind == form.kind();
-           });
+bool hasShader(const Representation& form, bool addsConstant) {
+    return (form.added.empty() || addsConstant) &&
+           std::ranges::any_of(formTable(),
+                               [&](const FormRow& row) { return row.kind == form.kind(); });
+}
+
+std::string_view formulaOf(const Representation& form) {
+    const FormRow& row = formRow(form.kind());
+    return form.head.quantity == Quantity::brdfCosine ? row.cosineFormula : row.formula;
 }
 
 const FormRow& formRow(Representation::Kind kind) {

@@ -77,17 +77,18 @@ data fetchesOf(const FormText& text, const SumRun& run, std::size_t& next) {
 data termsOf(const FormText& text, const SumRun& run, std::size_t first) {
     data terms = list();
     bool any = false;
+    const std::size_t count = run.name.empty() ? text.together() : 1;
     for (const SumTerm& term : run.terms) {
-        if (!used(text, term, first, text.together())) continue;
+        if (!used(text, term, first, count)) continue;
         std::vector<std::string> numbers;
-        for (std::size_t c = first; c < first + text.together(); ++c)
+        for (std::size_t c = first; c < first + count; ++c)
             numbers.push_back(numberText(text, term.numbers[c]));
         data row;
         row.set("first", !any);
         row.set("function", term.function.empty() ? data(false) : data(term.function));
         row.set("numbers", fmt::format("{}", fmt::join(numbers, ", ")));
         terms.push_back(row);
-        text.cost.products += term.function.empty() ? 0 : text.together();
+        text.cost.products += term.function.empty() ? 0 : count;
         any = true;
     }
     return terms;
@@ -97,13 +98,21 @@ data flagOr(const std::string& text) {
     return text.empty() ? data(false) : data(text);
 }
 
+data zeroTerm() {
+    data row;
+    row.set("first", true);
+    row.set("function", false);
+    row.set("numbers", "0.0");
+    return row;
+}
+
 /// A statement that adds a run to a sum, or begins it.
 data statement(const FormText& text, const SumRun& run, const std::string& sum, bool begins,
                const data& terms) {
     data row;
     row.set("sum", sum);
     row.set("begins", begins);
-    row.set("vector", text.together() > 1);
+    row.set("vector", run.name.empty() && text.together() > 1);
     row.set("factor", flagOr(run.factor));
     row.set("terms", terms);
     if (!run.factor.empty()) text.cost.products += text.together();
@@ -132,7 +141,12 @@ void FormText::setSums(const std::vector<SumGroup>& groups) {
         for (const SumRun& run : group.runs) {
             data step, statements = list();
             step.set("fetches", fetchesOf(*this, run, next));
-            for (std::size_t c = 0; c < channels(); c += together()) {
+            if (!run.name.empty()) {
+                data terms = termsOf(*this, run, 0);
+                if (terms.is_empty_list()) terms.push_back(zeroTerm());
+                statements.push_back(statement(*this, run, run.name, true, terms));
+            }
+            for (std::size_t c = 0; run.name.empty() && c < channels(); c += together()) {
                 const data terms = termsOf(*this, run, c);
                 if (terms.is_empty_list()) continue;
                 const std::string sum =
@@ -170,6 +184,13 @@ void FormText::setOutputs() {
         data row;
         row.set("i", std::to_string(c));
         row.set("vector", together() > 1);
+        row.set("added", false);
+        if (!payload.constant.empty()) {
+            std::vector<std::string> numbers;
+            for (std::size_t k = c; k < c + together(); ++k)
+                numbers.push_back(shaderNumber(payload.constant[k]));
+            row.set("added", fmt::format("{}", fmt::join(numbers, ", ")));
+        }
         outputs.push_back(row);
     }
     page.set("outputs", outputs);

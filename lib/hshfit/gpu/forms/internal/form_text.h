@@ -21,6 +21,7 @@ struct SumTerm {
 struct SumRun {
     std::string factor;
     std::vector<SumTerm> terms;
+    std::string name = {};  ///< of a scalar that the run begins; its terms have one number each
 };
 /// Runs in brackets times a common factor; empty: 1.
 struct SumGroup {
