@@ -24,9 +24,9 @@ Imported importCoefficients(const std::string& input, const std::string& output,
     }
     Imported imported;
     imported.proposal = gpu::readProposal(input);
-    if (auto read = gpu::readIfForm(input, sourceOpener())) {
-        writeRepresentation(read->payload.form, output);
-        imported.read = std::move(*read);
+    if (auto form = gpu::readIfForm(input, sourceOpener())) {
+        writeRepresentation(form->payload.form, output);
+        imported.read = std::move(*form);
     } else {
         gpu::ImportedPayload read = gpu::readPayload(input);
         writeCoefficients(gpu::unpack(read.payload), output);

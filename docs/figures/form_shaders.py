@@ -1,14 +1,18 @@
 #!/usr/bin/python3
-"""The table of docs/shaders.md: forms as shaders, and a published network by the same rules.
+"""The tables of docs/shaders.md: forms as shaders, and a published network by the same rules.
 
-    docs/figures/form_shaders.py build/hshfit FILE.json…
+    docs/figures/form_shaders.py build FILE.json…
 
-For each coefficient file: its error and that of its export, bytes, and the instructions of a SPIR-V
-function around `eval`, with numbers as constants and as a texture. The last row is the network of
+`build` is the folder of the build, with `hshfit`, `tests/gpu/shaders/shader_times` and
+`tests/gpu/forms/form_errors`. For each coefficient file: its bytes, its error and the largest
+relative change of that error by export, over all languages and storages; the instructions of a
+SPIR-V function around `eval` by storage; the time of a pair less that of reading and writing it, on
+the Vulkan device of shader_times, and the network's time over it. The last row is the network of
 Sztrajman et al. 2021 (6, 21, 21 and 3 values a layer, 675 weights in single precision, ReLU),
-unrolled as constants, with the half and the difference vector that it takes; the count does not
+unrolled as constants, with the half and the difference vector that it takes; count and time do not
 depend on the weights. Programs: glslangValidator (with --target-env vulkan1.1), spirv-opt -O and
-spirv-dis.
+spirv-dis. All shaders are timed in turns in one run; on a software device the time is that of the
+processor, by all threads.
 """
 
 import json
@@ -18,8 +22,10 @@ import subprocess
 import sys
 import tempfile
 
-COLUMNS = ("file", "numbers", "bytes", "mean log, file", "mean log, export",
-           "instructions, constants", "instructions, texture")
+COLUMNS = ("file", "bytes", "mean log, file", "change by export", "instructions, constants",
+           "table", "texture", "ns a pair, table", "network's over it")
+REPEATS = 15
+COPY = "vec3 hsh_eval(vec3 wo, vec3 wi) { return wo + wi; }"
 MAIN = """#version 450
 %s
 layout(local_size_x = 64) in;
@@ -36,9 +42,9 @@ def row(cells):
     return "| " + " | ".join(cells) + " |"
 
 
-def instructions(snippet, folder):
-    """Instructions within functions, after optimisation for speed."""
-    source, code = folder + "/s.comp", folder + "/s.spv"
+def instructions(snippet, folder, name="s"):
+    """Instructions within functions, after optimisation for speed; leaves NAME.spv."""
+    source, code = "%s/%s.comp" % (folder, name), "%s/%s.spv" % (folder, name)
     with open(source, "w", encoding="ascii") as file:
         file.write(MAIN % snippet)
     subprocess.run(["glslangValidator", "-V", "--target-env", "vulkan1.1", source, "-o", code],
@@ -100,27 +106,48 @@ def network():
     return "\n".join(lines + ["}"])
 
 
-def measured(program, path, folder):
-    answer = json.loads(subprocess.run(
-        [program, "export", path, "-o", folder, "--name", "x", "--force", "--quiet", "--json",
-         "--target", "bin"], check=True, capture_output=True, text=True).stdout)
-    error = answer["fit_error"]
-    shown = [("%.4g" % error[key]) if key in error else "unknown" for key in ("file", "mean_log")]
-    return [str(answer["numbers"]), str(answer["bytes"])] + shown
+def errors(build, paths):
+    """For each file bytes, error, and the largest relative change of the error by export."""
+    text = subprocess.run([build + "/tests/gpu/forms/form_errors"] + paths, check=True,
+                          capture_output=True, text=True).stdout
+    rows = []
+    for line in text.splitlines():
+        answer = json.loads(line)
+        error = answer["error"]
+        others = [answer[key] for key in answer if key not in ("file", "bytes", "error")]
+        change = max(abs(other / error - 1) for other in others)
+        rows.append([str(answer["bytes"]), "%.4g" % error, "%.1e" % change])
+    return rows
 
 
-def main(program, paths):
+def times(build, folder, names):
+    """The device, and for each shader the median of its time in nanoseconds."""
+    paths = ["%s/%s.spv" % (folder, name) for name in names]
+    lines = subprocess.run([build + "/tests/gpu/shaders/shader_times", str(REPEATS)] + paths,
+                           check=True, capture_output=True, text=True).stdout.splitlines()
+    return lines[0], [float(line.split()[-2]) for line in lines[1:]]
+
+
+def main(build, paths):
     print(row(COLUMNS))
     print("|" + "---|" * len(COLUMNS))
     with tempfile.TemporaryDirectory() as folder:
-        for path in paths:
-            cells = measured(program, path, folder)
-            for storage in ("constants", "texture"):
-                snippet = export(program, path, folder, storage)
-                cells.append(str(instructions(snippet, folder)))
-            print(row(["`%s`" % os.path.basename(path)] + cells), flush=True)
-        print(row(["network, 675 weights", "675", str(4 * 675), "", "",
-                   str(instructions(network(), folder)), ""]))
+        counts, names = [], ["copy", "network"]
+        instructions(COPY, folder, "copy")
+        weights = str(instructions(network(), folder, "network"))
+        for k, path in enumerate(paths):
+            names.append("form%d" % k)
+            counts.append([str(instructions(export(build + "/hshfit", path, folder, storage),
+                                            folder, names[-1] if storage == "table" else "s"))
+                           for storage in ("constants", "table", "texture")])
+        device, found = times(build, folder, names)
+        found = [time - found[0] for time in found]
+        for k, cells in enumerate(errors(build, paths)):
+            speed = ["%.1f" % found[k + 2], "%.2f" % (found[1] / found[k + 2])]
+            print(row(["`%s`" % os.path.basename(paths[k])] + cells + counts[k] + speed))
+        print(row(["network, 675 weights", str(4 * 675), "", "", weights, "", "",
+                   "%.1f" % found[1], ""]))
+        print("\n" + device)
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -197,6 +198,45 @@ TEST_F(ExportForm, HalfwayIsExportedAsItIsAndImportedByteByByte) {
         return run("eval " + path(file) + " --wi 30,20 --wo 50,200").out;
     };
     EXPECT_EQ(value("out/form.coef.ktx2"), value("form.json"));
+}
+
+/// Factored, sparse and with a Lambert term split off: as they are, and the same again.
+TEST_F(ExportForm, FactoredSparseAndSplitFormsAreExportedAsTheyAre) {
+    const std::string material = "project ward:ax=.4,ay=.4,kd=.1/.2/.3 ";
+    for (const char* options :
+         {"--form basis --order 6 --rank 2", "--form basis --order 6 --rank 2 --reciprocal",
+          "--form basis --order 4 --keep 20 --precision half",
+          "--form halfway --halfway 5,3,2 --split diffuse"}) {
+        ASSERT_EQ(run(material + options + " -o " + path("one.json")).code, 0) << options;
+        const Answer answer = run("export " + path("one.json") + " -o " + path("out") +
+                                  " --target bin,glsl,osl --force --json --allow-loss");
+        ASSERT_EQ(answer.code, 0) << options << answer.err;
+        EXPECT_TRUE(Json::parse(answer.out).contains("form")) << options;
+        EXPECT_TRUE(keepsSchema(read(path("out/one.hsh.json")), "gpu_form")) << options;
+        const Answer again =
+            run("import " + path("out/one.hsh.json") + " --force -o " + path("again.json"));
+        ASSERT_EQ(again.code, 0) << options << again.err;
+        EXPECT_EQ(read(path("again.json")), read(path("one.json"))) << options;
+        const Answer info = run("info " + path("out/one.hsh.json") + " --json");
+        EXPECT_EQ(Json::parse(info.out)["facts"]["container"], "bin") << options;
+    }
+}
+
+/// The block of a table is a file of the export, four bytes for each of four channels and cell.
+TEST_F(ExportForm, ATableIsWrittenBesideItsShaders) {
+    const Answer answer = run("export " + path("form.json") + " -o " + path("out") +
+                              " --target bin,glsl --storage table --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "export"));
+    const Json form = Json::parse(read(path("form.json")));
+    for (const Json& array : form["representation"]["arrays"]) {
+        if (array["name"] != "envelope") continue;
+        const std::size_t up = array["shape"][0], along = array["shape"][1];
+        if (up * along < 2) continue;
+        const std::size_t cells =
+            (std::max<std::size_t>(up, 2) - 1) * (std::max<std::size_t>(along, 2) - 1);
+        EXPECT_EQ(fs::file_size(path("out/form.table.bin")), 16 * cells);
+    }
 }
 
 TEST_F(ExportForm, ALossOfMoreThanTwiceTheErrorIsRefusedUnlessAccepted) {
