@@ -93,10 +93,9 @@ nlohmann::ordered_json errorsOf(const std::string& path) {
                     gpu::formShaderSource(language.language, payload, {.storage = storage});
                 const auto found =
                     run(language.language, job, wrapped(language.language, job, snippet));
-                row[fmt::format("{} {}", language.name, job.form)] =
-                    meanLog(truth, found, job.pairs, channels, [&](std::size_t i) {
-                        return i / channels * 2 * channels + i % channels;
-                    });
+                row[fmt::format("{} {}", language.name, job.form)] = meanLog(
+                    truth, found, job.pairs, channels,
+                    [&](std::size_t i) { return i / channels * 2 * channels + i % channels; });
             } catch (const Missing&) {
                 continue;
             }

@@ -42,8 +42,10 @@ struct FormShaderOptions {
 ///     PREFIX_eval(wo, wi)     f(wo, wi) in 1/sr, as RepresentedBrdf::eval gives it, but not below
 ///     0;
 ///                             0 where either direction is not above the horizon
-/// in the local frame. It has no trigonometric function, no loop, and no number that is not
-/// stored. Throws UsageError for what the language cannot take, with the reason.
+/// in the local frame. It has no trigonometric function and no loop. Constants of the form halfway
+/// are the stored numbers in a basis of Chebyshev polynomials. Throws UsageError, with the reason,
+/// for what the language cannot take, a block beyond 16 KiB, and a form that adds a BRDF without
+/// FormPayload::constant.
 std::string formShaderSource(Language language, const FormPayload& payload,
                              const FormShaderOptions& options);
 
