@@ -211,7 +211,10 @@ ExportedMaterial materialFor(const std::string& target, const Input& input,
         material.reason = input.reason;
         return material;
     }
-    const auto own = brdfs::open(material.spec);
+    auto own = brdfs::open(material.spec);
+    // A grey material is compared with colours as three equal channels.
+    if (own->channels().count() < input.brdf->channels().count())
+        own = brdfs::open(material.spec + " + 0 * lambert:kd=0/0.5/1");
     if (own->channels().count() != input.brdf->channels().count())
         material.reason = "the source has other channels than the material";
     else

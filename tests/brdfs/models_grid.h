@@ -81,12 +81,16 @@ inline void addStandard(std::vector<Case>& grid) {
              {"", ",metallicFactor=0", ",metallicFactor=.4,baseColorFactor=.9/.5/.1",
               ",metallicFactor=0,ior=2.2,specularFactor=.6,specularColorFactor=1/.7/.2",
               ",clearcoatFactor=.8,clearcoatRoughnessFactor=.2",
-              ",metallicFactor=0,sheenColorFactor=.5/.3/.8,sheenRoughnessFactor=.4",
-              ",anisotropyStrength=.5", ",anisotropyStrength=.7,anisotropyRotation=.6"}) {
+              ",metallicFactor=0,sheenColorFactor=.5/.3/.8,sheenRoughnessFactor=.4"}) {
             const double alpha = std::max(1e-4, std::stod(roughness) * std::stod(roughness));
             grid.push_back(
                 {"gltf-pbr:roughnessFactor=" + std::string(roughness) + rest, alpha, alpha});
         }
+    // alpha = .09 across, .09 + .91 strength^2 along.
+    grid.push_back({"gltf-pbr:roughnessFactor=.3,anisotropyStrength=.5", .3175, .09});
+    grid.push_back(
+        {"gltf-pbr:roughnessFactor=.3,anisotropyStrength=.7,anisotropyRotation=.6", .3, .3});
+    grid.push_back({"gltf-pbr:anisotropyStrength=.5"});
     for (const char* roughness : {"0", ".3", "1"})
         for (const char* rest :
              {"", ",base_metalness=1,base_color=.9/.6/.2,specular_color=.9/.8/.7",
