@@ -45,6 +45,7 @@ echo
 echo "4. For a renderer: textures, a shader, and a page that shows what they are worth."
 show export out/ward_cosine.json -o out/export --target three,viewer --force
 show export $ward -o out/materials --target gltf,materialx --force
+show export out/phong.json -o out/lighting --lighting split-sum,coefficients --no-error --force
 
 echo
 echo "5. Accuracy reports: the energy that each basis captures, by order (Eq. 15)."
@@ -71,9 +72,9 @@ show irradiance sky:type=12,elevation=40,radiance=1 --convention three
 echo
 echo "9. Directions drawn after a material, with the efficiency by elevation, and a scene by them."
 show sample ggx:alpha=.2,F0=.9 --outgoing 45,0 --count 1000 -o out/samples.csv
-show illuminate examples/scenes/box.json -o out/box --samples 16 --force
 show export out/phong.json -o out/path_tracer --target bin,glsl --no-error --force
 show sample out/path_tracer/phong.hsh.json --method stored --count 0
+show illuminate examples/scenes/box.json -o out/box --samples 16 --force
 
 echo
 echo "Captured energy of f cos with order 7 (49 slots) and the files it went to:"

@@ -14,7 +14,6 @@
 #include <array>
 #include <chrono>
 #include <iterator>
-#include <ranges>
 #include <utility>
 
 namespace hshfit::jobs {
@@ -87,10 +86,12 @@ std::string csvOf(const Sampled& done) {
 }  // namespace
 
 SampleMethod sampleMethod(const std::string& name) {
-    for (const auto& [known, method] : methods)
+    std::vector<std::string_view> names;
+    for (const auto& [known, method] : methods) {
         if (known == name) return method;
-    throw UsageError(fmt::format("unknown method '{}'; known: {}", name,
-                                 fmt::join(methods | std::views::keys, ", ")));
+        names.push_back(known);
+    }
+    throw UsageError(fmt::format("unknown method '{}'; known: {}", name, fmt::join(names, ", ")));
 }
 
 std::string sampleMethodName(SampleMethod method) {

@@ -2,7 +2,10 @@
 
 #include "shader_job.h"
 
+#include <hshfit/gpu/vulkan/compute.h>
+
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -27,6 +30,9 @@ std::vector<float> inputNumbers(const ShaderJob& job);
 /// The uniform block of a form that has one (binding 0 in place of the texture), else nothing: the
 /// texels as a sampler returns them.
 std::vector<float> blockNumbers(const ShaderJob& job);
+
+/// The software device; with HSHFIT_TEST_GPU set, a GPU. Throws Missing where there is none.
+std::unique_ptr<gpu::ComputeDevice> vulkanDevice(bool validate);
 
 /// Vulkan: texture arrays at bindings 0 (coefficients) and 2 (basis), combined with their sampler
 /// or not (then at 1), storage buffers at 3 (input) and 4 (output).

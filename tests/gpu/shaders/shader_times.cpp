@@ -8,18 +8,17 @@
 // HSHFIT_TEST_GPU set, any other. The first line has its name.
 
 #include "runners.h"
-#include "vk_device.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <exception>
 #include <fstream>
 #include <iterator>
-#include <memory>
 #include <numbers>
 #include <random>
 
@@ -38,48 +37,43 @@ std::vector<std::uint32_t> wordsOf(const char* path) {
     return words;
 }
 
-void fillPairs(float* numbers) {
+std::vector<float> pairNumbers() {
     std::mt19937 random(1);
     std::uniform_real_distribution<double> uniform(0, 1);
-    for (std::uint32_t k = 0; k < 2 * pairs; ++k, numbers += 4) {
+    std::vector<float> numbers;
+    for (std::uint32_t k = 0; k < 2 * pairs; ++k) {
         const double z = 1e-6 + (1 - 1e-6) * uniform(random), s = std::sqrt(1 - z * z);
         const double phi = 2 * std::numbers::pi * uniform(random);
-        numbers[0] = static_cast<float>(s * std::cos(phi));
-        numbers[1] = static_cast<float>(s * std::sin(phi));
-        numbers[2] = static_cast<float>(z);
-        numbers[3] = 0;
+        for (const double number : {s * std::cos(phi), s * std::sin(phi), z, 0.0})
+            numbers.push_back(static_cast<float>(number));
     }
+    return numbers;
 }
 
-double nanosecondsOf(Device& device, const Pipeline& pipeline) {
+double nanosecondsOf(gpu::ComputeProgram& program) {
     const std::clock_t before = std::clock();
-    device.submit(
-        [&](VkCommandBuffer commands) { pipeline.dispatch(commands, pairs / groupSize); });
+    program.run(pairs / groupSize);
     const double time = 1e9 * static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
     return time / pairs;
 }
 
 void measure(int repeats, int count, char** paths) {
-    Device device(false);
-    fmt::print("{}\n", device.name());
-    Buffer in(device, std::size_t{pairs} * 32, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-    Buffer out(device, std::size_t{pairs} * 16, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-    fillPairs(static_cast<float*>(in.data));
-    const auto type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    Buffer block(device, 16384, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-    std::fill_n(static_cast<unsigned char*>(block.data), 16384, 0x3c);
-    const std::vector<Pipeline::Resource> resources{
-        {0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, {}, {block.buffer, 0, VK_WHOLE_SIZE}},
-        {3, type, {}, {in.buffer, 0, VK_WHOLE_SIZE}},
-        {4, type, {}, {out.buffer, 0, VK_WHOLE_SIZE}}};
-    std::vector<std::unique_ptr<Pipeline>> pipelines;
-    for (int i = 0; i < count; ++i)
-        pipelines.push_back(std::make_unique<Pipeline>(device, wordsOf(paths[i]), resources));
-    std::vector<std::vector<double>> times(pipelines.size());
+    const auto device = vulkanDevice(false);
+    fmt::print("{}\n", device->name());
+    using Kind = gpu::ComputeResource::Kind;
+    const std::vector<gpu::ComputeResource> resources{
+        {.binding = 0,
+         .kind = Kind::uniforms,
+         .numbers = std::vector<float>(4096, std::bit_cast<float>(0x3c3c3c3cU))},
+        {.binding = 3, .numbers = pairNumbers()},
+        {.binding = 4, .count = std::size_t{pairs} * 4}};
+    std::vector<gpu::ComputeProgram> programs;
+    for (int i = 0; i < count; ++i) programs.emplace_back(*device, wordsOf(paths[i]), resources);
+    std::vector<std::vector<double>> times(programs.size());
     // The first round warms up.
     for (int r = -1; r < repeats; ++r) {
-        for (std::size_t i = 0; i < pipelines.size(); ++i) {
-            const double time = nanosecondsOf(device, *pipelines[i]);
+        for (std::size_t i = 0; i < programs.size(); ++i) {
+            const double time = nanosecondsOf(programs[i]);
             if (r >= 0) times[i].push_back(time);
         }
     }
