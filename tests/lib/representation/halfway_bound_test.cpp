@@ -8,6 +8,7 @@
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/representation/halfway/halfway.h>
 #include <hshfit/representation/halfway/halfway_rounding.h>
+#include <hshfit/representation/halfway/internal/halfway_bounds.h>
 
 #include <gtest/gtest.h>
 
@@ -288,6 +289,30 @@ TEST_P(HalfwayBound, LeavesTheReflectanceInEveryPrecision) {
             EXPECT_NEAR(array.values[k], values[k], 1e-12 * (1 + std::abs(values[k])));
         }
     }
+}
+
+/// No node of an envelope is lower than it has to be: where one lies below the greatest f of a
+/// point, another point that it weighs in has reached its bound.
+TEST_P(HalfwayBound, KeepsNoNodeLowerThanItsPointsAsk) {
+    const Case& each = cases()[GetParam()];
+    const HalfwayBounds bounds = boundsOf(brdfOf(each), each.reciprocal, 1e-6);
+    constexpr std::size_t alongB = 6;
+    const std::size_t alongA = each.reciprocal ? 7 : 13;
+    const StoredArray logs = fitEnvelope(bounds, alongA, alongB, 0.1);
+    const HalfwayEnvelope grid({logs, 0.1}, 1, each.reciprocal, "");
+    std::vector<double> wanted(alongA * alongB), room(alongA * alongB, 1e9);
+    for (std::size_t s = 0; s < bounds.points.size(); ++s) {
+        const HalfwayEnvelope::Mix mix = grid.mixAt(bounds.points[s]);
+        const double shortage = bounds.logs[s] - grid.logAt(mix, 0);
+        for (std::size_t n = 0; n < 4; ++n) {
+            if (!(mix.weight[n] > 1e-3)) continue;
+            wanted[mix.node[n]] = std::max(wanted[mix.node[n]], mix.weight[n] * shortage);
+            room[mix.node[n]] = std::min(room[mix.node[n]], std::log(boundFactor) + shortage);
+        }
+    }
+    // The bound leaves a tenth to what lies between the points and to rounding to eight bits.
+    for (std::size_t node = 0; node < wanted.size(); ++node)
+        EXPECT_LE(std::min(wanted[node], room[node] - 0.1), 0.06) << each.name << ", " << node;
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryCase, HalfwayBound, testing::Range(std::size_t{0}, cases().size()));

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hshfit::inline representation::inline halfway {
 namespace {
@@ -28,6 +29,8 @@ constexpr double margin = 0.1;
 /// Sweeps that raise the envelope where it cuts f off, then such that lower it where it is too
 /// high.
 constexpr int raising = 60, lowering = 400;
+/// Rounds in which nodes rise again where f is cut off and every point leaves room.
+constexpr int filling = 40;
 /// Of a shortage where f cos is small, this share is made up for in a sweep.
 constexpr double leastImportance = 0.02;
 
@@ -140,9 +143,10 @@ public:
         for (int sweep = 0; sweep < lowering; ++sweep) {
             bool moved = false;
             for (std::size_t s = 0; s < mixes_.size(); ++s) moved |= lowerAt(s);
-            if (!moved) return logs_;
+            if (!moved) break;
         }
         lowerAll();
+        fill();
         return logs_;
     }
 
@@ -176,6 +180,37 @@ private:
                     logs_[mixes_[s].node[n]] -= excess;
                 }
             }
+        }
+    }
+    /// A sweep that lowers a point takes all of its nodes along, which may leave some of them lower
+    /// than any point asks for. In each round a node rises by half of what its points lack, or of
+    /// the room that they leave, whichever is less: weights are not negative, so that no point
+    /// leaves its band.
+    void fill() {
+        std::vector<double> wanted(logs_.size()), room(logs_.size());
+        for (int round = 0; round < filling; ++round) {
+            std::ranges::fill(wanted, 0.0);
+            std::ranges::fill(room, std::numeric_limits<double>::infinity());
+            for (std::size_t s = 0; s < mixes_.size(); ++s) {
+                const double at = value(s);
+                const double shortage = lower_[s] - at, left = lower_[s] + band - at;
+                for (std::size_t n = 0; n < 4; ++n) {
+                    const double weight = mixes_[s].weight[n];
+                    if (!(weight > 0)) continue;
+                    const std::size_t node = mixes_[s].node[n];
+                    wanted[node] = std::max(wanted[node], shortage * weight / squares_[s]);
+                    // The nodes of a point rise together, and their weights sum to 1.
+                    room[node] = std::min(room[node], left);
+                }
+            }
+            bool moved = false;
+            for (std::size_t node = 0; node < logs_.size(); ++node) {
+                const double rise = std::min(wanted[node], room[node]) / 2;
+                if (!(rise > 1e-6)) continue;
+                logs_[node] += rise;
+                moved = true;
+            }
+            if (!moved) return;
         }
     }
     /// Least squares to the middle of the band; nodes that no point touches follow the others.
