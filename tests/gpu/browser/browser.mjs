@@ -47,6 +47,7 @@ export async function withBrowser(
       }
       return route.fulfill(found);
     });
+    await context.addInitScript({ path: join(here, 'page_functions.js') });
     const page = await context.newPage();
     page.setDefaultTimeout(240000);
     page.on('console', (message) => {

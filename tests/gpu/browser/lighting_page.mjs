@@ -2,7 +2,6 @@
 
 // Draws normals and viewers with one model into a float target; the time is that of further draws.
 export async function drawWebGl2(job) {
-  const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   const gl = document.createElement('canvas').getContext('webgl2');
   if (!gl.getExtension('EXT_color_buffer_float')) throw new Error('no EXT_color_buffer_float');
   const areas = job.light.length / 15;
@@ -29,26 +28,7 @@ export async function drawWebGl2(job) {
       vec4 n = texelFetch(normals, at, 0);
       colour = vec4(n.w > 0.0 ? shade(n.xyz, texelFetch(viewers, at, 0).xyz) : vec3(0.0), n.w);
     }`;
-  const vertex = `#version 300 es
-    void main() {
-      gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1);
-    }`;
-  const program = gl.createProgram();
-  for (const [type, source] of [
-    [gl.VERTEX_SHADER, vertex],
-    [gl.FRAGMENT_SHADER, fragment],
-  ]) {
-    const shader = gl.createShader(type);
-    gl.shaderSource(shader, source);
-    gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS))
-      throw new Error(gl.getShaderInfoLog(shader));
-    gl.attachShader(program, shader);
-  }
-  gl.linkProgram(program);
-  if (!gl.getProgramParameter(program, gl.LINK_STATUS))
-    throw new Error(gl.getProgramInfoLog(program));
-  gl.useProgram(program);
+  const program = checks.useProgram(gl, fragment);
   let unit = 0;
   const bind = (name, target, least, most) => {
     gl.activeTexture(gl.TEXTURE0 + unit);
@@ -61,7 +41,7 @@ export async function drawWebGl2(job) {
   };
   const numbers = (name, width, height, text) => {
     bind(name, gl.TEXTURE_2D, gl.NEAREST, gl.NEAREST);
-    const values = new Float32Array(bytesOf(text).buffer);
+    const values = new Float32Array(checks.bytesOf(text).buffer);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, values);
   };
   const name = { coefficients: 'coefficients', 'split-sum': 'splitSum', ltc: 'ltc' }[job.model];
@@ -71,7 +51,7 @@ export async function drawWebGl2(job) {
   if (job.cube) {
     bind('hsh_splitSum_cube', gl.TEXTURE_CUBE_MAP, gl.LINEAR_MIPMAP_LINEAR, gl.LINEAR);
     gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MAX_LEVEL, job.cube.levels.length - 1);
-    const texels = new Uint16Array(bytesOf(job.cube.bytes).buffer);
+    const texels = new Uint16Array(checks.bytesOf(job.cube.bytes).buffer);
     job.cube.levels.forEach(({ face, offset }, level) => {
       for (let k = 0; k < 6; ++k) {
         const first = offset / 2 + k * face * face * 4;
@@ -121,7 +101,6 @@ export async function drawWebGl2(job) {
 // The same in a fragment shader of WebGPU. (In compute shaders, SwiftShader filters cube maps without
 // the neighbouring faces.)
 export async function drawWebGpu(job) {
-  const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   const adapter = await navigator.gpu?.requestAdapter();
   if (!adapter) throw new Error('no WebGPU adapter');
   const device = await adapter.requestDevice();
@@ -173,7 +152,7 @@ export async function drawWebGpu(job) {
   const table = textureOf('rgba32float', job.table.width, 1, 1);
   device.queue.writeTexture(
     { texture: table },
-    bytesOf(job.table.bytes),
+    checks.bytesOf(job.table.bytes),
     { bytesPerRow: job.table.width * 16 },
     [job.table.width, job.table.height],
   );
@@ -194,13 +173,13 @@ export async function drawWebGpu(job) {
   const entries = [
     { binding: 0, resource: table.createView() },
     { binding: 3, resource: bufferOf(light) },
-    { binding: 4, resource: bufferOf(bytesOf(job.normals)) },
-    { binding: 5, resource: bufferOf(bytesOf(job.viewers)) },
+    { binding: 4, resource: bufferOf(checks.bytesOf(job.normals)) },
+    { binding: 5, resource: bufferOf(checks.bytesOf(job.viewers)) },
   ];
   if (job.cube) {
     const { levels } = job.cube;
     const cube = textureOf('rgba16float', levels[0].face, 6, levels.length);
-    const texels = bytesOf(job.cube.bytes);
+    const texels = checks.bytesOf(job.cube.bytes);
     levels.forEach(({ face, offset, bytes }, mipLevel) =>
       device.queue.writeTexture(
         { texture: cube, mipLevel },

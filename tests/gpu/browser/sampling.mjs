@@ -6,30 +6,10 @@ import { decoded, expect, finish, readJson, withBrowser } from './browser.mjs';
 
 // In the page: a fragment shader into four float targets, one pixel a pair; all jobs of a case.
 async function draw(job) {
-  const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   const gl = document.createElement('canvas').getContext('webgl2');
   if (!gl.getExtension('EXT_color_buffer_float')) throw new Error('no EXT_color_buffer_float');
   gl.getExtension('OES_texture_float_linear');
-  const program = gl.createProgram();
-  const vertex = `#version 300 es
-    void main() {
-      gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1);
-    }`;
-  for (const [type, source] of [
-    [gl.VERTEX_SHADER, vertex],
-    [gl.FRAGMENT_SHADER, job['glsl-es']],
-  ]) {
-    const shader = gl.createShader(type);
-    gl.shaderSource(shader, source);
-    gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS))
-      throw new Error(gl.getShaderInfoLog(shader));
-    gl.attachShader(program, shader);
-  }
-  gl.linkProgram(program);
-  if (!gl.getProgramParameter(program, gl.LINK_STATUS))
-    throw new Error(gl.getProgramInfoLog(program));
-  gl.useProgram(program);
+  const program = checks.useProgram(gl, job['glsl-es']);
   const texture = (unit, name, target, filter) => {
     gl.activeTexture(gl.TEXTURE0 + unit);
     gl.bindTexture(target, gl.createTexture());
@@ -42,7 +22,7 @@ async function draw(job) {
   const { width, height, layers, bytes } = job.coefficients;
   if (job.textured) {
     texture(0, 'hsh_coefficients', gl.TEXTURE_2D_ARRAY, gl.LINEAR);
-    const texels = new Float32Array(bytesOf(bytes).buffer);
+    const texels = new Float32Array(checks.bytesOf(bytes).buffer);
     gl.texImage3D(
       ...[gl.TEXTURE_2D_ARRAY, 0, gl.RGBA32F, width, height, layers, 0, gl.RGBA, gl.FLOAT, texels],
     );
@@ -62,7 +42,7 @@ async function draw(job) {
   texture(2, 'wis', gl.TEXTURE_2D, gl.NEAREST);
   const results = [];
   for (const text of job.inputs) {
-    const inputs = new Float32Array(bytesOf(text).buffer);
+    const inputs = new Float32Array(checks.bytesOf(text).buffer);
     for (const first of [0, 3]) {
       const vectors = Float32Array.from({ length: 4 * pairs }, (_, i) =>
         i % 4 === 3 ? 0 : inputs[6 * (i >> 2) + first + (i % 4)],
@@ -97,7 +77,6 @@ async function draw(job) {
 
 // In the page: a compute shader, one invocation a pair.
 async function compute(job) {
-  const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   const adapter = await navigator.gpu?.requestAdapter();
   if (!adapter) throw new Error('no WebGPU adapter');
   const device = await adapter.requestDevice({ requiredFeatures: ['float32-filterable'] });
@@ -117,13 +96,13 @@ async function compute(job) {
   });
   device.queue.writeTexture(
     { texture },
-    bytesOf(bytes),
+    checks.bytesOf(bytes),
     { bytesPerRow: 16 * width, rowsPerImage: height },
     [width, height, layers],
   );
   const results = [];
   for (const text of job.inputs) {
-    const inputs = bytesOf(text),
+    const inputs = checks.bytesOf(text),
       pairs = job.side * job.side,
       size = 4 * pairs * job.outputs;
     const bufferOf = (bytesOfIt, usage) => device.createBuffer({ size: bytesOfIt, usage });

@@ -3,7 +3,6 @@ import { expect, finish, proveBreaksShow, proveCases, withBrowser } from './brow
 
 // In the page: a fragment shader into four float targets, one pixel a pair.
 async function draw(job) {
-  const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   const gl = document.createElement('canvas').getContext('webgl2');
   if (!gl.getExtension('EXT_color_buffer_float')) throw new Error('no EXT_color_buffer_float');
   gl.getExtension('OES_texture_float_linear');
@@ -15,26 +14,7 @@ async function draw(job) {
     unorm16: [norm16?.RGBA16_EXT, gl.UNSIGNED_SHORT, Uint16Array],
   };
   if (!formats[job.coefficients.number][0]) return { left: 'no EXT_texture_norm16 here' };
-  const program = gl.createProgram();
-  const vertex = `#version 300 es
-    void main() {
-      gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1);
-    }`;
-  for (const [type, source] of [
-    [gl.VERTEX_SHADER, vertex],
-    [gl.FRAGMENT_SHADER, job['glsl-es']],
-  ]) {
-    const shader = gl.createShader(type);
-    gl.shaderSource(shader, source);
-    gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS))
-      throw new Error(gl.getShaderInfoLog(shader));
-    gl.attachShader(program, shader);
-  }
-  gl.linkProgram(program);
-  if (!gl.getProgramParameter(program, gl.LINK_STATUS))
-    throw new Error(gl.getProgramInfoLog(program));
-  gl.useProgram(program);
+  const program = checks.useProgram(gl, job['glsl-es']);
   let unit = 0;
   const texture = (name, target, filter) => {
     gl.activeTexture(gl.TEXTURE0 + unit);
@@ -60,10 +40,10 @@ async function draw(job) {
       0,
       gl.RGBA,
       type,
-      new Type(bytesOf(bytes).buffer),
+      new Type(checks.bytesOf(bytes).buffer),
     );
   }
-  const inputs = new Float32Array(bytesOf(job.inputs).buffer),
+  const inputs = new Float32Array(checks.bytesOf(job.inputs).buffer),
     side = job.side,
     pairs = side * side;
   const numbers = (name, width, height, values) => {

@@ -3,7 +3,6 @@ import { finish, expect, proveBreaksShow, proveCases, withBrowser } from './brow
 
 // In the page: a compute shader, one invocation a pair.
 async function compute(job) {
-  const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   const adapter = await navigator.gpu?.requestAdapter();
   if (!adapter) throw new Error('no WebGPU adapter');
   const wanted = job.coefficients.number;
@@ -35,7 +34,7 @@ async function compute(job) {
     });
     device.queue.writeTexture(
       { texture },
-      bytesOf(bytes),
+      checks.bytesOf(bytes),
       { bytesPerRow: width * size, rowsPerImage: height },
       [width, height, layers],
     );
@@ -46,7 +45,7 @@ async function compute(job) {
     if (data) device.queue.writeBuffer(buffer, 0, data);
     return buffer;
   };
-  const inputs = bytesOf(job.inputs),
+  const inputs = checks.bytesOf(job.inputs),
     pairs = job.side * job.side;
   const size = 4 * pairs * (2 * job.channels + job.lights);
   const storage = GPUBufferUsage.STORAGE;
