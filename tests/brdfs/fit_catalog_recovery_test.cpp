@@ -173,7 +173,8 @@ protected:
             GTEST_SKIP() << "a minute: its masking is an integral, by differences; HSHFIT_DRAWS=1";
         // A sum of dozens of terms for each value, or an integral; by differences.
         const std::string_view name = GetParam().model->name;
-        const bool slow = name == "he" || (name == "gtr" && !GetParam().choice.empty());
+        const bool slow =
+            name == "he" || name == "openpbr" || (name == "gtr" && !GetParam().choice.empty());
         const std::size_t size = slow ? 150 : std::getenv("HSHFIT_DRAWS") ? 1500 : 500;
         const int starts = slow ? 3 : size < 1500 ? 8 : 16;
         std::mt19937_64 random(11);

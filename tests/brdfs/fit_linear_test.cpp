@@ -153,6 +153,9 @@ TEST(LinearParameters, AreThoseThatTheTableStates) {
                 for (std::size_t j = 0; j < sum->shapes().size(); ++j) {
                     const FreeParameter& free = sum->shapes()[j].free;
                     if (!free.colour || free.keys.size() > 1 || free.min != 0) continue;
+                    // By its largest component it darkens what lies below: f is linear in a grey
+                    // one beside a stated base colour, and not in a coloured one.
+                    if (free.keys.front() == "sheenColorFactor") continue;
                     EXPECT_FALSE(linearBesides(*sum, shapesAt(*sum, 0.3), j) &&
                                  linearBesides(*sum, shapesAt(*sum, 0.7), j))
                         << free.keys.front() << " is linear, and its row does not say so";
