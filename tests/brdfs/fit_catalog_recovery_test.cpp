@@ -171,6 +171,9 @@ protected:
         if (GetParam().model->name == "gtr" && !GetParam().choice.empty() &&
             !std::getenv("HSHFIT_DRAWS"))
             GTEST_SKIP() << "a minute: its masking is an integral, by differences; HSHFIT_DRAWS=1";
+        if (GetParam().model->name == "openpbr" && !std::getenv("HSHFIT_DRAWS"))
+            GTEST_SKIP() << "minutes: every difference tabulates albedos of its layers; "
+                            "HSHFIT_DRAWS=1";
         // A sum of dozens of terms for each value, or an integral; by differences.
         const std::string_view name = GetParam().model->name;
         const bool slow =
