@@ -29,6 +29,10 @@ Json cameraJson(const jobs::IlluminatedCamera& camera) {
                  {"bytes", nullptr},
                  {"mean", camera.mean},
                  {"standard_error", camera.standardError},
+                 {"largest_error",
+                  {{"relative", camera.largestError},
+                   {"column", camera.errorColumn},
+                   {"row", camera.errorRow}}},
                  {"cut", camera.cut},
                  {"exposure", camera.stops},
                  {"files", camera.files}};
@@ -43,9 +47,10 @@ Json cameraJson(const jobs::IlluminatedCamera& camera) {
 
 std::string textOf(const jobs::IlluminatedCamera& camera) {
     std::string text = fmt::format(
-        "{}: {} x {}, mean radiance {:.4g}, standard error of a pixel {:.2g} % of it, {:.3g} rays, "
-        "{:.1f} s ({:.1f} s of CPU)\n",
+        "{}: {} x {}, mean radiance {:.4g}, standard error of a pixel {:.2g} % of it, at most "
+        "{:.2g} % at ({}, {}), {:.3g} rays, {:.1f} s ({:.1f} s of CPU)\n",
         camera.name, camera.width, camera.height, camera.mean, 100 * camera.standardError,
+        100 * camera.largestError, camera.errorColumn, camera.errorRow,
         static_cast<double>(camera.rays), camera.seconds, camera.cpuSeconds);
     if (camera.cut > 0) text += fmt::format("  {} paths were cut\n", camera.cut);
     if (camera.reference) {

@@ -150,7 +150,14 @@ IlluminatedCamera pictured(const SurfaceScene& scene, const Camera& camera,
     for (const float value : picture.values) result.mean += static_cast<double>(value) / count;
     for (const float value : error.values)
         squares += static_cast<double>(value) * static_cast<double>(value) / count;
-    result.standardError = result.mean > 0 ? std::sqrt(squares) / result.mean : 0;
+    if (result.mean > 0) {
+        const auto largest = std::ranges::max_element(error.values);
+        const auto pixel = static_cast<int>((largest - error.values.begin()) / 3);
+        result.standardError = std::sqrt(squares) / result.mean;
+        result.largestError = static_cast<double>(*largest) / result.mean;
+        result.errorColumn = pixel % camera.width;
+        result.errorRow = pixel / camera.width;
+    }
     if (!options.reference.empty())
         result.reference = errorAgainst(readRgbExr(options.reference), picture, options.reference);
     result.stops = options.stops.value_or(automaticExposure(picture));

@@ -35,9 +35,10 @@ struct IlluminatedCamera {
     double seconds = 0, cpuSeconds = 0;  ///< of the picture
     std::size_t rays = 0, cut = 0;
     double mean = 0;  ///< radiance, over pixels and R, G, B
-    /// The root of the mean square of the standard errors, over the mean; its largest term with its
-    /// place is in the picture of errors.
-    double standardError = 0;
+    /// The root of the mean square of the standard errors, and the largest of them with its pixel,
+    /// over the mean.
+    double standardError = 0, largestError = 0;
+    int errorColumn = 0, errorRow = 0;
     double stops = 0;
     std::optional<ReferenceError> reference = {};
     std::vector<std::string> files = {};
