@@ -22,17 +22,24 @@ function(hshfit_precompiled target)
   target_precompile_headers(${target} REUSE_FROM ${headers})
 endfunction()
 
-# hshfit_room(NAME SOURCES… [NEEDS ROOM…] [LINKS LIBRARY…]): a folder of lib/hshfit as a static
-# library, hshfit_room_NAME. NEEDS lists the rooms whose headers it includes, all of them lower;
-# tests/house_rules.sh holds that to the includes. LINKS are libraries that no header shows.
+# hshfit_room(NAME SOURCES… [APART] [NEEDS ROOM…] [LINKS LIBRARY…]): a folder of lib/hshfit as a
+# static library, hshfit_room_NAME. With HSHFIT_UNITY eight sources are compiled at a time; APART is
+# for rooms whose sources have local functions of one name, as the members of a table do. NEEDS
+# lists the rooms whose headers it includes, all of them lower; tests/house_rules.sh holds that to
+# the includes. LINKS are libraries that no header shows.
 function(hshfit_room name)
-  cmake_parse_arguments(ARG "" "" "NEEDS;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "APART" "" "NEEDS;LINKS" ${ARGN})
   set(target hshfit_room_${name})
   add_library(${target} STATIC ${ARG_UNPARSED_ARGUMENTS})
   list(TRANSFORM ARG_NEEDS PREPEND hshfit_room_)
   target_link_libraries(${target} PUBLIC hshfit_front_door fmt::fmt ${ARG_NEEDS}
                         PRIVATE hshfit_flags ${ARG_LINKS})
   hshfit_precompiled(${target} ${HSHFIT_ROOM_HEADERS})
+  if(HSHFIT_UNITY AND NOT ARG_APART)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    # GCC takes an unnamed namespace of an included source for one of a header.
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  endif()
 endfunction()
 
 # hshfit_part(NAME ROOM…): several rooms under one public name, hshfit::NAME.

@@ -1,5 +1,7 @@
 #include <brdfs/measured/scattered/chart.h>
 
+#include <hshfit/brdf/vectors.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,10 +22,6 @@ Plane disc(const Direction& d) {
     return {d.x * scale, d.y * scale};
 }
 
-Direction sum(const Direction& a, const Direction& b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-
 double length(const Direction& d) {
     return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
 }
@@ -35,7 +33,7 @@ Direction unit(const Direction& d) {
 
 double angleBetween(const Direction& a, const Direction& b) {
     const Direction difference{a.x - b.x, a.y - b.y, a.z - b.z};
-    return 2 * std::atan2(length(difference), length(sum(a, b)));
+    return 2 * std::atan2(length(difference), length(a + b));
 }
 
 Point pairPoint(bool isotropic, const Direction& wi, const Direction& wo) {
@@ -104,8 +102,8 @@ std::string_view chartName(Chart chart) {
 }
 
 Point chartPoint(Chart chart, const Direction& wi, const Direction& wo) {
-    const Direction half = unit(sum(wi, wo));
-    const Direction back = unit(sum(wo, mirrored(wi)));
+    const Direction half = unit(wi + wo);
+    const Direction back = unit(wo + mirrored(wi));
     const Plane h = disc(half), k = disc(back);
     const auto flat = [](double x, double y) { return std::sqrt(x * x + y * y) / 2; };
     switch (chart) {

@@ -34,7 +34,7 @@ std::array<double, 4> lowDiscrepancy(std::size_t k) {
     return point;
 }
 
-Direction uniform(double u, double v) {
+Direction ofSquare(double u, double v) {
     const double sine = std::sqrt(u * (2 - u));
     return {sine * std::cos(2 * pi * v), sine * std::sin(2 * pi * v), 1 - u};
 }
@@ -43,7 +43,7 @@ Direction uniform(double u, double v) {
 /// the directions is below the horizon.
 std::optional<DirectionPair> pairNumber(std::size_t k) {
     const auto u = lowDiscrepancy(k / 2);
-    if (k % 2 == 0) return DirectionPair{uniform(u[0], u[1]), uniform(u[2], u[3])};
+    if (k % 2 == 0) return DirectionPair{ofSquare(u[0], u[1]), ofSquare(u[2], u[3])};
     const DirectionPair pair =
         fromHalfDifference(pi / 2 * u[0] * u[0], 2 * pi * u[1], pi / 2 * u[2], 2 * pi * u[3]);
     if (pair.wi.z <= 0 || pair.wo.z <= 0) return std::nullopt;

@@ -11,7 +11,7 @@ namespace {
 
 using Step = JacobiBasis::Step;
 
-constexpr std::size_t blockSize = 64;
+constexpr std::size_t scalarBlock = 64;
 
 /// Inputs of the recurrence for one point.
 struct Place {
@@ -100,8 +100,8 @@ struct Rows {
 template <class Real>
 struct Lanes {
     std::size_t n = 0;
-    std::array<std::size_t, blockSize> index;
-    std::array<Real, blockSize> y, p, d;
+    std::array<std::size_t, scalarBlock> index;
+    std::array<Real, scalarBlock> y, p, d;
 
     void add(std::size_t point, Real distance, Real start) {
         index[n] = point;
@@ -174,10 +174,10 @@ void JacobiBasis::fillScalar(int m, std::span<const Elevation<Real>> points, Rea
     const double c = starts_[static_cast<std::size_t>(m)];
     const std::size_t offset = offsets_[static_cast<std::size_t>(m)];
     const Rows<Real> rows{out, count * step, functions(m)};
-    for (std::size_t first = 0; first < count; first += blockSize) {
-        const std::size_t n = std::min(blockSize, count - first);
-        std::array<Place, blockSize> places;
-        std::array<double, blockSize> base, start;
+    for (std::size_t first = 0; first < count; first += scalarBlock) {
+        const std::size_t n = std::min(scalarBlock, count - first);
+        std::array<Place, scalarBlock> places;
+        std::array<double, scalarBlock> base, start;
         for (std::size_t j = 0; j < n; ++j) {
             const Elevation<Real>& e = points[first + j];
             places[j] = placeOf(family_, double{e.mu}, double{e.oneMinusMu});

@@ -25,7 +25,6 @@ constexpr const char* slotRule = "l*(l+1)+m";
 constexpr int insetTexels = 1;
 constexpr double horizonRingDegrees = 1;
 constexpr int maxMapSide = 1 << 16;
-constexpr double none = std::numeric_limits<double>::quiet_NaN();  // null in files
 
 std::string text(const Ordered& value) {
     return jsonText(value);
@@ -161,8 +160,8 @@ Energy readEnergy(const Fields& root) {
     Energy energy;
     const auto value = root.numberOrNull("energy");
     energy.finite = value.has_value();
-    energy.value = value.value_or(none);
-    energy.error = root.numberOrNull("energy_error").value_or(none);
+    energy.value = value.value_or(nullNumber);
+    energy.error = root.numberOrNull("energy_error").value_or(nullNumber);
     if (root.has("energy_reason")) energy.reason = root.word("energy_reason");
     return energy;
 }
@@ -274,14 +273,14 @@ CoefficientHead readSharedHead(const Fields& root, std::size_t outgoingCount) {
     result.bilateral = symmetry.flag("bilateral");
     result.reciprocal = symmetry.flag("reciprocal");
     result.energy = readEnergy(root);
-    result.error = root.numberOrNull("error").value_or(none);
+    result.error = root.numberOrNull("error").value_or(nullNumber);
     return result;
 }
 
 CoefficientHead readHead(const Fields& root, std::size_t outgoingCount) {
     requireFormat(root, formatName, formatVersion);
     CoefficientHead result = readSharedHead(root, outgoingCount);
-    result.tolerance = root.numberOrNull("tolerance").value_or(none);
+    result.tolerance = root.numberOrNull("tolerance").value_or(nullNumber);
     if (root.has("least_squares")) {
         const Fields fit = root.object("least_squares");
         result.leastSquares = LeastSquaresNote{.regularisation = fit.number("regularisation"),

@@ -22,7 +22,6 @@ using Domain = LightCoefficients::Domain;
 
 constexpr const char* lightFormat = "hshfit-light";
 constexpr int lightVersion = 1;
-constexpr double none = std::numeric_limits<double>::quiet_NaN();  // null in files
 
 Ordered energyJson(const Energy& energy) {
     const bool exists = energy.finite && std::isfinite(energy.value);
@@ -97,8 +96,8 @@ Channels readLightChannels(const JsonFields& root) {
 Energy readLightEnergy(const JsonFields& fields) {
     Energy energy;
     energy.finite = fields.flag("finite");
-    energy.value = fields.numberOrNull("value").value_or(none);
-    energy.error = fields.numberOrNull("error").value_or(none);
+    energy.value = fields.numberOrNull("value").value_or(nullNumber);
+    energy.error = fields.numberOrNull("error").value_or(nullNumber);
     if (energy.finite != std::isfinite(energy.value)) {
         fields.fail("has to be a number if 'finite' is true, else null", "value");
     }
@@ -114,7 +113,7 @@ std::vector<LightCurve> readCurves(const JsonFields& root) {
         for (const JsonFields& point : fields.objects("points")) {
             curve.points.push_back({point.integer("order", 1, 1 << 15),
                                     point.integer("coefficients", 1, 1 << 30),
-                                    point.numberOrNull("accuracy").value_or(none)});
+                                    point.numberOrNull("accuracy").value_or(nullNumber)});
         }
         curves.push_back(std::move(curve));
     }
@@ -162,7 +161,7 @@ LightCoefficients lightFromJson(std::string_view text, const std::string& file) 
     readDomain(root, light);
     light.channels = readLightChannels(root);
     light.energy = readLightEnergy(root.object("energy"));
-    light.error = root.numberOrNull("error").value_or(none);
+    light.error = root.numberOrNull("error").value_or(nullNumber);
     light.curves = readCurves(root);
     for (const auto& row : root.table("coefficients", light.channels.count(), light.slots())) {
         light.values.insert(light.values.end(), row.begin(), row.end());

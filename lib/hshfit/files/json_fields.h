@@ -4,6 +4,7 @@
 // nlohmann-json.
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +13,9 @@
 #include <nlohmann/json.hpp>
 
 namespace hshfit::inline files {
+
+/// The number that null stands for.
+inline constexpr double nullNumber = std::numeric_limits<double>::quiet_NaN();
 
 /// A number as JSON can hold it: null where there is none or it is not finite.
 nlohmann::ordered_json finiteOrNull(std::optional<double> value);

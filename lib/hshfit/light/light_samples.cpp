@@ -15,11 +15,6 @@
 namespace hshfit::inline light {
 namespace {
 
-Direction sum(double a, const Direction& u, double b, const Direction& v, double c,
-              const Direction& w) {
-    return {a * u.x + b * v.x + c * w.x, a * u.y + b * v.y + c * w.y, a * u.z + b * v.z + c * w.z};
-}
-
 /// Axes with `towards` as the pole, the first along growing theta and the second along phi.
 struct Axes {
     explicit Axes(const Direction& towards) : Axes(polarAngle(towards), azimuth(towards)) {}
@@ -40,7 +35,7 @@ PanelPoint panelPoint(const PanelLight& light, const Axes& axes, double x, doubl
     const double px = x * halfWidth, py = y * halfHeight;
     const double c = std::cos(light.turn), s = std::sin(light.turn);
     const double squared = 1 + px * px + py * py;
-    return {normalised(sum(1, axes.pole, c * px - s * py, axes.along, s * px + c * py, axes.down)),
+    return {normalised(axes.pole + (c * px - s * py) * axes.along + (s * px + c * py) * axes.down),
             halfWidth * halfHeight / (squared * std::sqrt(squared))};
 }
 
@@ -48,7 +43,7 @@ struct RadianceFrom {
     const Direction& world;
 
     Rgb operator()(const DiscLight& light) const {
-        const Direction gap = sum(1, world, -1, light.towards, 0, world);
+        const Direction gap = world - light.towards;
         const bool inside = dot(gap, gap) <= std::pow(2 * std::sin(light.radius / 2), 2);
         return inside ? light.radiance : Rgb{};
     }
@@ -85,9 +80,10 @@ struct AddNodes {
             const double weight = depth * rule.weights[r] / 2 * 2 * pi / azimuths;
             for (int j = 0; j < azimuths; ++j) {
                 const double phi = (j + 0.5) * 2 * pi / azimuths;
-                samples.add(frame.toLocal(sum(1 - missing, axes.pole, s * std::cos(phi), axes.down,
-                                              s * std::sin(phi), axes.along)),
-                            light.radiance, weight);
+                samples.add(
+                    frame.toLocal((1 - missing) * axes.pole + s * std::cos(phi) * axes.down +
+                                  s * std::sin(phi) * axes.along),
+                    light.radiance, weight);
             }
         }
     }
@@ -156,9 +152,10 @@ struct AddLattice {
         for (std::size_t k = 0; k < points; ++k) {
             const auto [u, v] = latticePoint(k);
             const double missing = depth * u, s = std::sqrt(missing * (2 - missing));
-            samples.add(frame.toLocal(sum(1 - missing, axes.pole, s * std::cos(2 * pi * v),
-                                          axes.down, s * std::sin(2 * pi * v), axes.along)),
-                        light.radiance, 2 * pi * depth / static_cast<double>(points));
+            samples.add(
+                frame.toLocal((1 - missing) * axes.pole + s * std::cos(2 * pi * v) * axes.down +
+                              s * std::sin(2 * pi * v) * axes.along),
+                light.radiance, 2 * pi * depth / static_cast<double>(points));
         }
     }
     void operator()(const PanelLight& light) const {
@@ -203,12 +200,12 @@ Frame::Frame(const Orientation& orientation) {
     normal = axes.pole;
     // +x and +y, carried from +z along the great circle, then turned.
     const double turn = orientation.turn - orientation.phi;
-    tangent = sum(std::cos(turn), axes.down, std::sin(turn), axes.along, 0, normal);
+    tangent = std::cos(turn) * axes.down + std::sin(turn) * axes.along;
     bitangent = cross(normal, tangent);
 }
 
 Direction Frame::toWorld(const Direction& d) const {
-    return sum(d.x, tangent, d.y, bitangent, d.z, normal);
+    return d.x * tangent + d.y * bitangent + d.z * normal;
 }
 Direction Frame::toLocal(const Direction& d) const {
     return {dot(d, tangent), dot(d, bitangent), dot(d, normal)};

@@ -15,6 +15,10 @@ namespace hshfit::inline light {
 /// Linear Rec. 709.
 using Rgb = std::array<double, 3>;
 
+inline double meanOf(const Rgb& rgb) {
+    return (rgb[0] + rgb[1] + rgb[2]) / 3;
+}
+
 /// A round light of uniform radiance, `radius` radians from its centre to its rim.
 struct DiscLight {
     Direction towards;

@@ -2,7 +2,6 @@
 
 template class Eigen::BDCSVD<Eigen::MatrixXd>;
 template class Eigen::JacobiSVD<Eigen::MatrixXd>;
-template class Eigen::JacobiSVD<hshfit::linear_algebra::RowMajor>;
 template class Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 template class Eigen::HouseholderQR<hshfit::linear_algebra::RowMajor>;
 template class Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;

@@ -14,7 +14,6 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 extern template class Eigen::BDCSVD<Eigen::MatrixXd>;
 extern template class Eigen::JacobiSVD<Eigen::MatrixXd>;
-extern template class Eigen::JacobiSVD<hshfit::linear_algebra::RowMajor>;
 extern template class Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 extern template class Eigen::HouseholderQR<hshfit::linear_algebra::RowMajor>;
 extern template class Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;

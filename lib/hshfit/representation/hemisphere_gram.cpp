@@ -65,7 +65,8 @@ HemisphereGram::HemisphereGram(const Basis& basis) {
             const Matrix r = upperFactor(weightedValues(basis, m, factor.bands));
             // A basis that is orthonormal for m = 0 is orthonormal for all m.
             if (m == 0 && (r - Matrix::Identity(r.rows(), r.cols())).norm() < 1e-6) return;
-            const Eigen::VectorXd sigma = Eigen::JacobiSVD<Matrix>(r).singularValues();
+            const Eigen::VectorXd sigma =
+                Eigen::JacobiSVD<Eigen::MatrixXd>(Eigen::MatrixXd(r)).singularValues();
             condition_ = std::max(condition_, sigma(0) / sigma(sigma.size() - 1));
             factor.upper.assign(r.data(), r.data() + r.size());
         }

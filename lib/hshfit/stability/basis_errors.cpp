@@ -16,8 +16,6 @@
 namespace hshfit::stability {
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
 /// Angles from either end of [0, pi/2]: decades down to 1e-12, then equal steps.
 std::vector<Direction> probes() {
     std::vector<double> distances = {0};
@@ -59,7 +57,7 @@ std::vector<double> errorsAt(const bases::JacobiBasis& basis, int m,
     const std::vector<long double> reference =
         referenceTheta(basis.family(), m, basis.order(), directions);
     constexpr double tiny = std::is_same_v<Real, float> ? 1e-30 : 1e-250;
-    std::vector<double> errors(order, nothing);
+    std::vector<double> errors(order, unmeasured);
     for (std::size_t l = m; l < order; ++l) {
         if (!basis.has(static_cast<int>(l), m)) continue;
         long double largest = 0, difference = 0;
@@ -97,7 +95,7 @@ std::vector<double> deviationsAt(const bases::JacobiBasis& basis, int m) {
                                   values.data(), count, functions)
                                   .template cast<double>();
     const Eigen::MatrixXd gram = t.transpose() * weights.asDiagonal() * t;
-    std::vector<double> deviations(static_cast<std::size_t>(basis.order()), nothing);
+    std::vector<double> deviations(static_cast<std::size_t>(basis.order()), unmeasured);
     for (Eigen::Index l = 0; l < functions; ++l) {
         if (!basis.has(static_cast<int>(l) + m, m)) continue;
         double& largest = deviations[static_cast<std::size_t>(l + m)];
@@ -115,7 +113,7 @@ DegreeErrors largestOverOrders(const bases::JacobiBasis& basis, Precision precis
     tbb::parallel_for(std::size_t{0}, orders.size(),
                       [&](std::size_t k) { each[k] = perOrder(orders[k]); });
     DegreeErrors result{basis.name(), precision,
-                        std::vector<double>(static_cast<std::size_t>(basis.order()), nothing)};
+                        std::vector<double>(static_cast<std::size_t>(basis.order()), unmeasured)};
     for (const auto& errors : each) {
         for (std::size_t l = 0; l < errors.size(); ++l)
             if (!std::isnan(errors[l])) keepLarger(result.error[l], errors[l]);

@@ -2,10 +2,14 @@
 
 #include <hshfit/bases/jacobi.h>
 
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace hshfit::stability {
+
+/// The error of an order that was not measured.
+inline constexpr double unmeasured = std::numeric_limits<double>::quiet_NaN();
 
 enum class Precision { single, twice };
 std::string precisionName(Precision precision);  ///< "float", "double"

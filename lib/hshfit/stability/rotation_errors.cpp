@@ -15,8 +15,6 @@
 namespace hshfit::stability {
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
 std::array<Rotation, 3> someRotations() {
     return {Rotation::euler(0.3, 1e-4, 1.2), Rotation::euler(0, pi / 2, 0),
             Rotation::euler(-1.7, 2.4, 0.8)};
@@ -58,7 +56,7 @@ std::vector<int> sampledDegrees(int order) {
 
 DegreeErrors inFloat(int order) {
     DegreeErrors result{"sh", Precision::single,
-                        std::vector<double>(static_cast<std::size_t>(order), nothing)};
+                        std::vector<double>(static_cast<std::size_t>(order), unmeasured)};
     const std::vector<double> c = someValues(2 * static_cast<std::size_t>(order) + 1);
     const std::vector<int> degrees = sampledDegrees(order);
     tbb::parallel_for(std::size_t{0}, degrees.size(), [&](std::size_t k) {

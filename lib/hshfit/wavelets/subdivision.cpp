@@ -8,13 +8,9 @@
 namespace hshfit::wavelets {
 namespace {
 
-Direction minus(const Direction& a, const Direction& b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
 /// tan(c / 2) of the arc c between two corners.
 double halfTangent(const Direction& a, const Direction& b) {
-    const Direction chord = minus(b, a);
+    const Direction chord = b - a;
     const double sine = 0.5 * std::sqrt(dot(chord, chord));
     return sine / std::sqrt((1 - sine) * (1 + sine));
 }
@@ -46,8 +42,8 @@ public:
         for (std::size_t i = 0; i < 3; ++i) {
             const Direction& here = triangle.corners[i];
             const Direction& next = triangle.corners[(i + 1) % 3];
-            const Direction u = minus(next, here);
-            const Direction w = minus(triangle.corners[(i + 2) % 3], here);
+            const Direction u = next - here;
+            const Direction w = triangle.corners[(i + 2) % 3] - here;
             const double volume = dot(here, cross(u, w));
             const double level = dot(u, w) - dot(here, u) * dot(here, w);
             const double length = std::hypot(volume, level);
@@ -111,7 +107,7 @@ double largestTangent(const Corners& corners, double area) {
 
 double areaOf(const std::array<Direction, 3>& corners) {
     const auto& [a, b, c] = corners;
-    const double volume = dot(a, cross(minus(b, a), minus(c, a)));
+    const double volume = dot(a, cross(b - a, c - a));
     return 2 * std::atan2(volume, 1 + dot(a, b) + dot(b, c) + dot(c, a));
 }
 

@@ -2,6 +2,8 @@
 
 #include <hshfit/coefficients/coefficients.h>
 
+#include <temporary_folder.h>
+
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -58,23 +60,7 @@ inline Coefficients make(const OutgoingSet& outgoing, const Channels& channels, 
     return c;
 }
 
-/// A folder of its own for each test, removed at the end.
-class Folder {
-public:
-    Folder() {
-        std::string pattern = std::filesystem::temp_directory_path() / "hshfit-test-XXXXXX";
-        if (!::mkdtemp(pattern.data())) std::abort();
-        path_ = pattern;
-    }
-    ~Folder() { std::filesystem::remove_all(path_); }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-    const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
+using Folder = test::TemporaryFolder;
 
 inline std::string contentOf(const std::string& path) {
     std::ifstream in(path, std::ios::binary);

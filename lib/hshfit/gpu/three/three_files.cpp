@@ -8,6 +8,7 @@
 #include <hshfit/gpu/three/internal/three_input.h>
 #include <hshfit/gpu/viewer_light.h>
 #include <hshfit/light/catalog.h>
+#include <hshfit/pages/page_figures.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>
@@ -83,12 +84,8 @@ std::string packageName(const std::string& name) {
     return "hshfit-" + result;
 }
 
-/// As text within a script: no '<' ends it early.
 std::string scriptText(const Json& value) {
-    std::string text = jsonText(value);
-    for (std::size_t at = text.find('<'); at != text.npos; at = text.find('<', at))
-        text.replace(at, 1, "\\u003c");
-    return text;
+    return scriptSafe(jsonText(value));
 }
 
 int bandsOf(const ThreeInput& input, const ThreeOptions& options) {

@@ -11,12 +11,6 @@
 namespace hshfit::inline light {
 namespace {
 
-Direction scaled(double a, const Direction& u) {
-    return {a * u.x, a * u.y, a * u.z};
-}
-Direction plus(const Direction& u, const Direction& v) {
-    return {u.x + v.x, u.y + v.y, u.z + v.z};
-}
 /// Rings about the axis in panels that end where the plane touches a ring; each ring is whole, or
 /// an arc with Gauss nodes.
 class CapNodes {
@@ -30,8 +24,8 @@ public:
             slope_ = std::sqrt(dot(across, across));
             if (slope_ > 1e-9) u_ = *cap.above;
         }
-        u_ = plus(u_, scaled(-dot(u_, cap.axis), cap.axis));
-        u_ = scaled(1 / std::sqrt(dot(u_, u_)), u_);
+        u_ = u_ + -dot(u_, cap.axis) * cap.axis;
+        u_ = 1 / std::sqrt(dot(u_, u_)) * u_;
         v_ = cross(cap.axis, u_);
     }
 
@@ -83,8 +77,7 @@ private:
             const auto k = static_cast<std::size_t>(j);
             const double psi = arc * (whole ? (2 * j + 1.0) / count - 1 : rule.nodes[k]);
             const double share = arc * (whole ? 2.0 / count : rule.weights[k]);
-            Direction d = plus(scaled(c, cap_.axis),
-                               plus(scaled(s * std::cos(psi), u_), scaled(s * std::sin(psi), v_)));
+            Direction d = c * cap_.axis + (s * std::cos(psi) * u_ + s * std::sin(psi) * v_);
             // Rings about the pole of the frame have one height, bit by bit.
             if (cap_.axis.z == 1) d.z = c;
             emit_(d, weight * share);

@@ -6,8 +6,6 @@
 namespace hshfit::inline projection {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 double ratioOf(double change, double before) {
     if (change == 0) return 0;
     return before > 0 ? change / before : infinity;

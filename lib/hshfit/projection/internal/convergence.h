@@ -5,13 +5,13 @@
 
 namespace hshfit::inline projection {
 
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
 /// The last changes of a quantity from level to level, newest first; infinite before there are any.
 /// Levels grow by a factor of 1.4 in both directions.
 struct Changes {
     static constexpr std::size_t kept = 3;
-    double values[kept] = {std::numeric_limits<double>::infinity(),
-                           std::numeric_limits<double>::infinity(),
-                           std::numeric_limits<double>::infinity()};
+    double values[kept] = {infinity, infinity, infinity};
 
     void add(double change) {
         values[2] = values[1];

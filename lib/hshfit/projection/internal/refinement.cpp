@@ -19,7 +19,6 @@ namespace {
 using Inner = Basis::Inner;
 
 constexpr int maxLevel = 20;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Of sums over all nodes, relative; and the accuracy of basis functions and of models' formulas,
 /// below which no error is stated.
 constexpr double rounding = 1e-14, accuracyOfValues = 1e-12;

@@ -16,7 +16,6 @@ namespace hshfit::inline representation::inline constraints {
 namespace {
 
 constexpr double boundAccuracy = 1e-6;
-constexpr double lowestRing = 89 * (pi / 180);  // as far down as outgoing directions are kept
 
 /// The same for directions that the BRDF treats alike, to 1e-12.
 std::array<long long, 3> keyOf(const Direction& d, const Laws& laws) {

@@ -7,6 +7,9 @@
 
 namespace hshfit::inline representation::inline constraints {
 
+/// As far down as outgoing directions are kept.
+inline constexpr double lowestRing = 89 * (pi / 180);
+
 /// In slots: what each function of the basis contributes to the directional albedo,
 ///     integral of B cos(theta_i) d omega_i, or of B d omega_i for coefficients of f cos(theta_i);
 /// by Gauss-Legendre nodes in sqrt(cos theta), exact. Only m = 0 is not 0.

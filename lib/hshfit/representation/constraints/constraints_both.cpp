@@ -19,9 +19,8 @@
 namespace hshfit::inline representation::inline constraints {
 namespace {
 
-constexpr std::size_t mostRefined = 8000;       // of the lowest nodes
-constexpr std::size_t mostPerRound = 400;       // of the lowest minima
-constexpr double lowestRing = 89 * (pi / 180);  // as far down as outgoing directions are kept
+constexpr std::size_t mostRefined = 8000;  // of the lowest nodes
+constexpr std::size_t mostPerRound = 400;  // of the lowest minima
 
 /// Everything that the channels of one matrix share.
 class PairScan {

@@ -91,9 +91,9 @@ private:
     Laws laws_;
 };
 
-class PerOutgoing final : public Represented {
+class StoredRows final : public Represented {
 public:
-    PerOutgoing(Representation representation, const BrdfOpener& open)
+    StoredRows(Representation representation, const BrdfOpener& open)
         : Represented(std::move(representation), open), rows_(decoded(representation_)) {}
 
 private:
@@ -169,7 +169,7 @@ std::unique_ptr<RepresentedBrdf> reconstruct(Representation representation,
                                              const BrdfOpener& open) {
     switch (representation.kind()) {
         case Representation::Kind::outgoing:
-            return std::make_unique<PerOutgoing>(std::move(representation), open);
+            return std::make_unique<StoredRows>(std::move(representation), open);
         case Representation::Kind::basis:
             return std::make_unique<BothInBasis>(std::move(representation), open);
         case Representation::Kind::halfway:

@@ -15,7 +15,7 @@
 namespace hshfit::inline representation::inline halfway {
 namespace {
 
-constexpr std::size_t fewestPairs = 1 << 14, mostPairs = 1 << 18, heldOutPairs = 1 << 15;
+constexpr std::size_t fewestFitted = 1 << 14, mostFitted = 1 << 18, heldOutPairs = 1 << 15;
 /// Change of the error of the pairs that are held out at which their number is enough.
 constexpr double settled = 0.02;
 /// Of the mean of the diagonal, where orders are ranked.
@@ -108,9 +108,9 @@ Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
     const HalfwaySamples left = heldOut(brdf);
     HalfwaySamples samples;
     HalfwayFit fit;
-    const std::size_t most = std::clamp(options.maxEvaluations, fewestPairs, mostPairs);
+    const std::size_t most = std::clamp(options.maxEvaluations, fewestFitted, mostFitted);
     double error = 0, change = 1;
-    for (std::size_t first = 0, last = fewestPairs;; first = last, last *= 2) {
+    for (std::size_t first = 0, last = fewestFitted;; first = last, last *= 2) {
         appendSamples(brdf, HalfwayPart::fitted, first, last, samples);
         // A fit to fewer pairs than several times the terms says nothing: go on at once.
         if (samples.size() < 24 * terms.size() && 2 * last <= most) continue;
@@ -186,7 +186,7 @@ OrdersFound ordersWithin(const Brdf& brdf, std::size_t room, Precision precision
     }
     const HalfwayTerms all(largest, symmetry);
     HalfwaySamples samples;
-    appendSamples(brdf, HalfwayPart::fitted, 0, std::max(fewestPairs, 16 * all.size()), samples);
+    appendSamples(brdf, HalfwayPart::fitted, 0, std::max(fewestFitted, 16 * all.size()), samples);
     HalfwayPass pass = halfwayPass(all, samples, {});
     pass = halfwayPass(all, samples, solveHalfway(pass.systems, rankRegularisation));
 

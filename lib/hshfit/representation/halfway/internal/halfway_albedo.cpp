@@ -12,7 +12,7 @@ namespace {
 
 constexpr int outgoingStrata = 12, incomingPairs = 512;
 /// Azimuths of wo in a stratum where f depends on them.
-constexpr int turns = 6;
+constexpr int azimuthStrata = 6;
 /// The mean square of relative errors of albedo that needs no correction: half a per cent.
 constexpr double rightEnough = 2.5e-5;
 /// exp of more than that is cut off: a step of the descent may go astray.
@@ -52,7 +52,7 @@ double HalfwayAlbedo::greatestMean() const {
 }
 
 HalfwayAlbedo albedoOf(const Brdf& brdf, bool reciprocal) {
-    const int replicates = brdf.laws().isotropic ? 1 : turns;
+    const int replicates = brdf.laws().isotropic ? 1 : azimuthStrata;
     const PairSample pairs = spreadPairs(
         {.replicates = replicates, .outgoing = outgoingStrata, .incoming = incomingPairs});
     const std::size_t channels = brdf.channels().count();
