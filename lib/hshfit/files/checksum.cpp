@@ -24,6 +24,10 @@ std::string sha256(std::string_view bytes) {
     return sha256(std::as_bytes(std::span(bytes.data(), bytes.size())));
 }
 
+std::string base64(std::string_view bytes) {
+    return base64(std::as_bytes(std::span(bytes.data(), bytes.size())));
+}
+
 std::string base64(std::span<const std::byte> bytes) {
     std::string text(BASE64_ENCODE_RAW_LENGTH(bytes.size()), '\0');
     base64_encode_raw(text.data(), bytes.size(),

@@ -14,6 +14,7 @@ std::string sha256(std::string_view bytes);
 
 /// Base64 (RFC 4648, section 4) without line breaks.
 std::string base64(std::span<const std::byte> bytes);
+std::string base64(std::string_view bytes);
 /// The bytes again; empty if `text` is no base64 of exactly `count` bytes.
 std::vector<std::byte> fromBase64(std::string_view text, std::size_t count);
 

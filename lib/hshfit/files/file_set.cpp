@@ -45,17 +45,22 @@ fs::path FileSet::placeOf(const std::string& name) const {
     return folder_ == "." ? fs::path(name) : folder_ / name;
 }
 
+void FileSet::requireFree(const std::string& name) const {
+    const fs::path path = placeOf(name);
+    std::error_code error;
+    if (!force_ && fs::exists(path, error)) {
+        throw OutputError(fmt::format("'{}' exists; nothing is written without {}", path.string(),
+                                      Setting{"FileSet::force"}));
+    }
+}
+
 AtomicFile& FileSet::add(const std::string& name) {
     const fs::path path = placeOf(name);
     const std::lock_guard lock(mutex_);
     if (std::ranges::any_of(members_, [&](const auto& member) { return member->path == path; })) {
         throw OutputError(fmt::format("'{}' would be written twice", path.string()));
     }
-    std::error_code error;
-    if (!force_ && fs::exists(path, error)) {
-        throw OutputError(fmt::format("'{}' exists; nothing is written without {}", path.string(),
-                                      Setting{"FileSet::force"}));
-    }
+    requireFree(name);
     members_.push_back(std::make_unique<Member>(
         path, force_ ? AtomicFile::Existing::replace : AtomicFile::Existing::refuse));
     return members_.back()->file;

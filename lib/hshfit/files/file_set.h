@@ -36,6 +36,8 @@ public:
 
     const std::filesystem::path& folder() const { return folder_; }
 
+    /// Throws what `add` throws for a file of that name, before long work is done for nothing.
+    void requireFree(const std::string& name) const;
     /// A file of that name in the folder, or anywhere for an absolute path, to be written to; not
     /// to be committed by itself. Throws OutputError for a name that was added before.
     AtomicFile& add(const std::string& name);
