@@ -1,5 +1,5 @@
-// The bytes are a mesh, OBJ or PLY. A mesh that reads has corners that exist, finite positions and
-// unit normals; anything else is an error of one line.
+// The bytes are a mesh: OBJ, PLY or glTF. A mesh that reads has corners that exist, finite
+// positions and unit normals; anything else is an error of one line.
 
 #include <hshfit/error.h>
 #include <hshfit/meshes/mesh_file.h>

@@ -5,6 +5,7 @@
 #include <hshfit/coefficient_files/light_file.h>
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/files/atomic_file.h>
+#include <hshfit/files/checksum.h>
 #include <hshfit/files/exr_picture.h>
 #include <hshfit/light/catalog.h>
 #include <hshfit/representation/basis_matrix.h>
@@ -21,6 +22,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <span>
 
 namespace {
 
@@ -318,7 +320,37 @@ void presetFiles(const std::filesystem::path& folder) {
     }
 }
 
+void gltf(const std::filesystem::path& folder) {
+    std::string buffer;
+    for (const int x : {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) put(buffer, static_cast<float>(x));
+    for (const int k : {0, 1, 2, 3}) put(buffer, static_cast<std::uint16_t>(k));
+    const std::string head =
+        R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,)"
+        R"("children":[1],"scale":[1,-2,1]},)"
+        R"({"mesh":0,"rotation":[0,0,1,0],"translation":[2,0,0]}],)"
+        R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":0},"indices":1,"mode":6},)"
+        R"({"attributes":{"POSITION":2},"mode":5}]}],"accessors":[{"bufferView":0,"componentType":)"
+        R"(5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5123,"count":4,"type":)"
+        R"("SCALAR"},{"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":3,"indices":)"
+        R"({"bufferView":1,"byteOffset":2,"componentType":5123},"values":{"bufferView":0,)"
+        R"("byteOffset":12}}}],"bufferViews":[{"buffer":0,"byteLength":48,"byteStride":12},)"
+        R"({"buffer":0,"byteOffset":48,"byteLength":8}],"buffers":[{"byteLength":56)";
+    write(folder / "quad.gltf",
+          head + R"(,"uri":"data:application/octet-stream;base64,)" +
+              hshfit::base64(std::as_bytes(std::span(buffer.data(), buffer.size()))) + "\"}]}");
+    std::string text = head + "}]}";
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    std::string bytes = "glTF";
+    const auto size = [](std::size_t count) { return static_cast<std::uint32_t>(count); };
+    for (const std::uint32_t word : {2U, size(28 + text.size() + buffer.size()), size(text.size())})
+        put(bytes, word);
+    bytes += "JSON" + text;
+    put(bytes, size(buffer.size()));
+    write(folder / "quad.glb", bytes + std::string("BIN\0", 4) + buffer);
+}
+
 void meshes(const std::filesystem::path& folder) {
+    gltf(folder);
     write(folder / "quad.obj",
           "# a square\nv -1 0 -1\nv 1 0 -1 0.5 0.5 0.5\nv 1 0 1\nv -1 0 1e0\nvt 0 1\n"
           "vn 0 -1 0\no a\ng b\ns 1\nusemtl m\nf 1/1/1 4//1 3/1 -3\nl 1 2\n");

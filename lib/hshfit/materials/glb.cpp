@@ -121,6 +121,23 @@ Json gltfJson(const GltfMaterial& material) {
     return json;
 }
 
+/// The file of a document and its buffer.
+std::string containerOf(const Json& document, const Buffer& buffer) {
+    std::string text = jsonText(document);
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    const std::size_t length = 12 + 8 + text.size() + 8 + buffer.bytes.size();
+    if (length > std::numeric_limits<std::uint32_t>::max())
+        throw UsageError("a mesh of more than 4 GiB, which a .glb file cannot hold");
+    std::string bytes;
+    for (const std::uint32_t word : {magic, 2u, static_cast<std::uint32_t>(length),
+                                     static_cast<std::uint32_t>(text.size()), jsonChunk})
+        append(bytes, word);
+    bytes += text;
+    append(bytes, static_cast<std::uint32_t>(buffer.bytes.size()));
+    append(bytes, binaryChunk);
+    return bytes + buffer.bytes;
+}
+
 }  // namespace
 
 std::string glbBytes(const GltfMaterial& material, const Surface& surface,
@@ -152,19 +169,54 @@ std::string glbBytes(const GltfMaterial& material, const Surface& surface,
         for (const auto& [name, value] : json["extensions"].items())
             document["extensionsUsed"].push_back(name);
     }
-    std::string text = jsonText(document);
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    const std::size_t length = 12 + 8 + text.size() + 8 + buffer.bytes.size();
-    if (length > std::numeric_limits<std::uint32_t>::max())
-        throw UsageError("a mesh of more than 4 GiB, which a .glb file cannot hold");
-    std::string bytes;
-    for (const std::uint32_t word : {magic, 2u, static_cast<std::uint32_t>(length),
-                                     static_cast<std::uint32_t>(text.size()), jsonChunk})
-        append(bytes, word);
-    bytes += text;
-    append(bytes, static_cast<std::uint32_t>(buffer.bytes.size()));
-    append(bytes, binaryChunk);
-    return bytes + buffer.bytes;
+    return containerOf(document, buffer);
+}
+
+std::string glbBytes(const std::string& name, std::span<const GlbAttribute> attributes,
+                     std::span<const GlbPart> parts, const std::string& extras) {
+    constexpr std::array<std::string_view, 4> types{"SCALAR", "VEC2", "VEC3", "VEC4"};
+    Buffer buffer;
+    Json places = Json::object(), primitives = Json::array(), materials = Json::array();
+    for (const GlbAttribute& attribute : attributes) {
+        const std::vector<float> values(attribute.values.begin(), attribute.values.end());
+        places[attribute.name] =
+            buffer.add(values, types.at(attribute.components - 1), float32, arrayBuffer);
+        Json& accessor = buffer.accessors.back();
+        accessor["count"] = values.size() / attribute.components;
+        if (attribute.name != "POSITION") continue;
+        std::vector<std::array<float, 3>> positions(values.size() / 3);
+        for (std::size_t k = 0; k < values.size(); ++k) positions[k / 3][k % 3] = values[k];
+        addBounds(positions, accessor);
+    }
+    for (const GlbPart& part : parts) {
+        const MaterialColour& c = part.baseColour;
+        primitives.push_back(
+            {{"attributes", places},
+             {"indices", buffer.add(part.indices, "SCALAR", uint32, elementBuffer)},
+             {"material", materials.size()}});
+        materials.push_back({{"name", part.name},
+                             {"pbrMetallicRoughness",
+                              {{"baseColorFactor", Json::array({c[0], c[1], c[2], 1.0})},
+                               {"metallicFactor", 0},
+                               {"roughnessFactor", 1}}}});
+    }
+    if (primitives.empty()) throw UsageError("a mesh without triangles");
+    requireFinite(materials, name);
+    // A quarter turn about -x, (x, y, z, w).
+    const double half = std::sqrt(0.5);
+    const Json upright = Json::array({-half, 0.0, 0.0, half});
+    const Json asset = {{"version", "2.0"}, {"generator", fmt::format("hshfit {}", version)}};
+    Json document = {
+        {"asset", asset},
+        {"scene", 0},
+        {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
+        {"nodes", Json::array({{{"name", name}, {"mesh", 0}, {"rotation", upright}}})},
+        {"meshes", Json::array({{{"primitives", primitives}, {"extras", Json::parse(extras)}}})},
+        {"materials", materials},
+        {"buffers", Json::array({{{"byteLength", buffer.bytes.size()}}})},
+        {"bufferViews", buffer.views},
+        {"accessors", buffer.accessors}};
+    return containerOf(document, buffer);
 }
 
 }  // namespace hshfit::inline materials

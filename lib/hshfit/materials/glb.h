@@ -3,8 +3,12 @@
 #include <hshfit/materials/surface.h>
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace hshfit::inline materials {
 
@@ -43,5 +47,26 @@ struct GltfMaterial {
 /// triangles or above 4 GiB.
 std::string glbBytes(const GltfMaterial& material, const Surface& surface,
                      const std::string& extras = {});
+
+/// Numbers of every vertex of a mesh, by a name of the specification or one with an underscore
+/// before it.
+struct GlbAttribute {
+    std::string name;
+    std::size_t components = 3;     ///< 1 to 4
+    std::span<const float> values;  ///< [vertex][component]
+};
+
+/// Triangles with one colour of diffuse reflection.
+struct GlbPart {
+    std::string name;
+    MaterialColour baseColour{1, 1, 1};
+    std::vector<std::uint32_t> indices;
+};
+
+/// The bytes of a binary glTF 2.0 file (.glb): one mesh of parts that share their vertices, whose
+/// +z is up; its node turns that to +y. Attributes are 32-bit floats, POSITION among them.
+/// `extras`, the text of a JSON object, are the mesh's. Throws as glbBytes does.
+std::string glbBytes(const std::string& name, std::span<const GlbAttribute> attributes,
+                     std::span<const GlbPart> parts, const std::string& extras);
 
 }  // namespace hshfit::inline materials

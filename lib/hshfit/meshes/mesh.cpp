@@ -163,4 +163,12 @@ Mesh sphereMesh(int levels) {
     return mesh;
 }
 
+Mesh squareMesh() {
+    Mesh mesh;
+    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    completeNormals(mesh);
+    return mesh;
+}
+
 }  // namespace hshfit::inline meshes

@@ -11,6 +11,10 @@ namespace hshfit::inline meshes {
 
 using MeshVector = std::array<float, 3>;
 
+inline Direction directionOf(const MeshVector& v) {
+    return {v[0], v[1], v[2]};
+}
+
 /// Triangles in space. The front of a triangle is the side from which its corners run
 /// counterclockwise.
 struct Mesh {
@@ -37,5 +41,8 @@ void turnUpright(Mesh& mesh);
 /// A unit sphere from an octahedron whose triangles are cut into four `levels` times, with the
 /// sphere's normals.
 Mesh sphereMesh(int levels);
+
+/// A square at z = 0 with x and y from -1 to 1, its front upwards.
+Mesh squareMesh();
 
 }  // namespace hshfit::inline meshes

@@ -28,6 +28,15 @@ void checkValues(const std::vector<MeshVector>& vectors, std::string_view noun,
     }
 }
 
+MeshFile contentOf(std::string_view bytes, const std::string& path) {
+    const std::size_t text = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
+    if (bytes.starts_with("glTF") || bytes.substr(text).starts_with("{"))
+        return {.mesh = readGltf(bytes, path), .yUp = true};
+    const bool ply =
+        bytes.starts_with("ply") && bytes.size() > 3 && (bytes[3] == '\n' || bytes[3] == '\r');
+    return {.mesh = ply ? readPly(bytes, path) : readObj(bytes, path)};
+}
+
 }  // namespace
 
 MeshFile readMesh(const std::string& path) {
@@ -43,14 +52,12 @@ MeshFile readMesh(const std::string& path) {
 }
 
 MeshFile meshFromBytes(std::string_view bytes, const std::string& path) {
-    const bool ply =
-        bytes.starts_with("ply") && bytes.size() > 3 && (bytes[3] == '\n' || bytes[3] == '\r');
-    MeshFile result{.mesh = ply ? readPly(bytes, path) : readObj(bytes, path)};
+    MeshFile result = contentOf(bytes, path);
     Mesh& mesh = result.mesh;
     if (mesh.triangles.empty()) {
         throw InputError(
-            fmt::format("{}: has no faces; a mesh is a Wavefront OBJ or a PLY file with triangles "
-                        "or polygons",
+            fmt::format("{}: has no faces; a mesh is a Wavefront OBJ, PLY or glTF file with "
+                        "triangles or polygons",
                         path));
     }
     checkValues(mesh.positions, "vertex", path);

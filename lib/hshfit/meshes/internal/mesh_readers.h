@@ -11,5 +11,6 @@ namespace hshfit::inline meshes {
 /// every message. Indices are checked, values are not.
 Mesh readObj(std::string_view text, const std::string& path);
 Mesh readPly(std::string_view bytes, const std::string& path);
+Mesh readGltf(std::string_view bytes, const std::string& path);
 
 }  // namespace hshfit::inline meshes
