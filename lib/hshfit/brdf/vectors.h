@@ -6,6 +6,19 @@
 
 namespace hshfit::inline brdf {
 
+inline Direction operator+(const Direction& a, const Direction& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Direction operator-(const Direction& a, const Direction& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Direction operator-(const Direction& d) {
+    return {-d.x, -d.y, -d.z};
+}
+inline Direction operator*(double factor, const Direction& d) {
+    return {factor * d.x, factor * d.y, factor * d.z};
+}
+
 /// a x b, of length sin(angle between them).
 inline Direction cross(const Direction& a, const Direction& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};

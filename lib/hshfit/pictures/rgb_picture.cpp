@@ -14,7 +14,6 @@
 namespace hshfit::inline pictures {
 namespace {
 
-constexpr double shownAsWhite = 0.8;
 constexpr std::array<const char*, 3> colours{"R", "G", "B"};
 
 }  // namespace

@@ -10,14 +10,17 @@
 
 namespace hshfit::inline pictures {
 
+/// The share of white that exposures aim at.
+inline constexpr double shownAsWhite = 0.8;
+
 /// Radiance, linear Rec. 709, row 0 at the top.
 struct RgbPicture {
     int width = 0, height = 0;
     std::vector<float> values = {};  ///< [row][column][R, G, B]
 };
 
-/// The exposure, in stops, at which 95 % of the pixels have their largest channel at or below 0.8
-/// of white, rounded to a tenth; 0 for black.
+/// The exposure, in stops, at which 95 % of the pixels have their largest channel at or below
+/// `shownAsWhite`, rounded to a tenth; 0 for black.
 double automaticExposure(const RgbPicture& picture);
 
 /// A PNG file, sRGB, 8 bits. `stops` doubles the radiance that often; values outside of [0, 1] are

@@ -15,8 +15,6 @@
 namespace hshfit::inline pictures {
 namespace {
 
-constexpr double shownAsWhite = 0.8;
-
 /// The largest channel of every pixel of which `share` is at or below it; 0 without pixels.
 double quantileOfPixels(std::span<const SpherePicture> spheres, double share) {
     std::vector<double> largest;

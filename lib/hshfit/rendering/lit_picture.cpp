@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t blockSize = 64;
 /// Points at which levels of light samples are compared.
 constexpr std::size_t comparedPoints = 32;
-constexpr int mostLevel = 6;
+constexpr int mostSampleLevel = 6;
 
 /// Calls `work(first, last)` for blocks of the points, on all threads.
 void forBlocks(std::size_t count, const RenderProgress& progress,
@@ -151,7 +151,7 @@ ChosenLight chooseLight(const CoefficientShader& shader, std::size_t materials,
     };
     ChosenLight chosen{LightAbove(lights, 0)};
     std::vector<Rgb> before = shaded(chosen.light);
-    for (int level = 1; level <= mostLevel; ++level) {
+    for (int level = 1; level <= mostSampleLevel; ++level) {
         chosen.light = LightAbove(lights, level);
         std::vector<Rgb> now = shaded(chosen.light);
         double reference = 0;

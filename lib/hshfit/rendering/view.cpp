@@ -18,14 +18,6 @@ namespace {
 /// The least cosine of a mesh's normal to the line of sight.
 constexpr double leastCosine = 0.01;
 
-Direction sum(double a, const Direction& u, double b, const Direction& v, double c,
-              const Direction& w) {
-    return {a * u.x + b * v.x + c * w.x, a * u.y + b * v.y + c * w.y, a * u.z + b * v.z + c * w.z};
-}
-Direction directionOf(const MeshVector& v) {
-    return {v[0], v[1], v[2]};
-}
-
 /// The normal that a line of sight meets, and the direction back to the viewer.
 struct Seen {
     Direction normal, viewer;
@@ -96,10 +88,6 @@ private:
     double front_, slope_ = 0, eye_ = 0;
 };
 
-Direction opposite(const Direction& d) {
-    return {-d.x, -d.y, -d.z};
-}
-
 /// The place of a mesh in the picture's axes.
 struct Extent {
     Extent(const Mesh& mesh, const View& view) {
@@ -134,18 +122,17 @@ Direction seenNormal(const Mesh& mesh, const RayHit& hit, const Direction& towar
     const Direction u{b.x - a.x, b.y - a.y, b.z - a.z}, v{c.x - a.x, c.y - a.y, c.z - a.z};
     const Direction flat{u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
     const MeshVector* corners = mesh.normals.data() + 3 * std::size_t{hit.triangle};
-    Direction n = sum(1 - hit.u - hit.v, directionOf(corners[0]), hit.u, directionOf(corners[1]),
-                      hit.v, directionOf(corners[2]));
+    Direction n = (1 - hit.u - hit.v) * directionOf(corners[0]) + hit.u * directionOf(corners[1]) +
+                  hit.v * directionOf(corners[2]);
     if (!(dot(n, n) > 0)) n = flat;
     // Normals of the file say which side is the front; without a clear answer the triangle does.
     const bool front = dot(flat, n) >= 0 ? dot(flat, towards) >= 0 : dot(flat, towards) < 0;
     n = normalised(front ? n : Direction{-n.x, -n.y, -n.z});
     const double cosine = dot(n, towards);
     if (cosine >= leastCosine) return n;
-    const Direction across = sum(1, n, -cosine, towards, 0, n);
+    const Direction across = n - cosine * towards;
     if (!(dot(across, across) > 1e-12)) return towards;
-    return sum(std::sqrt(1 - leastCosine * leastCosine), normalised(across), leastCosine, towards,
-               0, n);
+    return (std::sqrt(1 - leastCosine * leastCosine)) * normalised(across) + leastCosine * towards;
 }
 
 }  // namespace
@@ -157,7 +144,7 @@ View::View(double theta, double phi, double angle)
       fieldOfView(angle) {}
 
 Direction View::toWorld(const Direction& d) const {
-    return sum(d.x, right, d.y, up, d.z, towards);
+    return d.x * right + d.y * up + d.z * towards;
 }
 
 SurfacePoints spherePoints(const View& view, int size, int samples) {
@@ -169,8 +156,8 @@ SurfacePoints spherePoints(const View& view, int size, int samples) {
             const double root = nearest * nearest - squared + 1;
             if (!(root > 0)) return std::nullopt;
             const double far = -nearest - std::sqrt(root);
-            const Direction normal = sum(1, from, far, along, 0, from);
-            return Seen{view.toWorld(normalised(normal)), view.toWorld(opposite(along))};
+            const Direction normal = from + far * along;
+            return Seen{view.toWorld(normalised(normal)), view.toWorld(-along)};
         },
         view, size, samples);
 }
@@ -191,7 +178,7 @@ SurfacePoints meshPoints(const Mesh& mesh, const View& view, int size, int sampl
     return pointsBy(
         [&](double x, double y) -> std::optional<Seen> {
             const Direction origin = view.toWorld(sight.origin(x, y));
-            const Direction along = view.toWorld(sight.along(x, y)), back = opposite(along);
+            const Direction along = view.toWorld(sight.along(x, y)), back = -along;
             const auto hit = scene.firstHit({origin.x, origin.y, origin.z}, along);
             if (!hit) return std::nullopt;
             return Seen{seenNormal(centred, *hit, back), back};

@@ -22,6 +22,8 @@ struct Material {
     std::string lobe =
         {};  ///< a specification of a lobe that may be split off (from `fit`); may be empty
     std::vector<Orientation> orientations = {{}};
+    bool orientationsStated = false;      ///< by the file
+    std::optional<ViewRange> views = {};  ///< in the place of the scene's
     Budget budget = {};
 };
 
@@ -31,8 +33,9 @@ struct Object {
     std::string name;
     std::string mesh;  ///< a path, or "sphere" (unit) or "square" (from -1 to 1, upwards)
     std::size_t material = 0;
-    Rgb emission{};    ///< radiance of its front
-    bool yUp = false;  ///< the file's +y is up
+    Rgb emission{};  ///< radiance of its front
+    /// The file's +y is up; none: where its format says so (MeshFile::yUp).
+    std::optional<bool> yUp = {};
     Point scale{1, 1, 1};
     Orientation orientation = {};
     Point at{};
@@ -45,6 +48,7 @@ struct Scene {
     std::vector<Object> objects = {};
     std::vector<Camera> cameras = {};
     ViewRange views = {};
+    bool viewsStated = false;  ///< by the file
     Limits limits = {};
 };
 

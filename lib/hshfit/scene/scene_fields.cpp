@@ -59,6 +59,17 @@ std::vector<JsonFields> elements(const JsonFields& fields, const char* key) {
     return result;
 }
 
+std::string nameOf(const JsonFields& fields) {
+    std::string name = fields.word("name");
+    const auto plain = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '-' || c == '_' || c == '.';
+    };
+    if (name.empty() || name.size() > 100 || name[0] == '.' || !std::ranges::all_of(name, plain))
+        fields.fail("names files: letters, digits, '-', '_' and '.', up to 100", "name");
+    return name;
+}
+
 std::string placeOf(const std::string& file, const std::string& scene) {
     const std::filesystem::path path = file;
     if (path.is_absolute()) return file;

@@ -69,20 +69,13 @@ Limits limits(const JsonFields& fields) {
 
 Material material(const JsonFields& fields, const Budget& standard) {
     onlyKeys(fields, {"name", "brdf", "lobe", "orientations", "budget"});
-    Material result{.name = fields.word("name"), .brdf = fields.word("brdf"), .budget = standard};
-    const auto plain = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-               c == '-' || c == '_' || c == '.';
-    };
-    if (result.name.empty() || result.name.size() > 100 || result.name[0] == '.' ||
-        !std::all_of(result.name.begin(), result.name.end(), plain) || result.name == "plan") {
-        fields.fail("names a file: letters, digits, '-', '_' and '.', up to 100, not 'plan'",
-                    "name");
-    }
+    Material result{.name = nameOf(fields), .brdf = fields.word("brdf"), .budget = standard};
+    if (result.name == "plan") fields.fail("is the name of the answer's files", "name");
     if (fields.has("lobe")) result.lobe = fields.word("lobe");
     if (fields.has("budget")) result.budget = budget(fields.object("budget"));
     if (!fields.has("orientations")) return result;
     result.orientations.clear();
+    result.orientationsStated = true;
     for (const JsonFields& each : elements(fields, "orientations")) {
         onlyKeys(each, {"theta", "phi", "turn"});
         result.orientations.push_back({angle(each, "theta", 0, 180),
@@ -123,7 +116,8 @@ void readParts(const JsonFields& root, Purpose purpose, Scene& scene) {
             refuseTwice(each, scene.cameras, "cameras");
         }
     }
-    if (root.has("views")) scene.views = viewRange(root.object("views"));
+    scene.viewsStated = root.has("views");
+    if (scene.viewsStated) scene.views = viewRange(root.object("views"));
     if (root.has("limits")) scene.limits = limits(root.object("limits"));
 }
 

@@ -34,17 +34,6 @@ Point scaleOf(const JsonFields& fields) {
     return scale;
 }
 
-std::string nameOf(const JsonFields& fields) {
-    const std::string name = fields.word("name");
-    const auto plain = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-               c == '-' || c == '_' || c == '.';
-    };
-    if (name.empty() || name.size() > 100 || name[0] == '.' || !std::ranges::all_of(name, plain))
-        fields.fail("names files: letters, digits, '-', '_' and '.', up to 100", "name");
-    return name;
-}
-
 }  // namespace
 
 Object objectOf(const JsonFields& fields, const std::vector<Material>& materials,

@@ -42,4 +42,15 @@ Direction CameraRays::direction(double column, double row) const {
                        ahead_.z + x * right_.z + y * down_.z});
 }
 
+std::optional<std::array<double, 2>> CameraRays::pixelOf(const Point& point) const {
+    const Direction gap{point[0] - origin_[0], point[1] - origin_[1], point[2] - origin_[2]};
+    const double depth = dot(gap, ahead_);
+    if (!(depth > 0)) return {};
+    const double scale = height_ / (slope_ * depth);
+    const double column = (dot(gap, right_) * scale + width_) / 2;
+    const double row = (dot(gap, down_) * scale + height_) / 2;
+    if (!(column >= 0 && column < width_ && row >= 0 && row < height_)) return {};
+    return std::array<double, 2>{column, row};
+}
+
 }  // namespace hshfit::inline transport

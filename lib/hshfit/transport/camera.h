@@ -4,6 +4,7 @@
 #include <hshfit/rays/ray_scene.h>
 
 #include <array>
+#include <optional>
 #include <string>
 
 namespace hshfit::inline transport {
@@ -34,6 +35,9 @@ public:
     const Point& origin() const { return origin_; }
     /// Through (column, row) in pixels, fractions allowed, (0, 0) being the upper left corner.
     Direction direction(double column, double row) const;
+    /// The column and row of a point, fractions included; none for one behind the camera or beside
+    /// the picture.
+    std::optional<std::array<double, 2>> pixelOf(const Point& point) const;
 
 private:
     Point origin_;

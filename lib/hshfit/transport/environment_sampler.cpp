@@ -13,10 +13,6 @@
 namespace hshfit::inline transport {
 namespace {
 
-double meanOf(const Rgb& rgb) {
-    return (rgb[0] + rgb[1] + rgb[2]) / 3;
-}
-
 /// Cells of equal steps in theta and phi, each in proportion to its mean radiance times its solid
 /// angle.
 class Table {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace hshfit::inline transport {
@@ -35,12 +36,25 @@ struct PathPicture {
     std::size_t cut = 0;               ///< paths ended by mostBounces
 };
 
+/// One row of a picture, complete.
+struct PathRow {
+    std::vector<float> radiance = {}, error = {};  ///< [column][R, G, B]
+    std::size_t rays = 0, cut = 0;
+};
+
+/// Rows of an earlier run with the same scene, camera and options, which are not traced again. Both
+/// are called from any thread; either may be empty.
+struct PathRows {
+    std::function<std::optional<PathRow>(int row)> find = {};
+    std::function<void(int row, const PathRow& done)> keep = {};  ///< of each row that is traced
+};
+
 /// Radiance towards a camera by path tracing (Kajiya 1986): at each meeting with a surface light is
 /// sampled, and the path goes on by the material's sampler; the two are weighted by the power
 /// heuristic (Veach 1997). Without bias but for mostBounces and f values that are not finite, which
 /// count as 0. The picture does not depend on the number of threads.
 PathPicture tracePaths(const SurfaceScene& scene, const Camera& camera,
-                       const PathOptions& options = {});
+                       const PathOptions& options = {}, const PathRows& rows = {});
 
 /// Radiance along one ray: the mean of `samples` paths.
 struct PathEstimate {

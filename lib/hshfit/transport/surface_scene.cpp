@@ -8,22 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hshfit::inline transport {
 namespace {
-
-Direction directionOf(const MeshVector& v) {
-    return {v[0], v[1], v[2]};
-}
-Direction minus(const Direction& a, const Direction& b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-Direction opposite(const Direction& d) {
-    return {-d.x, -d.y, -d.z};
-}
-double meanOf(const Rgb& rgb) {
-    return (rgb[0] + rgb[1] + rgb[2]) / 3;
-}
 
 struct Corners {
     Direction a, b, c;
@@ -35,7 +23,7 @@ Corners cornersOf(const Mesh& mesh, std::size_t triangle) {
 }
 /// Twice the area times the normal of the front.
 Direction areaVector(const Corners& corners) {
-    return cross(minus(corners.b, corners.a), minus(corners.c, corners.a));
+    return cross(corners.b - corners.a, corners.c - corners.a);
 }
 double areaOf(const Corners& corners) {
     const Direction d = areaVector(corners);
@@ -63,7 +51,7 @@ SurfaceScene::SurfaceScene(std::vector<SurfaceMaterial> materials,
                            std::vector<SurfaceObject> objects, std::vector<Light> lights)
     : materials_(std::move(materials)), objects_(std::move(objects)), environment_(lights) {
     for (const SurfaceMaterial& material : materials_) {
-        if (material.brdf->channels().kind == Channels::Kind::spectral)
+        if (material.brdf && material.brdf->channels().kind == Channels::Kind::spectral)
             throw UsageError(
                 fmt::format("material '{}' has spectra; scenes take grey and RGB", material.name));
     }
@@ -91,17 +79,17 @@ SurfaceScene::~SurfaceScene() = default;
 
 SurfaceHit SurfaceScene::hitOf(const RayHit& hit, const Direction& direction) const {
     const Corners corners = cornersOf(all_, hit.triangle);
-    const Direction towards = opposite(direction);
+    const Direction towards = -direction;
     Direction flat = normalised(areaVector(corners));
     const bool front = dot(flat, towards) >= 0;
-    if (!front) flat = opposite(flat);
+    if (!front) flat = -flat;
     const MeshVector* normals = all_.normals.data() + 3 * std::size_t{hit.triangle};
     const Point n = weighted(
         {directionOf(normals[0]), directionOf(normals[1]), directionOf(normals[2])}, hit.u, hit.v);
     Direction smooth = normalised({n[0], n[1], n[2]});
     if (!(dot(smooth, smooth) > 0.5)) smooth = flat;
     // Of the ray's side, and with the ray above its horizon.
-    if (dot(smooth, flat) < 0) smooth = opposite(smooth);
+    if (dot(smooth, flat) < 0) smooth = -smooth;
     if (!(dot(smooth, towards) > 1e-4)) smooth = flat;
     SurfaceHit result{.position = weighted(corners, hit.u, hit.v),
                       .flat = flat,
@@ -116,13 +104,35 @@ SurfaceHit SurfaceScene::hitOf(const RayHit& hit, const Direction& direction) co
     return result;
 }
 
-/// Beside the surface by more than the rounding of single precision at its place.
+SurfaceHit SurfaceScene::pointOf(std::uint32_t triangle, double u, double v, bool front) const {
+    const Direction normal = normalised(areaVector(cornersOf(all_, triangle)));
+    return hitOf({.distance = 0, .triangle = triangle, .u = u, .v = v}, front ? -normal : normal);
+}
+
+/// Beside the surface by more than the rounding of a ray's origin and of its distances to the
+/// triangle, which are those of the largest coordinate from the scene's middle. The place itself is
+/// on the triangle in double precision, whatever the distance of the ray that found it.
 Point SurfaceScene::leaving(const SurfaceHit& from) const {
-    double largest = from.distance;
-    for (const double x : from.position) largest = std::max(largest, std::abs(x));
-    const double step = 4e-6 * largest;
+    const Corners corners = cornersOf(all_, from.triangle);
+    double largest = 0;
+    const auto& middle = rays_->centre();
+    for (const Direction& c : {corners.a, corners.b, corners.c})
+        largest = std::max({largest, std::abs(c.x - middle[0]), std::abs(c.y - middle[1]),
+                            std::abs(c.z - middle[2])});
+    const double step = 8 * 0x1p-24 * largest;
     return {from.position[0] + step * from.flat.x, from.position[1] + step * from.flat.y,
             from.position[2] + step * from.flat.z};
+}
+
+/// A flat triangle is never met again by a ray that leaves it.
+std::optional<RayHit> SurfaceScene::meeting(const SurfaceHit& from, const Point& origin,
+                                            const Direction& direction) const {
+    auto hit = rays_->firstHit(origin, direction);
+    if (hit && hit->triangle == from.triangle)
+        hit = rays_->firstHit(
+            origin, direction,
+            std::nextafter(static_cast<float>(hit->distance), std::numeric_limits<float>::max()));
+    return hit;
 }
 
 std::optional<SurfaceHit> SurfaceScene::firstHit(const Point& origin,
@@ -134,16 +144,38 @@ std::optional<SurfaceHit> SurfaceScene::firstHit(const Point& origin,
 
 std::optional<SurfaceHit> SurfaceScene::firstHit(const SurfaceHit& from,
                                                  const Direction& direction) const {
-    return firstHit(leaving(from), direction);
+    const auto hit = meeting(from, leaving(from), direction);
+    if (!hit) return {};
+    return hitOf(*hit, direction);
 }
 
 bool SurfaceScene::visible(const SurfaceHit& from, const Direction& direction,
                            const std::optional<Point>& to) const {
     const Point origin = leaving(from);
-    const auto hit = rays_->firstHit(origin, direction);
+    const auto hit = meeting(from, origin, direction);
     if (!hit || !to) return !hit;
     const double gap = std::hypot((*to)[0] - origin[0], (*to)[1] - origin[1], (*to)[2] - origin[2]);
     return hit->distance > gap * (1 - 1e-4);
+}
+
+bool SurfaceScene::visible(const SurfaceHit& from, const Direction& direction,
+                           const EmitterSample& light) const {
+    const Point origin = leaving(from);
+    const auto hit = meeting(from, origin, direction);
+    if (!hit || hit->triangle == light.triangle) return true;
+    const double gap = std::hypot(light.position[0] - origin[0], light.position[1] - origin[1],
+                                  light.position[2] - origin[2]);
+    if (hit->distance > gap * (1 + 1e-4)) return true;
+    return hit->distance > gap * (1 - 1e-4) && adjoin(hit->triangle, light.triangle);
+}
+
+/// Whether two triangles have one or two corners in common; with three they are in one place.
+bool SurfaceScene::adjoin(std::uint32_t a, std::uint32_t b) const {
+    int common = 0;
+    for (const std::uint32_t i : all_.triangles[a])
+        for (const std::uint32_t j : all_.triangles[b])
+            common += all_.positions[i] == all_.positions[j] ? 1 : 0;
+    return common == 1 || common == 2;
 }
 
 Rgb SurfaceScene::reflectance(const SurfaceHit& hit, const Direction& wi) const {
@@ -171,6 +203,7 @@ EmitterSample SurfaceScene::sampleEmitters(const std::array<double, 3>& u) const
     sample.normal = normalised(areaVector(corners));
     sample.radiance = objects_[objectOf_[triangle]].emission;
     sample.pdf = meanOf(sample.radiance) / power_.back();
+    sample.triangle = triangle;
     return sample;
 }
 

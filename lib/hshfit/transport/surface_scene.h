@@ -16,7 +16,8 @@
 
 namespace hshfit::inline transport {
 
-/// The material of surfaces. The BRDF is grey or RGB.
+/// The material of surfaces. The BRDF is grey or RGB; without one, only the places of hits are
+/// asked for.
 struct SurfaceMaterial {
     std::string name;
     std::shared_ptr<const Brdf> brdf;
@@ -49,6 +50,7 @@ struct EmitterSample {
     Direction normal;  ///< of its front
     Rgb radiance{};
     double pdf = 0;  ///< per area
+    std::uint32_t triangle = 0;
 };
 
 /// Meshes with materials and the light on them. Immutable; safe to use from many threads.
@@ -69,6 +71,11 @@ public:
     bool visible(const SurfaceHit& from, const Direction& direction,
                  const std::optional<Point>& to = {}) const;
 
+    /// Whether the sampled triangle, or a neighbour that the sample's rounding may reach, is the
+    /// first that a ray towards the sample meets. Of emitters in one place one is seen.
+    bool visible(const SurfaceHit& from, const Direction& direction,
+                 const EmitterSample& light) const;
+
     /// f(wi, wo) at a hit, `wi` in its frame; values that are not finite count as 0.
     Rgb reflectance(const SurfaceHit& hit, const Direction& wi) const;
     const SurfaceMaterial& material(const SurfaceHit& hit) const;
@@ -82,10 +89,20 @@ public:
 
     std::size_t triangles() const { return all_.triangles.size(); }
     const std::vector<SurfaceObject>& objects() const { return objects_; }
+    const std::vector<SurfaceMaterial>& materials() const { return materials_; }
+    /// All triangles of the objects, one object after the other, in the world.
+    const Mesh& mesh() const { return all_; }
+    std::size_t objectOf(std::size_t triangle) const { return objectOf_[triangle]; }
+    /// The point of a triangle at the weights u and v of its second and third corner, seen from
+    /// its front or its back along the normal.
+    SurfaceHit pointOf(std::uint32_t triangle, double u, double v, bool front) const;
 
 private:
     SurfaceHit hitOf(const RayHit& hit, const Direction& direction) const;
     Point leaving(const SurfaceHit& from) const;
+    std::optional<RayHit> meeting(const SurfaceHit& from, const Point& origin,
+                                  const Direction& direction) const;
+    bool adjoin(std::uint32_t a, std::uint32_t b) const;
 
     std::vector<SurfaceMaterial> materials_;
     std::vector<SurfaceObject> objects_;  ///< their meshes moved to `all_`

@@ -6,6 +6,7 @@
 #include <hshfit/transport/path_tracer.h>
 
 #include <brdfs/catalog.h>
+#include <lib/transport/law_scenes.h>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -15,11 +16,7 @@
 namespace hshfit {
 namespace {
 
-SurfaceMaterial materialOf(const std::string& spec) {
-    SurfaceMaterial material{spec, brdfs::open(spec), nullptr};
-    material.sampler = makeSampler(*material.brdf);
-    return material;
-}
+using test::materialOf;
 
 /// A square of the given half width at a height, its front upwards.
 Mesh squareMesh(float half, float height) {

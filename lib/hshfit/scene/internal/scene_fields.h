@@ -26,6 +26,8 @@ double angleOr0(const JsonFields& fields, const char* key, double low, double hi
 Rgb colour(const JsonFields& fields, const char* key);
 /// Elements of an array; at least one.
 std::vector<JsonFields> elements(const JsonFields& fields, const char* key);
+/// "name", which files are named after: letters, digits, '-', '_', '.'.
+std::string nameOf(const JsonFields& fields);
 /// A path beside the scene file, or an absolute one.
 std::string placeOf(const std::string& file, const std::string& scene);
 

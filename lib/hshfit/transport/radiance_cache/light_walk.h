@@ -1,0 +1,75 @@
+#pragma once
+
+#include <hshfit/transport/light_sampling.h>
+#include <hshfit/transport/random_numbers.h>
+#include <hshfit/transport/surface_scene.h>
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace hshfit::inline transport::inline radiance_cache {
+
+/// The source of direct light.
+enum class DirectLight {
+    sampled,   ///< samples of the lights at each meeting; records hold what surfaces reflect
+    gathered,  ///< the rays of records meet the lights: without noise under even skies
+};
+
+/// Materials of which f is one number for each colour: Lambert's.
+class DiffuseMaterials {
+public:
+    explicit DiffuseMaterials(const SurfaceScene& scene);
+
+    /// f of a hit's material; none for the others.
+    const std::optional<Rgb>& at(std::size_t material) const { return f_[material]; }
+
+private:
+    std::vector<std::optional<Rgb>> f_;
+};
+
+/// The end of a walk on a diffuse surface, whose further light is known by its irradiance.
+struct WalkEnd {
+    SurfaceHit hit;
+    Rgb weight{};  ///< times irradiance there: radiance at the walk's start
+};
+
+/// Reflected radiance as a walk finds it: the light that was sampled on it and met by it, and its
+/// end, if it came to a diffuse surface.
+struct Walk {
+    Rgb radiance{};
+    std::optional<WalkEnd> end = {};
+};
+
+/// Walks from surfaces by their materials' samplers up to the first diffuse surface. The scene has
+/// to outlive this.
+class LightWalk {
+public:
+    LightWalk(const SurfaceScene& scene, DirectLight direct);
+
+    /// Reflected radiance towards start.wo; adds the rays traced.
+    Walk from(const SurfaceHit& start, RandomNumbers& random, std::size_t& rays) const;
+    /// Reflected direct light alone, by a sample of the lights and one of the material.
+    Rgb direct(const SurfaceHit& hit, RandomNumbers& random, std::size_t& rays) const;
+    /// The light that one direction of the material's sampler finds; direct light, which is
+    /// weighted against that of `lights()`, only if `direct`.
+    Walk sampled(const SurfaceHit& start, bool direct, RandomNumbers& random,
+                 std::size_t& rays) const;
+
+    const SurfaceScene& scene() const { return scene_; }
+    const LightSampling& lights() const { return lights_; }
+    const DiffuseMaterials& diffuse() const { return diffuse_; }
+    DirectLight directLight() const { return direct_; }
+
+private:
+    struct Going;
+    bool step(Going& going, bool direct, Walk& walk) const;
+    void addReflected(Going& going, Walk& walk) const;
+
+    const SurfaceScene& scene_;
+    LightSampling lights_;
+    DiffuseMaterials diffuse_;
+    DirectLight direct_;
+};
+
+}  // namespace hshfit::inline transport::inline radiance_cache
