@@ -1,5 +1,6 @@
 #include "plan.h"
 
+#include "scene_surfaces.h"
 #include "source.h"
 
 #include <hshfit/plan/plan_files.h>
@@ -8,6 +9,17 @@
 #include <fmt/format.h>
 
 namespace hshfit::jobs {
+namespace {
+
+std::vector<plan::SeenMaterial> seenIn(const scene::Scene& read) {
+    std::vector<SurfaceMaterial> names;
+    for (const scene::Material& material : read.materials)
+        names.push_back({material.name, nullptr, nullptr});
+    std::size_t degenerate = 0;
+    return plan::seenMaterials({std::move(names), objectsOf(read, degenerate), {}}, read.cameras);
+}
+
+}  // namespace
 
 plan::Plan planScene(const std::string& path, const std::string& output,
                      const plan::PlanOptions& options, const Listener& listener) {
@@ -18,6 +30,7 @@ plan::Plan planScene(const std::string& path, const std::string& output,
                         Setting{"PlanOptions::byTime"}));
     }
     plan::PlanOptions how = options;
+    if (!read.objects.empty() && !read.cameras.empty()) how.seen = seenIn(read);
     how.progress = listener.part("plan");
     plan::Plan result = plan::planScene(
         read, [](const std::string& spec) { return openBrdf(spec); }, how);

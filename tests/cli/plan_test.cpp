@@ -202,6 +202,44 @@ TEST_F(PlanCommand, BrushedMetalKeepsItsBudget) {
     expectKept("brushed_metal", 0);
 }
 
+/// A floor that a camera sees from straight above, and a material of nothing.
+TEST_F(PlanCommand, CamerasGiveOrientationsAndViews) {
+    const Json scene = {{"format", "hshfit-scene"},
+                        {"version", 1},
+                        {"materials",
+                         {{{"name", "floor"}, {"brdf", "phong:exponent=3"}},
+                          {{"name", "spare"}, {"brdf", "lambert"}}}},
+                        {"lights", {{{"light", "uniform:radiance=1"}}}},
+                        {"objects", {{{"mesh", "square"}, {"material", "floor"}}}},
+                        {"cameras",
+                         {{{"name", "top"},
+                           {"position", {0, 0, 4}},
+                           {"target", {0, 0, 0}},
+                           {"up", {0, 1, 0}},
+                           {"field_of_view", 20}}}},
+                        {"budget", {{"error", 0.1}}}};
+    write("scene.json", scene.dump());
+    const Answer answer =
+        run("plan " + path("scene.json") + " -o " + path("out") + " --max-order 3 --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "plan"));
+    const Json materials = Json::parse(answer.out)["materials"];
+    const Json seen = materials[0]["seen"];
+    EXPECT_EQ(seen["share"], 1);
+    EXPECT_EQ(materials[0]["orientations"], 1);
+    ASSERT_EQ(seen["orientations"].size(), 1u);
+    EXPECT_NEAR(seen["orientations"][0]["theta"], 0, 1e-6);
+    // To the corner of a square picture.
+    EXPECT_LE(seen["views"]["theta"][1],
+              std::atan(std::sqrt(2.0) * std::tan(10 * M_PI / 180)) * 180 / M_PI);
+    EXPECT_GT(seen["views"]["theta"][1], 10);
+    EXPECT_EQ(materials[1]["seen"]["hits"], 0);
+    EXPECT_FALSE(materials[1]["seen"].contains("views"));
+    EXPECT_NE(run("plan " + path("scene.json") + " -o " + path("out") + " --max-order 3")
+                  .out.find("no camera sees it"),
+              std::string::npos);
+}
+
 TEST_F(PlanCommand, ErrorsAreOneLine) {
     expectError("plan absent.json -o " + path("out"), 3, "absent.json", 0);
     write("scene.json", R"({"format": "hshfit-scene", "version": 1, "lamps": []})");

@@ -34,11 +34,18 @@ MaterialPlan planMaterial(const Scene& scene, const Material& material, const Br
 
 }  // namespace
 
-Plan planScene(const Scene& scene, const BrdfOpener& open, const PlanOptions& options) {
+Plan planScene(const Scene& given, const BrdfOpener& open, const PlanOptions& options) {
     requireUsable(options.bases);
-    Plan plan{.scene = scene, .materials = {}};
-    for (const Material& material : scene.materials) {
-        plan.materials.push_back(planMaterial(scene, material, open, options));
+    Plan plan{.scene = given, .materials = {}};
+    Scene& scene = plan.scene;
+    const bool cameras = options.seen.size() == scene.materials.size();
+    if (cameras) takeSeen(scene, options.seen);
+    Scene own = scene;
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        const Material& material = scene.materials[m];
+        own.views = material.views.value_or(scene.views);
+        plan.materials.push_back(planMaterial(own, material, open, options));
+        if (cameras) plan.materials.back().seen = options.seen[m];
         if (options.progress) options.progress(plan.materials.size(), scene.materials.size());
     }
     return plan;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/accuracy/pair_errors.h>
+#include <hshfit/plan/seen_surfaces.h>
 #include <hshfit/representation/forms/form.h>
 #include <hshfit/scene/scene.h>
 
@@ -10,10 +11,6 @@
 #include <vector>
 
 namespace hshfit::plan {
-
-using scene::Limits;
-using scene::Material;
-using scene::Scene;
 
 /// One form of a material and its error in the scene's light.
 struct Choice {
@@ -39,6 +36,7 @@ struct Accepted {
 
 struct MaterialPlan {
     Material material;
+    std::optional<SeenMaterial> seen = {};  ///< by the scene's cameras
     std::optional<Accepted> accepted;
     /// The nearest cheaper choices, each the best for its bytes; without a plan, the best ones.
     std::vector<Choice> cheaper;
@@ -60,6 +58,9 @@ struct Plan {
 struct PlanOptions {
     std::vector<std::string> bases = {"hsh", "zernike", "makhotkin"};
     int maxOrder = 12;
+    /// Each material as cameras see it (seenMaterials), in the place of orientations and views that
+    /// the scene does not state. Empty: nothing is known.
+    std::vector<SeenMaterial> seen = {};
     bool byTime = false;  ///< measure nanoseconds and choose the fastest form within the budget
     std::function<void(std::size_t, std::size_t)> progress = {};
 };

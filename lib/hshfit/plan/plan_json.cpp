@@ -42,6 +42,27 @@ Json acceptedJson(const Accepted& accepted, const std::string& file) {
     return json;
 }
 
+Json seenJson(const SeenMaterial& seen) {
+    Json orientations = Json::array();
+    for (std::size_t k = 0; k < seen.orientations.size(); ++k) {
+        const Orientation& each = seen.orientations[k];
+        orientations.push_back({{"theta", degrees(each.theta)},
+                                {"phi", degrees(each.phi)},
+                                {"turn", degrees(each.turn)},
+                                {"share", seen.shares[k]}});
+    }
+    Json json = {{"rays", seen.rays},
+                 {"hits", seen.hits},
+                 {"share", seen.share()},
+                 {"orientations", orientations},
+                 {"spread", degrees(seen.spread)}};
+    if (seen.hits > 0) {
+        json["views"] = {{"theta", rangeJson(seen.views.thetaMin, seen.views.thetaMax)},
+                         {"phi", rangeJson(seen.views.phiMin, seen.views.phiMax)}};
+    }
+    return json;
+}
+
 Json materialJson(const MaterialPlan& plan) {
     const Material& material = plan.material;
     const std::string file = material.name + ".json";
@@ -60,6 +81,7 @@ Json materialJson(const MaterialPlan& plan) {
         json["refused"] = plan.refused;
         json["instead"] = plan.instead;
     }
+    if (plan.seen) json["seen"] = seenJson(*plan.seen);
     json["rules"] = plan.rules;
     json["light"] = {{"band_power", plan.lightPower},
                      {"samples", plan.lightSamples},

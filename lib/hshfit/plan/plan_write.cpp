@@ -51,8 +51,10 @@ std::string planText(const Plan& plan) {
     std::string out;
     for (const MaterialPlan& each : plan.materials) {
         const Material& material = each.material;
+        const std::string seen =
+            each.seen ? "  " + sentenceOf(*each.seen, plan.scene.cameras.size()) + "\n" : "";
         if (!each.accepted) {
-            out += fmt::format("{}: no plan: {}\n", material.name, each.refused);
+            out += fmt::format("{}: no plan: {}\n{}", material.name, each.refused, seen);
             for (const std::string& text : each.instead) {
                 out += fmt::format("  instead: {}\n", text);
             }
@@ -68,6 +70,7 @@ std::string planText(const Plan& plan) {
                 ? fmt::format(", {:.3g} ns a pair", *accepted.choice.nanoseconds)
                 : "",
             commandOf(accepted.choice, material.name + ".json"));
+        out += seen;
         std::istringstream lines(textOf(accepted.pairs));
         for (std::string line; std::getline(lines, line);) out += "  " + line + "\n";
         if (!each.cheaper.empty()) {
