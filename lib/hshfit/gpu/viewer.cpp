@@ -2,6 +2,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
+#include <hshfit/files/checksum.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/files/printable.h>
 #include <hshfit/gpu/shader.h>
@@ -27,6 +28,11 @@ extern const std::string_view viewer_geometry_vert, viewer_geometry_frag, viewer
 }  // namespace hshfit::embedded
 
 namespace hshfit::gpu {
+
+std::string_view harmonicsScript() {
+    return embedded::viewer_harmonics;
+}
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -173,15 +179,6 @@ Json shadersJson() {
             {"compositeFragment", viewer_composite_frag}};
 }
 
-/// JSON that can stand within a script element.
-std::string embeddable(const Json& document) {
-    std::string text = jsonText(document);
-    for (std::size_t at = text.find('<'); at != text.npos; at = text.find('<', at)) {
-        text.replace(at, 1, "\\u003c");
-    }
-    return text;
-}
-
 data notesOf(const ViewerInput& input) {
     data notes{data::type::list};
     if (const auto& table = input.reference) {
@@ -274,9 +271,9 @@ std::string viewerPage(const ViewerInput& input) {
     page.set("orderName", input.form ? paneName(first) + ": order" : "Order");
     page.set("generator", std::string("hshfit ") + version);
     page.set("order", std::to_string(document["order"].get<int>()));
-    page.set("style", std::string(embedded::viewer_style));
+    page.set("style", livePageStyle(embedded::viewer_style));
     page.set("notes", notesOf(input));
-    page.set("data", embeddable(document));
+    page.set("data", scriptSafe(jsonText(document)));
     page.set("script", script);
     return printableLines(
         kainjow::mustache::mustache(std::string(embedded::viewer_page)).render(page));

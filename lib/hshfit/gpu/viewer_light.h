@@ -37,6 +37,10 @@ struct ViewerLight {
 /// does.
 ViewerLight viewerLight(const LightSpecification& light, int order, int height = 128);
 
+/// Functions of JavaScript on coefficients of spherical harmonics, among them
+/// rotated(order, matrix, coefficients), with coefficients as [slot][R, G, B].
+std::string_view harmonicsScript();
+
 /// Radiance [row][column][R, G, B] from ViewerLight::rgbe.
 std::vector<float> decodeRgbe(const std::vector<std::uint8_t>& rgbe);
 

@@ -1,3 +1,4 @@
+#include <hshfit/files/checksum.h>
 #include <hshfit/files/printable.h>
 #include <hshfit/pages/comparison_files.h>
 #include <hshfit/pages/page_figures.h>

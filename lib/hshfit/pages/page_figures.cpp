@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 namespace hshfit::embedded {
-extern const std::string_view page_css;
+extern const std::string_view live_css, page_css;
 }
 
 namespace hshfit::inline pages {
@@ -42,21 +42,14 @@ std::string_view pageStyle() {
     return embedded::page_css;
 }
 
-std::string base64(std::string_view bytes) {
-    constexpr std::string_view digits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string out;
-    out.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const auto byte = [&](std::size_t k) -> unsigned {
-            return i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0;
-        };
-        const unsigned three = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for (unsigned k = 0; k < 4; ++k) {
-            out += i + k > bytes.size() ? '=' : digits[three >> (18 - 6 * k) & 63];
-        }
-    }
-    return out;
+std::string livePageStyle(std::string_view own) {
+    return std::string(embedded::live_css) + std::string(own);
+}
+
+std::string scriptSafe(std::string json) {
+    for (std::size_t at = json.find('<'); at != json.npos; at = json.find('<', at))
+        json.replace(at, 1, "\\u003c");
+    return json;
 }
 
 }  // namespace hshfit::inline pages

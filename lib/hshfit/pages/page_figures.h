@@ -16,10 +16,13 @@ std::string inlinedFigure(std::string svg, std::size_t index);
 /// "gnuplot 5.4 patchlevel 4", from the SVG document; else "gnuplot".
 std::string plotterOf(const std::string& svg);
 
-/// The style sheet of every page.
+/// The style sheet of reports and comparisons.
 std::string_view pageStyle();
 
-/// RFC 4648, for pictures within a page.
-std::string base64(std::string_view bytes);
+/// The style sheet of a page that draws in the browser: colours, text and layout, then its own.
+std::string livePageStyle(std::string_view own);
+
+/// The text of a JSON document so that it can stand within a script element.
+std::string scriptSafe(std::string json);
 
 }  // namespace hshfit::inline pages

@@ -2,6 +2,7 @@
 // cannot be written.
 
 #include <hshfit/error.h>
+#include <hshfit/files/checksum.h>
 #include <hshfit/pages/comparison_files.h>
 #include <hshfit/pages/page_figures.h>
 
