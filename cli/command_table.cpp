@@ -25,6 +25,7 @@ void addRotate(CLI::App& command, Globals& globals);
 void addLight(CLI::App& command, Globals& globals);
 void addIrradiance(CLI::App& command, Globals& globals);
 void addSample(CLI::App& command, Globals& globals);
+void addTransfer(CLI::App& command, Globals& globals);
 
 namespace {
 
@@ -171,10 +172,17 @@ constexpr Command table[] = {
      .add = addIrradiance},
     {.name = "illuminate",
      .group = inspection,
-     .help = "Pictures of a scene with global illumination, by path tracing",
+     .help = "Pictures of a scene with global illumination, by path tracing or a radiance cache",
      .file = "illuminate.cpp",
      .example = "hshfit illuminate examples/scenes/box.json -o box --samples 16",
      .add = addIlluminate},
+    {.name = "transfer",
+     .group = lighting,
+     .help = "Precomputed transfer of a scene: how light from all around reaches each vertex, with "
+             "shadows and interreflection",
+     .file = "transfer.cpp",
+     .example = "hshfit transfer examples/scenes/ball_and_wall.json -o ball --rays 400",
+     .add = addTransfer},
     {.name = "sample",
      .group = inspection,
      .help = "Incident directions in proportion to f cos(theta_i), and their efficiency",

@@ -333,7 +333,7 @@ void addExport(CLI::App& command, Globals& globals) {
     command.add_flag("--zstd", options.zstd, "Compress KTX2 with Zstandard");
     command.add_flag("--force", options.force, "Replace files that are there");
     command.add_option("--mesh", arguments->material.mesh,
-                       "With gltf: OBJ or PLY file, +y up (default: a sphere)");
+                       "With gltf: OBJ, PLY or glTF file, +y up (default: a sphere)");
     command
         .add_option("--extensions", arguments->material.parts,
                     "With gltf and materialx, of a fit: auto for the extensions (of OpenPBR: "

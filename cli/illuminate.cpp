@@ -1,7 +1,12 @@
+#include "cache_options.h"
 #include "command.h"
 #include "documents.h"
 
+#include <hshfit/error.h>
+#include <hshfit/files/json_fields.h>
+
 #include <jobs/illuminate.h>
+#include <jobs/quality.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -16,7 +21,39 @@ struct IlluminateArguments {
     std::string scene, output, method = "path";
     double stops = 0;
     jobs::IlluminateOptions options;
+    CacheArguments cache;
 };
+
+const char* nameOf(LightWay way) {
+    if (way == LightWay::irradiance) return "irradiance";
+    return way == LightWay::coefficients ? "coefficients" : "sampled";
+}
+
+Json orNull(const std::optional<std::size_t>& count) {
+    return count ? Json(*count) : Json(nullptr);
+}
+
+Json materialJson(const jobs::LitMaterial& material) {
+    Json json = {{"name", material.name}, {"way", nameOf(material.way)}};
+    if (material.way == LightWay::irradiance) return json;
+    json["order"] = material.order;
+    json["loss"] = material.loss;
+    if (!material.reason.empty()) json["reason"] = material.reason;
+    return json;
+}
+
+std::string textOf(const jobs::LitMaterial& material) {
+    if (material.way == LightWay::irradiance)
+        return fmt::format("  {}: diffuse, irradiance\n", material.name);
+    if (material.way == LightWay::coefficients) {
+        return fmt::format("  {}: coefficients of order {}, {} of the energy lost\n", material.name,
+                           material.order, jobs::percent(material.loss, 2));
+    }
+    return fmt::format("  {}: sampled, {}\n", material.name,
+                       material.reason.empty()
+                           ? jobs::percent(material.loss, 2) + " of the energy lost"
+                           : material.reason);
+}
 
 Json cameraJson(const jobs::IlluminatedCamera& camera) {
     Json json = {{"camera", camera.name},
@@ -25,15 +62,18 @@ Json cameraJson(const jobs::IlluminatedCamera& camera) {
                  {"seconds", camera.seconds},
                  {"cpu_seconds", camera.cpuSeconds},
                  {"rays", camera.rays},
-                 {"records", nullptr},
-                 {"bytes", nullptr},
+                 {"records", orNull(camera.records)},
+                 {"new_records", orNull(camera.made)},
+                 {"bytes", orNull(camera.bytes)},
+                 {"uncovered", camera.uncovered},
                  {"mean", camera.mean},
-                 {"standard_error", camera.standardError},
+                 {"standard_error", finiteOrNull(camera.standardError)},
                  {"largest_error",
-                  {{"relative", camera.largestError},
+                  {{"relative", finiteOrNull(camera.largestError)},
                    {"column", camera.errorColumn},
                    {"row", camera.errorRow}}},
                  {"cut", camera.cut},
+                 {"resumed_rows", camera.resumedRows},
                  {"exposure", camera.stops},
                  {"files", camera.files}};
     if (camera.reference) {
@@ -45,13 +85,26 @@ Json cameraJson(const jobs::IlluminatedCamera& camera) {
     return json;
 }
 
+std::string errorText(const jobs::IlluminatedCamera& camera) {
+    if (!camera.standardError) return "no standard error";
+    return fmt::format("standard error of a pixel {} of it, at most {} at ({}, {})",
+                       jobs::percent(*camera.standardError, 2),
+                       jobs::percent(*camera.largestError, 2), camera.errorColumn, camera.errorRow);
+}
+
 std::string textOf(const jobs::IlluminatedCamera& camera) {
     std::string text = fmt::format(
-        "{}: {} x {}, mean radiance {:.4g}, standard error of a pixel {:.2g} % of it, at most "
-        "{:.2g} % at ({}, {}), {:.3g} rays, {:.1f} s ({:.1f} s of CPU)\n",
-        camera.name, camera.width, camera.height, camera.mean, 100 * camera.standardError,
-        100 * camera.largestError, camera.errorColumn, camera.errorRow,
+        "{}: {} x {}, mean radiance {:.4g}, {}, {:.3g} rays, {:.1f} s "
+        "({:.1f} s of CPU)\n",
+        camera.name, camera.width, camera.height, camera.mean, errorText(camera),
         static_cast<double>(camera.rays), camera.seconds, camera.cpuSeconds);
+    if (camera.resumedRows > 0)
+        text += fmt::format("  {} rows of an earlier run were taken\n", camera.resumedRows);
+    if (camera.records) {
+        text += fmt::format("  {} records, {} of them new, {:.2f} MB; {} samples out of reach\n",
+                            *camera.records, *camera.made, static_cast<double>(*camera.bytes) / 1e6,
+                            camera.uncovered);
+    }
     if (camera.cut > 0) text += fmt::format("  {} paths were cut\n", camera.cut);
     if (camera.reference) {
         text += fmt::format("  relative mean square error {:.3g}, at most {:.3g} at ({}, {})\n",
@@ -66,6 +119,9 @@ void runIlluminate(IlluminateArguments& arguments, const Globals& globals) {
     const jobs::Illuminated done = jobs::illuminate(arguments.scene, arguments.output,
                                                     arguments.options, listenerFor(globals));
     if (globals.json) {
+        Json materials = Json::array();
+        for (const jobs::LitMaterial& material : done.materials)
+            materials.push_back(materialJson(material));
         Json cameras = Json::array();
         for (const jobs::IlluminatedCamera& camera : done.cameras)
             cameras.push_back(cameraJson(camera));
@@ -76,14 +132,26 @@ void runIlluminate(IlluminateArguments& arguments, const Globals& globals) {
                           {"triangles", done.triangles},
                           {"degenerate", done.degenerate},
                           {"preparation_seconds", done.preparationSeconds},
+                          {"cache_cpu_seconds", done.cacheCpuSeconds},
+                          {"materials", materials},
                           {"cameras", cameras}});
     }
     std::string text = fmt::format(
         "{}: {} triangles{}, prepared in {:.1f} s\n", done.scene, done.triangles,
         done.degenerate > 0 ? fmt::format(" and {} without area, left out", done.degenerate) : "",
         done.preparationSeconds);
+    for (const jobs::LitMaterial& material : done.materials) text += textOf(material);
     for (const jobs::IlluminatedCamera& camera : done.cameras) text += textOf(camera);
     printText(text);
+}
+
+/// Settings of the method.
+void choose(IlluminateArguments& arguments, bool samplesGiven) {
+    if (arguments.method == "path") return refuseCacheOptions(arguments.cache, arguments.method);
+    arguments.options.cache = cacheOptionsOf(arguments.cache);
+    if (!samplesGiven) arguments.options.path.samples = 16;
+    if (arguments.options.resume)
+        throw UsageError("--resume is for --method path; records are kept by --records FILE");
 }
 
 }  // namespace
@@ -98,13 +166,20 @@ void addIlluminate(CLI::App& command, Globals& globals) {
         .add_option("-o,--output", arguments->output,
                     "Folder for the pictures: CAMERA.exr, with standard errors, and CAMERA.png")
         ->required();
-    command.add_option("--method", arguments->method, "path: path tracing")
-        ->check(CLI::IsMember({"path"}))
+    command
+        .add_option("--method", arguments->method,
+                    "path: path tracing; radiance-cache: records of incident light on surfaces, "
+                    "by coefficients")
+        ->check(CLI::IsMember({"path", "radiance-cache"}))
         ->capture_default_str();
     command.add_option("--camera", options.camera, "Take this one alone (default: all)");
-    command.add_option("--samples", options.path.samples, "Paths through each pixel")
-        ->check(CLI::Range(1, 1 << 24))
-        ->capture_default_str();
+    auto* samples =
+        command
+            .add_option(
+                "--samples", options.path.samples,
+                "Paths, or lines of sight, through each pixel (default: 64; radiance-cache: "
+                "16)")
+            ->check(CLI::Range(1, 1 << 24));
     command.add_option("--bounces", options.path.mostBounces, "Reflections after which paths end")
         ->check(CLI::Range(0, 1000000))
         ->capture_default_str();
@@ -120,8 +195,16 @@ void addIlluminate(CLI::App& command, Globals& globals) {
                        "OpenEXR picture that relative_mse is measured against; with one camera");
     auto* exposure = command.add_option("--exposure", arguments->stops,
                                         "Stops of the PNG files (default: automatic)");
+    command.add_flag("--resume", options.resume,
+                     "Keep finished rows in OUTPUT/.hshfit-CAMERA.partial until the picture is "
+                     "written, and go on from those of a run that was stopped");
     command.add_flag("--force", options.force, "Replace existing files");
-    command.callback([arguments, exposure, &globals] {
+    addCacheOptions(command, arguments->cache);
+    arguments->cache.all.push_back(command.add_option(
+        "--records", options.records,
+        "File of records: read if it stands, and written with those that are added"));
+    command.callback([arguments, exposure, samples, &globals] {
+        choose(*arguments, samples->count() > 0);
         if (exposure->count() > 0) arguments->options.stops = arguments->stops;
         runIlluminate(*arguments, globals);
     });

@@ -280,7 +280,8 @@ void runRender(const RenderArguments& arguments, Globals& globals) {
 /// The options of surfaces under any light; `surface` becomes true with each of them.
 void addSurfaceOptions(CLI::App& command, RenderArguments& arguments) {
     const auto given = [&arguments](auto&&...) { arguments.surface = true; };
-    command.add_option("--mesh", arguments.mesh, "OBJ or PLY file in the place of the sphere")
+    command
+        .add_option("--mesh", arguments.mesh, "OBJ, PLY or glTF file in the place of the sphere")
         ->each(given);
     command.add_option("--up", arguments.up, "The mesh's axis that points up")
         ->check(CLI::IsMember({"y", "z"}))

@@ -44,7 +44,8 @@ show convert preset:ngan-ward/blue-acrylic out/blue-acrylic.xml --to bsdf-klems 
 echo
 echo "4. For a renderer: textures, a shader, and a page that shows what they are worth."
 show export out/ward_cosine.json -o out/export --target three,viewer --force
-show export $ward -o out/materials --target gltf,materialx --force
+show export $ward -o out/materials --target gltf --force
+show export gltf-pbr:roughnessFactor=0.4 -o out/materials --target materialx --force
 show export out/phong.json -o out/lighting --lighting split-sum,coefficients --no-error --force
 
 echo
@@ -75,6 +76,9 @@ show sample ggx:alpha=.2,F0=.9 --outgoing 45,0 --count 1000 -o out/samples.csv
 show export out/phong.json -o out/path_tracer --target bin,glsl --no-error --force
 show sample out/path_tracer/phong.hsh.json --method stored --count 0
 show illuminate examples/scenes/box.json -o out/box --samples 16 --force
+show illuminate examples/scenes/box.json -o out/box_cache --method radiance-cache --rays 500 \
+    --samples 4 --force
+show transfer examples/scenes/ball_and_wall.json -o out/ball --rays 64 --force
 
 echo
 echo "Captured energy of f cos with order 7 (49 slots) and the files it went to:"

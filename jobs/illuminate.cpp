@@ -1,13 +1,13 @@
 #include "illuminate.h"
 
-#include "source.h"
+#include "kept_rows.h"
+#include "record_picture.h"
+#include "scene_surfaces.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
-#include <hshfit/meshes/mesh_file.h>
 #include <hshfit/pictures/rgb_picture.h>
-#include <hshfit/sampling/make_sampler.h>
-#include <hshfit/scene/scene.h>
+#include <hshfit/transport/radiance_cache/cached_picture.h>
 #include <hshfit/version.h>
 #include <hshfit/wording.h>
 
@@ -17,6 +17,7 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <filesystem>
 #include <memory>
 
 namespace hshfit::jobs {
@@ -27,82 +28,6 @@ double secondsSince(const std::chrono::steady_clock::time_point& start) {
 }
 double cpuSeconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-
-Mesh squareMesh() {
-    Mesh mesh;
-    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    completeNormals(mesh);
-    return mesh;
-}
-
-Mesh meshOf(const scene::Object& object, Illuminated& result) {
-    Mesh mesh;
-    if (object.mesh == "sphere") {
-        mesh = sphereMesh(6);
-    } else if (object.mesh == "square") {
-        mesh = squareMesh();
-    } else {
-        MeshFile file = readMesh(object.mesh);
-        result.degenerate += file.degenerate;
-        mesh = std::move(file.mesh);
-    }
-    if (object.yUp) turnUpright(mesh);
-    const Frame frame(object.orientation);
-    const Point& scale = object.scale;
-    const auto placed = [&](const MeshVector& v, const Point& factors, const Point& at) {
-        const Direction d =
-            frame.toWorld({factors[0] * v[0], factors[1] * v[1], factors[2] * v[2]});
-        return MeshVector{static_cast<float>(d.x + at[0]), static_cast<float>(d.y + at[1]),
-                          static_cast<float>(d.z + at[2])};
-    };
-    for (MeshVector& position : mesh.positions) position = placed(position, scale, object.at);
-    // Normals lean the other way than the surface.
-    const Point inverse{1 / scale[0], 1 / scale[1], 1 / scale[2]};
-    for (MeshVector& normal : mesh.normals) normal = placed(normal, inverse, {});
-    completeNormals(mesh);
-    return mesh;
-}
-
-/// A wrong specification in a file is invalid input.
-std::unique_ptr<Brdf> brdfOf(const scene::Material& material, const std::string& file) {
-    try {
-        return openSource(material.brdf, true);
-    } catch (const UsageError& error) {
-        throw InputError(fmt::format("{}: material '{}': {}", file, material.name, error.what()));
-    }
-}
-
-std::unique_ptr<SurfaceScene> surfacesOf(const scene::Scene& read, Illuminated& result,
-                                         const Listener& listener) {
-    std::vector<SurfaceMaterial> materials;
-    const ProgressCall progress = listener.part("materials");
-    for (const scene::Material& material : read.materials) {
-        SurfaceMaterial& surface = materials.emplace_back();
-        surface.name = material.name;
-        surface.brdf = brdfOf(material, read.file);
-        surface.sampler = makeSampler(*surface.brdf);
-        if (progress) progress(materials.size(), read.materials.size());
-    }
-    std::vector<SurfaceObject> objects;
-    for (const scene::Object& object : read.objects)
-        objects.push_back({object.name, meshOf(object, result), object.material, object.emission});
-    return std::make_unique<SurfaceScene>(std::move(materials), std::move(objects), read.lights);
-}
-
-std::vector<const Camera*> camerasOf(const scene::Scene& read, const std::string& wanted) {
-    std::vector<const Camera*> cameras;
-    std::string names;
-    for (const Camera& camera : read.cameras) {
-        if (wanted.empty() || camera.name == wanted) cameras.push_back(&camera);
-        names += (names.empty() ? "" : ", ") + camera.name;
-    }
-    if (cameras.empty()) {
-        throw UsageError(
-            fmt::format("{}: it has no camera '{}'; it has: {}", read.file, wanted, names));
-    }
-    return cameras;
 }
 
 ReferenceError errorAgainst(const RgbPicture& reference, const RgbPicture& picture,
@@ -129,20 +54,41 @@ ReferenceError errorAgainst(const RgbPicture& reference, const RgbPicture& pictu
     return error;
 }
 
-/// Takes the picture and adds its files to the set.
-IlluminatedCamera pictured(const SurfaceScene& scene, const Camera& camera,
-                           const IlluminateOptions& options, const Listener& listener,
-                           FileSet& files) {
-    IlluminatedCamera result{.name = camera.name, .width = camera.width, .height = camera.height};
-    PathOptions path = options.path;
-    path.progress = listener.part(camera.name);
+/// A picture by either method, with its time.
+PathPicture taken(const SurfaceScene& scene, RadianceCache* cache, const Camera& camera,
+                  const IlluminateOptions& options, const Listener& listener, KeptRows* kept,
+                  IlluminatedCamera& result) {
     const auto start = std::chrono::steady_clock::now();
     const double cpu = cpuSeconds();
-    PathPicture traced = tracePaths(scene, camera, path);
+    PathPicture picture;
+    if (cache) {
+        CachedPicture cached =
+            takePicture(*cache, camera,
+                        {.samples = options.path.samples, .progress = listener.part(camera.name)});
+        picture = std::move(cached.picture);
+        result.records = cache->records().size();
+        result.made = cached.made;
+        result.bytes = cache->bytes();
+        result.uncovered = cached.uncovered;
+    } else {
+        PathOptions path = options.path;
+        path.progress = listener.part(camera.name);
+        picture = tracePaths(scene, camera, path, kept ? kept->rows() : PathRows{});
+        if (kept) result.resumedRows = kept->taken();
+    }
     result.seconds = secondsSince(start);
     result.cpuSeconds = cpuSeconds() - cpu;
-    result.rays = traced.rays;
-    result.cut = traced.cut;
+    result.rays = picture.rays;
+    result.cut = picture.cut;
+    return picture;
+}
+
+/// Takes the picture and adds its files to the set.
+IlluminatedCamera pictured(const SurfaceScene& scene, RadianceCache* cache, const Camera& camera,
+                           const IlluminateOptions& options, const Listener& listener,
+                           KeptRows* kept, FileSet& files) {
+    IlluminatedCamera result{.name = camera.name, .width = camera.width, .height = camera.height};
+    PathPicture traced = taken(scene, cache, camera, options, listener, kept, result);
     const RgbPicture picture{camera.width, camera.height, std::move(traced.radiance)};
     const RgbPicture error{camera.width, camera.height, std::move(traced.error)};
     const auto count = static_cast<double>(picture.values.size());
@@ -150,13 +96,17 @@ IlluminatedCamera pictured(const SurfaceScene& scene, const Camera& camera,
     for (const float value : picture.values) result.mean += static_cast<double>(value) / count;
     for (const float value : error.values)
         squares += static_cast<double>(value) * static_cast<double>(value) / count;
-    if (result.mean > 0) {
+    if (result.mean > 0 && options.path.samples > 1) {
         const auto largest = std::ranges::max_element(error.values);
         const auto pixel = static_cast<int>((largest - error.values.begin()) / 3);
         result.standardError = std::sqrt(squares) / result.mean;
         result.largestError = static_cast<double>(*largest) / result.mean;
         result.errorColumn = pixel % camera.width;
         result.errorRow = pixel / camera.width;
+    }
+    if (!(result.mean > 0)) {
+        listener.say(fmt::format("camera '{}' sees no light: it may stand inside of an object",
+                                 camera.name));
     }
     if (!options.reference.empty())
         result.reference = errorAgainst(readRgbExr(options.reference), picture, options.reference);
@@ -165,13 +115,54 @@ IlluminatedCamera pictured(const SurfaceScene& scene, const Camera& camera,
     files.write(camera.name + ".exr", [&](AtomicFile& file) {
         writeRgbExr(picture, more, file,
                     {{"hshfit:generator", std::string("hshfit ") + version},
-                     {"hshfit:method", "path"},
-                     {"hshfit:samples", std::to_string(path.samples)}});
+                     {"hshfit:method", cache ? "radiance-cache" : "path"},
+                     {"hshfit:samples", std::to_string(options.path.samples)}});
     });
     files.write(camera.name + ".png", rgbPng(picture, result.stops));
-    for (const char* extension : {".exr", ".png"})
+    std::vector<const char*> extensions{".exr", ".png"};
+    if (cache) {
+        files.write(camera.name + ".records.png",
+                    rgbPng(withRecords(picture, *cache, camera, *result.records - *result.made,
+                                       result.stops),
+                           result.stops));
+        extensions.push_back(".records.png");
+    }
+    for (const char* extension : extensions)
         result.files.push_back((files.folder() / (camera.name + extension)).string());
     return result;
+}
+
+CacheOptions cacheOptionsOf(const IlluminateOptions& options, const Listener& listener) {
+    CacheOptions cache = *options.cache;
+    cache.fewestBounces = options.path.fewestBounces;
+    cache.mostBounces = options.path.mostBounces;
+    cache.seed = options.path.seed;
+    cache.progress = listener.part("light on diffuse surfaces");
+    return cache;
+}
+
+/// Replaces the file if there is one: what it held is among the records.
+void writeKept(const RadianceCache& cache, const std::string& path, const std::string& key) {
+    AtomicFile file(path);
+    writeRecords(cache.stored(key), file);
+    file.commit();
+}
+
+/// The light on surfaces, and the settings on which records depend.
+std::string keyOfRecords(const scene::Scene& read, const SceneSurfaces& surfaces,
+                         const IlluminateOptions& options) {
+    const CacheOptions& cache = *options.cache;
+    return fmt::format("{} {} {} {} {} {}", lightKey(read, surfaces), cache.choice.basis,
+                       cache.choice.order, cache.choice.loss,
+                       cache.direct == DirectLight::gathered ? "gathered" : "sampled",
+                       options.path.mostBounces);
+}
+
+std::unique_ptr<RadianceCache> cacheOf(const SurfaceScene& scene, const CacheOptions& options,
+                                       const std::string& records, const std::string& key) {
+    if (records.empty() || !std::filesystem::exists(records))
+        return std::make_unique<RadianceCache>(scene, options);
+    return std::make_unique<RadianceCache>(scene, options, readRecords(records, key));
 }
 
 }  // namespace
@@ -189,12 +180,41 @@ Illuminated illuminate(const std::string& path, const std::string& folder,
     }
     for (const Camera* camera : cameras) CameraRays{*camera};
     FileSet files(folder, options.force);
-    const auto scene = surfacesOf(read, result, listener);
-    result.triangles = scene->triangles();
-    result.preparationSeconds = secondsSince(start);
     for (const Camera* camera : cameras)
-        result.cameras.push_back(pictured(*scene, *camera, options, listener, files));
+        for (const char* extension : {".exr", ".png"}) files.requireFree(camera->name + extension);
+    SceneSurfaces surfaces = surfacesOf(read, listener);
+    result.degenerate = surfaces.degenerate;
+    std::vector<std::unique_ptr<KeptRows>> kept;
+    const std::string inputs = options.resume ? inputsKey(read, surfaces) : std::string();
+    const std::string recordsKey =
+        options.cache && !options.records.empty() ? keyOfRecords(read, surfaces, options) : "";
+    const SurfaceScene scene(std::move(surfaces.materials), std::move(surfaces.objects),
+                             read.lights);
+    result.triangles = scene.triangles();
+    std::unique_ptr<RadianceCache> cache;
+    if (options.cache) {
+        const double cpu = cpuSeconds();
+        cache = cacheOf(scene, cacheOptionsOf(options, listener), options.records, recordsKey);
+        result.cacheCpuSeconds = cpuSeconds() - cpu;
+        for (std::size_t k = 0; k < read.materials.size(); ++k) {
+            const MaterialLight& light = cache->materials().materials[k];
+            result.materials.push_back(
+                {read.materials[k].name, light.way, light.order, light.loss, light.reason});
+        }
+    }
+    result.preparationSeconds = secondsSince(start);
+    for (const Camera* camera : cameras) {
+        if (options.resume) {
+            const auto place = files.folder() / (".hshfit-" + camera->name + ".partial");
+            kept.push_back(
+                std::make_unique<KeptRows>(place.string(), inputs, *camera, options.path));
+        }
+        result.cameras.push_back(pictured(scene, cache.get(), *camera, options, listener,
+                                          kept.empty() ? nullptr : kept.back().get(), files));
+    }
+    if (cache && !options.records.empty()) writeKept(*cache, options.records, recordsKey);
     files.commit();
+    for (const auto& one : kept) one->remove();
     return result;
 }
 

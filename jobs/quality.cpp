@@ -23,10 +23,6 @@ namespace {
 
 using Kind = Representation::Kind;
 
-std::string percent(double share) {
-    return fmt::format("{:.3g} %", 100 * share);
-}
-
 Setting kindSetting(Kind kind) {
     return {"Form::kind", std::string(kindName(kind))};
 }
@@ -197,6 +193,13 @@ std::optional<double> measuredShare(const Brdf& source, const Brdf& result, cons
 }
 
 }  // namespace
+
+std::string percent(double share, int digits) {
+    const double value = 100 * share;
+    // From here on rounding would reach the next power of ten.
+    return std::abs(value) < std::pow(10, digits) - 0.5 ? fmt::format("{:.{}g} %", value, digits)
+                                                        : fmt::format("{:.0f} %", value);
+}
 
 std::string Poor::line() const {
     return fmt::format("poor: {}; better: {}", reason, better);

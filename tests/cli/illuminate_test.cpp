@@ -1,6 +1,7 @@
 // `illuminate` as a user meets it.
 
 #include "places.h"
+#include "scenes.h"
 
 #include <cli/program.h>
 
@@ -8,7 +9,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include <csignal>
 #include <fstream>
+#include <random>
+
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace {
 
@@ -21,20 +27,7 @@ protected:
     /// The inside of a cube of six squares of albedo 0.5 that all emit 1, seen from its middle.
     static Json furnace() {
         Json objects = Json::array();
-        const auto add = [&](double theta, double phi, const Json& at) {
-            objects.push_back({{"mesh", "square"},
-                               {"material", "grey"},
-                               {"emission", 1},
-                               {"theta", theta},
-                               {"phi", phi},
-                               {"at", at}});
-        };
-        add(0, 0, {0, 0, -1});
-        add(180, 0, {0, 0, 1});
-        add(90, 0, {-1, 0, 0});
-        add(90, 180, {1, 0, 0});
-        add(90, 90, {0, -1, 0});
-        add(90, -90, {0, 1, 0});
+        hshfit::test::addFurnace(objects);
         return {{"format", "hshfit-scene"},
                 {"version", 1},
                 {"materials", {{{"name", "grey"}, {"brdf", "lambert:kd=.5"}}}},
@@ -46,6 +39,10 @@ protected:
                    {"field_of_view", 90},
                    {"width", 12},
                    {"height", 8}}}}};
+    }
+    static void expectErrorOf(const Answer& answer, int code, const std::string& part) {
+        EXPECT_EQ(answer.code, code) << answer.err;
+        EXPECT_NE(answer.err.find(part), std::string::npos) << answer.err;
     }
     Answer taken(const Json& scene, const std::string& more) const {
         std::ofstream(path("scene.json")) << scene;
@@ -67,6 +64,9 @@ TEST_F(Illuminate, FindsTheRadianceOfAClosedRoom) {
     ASSERT_EQ(picture.width, 12);
     ASSERT_EQ(picture.height, 8);
     for (const float value : picture.values) EXPECT_NEAR(value, 2, 10 * error);
+    const Answer single = taken(furnace(), "-o " + path("single") + " --samples 1 --json");
+    EXPECT_TRUE(keepsSchema(single.out, "illuminate"));
+    EXPECT_TRUE(Json::parse(single.out)["cameras"][0]["standard_error"].is_null());
     // Against itself the error is 0; against another seed it is that of both.
     const Answer again =
         taken(furnace(), "-o " + path("again") + " --samples 400 --seed 2 --json --reference " +
@@ -85,6 +85,59 @@ TEST_F(Illuminate, TakesTheSamePictureOnAnyNumberOfThreads) {
     }
     EXPECT_EQ(read(path("1/eye.exr")), read(path("3/eye.exr")));
     EXPECT_EQ(read(path("1/eye.png")), read(path("3/eye.png")));
+}
+
+/// A process that is killed 20 times, each after one more row and a random moment.
+TEST_F(Illuminate, ResumedAfterKillsTakesTheSamePicture) {
+    Json scene = furnace();
+    scene["cameras"][0]["height"] = 96;
+    const std::string samples = " --samples 512";
+    ASSERT_EQ(taken(scene, "-o " + path("whole") + samples).code, 0);
+    const std::string kept = path("out/.hshfit-eye.partial");
+    const auto length = [&]() -> std::uintmax_t {
+        std::error_code error;
+        const auto size = std::filesystem::file_size(kept, error);
+        return error ? 0 : size;
+    };
+    const std::string out = path("out"), file = path("scene.json"),
+                      program = hshfit::test::program();
+    std::mt19937 random(7);
+    int kills = 0;
+    for (int attempt = 0; attempt < 20; ++attempt) {
+        const auto before = length();
+        const pid_t child = fork();
+        if (child == 0) {
+            execl(program.c_str(), program.c_str(), "illuminate", file.c_str(), "-o", out.c_str(),
+                  "--samples", "512", "--resume", "--quiet", nullptr);
+            _exit(127);
+        }
+        int status = 0;
+        pid_t ended = 0;
+        while (ended == 0 && length() <= before) {
+            usleep(200);
+            ended = waitpid(child, &status, WNOHANG);
+        }
+        usleep(std::uniform_int_distribution<unsigned>(0, 2000)(random));
+        if (ended == 0) {
+            ::kill(child, SIGKILL);
+            waitpid(child, &status, 0);
+        }
+        kills += WIFSIGNALED(status) ? 1 : 0;
+        if (!WIFSIGNALED(status)) break;
+        EXPECT_FALSE(std::filesystem::exists(out + "/eye.exr"));
+    }
+    EXPECT_EQ(kills, 20);
+    // Rows of another seed or another scene are not mixed in.
+    expectErrorOf(taken(scene, "-o " + out + samples + " --resume --seed 2"), 3, "other inputs");
+    scene["objects"][0]["emission"] = 1.5;
+    expectErrorOf(taken(scene, "-o " + out + samples + " --resume"), 3, "other inputs");
+    scene["objects"][0]["emission"] = 1;
+    const Answer answer = taken(scene, "-o " + out + samples + " --resume --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_GE(Json::parse(answer.out)["cameras"][0]["resumed_rows"], 20);
+    for (const char* name : {"/eye.exr", "/eye.png"})
+        EXPECT_EQ(read(out + name), read(path("whole") + name)) << name;
+    EXPECT_FALSE(std::filesystem::exists(kept));
 }
 
 TEST_F(Illuminate, RefusesScenesThatCannotBeLit) {
@@ -110,6 +163,83 @@ TEST_F(Illuminate, RefusesScenesThatCannotBeLit) {
     const Answer answer = taken(dark, "-o " + path("none"));
     EXPECT_EQ(answer.code, 3);
     EXPECT_NE(answer.err.find("is dark: give 'lights'"), std::string::npos) << answer.err;
+}
+
+/// Few rays, so that tests are short.
+const std::string quick =
+    " --method radiance-cache --rays 64 --surface-points 100 --surface-rays 16 --samples 2 ";
+
+TEST_F(Illuminate, HidesAClosedRoomByARadianceCache) {
+    const Answer answer =
+        taken(furnace(), "-o " + path("out") + quick + "--direct gathered --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "illuminate"));
+    const Json json = Json::parse(answer.out);
+    EXPECT_EQ(json["method"], "radiance-cache");
+    EXPECT_EQ(json["materials"][0]["way"], "irradiance");
+    const Json camera = json["cameras"][0];
+    EXPECT_GT(camera["records"], 3);
+    EXPECT_EQ(camera["new_records"], camera["records"]);
+    EXPECT_GT(camera["bytes"], 0);
+    for (const float value : hshfit::readRgbExr(path("out/eye.exr")).values)
+        EXPECT_NEAR(value, 2, 2e-3);
+    EXPECT_TRUE(std::filesystem::exists(path("out/eye.records.png")));
+}
+
+/// Two runs that hand on records take the pictures of one run, and a third has those of both.
+TEST_F(Illuminate, KeepsRecordsInAFile) {
+    Json scene = furnace();
+    scene["objects"][0]["emission"] = 3;
+    Json other = scene["cameras"][0];
+    other["name"] = "other";
+    other["target"] = {0, 1, 0.2};
+    scene["cameras"].push_back(other);
+    ASSERT_EQ(taken(scene, "-o " + path("both") + quick).code, 0);
+    const std::string records = " --json --records " + path("records") + quick;
+    ASSERT_EQ(taken(scene, "-o " + path("first") + " --camera eye" + records).code, 0);
+    const Answer second = taken(scene, "-o " + path("second") + " --camera other" + records);
+    ASSERT_EQ(second.code, 0) << second.err;
+    EXPECT_EQ(read(path("both/other.exr")), read(path("second/other.exr")));
+    const Answer again = taken(scene, "-o " + path("third") + " --camera other" + records);
+    ASSERT_EQ(again.code, 0) << again.err;
+    const Json before = Json::parse(second.out)["cameras"][0];
+    const Json after = Json::parse(again.out)["cameras"][0];
+    EXPECT_GT(before["new_records"], 0);
+    EXPECT_EQ(after["records"].get<int>() - after["new_records"].get<int>(), before["records"]);
+    EXPECT_LT(after["new_records"], before["new_records"]);
+
+    const std::string whole = read(path("records"));
+    const auto refuses = [&](const Json& of, const std::string& message,
+                             const std::string& more = "") {
+        const Answer answer = taken(of, "-o " + path("none") + records + more);
+        EXPECT_EQ(answer.code, 3) << message;
+        EXPECT_NE(answer.err.find(message), std::string::npos) << answer.err;
+        EXPECT_FALSE(std::filesystem::exists(path("none"))) << message;
+    };
+    refuses(scene, "of another scene, or of other settings", " --order 9");
+    scene["objects"][0]["emission"] = 4;
+    refuses(scene, "of another scene, or of other settings");
+    scene["objects"][0]["emission"] = 3;
+    for (const std::size_t size : {whole.size() - 1, whole.size() / 2, std::size_t{40}}) {
+        std::ofstream(path("records"), std::ios::binary) << whole.substr(0, size);
+        refuses(scene, path("records"));
+    }
+}
+
+TEST_F(Illuminate, RefusesWhatTheMethodDoesNotTake) {
+    const auto refuses = [&](const std::string& more, const std::string& message) {
+        const Answer answer = taken(furnace(), "-o " + path("none") + more);
+        EXPECT_EQ(answer.code, 2) << message;
+        EXPECT_NE(answer.err.find(message), std::string::npos) << answer.err;
+        EXPECT_FALSE(std::filesystem::exists(path("none"))) << message;
+    };
+    refuses(" --rays 100", "--rays is for --method radiance-cache");
+    refuses(" --records some", "--records is for --method radiance-cache");
+    refuses(quick + "--resume", "--resume is for --method path");
+    refuses(quick + "--from-bounce 3", "--from-bounce is 3");
+    refuses(quick + "--accuracy 2", "--accuracy is 2; valid: above 0, up to 1");
+    refuses(quick + "--basis lsosh", "--basis 'lsosh' is not orthonormal");
+    refuses(quick + "--direct gathered --from-bounce 2", "cannot leave it out");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
+#include <hshfit/files/checksum.h>
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/viewer.h>
 #include <hshfit/pages/page_figures.h>

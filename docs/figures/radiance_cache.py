@@ -1,0 +1,304 @@
+#!/usr/bin/env python3
+"""radiance_cache.py PROGRAM MESHES FOLDER: the figures and tables of docs/illuminate.md.
+
+Measures `illuminate --method radiance-cache` against path tracing in the Cornell box, whose meshes
+lie in MESHES (cbox_*.obj), without direct light. Scenes, pictures and tables.md go to FOLDER. Takes
+about a quarter of an hour of CPU.
+
+Errors are relative mean squares, as relative_mse of the answer, against two references of other
+seeds at once: the mean of (T - A)(T - B) / (R^2 + (m / 10)^2), R = (A + B) / 2, which the noise of
+the references leaves without bias.
+"""
+import array
+import itertools
+import json
+import os
+import struct
+import subprocess
+import sys
+import zlib
+from pathlib import Path
+
+PROGRAM, MESHES, FOLDER = (Path(word).resolve() for word in sys.argv[1:4])
+
+# Reflectances and radiance as in the scene of Mitsuba 3 that the meshes come with.
+WHITE = ".885809/.698859/.666422"
+MATERIALS = {
+    "white": f"lambert:kd={WHITE}",
+    "red": "lambert:kd=.570068/.0430135/.0443706",
+    "green": "lambert:kd=.105421/.37798/.076425",
+    "box": "lambert:kd=.45/.30/.90",
+    "light": "lambert:kd=.936461/.740433/.705267",
+    "glossy": "phong:kd=.2,ks=.6,exponent=22,normalized=true",
+}
+OBJECTS = {"floor": "white", "ceiling": "white", "back": "glossy", "redwall": "red",
+           "greenwall": "green", "smallbox": "box", "largebox": "box", "luminaire": "light"}
+# Mitsuba's +y is up; (x, y, z) becomes (x, -z, y).
+VIEWS = {"centre": (278, 800), "left": (478, 780), "right": (78, 780)}
+
+
+def write_scene(size):
+    objects = []
+    for name, material in OBJECTS.items():
+        mesh = os.path.relpath(MESHES / f"cbox_{name}.obj", FOLDER)
+        objects.append({"name": name, "mesh": mesh, "up": "y", "material": material})
+    objects[-1].update(emission=[18.387, 13.9873, 6.75357], at=[0, 0, -0.5])
+    cameras = [{"name": name, "position": [x, y, 273], "target": [278, -280, 273],
+                "field_of_view": 39.3077, "width": size, "height": size}
+               for name, (x, y) in VIEWS.items()]
+    scene = {"format": "hshfit-scene", "version": 1,
+             "materials": [{"name": n, "brdf": b} for n, b in MATERIALS.items()],
+             "objects": objects, "cameras": cameras}
+    path = FOLDER / f"box{size}.json"
+    path.write_text(json.dumps(scene, indent=1))
+    return path
+
+
+def run(name, scene, *options, keep=False):
+    """The answer of `illuminate`, whose pictures go to FOLDER/name; an earlier one if `keep`."""
+    answer = FOLDER / f"{name}.json"
+    if keep and answer.exists():
+        return json.loads(answer.read_text())
+    command = [str(PROGRAM), "illuminate", str(scene), "-o", str(FOLDER / name), "--from-bounce",
+               "2", "--force", "--json", *map(str, options)]
+    answer.write_bytes(subprocess.run(command, check=True, capture_output=True).stdout)
+    return json.loads(answer.read_text())
+
+
+def cpu_of(answer):
+    return answer.get("cache_cpu_seconds", 0) + sum(c["cpu_seconds"] for c in answer["cameras"])
+
+
+def text_at(data, at):
+    end = data.index(b"\0", at)
+    return data[at:end].decode(), end + 1
+
+
+def read_exr(path):
+    """R, G, B of a scan-line file with ZIP compression and 32-bit floats."""
+    data = path.read_bytes()
+    at, channels = 8, []
+    while data[at]:
+        name, at = text_at(data, at)
+        _, at = text_at(data, at)
+        size, = struct.unpack_from("<i", data, at)
+        value = data[at + 4:at + 4 + size]
+        at += 4 + size
+        if name == "dataWindow":
+            left, top, right, bottom = struct.unpack("<4i", value)
+        if name == "channels":
+            k = 0
+            while value[k]:
+                channel, k = text_at(value, k)
+                k += 16
+                channels.append(channel)
+    width, height, lines = right - left + 1, bottom - top + 1, 16
+    planes = {c: array.array("f") for c in channels}
+    for offset in struct.unpack_from(f"<{(height + lines - 1) // lines}Q", data, at + 1):
+        _, size = struct.unpack_from("<ii", data, offset)
+        packed = data[offset + 8:offset + 8 + size]
+        row = 4 * width * len(channels)
+        if size % row:
+            packed = bytes(itertools.accumulate(zlib.decompress(packed),
+                                                lambda sum, x: (sum + x - 128) & 255))
+            half, mixed = (len(packed) + 1) // 2, bytearray(len(packed))
+            mixed[0::2], mixed[1::2] = packed[:half], packed[half:]
+            packed = bytes(mixed)
+        for start in range(0, len(packed), row):
+            for k, channel in enumerate(channels):
+                begin = start + 4 * width * k
+                planes[channel].frombytes(packed[begin:begin + 4 * width])
+    return {c: planes[c] for c in "RGB"}
+
+
+def error_of(test, references, mask=None):
+    """Of a picture, or of those pixels of it that are set in the mask."""
+    first, second = references
+    count = len(test["R"])
+    mean = sum(sum(first[c]) + sum(second[c]) for c in "RGB") / (6 * count)
+    total, number = 0, 0
+    for c in "RGB":
+        for k, (t, a, b) in enumerate(zip(test[c], first[c], second[c])):
+            if mask and not mask[k]:
+                continue
+            total += (t - a) * (t - b) / ((a + b) ** 2 / 4 + mean ** 2 / 100)
+            number += 1
+    return total / number
+
+
+class References:
+    """Two of each view, and the pixels of the back wall."""
+
+    samples = 400
+
+    def __init__(self, size):
+        self.scene = write_scene(size)
+        runs = [run(f"reference{seed}", self.scene, "--samples", self.samples, "--seed", seed,
+                    keep=True)
+                for seed in (11, 12)]
+        self.seconds = sum(cpu_of(answer) for answer in runs) / len(runs) / self.samples
+        self.pictures = {view: [read_exr(FOLDER / f"reference{seed}" / f"{view}.exr")
+                                for seed in (11, 12)] for view in VIEWS}
+        scene = json.loads(self.scene.read_text())
+        for thing in scene["objects"]:
+            thing["emission"] = 1 if thing["name"] == "back" else 0
+        path = FOLDER / "wall.json"
+        path.write_text(json.dumps(scene))
+        subprocess.run([str(PROGRAM), "illuminate", str(path), "-o", str(FOLDER / "wall"),
+                        "--force", "--bounces", "0", "--samples", "16"], check=True,
+                       capture_output=True)
+        self.wall = {view: [x > 0.999 for x in read_exr(FOLDER / "wall" / f"{view}.exr")["R"]]
+                     for view in VIEWS}
+
+    def errors(self, name):
+        """Over the views: whole pictures, and the back wall alone."""
+        whole = wall = 0
+        for view in VIEWS:
+            picture = read_exr(FOLDER / name / f"{view}.exr")
+            whole += error_of(picture, self.pictures[view]) / len(VIEWS)
+            wall += error_of(picture, self.pictures[view], self.wall[view]) / len(VIEWS)
+        return whole, wall
+
+
+def read_png(path):
+    data, at, packed = path.read_bytes(), 8, b""
+    while at < len(data):
+        size, = struct.unpack_from(">I", data, at)
+        kind, body = data[at + 4:at + 8], data[at + 8:at + 8 + size]
+        at += 12 + size
+        if kind == b"IHDR":
+            width, height, _, colour = struct.unpack(">IIBB", body[:10])
+        if kind == b"IDAT":
+            packed += body
+    channels = 4 if colour == 6 else 3
+    raw, rows, before = zlib.decompress(packed), [], bytearray(width * channels)
+    for y in range(height):
+        begin = y * (width * channels + 1)
+        line = bytearray(raw[begin + 1:begin + 1 + width * channels])
+        for x in range(len(line)):
+            a = line[x - channels] if x >= channels else 0
+            b, c = before[x], before[x - channels] if x >= channels else 0
+            kind = raw[begin]
+            if kind == 3:
+                add = (a + b) // 2
+            elif kind == 4:
+                add = min((abs(b - c), 0, a), (abs(a - c), 1, b), (abs(a + b - 2 * c), 2, c))[2]
+            else:
+                add = (0, a, b)[kind]
+            line[x] = (line[x] + add) & 255
+        rows.append([line[k::channels] for k in range(3)])
+        before = line
+    return rows
+
+
+def write_png(path, rows):
+    def chunk(kind, body):
+        check = struct.pack(">I", zlib.crc32(kind + body))
+        return struct.pack(">I", len(body)) + kind + body + check
+    head = struct.pack(">IIBBBBB", len(rows[0]) // 3, len(rows), 8, 2, 0, 0, 0)
+    body = zlib.compress(b"".join(b"\0" + row for row in rows), 9)
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", body) +
+                     chunk(b"IEND", b""))
+
+
+def beside(path, names, factor):
+    """PNG pictures side by side, each pixel the mean of factor x factor."""
+    pictures = [read_png(name) for name in names]
+    rows = []
+    for y in range(len(pictures[0]) // factor):
+        row = bytearray()
+        for picture in pictures:
+            block = picture[y * factor:(y + 1) * factor]
+            for x in range(len(block[0][0]) // factor):
+                for k in range(3):
+                    total = sum(sum(line[k][x * factor:(x + 1) * factor]) for line in block)
+                    row.append(total // factor ** 2)
+        rows.append(bytes(row))
+    write_png(path, rows)
+
+
+def figure_9(out):
+    answer = run("fig9", write_scene(850), "--method", "radiance-cache", "--order", 10, "--rays",
+                 4000)
+    out.append("| view | records | new | MB | s | CPU s | the paper's new records | its s |")
+    out.append("|---|---|---|---|---|---|---|---|")
+    for camera, records, seconds in zip(answer["cameras"], (1121, 250, 198), (25.8, 11.2, 10.3)):
+        out.append(f"| {camera['camera']} | {camera['records']} | {camera['new_records']} | "
+                   f"{camera['bytes'] / 1e6:.2f} | {camera['seconds']:.1f} | "
+                   f"{camera['cpu_seconds']:.1f} | {records} | {seconds} |")
+    out.append(f"Before the first view: {answer['cache_cpu_seconds']:.1f} CPU s.")
+    views = ("left", "centre", "right")
+    beside(FOLDER / "radiance_cache.png", [FOLDER / "fig9" / f"{v}.png" for v in views], 4)
+    beside(FOLDER / "radiance_cache_records.png",
+           [FOLDER / "fig9" / f"{v}.records.png" for v in views], 4)
+
+
+SETTINGS = [(250, .5), (500, .4), (1000, .3), (4000, .2)]
+
+
+def draw(points, path_unit):
+    """Error against CPU time, as an SVG file by gnuplot."""
+    commands = ["set terminal svg size 640,420 font 'sans,13' background 'white'",
+                f"set output '{FOLDER / 'radiance_cache_error.svg'}'", "set logscale xy",
+                "set xlabel 'CPU seconds, three views of 256 x 256'",
+                "set ylabel 'relative mean square error'", "set grid", "set format y '%.0e'",
+                "set xrange [5:2000]"]
+    for label, values in points.items():
+        lines = "\n".join(f"{x} {y}" for x, y in values)
+        commands.append(f"${label} << EOD\n{lines}\nEOD")
+    commands.append(
+        f"plot {path_unit} / x title 'path tracing' lc rgb '#0072b2' lw 2, "
+        "$cache with linespoints title 'radiance cache' lc rgb '#d55e00' lw 2 pt 7, "
+        "$published with linespoints title 'as published in 2004' lc rgb '#009e73' lw 2 pt 5")
+    subprocess.run(["gnuplot"], input="\n".join(commands), text=True, check=True)
+
+
+def curves(out):
+    references = References(256)
+    path = run("path", references.scene, "--samples", 64)
+    whole, wall = references.errors("path")
+    units = {"whole": whole * cpu_of(path), "wall": wall * cpu_of(path)}
+    out.append(f"Path tracing, 64 samples: {cpu_of(path):.1f} CPU s, {whole:.3e}, wall {wall:.3e}; "
+               f"error times CPU s {units['whole']:.3f}, wall {units['wall']:.3f}.")
+    out.append("")
+    out.append("| rays, a | records | CPU s, three views | error | path tracing, CPU s | ratio | "
+               "wall: error | ratio |")
+    out.append("|---|---|---|---|---|---|---|---|")
+
+    def measure(label, *options):
+        answer = run("cache", references.scene, "--method", "radiance-cache", "--samples", 64,
+                     *options)
+        cpu, records = cpu_of(answer), answer["cameras"][-1]["records"]
+        whole, wall = references.errors("cache")
+        path_whole, path_wall = units["whole"] / whole, units["wall"] / wall
+        out.append(f"| {label} | {records} | {cpu:.1f} | {whole:.2e} | {path_whole:.0f} | "
+                   f"{path_whole / cpu:.0f} | {wall:.2e} | {path_wall / cpu:.0f} |")
+        print(out[-1], flush=True)
+        return cpu, whole
+
+    points = {"cache": [], "published": []}
+    for rays, accuracy in SETTINGS:
+        setting = ["--rays", rays, "--accuracy", accuracy]
+        points["cache"].append(measure(f"{rays}, {accuracy}", *setting))
+        points["published"].append(
+            measure(f"{rays}, {accuracy}, as published", *setting, "--published"))
+    draw(points, units["whole"])
+    terms = {"all": [], "gradient by hit points": ["--gradient", "hit-points"],
+             "no gradient": ["--gradient", "none"]}
+    for term in ("gradient-limit", "neighbour-clamping", "error-control"):
+        terms[f"without {term}"] = ["--without", term]
+    terms["as published"] = ["--published"]
+    for label, options in terms.items():
+        measure(label, "--rays", 1000, "--accuracy", 0.4, *options)
+
+
+def main():
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    out = []
+    figure_9(out)
+    print("\n".join(out), flush=True)
+    curves(out)
+    (FOLDER / "tables.md").write_text("\n".join(out) + "\n")
+
+
+main()
