@@ -1,6 +1,7 @@
 #include "transfer.h"
 
 #include "scene_surfaces.h"
+#include "transfer_clusters.h"
 #include "transfer_pictures.h"
 
 #include <hshfit/error.h>
@@ -40,8 +41,8 @@ void requireMemory(std::size_t needed, const TransferOptions& options, std::size
         Setting{"TransferOptions::order"}));
 }
 
-/// The number of the first pass in a checkpoint, beyond those of vertices.
-constexpr std::uint64_t firstPass = std::uint64_t{1} << 40;
+/// Numbers of passes and of clusters in a checkpoint, beyond those of vertices.
+constexpr std::uint64_t firstPass = std::uint64_t{1} << 40, firstClusters = firstPass << 1;
 
 /// Options that parts depend on.
 std::string keyOf(const std::string& inputs, const TransferOptions& options,
@@ -120,67 +121,6 @@ void writeTensors(const TransferMesh& mesh, const std::vector<TransferMaterial>&
                        reflected.matrices);
     }
     files.write("transfer.tensor", [&](AtomicFile& file) { writer.write(file); });
-}
-
-/// The number of the chosen form, or the one with the least error if none is within the bounds.
-std::size_t chosen(const std::vector<ClusterError>& all, const TransferOptions& options) {
-    const auto better = [&](const ClusterError& a, const ClusterError& b) {
-        const bool byBytes = options.bytes.has_value();
-        const auto within = [&](const ClusterError& e) {
-            return byBytes ? e.bytes <= *options.bytes : e.relativeL2 <= options.error;
-        };
-        if (within(a) != within(b)) return within(a);
-        if (within(a) != byBytes) return a.bytes < b.bytes;
-        return a.relativeL2 < b.relativeL2;
-    };
-    return static_cast<std::size_t>(std::ranges::min_element(all, better) - all.begin());
-}
-
-/// Bounds that no form keeps.
-std::optional<Poor> judge(const ClusterError& kept, const TransferOptions& options) {
-    if (options.bytes && kept.bytes > *options.bytes) {
-        return Poor{
-            fmt::format("the smallest matrices take {} bytes, and {} are allowed", kept.bytes,
-                        *options.bytes),
-            fmt::format("{} with fewer, or a lower {}", Setting{"TransferOptions::clusters"},
-                        Setting{"TransferOptions::localOrder"})};
-    }
-    if (!options.bytes && kept.relativeL2 > options.error) {
-        return Poor{fmt::format("the compressed matrices have an error of {}, and {} are asked for",
-                                percent(kept.relativeL2, 2), percent(options.error, 2)),
-                    fmt::format("more {} and {}, or the matrices of transfer.tensor",
-                                Setting{"TransferOptions::clusters"},
-                                Setting{"TransferOptions::components"})};
-    }
-    return {};
-}
-
-/// Tries every number of clusters, and returns the chosen form.
-MatrixClusters compressed(const TransferView& view, const TransferOptions& options,
-                          const Listener& listener, Transferred& done) {
-    std::vector<MatrixClusters> tried;
-    for (const std::size_t clusters : options.clusters) {
-        ClusterOptions some{.clusters = clusters, .components = options.components};
-        some.progress = listener.part(fmt::format("{} clusters", clusters));
-        tried.push_back(clusterMatrices(view, some));
-        const auto& errors = tried.back().errors;
-        done.compression.insert(done.compression.end(), errors.begin(), errors.end());
-    }
-    const std::size_t best = chosen(done.compression, options);
-    done.compressed = done.compression[best];
-    done.poor = judge(*done.compressed, options);
-    return tried[best / (options.components + 1)].truncated(done.compressed->components);
-}
-
-void writeClusters(const MatrixClusters& clusters, const TransferView& view, FileSet& files) {
-    const std::uint64_t number = clusters.clusters, components = clusters.components,
-                        channels = view.channels, rows = view.localSlots(), slots = view.slots();
-    TensorFileWriter writer;
-    writer.add("means", {number, channels, rows, slots}, clusters.means);
-    writer.add("components", {number, components, channels, rows, slots}, clusters.basis);
-    writer.add("clusters", {clusters.of.size()}, clusters.of);
-    writer.add("weights", {clusters.of.size(), components}, clusters.weights);
-    files.write("clusters.tensor", [&](AtomicFile& file) { writer.write(file); });
 }
 
 TransferView viewOf(const GatheredTransfer& gathered, const InterreflectedTransfer& reflected,
@@ -330,10 +270,11 @@ Transferred transfer(const std::string& path, const std::string& folder,
     dropEmission(surfaces.objects, listener);
     const TransferMesh mesh = transferMesh(surfaces.objects, options.mesh);
     describe(mesh, surfaces, done);
+    const std::string inputs = options.resume ? inputsKey(read, surfaces) : "";
     std::unique_ptr<Checkpoint> kept;
     if (options.resume)
         kept = std::make_unique<Checkpoint>((files.folder() / ".hshfit-transfer.partial").string(),
-                                            keyOf(inputsKey(read, surfaces), options, mesh));
+                                            keyOf(inputs, options, mesh));
     const RayScene rays = rayScene(mesh);
     const GatheredTransfer gathered = gatheredOf(mesh, rays, kept.get(), listener, done);
     InterreflectedTransfer reflected;
@@ -351,26 +292,23 @@ Transferred transfer(const std::string& path, const std::string& folder,
     written("transfer.glb");
     std::optional<MatrixClusters> clusters;
     if (!view.matrices.empty() && !options.clusters.empty()) {
-        clusters = compressed(view, options, listener, done);
+        clusters = compressed(view, partsOf(kept.get(), firstClusters), listener, done);
         writeClusters(*clusters, view, files);
         written("clusters.tensor");
     }
     const PictureScene scene{mesh, rays, view, done.materials, surfaces};
-    std::vector<PageReference> references;
-    if (options.referenceSamples > 0) {
-        for (const NamedLight& light : lights)
-            for (const Camera* camera : cameras)
-                done.pictures.push_back(
-                    takePicture(scene, *camera, light, options, listener, files, references));
-    }
+    ReferencePictures pictures;
+    if (options.referenceSamples > 0)
+        pictures = takePictures(scene, read, cameras, lights, listener, files, done);
     files.write("transfer.html", pageOf(scene, pageKinds(gathered, reflected, options.kind),
                                         clusters ? &*clusters : nullptr, lights, cameras,
-                                        references, done, listener));
+                                        pictures.references, done, listener));
     written("transfer.html");
     written("transfer.json");
     files.write("transfer.json", jsonText(transferJson(done, false), 2) + "\n");
     files.commit();
     if (kept) kept->remove();
+    for (const auto& rows : pictures.kept) rows->remove();
     return done;
 }
 

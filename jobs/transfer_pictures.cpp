@@ -47,6 +47,13 @@ int reflectionsOf(const TransferOptions& options) {
     return options.kind == TransferKind::interreflected ? options.passes + 1 : 1;
 }
 
+PathOptions pathsOf(const TransferOptions& options) {
+    return {.samples = options.referenceSamples,
+            .mostBounces = reflectionsOf(options),
+            .fewestBounces = 1,
+            .seed = options.seed};
+}
+
 double relativeNoise(const PathPicture& picture) {
     double squares = 0, whole = 0;
     for (std::size_t k = 0; k < picture.radiance.size(); ++k) {
@@ -56,27 +63,8 @@ double relativeNoise(const PathPicture& picture) {
     return whole > 0 ? std::sqrt(squares / whole) : 0;
 }
 
-}  // namespace
-
-std::vector<NamedLight> namedLights(const scene::Scene& read,
-                                    const std::vector<std::string>& specifications) {
-    std::vector<NamedLight> named;
-    if (!read.lights.empty()) named.push_back({"scene", "scene", read.lights});
-    for (const std::string& text : specifications) {
-        std::string file = fmt::format("light{}_", named.size() + 1);
-        for (const char c : text.substr(0, text.find_first_of(":+")))
-            if (std::isalnum(static_cast<unsigned char>(c))) file += c;
-        named.push_back({text, file, parseLights(text).lights});
-    }
-    return named;
-}
-
-LightCoefficients lightOf(const NamedLight& light, int order) {
-    return projectLight(light.lights, *bases::make("sh", order));
-}
-
 TransferPicture takePicture(const PictureScene& scene, const Camera& camera,
-                            const NamedLight& light, const TransferOptions& options,
+                            const NamedLight& light, const TransferOptions& options, KeptRows* kept,
                             const Listener& listener, FileSet& files,
                             std::vector<PageReference>& references) {
     TransferPicture picture{.camera = camera.name, .light = light.name};
@@ -85,12 +73,9 @@ TransferPicture takePicture(const PictureScene& scene, const Camera& camera,
         picture.captured = coefficients.curves.front().points.back().accuracy;
     std::vector<SurfaceObject> objects = scene.surfaces.objects;
     const SurfaceScene surfaces(scene.surfaces.materials, std::move(objects), light.lights);
-    const PathPicture path = tracePaths(surfaces, camera,
-                                        {.samples = options.referenceSamples,
-                                         .mostBounces = reflectionsOf(options),
-                                         .fewestBounces = 1,
-                                         .seed = options.seed,
-                                         .progress = listener.part(camera.name)});
+    PathOptions paths = pathsOf(options);
+    paths.progress = listener.part(camera.name);
+    const PathPicture path = tracePaths(surfaces, camera, paths, kept ? kept->rows() : PathRows{});
     picture.noise = relativeNoise(path);
     std::vector<float> found;
     for (int bands = 1; bands <= options.order; ++bands) {
@@ -117,6 +102,51 @@ TransferPicture takePicture(const PictureScene& scene, const Camera& camera,
     for (const char* end : {"_transfer.png", "_path.png"})
         picture.files.push_back((files.folder() / (stem + end)).string());
     return picture;
+}
+
+}  // namespace
+
+std::vector<NamedLight> namedLights(const scene::Scene& read,
+                                    const std::vector<std::string>& specifications) {
+    std::vector<NamedLight> named;
+    if (!read.lights.empty()) named.push_back({"scene", "scene", read.lights});
+    for (const std::string& text : specifications) {
+        std::string file = fmt::format("light{}_", named.size() + 1);
+        for (const char c : text.substr(0, text.find_first_of(":+")))
+            if (std::isalnum(static_cast<unsigned char>(c))) file += c;
+        named.push_back({text, file, parseLights(text).lights});
+    }
+    return named;
+}
+
+LightCoefficients lightOf(const NamedLight& light, int order) {
+    return projectLight(light.lights, *bases::make("sh", order));
+}
+
+ReferencePictures takePictures(const PictureScene& scene, const scene::Scene& read,
+                               const std::vector<const Camera*>& cameras,
+                               const std::vector<NamedLight>& lights, const Listener& listener,
+                               FileSet& files, Transferred& done) {
+    ReferencePictures result;
+    for (const NamedLight& light : lights) {
+        scene::Scene lit = read;
+        lit.lights = light.lights;
+        for (const Camera* camera : cameras) {
+            KeptRows* rows = nullptr;
+            if (done.options.resume) {
+                const auto place =
+                    files.folder() / fmt::format(".hshfit-{}_{}.partial", camera->name, light.file);
+                rows = result.kept
+                           .emplace_back(std::make_unique<KeptRows>(place.string(),
+                                                                    inputsKey(lit, scene.surfaces),
+                                                                    *camera, pathsOf(done.options)))
+                           .get();
+            }
+            done.pictures.push_back(takePicture(scene, *camera, light, done.options, rows, listener,
+                                                files, result.references));
+        }
+    }
+    return result;
 }
 
 }  // namespace hshfit::jobs

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kept_rows.h"
 #include "scene_surfaces.h"
 #include "transfer.h"
 
@@ -7,6 +8,7 @@
 #include <hshfit/precomputed_transfer/lit_transfer.h>
 #include <hshfit/precomputed_transfer/transfer_page.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -42,11 +44,18 @@ std::string pageOf(const PictureScene& scene, const std::vector<PageKind>& kinds
 /// Coefficients of a light in `order` bands.
 LightCoefficients lightOf(const NamedLight& light, int order);
 
-/// CAMERA_LIGHT_transfer.png and CAMERA_LIGHT_path.png at one exposure, with the error by order.
-/// Neither shows what is seen directly.
-TransferPicture takePicture(const PictureScene& scene, const Camera& camera,
-                            const NamedLight& light, const TransferOptions& options,
-                            const Listener& listener, FileSet& files,
-                            std::vector<PageReference>& references);
+/// Results of takePictures beside its files.
+struct ReferencePictures {
+    std::vector<PageReference> references;
+    /// Rows of the pictures, to be removed when all is written; none without `resume`.
+    std::vector<std::unique_ptr<KeptRows>> kept;
+};
+
+/// CAMERA_LIGHT_transfer.png and CAMERA_LIGHT_path.png at one exposure for each camera and light,
+/// with the error by order in `done`. Neither shows what is seen directly.
+ReferencePictures takePictures(const PictureScene& scene, const scene::Scene& read,
+                               const std::vector<const Camera*>& cameras,
+                               const std::vector<NamedLight>& lights, const Listener& listener,
+                               FileSet& files, Transferred& done);
 
 }  // namespace hshfit::jobs

@@ -1,5 +1,6 @@
 // `illuminate` as a user meets it.
 
+#include "kills.h"
 #include "places.h"
 #include "scenes.h"
 
@@ -9,12 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <csignal>
 #include <fstream>
-#include <random>
-
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace {
 
@@ -93,40 +89,12 @@ TEST_F(Illuminate, ResumedAfterKillsTakesTheSamePicture) {
     scene["cameras"][0]["height"] = 96;
     const std::string samples = " --samples 512";
     ASSERT_EQ(taken(scene, "-o " + path("whole") + samples).code, 0);
-    const std::string kept = path("out/.hshfit-eye.partial");
-    const auto length = [&]() -> std::uintmax_t {
-        std::error_code error;
-        const auto size = std::filesystem::file_size(kept, error);
-        return error ? 0 : size;
-    };
-    const std::string out = path("out"), file = path("scene.json"),
-                      program = hshfit::test::program();
-    std::mt19937 random(7);
-    int kills = 0;
-    for (int attempt = 0; attempt < 20; ++attempt) {
-        const auto before = length();
-        const pid_t child = fork();
-        if (child == 0) {
-            execl(program.c_str(), program.c_str(), "illuminate", file.c_str(), "-o", out.c_str(),
-                  "--samples", "512", "--resume", "--quiet", nullptr);
-            _exit(127);
-        }
-        int status = 0;
-        pid_t ended = 0;
-        while (ended == 0 && length() <= before) {
-            usleep(200);
-            ended = waitpid(child, &status, WNOHANG);
-        }
-        usleep(std::uniform_int_distribution<unsigned>(0, 2000)(random));
-        if (ended == 0) {
-            ::kill(child, SIGKILL);
-            waitpid(child, &status, 0);
-        }
-        kills += WIFSIGNALED(status) ? 1 : 0;
-        if (!WIFSIGNALED(status)) break;
-        EXPECT_FALSE(std::filesystem::exists(out + "/eye.exr"));
-    }
-    EXPECT_EQ(kills, 20);
+    const std::string out = path("out");
+    EXPECT_EQ(hshfit::test::killedRuns({"illuminate", path("scene.json"), "-o", out, "--samples",
+                                        "512", "--resume", "--quiet"},
+                                       out, 20),
+              20);
+    EXPECT_FALSE(std::filesystem::exists(out + "/eye.exr"));
     // Rows of another seed or another scene are not mixed in.
     expectErrorOf(taken(scene, "-o " + out + samples + " --resume --seed 2"), 3, "other inputs");
     scene["objects"][0]["emission"] = 1.5;
@@ -137,7 +105,7 @@ TEST_F(Illuminate, ResumedAfterKillsTakesTheSamePicture) {
     EXPECT_GE(Json::parse(answer.out)["cameras"][0]["resumed_rows"], 20);
     for (const char* name : {"/eye.exr", "/eye.png"})
         EXPECT_EQ(read(out + name), read(path("whole") + name)) << name;
-    EXPECT_FALSE(std::filesystem::exists(kept));
+    EXPECT_EQ(hshfit::test::keptBytes(out), 0U);
 }
 
 TEST_F(Illuminate, RefusesScenesThatCannotBeLit) {

@@ -61,20 +61,16 @@ TransferMaterial transferMaterial(const std::string& name, const Brdf& brdf, int
     for (std::size_t c = 0; c < 3; ++c)
         material.albedo[c] = albedo[albedo.size() == 1 ? 0 : c] * (constant ? pi : 1);
     if (material.diffuse || localOrder == 0) return material;
-    if (!brdf.laws().isotropic) {
-        throw UsageError(
-            fmt::format("material '{}' is anisotropic; matrices take isotropic "
-                        "materials, and vectors take all",
-                        name));
-    }
     const auto basis = bases::make("hsh", localOrder);
     const Basis* const all[] = {basis.get()};
     ProjectionOptions options;
     options.quantity = Quantity::brdfCosine;
     // Far finer than a few bands; narrow lobes need not be resolved further.
     options.tolerance = 1e-4;
-    material.response =
-        project(brdf, all, OutgoingSet::elevations(responseElevations), options)[0].coefficients;
+    const OutgoingSet outgoing = brdf.laws().isotropic
+                                     ? OutgoingSet::elevations(responseElevations)
+                                     : OutgoingSet::parabolic(responseSide, responseSide);
+    material.response = project(brdf, all, outgoing, options)[0].coefficients;
     return material;
 }
 

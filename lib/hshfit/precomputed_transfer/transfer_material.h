@@ -18,8 +18,8 @@ struct TransferMaterial {
     /// pi f, or the albedo under light from everywhere, the mean of directional albedos weighted
     /// with cos(theta_o).
     Rgb albedo{};
-    /// f cos(theta_i) in HSH by elevation, for the product with matrices; none where it is diffuse
-    /// or was not asked for.
+    /// f cos(theta_i) in HSH, for the product with matrices: by elevation, or on the parabolic map
+    /// of directions if anisotropic; none where it is diffuse or was not asked for.
     std::optional<Coefficients> response = {};
 
     /// Coefficients over wi for an outgoing direction of the frame, [R, G, B][slot]. Directions
@@ -27,11 +27,11 @@ struct TransferMaterial {
     void towards(const Direction& wo, std::span<double> out) const;
 };
 
-/// `localOrder` bands of HSH in the response; 0: none. Throws UsageError for a BRDF of spectra, and
-/// with a response for an anisotropic one; NumericError as `project` does.
+/// `localOrder` bands of HSH in the response; 0: none. Throws UsageError for a BRDF of spectra,
+/// NumericError as `project` does.
 TransferMaterial transferMaterial(const std::string& name, const Brdf& brdf, int localOrder);
 
-/// Elevations at which a response is kept.
-constexpr int responseElevations = 32;
+/// Elevations at which a response is kept, and width and height of an anisotropic one's map.
+constexpr int responseElevations = 32, responseSide = 32;
 
 }  // namespace hshfit::inline precomputed_transfer

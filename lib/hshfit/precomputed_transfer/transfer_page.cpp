@@ -59,6 +59,8 @@ Json materialJson(const TransferMaterial& material) {
     if (material.response) {
         const std::vector<double>& values = material.response->values;
         json["response"] = coded(std::vector<float>(values.begin(), values.end()));
+        const OutgoingSet& outgoing = material.response->outgoing;
+        json["side"] = outgoing.map == OutgoingSet::Map::parabolic ? outgoing.width : 0;
     }
     return json;
 }

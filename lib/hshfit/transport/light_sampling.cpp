@@ -1,6 +1,7 @@
 #include <hshfit/transport/light_sampling.h>
 
 #include <hshfit/brdf/vectors.h>
+#include <hshfit/transport/scattering.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,15 +19,6 @@ Rgb scaled(const Rgb& f, const Rgb& radiance, double factor) {
 }
 
 }  // namespace
-
-Rgb reflectedShare(const SurfaceScene& scene, const SurfaceHit& hit, const Direction& world,
-                   Direction& wi) {
-    wi = normalised(hit.frame.toLocal(world));
-    if (!(wi.z > 0) || !(dot(world, hit.flat) > 0)) return {};
-    Rgb f = scene.reflectance(hit, wi);
-    for (double& value : f) value *= wi.z;
-    return f;
-}
 
 LightSampling::LightSampling(const SurfaceScene& scene)
     : scene_(scene),
@@ -53,14 +45,13 @@ double LightSampling::environmentWeight(const Direction& world, double pdf) cons
 Rgb LightSampling::ofEnvironment(const SurfaceHit& hit, const EnvironmentSample& light,
                                  Weight weight, std::size_t& rays) const {
     if (!(light.pdf > 0)) return {};
-    Direction wi;
-    const Rgb f = reflectedShare(scene_, hit, light.world, wi);
+    const Rgb f = reflectedShare(scene_, hit, light.world);
     if (f == Rgb{}) return {};
     ++rays;
     if (!scene_.visible(hit, light.world)) return {};
     const double pdf = (1 - emitterShare_) * light.pdf;
     const bool alone = light.delta || weight == Weight::whole;
-    const double share = alone ? 1 : shareOf(pdf, scene_.material(hit).sampler->pdf(hit.wo, wi));
+    const double share = alone ? 1 : shareOf(pdf, scatteringPdf(scene_, hit, light.world));
     return scaled(f, light.radiance, share / pdf);
 }
 
@@ -73,14 +64,13 @@ Rgb LightSampling::ofEmitter(const SurfaceHit& hit, const EmitterSample& light, 
     const Direction world = normalised(gap);
     const double cosine = -dot(world, light.normal);
     if (!(cosine > 0)) return {};
-    Direction wi;
-    const Rgb f = reflectedShare(scene_, hit, world, wi);
+    const Rgb f = reflectedShare(scene_, hit, world);
     if (f == Rgb{}) return {};
     ++rays;
     if (!scene_.visible(hit, world, light)) return {};
     const double pdf = emitterShare_ * light.pdf * squared / cosine;
     const double share =
-        weight == Weight::whole ? 1 : shareOf(pdf, scene_.material(hit).sampler->pdf(hit.wo, wi));
+        weight == Weight::whole ? 1 : shareOf(pdf, scatteringPdf(scene_, hit, world));
     return scaled(f, light.radiance, share / pdf);
 }
 

@@ -7,11 +7,6 @@
 
 namespace hshfit::inline transport {
 
-/// f cos(theta_i) of a hit for a direction of the world, which becomes `wi` in its frame; 0 from
-/// behind the surface.
-Rgb reflectedShare(const SurfaceScene& scene, const SurfaceHit& hit, const Direction& world,
-                   Direction& wi);
-
 /// Direct light by samples of the lights of a scene. The scene has to outlive this.
 class LightSampling {
 public:

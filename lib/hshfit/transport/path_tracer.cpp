@@ -4,6 +4,7 @@
 #include <hshfit/transport/light_sampling.h>
 #include <hshfit/transport/random_numbers.h>
 #include <hshfit/transport/sample_mean.h>
+#include <hshfit/transport/scattering.h>
 
 #include <tbb/parallel_for.h>
 
@@ -81,15 +82,11 @@ private:
 
     /// Whether the path goes on, in `direction`.
     bool goOn(const SurfaceHit& hit, Direction& direction, int bounce) {
-        const Sample next = scene_.material(hit).sampler->sample(hit.wo, three());
-        if (!(next.pdf > 0)) return false;
-        const Direction world = normalised(hit.frame.toWorld(next.wi));
-        Direction wi;
-        const Rgb f = reflectedShare(scene_, hit, world, wi);
-        if (f == Rgb{}) return false;
-        for (std::size_t c = 0; c < 3; ++c) weight_[c] *= f[c] / next.pdf;
-        pdf_ = next.pdf;
-        direction = world;
+        const auto next = scatter(scene_, hit, three());
+        if (!next) return false;
+        for (std::size_t c = 0; c < 3; ++c) weight_[c] *= next->weight[c];
+        pdf_ = next->pdf;
+        direction = next->world;
         if (bounce < options_.sureBounces) return true;
         const double most =
             std::max({std::abs(weight_[0]), std::abs(weight_[1]), std::abs(weight_[2])});

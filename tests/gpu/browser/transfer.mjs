@@ -15,12 +15,14 @@ const scene = {
     { name: 'white', brdf: 'lambert:kd=.8' },
     { name: 'red', brdf: 'lambert:kd=.7/.2/.1' },
     { name: 'satin', brdf: 'ggx:alpha=.5,F0=.9/.7/.4' },
+    { name: 'brushed', brdf: 'ward:ax=.2,ay=.6' },
   ],
   lights: [{ light: 'sky:type=12,elevation=40,azimuth=-60,radiance=1' }],
   objects: [
     { name: 'floor', mesh: 'square', material: 'white', scale: 2 },
     { name: 'wall', mesh: 'square', material: 'red', theta: 90, at: [-1, 0, 1] },
     { name: 'plate', mesh: 'square', material: 'satin', scale: 0.6, theta: 30, at: [0.3, 0, 0.7] },
+    { name: 'sheet', mesh: 'square', material: 'brushed', scale: 0.5, theta: 20, at: [0, -1.2, 0.5] },
   ],
   cameras: [{ name: 'eye', position: [4, -4, 3], target: [0, 0, 0.5], width: 96 }],
 };
@@ -65,7 +67,7 @@ async function prove(page, complaints, folder, matrices) {
   for (const use of ['p.state.turn = 120', 'p.state.tilt = 40', 'p.state.kind = 0',
     'p.state.order = 2', 'p.state.light = p.data.lights.length - 1', 'p.state.hour = 0.1',
     'p.chosen[0] = { material: 1, albedo: p.data.materials[1].albedo }',
-    matrices ? 'p.chosen[1] = { material: 3, albedo: [0, 0, 0] }' : 'p.chosen[1].albedo = [0, 1, 0]']) {
+    matrices ? 'p.chosen[1] = { material: 4, albedo: [0, 0, 0] }' : 'p.chosen[1].albedo = [0, 1, 0]']) {
     await change(page, use);
     pictures.push(JSON.stringify((await page.evaluate(pixels, null)).own));
   }

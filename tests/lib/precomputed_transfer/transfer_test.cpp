@@ -146,6 +146,43 @@ TEST(PrecomputedTransfer, IsTheIntegralOverTheHemisphereWhereNothingIsInTheWay) 
     }
 }
 
+/// Radiance of a tilted plane under light of three bands by c(wo)^T M L, against the integral of
+/// f cos(theta_i) L; the anisotropic materials tell their axes apart.
+TEST(PrecomputedTransfer, ReflectsByAnyBrdfInTheFrameOfTheVertex) {
+    constexpr int order = 3, localOrder = 7;
+    const auto harmonics = bases::make("sh", order);
+    const ClosedForm form(order, localOrder);
+    const MeshVector normal{0.48F, -0.6F, 0.64F};
+    const Direction n = normalised(directionOf(normal));
+    const Frame frame = rendering::frameAt(n);
+    std::vector<float> matrix(49 * 9);
+    form.matrix(normal, matrix.data());
+    const std::array<double, 9> light{3, 0.3, -0.5, 0.6, 0.4, -0.2, 0.3, -0.4, 0.5};
+    for (const char* spec : {"ward:ax=.2,ay=.6", "ggx:ax=.6,ay=.25", "ggx:alpha=.4"}) {
+        const auto brdf = brdfs::open(spec);
+        const TransferMaterial material = transferMaterial(spec, *brdf, localOrder);
+        ASSERT_TRUE(material.response);
+        for (const Direction& wo :
+             {directionFromAngles(radians(25), radians(40)), directionFromAngles(radians(50), 3)}) {
+            double expected = 0;
+            std::vector<double> y(9);
+            overHemisphere(n, [&](const Direction& d, const Direction&, double weight) {
+                harmonics->evaluate(frame.toWorld(d), y.data());
+                double radiance = 0;
+                for (std::size_t i = 0; i < 9; ++i) radiance += light[i] * y[i];
+                expected += weight * d.z * evaluate(*brdf, d, wo)[0] * radiance;
+            });
+            std::vector<double> response(3 * 49);
+            material.towards(wo, response);
+            double found = 0;
+            for (std::size_t j = 0; j < 49; ++j)
+                for (std::size_t i = 0; i < 9; ++i)
+                    found += response[j] * static_cast<double>(matrix[j * 9 + i]) * light[i];
+            EXPECT_NEAR(found, expected, 0.01 * std::abs(expected)) << spec;
+        }
+    }
+}
+
 /// A vertex of a floor at the foot of an endless wall sees half of the sky.
 TEST(PrecomputedTransfer, IsTheIntegralOverTheOpenHalfAtTheFootOfAWall) {
     Mesh wall;

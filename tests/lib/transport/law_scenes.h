@@ -22,8 +22,7 @@ inline SurfaceMaterial materialOf(const std::string& spec) {
     return material;
 }
 
-/// Normals of its triangles in place of interpolated ones, which lose the light that they send
-/// below a triangle.
+/// Normals of its triangles in place of interpolated ones.
 inline void flatten(Mesh& mesh) {
     mesh.normals.clear();
     for (const auto& t : mesh.triangles) {
@@ -44,8 +43,8 @@ inline Mesh wideFloor() {
 }
 
 /// A white floor and a white ball in an even light of 1.
-inline std::unique_ptr<SurfaceScene> whiteFurnace(bool flat) {
-    Mesh ball = sphereMesh(3);
+inline std::unique_ptr<SurfaceScene> whiteFurnace(bool flat, int levels = 3) {
+    Mesh ball = sphereMesh(levels);
     if (flat) flatten(ball);
     return std::make_unique<SurfaceScene>(
         std::vector{materialOf("lambert")},

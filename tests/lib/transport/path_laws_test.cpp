@@ -120,9 +120,13 @@ TEST(TracePaths, FindTheLightOfASmallSphere) {
     }
 }
 
-/// White things of several shapes and lobes in an even light of 1: every pixel is 1.
-TEST(TracePaths, SeeNothingOfAWhiteSceneInAFurnace) {
-    const auto scene = test::whiteFurnace(true);
+class WhiteFurnace : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Normals, WhiteFurnace, testing::Bool(),
+                         [](const auto& each) { return each.param ? "flat" : "interpolated"; });
+
+/// White things in an even light of 1: every pixel is 1.
+TEST_P(WhiteFurnace, SeesNothingOfAWhiteScene) {
+    const auto scene = test::whiteFurnace(GetParam(), 1);
     Camera camera{.name = "eye", .position = {4, 2, 2}, .width = 12, .height = 12};
     const PathPicture found = tracePaths(*scene, camera, {.samples = 1024});
     double sum = 0, squares = 0;

@@ -158,9 +158,10 @@ class Renderer {
       if (!material.response || !clusters) continue;
       const from = numbersOf(material.response, Float32Array),
         functions = this.data.localOrder ** 2;
-      // [elevation][channel][slot].
-      const channels = from.length / this.data.elevations / functions;
-      for (let k = 0; k < this.data.elevations * functions; ++k) {
+      // [elevation, or row and column of the map][channel][slot].
+      const directions = material.side ** 2 || this.data.elevations,
+        channels = from.length / directions / functions;
+      for (let k = 0; k < directions * functions; ++k) {
         const row = Math.floor(k / functions);
         for (let c = 0; c < 3; ++c)
           responses.push(from[(row * channels + (c % channels)) * functions + (k % functions)]);
@@ -252,7 +253,10 @@ class Renderer {
       this.use(kind, view);
       for (const [{ albedo, material }, ranges] of drawn) {
         if (kind === this.diffuse) gl.uniform3fv(kind.places.albedo, albedo);
-        else gl.uniform1i(kind.places.row, this.rows[material]);
+        else {
+          gl.uniform1i(kind.places.row, this.rows[material]);
+          gl.uniform1i(kind.places.side, this.data.materials[material].side);
+        }
         ranges.forEach(({ first, length }, side) => {
           // Backs stay behind: at an outline they meet the fronts at one depth.
           gl.polygonOffset(4 * side, 4 * side);

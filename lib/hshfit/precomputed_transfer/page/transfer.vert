@@ -15,9 +15,10 @@ uniform vec3 eye;
 uniform int localOrder, components;
 uniform sampler2D incident;   // [cluster][mean, components][local slot]
 uniform sampler2D weights;    // [vertex][cluster, components]
-uniform sampler2D responses;  // [material][elevation][local slot]
+uniform sampler2D responses;  // [material][elevation, or row and column of the map][local slot]
 uniform int elevations;
-uniform int row;  // of the material's first elevation
+uniform int row;   // of the material's first elevation or direction
+uniform int side;  // of the map of an anisotropic material, else 0
 #else
 uniform vec3 albedo;
 #endif
@@ -45,18 +46,13 @@ vec3 local(int j, int cluster) {
   return sum;
 }
 
-vec3 reflected() {
-  vec3 n = normalize(normal), across = vec3(-n.y, n.x, 0.0);
-  vec3 tangent = dot(across, across) > 1e-24 ? normalize(across) : vec3(1.0, 0.0, 0.0);
-  vec3 view = normalize(eye - position);
-  vec3 wo = vec3(dot(view, tangent), dot(view, cross(n, tangent)), dot(view, n));
-  if (wo.z <= 0.0) wo = vec3(normalize(wo.xy), 0.0);
+// Coefficients by elevation, turned to the viewer's azimuth.
+vec3 byElevation(vec3 wo, int cluster, int functions) {
   float sine = length(wo.xy);
   float along = min(sine / (1.0 + wo.z) * (float(elevations) - 0.5), float(elevations - 1));
   int lower = min(int(along), elevations - 2);
   float share = along - float(lower);
   vec2 turn = sine > 1e-7 ? wo.xy / sine : vec2(1.0, 0.0);
-  int cluster = int(weightOf(0) + 0.5), functions = localOrder * localOrder;
   int first = (row + lower) * functions;
   vec3 sum = vec3(0.0);
   vec2 multiple = vec2(1.0, 0.0);
@@ -77,6 +73,32 @@ vec3 reflected() {
                     multiple.x * turn.y + multiple.y * turn.x);
   }
   return sum;
+}
+
+// Coefficients between the four nearest directions of the parabolic map.
+vec3 byDirection(vec3 wo, int cluster, int functions) {
+  vec2 place = (wo.xy / (1.0 + wo.z) * float(side - 2) + float(side - 1)) / 2.0;
+  ivec2 lower = min(ivec2(place), ivec2(side - 2));
+  vec2 share = place - vec2(lower);
+  int first = (row + lower.y * side + lower.x) * functions, below = side * functions;
+  vec3 sum = vec3(0.0);
+  for (int slot = 0; slot < functions; ++slot) {
+    vec3 upper = mix(at(responses, first + slot), at(responses, first + functions + slot), share.x);
+    vec3 under = mix(at(responses, first + below + slot),
+                     at(responses, first + below + functions + slot), share.x);
+    sum += mix(upper, under, share.y) * local(slot, cluster);
+  }
+  return sum;
+}
+
+vec3 reflected() {
+  vec3 n = normalize(normal), across = vec3(-n.y, n.x, 0.0);
+  vec3 tangent = dot(across, across) > 1e-24 ? normalize(across) : vec3(1.0, 0.0, 0.0);
+  vec3 view = normalize(eye - position);
+  vec3 wo = vec3(dot(view, tangent), dot(view, cross(n, tangent)), dot(view, n));
+  if (wo.z <= 0.0) wo = vec3(normalize(wo.xy), 0.0);
+  int cluster = int(weightOf(0) + 0.5), functions = localOrder * localOrder;
+  return side > 0 ? byDirection(wo, cluster, functions) : byElevation(wo, cluster, functions);
 }
 
 #else

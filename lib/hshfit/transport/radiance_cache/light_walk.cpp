@@ -1,6 +1,7 @@
 #include <hshfit/transport/radiance_cache/light_walk.h>
 
 #include <hshfit/brdf/vectors.h>
+#include <hshfit/transport/scattering.h>
 
 #include <algorithm>
 #include <cmath>
@@ -73,13 +74,9 @@ void LightWalk::addReflected(Going& going, Walk& walk) const {
 
 /// Whether the walk has come to a further surface.
 bool LightWalk::step(Going& going, bool direct, Walk& walk) const {
-    const Sample next = scene_.material(going.hit).sampler->sample(going.hit.wo, going.three());
-    if (!(next.pdf > 0)) return false;
-    const Direction world = normalised(going.hit.frame.toWorld(next.wi));
-    Direction wi;
-    const Rgb f = reflectedShare(scene_, going.hit, world, wi);
-    if (f == Rgb{}) return false;
-    for (std::size_t c = 0; c < 3; ++c) going.weight[c] *= f[c] / next.pdf;
+    const auto next = scatter(scene_, going.hit, going.three());
+    if (!next) return false;
+    for (std::size_t c = 0; c < 3; ++c) going.weight[c] *= next->weight[c];
     if (going.bounce++ >= sureBounces) {
         const double survival =
             std::min(0.95, std::max({going.weight[0], going.weight[1], going.weight[2]}));
@@ -87,18 +84,18 @@ bool LightWalk::step(Going& going, bool direct, Walk& walk) const {
         for (double& value : going.weight) value /= survival;
     }
     ++going.rays;
-    const auto hit = scene_.firstHit(going.hit, world);
+    const auto hit = scene_.firstHit(going.hit, next->world);
     const bool gathered = direct_ == DirectLight::gathered;
     if (!hit) {
         if (direct && scene_.environment().any()) {
-            add(walk.radiance, going.weight, scene_.environment().radiance(world),
-                gathered ? 1 : lights_.environmentWeight(world, next.pdf));
+            add(walk.radiance, going.weight, scene_.environment().radiance(next->world),
+                gathered ? 1 : lights_.environmentWeight(next->world, next->pdf));
         }
         return false;
     }
     if (direct && hit->emission != Rgb{}) {
         add(walk.radiance, going.weight, hit->emission,
-            gathered ? 1 : lights_.emitterWeight(*hit, next.pdf));
+            gathered ? 1 : lights_.emitterWeight(*hit, next->pdf));
     }
     going.hit = *hit;
     return true;

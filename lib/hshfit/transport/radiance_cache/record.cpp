@@ -1,6 +1,7 @@
 #include <hshfit/transport/radiance_cache/record.h>
 
 #include <hshfit/brdf/vectors.h>
+#include <hshfit/transport/scattering.h>
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +31,7 @@ Rays traced(const SurfaceHit& hit, const HemisphereStrata& strata, const GatherS
         Rgb& radiance = found.radiance.emplace_back();
         found.inverse.push_back(0);
         found.normals.push_back({0, 0, 1});
-        const Direction world = hit.frame.toWorld(local);
-        if (!(dot(world, hit.flat) > 0)) continue;
+        const Direction world = aboveTriangle(hit, hit.frame.toWorld(local));
         ++rays;
         const auto met = surfaces.firstHit(hit, world);
         if (!met) {

@@ -2,6 +2,7 @@
 
 #include <hshfit/brdf/vectors.h>
 #include <hshfit/transport/radiance_cache/hemisphere_strata.h>
+#include <hshfit/transport/scattering.h>
 
 #include <tbb/parallel_for.h>
 #include <nanoflann.hpp>
@@ -153,8 +154,8 @@ void SurfaceIrradiance::solve(const LightWalk& walk, const SurfaceIrradianceOpti
         RandomNumbers random(options.seed, p);
         for (std::size_t cell = 0; cell < strata.cells(); ++cell) {
             const double x = random.next(), y = random.next();
-            const Direction world = hits[p].frame.toWorld(strata.direction(cell, x, y));
-            if (!(dot(world, hits[p].flat) > 0)) continue;
+            const Direction world =
+                aboveTriangle(hits[p], hits[p].frame.toWorld(strata.direction(cell, x, y)));
             ++rays[p];
             const auto met = scene.firstHit(hits[p], world);
             if (!met) {

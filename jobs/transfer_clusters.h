@@ -1,0 +1,19 @@
+#pragma once
+
+#include "transfer.h"
+
+#include <hshfit/files/file_set.h>
+#include <hshfit/precomputed_transfer/gathering.h>
+#include <hshfit/precomputed_transfer/matrix_clusters.h>
+
+namespace hshfit::jobs {
+
+/// Tries every number of clusters that the options name, and returns the chosen form; its errors,
+/// those of the others and the verdict go to `done`. Finished numbers are kept and found again.
+MatrixClusters compressed(const TransferView& view, const KeptParts& kept, const Listener& listener,
+                          Transferred& done);
+
+/// clusters.tensor.
+void writeClusters(const MatrixClusters& clusters, const TransferView& view, FileSet& files);
+
+}  // namespace hshfit::jobs
