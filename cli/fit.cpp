@@ -13,6 +13,7 @@
 
 #include <chrono>
 #include <ctime>
+#include <map>
 
 namespace hshfit::cli {
 namespace {
@@ -25,9 +26,19 @@ struct FitArguments {
     jobs::FitOptions options;
 };
 
+/// The samples of the fit, from the fields of its preset.
+std::string samplesLine(const Json& fit) {
+    const std::map<std::string, std::string> kinds{{"cells", "cells of the table"},
+                                                   {"measured", "measured samples"},
+                                                   {"nodes", "nodes at which f was evaluated"}};
+    return fmt::format("  fitted to {} {}, weighted {}\n", fit["samples"].get<std::size_t>(),
+                       kinds.at(fit["samples_of"]),
+                       fit["weights"] == "equal" ? "equally" : "by solid angle");
+}
+
 std::string text(const jobs::Fitted& fitted, const std::string& output) {
     const brdfs::FitResult& result = fitted.result;
-    std::string lines = fmt::format("{}\n", result.spec);
+    std::string lines = fmt::format("{}\n", result.spec) + samplesLine(fitted.preset["fit"]);
     for (const brdfs::FittedParameter& p : result.parameters) {
         const std::string error = p.standardError    ? fmt::format("+- {:.3g}", *p.standardError)
                                   : !p.bound.empty() ? fmt::format("at its {} bound", p.bound)

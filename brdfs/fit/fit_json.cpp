@@ -69,6 +69,7 @@ Json fitPreset(const FitReport& report) {
         {"robust", robustName(options.robust)},
         {"weights", samples.solidAngles ? "solid-angle" : "equal"},
         {"samples", result.samples},
+        {"samples_of", nameOf(samples.origin)},
         {"values", result.values},
         {"masked",
          {{"below_horizon", masked.belowHorizon},

@@ -3,6 +3,7 @@
 #include <brdfs/measured/gridded/slice.h>
 #include <brdfs/measured/merl.h>
 #include <brdfs/measured/scattered/scattered.h>
+#include <hshfit/brdf/channel_view.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <numeric>
 #include <random>
+#include <span>
 
 namespace hshfit::brdfs {
 namespace {
@@ -28,13 +30,22 @@ public:
         samples_.channels = data.channels();
         samples_.isotropic = data.laws().isotropic;
         lowest_ = options.grazingCut < 90 ? std::cos(radians(options.grazingCut)) : 0;
+        for (auto* view = dynamic_cast<const ChannelView*>(&data); view;
+             view = dynamic_cast<const ChannelView*>(&view->seen()))
+            views_.insert(views_.begin(), view);
+    }
+
+    /// The BRDF that the samples are those of.
+    const Brdf& source(const Brdf& data) const {
+        return views_.empty() ? data : views_.front()->seen();
     }
 
     void belowHorizon() { ++samples_.masked.belowHorizon; }
     void invalid() { ++samples_.masked.invalid; }
 
-    /// `f`: a value per channel.
-    void add(const DirectionPair& pair, const double* f, double weight) {
+    /// `values`: one per channel of the source.
+    void add(const DirectionPair& pair, std::span<const double> values, double weight) {
+        const double* f = converted(values);
         Masked& masked = samples_.masked;
         const double lower = std::min(pair.wi.z, pair.wo.z);
         if (!(lower > 0)) {
@@ -85,6 +96,20 @@ public:
     }
 
 private:
+    /// Values of the source as the views show them.
+    const double* converted(std::span<const double> values) {
+        if (views_.empty()) return values.data();
+        now_.assign(values.begin(), values.end());
+        for (const ChannelView* view : views_) {
+            next_.resize(dynamic_cast<const Brdf&>(*view).channels().count());
+            view->convert(now_, next_);
+            std::swap(now_, next_);
+        }
+        return now_.data();
+    }
+
+    std::vector<const ChannelView*> views_;  ///< from the source outwards
+    std::vector<double> now_, next_;
     SampleOptions options_;
     std::size_t channelCount_;
     double lowest_;
@@ -124,7 +149,7 @@ void gatherMerl(const MerlBrdf& table, Gatherer& gatherer) {
                 if (std::ranges::any_of(f, [](double v) { return v < 0; }))
                     gatherer.invalid();
                 else
-                    gatherer.add(pair, f.data(), measure);
+                    gatherer.add(pair, f, measure);
             }
         }
 }
@@ -134,7 +159,7 @@ void addIfCovered(const Brdf& data, const DirectionPair& pair, double measure, G
     unsigned char covered = 0;
     data.coverage(pair.wo, {&pair.wi.x, &pair.wi.y, &pair.wi.z, 1}, &covered);
     if (!covered) return gatherer.invalid();
-    gatherer.add(pair, evaluate(data, pair.wi, pair.wo).data(), measure);
+    gatherer.add(pair, evaluate(data, pair.wi, pair.wo), measure);
 }
 
 void gatherSlices(const SliceBrdf& slices, Gatherer& gatherer) {
@@ -155,7 +180,8 @@ void gatherScattered(const Scattered& scattered, Gatherer& gatherer) {
     const Samples& samples = scattered.samples();
     const std::size_t channels = samples.channels.count();
     for (std::size_t k = 0; k < samples.size(); ++k)
-        gatherer.add({samples.wi[k], samples.wo[k]}, samples.values.data() + k * channels, 1);
+        gatherer.add({samples.wi[k], samples.wo[k]},
+                     {samples.values.data() + k * channels, channels}, 1);
 }
 
 /// Any other BRDF, at the nodes that the header names.
@@ -185,11 +211,17 @@ SampleWeights findSampleWeights(std::string_view name) {
     throw UsageError(fmt::format("unknown weights '{}'; known: auto, equal, solid-angle", name));
 }
 
+std::string_view nameOf(SampleOrigin origin) {
+    constexpr std::string_view names[] = {"cells", "measured", "nodes"};
+    return names[static_cast<std::size_t>(origin)];
+}
+
 FitSamples FitSamples::subset(const std::vector<std::size_t>& indices) const {
     FitSamples result;
     result.channels = channels;
     result.isotropic = isotropic;
     result.solidAngles = solidAngles;
+    result.origin = origin;
     result.masked = masked;
     double sum = 0;
     for (const std::size_t k : indices) {
@@ -232,18 +264,22 @@ FitSamples gatherSamples(const Brdf& data, const SampleOptions& options) {
         throw UsageError(fmt::format(
             "{}: has wavelengths; models have R, G and B: fit it with --rgb", data.name()));
     Gatherer gatherer(data, options);
-    bool solidAngles = true;
-    if (const auto* merl = dynamic_cast<const MerlBrdf*>(&data)) {
+    const Brdf& source = gatherer.source(data);
+    SampleOrigin origin = SampleOrigin::cells;
+    if (const auto* merl = dynamic_cast<const MerlBrdf*>(&source)) {
         gatherMerl(*merl, gatherer);
-    } else if (const auto* slices = dynamic_cast<const SliceBrdf*>(&data)) {
+    } else if (const auto* slices = dynamic_cast<const SliceBrdf*>(&source)) {
         gatherSlices(*slices, gatherer);
-    } else if (const auto* scattered = dynamic_cast<const Scattered*>(&data)) {
+    } else if (const auto* scattered = dynamic_cast<const Scattered*>(&source)) {
         gatherScattered(*scattered, gatherer);
-        solidAngles = false;
+        origin = SampleOrigin::measured;
     } else {
-        gatherNodes(data, gatherer);
+        gatherNodes(source, gatherer);
+        origin = SampleOrigin::nodes;
     }
-    return gatherer.finish(data, solidAngles);
+    FitSamples samples = gatherer.finish(data, origin != SampleOrigin::measured);
+    samples.origin = origin;
+    return samples;
 }
 
 }  // namespace hshfit::brdfs

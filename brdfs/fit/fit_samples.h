@@ -12,6 +12,14 @@ enum class SampleWeights { automatic, equal, solidAngle };
 /// "auto", "equal" or "solid-angle". Throws UsageError.
 SampleWeights findSampleWeights(std::string_view name);
 
+/// cells     of a table
+/// measured  scattered measurements, as they are
+/// nodes     f at chosen directions: for functions, and for tables in coordinates of their own
+enum class SampleOrigin { cells, measured, nodes };
+
+/// "cells", "measured" or "nodes".
+std::string_view nameOf(SampleOrigin origin);
+
 struct SampleOptions {
     /// automatic: solid angles for tables and functions, equal for scattered samples, which stand
     /// for no area.
@@ -39,6 +47,7 @@ struct FitSamples {
     Channels channels;
     bool isotropic = false;
     bool solidAngles = false;  ///< what the weights are
+    SampleOrigin origin = SampleOrigin::nodes;
     Masked masked;
 
     std::size_t size() const { return wo.size(); }
@@ -52,7 +61,8 @@ struct FitSamples {
 };
 
 /// The samples that stand behind a BRDF: the cells of a MERL table or of slices, scattered
-/// measurements as they are (values below zero included). For anything else f is sampled at nodes
+/// measurements as they are (values below zero included); also where that BRDF is seen as RGB or
+/// as grey (ChannelView), by the converted values. For anything else f is sampled at nodes
 /// in half and difference angles: theta_h (i / 45)^2 90, theta_d 3 j, phi_d 12 k degrees, each at
 /// the middle of its bin, and for anisotropic f twelve azimuths of the half vector.
 /// Weights by solid angle are those of d(wi) d(wo) = 4 cos(theta_d) d(h) d(d).

@@ -1,3 +1,4 @@
+#include <hshfit/brdf/channel_view.h>
 #include <hshfit/brdf/cie_1931.h>
 #include <hshfit/brdf/colour.h>
 #include <hshfit/brdf/kink_curve.h>
@@ -66,7 +67,7 @@ double luminanceBeyond(std::span<const double> nanometres) {
     return beyond / all;
 }
 
-class RgbView : public Brdf, public HasKinkCurves {
+class RgbView : public Brdf, public HasKinkCurves, public ChannelView {
 public:
     explicit RgbView(std::unique_ptr<Brdf> spectral)
         : spectral_(std::move(spectral)),
@@ -110,6 +111,14 @@ public:
                 double* to = out + c * wi.count;
                 for (std::size_t k = 0; k < wi.count; ++k) to[k] += weight * from[k];
             }
+        }
+    }
+
+    const Brdf& seen() const override { return *spectral_; }
+    void convert(std::span<const double> from, std::span<double> to) const override {
+        for (std::size_t c = 0; c < 3; ++c) {
+            to[c] = 0;
+            for (std::size_t i = 0; i < from.size(); ++i) to[c] += weights_.weights[c][i] * from[i];
         }
     }
 

@@ -1,5 +1,6 @@
 #include <hshfit/brdf/one_channel.h>
 
+#include <hshfit/brdf/channel_view.h>
 #include <hshfit/brdf/kink_curve.h>
 #include <hshfit/error.h>
 
@@ -16,7 +17,7 @@ namespace {
 
 constexpr std::string_view plain = "grey:", weighted = "grey=";
 
-class OneChannel final : public Brdf, public HasKinkCurves {
+class OneChannel final : public Brdf, public HasKinkCurves, public ChannelView {
 public:
     OneChannel(std::unique_ptr<Brdf> brdf, std::vector<double> weights)
         : brdf_(std::move(brdf)),
@@ -50,6 +51,12 @@ public:
     double defaultTolerance() const override { return brdf_->defaultTolerance(); }
     std::vector<Fact> facts() const override { return brdf_->facts(); }
     void checkIntact() const override { brdf_->checkIntact(); }
+
+    const Brdf& seen() const override { return *brdf_; }
+    void convert(std::span<const double> from, std::span<double> to) const override {
+        to[0] = 0;
+        for (std::size_t c = 0; c < from.size(); ++c) to[0] += weights_[c] * from[c];
+    }
 
 private:
     std::unique_ptr<Brdf> brdf_;

@@ -1,0 +1,74 @@
+#include <brdfs/catalog.h>
+#include <brdfs/fit/fit_samples.h>
+
+#include "places.h"
+
+#include <brdfs/measured_files.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+namespace hshfit::brdfs {
+namespace {
+
+std::string shared(const std::string& name) {
+    return test::sharedFolder() + "/data/" + name;
+}
+
+/// A table seen as grey has the mean of its channels at each of its cells.
+TEST(FitSamples, OfAGreyTableAreItsCells) {
+    const test::TemporaryFile file(
+        test::merlFile([](int c, int h, int, int) { return h > 80 ? -1.0 : c + 1.0; }), ".binary");
+    const auto colour = open(file.path()), grey = open("grey:" + file.path()),
+               red = open("grey=1/0/0:" + file.path());
+    const FitSamples all = gatherSamples(*colour, {}), mean = gatherSamples(*grey, {}),
+                     first = gatherSamples(*red, {});
+    EXPECT_EQ(all.origin, SampleOrigin::cells);
+    EXPECT_EQ(mean.origin, SampleOrigin::cells);
+    ASSERT_EQ(mean.size(), all.size());
+    EXPECT_EQ(mean.masked.invalid, all.masked.invalid);
+    EXPECT_GT(mean.masked.invalid, 0U);
+    EXPECT_EQ(mean.wiX, all.wiX);
+    EXPECT_EQ(mean.weights, all.weights);
+    for (std::size_t k = 0; k < all.size(); k += 1001) {
+        EXPECT_NEAR(mean.value(0, k), (all.value(0, k) + all.value(1, k) + all.value(2, k)) / 3,
+                    1e-12);
+        EXPECT_EQ(first.value(0, k), all.value(0, k));
+    }
+}
+
+/// 1,439 measured pairs at 65 wavelengths: their colours are fitted, not an interpolant's.
+TEST(FitSamples, OfASpectralFileSeenAsColourAreItsMeasurements) {
+    const std::string path = shared("cornell/garnet_red.brdf");
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "no shared data";
+    const FitSamples samples = gatherSamples(*open("rgb:" + path), {});
+    EXPECT_EQ(samples.origin, SampleOrigin::measured);
+    EXPECT_FALSE(samples.solidAngles);
+    const Masked& masked = samples.masked;
+    EXPECT_EQ(samples.size() + masked.belowHorizon + masked.invalid + masked.notFinite, 1439U);
+}
+
+/// A file of one channel is the same with and without the prefix, through two of them as well.
+TEST(FitSamples, OfAGreyFileDoNotChangeWithThePrefix) {
+    const std::string path = shared("alta/retro-gray-tape.dat");
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "no shared data";
+    const FitSamples plain = gatherSamples(*open(path), {});
+    EXPECT_EQ(plain.origin, SampleOrigin::measured);
+    for (const char* prefix : {"grey:", "grey:grey:"}) {
+        const FitSamples grey = gatherSamples(*open(prefix + path), {});
+        ASSERT_EQ(grey.size(), plain.size());
+        EXPECT_EQ(grey.wiX, plain.wiX);
+        EXPECT_EQ(grey.weights, plain.weights);
+        for (std::size_t k = 0; k < plain.size(); ++k) {
+            double mean = 0;
+            for (std::size_t c = 0; c < plain.channels.count(); ++c)
+                mean += plain.value(c, k) / static_cast<double>(plain.channels.count());
+            EXPECT_NEAR(grey.value(0, k), mean, 1e-12 * std::abs(mean));
+        }
+    }
+}
+
+}  // namespace
+}  // namespace hshfit::brdfs
