@@ -1,6 +1,6 @@
 # hshfit_precompiled(TARGET [JSON]): the headers that most files of lib/ include, parsed once for
 # all of them; with JSON also those of nlohmann-json, which the rooms of the part math do without.
-# A file still includes what it uses: the preset `sanitize` builds without this.
+# A file still includes what it uses: CMAKE_DISABLE_PRECOMPILE_HEADERS=ON builds without this.
 function(hshfit_precompiled target)
   cmake_parse_arguments(ARG "JSON" "" "" ${ARGN})
   set(headers hshfit_headers)

@@ -34,8 +34,8 @@ BuriedVertices::BuriedVertices(const TransferMesh& mesh, std::span<const std::ui
             for (const std::uint32_t other : places[placeOf(v)])
                 if (open[other]) vertex.sources.push_back(other);
             std::ranges::sort(vertex.sources);
-            const auto twice = std::ranges::unique(vertex.sources);
-            vertex.sources.erase(twice.begin(), twice.end());
+            vertex.sources.erase(std::unique(vertex.sources.begin(), vertex.sources.end()),
+                                 vertex.sources.end());
             if (vertex.sources.empty())
                 next.push_back(v);
             else

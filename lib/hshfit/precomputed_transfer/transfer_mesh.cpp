@@ -156,8 +156,8 @@ private:
         if (number == 0) return emit(corners[0], corners[1], corners[2]);
         // Turned so that the only cut, or the only edge without one, is the first.
         for (int turn = 0; turn < 2 && number < 3 && !!cuts[0] != (number == 1); ++turn) {
-            std::ranges::rotate(corners, corners.begin() + 1);
-            std::ranges::rotate(cuts, cuts.begin() + 1);
+            std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+            std::rotate(cuts.begin(), cuts.begin() + 1, cuts.end());
         }
         if (number == 1) {
             emit(corners[0], *cuts[0], corners[2]);

@@ -375,7 +375,7 @@ TEST(GltfMesh, BrokenFilesAreNamedWithThePlace) {
     beyond.buffer[8 * 12] = 8;
     expectInputError([&] { meshOf(beyond); }, {"primitive 0", "vertex 8; there are 8"});
     Gltf deep = cube();
-    for (int k = 0; k < 100; ++k) deep.json["extras"] = {deep.json["extras"]};
+    for (int k = 0; k < 100; ++k) deep.json["extras"] = Json::array({deep.json["extras"]});
     expectInputError([&] { meshOf(deep); }, {"nested too deeply"});
     // A mesh that two levels of nodes repeat 10^10 times is refused at the first repetition.
     Gltf repeated = cube();
