@@ -63,6 +63,7 @@ function(hshfit_install_package)
     return()
   endif()
   get_property(HSHFIT_COMPONENTS GLOBAL PROPERTY hshfit_components)
+  get_property(HSHFIT_TIMES_SHADERS GLOBAL PROPERTY hshfit_times_shaders SET)
   install(EXPORT hshfit_targets NAMESPACE hshfit:: FILE hshfitTargets.cmake
           DESTINATION ${HSHFIT_CMAKE_FOLDER} COMPONENT development)
   set(HSHFIT_MODULE_FOLDER lib/hshfit)

@@ -97,6 +97,9 @@ inside "$work/root" sh -ec '
     cmake -S outside -B outside/build >/dev/null
     cmake --build outside/build >/dev/null
     outside/build/outside
+    cmake -S outside -B outside/all -DPROGRAM=all_parts "-DCOMPONENTS=lib;brdfs" >/dev/null
+    cmake --build outside/all >/dev/null
+    outside/all/all_parts
     cmake -S /usr/share/doc/hshfit/examples -B examples >/dev/null
     cmake --build examples >/dev/null
     examples/quick_start_example phong:exponent=22 quick.json'

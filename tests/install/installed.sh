@@ -92,6 +92,9 @@ outside)
     "$work/outside/outside"
     ! grep -E -e '-fno-math-errno|-Winvalid-pch|-DHWY' "$work/outside/compile_commands.json" ||
         fail "flags of ours reach an outside project"
+    makeProject all_parts "$source/tests/install/outside" -DCMAKE_PREFIX_PATH="$prefix" \
+        -DPROGRAM=all_parts "-DCOMPONENTS=lib;brdfs"
+    "$work/all_parts/all_parts"
     ! cmake -G Ninja -S "$source/tests/install/outside" -B "$work/wrong" \
         -DCMAKE_PREFIX_PATH="$prefix" -DCOMPONENTS=maths >"$work/log" 2>&1 ||
         fail "a component 'maths' is found"
@@ -99,7 +102,8 @@ outside)
     ! grep -q "$build\|$source" "$prefix"/lib/cmake/hshfit/*.cmake "$prefix"/lib/pkgconfig/*.pc ||
         fail "the package files name the build or source folder"
     ;;
-# Without CMake: the flags of pkg-config.
+# Without CMake: the flags of pkg-config. Every object of ours is linked once, so that no library is
+# missing among the flags.
 pkgconfig)
     cd "$work"
     export PKG_CONFIG_PATH="$prefix/lib/pkgconfig"
@@ -110,6 +114,12 @@ pkgconfig)
         c++ -std=c++20 $strict "$source/examples/quick_start.cpp" -o quick_start_by_flags \
             $(pkg-config --cflags --libs hshfit-brdfs)
     }
+    echo 'int main() {}' >whole.cpp
+    ours=$(pkg-config --libs hshfit hshfit-brdfs | tr ' ' '\n' | grep -E '^(-L|-lhshfit)')
+    # shellcheck disable=SC2046,SC2086  # lists of flags
+    c++ whole.cpp -o whole -Wl,--whole-archive $ours -Wl,--no-whole-archive \
+        $(pkg-config --libs hshfit hshfit-brdfs)
+    ./whole
     ./outside_by_flags | grep -qF "hshfit $(pkg-config --modversion hshfit):"
     ./quick_start_by_flags lambert by_flags.json | grep -qx '[01]\.[0-9]*'
     ;;
