@@ -32,7 +32,7 @@ makeProject() {
 case $step in
 # The prefix is moved after the installation, so that nothing can depend on its first place.
 install)
-    rm -rf "$work"
+    rm -rf "$prefix" "$work/first"
     mkdir -p "$work"
     cmake --install "$build" --prefix "$work/first" >"$work/log"
     mv "$work/first" "$prefix"
