@@ -22,19 +22,44 @@ function(hshfit_precompiled target)
   target_precompile_headers(${target} REUSE_FROM ${headers})
 endfunction()
 
-# hshfit_room(NAME SOURCES… [APART] [NEEDS ROOM…] [LINKS LIBRARY…]): a folder of lib/hshfit as a
-# static library, hshfit_room_NAME. With HSHFIT_UNITY eight sources are compiled at a time; APART is
-# for rooms whose sources have local functions of one name, as the members of a table do. NEEDS
-# lists the rooms whose headers it includes, all of them lower; tests/house_rules.sh holds that to
-# the includes. LINKS are libraries that no header shows.
+# Libraries of headers alone, which a program that links a static library of ours does not need.
+set(HSHFIT_HEADER_LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json nanoflann::nanoflann)
+
+# hshfit_link(TARGET LIBRARY…): libraries that no header of TARGET shows. The installed target names
+# those that programs have to link: no flag of ours, no library of headers, and no path.
+function(hshfit_link target)
+  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:hshfit_flags>)
+  foreach(library IN LISTS ARGN)
+    if(library IN_LIST HSHFIT_HEADER_LIBRARIES)
+      target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:${library}>)
+    elseif(IS_ABSOLUTE "${library}")
+      cmake_path(GET library STEM name)
+      string(REGEX REPLACE "^lib" "" name ${name})
+      target_link_libraries(${target} PRIVATE
+        $<BUILD_INTERFACE:${library}> $<INSTALL_INTERFACE:${name}>)
+    else()
+      target_link_libraries(${target} PRIVATE ${library})
+    endif()
+  endforeach()
+endfunction()
+
+# hshfit_room(NAME SOURCES… [APART] [NEEDS ROOM…] [LINKS LIBRARY…] [PRIVATE_HEADERS HEADER…]): a
+# folder of lib/hshfit as a static library, hshfit_room_NAME. With HSHFIT_UNITY eight sources are
+# compiled at a time; APART is for rooms whose sources have local functions of one name, as the
+# members of a table do. NEEDS lists the rooms whose headers it includes, all of them lower;
+# tests/house_rules.sh holds that to the includes. LINKS are libraries that no header shows, and
+# PRIVATE_HEADERS are headers for the rooms above that are not installed: they show a library.
 function(hshfit_room name)
-  cmake_parse_arguments(ARG "APART" "" "NEEDS;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "APART" "" "NEEDS;LINKS;PRIVATE_HEADERS" ${ARGN})
   set(target hshfit_room_${name})
   add_library(${target} STATIC ${ARG_UNPARSED_ARGUMENTS})
   list(TRANSFORM ARG_NEEDS PREPEND hshfit_room_)
-  target_link_libraries(${target} PUBLIC hshfit_front_door fmt::fmt ${ARG_NEEDS}
-                        PRIVATE hshfit_flags ${ARG_LINKS})
+  target_link_libraries(${target} PUBLIC hshfit_front_door fmt::fmt ${ARG_NEEDS})
+  hshfit_link(${target} ${ARG_LINKS})
   hshfit_precompiled(${target} ${HSHFIT_ROOM_HEADERS})
+  hshfit_install_target(${target} room_${name})
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR}/lib ${CMAKE_CURRENT_SOURCE_DIR})
+  hshfit_install_headers(${folder} ${ARG_PRIVATE_HEADERS})
   if(HSHFIT_UNITY AND NOT ARG_APART)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
     # GCC takes an unnamed namespace of an included source for one of a header.
@@ -42,10 +67,16 @@ function(hshfit_room name)
   endif()
 endfunction()
 
-# hshfit_part(NAME ROOM…): several rooms under one public name, hshfit::NAME.
+# hshfit_part(NAME ROOM… [REQUIRES MODULE…] [LIBS FLAG…]): several rooms under one public name,
+# hshfit::NAME; for programs without CMake, hshfit-NAME.pc with what pkg-config has to add.
 function(hshfit_part name)
-  list(TRANSFORM ARGN PREPEND hshfit_room_)
+  cmake_parse_arguments(ARG "" "" "REQUIRES;LIBS" ${ARGN})
+  list(TRANSFORM ARG_UNPARSED_ARGUMENTS PREPEND hshfit_room_)
   add_library(hshfit_${name} INTERFACE)
   add_library(hshfit::${name} ALIAS hshfit_${name})
-  target_link_libraries(hshfit_${name} INTERFACE ${ARGN})
+  target_link_libraries(hshfit_${name} INTERFACE ${ARG_UNPARSED_ARGUMENTS})
+  hshfit_install_target(hshfit_${name} ${name})
+  hshfit_pkgconfig(hshfit-${name} ${ARG_UNPARSED_ARGUMENTS}
+                   REQUIRES ${ARG_REQUIRES} LIBS ${ARG_LIBS})
+  set_property(GLOBAL APPEND PROPERTY hshfit_components ${name})
 endfunction()

@@ -54,6 +54,10 @@ done
 
 matches 'file *\( *GLOB' '*.cmake' '*CMakeLists.txt' | rule 'sources are listed, never globbed'
 tests/room_graph.py | rule 'rooms of lib: arrows only go down, namespace = folder' || true
+version=$(sed -n 's/^project(hshfit VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+grep -qF "\"version-semver\": \"$version\"" packaging/vcpkg/vcpkg.json ||
+    echo packaging/vcpkg/vcpkg.json | rule "the version is that of CMakeLists.txt, $version"
+tests/public_headers.py | rule 'public headers and docs/library.md agree' || true
 # shellcheck disable=SC2016  # back-quotes of Markdown
 [ "$(sed -n 's/^add_subdirectory(hshfit\/\(.*\))$/\1/p' lib/CMakeLists.txt)" = \
     "$(sed -n 's/^| `\([a-z_/]*\)` | .*/\1/p' docs/rooms.md)" ] ||

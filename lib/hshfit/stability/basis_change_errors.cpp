@@ -1,5 +1,6 @@
 #include <hshfit/stability/basis_change_errors.h>
 
+#include <hshfit/bases/jacobi.h>
 #include <hshfit/quadrature/quadrature.h>
 #include <hshfit/rotation/basis_change.h>
 #include <hshfit/stability/reference.h>

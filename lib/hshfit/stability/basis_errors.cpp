@@ -1,5 +1,6 @@
 #include <hshfit/stability/basis_errors.h>
 
+#include <hshfit/bases/jacobi.h>
 #include <hshfit/error.h>
 #include <hshfit/quadrature/quadrature.h>
 #include <hshfit/stability/reference.h>

@@ -1,10 +1,12 @@
 #pragma once
 
-#include <hshfit/bases/jacobi.h>
-
 #include <limits>
 #include <string>
 #include <vector>
+
+namespace hshfit::bases {
+class JacobiBasis;
+}
 
 namespace hshfit::stability {
 

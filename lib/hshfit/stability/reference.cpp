@@ -1,5 +1,7 @@
 #include <hshfit/stability/reference.h>
 
+#include <hshfit/bases/jacobi.h>
+
 #include <cmath>
 
 namespace hshfit::stability {

@@ -1,9 +1,12 @@
 #pragma once
 
-#include <hshfit/bases/jacobi.h>
 #include <hshfit/brdf/directions.h>
 
 #include <vector>
+
+namespace hshfit::bases {
+struct JacobiFamily;
+}
 
 namespace hshfit::stability {
 

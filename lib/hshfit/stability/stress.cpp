@@ -1,5 +1,6 @@
 #include <hshfit/stability/stress.h>
 
+#include <hshfit/bases/jacobi.h>
 #include <hshfit/error.h>
 #include <hshfit/projection/projection.h>
 #include <hshfit/rotation/sh_rotation.h>

@@ -2,6 +2,7 @@
 #include "lib/formula_brdf.h"
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/bases/jacobi.h>
 #include <hshfit/stability/basis_change_errors.h>
 #include <hshfit/stability/reference.h>
 #include <hshfit/stability/rotation_errors.h>

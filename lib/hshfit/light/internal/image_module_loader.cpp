@@ -11,9 +11,12 @@
 namespace hshfit::inline light {
 namespace {
 
-/// Beside the program, in the library folder of an installation, and where it was built.
+constexpr std::string_view moduleName = "libhshfit_openimageio.so";
+
+/// Beside the program, in the library folder of its installation, by the loader's own rules (the
+/// run path of the program, LD_LIBRARY_PATH), and where this project is usually installed.
 std::vector<std::string> places() {
-    const std::string name = "libhshfit_openimageio.so";
+    const std::string name(moduleName);
     std::vector<std::string> paths;
     std::error_code error;
     const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
@@ -22,7 +25,12 @@ std::vector<std::string> places() {
         paths.push_back((folder / name).string());
         paths.push_back((folder.parent_path() / "lib" / "hshfit" / name).string());
     }
+    paths.push_back(name);
+#ifdef HSHFIT_IMAGE_MODULE
     paths.push_back(HSHFIT_IMAGE_MODULE);
+#endif
+    for (const std::string prefix : {"/usr/local", "/usr"})
+        paths.push_back(prefix + "/lib/hshfit/" + name);
     return paths;
 }
 
@@ -30,11 +38,12 @@ ImageModuleFunction* load() {
     std::string reason = "not found";
     for (const std::string& path : places()) {
         std::error_code error;
-        if (!std::filesystem::exists(path, error)) continue;
+        if (path != moduleName && !std::filesystem::exists(path, error)) continue;
         if (void* module = dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL)) {
             return reinterpret_cast<ImageModuleFunction*>(dlsym(module, imageModuleFunction));
         }
-        if (const char* message = dlerror()) reason = message;
+        const char* message = dlerror();
+        if (message && std::filesystem::exists(path, error)) reason = message;
     }
     throw InputError(
         fmt::format("pictures of light cannot be read: the module "
