@@ -49,7 +49,6 @@ TEST_F(Cli, UsageErrorsNameWhatIsValid) {
     expectError("project ward:ax=.1,ay=.2 -o " + path("x.json") + " --outgoing 8", 2, "anisotropic",
                 0);
     expectError("compare lambert lambert --metrics nope", 2, "relative-l2", 0);
-    expectError("report lambert", 2, "-o DIR", 0);
 }
 
 TEST_F(Cli, BadInputIsOneLineAndLeavesNothing) {
