@@ -88,6 +88,13 @@ std::vector<unsigned char> readHead(const std::string& path, std::size_t most) {
     return head;
 }
 
+/// Whether the first character is that of a JSON object, with which no measured format begins.
+bool beginsAsJson(const std::string& path) {
+    for (const unsigned char c : readHead(path, 64))
+        if (c != ' ' && c != '\t' && c != '\r' && c != '\n') return c == '{';
+    return false;
+}
+
 /// The format by content or, for unrecognised content, by
 /// extension.
 const Format& formatOf(const std::string& path, std::uint64_t size) {
@@ -124,7 +131,8 @@ std::unique_ptr<Brdf> openFile(const std::string& path, std::string_view options
     const std::uint64_t size = fs::file_size(path, error);
     if (error) throw InputError(fmt::format("{}: {}", path, error.message()));
     if (size == 0) throw InputError(path + ": is empty");
-    if (fs::path(path).extension() == ".json") return openPresetFile(path, size, options);
+    if (fs::path(path).extension() == ".json" || beginsAsJson(path))
+        return openPresetFile(path, size, options);
     const Format& format = formatOf(path, size);
     return format.open(path, parseParameters(format.name, format.parameters, options));
 }

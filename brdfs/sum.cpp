@@ -1,6 +1,7 @@
 #include <brdfs/sum.h>
 
 #include <hshfit/error.h>
+#include <hshfit/specification/sums.h>
 
 #include <fmt/format.h>
 
@@ -43,23 +44,15 @@ WeightedSpec parseTerm(std::string_view term) {
     return {factors.weight + 0.0, std::string(factors.rest)};
 }
 
-std::size_t countOf(std::string_view part, std::string_view text) {
-    std::size_t count = 0;
-    for (std::size_t at = text.find(part); at != std::string_view::npos;
-         at = text.find(part, at + part.size()))
-        ++count;
-    return count;
-}
-
-/// The end of the term that starts at `start`: the next " + ", unless a longer text is a whole.
+/// The end of the term that starts at `start`: the next joint, unless a longer text is a whole.
 std::size_t endOfTerm(std::string_view spec, std::size_t start, bool (*isWhole)(std::string_view)) {
     std::vector<std::size_t> ends;
-    for (std::size_t at = spec.find(plus, start); at != std::string_view::npos;
-         at = spec.find(plus, at + 1))
+    for (std::size_t at = nextJoint(spec, start); at != std::string_view::npos;
+         at = nextJoint(spec, at + 1))
         ends.push_back(at);
     ends.push_back(spec.size());
     for (auto end = ends.rbegin(); end != ends.rend(); ++end) {
-        const std::string_view term = spec.substr(start, *end - start);
+        const std::string_view term = withoutSpaces(spec.substr(start, *end - start));
         if (isWhole(term) || isWhole(Factors(term).rest)) return *end;
     }
     return ends.front();
@@ -123,21 +116,24 @@ std::string joinedNames(const std::vector<Sum::Term>& terms) {
 
 std::vector<WeightedSpec> splitSum(std::string_view spec, bool (*isWhole)(std::string_view)) {
     if (isWhole(spec)) return {{1, std::string(spec)}};
-    const std::size_t joints = countOf(plus, spec);
+    std::size_t joints = 0;
+    for (std::size_t at = nextJoint(spec, 0); at != std::string_view::npos;
+         at = nextJoint(spec, at + 1))
+        ++joints;
     if (joints >= mostTerms)
         throw UsageError(fmt::format("sum: '{}…' has {} terms; valid: at most {}",
                                      spec.substr(0, 40), joints + 1, mostTerms));
     std::vector<WeightedSpec> terms;
     for (std::size_t start = 0;;) {
         const std::size_t end = endOfTerm(spec, start, isWhole);
-        const std::string_view term = spec.substr(start, end - start);
+        const std::string_view term = withoutSpaces(spec.substr(start, end - start));
         terms.push_back(isWhole(term) ? WeightedSpec{1, std::string(term)} : parseTerm(term));
         if (end == spec.size()) break;
-        start = end + plus.size();
+        start = end + 1;
     }
     if (terms.size() > 1)
         for (const WeightedSpec& term : terms)
-            if (term.spec.find_first_not_of(' ') == std::string::npos)
+            if (term.spec.empty())
                 throw UsageError(
                     fmt::format("sum: '{}' has an empty term; valid: {}", spec, sumHelp));
     return terms;

@@ -14,10 +14,10 @@ namespace hshfit::brdfs {
 
 /// The syntax of a sum of BRDFs, in one line.
 inline constexpr std::string_view sumHelp =
-    "any specifications joined by ' + ', each with an optional weight: "
+    "any specifications joined by '+', each with an optional weight and ' * ': "
     "'lambert:kd=0.1 + 0.5 * ggx:alpha=0.2'";
 
-/// Every " + " may be part of a path, so that splitting asks the file system for each pair of them.
+/// Every '+' may be part of a path, so that splitting asks the file system for each pair of them.
 inline constexpr std::size_t mostTerms = 256;
 
 /// One term of a sum; the weight is in [0, 1e6].
@@ -26,10 +26,10 @@ struct WeightedSpec {
     std::string spec;
 };
 
-/// Splits "SPEC + WEIGHT * SPEC + …" at " + ", with the spaces. A text for which `isWhole` is
-/// true (an existing path) is not split; the longest is tried first. One term of weight 1 if
-/// `spec` is no sum. Throws UsageError for an empty term, a weight out of range, or more than
-/// `mostTerms`.
+/// Splits "SPEC + WEIGHT * SPEC + …" at every '+' that is not in a number, with or without spaces
+/// around it. A text for which `isWhole` is true (an existing path) is not split; the longest is
+/// tried first. One term of weight 1 if `spec` is no sum. Throws UsageError for an empty term, a
+/// weight out of range, or more than `mostTerms`.
 std::vector<WeightedSpec> splitSum(std::string_view spec, bool (*isWhole)(std::string_view));
 
 /// sum_t weight_t f_t. Grey terms count for every channel of the others.

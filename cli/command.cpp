@@ -2,6 +2,7 @@
 
 #include "command_table.h"
 #include "option_values.h"
+#include "standard_files.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
@@ -26,13 +27,14 @@ namespace hshfit::cli {
 void addCommand(CLI::App& app, Globals& globals, const Command& row) {
     CLI::App& command = *app.add_subcommand(row.name, row.help);
     command.group(row.group);
-    command.footer(std::string("Example: ") + row.example);
+    command.footer(row.example);
     command.add_flag("--json", globals.json, "Print a machine-readable answer to standard output");
     command.add_flag("--quiet", globals.quiet, "No progress and no notes on standard error");
     command.add_option("--threads", globals.threads, "Threads to use; 0: all cores")
         ->check(CLI::Range(0, 4096));
     row.add(command, globals);
     stateRanges(command);
+    acceptStandardStreams(command);
 }
 
 void addRgb(CLI::App& command, bool& rgb) {
@@ -78,12 +80,26 @@ Direction parseDirection(const std::string& text, std::string_view option, doubl
     return directionFromAngles(radians(angles[0]), radians(angles[1]));
 }
 
-void printText(std::string_view given) {
-    const std::string text = printableLines(given);
+namespace {
+
+/// Writes to standard error. Failures are ignored, since nothing could report them.
+void writeError(std::string_view text) {
+    std::fwrite(text.data(), 1, text.size(), stderr);
+    std::fflush(stderr);
+}
+
+void writeOutput(std::string_view text) {
     const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
     if (!written || std::fflush(stdout) != 0) {
         throw OutputError(fmt::format("standard output: {}", std::strerror(errno)));
     }
+}
+
+}  // namespace
+
+void printText(std::string_view given) {
+    const std::string text = printableLines(given);
+    isOutputTaken() ? writeError(text) : writeOutput(text);
 }
 
 void printJson(const nlohmann::ordered_json& document) {
@@ -91,12 +107,6 @@ void printJson(const nlohmann::ordered_json& document) {
 }
 
 namespace {
-
-/// Writes to standard error. Failures are ignored, since nothing could report them.
-void writeError(const std::string& text) {
-    std::fwrite(text.data(), 1, text.size(), stderr);
-    std::fflush(stderr);
-}
 
 /// A line of at most 500 bytes with its beginning and its line feed.
 std::string messageLine(std::string_view beginning, std::string_view message) {
@@ -107,9 +117,17 @@ std::string messageLine(std::string_view beginning, std::string_view message) {
 
 }  // namespace
 
+void printHelp(std::string_view text, Stream stream) {
+    stream == Stream::output ? writeOutput(text) : writeError(text);
+}
+
 void printMessage(std::string_view message) noexcept {
     try {
-        writeError(messageLine("hshfit: ", message));
+        constexpr std::string_view name = "hshfit:";
+        const std::string line = messageLine("hshfit: ", message);
+        writeError(hasColour(Stream::error)
+                       ? fmt::format("\x1b[1;31m{}\x1b[0m{}", name, line.substr(name.size()))
+                       : line);
     } catch (const std::exception&) {
         // Out of memory for the message: the exit code says the rest.
     }
@@ -124,7 +142,7 @@ void occupyStandardStreams() {
 }
 
 void note(const Globals& globals, std::string_view message) {
-    if (!globals.quiet) printMessage(message);
+    if (!globals.quiet) writeError(messageLine("hshfit: ", message));
 }
 
 struct Progress::State {

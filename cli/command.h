@@ -1,5 +1,7 @@
 #pragma once
 
+#include "terminal.h"
+
 #include <hshfit/brdf/directions.h>
 
 #include <jobs/batch.h>
@@ -50,8 +52,10 @@ Direction parseDirection(const std::string& text, std::string_view option, doubl
 void printJson(const nlohmann::ordered_json& document);
 /// Prints text to standard output, likewise, without control characters but line feeds and tabs.
 void printText(std::string_view text);
-/// Prints "hshfit: " and a message on one line of at most 500 bytes to standard error, printable; a
-/// closed standard error is no error.
+/// Prints a page of help, colours included. Throws likewise.
+void printHelp(std::string_view text, Stream stream = Stream::output);
+/// Prints "hshfit: " and a message on one line of at most 500 bytes to standard error, printable,
+/// its beginning in red on a terminal; a closed standard error is no error.
 void printMessage(std::string_view message) noexcept;
 
 /// Keeps closed standard streams from becoming the files that are opened next: reading and writing

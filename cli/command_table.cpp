@@ -26,6 +26,9 @@ void addLight(CLI::App& command, Globals& globals);
 void addIrradiance(CLI::App& command, Globals& globals);
 void addSample(CLI::App& command, Globals& globals);
 void addTransfer(CLI::App& command, Globals& globals);
+void addHelp(CLI::App& command, Globals& globals);
+void addCompletion(CLI::App& command, Globals& globals);
+void addManual(CLI::App& command, Globals& globals);
 
 namespace {
 
@@ -35,6 +38,7 @@ constexpr const char* files = "Files";
 constexpr const char* fits = "Fits";
 constexpr const char* studies = "Studies";
 constexpr const char* lighting = "Light";
+constexpr const char* program = "The program";
 
 constexpr Command table[] = {
     {.name = "list",
@@ -189,6 +193,25 @@ constexpr Command table[] = {
      .file = "sample.cpp",
      .example = "hshfit sample ggx:alpha=.2 --outgoing 45,0 --count 100 -o samples.csv",
      .add = addSample},
+    {.name = "help",
+     .group = program,
+     .help = "Commands by group and topics; the options of one command; one topic",
+     .file = "help.cpp",
+     .example = "hshfit help specifications",
+     .add = addHelp},
+    {.name = "completion",
+     .group = program,
+     .help = "A script that completes commands, options, models, parameters, presets and other "
+             "names in a shell",
+     .file = "completion.cpp",
+     .example = "hshfit completion bash -o hshfit.bash",
+     .add = addCompletion},
+    {.name = "manual",
+     .group = program,
+     .help = "The manual: a page for man of the program, of every command and of every topic",
+     .file = "manual.cpp",
+     .example = "hshfit manual -o man",
+     .add = addManual},
 };
 
 }  // namespace

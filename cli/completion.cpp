@@ -1,44 +1,75 @@
-#include "completion.h"
+#include "candidates.h"
+#include "command.h"
 
-#include "command_table.h"
+#include <hshfit/error.h>
+#include <hshfit/files/atomic_file.h>
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
-#include <kainjow/mustache.hpp>
-
-#include <string_view>
+#include <nlohmann/json.hpp>
 
 namespace hshfit::embedded {
-extern const std::string_view completion_bash;
+extern const std::string_view completion_bash, completion_zsh, completion_fish;
 }
 
 namespace hshfit::cli {
 namespace {
 
-using kainjow::mustache::data;
+struct CompletionArguments {
+    std::string shell, output;
+    std::vector<std::string> words;
+};
 
-/// "--one --two"
-std::string optionNames(const CLI::App& command) {
-    std::string names;
-    for (const CLI::Option* option : command.get_options())
-        for (const std::string& name : option->get_lnames())
-            names += (names.empty() ? "--" : " --") + name;
-    return names;
+std::string_view scriptOf(const std::string& shell) {
+    if (shell == "bash") return embedded::completion_bash;
+    return shell == "zsh" ? embedded::completion_zsh : embedded::completion_fish;
+}
+
+/// A line of flags that the scripts know, then a line for each word, with its help after a tab.
+std::string linesOf(const Candidates& candidates, const std::string& shell) {
+    std::string flags = "words";
+    if (candidates.files == Files::folder) flags += " folders";
+    if (candidates.files == Files::read || candidates.files == Files::written) flags += " files";
+    if (candidates.open) flags += " open";
+    std::string lines = flags + "\n";
+    for (const Word& word : candidates.words) {
+        const bool plain = shell == "bash" || word.help.empty();
+        lines += plain ? word.text + "\n" : fmt::format("{}\t{}\n", word.text, word.help);
+    }
+    return lines;
+}
+
+void complete(const CompletionArguments& arguments, const CLI::App& program,
+              const Globals& globals) {
+    const Candidates candidates =
+        candidatesOf(program, {arguments.words.begin() + 1, arguments.words.end()});
+    if (!globals.json) return printText(linesOf(candidates, arguments.shell));
+    nlohmann::ordered_json words = nlohmann::ordered_json::array();
+    for (const Word& word : candidates.words)
+        words.push_back({{"word", word.text}, {"help", word.help}});
+    printJson({{"format", "hshfit-completion"}, {"version", 1}, {"words", words}});
 }
 
 }  // namespace
 
-std::string bashCompletion(const CLI::App& app) {
-    data rows(data::type::list);
-    for (const Command& command : commands()) {
-        data row;
-        row.set("name", command.name);
-        row.set("options", optionNames(*app.get_subcommand(command.name)));
-        rows.push_back(row);
-    }
-    data script;
-    script.set("commands", rows);
-    script.set("options", optionNames(app));
-    return kainjow::mustache::mustache(std::string(embedded::completion_bash)).render(script);
+void addCompletion(CLI::App& command, Globals& globals) {
+    auto arguments = std::make_shared<CompletionArguments>();
+    command.add_option("SHELL", arguments->shell, "The shell that runs the script")
+        ->check(CLI::IsMember({"bash", "zsh", "fish"}))
+        ->required();
+    command.add_option("WORDS", arguments->words,
+                       "After --: the words of a command line up to the one being typed. The "
+                       "answer is a line of flags, and the words that may stand in its place");
+    command.add_option("-o,--output", arguments->output,
+                       "File for the script (default: standard output)");
+    const CLI::App* const program = command.get_parent();
+    command.callback([arguments, program, &globals] {
+        if (!arguments->words.empty()) return complete(*arguments, *program, globals);
+        const std::string script(scriptOf(arguments->shell));
+        if (!arguments->output.empty()) return writeFile(arguments->output, script);
+        if (!globals.json) return printText(script);
+        printJson({{"format", "hshfit-completion"}, {"version", 1}, {"script", script}});
+    });
 }
 
 }  // namespace hshfit::cli

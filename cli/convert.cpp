@@ -4,7 +4,6 @@
 #include <hshfit/accuracy/metrics.h>
 
 #include <brdfs/catalog.h>
-#include <brdfs/repair.h>
 
 #include <jobs/convert.h>
 
@@ -56,9 +55,10 @@ Json document(const jobs::Converted& converted, const std::string& output) {
 }
 
 std::string convertText(const Json& document, const std::optional<jobs::ConversionLoss>& loss) {
-    std::string text =
-        fmt::format("{}: {}, {} bytes\n", document["output"].get<std::string>(),
-                    document["written"].get<std::string>(), document["bytes"].get<std::size_t>());
+    std::string text = fmt::format("{}: {}", document["output"].get<std::string>(),
+                                   document["written"].get<std::string>());
+    const std::size_t bytes = document["bytes"];  // 0: they went to standard output
+    text += bytes > 0 ? fmt::format(", {} bytes\n", bytes) : "\n";
     for (const Json& sentence : document["altered"]) {
         text += fmt::format("  altered: {}\n", sentence.get<std::string>());
     }
@@ -88,35 +88,25 @@ void runConvert(const ConvertArguments& arguments, const Globals& globals) {
     }
 }
 
-std::string writersHelp() {
-    std::string text = "\nFormats to write (options in hshfit list writers):\n";
-    for (const auto& writer : brdfs::writers()) {
-        text += fmt::format("  {:<12} {:<10} {}\n", writer.name, writer.extension, writer.help);
-    }
-    text += "\nRepairs:\n";
-    for (const auto& repair : brdfs::repairs()) {
-        text += fmt::format("  {:<23} {}\n", repair.name, repair.help);
-    }
-    return text;
-}
-
 }  // namespace
 
 void addConvert(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ConvertArguments>();
     jobs::ConvertOptions& options = arguments->options;
-    command.footer(command.get_footer() + "\n" + writersHelp());
     command.add_option("IN", arguments->input, "BRDF, measured file or coefficient file")
         ->required();
     command.add_option("OUT", arguments->output, "File to write")->required();
     command.add_option("--to", options.format,
-                       "Format and its options, NAME[:key=value,...] (default: by the extension)");
+                       "Format and its options, NAME[:key=value,...] (default: by the extension); "
+                       "`hshfit help formats` lists them");
     command.add_flag("--report-loss", options.measureLoss,
                      "Read the file back and say what error it costs");
     command.add_option("--outgoing", options.outgoing,
                        "Outgoing directions of the loss: WxH, N or THETA,PHI");
-    command.add_option("--repair", options.repairs,
-                       "Repairs before writing, separated by commas, or all");
+    command.add_option(
+        "--repair", options.repairs,
+        "Repairs before writing, separated by commas, or all; `hshfit help formats` lists "
+        "them");
     addRgb(command, options.rgb);
     command.add_flag("--force", options.force, "Replace an existing file");
     command.callback([arguments, &globals] { runConvert(*arguments, globals); });

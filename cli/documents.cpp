@@ -1,4 +1,5 @@
 #include "documents.h"
+#include "measured_numbers.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -46,8 +47,7 @@ Json metricValuesJson(const std::vector<MetricValue>& results) {
 std::string metricText(const MetricValue& result) {
     std::string text = fmt::format("  {:<20} ", result.metric->name);
     if (!result.value) return text + "-  (" + result.reason + ")\n";
-    text +=
-        fmt::format("{:<12.6g} +- {:<8.1e} {}", *result.value, result.error, result.metric->help);
+    text += fmt::format("{:<22} {}", withError(*result.value, result.error), result.metric->help);
     if (result.wi) text += "; wi " + directionText(*result.wi);
     if (result.wo) text += "; wo " + directionText(*result.wo);
     return text + "\n";

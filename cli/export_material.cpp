@@ -1,5 +1,7 @@
 #include "export_material.h"
 
+#include "measured_numbers.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -66,10 +68,10 @@ std::string text(const jobs::ExportedMaterials& exported, const std::string& fol
         }
         const PairSummary& loss = *file.loss;
         out += fmt::format(
-            "  against {}: mean log error {:.4g} +- {:.2g}, albedo off by at most "
+            "  against {}: mean log error {}, albedo off by at most "
             "{:.3g}\n  largest error of f cos(theta_i) {:.4g} at wi {:.4f} {:.4f} "
             "{:.4f}, wo {:.4f} {:.4f} {:.4f}\n",
-            exported.source, loss.meanLog.value, loss.meanLog.error, loss.albedo.value,
+            exported.source, withError(loss.meanLog.value, loss.meanLog.error), loss.albedo.value,
             loss.maximum, loss.at.wi.x, loss.at.wi.y, loss.at.wi.z, loss.at.wo.x, loss.at.wo.y,
             loss.at.wo.z);
     }

@@ -1,4 +1,5 @@
 #include "command.h"
+#include "measured_numbers.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
@@ -38,12 +39,13 @@ std::string samplesLine(const Json& fit) {
 
 std::string text(const jobs::Fitted& fitted, const std::string& output) {
     const brdfs::FitResult& result = fitted.result;
-    std::string lines = fmt::format("{}\n", result.spec) + samplesLine(fitted.preset["fit"]);
+    std::string lines = withShortNumbers(result.spec) + "\n" + samplesLine(fitted.preset["fit"]);
     for (const brdfs::FittedParameter& p : result.parameters) {
-        const std::string error = p.standardError    ? fmt::format("+- {:.3g}", *p.standardError)
-                                  : !p.bound.empty() ? fmt::format("at its {} bound", p.bound)
-                                                     : "not determined by the data";
-        lines += fmt::format("  {:<24} {:>2} {:<14.8g} {}\n", p.name, p.channel, p.value, error);
+        const std::string value = p.standardError ? withError(p.value, *p.standardError)
+                                  : !p.bound.empty()
+                                      ? fmt::format("{:.6g}, at its {} bound", p.value, p.bound)
+                                      : fmt::format("{:.6g}, not determined by the data", p.value);
+        lines += fmt::format("  {:<24} {:>2} {}\n", p.name, p.channel, value);
     }
     if (fitted.search) {
         for (const brdfs::PartTrial& trial : fitted.search->trials) {

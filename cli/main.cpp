@@ -1,7 +1,8 @@
 #include "command.h"
 #include "command_table.h"
-#include "completion.h"
+#include "help_pages.h"
 #include "option_values.h"
+#include "standard_files.h"
 #include "wording.h"
 
 #include <brdfs/fit/solver_log.h>
@@ -57,20 +58,33 @@ std::string unknownWord(const CLI::App& app, int argc, char** argv) {
     return "";
 }
 
+/// " project" of `hshfit project …`; "" where the first word is no command.
+std::string chosenCommand(int argc, char** argv) {
+    const std::string_view first = argc > 1 ? argv[1] : "";
+    const bool known = std::ranges::any_of(
+        cli::commands(), [&](const cli::Command& row) { return row.name == first; });
+    return known && first != "help" ? fmt::format(" {}", first) : "";
+}
+
 /// Usage errors of ours and of CLI11 alike end in exit code 2 with one line.
 int run(int argc, char** argv) {
+    if (argc == 1) {
+        cli::printHelp(
+            cli::textOf(cli::overviewPage(), cli::columns(), cli::hasColour(cli::Stream::error)),
+            cli::Stream::error);
+        return static_cast<int>(ExitCode::usage);
+    }
     CLI::App app("hshfit: BRDFs as hemispherical-basis coefficients", "hshfit");
-    app.set_version_flag("--version", std::string("hshfit ") + version);
-    app.add_flag_callback(
-        "--completion", [&app] { throw CLI::CallForVersion(cli::bashCompletion(app), 0); },
-        "Print completions for bash: source <(hshfit --completion)");
+    cli::usePagesForHelp(app);
+    app.set_version_flag("--version", std::string("hshfit ") + version, "Print the version");
     app.require_subcommand(1);
-    app.footer("hshfit COMMAND --help shows a command's options and an example.");
 
     cli::Globals globals;
     brdfs::takeSolverLog([&globals](const std::string& said) { cli::note(globals, said); });
     std::optional<tbb::global_control> threads;
     app.parse_complete_callback([&] {
+        if (globals.json && cli::isOutputTaken())
+            throw UsageError("--json: the answer and the file cannot both go to standard output");
         if (globals.threads > 0) {
             threads.emplace(tbb::global_control::max_allowed_parallelism, globals.threads);
         }
@@ -83,13 +97,13 @@ int run(int argc, char** argv) {
     } catch (const CLI::Success& success) {
         std::ostringstream text;
         const int code = app.exit(success, text, text);
-        cli::printText(text.str());
+        cli::printHelp(text.str());
         return code;
     } catch (const CLI::ParseError& error) {
         std::string message = unknownWord(app, argc, argv);
         if (message.empty()) message = error.what();
         std::ranges::replace(message, '\n', ' ');
-        throw UsageError(message + "; see hshfit --help");
+        throw UsageError(message);
     }
     return globals.exitCode;
 }
@@ -102,6 +116,10 @@ int main(int argc, char** argv) {
     hshfit::setWording(hshfit::cli::optionWording());
     try {
         return run(argc, argv);
+    } catch (const hshfit::UsageError& error) {
+        hshfit::cli::printMessage(
+            fmt::format("{}; see hshfit help{}", error.what(), chosenCommand(argc, argv)));
+        return static_cast<int>(error.code());
     } catch (const hshfit::Error& error) {
         hshfit::cli::printMessage(error.what());
         return static_cast<int>(error.code());

@@ -1,4 +1,5 @@
 #include "command.h"
+#include "measured_numbers.h"
 
 #include <hshfit/error.h>
 #include <hshfit/pages/report.h>
@@ -26,9 +27,9 @@ std::string summary(const ReportEntry& entry) {
     if (!entry.energy.finite) {
         return fmt::format("{}: no energy: {}\n", entry.brdf, entry.energy.reason);
     }
-    std::string text = fmt::format("{} ({}, outgoing {}): energy {:.8g} +- {:.1e}\n", entry.brdf,
-                                   quantityName(entry.quantity), entry.outgoing.spec(),
-                                   entry.energy.value, entry.energy.error);
+    std::string text =
+        fmt::format("{} ({}, outgoing {}): energy {}\n", entry.brdf, quantityName(entry.quantity),
+                    entry.outgoing.spec(), withError(entry.energy.value, entry.energy.error));
     for (const ReportCurve& curve : entry.curves) {
         const ReportPoint& last = curve.points.back();
         const auto reached = firstReaching(curve, 0.99);
@@ -49,9 +50,6 @@ std::string summary(const ReportEntry& entry) {
 }
 
 void runReport(ReportArguments& arguments, Globals& globals) {
-    if (arguments.output.empty() && !globals.json) {
-        throw UsageError("report: give -o DIR for the report's files, or --json");
-    }
     arguments.options.maxEvaluations = static_cast<std::size_t>(arguments.maxEvaluations);
     const jobs::Reported reported =
         jobs::report(arguments.specs, arguments.options, listenerFor(globals));
@@ -68,10 +66,12 @@ void runReport(ReportArguments& arguments, Globals& globals) {
     } else if (any) {
         std::string text;
         for (const ReportEntry& entry : report.reports) text += summary(entry);
-        printText(text +
-                  fmt::format("written to {}: report.html, curves.svg, curves.pdf, curves.csv, "
-                              "curves.gp, report.json\n",
-                              arguments.output));
+        if (!arguments.output.empty())
+            text += fmt::format(
+                "written to {}: report.html, curves.svg, curves.pdf, curves.csv, "
+                "curves.gp, report.json\n",
+                arguments.output);
+        printText(text);
     }
     reportFailures(reported.failures, reported.specs.size(), globals);
 }
@@ -85,7 +85,8 @@ void addReport(CLI::App& command, Globals& globals) {
         .add_option("SPEC", arguments->specs,
                     "One or more BRDFs; of a folder, the measured files in it")
         ->required();
-    command.add_option("-o,--output", arguments->output, "Folder to write, made if absent");
+    command.add_option("-o,--output", arguments->output,
+                       "Folder for pages and figures, made if absent; without it, the table alone");
     command.add_option("--bases", options.bases, "all, or names from hshfit list bases")
         ->capture_default_str();
     command.add_option("--max-order", options.maxOrder, "Orders 1 to this one")

@@ -4,6 +4,8 @@
 #include "source.h"
 
 #include <hshfit/error.h>
+#include <hshfit/files/standard_streams.h>
+#include <hshfit/spelling.h>
 #include <hshfit/wording.h>
 
 #include <brdfs/catalog.h>
@@ -36,8 +38,10 @@ const brdfs::Writer& chooseWriter(const std::string& format, const std::string& 
         if (name.empty() ? writer.extension == extension : writer.name == name) return writer;
     }
     if (!name.empty()) {
-        throw UsageError(fmt::format("{}: unknown format; those that can be written are {}",
-                                     Setting{"ConvertOptions::format", name}, writableFormats()));
+        throw UsageError(fmt::format("{}: unknown format{}; those that can be written are {}",
+                                     Setting{"ConvertOptions::format", name},
+                                     spelling::question(name, spelling::namesOf(brdfs::writers())),
+                                     writableFormats()));
     }
     throw UsageError(
         fmt::format("{}: the formats that can be written are {}; choose by the extension or with "
@@ -104,12 +108,14 @@ Converted converted(const std::string& input, const std::string& output,
     result.written = writer.name;
     result.altered = writer.write(*brdf, output, parameters,
                                   {.force = options.force, .progress = listener.part("convert")});
-    result.bytes = std::filesystem::file_size(output);
+    std::error_code error;  // standard output has no size
+    const auto bytes = std::filesystem::file_size(output, error);
+    result.bytes = error ? 0 : bytes;
     if (repaired) result.repairs = Repairs{repaired->evaluated(), repaired->counts()};
     if (options.measureLoss) {
         result.loss = measureLoss(*brdf, writer, output, options, listener);
     }
-    if (writer.readBack) result.error = errorOf(*brdf, output);
+    if (writer.readBack && !isStandardOutput(output)) result.error = errorOf(*brdf, output);
     if (result.error) result.poor = judgeLoss(*result.error, output);
     brdf->checkIntact();
     return result;
@@ -120,6 +126,9 @@ Converted converted(const std::string& input, const std::string& output,
 Converted convert(const std::string& input, const std::string& output,
                   const ConvertOptions& options, const Listener& listener) {
     const brdfs::Writer& writer = chooseWriter(options.format, output);
+    if (options.measureLoss && isStandardOutput(output))
+        throw UsageError(fmt::format("{}: standard output is not read back",
+                                     Setting{"ConvertOptions::measureLoss"}));
     Converted result;
     withFileNamed(input, [&] { result = converted(input, output, writer, options, listener); });
     return result;

@@ -2,6 +2,7 @@
 
 #include <brdfs/spec.h>
 #include <hshfit/error.h>
+#include <hshfit/spelling.h>
 
 #include <fmt/format.h>
 
@@ -38,10 +39,7 @@ std::span<const Loss> losses() {
 const Loss& findLoss(std::string_view name) {
     const auto found = std::ranges::find(table, name, &Loss::name);
     if (found != table.end()) return *found;
-    std::vector<std::string_view> known;
-    for (const Loss& loss : table) known.push_back(loss.name);
-    throw UsageError(fmt::format("unknown loss '{}'{}; known: {}", name, suggestion(name, known),
-                                 joined(known)));
+    throw spelling::unknown("loss", name, spelling::namesOf(table));
 }
 
 Mapped mapValue(Loss::Kind kind, double f, double cosine) {
@@ -57,7 +55,9 @@ Mapped mapValue(Loss::Kind kind, double f, double cosine) {
 Robust findRobust(std::string_view name) {
     for (const Robust robust : {Robust::none, Robust::huber, Robust::cauchy})
         if (robustName(robust) == name) return robust;
-    throw UsageError(fmt::format("unknown robust kernel '{}'; known: none, huber, cauchy", name));
+    throw spelling::unknown("robust kernel", name,
+                            std::array{robustName(Robust::none), robustName(Robust::huber),
+                                       robustName(Robust::cauchy)});
 }
 
 std::string_view robustName(Robust robust) {

@@ -33,5 +33,30 @@ TEST_F(Installation, ProgramFindsItsModuleForPicturesBesideIt) {
               std::string::npos);
 }
 
+TEST_F(Installation, HasTheManualAndCompletionWhereManAndShellsLook) {
+    const std::string build = fs::path(program()).parent_path();
+    const std::string install =
+        "cmake --install " + build + " --prefix " + path("prefix") + " >" + path("log") + " 2>&1";
+    ASSERT_EQ(std::system(install.c_str()), 0) << read(path("log"));
+    const fs::path share = path("prefix/share");
+    for (const std::string shell : {"bash", "zsh", "fish"}) {
+        const std::string file = shell == "bash"  ? "bash-completion/completions/hshfit"
+                                 : shell == "zsh" ? "zsh/site-functions/_hshfit"
+                                                  : "fish/vendor_completions.d/hshfit.fish";
+        EXPECT_EQ(read(share / file), run("completion " + shell).out) << file;
+    }
+    // What is installed is what this program says.
+    ASSERT_EQ(run("manual -o " + path("man")).code, 0);
+    const std::string differ =
+        "diff -r " + path("man") + " " + (share / "man").string() + " >" + path("log");
+    EXPECT_EQ(std::system(differ.c_str()), 0) << read(path("log"));
+    if (std::system("command -v man groff >/dev/null") != 0)
+        GTEST_SKIP() << "man or groff is not installed";
+    const std::string show = "MANPATH=" + (share / "man").string() + " man hshfit-project >" +
+                             path("shown") + " 2>&1 </dev/null";
+    ASSERT_EQ(std::system(show.c_str()), 0) << read(path("shown"));
+    EXPECT_NE(read(path("shown")).find("HSHFIT-PROJECT(1)"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace hshfit::test

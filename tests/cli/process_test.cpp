@@ -169,7 +169,7 @@ TEST_F(Process, MessagesAreShortAndKeepBothEnds) {
 
 TEST_F(Process, ClosedStreamsEndWithFive) {
     for (const std::string command :
-         {"list", "--help", "--version", "--completion", "eval lambert --wi 0,0 --wo 0,0"}) {
+         {"list", "--help", "--version", "completion bash", "eval lambert --wi 0,0 --wo 0,0"}) {
         for (const std::string streams :
              {">&-", ">&- 2>&-", "<&- >&- 2>&-", ">/dev/full", ">/dev/full 2>/dev/full"}) {
             EXPECT_EQ(shell("$HSHFIT " + command + " " + streams).code, 5) << command << streams;

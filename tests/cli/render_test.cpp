@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 
 TEST_F(Cli, RenderHasHelpWhoseExampleWorks) {
     const std::string help = run("render --help").out;
-    const std::size_t begin = help.find("Example: hshfit ");
+    const std::size_t begin = help.find("Example:\n  hshfit ");
     ASSERT_NE(begin, std::string::npos);
-    const std::string example = help.substr(begin + 16, help.find('\n', begin) - begin - 16);
+    const std::string example = help.substr(begin + 18, help.find("\n", begin + 9) - begin - 18);
     const std::string line =
         "cd " + folder_.string() + " && " + hshfit::test::program() + " " + example + " >out 2>err";
     EXPECT_EQ(std::system(line.c_str()), 0) << read(path("err"));

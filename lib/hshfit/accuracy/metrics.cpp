@@ -4,6 +4,7 @@
 #include <hshfit/projection/horizon.h>
 #include <hshfit/quadrature/quadrature.h>
 #include <hshfit/quadrature/ring_points.h>
+#include <hshfit/spelling.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -298,12 +299,8 @@ std::vector<const Metric*> selectMetrics(std::string_view names) {
         const std::string_view name = names.substr(start, comma - start);
         const auto found = std::find_if(catalog.begin(), catalog.end(),
                                         [&](const Metric& m) { return m.name == name; });
-        if (found == catalog.end()) {
-            std::vector<std::string_view> known;
-            for (const Metric& metric : catalog) known.push_back(metric.name);
-            throw UsageError(
-                fmt::format("unknown metric '{}'; known: all, {}", name, fmt::join(known, ", ")));
-        }
+        if (found == catalog.end())
+            throw spelling::unknown("metric", name, spelling::namesOf(catalog, {"all"}));
         chosen.push_back(&*found);
         start = comma + 1;
     }

@@ -8,6 +8,7 @@
 #include <hshfit/bases/slepian.h>
 #include <hshfit/bases/zernike.h>
 #include <hshfit/error.h>
+#include <hshfit/spelling.h>
 
 #include <algorithm>
 #include <array>
@@ -98,13 +99,6 @@ constexpr std::array table{
           2},
 };
 
-std::string knownNames() {
-    std::string names;
-    for (const Entry& entry : table)
-        names += fmt::format("{}{}", names.empty() ? "" : ", ", entry.name);
-    return names;
-}
-
 }  // namespace
 
 std::span<const Entry> catalog() {
@@ -114,8 +108,7 @@ std::span<const Entry> catalog() {
 const Entry& find(std::string_view name) {
     const auto* row = std::find_if(table.begin(), table.end(),
                                    [&](const Entry& entry) { return entry.name == name; });
-    if (row == table.end())
-        throw UsageError(fmt::format("unknown basis '{}'; known: {}", name, knownNames()));
+    if (row == table.end()) throw spelling::unknown("basis", name, spelling::namesOf(table));
     return *row;
 }
 

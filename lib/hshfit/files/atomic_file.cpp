@@ -1,5 +1,6 @@
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
+#include <hshfit/files/standard_streams.h>
 
 #include <atomic>
 #include <cerrno>
@@ -41,6 +42,12 @@ std::string endOfLinks(const std::string& path) {
 AtomicFile::AtomicFile(std::string path, Existing existing)
     : path_(std::move(path)), target_(path_), existing_(existing) {
     if (path_.empty()) throw OutputError("cannot write to an empty file name");
+    if (isStandardOutput(path_)) {
+        temporary_ = openOutputBuffer();
+        stream_ = std::fopen(temporary_.c_str(), "w+e");
+        if (!stream_) fail(errno);
+        return;
+    }
     struct stat status {};
     const bool stands = ::stat(path_.c_str(), &status) == 0;
     if (!stands && errno != ENOENT) fail(errno);
@@ -104,7 +111,11 @@ AtomicFile::~AtomicFile() {
 void AtomicFile::discard() noexcept {
     if (stream_) std::fclose(stream_);
     stream_ = nullptr;
-    if (!temporary_.empty() && temporary_ != target_) ::unlink(temporary_.c_str());
+    if (isStandardOutput(path_)) {
+        if (!temporary_.empty()) closeOutputBuffer();
+    } else if (!temporary_.empty() && temporary_ != target_) {
+        ::unlink(temporary_.c_str());
+    }
     temporary_.clear();
     trace_.release();
 }
@@ -146,7 +157,9 @@ void AtomicFile::commit() {
     finish();
     finished_ = false;
     int error = 0;
-    if (temporary_ != target_) {
+    if (isStandardOutput(path_)) {
+        error = sendOutputBuffer();
+    } else if (temporary_ != target_) {
         // link() refuses an existing name, rename() replaces it; both in one step.
         const bool moved = existing_ == Existing::refuse
                                ? ::link(temporary_.c_str(), target_.c_str()) == 0

@@ -2,6 +2,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/files/printable.h>
+#include <hshfit/spelling.h>
 
 #include <fmt/format.h>
 
@@ -161,13 +162,10 @@ std::span<const Convention> conventions() {
 
 std::vector<const Convention*> selectConventions(std::string_view name) {
     std::vector<const Convention*> chosen;
-    std::string known = "all";
-    for (const Convention& each : table) {
+    for (const Convention& each : table)
         if (name == "all" || name == each.name) chosen.push_back(&each);
-        known += fmt::format(", {}", each.name);
-    }
     if (chosen.empty())
-        throw UsageError(fmt::format("unknown convention '{}'; known: {}", name, known));
+        throw spelling::unknown("convention", name, spelling::namesOf(table, {"all"}));
     return chosen;
 }
 

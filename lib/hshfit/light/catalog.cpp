@@ -9,11 +9,11 @@
 #include <hshfit/light/placement.h>
 #include <hshfit/light/sky.h>
 #include <hshfit/light/solar_position.h>
+#include <hshfit/specification/sums.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -304,21 +304,6 @@ std::vector<LightKind> makeKinds() {
 
 // --- the text -------------------------------------------------------------------------------
 
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-    return text;
-}
-
-/// Whether the '+' at `at` belongs to a number such as 1e+3.
-bool inExponent(std::string_view text, std::size_t at) {
-    const auto digit = [&](std::size_t k) {
-        return k < text.size() && std::isdigit(static_cast<unsigned char>(text[k])) != 0;
-    };
-    return at >= 2 && (text[at - 1] == 'e' || text[at - 1] == 'E') && digit(at + 1) &&
-           (digit(at - 2) || text[at - 2] == '.');
-}
-
 constexpr std::size_t mostTerms = 256;
 constexpr std::string_view form =
     "kind[:key=value,...], the path of a picture or of coefficients of light, joined by '+'";
@@ -334,7 +319,7 @@ std::size_t pathEnd(std::string_view text, const std::string& folder) {
     std::size_t longest = 0;
     for (std::size_t end = 1; end <= std::min(text.size(), longestPath); ++end) {
         if (end < text.size() && text[end] != '+' && text[end] != ':') continue;
-        const std::string_view path = trimmed(text.substr(0, end));
+        const std::string_view path = withoutSpaces(text.substr(0, end));
         if (!path.empty() && isPicturePath(within(folder, path))) longest = end;
     }
     return longest;
@@ -342,16 +327,14 @@ std::size_t pathEnd(std::string_view text, const std::string& folder) {
 
 /// The end of the term that starts `text`: its first '+' outside of a path and of numbers.
 std::size_t termEnd(std::string_view text, const std::string& folder) {
-    std::size_t at = namesLight(trimmed(text)) ? 0 : pathEnd(text, folder);
-    while ((at = text.find('+', at)) != std::string_view::npos && inExponent(text, at)) ++at;
-    return at;
+    return nextJoint(text, namesLight(withoutSpaces(text)) ? 0 : pathEnd(text, folder));
 }
 
 std::vector<std::string_view> splitTerms(std::string_view text, const std::string& folder) {
     std::vector<std::string_view> terms;
     while (true) {
         const std::size_t end = termEnd(text, folder);
-        terms.push_back(trimmed(text.substr(0, end)));
+        terms.push_back(withoutSpaces(text.substr(0, end)));
         if (terms.back().empty())
             throw UsageError(fmt::format("light: an empty term before '{}'; valid: {}",
                                          text.substr(0, 40), form));
@@ -394,7 +377,7 @@ Light parseTerm(std::string_view term, const std::string& folder, InvalidPixels 
     }
     const std::size_t end = pathEnd(term, folder);
     if (end == 0) failUnknown(term, folder);
-    const std::string path = within(folder, trimmed(term.substr(0, end)));
+    const std::string path = within(folder, withoutSpaces(term.substr(0, end)));
     if (isLightFile(path)) {
         const Parameters p = parseParameters(path, coefficientsKind().parameters, after(end));
         return placed(readCoefficientLight(path), p);
@@ -434,11 +417,12 @@ bool namesLight(std::string_view text) {
 }
 
 bool looksLikeLight(const std::string& text) {
-    if (namesLight(trimmed(text))) return true;
-    const std::string_view term = trimmed(std::string_view(text).substr(0, termEnd(text, "")));
+    if (namesLight(withoutSpaces(text))) return true;
+    const std::string_view term =
+        withoutSpaces(std::string_view(text).substr(0, termEnd(text, "")));
     const std::size_t end = pathEnd(term, "");
     if (end == 0) return false;
-    const std::string path(trimmed(term.substr(0, end)));
+    const std::string path(withoutSpaces(term.substr(0, end)));
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) return true;  // six files
     if (isLightFile(path)) return true;
@@ -461,7 +445,7 @@ bool looksLikeLight(const std::string& text) {
 
 LightSpecification parseLights(const std::string& text, const std::string& folder,
                                InvalidPixels invalid) {
-    if (trimmed(text).empty())
+    if (withoutSpaces(text).empty())
         throw UsageError(fmt::format("empty light specification; valid: {}", form));
     LightSpecification specification{.text = text, .lights = {}, .terms = {}};
     for (const std::string_view term : splitTerms(text, folder)) {

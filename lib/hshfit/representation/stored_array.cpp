@@ -2,6 +2,7 @@
 
 #include <hshfit/byte_cursor.h>
 #include <hshfit/error.h>
+#include <hshfit/spelling.h>
 
 #include <Imath/half.h>
 #include <fmt/format.h>
@@ -97,8 +98,7 @@ Precision parsePrecision(std::string_view name) {
     for (const Row& row : rows) {
         if (row.name == name) return row.precision;
     }
-    throw UsageError(
-        fmt::format("'{}' is no precision; known: float64, float32, half, unorm16, unorm8", name));
+    throw spelling::unknown("precision", name, spelling::namesOf(rows));
 }
 
 std::size_t numberBytes(Precision precision) {

@@ -5,6 +5,7 @@
 #include <hshfit/rotation/basis_change.h>
 #include <hshfit/rotation/internal/lune.h>
 #include <hshfit/rotation/sh_rotation.h>
+#include <hshfit/spelling.h>
 
 #include <fmt/format.h>
 
@@ -62,8 +63,7 @@ Rotation tiltBy(double beta) {
 HemisphereMethod hemisphereMethod(std::string_view name) {
     for (const MethodRow& row : methods)
         if (row.name == name) return row.method;
-    throw UsageError(fmt::format(
-        "unknown way to rotate '{}'; known: exact, through-sh, table, paper-shift", name));
+    throw spelling::unknown("way to rotate", name, spelling::namesOf(methods));
 }
 
 std::string methodName(HemisphereMethod method) {

@@ -1,6 +1,7 @@
 #include <hshfit/specification/parameters.h>
 
 #include <hshfit/error.h>
+#include <hshfit/spelling.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,7 +11,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <numeric>
 #include <system_error>
 
 namespace hshfit::inline specification {
@@ -204,36 +204,11 @@ std::string validValues(const Parameter& parameter) {
 }
 
 std::size_t editDistance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i + 1;
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({substituted, row[j] + 1, row[j + 1] + 1});
-        }
-    }
-    return row.back();
+    return spelling::distance(a, b);
 }
 
 std::string suggestion(std::string_view word, std::span<const std::string_view> known) {
-    std::string_view best;
-    std::size_t least = 3;
-    for (const std::string_view candidate : known) {
-        if (word.size() > 1 && candidate.starts_with(word)) {
-            best = candidate;
-            break;
-        }
-        const std::size_t distance = editDistance(word, candidate);
-        // Two edits turn any two-letter word into any other and are no sign of similarity.
-        if (distance < least && distance < candidate.size()) {
-            least = distance;
-            best = candidate;
-        }
-    }
-    return best.empty() ? "" : fmt::format(" (did you mean '{}'?)", best);
+    return spelling::question(word, known);
 }
 
 std::string joined(std::span<const std::string_view> words) {

@@ -1,6 +1,7 @@
 #include <hshfit/tradeoff/sweep.h>
 
 #include <hshfit/error.h>
+#include <hshfit/spelling.h>
 
 #include <fmt/format.h>
 
@@ -81,8 +82,7 @@ Constraint parseConstraint(std::string_view name) {
     for (std::size_t k = 0; k < constraintNames.size(); ++k) {
         if (constraintNames[k] == name) return static_cast<Constraint>(k);
     }
-    throw UsageError(fmt::format(
-        "'{}' is no constraint; known: none, non-negative, energy-preserving, both", name));
+    throw spelling::unknown("constraint", name, constraintNames);
 }
 
 std::vector<std::string> outgoingSets(const Sweep& sweep, const Brdf& brdf) {

@@ -3,6 +3,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/linear_algebra/descend.h>
+#include <hshfit/spelling.h>
 #include <hshfit/transfer/internal/ring_transform.h>
 
 #include <fmt/format.h>
@@ -186,7 +187,7 @@ Window parseWindow(std::string_view name) {
     for (std::size_t k = 0; k < windowNames.size(); ++k) {
         if (windowNames[k] == name) return static_cast<Window>(k);
     }
-    throw UsageError(fmt::format("'{}' is no window; known: none, hann, lanczos, bending", name));
+    throw spelling::unknown("window", name, windowNames);
 }
 
 std::vector<double> windowFactors(Window window, int order, double lambda) {

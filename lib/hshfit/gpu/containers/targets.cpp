@@ -3,6 +3,7 @@
 #include <hshfit/error.h>
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/shader.h>
+#include <hshfit/spelling.h>
 
 #include <fmt/format.h>
 
@@ -69,9 +70,7 @@ const Target& find(std::string_view name) {
     const auto row = std::find_if(rows.begin(), rows.end(),
                                   [&](const Target& target) { return target.name == name; });
     if (row != rows.end()) return *row;
-    std::string known;
-    for (const Target& target : rows) known += ", " + target.name;
-    throw UsageError(fmt::format("unknown target '{}'; known: all{}", name, known));
+    throw spelling::unknown("target", name, spelling::namesOf(rows, {"all"}));
 }
 
 }  // namespace

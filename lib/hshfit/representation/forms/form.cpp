@@ -10,6 +10,7 @@
 #include <hshfit/representation/halfway/halfway_rounding.h>
 #include <hshfit/representation/named_arrays.h>
 #include <hshfit/representation/split.h>
+#include <hshfit/spelling.h>
 
 #include <fmt/format.h>
 
@@ -136,7 +137,7 @@ Representation::Kind parseKind(std::string_view name) {
     for (std::size_t k = 0; k < kindNames.size(); ++k) {
         if (kindNames[k] == name) return static_cast<Kind>(k);
     }
-    throw UsageError(fmt::format("'{}' is no form; known: outgoing, basis, halfway", name));
+    throw spelling::unknown("form", name, kindNames);
 }
 
 HalfwayOrders parseHalfway(std::string_view text) {

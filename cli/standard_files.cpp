@@ -1,0 +1,60 @@
+#include "standard_files.h"
+
+#include "value_table.h"
+
+#include <hshfit/error.h>
+#include <hshfit/files/standard_streams.h>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cctype>
+
+namespace hshfit::cli {
+namespace {
+
+bool outputTaken = false;
+
+/// "/dev/stdout.exr" for "exr:-"; any other text as it is.
+std::string writtenPath(const std::string& text, const std::string& extension) {
+    const std::size_t colon = text.find(':');
+    const std::string before = text.substr(0, colon);
+    const bool named = colon != std::string::npos && text.substr(colon) == ":-" &&
+                       std::ranges::all_of(before, [](unsigned char c) { return std::isalnum(c); });
+    if (text != "-" && !named) return text;
+    outputTaken = true;
+    return standardOutput(named ? "." + before : extension);
+}
+
+std::string folderPath(const std::string& text, const std::string& option) {
+    if (text == "-")
+        throw UsageError(fmt::format("{} -: several files are written; give a folder", option));
+    return text;
+}
+
+}  // namespace
+
+void acceptStandardStreams(CLI::App& command) {
+    for (CLI::Option* option : command.get_options()) {
+        const ValueRow* row = findValues(command, *option);
+        if (!row) continue;
+        if (row->files == Files::folder) {
+            const std::string name = option->get_name();
+            option->transform([name](const std::string& text) { return folderPath(text, name); });
+        } else if (row->dash && row->files == Files::read) {
+            option->transform(
+                [](const std::string& text) { return text == "-" ? standardInput() : text; });
+        } else if (row->dash) {
+            const std::string extension = row->dash;
+            option->transform(
+                [extension](const std::string& text) { return writtenPath(text, extension); });
+        }
+    }
+}
+
+bool isOutputTaken() {
+    return outputTaken;
+}
+
+}  // namespace hshfit::cli

@@ -1,0 +1,17 @@
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace hshfit::cli {
+
+/// Lets "-" stand for standard input in the options and arguments of a command that read one file,
+/// and for standard output in those that write one (the rows of value_table.h with a `dash`);
+/// "exr:-" is standard output in the format of that extension.
+void acceptStandardStreams(CLI::App& command);
+
+/// Whether an option has taken standard output for a file: answers go to standard error then.
+bool isOutputTaken();
+
+}  // namespace hshfit::cli

@@ -1,0 +1,47 @@
+#include "terminal.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <string_view>
+
+namespace hshfit::cli {
+namespace {
+
+std::string_view variable(const char* name) {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+}
+
+/// 0 if COLUMNS is no number above 0.
+std::size_t statedColumns() {
+    const std::string_view text = variable("COLUMNS");
+    std::size_t count = 0;
+    const auto parsed = std::from_chars(text.data(), text.data() + text.size(), count);
+    return parsed.ec == std::errc() && parsed.ptr == text.data() + text.size() ? count : 0;
+}
+
+/// 0 if standard output is no terminal, or one that does not know its size.
+std::size_t terminalColumns() {
+    winsize size{};
+    return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
+}  // namespace
+
+std::size_t columns() {
+    constexpr std::size_t least = 40, usual = 80, most = 100;
+    std::size_t count = statedColumns();
+    if (count == 0) count = terminalColumns();
+    return count == 0 ? usual : std::clamp(count, least, most);
+}
+
+bool hasColour(Stream stream) {
+    const int descriptor = stream == Stream::output ? STDOUT_FILENO : STDERR_FILENO;
+    return variable("NO_COLOR").empty() && variable("TERM") != "dumb" && ::isatty(descriptor) == 1;
+}
+
+}  // namespace hshfit::cli

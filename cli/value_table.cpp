@@ -1,0 +1,245 @@
+#include "value_table.h"
+
+#include "command_table.h"
+#include "topics.h"
+
+#include <hshfit/accuracy/metrics.h>
+#include <hshfit/bases/catalog.h>
+#include <hshfit/gpu/containers/targets.h>
+#include <hshfit/irradiance/conventions.h>
+
+#include <brdfs/catalog.h>
+#include <brdfs/fit/loss.h>
+#include <brdfs/preset.h>
+#include <brdfs/preset_collection.h>
+#include <brdfs/repair.h>
+#include <jobs/lighting_models.h>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+
+namespace hshfit::cli {
+namespace {
+
+using Words = std::vector<Word>;
+
+/// Names and helps of a table.
+template <class Rows>
+Words wordsOf(const Rows& rows) {
+    Words words;
+    for (const auto& row : rows) words.push_back({std::string(row.name), std::string(row.help)});
+    return words;
+}
+
+/// The same of tables whose rows call the help a summary.
+template <class Rows>
+Words summariesOf(const Rows& rows) {
+    Words words;
+    for (const auto& row : rows) words.push_back({std::string(row.name), std::string(row.summary)});
+    return words;
+}
+
+Words withAll(Words words) {
+    words.push_back({"all", "every one of them"});
+    return words;
+}
+
+Words basisWords() {
+    return wordsOf(bases::catalog());
+}
+
+Words basisLists() {
+    return withAll(basisWords());
+}
+
+Words metricWords() {
+    return wordsOf(metricCatalog());
+}
+
+Words metricLists() {
+    return withAll(metricWords());
+}
+
+Words targetWords() {
+    return withAll(summariesOf(gpu::targets()));
+}
+
+Words modelWords() {
+    return wordsOf(brdfs::models());
+}
+
+Words writerWords() {
+    return wordsOf(brdfs::writers());
+}
+
+Words repairWords() {
+    return withAll(wordsOf(brdfs::repairs()));
+}
+
+Words lossWords() {
+    return wordsOf(brdfs::losses());
+}
+
+Words lightingWords() {
+    return withAll(summariesOf(jobs::lightingModels()));
+}
+
+Words conventionWords() {
+    Words words;
+    for (const Convention& convention : conventions())
+        words.push_back({std::string(convention.name), std::string(convention.engine)});
+    return withAll(words);
+}
+
+Words presetWords() {
+    Words words = wordsOf(brdfs::presets());
+    for (const brdfs::CollectionEntry& collection : brdfs::presetCollections())
+        words.push_back({std::string(collection.name), "a collection"});
+    return words;
+}
+
+Words helpWords() {
+    Words words = wordsOf(commands());
+    for (const Topic& topic : topics()) words.push_back({topic.name, topic.help});
+    return words;
+}
+
+// Names that the library has as enumerations, in the order of its messages.
+Words windowWords() {
+    return {{"none"}, {"hann"}, {"lanczos"}, {"bending"}};
+}
+
+Words formWords() {
+    return {{"outgoing"}, {"basis"}, {"halfway"}};
+}
+
+Words precisionWords() {
+    return {{"float64"}, {"float32"}, {"half"}, {"unorm16"}, {"unorm8"}};
+}
+
+Words constraintWords() {
+    return {{"none"}, {"non-negative"}, {"energy-preserving"}, {"both"}};
+}
+
+Words storageWords() {
+    return {{"auto"}, {"constants"}, {"table"}, {"block"}, {"texture"}};
+}
+
+Words numberWords() {
+    return {{"float16"}, {"float32"}, {"unorm16"}, {"unorm8"}};
+}
+
+Words robustWords() {
+    return {{"none"}, {"huber"}, {"cauchy"}};
+}
+
+Words weightWords() {
+    return {{"auto"}, {"equal"}, {"solid-angle"}};
+}
+
+Words rotationWords() {
+    return {{"exact"}, {"through-sh"}, {"table"}, {"paper-shift"}};
+}
+
+Words splitWords() {
+    return {{"diffuse", "the constant part"}};
+}
+
+// A row for one command stands before the row for all.
+constexpr ValueRow table[] = {
+    {"compare", "--output", nullptr, Syntax::word, Files::folder},
+    {"completion", "--output", nullptr, Syntax::word, Files::written, ""},
+    {"eval", "--output", nullptr, Syntax::word, Files::written, ".csv"},
+    {"export", "--output", nullptr, Syntax::word, Files::folder},
+    {"fit", "--all", nullptr, Syntax::word, Files::folder},
+    {"fit", "--weights", weightWords},
+    {"help", "WORD", helpWords},
+    {"illuminate", "--output", nullptr, Syntax::word, Files::folder},
+    {"import", "FILE", nullptr, Syntax::word, Files::read, ""},
+    {"info", "SPEC", nullptr, Syntax::either, Files::read, ""},
+    {"irradiance", "SPEC", nullptr, Syntax::light, Files::read, ""},
+    {"light", "SPEC", nullptr, Syntax::light, Files::read, ""},
+    {"list", "TEXT", presetWords},
+    {"manual", "--output", nullptr, Syntax::word, Files::folder},
+    {"plan", "--output", nullptr, Syntax::word, Files::folder},
+    {"plot", "--output", nullptr, Syntax::word, Files::written, ".png"},
+    {"render", "--output", nullptr, Syntax::word, Files::written, ".png"},
+    {"report", "--output", nullptr, Syntax::word, Files::folder},
+    {"rotate", "--method", rotationWords},
+    {"sample", "--output", nullptr, Syntax::word, Files::written, ".csv"},
+    {"stress", "--output", nullptr, Syntax::word, Files::folder},
+    {"tradeoff", "--output", nullptr, Syntax::word, Files::folder},
+    {"tradeoff", "--halfway"},
+    {"transfer", "--output", nullptr, Syntax::word, Files::folder},
+    {"", "--basis", basisWords},
+    {"", "--bases", basisLists, Syntax::list},
+    {"", "--compare-models", modelWords, Syntax::sum},
+    {"", "--constraints", constraintWords, Syntax::list},
+    {"", "--convention", conventionWords},
+    {"", "--form", formWords},
+    {"", "--forms", formWords, Syntax::list},
+    {"", "--library", nullptr, Syntax::word, Files::read},
+    {"", "--light", nullptr, Syntax::light, Files::read, ""},
+    {"", "--lighting", lightingWords, Syntax::list},
+    {"", "--loss", lossWords},
+    {"", "--mesh", nullptr, Syntax::word, Files::read},
+    {"", "--metric", metricWords},
+    {"", "--metrics", metricLists, Syntax::list},
+    {"", "--model", modelWords, Syntax::sum},
+    {"", "--number", numberWords},
+    {"", "--output", nullptr, Syntax::word, Files::written, ".json"},
+    {"", "--pairs", nullptr, Syntax::word, Files::read, ""},
+    {"", "--precision", precisionWords},
+    {"", "--precisions", precisionWords, Syntax::list},
+    {"", "--records", nullptr, Syntax::word, Files::written},
+    {"", "--reference", nullptr, Syntax::word, Files::read, ""},
+    {"", "--repair", repairWords, Syntax::list},
+    {"", "--robust", robustWords},
+    {"", "--source", nullptr, Syntax::brdf, Files::read, ""},
+    {"", "--split", splitWords, Syntax::brdf, Files::read, ""},
+    {"", "--storage", storageWords},
+    {"", "--target", targetWords, Syntax::list},
+    {"", "--to", writerWords},
+    {"", "--window", windowWords},
+    {"", "--windows", windowWords, Syntax::list},
+    {"", "--write-pairs", nullptr, Syntax::word, Files::written, ".csv"},
+    {"", "A", nullptr, Syntax::brdf, Files::read, ""},
+    {"", "B", nullptr, Syntax::brdf, Files::read, ""},
+    {"", "BASIS", basisWords},
+    {"", "COEFFS", nullptr, Syntax::brdf, Files::read, ""},
+    {"", "DATA", nullptr, Syntax::brdf, Files::read, ""},
+    {"", "FILE", nullptr, Syntax::word, Files::read, ""},
+    {"", "FROM", basisWords},
+    {"", "IN", nullptr, Syntax::brdf, Files::read, ""},
+    {"", "MODEL", modelWords},
+    {"", "OUT", nullptr, Syntax::word, Files::written, ""},
+    {"", "SCENE", nullptr, Syntax::word, Files::read},
+    {"", "SPEC", nullptr, Syntax::brdf, Files::read, ""},
+    {"", "TO", basisWords},
+};
+
+}  // namespace
+
+std::span<const ValueRow> valueTable() {
+    return table;
+}
+
+const ValueRow* findValues(const CLI::App& command, const CLI::Option& option) {
+    const auto row = std::ranges::find_if(table, [&](const ValueRow& each) {
+        return (each.command.empty() || each.command == command.get_name()) &&
+               (each.option.starts_with("--")
+                    ? option.check_lname(std::string(each.option.substr(2)))
+                    : option.get_positional() && option.get_name(true, false) == each.option);
+    });
+    return row == std::end(table) ? nullptr : row;
+}
+
+std::vector<std::string> choicesOf(const CLI::Option& option) {
+    const std::string type = option.get_type_name();
+    const std::size_t open = type.find('{'), close = type.rfind('}');
+    if (open == std::string::npos || close == std::string::npos) return {};
+    return CLI::detail::split(type.substr(open + 1, close - open - 1), ',');
+}
+
+}  // namespace hshfit::cli
