@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""public_headers.py [--table | --list]: the headers that `cmake --install` installs.
+"""public_headers.py [--update | --list]: the headers that `cmake --install` installs.
 
 Public are the headers of lib/hshfit outside internal/ without the PRIVATE_HEADERS of their room,
 those of the front door in lib/CMakeLists.txt, and the list `public` in brdfs/CMakeLists.txt.
@@ -7,7 +7,7 @@ Prints each breach and ends with 1 if there is one:
   - a public header includes public ones, the standard library, POSIX and fmt only;
   - the table of docs/library.md has every public header, by room;
   - the quick start of that page is examples/quick_start.cpp, of at most 20 lines.
-With --table: that table, in Markdown. With --list: the headers as programs include them.
+With --update: writes that table into the page. With --list: the headers as programs include them.
 """
 import re
 import sys
@@ -77,8 +77,9 @@ def table(rooms, brdfs):
 def main():
     rooms, brdfs = library_headers(), brdf_headers()
     public = [header for headers in rooms.values() for header in headers] + brdfs
-    if sys.argv[1:] == ["--table"]:
-        print(table(rooms, brdfs))
+    if sys.argv[1:] == ["--update"]:
+        start = r"\| room \| headers \|\n(\|.*\n)+"
+        PAGE.write_text(re.sub(start, lambda _: table(rooms, brdfs) + "\n", PAGE.read_text()))
         return 0
     if sys.argv[1:] == ["--list"]:
         print("\n".join(public))
@@ -86,7 +87,7 @@ def main():
     found = list(breaches(public))
     if table(rooms, brdfs) not in PAGE.read_text():
         found.append(f"{PAGE.relative_to(TOP)}: the table of headers is not that of "
-                     "tests/public_headers.py --table")
+                     "tests/public_headers.py --update")
     quick_start = (TOP / "examples" / "quick_start.cpp").read_text()
     if f"```cpp\n{quick_start}```" not in PAGE.read_text() or quick_start.count("\n") > 20:
         found.append(f"{PAGE.relative_to(TOP)}: the quick start is examples/quick_start.cpp, "

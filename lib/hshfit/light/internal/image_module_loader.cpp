@@ -47,7 +47,8 @@ ImageModuleFunction* load() {
     }
     throw InputError(
         fmt::format("pictures of light cannot be read: the module "
-                    "libhshfit_openimageio.so belongs beside the program: {}",
+                    "libhshfit_openimageio.so (Debian package hshfit-pictures) belongs beside "
+                    "the program or in ../lib/hshfit: {}",
                     reason));
 }
 
