@@ -80,7 +80,7 @@ struct PartReader {
     void array(std::span<Item> items) {
         if (left.size() < items.size_bytes())
             throw InputError("kept parts of precomputed transfer that are too short");
-        std::memcpy(items.data(), left.data(), items.size_bytes());
+        if (!items.empty()) std::memcpy(items.data(), left.data(), items.size_bytes());
         left = left.subspan(items.size_bytes());
     }
     template <class Item>

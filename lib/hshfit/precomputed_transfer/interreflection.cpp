@@ -50,8 +50,8 @@ bool found(const KeptParts& kept, std::size_t number, TransferPass& pass) {
     if (!bytes) return false;
     if (bytes->size() != vectors + matrices)
         throw InputError("a kept pass of precomputed transfer of another size");
-    std::memcpy(pass.vectors.data(), bytes->data(), vectors);
-    std::memcpy(pass.matrices.data(), bytes->data() + vectors, matrices);
+    if (vectors > 0) std::memcpy(pass.vectors.data(), bytes->data(), vectors);
+    if (matrices > 0) std::memcpy(pass.matrices.data(), bytes->data() + vectors, matrices);
     return true;
 }
 
