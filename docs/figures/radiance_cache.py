@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""radiance_cache.py PROGRAM MESHES FOLDER [spacing|costs]: figures of docs/illuminate.md.
+"""radiance_cache.py PROGRAM MESHES FOLDER [spacing|costs|floor]: figures of docs/illuminate.md.
 
 Measures `illuminate --method radiance-cache` against path tracing in the Cornell box, whose meshes
 lie in MESHES (cbox_*.obj), without direct light. Scenes, pictures and tables.md go to FOLDER. Takes
 about a quarter of an hour of CPU.
 
-With `spacing` only the table of error control, at 128 x 128, with `costs` only that of predicted
-costs; each needs a folder of its own for its references.
+With `spacing` only the table of error control, with `floor` only that of the parts of the error, both
+at 128 x 128; with `costs` only that of predicted costs, in a folder of its own for its references.
 
 Errors are relative mean squares, as relative_mse of the answer, against two references of other
 seeds at once: the mean of (T - A)(T - B) / (R^2 + (m / 10)^2), R = (A + B) / 2, which the noise of
@@ -317,6 +317,23 @@ def spacing(out):
             print(out[-1], flush=True)
 
 
+def floor(out):
+    """The error of many records and rays, and of one thing better at a time."""
+    references = References(128)
+    out.append("| setting | records | CPU s | error | wall: error |")
+    out.append("|---|---|---|---|---|")
+    more = ([], ["--surface-points", 32768], ["--surface-rays", 1024],
+            ["--loss", 0.0005, "--order", 16], ["--least-reach", 0.005], ["--accuracy", 0.1])
+    for options in more:
+        answer = run("cache", references.scene, "--method", "radiance-cache", "--rays", 4000,
+                     *([] if "--accuracy" in options else ["--accuracy", 0.2]), *options)
+        whole, wall = references.errors("cache")
+        label = " ".join(map(str, options)) or "a = 0.2"
+        out.append(f"| {label} | {answer['cameras'][-1]['records']} | {cpu_of(answer):.1f} | "
+                   f"{whole:.2e} | {wall:.2e} |")
+        print(out[-1], flush=True)
+
+
 def close_scene(name):
     """A picture of the glossy wall alone, or of a glossy ball in its place."""
     scene = json.loads(write_scene(96).read_text())
@@ -370,7 +387,7 @@ def main():
     FOLDER.mkdir(parents=True, exist_ok=True)
     out = []
     if sys.argv[4:]:
-        {"spacing": spacing, "costs": costs}[sys.argv[4]](out)
+        {"spacing": spacing, "costs": costs, "floor": floor}[sys.argv[4]](out)
         (FOLDER / "tables.md").write_text("\n".join(out) + "\n")
         return
     figure_9(out)
