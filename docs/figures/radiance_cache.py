@@ -5,8 +5,8 @@ Measures `illuminate --method radiance-cache` against path tracing in the Cornel
 lie in MESHES (cbox_*.obj), without direct light. Scenes, pictures and tables.md go to FOLDER. Takes
 about a quarter of an hour of CPU.
 
-With `spacing` only the table of error control, with `floor` only that of the parts of the error, both
-at 128 x 128; with `costs` only that of predicted costs, in a folder of its own for its references.
+With `spacing` only the table of error control, with `floor` only that of the parts of the error,
+both at 128 x 128; with `costs` only that of predicted costs, in another folder.
 
 Errors are relative mean squares, as relative_mse of the answer, against two references of other
 seeds at once: the mean of (T - A)(T - B) / (R^2 + (m / 10)^2), R = (A + B) / 2, which the noise of
