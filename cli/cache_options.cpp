@@ -44,6 +44,12 @@ void addCacheOptions(CLI::App& command, CacheArguments& arguments) {
                         "lowest order within, and is sampled if there is none")
             ->check(CLI::Range(0.0, 1.0))
             ->capture_default_str());
+    add(command
+            .add_option("--choose-by", arguments.choice,
+                        "Records or sampling for a material that has coefficients. cost: the way "
+                        "with less predicted CPU time at equal error; loss: always records")
+            ->check(CLI::IsMember({"cost", "loss"}))
+            ->capture_default_str());
     add(command.add_option("--rays", options.rays, "Rays of a record, at most")
             ->check(CLI::Range(4, 1 << 24))
             ->capture_default_str());

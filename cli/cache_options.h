@@ -12,7 +12,7 @@ namespace hshfit::cli {
 /// Options of a radiance cache as they are parsed.
 struct CacheArguments {
     CacheOptions options = {};
-    std::string direct = "sampled", gradient = "strata";
+    std::string direct = "sampled", gradient = "strata", choice = "cost";
     std::vector<std::string> without = {};
     double megabytes = 256;
     bool published = false;

@@ -39,20 +39,43 @@ Json materialJson(const jobs::LitMaterial& material) {
     json["order"] = material.order;
     json["loss"] = material.loss;
     if (!material.reason.empty()) json["reason"] = material.reason;
+    if (material.way == LightWay::sampled) json["walks"] = material.walks;
+    if (!material.cost) return json;
+    const MaterialCost& cost = *material.cost;
+    json["predicted"] = {{"pixels", cost.pixels},
+                         {"error", cost.error},
+                         {"cache",
+                          {{"records", cost.records},
+                           {"record_seconds", cost.recordSeconds},
+                           {"look_up_seconds", cost.lookUpSeconds},
+                           {"cpu_seconds", cost.cacheSeconds}}},
+                         {"sampling",
+                          {{"variance", cost.variance},
+                           {"walks", cost.walks},
+                           {"walk_seconds", cost.walkSeconds},
+                           {"cpu_seconds", cost.samplingSeconds}}}};
     return json;
 }
 
 std::string textOf(const jobs::LitMaterial& material) {
     if (material.way == LightWay::irradiance)
         return fmt::format("  {}: diffuse, irradiance\n", material.name);
+    std::string text;
     if (material.way == LightWay::coefficients) {
-        return fmt::format("  {}: coefficients of order {}, {} of the energy lost\n", material.name,
+        text = fmt::format("  {}: coefficients of order {}, {} of the energy lost\n", material.name,
                            material.order, jobs::percent(material.loss, 2));
+    } else {
+        text = fmt::format("  {}: sampled, {}\n", material.name,
+                           material.reason.empty()
+                               ? jobs::percent(material.loss, 2) + " of the energy lost"
+                               : material.reason);
     }
-    return fmt::format("  {}: sampled, {}\n", material.name,
-                       material.reason.empty()
-                           ? jobs::percent(material.loss, 2) + " of the energy lost"
-                           : material.reason);
+    if (!material.cost) return text;
+    return text + fmt::format(
+                      "    predicted: {:.2g} s of CPU by records, {:.2g} s by sampling with "
+                      "{} walks a line of sight\n",
+                      material.cost->cacheSeconds, material.cost->samplingSeconds,
+                      material.cost->walks);
 }
 
 Json cameraJson(const jobs::IlluminatedCamera& camera) {
@@ -149,6 +172,7 @@ void runIlluminate(IlluminateArguments& arguments, const Globals& globals) {
 void choose(IlluminateArguments& arguments, bool samplesGiven) {
     if (arguments.method == "path") return refuseCacheOptions(arguments.cache, arguments.method);
     arguments.options.cache = cacheOptionsOf(arguments.cache);
+    arguments.options.chooseByCost = arguments.cache.choice == "cost";
     if (!samplesGiven) arguments.options.path.samples = 16;
     if (arguments.options.resume)
         throw UsageError("--resume is for --method path; records are kept by --records FILE");

@@ -195,12 +195,19 @@ Illuminated illuminate(const std::string& path, const std::string& folder,
     if (options.cache) {
         const double cpu = cpuSeconds();
         cache = cacheOf(scene, cacheOptionsOf(options, listener), options.records, recordsKey);
-        result.cacheCpuSeconds = cpuSeconds() - cpu;
+        // Of all cameras, so that runs with one after the other choose as a run with all.
+        const std::vector<MaterialCost> costs =
+            predictCosts(*cache, camerasOf(read, ""), options.path.samples);
         for (std::size_t k = 0; k < read.materials.size(); ++k) {
+            if (options.chooseByCost && costs[k].samplingIsCheaper())
+                cache->sample(k, costs[k].walks);
             const MaterialLight& light = cache->materials().materials[k];
-            result.materials.push_back(
-                {read.materials[k].name, light.way, light.order, light.loss, light.reason});
+            LitMaterial& lit = result.materials.emplace_back(
+                LitMaterial{read.materials[k].name, light.way, light.order, light.loss,
+                            light.reason, light.walks});
+            if (costs[k].pixels > 0) lit.cost = costs[k];
         }
+        result.cacheCpuSeconds = cpuSeconds() - cpu;
     }
     result.preparationSeconds = secondsSince(start);
     for (const Camera* camera : cameras) {

@@ -3,7 +3,7 @@
 #include "listener.h"
 
 #include <hshfit/transport/path_tracer.h>
-#include <hshfit/transport/radiance_cache/cache.h>
+#include <hshfit/transport/radiance_cache/cost_prediction.h>
 
 #include <cstddef>
 #include <optional>
@@ -17,6 +17,8 @@ struct IlluminateOptions {
     PathOptions path = {};    ///< its `progress` is not called: the listener is
     /// Pictures by a radiance cache; then bounces, seed and samples are those of `path` too.
     std::optional<CacheOptions> cache = {};
+    bool chooseByCost =
+        true;  ///< have materials sampled where predictCosts says that it is cheaper
     /// A file of records, read where it stands and written with those that were added; empty: none.
     std::string records = {};
     /// An OpenEXR picture of the same size that `relative_mse` is measured against; empty: none.
@@ -62,6 +64,8 @@ struct LitMaterial {
     int order = 0;
     double loss = 0;
     std::string reason;
+    int walks = 1;                          ///< of each line of sight, if sampled
+    std::optional<MaterialCost> cost = {};  ///< where a camera sees it and it has coefficients
 };
 
 struct Illuminated {

@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
-"""radiance_cache.py PROGRAM MESHES FOLDER: the figures and tables of docs/illuminate.md.
+"""radiance_cache.py PROGRAM MESHES FOLDER [spacing|costs|floor]: figures of docs/illuminate.md.
 
 Measures `illuminate --method radiance-cache` against path tracing in the Cornell box, whose meshes
 lie in MESHES (cbox_*.obj), without direct light. Scenes, pictures and tables.md go to FOLDER. Takes
 about a quarter of an hour of CPU.
+
+With `spacing` only the table of error control, with `floor` only that of the parts of the error,
+both at 128 x 128; with `costs` only that of predicted costs, in another folder.
 
 Errors are relative mean squares, as relative_mse of the answer, against two references of other
 seeds at once: the mean of (T - A)(T - B) / (R^2 + (m / 10)^2), R = (A + B) / 2, which the noise of
@@ -292,9 +295,101 @@ def curves(out):
         measure(label, "--rays", 1000, "--accuracy", 0.4, *options)
 
 
+def spacing(out):
+    """Error against records with and without error control, means over two seeds."""
+    references = References(128)
+    out.append("| error control | a | records | CPU s | error | wall: error |")
+    out.append("|---|---|---|---|---|---|")
+    ways = {"second derivatives": [], "none": ["--without", "error-control"]}
+    for label, options in ways.items():
+        for accuracy in (.2, .3, .4, .5):
+            records = cpu = whole = wall = 0
+            for seed in (1, 2):
+                answer = run("cache", references.scene, "--method", "radiance-cache", "--rays",
+                             2000, "--accuracy", accuracy, "--seed", seed, *options)
+                errors = references.errors("cache")
+                records += answer["cameras"][-1]["records"] / 2
+                cpu += cpu_of(answer) / 2
+                whole += errors[0] / 2
+                wall += errors[1] / 2
+            out.append(f"| {label} | {accuracy} | {records:.0f} | {cpu:.1f} | {whole:.2e} | "
+                       f"{wall:.2e} |")
+            print(out[-1], flush=True)
+
+
+def floor(out):
+    """The error of many records and rays, and of one thing better at a time."""
+    references = References(128)
+    out.append("| setting | records | CPU s | error | wall: error |")
+    out.append("|---|---|---|---|---|")
+    more = ([], ["--surface-points", 32768], ["--surface-rays", 1024],
+            ["--loss", 0.0005, "--order", 16], ["--least-reach", 0.005], ["--accuracy", 0.1])
+    for options in more:
+        answer = run("cache", references.scene, "--method", "radiance-cache", "--rays", 4000,
+                     *([] if "--accuracy" in options else ["--accuracy", 0.2]), *options)
+        whole, wall = references.errors("cache")
+        label = " ".join(map(str, options)) or "a = 0.2"
+        out.append(f"| {label} | {answer['cameras'][-1]['records']} | {cpu_of(answer):.1f} | "
+                   f"{whole:.2e} | {wall:.2e} |")
+        print(out[-1], flush=True)
+
+
+def close_scene(name):
+    """A picture of the glossy wall alone, or of a glossy ball in its place."""
+    scene = json.loads(write_scene(96).read_text())
+    camera = scene["cameras"][0]
+    camera.update(field_of_view=7, target=[278, -280, 366])
+    if name == "ball":
+        camera.update(field_of_view=11, target=[278, -280, 200])
+        scene["objects"] = [thing for thing in scene["objects"] if "box" not in thing["name"]]
+        for thing in scene["objects"]:
+            thing["material"] = thing["material"].replace("glossy", "white")
+        scene["objects"].append({"name": name, "mesh": "sphere", "material": "glossy",
+                                 "scale": 150, "at": [278, -280, 200]})
+    scene["cameras"] = [camera]
+    path = FOLDER / f"{name}.json"
+    path.write_text(json.dumps(scene))
+    return path
+
+
+def costs(out):
+    """Predicted against measured costs of records and of sampling, at equal error."""
+    out.append("| scene | | predicted | measured |")
+    out.append("|---|---|---|---|")
+    for name in ("wall", "ball"):
+        path = close_scene(name)
+        for seed in (11, 12):
+            run(f"{name}{seed}", path, "--samples", 400, "--seed", seed, keep=True)
+        references = [read_exr(FOLDER / f"{name}{seed}" / "centre.exr") for seed in (11, 12)]
+
+        def measured(*options):
+            answer = run("cache", path, "--method", "radiance-cache", *options)
+            return answer, error_of(read_exr(FOLDER / "cache" / "centre.exr"), references)
+
+        by_records, error = measured("--choose-by", "loss")
+        predicted = next(m["predicted"] for m in by_records["materials"] if "predicted" in m)
+        cache, sampling = predicted["cache"], predicted["sampling"]
+        camera = by_records["cameras"][0]
+        sampled, other = measured("--loss", 0, "--samples", 16 * sampling["walks"])
+        for what, left, right in (
+                ("records", f"{cache['records']:.0f}", camera["records"]),
+                ("CPU s by records", f"{cache['cpu_seconds']:.2f}",
+                 f"{camera['cpu_seconds']:.2f}"),
+                ("error by records", f"{predicted['error']:.1e}", f"{error:.1e}"),
+                (f"CPU s by sampling, {sampling['walks']} walks",
+                 f"{sampling['cpu_seconds']:.1f}", f"{sampled['cameras'][0]['cpu_seconds']:.1f}"),
+                ("error by sampling", f"{predicted['error']:.1e}", f"{other:.1e}")):
+            out.append(f"| {name} | {what} | {left} | {right} |")
+            print(out[-1], flush=True)
+
+
 def main():
     FOLDER.mkdir(parents=True, exist_ok=True)
     out = []
+    if sys.argv[4:]:
+        {"spacing": spacing, "costs": costs, "floor": floor}[sys.argv[4]](out)
+        (FOLDER / "tables.md").write_text("\n".join(out) + "\n")
+        return
     figure_9(out)
     print("\n".join(out), flush=True)
     curves(out)

@@ -6,9 +6,10 @@
 #include <hshfit/rendering/view.h>
 #include <hshfit/sampling/make_sampler.h>
 #include <hshfit/transport/radiance_cache/cached_picture.h>
+#include <hshfit/transport/radiance_cache/cost_prediction.h>
 
 #include <brdfs/catalog.h>
-#include <lib/transport/law_scenes.h>
+#include <lib/transport/cache_scenes.h>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -19,32 +20,10 @@
 namespace hshfit {
 namespace {
 
+using test::litRoom;
 using test::materialOf;
-
-/// A parallelogram, its front along a x b.
-Mesh patch(const Direction& corner, const Direction& a, const Direction& b) {
-    Mesh mesh;
-    for (const Direction& p : {corner, corner + a, corner + a + b, corner + b}) {
-        mesh.positions.push_back(
-            {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
-    }
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    completeNormals(mesh);
-    return mesh;
-}
-
-/// The inside of a cube from -1 to 1, without its ceiling unless `closed`.
-std::vector<SurfaceObject> room(const Rgb& emission, bool closed, std::size_t floor = 0) {
-    std::vector<SurfaceObject> objects{
-        {"floor", patch({-1, -1, -1}, {2, 0, 0}, {0, 2, 0}), floor, emission},
-        {"left", patch({-1, -1, -1}, {0, 2, 0}, {0, 0, 2}), 0, emission},
-        {"right", patch({1, -1, -1}, {0, 0, 2}, {0, 2, 0}), 0, emission},
-        {"near", patch({-1, -1, -1}, {0, 0, 2}, {2, 0, 0}), 0, emission},
-        {"far", patch({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), 0, emission}};
-    if (closed)
-        objects.push_back({"ceiling", patch({-1, -1, 1}, {0, 2, 0}, {2, 0, 0}), 0, emission});
-    return objects;
-}
+using test::patch;
+using test::room;
 
 const Camera eye{.name = "eye",
                  .position = {0.1, -0.2, 0.9},
@@ -154,101 +133,6 @@ TEST(RadianceCache, FindsTheIndirectLightOfALampInASphere) {
     EXPECT_NEAR(mean, expected, 0.015 * expected);
 }
 
-/// A scene in which coefficients change along the floor: a square lamp above it and, if asked, a
-/// black board between them.
-std::unique_ptr<SurfaceScene> lampAbove(bool board) {
-    std::vector<SurfaceObject> objects;
-    objects.push_back({"floor", patch({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}), 0, {}});
-    objects.push_back({"lamp", patch({-0.5, -0.4, 1.5}, {0, 1, 0}, {1, 0, 0}), 0, {1, 1, 1}});
-    if (board) objects.push_back({"board", patch({-1, -1, 0.7}, {1.1, 0, 0}, {0, 3, 0}), 0, {}});
-    return std::make_unique<SurfaceScene>(std::vector{materialOf("lambert:kd=0")},
-                                          std::move(objects), std::vector<Light>{});
-}
-
-/// The record at (x, y) of the floor.
-Record recordAt(const SurfaceScene& scene, double x, double y, const IncomingFunctions& functions,
-                int rays, Gradient gradient) {
-    const LightWalk walk(scene, DirectLight::gathered);
-    const SurfaceIrradiance none({}, 0);
-    const HemisphereStrata strata(functions, rays);
-    std::size_t traced = 0;
-    const auto hit = scene.firstHit({x, y, 0.1}, {0, 0, -1});
-    return gather(*hit, 0, functions, strata, gradient, {&walk, &none}, RandomNumbers(7, 0),
-                  traced);
-}
-
-/// The distance of a record's gradient from central differences of coefficients by many rays,
-/// relative to the latter.
-double gradientError(bool board, const IncomingFunctions& functions, Gradient gradient, int rays) {
-    const auto scene = lampAbove(board);
-    const double x = 0.35, y = -0.2, h = 0.02;
-    const std::size_t size = functions.size();
-    const Record found = recordAt(*scene, x, y, functions, rays, gradient);
-    double error = 0, norm = 0;
-    for (const std::size_t axis : {0U, 1U}) {
-        const Direction along = axis == 0 ? found.frame.tangent : found.frame.bitangent;
-        const auto beside = [&](double step) {
-            return recordAt(*scene, x + step * along.x, y + step * along.y, functions, 400000,
-                            Gradient::none);
-        };
-        const Record more = beside(h), less = beside(-h);
-        for (std::size_t i = 0; i < size; ++i) {
-            const double expected =
-                static_cast<double>(more.part(0, size)[i] - less.part(0, size)[i]) / (2 * h);
-            const double off = static_cast<double>(found.part(1 + axis, size)[i]) - expected;
-            error += off * off;
-            norm += expected * expected;
-        }
-    }
-    return std::sqrt(error / norm);
-}
-
-TEST(RecordGradient, MatchesDifferencesOfConvergedCoefficients) {
-    const IncomingFunctions hsh(bases::make("hsh", 5));
-    for (const Gradient gradient : {Gradient::strata, Gradient::hitPoints}) {
-        EXPECT_LT(gradientError(false, hsh, gradient, 4000), 0.1);
-        EXPECT_LT(gradientError(false, hsh, gradient, 100000), 0.05);
-    }
-}
-
-/// Irradiance at (x, y, 0) by a polygon of radiance 1: half the sum over edges of the angle times
-/// the normal of the edge's plane (Lambert 1760).
-double irradianceOfLamp(double x, double y) {
-    const std::array<Direction, 4> corners{{{-0.5 - x, -0.4 - y, 1.5},
-                                            {0.5 - x, -0.4 - y, 1.5},
-                                            {0.5 - x, 0.6 - y, 1.5},
-                                            {-0.5 - x, 0.6 - y, 1.5}}};
-    double sum = 0;
-    for (std::size_t k = 0; k < 4; ++k) {
-        const Direction a = normalised(corners[k]), b = normalised(corners[(k + 1) % 4]);
-        sum += std::acos(dot(a, b)) * normalised(cross(a, b)).z / 2;
-    }
-    return std::abs(sum);
-}
-
-TEST(RecordGradient, IsThatOfTheIrradianceOfAPolygon) {
-    const auto scene = lampAbove(false);
-    const double x = 0.35, y = -0.2, h = 1e-4;
-    const double alongX = (irradianceOfLamp(x + h, y) - irradianceOfLamp(x - h, y)) / (2 * h);
-    const double alongY = (irradianceOfLamp(x, y + h) - irradianceOfLamp(x, y - h)) / (2 * h);
-    for (const Gradient gradient : {Gradient::strata, Gradient::hitPoints}) {
-        const Record found = recordAt(*scene, x, y, {}, 100000, gradient);
-        EXPECT_NEAR(found.part(0, 1)[0], irradianceOfLamp(x, y), 1e-3);
-        const Direction& t = found.frame.tangent;
-        const Direction& b = found.frame.bitangent;
-        const double most = 0.03 * std::hypot(alongX, alongY);
-        EXPECT_NEAR(found.part(1, 1)[0], t.x * alongX + t.y * alongY, most);
-        EXPECT_NEAR(found.part(2, 1)[0], b.x * alongX + b.y * alongY, most);
-    }
-}
-
-/// Points that stay where rays met them do not know what moves in front of them.
-TEST(RecordGradient, SeesWhatComesIntoSightByStrataAlone) {
-    const IncomingFunctions hsh(bases::make("hsh", 5));
-    EXPECT_LT(gradientError(true, hsh, Gradient::strata, 100000), 0.05);
-    EXPECT_GT(gradientError(true, hsh, Gradient::hitPoints, 100000), 0.3);
-}
-
 /// Eq. 24: light kept in the frame of one normal serves another, as if it had been gathered there.
 TEST(RadianceCache, TurnsLightIntoTheFrameOfAnotherNormal) {
     for (const char* spec : {"phong:kd=.1,ks=.8,exponent=12,normalized=true", "lambert:kd=.8"}) {
@@ -276,30 +160,20 @@ TEST(RadianceCache, TurnsLightIntoTheFrameOfAnotherNormal) {
     }
 }
 
-/// A room with a lamp, a glossy floor and a curved glossy thing.
-std::unique_ptr<SurfaceScene> litRoom() {
-    std::vector<SurfaceObject> objects = room({}, true, 1);
-    objects.push_back({"lamp", patch({-0.3, -0.3, 0.95}, {0, 0.6, 0}, {0.6, 0, 0}), 0, {9, 8, 7}});
-    Mesh ball = sphereMesh(3);
-    for (MeshVector& p : ball.positions) p = {0.3F * p[0], 0.3F * p[1] + 0.3F, 0.3F * p[2] - 0.7F};
-    objects.push_back({"ball", std::move(ball), 1, {}});
-    return std::make_unique<SurfaceScene>(
-        std::vector{materialOf("lambert:kd=.7/.5/.3"),
-                    materialOf("phong:kd=.2,ks=.6,exponent=10,normalized=true")},
-        std::move(objects), std::vector<Light>{});
-}
+const Camera small{.name = "eye",
+                   .position = {0.1, -0.9, 0.5},
+                   .target = {0.2, 0.4, -1},
+                   .fieldOfView = 70 * (pi / 180),
+                   .width = 8,
+                   .height = 8};
 
-TEST(RadianceCache, ComesToTheMeansOfPathTracing) {
+/// The mean of a picture against path tracing, with the glossy material sampled if `walks`.
+void expectMeansOfPathTracing(int walks) {
     const auto scene = litRoom();
-    const Camera small{.name = "eye",
-                       .position = {0.1, -0.9, 0.5},
-                       .target = {0.2, 0.4, -1},
-                       .fieldOfView = 70 * (pi / 180),
-                       .width = 8,
-                       .height = 8};
     const PathPicture paths = tracePaths(*scene, small, {.samples = 3000, .fewestBounces = 2});
     RadianceCache cache(
         *scene, {.rays = 1000, .fewestBounces = 2, .leastReach = 0.01, .surfacePoints = 2000});
+    if (walks > 0) cache.sample(1, walks);
     const CachedPicture taken = takePicture(cache, small, {.samples = 400});
     double mean = 0, expected = 0, error = 0;
     for (std::size_t i = 0; i < paths.radiance.size(); ++i) {
@@ -307,7 +181,84 @@ TEST(RadianceCache, ComesToTheMeansOfPathTracing) {
         expected += static_cast<double>(paths.radiance[i]);
         error += static_cast<double>(paths.error[i]) * static_cast<double>(paths.error[i]);
     }
-    EXPECT_NEAR(mean, expected, 4 * std::sqrt(error) + 0.01 * expected);
+    EXPECT_NEAR(mean, expected, 4 * std::sqrt(error) + 0.01 * expected) << walks;
+}
+
+TEST(RadianceCache, ComesToTheMeansOfPathTracing) {
+    expectMeansOfPathTracing(0);
+}
+TEST(RadianceCache, ComesToTheMeansOfPathTracingWithAMaterialSampled) {
+    expectMeansOfPathTracing(3);
+}
+
+/// Records cost the same for few pixels as for many.
+TEST(CostPrediction, LeavesMaterialsInFewPixelsToSampling) {
+    const auto scene = litRoom();
+    const RadianceCache cache(*scene, {.rays = 1000, .surfacePoints = 200, .surfaceRays = 32});
+    Camera large = small;
+    large.width = large.height = 4000;
+    const std::array<const Camera*, 1> few{&small}, many{&large};
+    EXPECT_TRUE(predictCosts(cache, few, 4)[1].samplingIsCheaper());
+    EXPECT_FALSE(predictCosts(cache, many, 4)[1].samplingIsCheaper());
+    EXPECT_EQ(predictCosts(cache, many, 4)[0].pixels, 0);
+}
+
+/// The number of records, and the error of sampling, against those of a picture.
+TEST(CostPrediction, IsThatOfThePicture) {
+    const auto scene = litRoom();
+    RadianceCache cache(*scene,
+                        {.rays = 400, .fewestBounces = 2, .surfacePoints = 500, .surfaceRays = 64});
+    const std::array<const Camera*, 1> cameras{&eye};
+    const MaterialCost cost = predictCosts(cache, cameras, 16)[1];
+    takePicture(cache, eye, {.samples = 1});
+    double records = 0;
+    for (const Record& record : cache.records()) records += record.kind > 0 ? 1 : 0;
+    EXPECT_GT(cost.records, records / 3);
+    EXPECT_LT(cost.records, records * 3);
+    cache.sample(1, 1);
+    const CachedPicture first = takePicture(cache, eye, {.samples = 4});
+    double squares = 0, whole = 0, mean = 0, pixels = 0;
+    const CameraRays rays(eye);
+    std::vector<std::size_t> glossy;
+    for (std::size_t pixel = 0; pixel < eye.pixels(); ++pixel) {
+        const auto width = static_cast<std::size_t>(eye.width);
+        const auto hit = scene->firstHit(rays.origin(),
+                                         rays.direction(static_cast<double>(pixel % width) + 0.5,
+                                                        static_cast<double>(pixel / width) + 0.5));
+        if (hit && scene->objects()[hit->object].material == 1) glossy.push_back(pixel);
+    }
+    for (const std::size_t pixel : glossy) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double value = first.picture.radiance[3 * pixel + c];
+            const double error = first.picture.error[3 * pixel + c];
+            squares += 4 * error * error;
+            whole += value * value - error * error;
+            mean += value / 3;
+        }
+        ++pixels;
+    }
+    whole += 3 * mean * mean / pixels / 100;
+    EXPECT_NEAR(cost.pixels, pixels, 0.05 * pixels);
+    EXPECT_GT(cost.variance, squares / whole / 2);
+    EXPECT_LT(cost.variance, squares / whole * 2);
+}
+
+/// Records of a later camera shrink no reach that an earlier picture has used.
+TEST(RadianceCache, NeedsNoRecordsForPicturesThatItHasTaken) {
+    const auto scene = litRoom();
+    Camera other = eye;
+    other.position = {-0.6, -0.3, 0.7};
+    const std::array<const Camera*, 2> cameras{&eye, &other};
+    const CacheOptions options{.rays = 100, .surfacePoints = 200, .surfaceRays = 32};
+    RadianceCache cache(*scene, options);
+    std::size_t made = 0;
+    for (const Camera* camera : cameras) made += takePicture(cache, *camera, {.samples = 1}).made;
+    EXPECT_GT(made, 100U);
+    RadianceCache again(*scene, options, cache.stored("here"));
+    for (RadianceCache* one : {&cache, &again}) {
+        for (const Camera* camera : cameras)
+            EXPECT_EQ(takePicture(*one, *camera, {.samples = 1}).made, 0U);
+    }
 }
 
 TEST(RadianceCache, DoesNotDependOnTheNumberOfThreads) {

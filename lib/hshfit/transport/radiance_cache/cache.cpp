@@ -16,6 +16,11 @@
 namespace hshfit::inline transport::inline radiance_cache {
 namespace {
 
+/// Radii by second derivatives are the geometric mean of the one of even relative errors and this
+/// share of the picture's height, and at most so much longer along one axis: the least error for
+/// the number of records among factors of 2 (docs/illuminate.md).
+constexpr double evenness = 0.15, mostStretch = 4;
+
 /// Of the index, a record and its share of the deque, rounded up.
 constexpr std::size_t recordOverhead = sizeof(Record) + 128;
 
@@ -111,7 +116,8 @@ RadianceCache::RadianceCache(const SurfaceScene& scene, const CacheOptions& opti
     check(options, scene);
     materials_ = chooseLight(scene, options.choice);
     for (const IncomingFunctions& functions : materials_.kinds) {
-        strata_.emplace_back(functions, options.rays);
+        strata_.emplace_back(functions, options.rays,
+                             options.errorControl && options.gradient != Gradient::none);
         index_.emplace_back();
     }
     turning_ = std::make_unique<Turning>(materials_.kinds.size());
@@ -124,6 +130,7 @@ RadianceCache::RadianceCache(const SurfaceScene& scene, const CacheOptions& opti
     if (!fits) throw InputError("the records are of other orders than the scene's materials");
     surfaces_ = std::make_unique<SurfaceIrradiance>(std::move(stored->points), stored->spacing);
     for (Record& record : stored->records) store(std::move(record));
+    settle();
 }
 
 RadianceCache::RadianceCache(const SurfaceScene& scene, const CacheOptions& options)
@@ -171,7 +178,13 @@ double RadianceCache::errorOf(const Record& record, const Point& at,
     // A record before the surface may see what the surface cannot (Ward et al. 1988).
     if (dot(gap, normal + record.frame.normal) < -0.1 * options_.accuracy * record.radius)
         return std::numeric_limits<double>::infinity();
-    return lengthOf(gap) / record.radius + std::sqrt(std::max(0.0, 1 - cosine));
+    double square = dot(gap, gap) / (record.radius * record.radius);
+    if (record.longRadius > record.radius) {
+        const double along = dot(gap, record.longAxis) / record.radius;
+        const double ratio = record.radius / record.longRadius;
+        square = std::max(0.0, square - (1 - ratio * ratio) * along * along);
+    }
+    return std::sqrt(square) + std::sqrt(std::max(0.0, 1 - cosine));
 }
 
 std::vector<RadianceCache::Near>& RadianceCache::near(const SurfaceHit& hit, std::uint32_t kind,
@@ -301,92 +314,150 @@ bool RadianceCache::full() const {
 }
 
 void RadianceCache::make(const std::vector<SurfaceHit>& hits, const std::vector<double>& heights) {
-    std::vector<Record> made(hits.size());
+    std::vector<Gathered> made(hits.size());
     std::vector<std::size_t> rays(hits.size());
-    const GatherScene gathering{&walk_, surfaces_.get()};
     const std::size_t first = records_.size();
-    tbb::parallel_for(std::size_t{0}, hits.size(), [&](std::size_t k) {
-        const std::size_t material = scene().objects()[hits[k].object].material;
-        const std::uint32_t kind = materials_.materials[material].kind;
-        // Beyond those of the surfaces' points, whatever their number.
-        const std::uint64_t item = (std::uint64_t{1} << 40) + first + k;
-        made[k] = gather(hits[k], kind, materials_.kinds[kind], strata_[kind], options_.gradient,
-                         gathering, RandomNumbers(options_.seed, item), rays[k]);
-    });
+    tbb::parallel_for(std::size_t{0}, hits.size(),
+                      [&](std::size_t k) { made[k] = gatheredAt(hits[k], first + k, rays[k]); });
     for (std::size_t k = 0; k < hits.size(); ++k) {
         rays_ += rays[k];
         if (!full()) add(std::move(made[k]), heights[k]);
     }
 }
 
-void RadianceCache::add(Record record, double height) {
-    const std::size_t size = materials_.kinds[record.kind].size();
+Gathered RadianceCache::gatheredAt(const SurfaceHit& hit, std::uint64_t n,
+                                   std::size_t& rays) const {
+    const std::uint32_t kind = materials_.materials[scene().objects()[hit.object].material].kind;
+    const GatherScene gathering{&walk_, surfaces_.get()};
+    // Beyond those of the surfaces' points, whatever their number.
+    const RandomNumbers random(options_.seed, (std::uint64_t{1} << 40) + n);
+    return gather(hit, kind, materials_.kinds[kind], strata_[kind], options_.gradient, gathering,
+                  random, rays);
+}
+
+/// Sets the radii by the record alone; returns the least radius.
+double RadianceCache::limit(Gathered& gathered, double height) const {
+    Record& record = gathered.record;
     const double least = options_.leastReach * height / options_.accuracy;
+    if (gathered.bends.empty()) {
+        limitByDistance(record);
+    } else {
+        limitByBends(record, gathered.bends, height);
+    }
+    if (!(record.radius < least)) return least;
+    // Over a reach that cannot be kept small, the gradient is (Tabellion & Lamorlette 2004).
+    const std::size_t size = materials_.kinds[record.kind].size();
+    const auto factor = static_cast<float>(record.radius / least);
+    for (const std::size_t part : {1U, 2U})
+        for (float& value : record.part(part, size)) value *= factor;
+    record.radius = least;
+    record.longRadius = std::max(record.longRadius, least);
+    return least;
+}
+
+void RadianceCache::add(Gathered gathered, double height) {
+    const double least = limit(gathered, height);
+    if (options_.neighbourClamping) clampByNeighbours(gathered.record, least);
+    store(std::move(gathered.record));
+}
+
+RadianceCache::Trial RadianceCache::trial(const SurfaceHit& hit, double height,
+                                          std::uint64_t n) const {
+    Trial trial;
+    Gathered gathered = gatheredAt(hit, n, trial.rays);
+    limit(gathered, height);
+    trial.radius = gathered.record.radius;
+    trial.longRadius = gathered.record.longRadius;
+    const MaterialLight& material = materials_.materials[scene().objects()[hit.object].material];
+    std::vector<float> lobe(material.channels * materials_.kinds[material.kind].size());
+    material.at(materials_.kinds[material.kind], hit.wo, lobe.data());
+    addDotProduct({&gathered.record, 1}, hit, material, lobe, trial.radiance);
+    return trial;
+}
+
+Rgb RadianceCache::sampled(const SurfaceHit& hit, RandomNumbers& random, std::size_t& rays) const {
+    const Walk walk = walk_.sampled(hit, options_.direct == DirectLight::gathered, random, rays);
+    Rgb found = walk.radiance;
+    if (!walk.end) return found;
+    const Rgb light = surfaces_->at(walk.end->hit);
+    for (std::size_t c = 0; c < 3; ++c) found[c] += walk.end->weight[c] * light[c];
+    return found;
+}
+
+int RadianceCache::walksAt(const SurfaceHit& hit) const {
+    return materials_.materials[scene().objects()[hit.object].material].walks;
+}
+
+void RadianceCache::sample(std::size_t material, int walks) {
+    MaterialLight& light = materials_.materials[material];
+    light.way = LightWay::sampled;
+    light.walks = walks;
+    light.reason = "at less predicted cost than by coefficients";
+}
+
+void RadianceCache::limitByDistance(Record& record) const {
+    const std::size_t size = materials_.kinds[record.kind].size();
     record.radius = std::min(record.distance, 2 * extent_);
     if (options_.gradientLimit && options_.gradient != Gradient::none) {
         const double slope = std::hypot(normOf(record.part(1, size)), normOf(record.part(2, size)));
-        if (slope > 0) record.radius = std::min(record.radius, record.norm / slope);
+        if (slope > 0)
+            record.radius = std::min(record.radius, normOf(record.part(0, size)) / slope);
     }
-    if (record.radius < least) {
-        // Over a reach that cannot be kept small, the gradient is (Tabellion & Lamorlette 2004).
-        const auto factor = static_cast<float>(record.radius / least);
-        for (const std::size_t part : {1U, 2U})
-            for (float& value : record.part(part, size)) value *= factor;
-        record.radius = least;
+    record.longRadius = record.radius;
+}
+
+/// By the eigenvectors of the sum of squares of the second derivatives' matrices: in the direction
+/// of one, with the eigenvalue s^2, extrapolation over x misses by s x^2 / 2.
+void RadianceCache::limitByBends(Record& record, const std::vector<float>& bends,
+                                 double height) const {
+    const std::size_t size = materials_.kinds[record.kind].size();
+    double xx = 0, xy = 0, yy = 0, squares = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+        const auto bend = [&](std::size_t k) { return static_cast<double>(bends[k * size + i]); };
+        xx += bend(0) * bend(0) + bend(1) * bend(1);
+        xy += bend(1) * (bend(0) + bend(2));
+        yy += bend(1) * bend(1) + bend(2) * bend(2);
+        const std::span<const float> light = record.part(0, size);
+        const double sum = static_cast<double>(light[i] + light[size + i] + light[2 * size + i]);
+        squares += sum * sum;
     }
-    if (options_.errorControl) controlErrors(record, least);
-    if (options_.neighbourClamping) {
-        std::vector<std::uint32_t> found;
-        index_[record.kind].near(record.position, options_.accuracy * record.radius, found);
-        for (const std::uint32_t k : found) {
-            const double gap = lengthOf(between(record.position, records_[k].position));
-            if (dot(record.frame.normal, records_[k].frame.normal) < 0.9) continue;
-            record.radius = std::max(least, std::min(record.radius, records_[k].radius + gap));
-        }
-        for (const std::uint32_t k : found) {
-            const double gap = lengthOf(between(record.position, records_[k].position));
-            if (dot(record.frame.normal, records_[k].frame.normal) < 0.9) continue;
-            records_[k].radius = std::min(records_[k].radius, record.radius + gap);
-        }
+    const double mean = (xx + yy) / 2, half = std::hypot((xx - yy) / 2, xy);
+    const auto radiusOf = [&](double square) {
+        if (!(square > 0)) return 2 * extent_;
+        const double whole = std::sqrt(2 * std::sqrt(squares / square));
+        return std::min(2 * extent_, std::sqrt(whole * evenness * height));
+    };
+    record.radius = radiusOf(mean + half);
+    record.longRadius = std::min(radiusOf(mean - half), mostStretch * record.radius);
+    const double angle = std::atan2(-2 * xy, yy - xx) / 2;
+    record.longAxis = record.frame.toWorld({std::cos(angle), std::sin(angle), 0});
+}
+
+void RadianceCache::clampByNeighbours(Record& record, double least) {
+    std::vector<std::uint32_t> found;
+    index_[record.kind].near(record.position, options_.accuracy * record.longRadius, found);
+    std::erase_if(found, [&](std::uint32_t k) {
+        return dot(record.frame.normal, records_[k].frame.normal) < 0.9;
+    });
+    for (const std::uint32_t k : found) {
+        const double gap = lengthOf(between(record.position, records_[k].position));
+        record.radius = std::max(least, std::min(record.radius, records_[k].radius + gap));
+        record.longRadius =
+            std::max(least, std::min(record.longRadius, records_[k].longRadius + gap));
     }
-    store(std::move(record));
+    for (const std::uint32_t k : found) {
+        if (k < settled_) continue;
+        const double gap = lengthOf(between(record.position, records_[k].position));
+        records_[k].radius = std::min(records_[k].radius, record.radius + gap);
+        records_[k].longRadius = std::min(records_[k].longRadius, record.longRadius + gap);
+    }
 }
 
 void RadianceCache::store(Record record) {
     valueBytes_ += record.values.size() * sizeof(float);
     const auto number = static_cast<std::uint32_t>(records_.size());
-    index_[record.kind].add(number, record.position, options_.accuracy * record.radius);
+    index_[record.kind].add(number, record.position, options_.accuracy * record.longRadius);
     records_.push_back(std::move(record));
-}
-
-/// A neighbour's extrapolation to the new record misses it by half the second derivative times the
-/// square of the distance, which bounds the radii of both.
-void RadianceCache::controlErrors(Record& record, double least) {
-    const std::size_t size = materials_.kinds[record.kind].size();
-    std::vector<std::uint32_t> found;
-    index_[record.kind].near(record.position, options_.accuracy * record.radius, found);
-    for (const std::uint32_t k : found) {
-        Record& other = records_[k];
-        if (dot(record.frame.normal, other.frame.normal) < 1 - 1e-6) continue;
-        const Direction gap = between(other.position, record.position);
-        const double distance = lengthOf(gap);
-        if (std::abs(dot(gap, record.frame.normal)) > 0.01 * distance) continue;
-        const auto x = static_cast<float>(dot(gap, other.frame.tangent));
-        const auto y = static_cast<float>(dot(gap, other.frame.bitangent));
-        double squares = 0;
-        for (std::size_t i = 0; i < 3 * size; ++i) {
-            const float expected =
-                other.part(0, size)[i] + x * other.part(1, size)[i] + y * other.part(2, size)[i];
-            const double off = static_cast<double>(expected - record.part(0, size)[i]);
-            squares += off * off;
-        }
-        const double miss = std::sqrt(squares) - 2 * std::hypot(record.noise, other.noise);
-        const double norm = std::max(record.norm, other.norm);
-        if (!(miss > 0) || !(norm > 0)) continue;
-        const double bound = std::max(least, distance / std::sqrt(miss / norm));
-        record.radius = std::min(record.radius, bound);
-        other.radius = std::min(other.radius, bound);
-    }
 }
 
 }  // namespace hshfit::inline transport::inline radiance_cache

@@ -25,8 +25,8 @@ struct CacheOptions {
     bool gradientLimit = true;
     /// R_i at most R_j + |p_i - p_j| (Křivánek et al. 2006).
     bool neighbourClamping = true;
-    /// R_i at most sqrt(2 |lambda| / |lambda''|), the second derivative from how far a record's
-    /// extrapolation misses its neighbours (in place of Jarosz et al. 2012, who have it from rays).
+    /// R_i from second derivatives by the rays (Jarosz et al. 2012, Schwarzhaupt et al. 2012),
+    /// larger along one axis, in place of distance and gradientLimit. Not without a gradient.
     bool errorControl = true;
     /// The least reach of a record, as a share of the picture's height at its distance.
     double leastReach = 0.02;
@@ -58,9 +58,27 @@ public:
     /// Whether the hit's material takes records.
     bool takesRecords(const SurfaceHit& hit) const;
 
+    /// Indirect radiance (with gathered light: all that is reflected) towards hit.wo by one walk of
+    /// the material's sampler; adds the rays traced.
+    Rgb sampled(const SurfaceHit& hit, RandomNumbers& random, std::size_t& rays) const;
+    /// Walks of a line of sight that ends here, where it is sampled.
+    int walksAt(const SurfaceHit& hit) const;
+    /// Has a material sampled from now on, by so many walks for each line of sight.
+    void sample(std::size_t material, int walks);
+    /// A record as `make` makes the n-th where there are no others, with the radiance by it towards
+    /// hit.wo. It is not kept.
+    struct Trial {
+        double radius = 0, longRadius = 0;
+        Rgb radiance{};
+        std::size_t rays = 0;
+    };
+    Trial trial(const SurfaceHit& hit, double height, std::uint64_t n) const;
+
     /// Makes records at hits at once, in parallel, and adds them in that order. `heights` are
     /// those of the picture there.
     void make(const std::vector<SurfaceHit>& hits, const std::vector<double>& heights);
+    /// Keeps the reach of the records as it is: what they cover stays covered when more are made.
+    void settle() { settled_ = records_.size(); }
     /// Whether the largest record would go beyond CacheOptions::mostBytes.
     bool full() const;
 
@@ -85,10 +103,14 @@ private:
     RadianceCache(const SurfaceScene& scene, const CacheOptions& options, StoredRecords* stored);
     double errorOf(const Record& record, const Point& at, const Direction& normal) const;
     std::vector<Near>& near(const SurfaceHit& hit, std::uint32_t kind, double reach) const;
-    void add(Record record, double height);
+    void add(Gathered gathered, double height);
     void store(Record record);
     void findSurfaces();
-    void controlErrors(Record& record, double least);
+    Gathered gatheredAt(const SurfaceHit& hit, std::uint64_t n, std::size_t& rays) const;
+    double limit(Gathered& gathered, double height) const;
+    void limitByDistance(Record& record) const;
+    void limitByBends(Record& record, const std::vector<float>& bends, double height) const;
+    void clampByNeighbours(Record& record, double least);
     void addDotProduct(const Near& near, const SurfaceHit& hit, const MaterialLight& material,
                        const std::vector<float>& lobe, Rgb& sum) const;
     Rgb irradianceAt(const Record& record, const SurfaceHit& hit) const;
@@ -102,7 +124,8 @@ private:
     std::deque<Record> records_;
     std::unique_ptr<Turning> turning_;
     std::size_t rays_ = 0, valueBytes_ = 0;
-    double extent_ = 0;  ///< of the scene, the longest edge of its box
+    std::size_t settled_ = 0;  ///< records whose radii no longer change
+    double extent_ = 0;        ///< of the scene, the longest edge of its box
 };
 
 }  // namespace hshfit::inline transport::inline radiance_cache

@@ -46,6 +46,7 @@ public:
     CachedPicture taken() {
         const std::size_t before = cache_.records().size(), rays = cache_.rays();
         if (needsRecords()) makeRecords();
+        cache_.settle();
         result_.made = cache_.records().size() - before;
         shade();
         result_.picture.rays += cache_.rays() - rays;
@@ -60,25 +61,33 @@ private:
     double heightAt(const SurfaceHit& hit) const { return hit.distance * slope_; }
 
     void makeRecords() {
-        for (int step = coarsest; step >= 1; step /= 2) {
-            const std::vector<std::vector<Wanted>> rows = missing(step);
-            std::vector<Wanted> wanted;
-            for (const std::vector<Wanted>& row : rows)
-                wanted.insert(wanted.end(), row.begin(), row.end());
-            std::ranges::sort(wanted, {}, &Wanted::order);
-            while (!wanted.empty() && !cache_.full()) {
-                const std::size_t count = std::min(batch, wanted.size());
-                std::vector<SurfaceHit> hits;
-                std::vector<double> heights;
-                for (std::size_t k = 0; k < count; ++k) {
-                    hits.push_back(wanted[k].hit);
-                    heights.push_back(wanted[k].height);
-                }
-                cache_.make(hits, heights);
-                wanted.erase(wanted.begin(), wanted.begin() + static_cast<long>(count));
-                wanted = uncovered(wanted);
-            }
+        for (int step = coarsest; step > 1; step /= 2) fill(step);
+        // New records shrink the reach of others, which uncovers pixels that were seen before.
+        while (fill(1)) {
         }
+    }
+
+    /// Makes records until each pixel of a raster that none reached has been; whether any was.
+    bool fill(int step) {
+        const std::vector<std::vector<Wanted>> rows = missing(step);
+        std::vector<Wanted> wanted;
+        for (const std::vector<Wanted>& row : rows)
+            wanted.insert(wanted.end(), row.begin(), row.end());
+        std::ranges::sort(wanted, {}, &Wanted::order);
+        const bool any = !wanted.empty() && !cache_.full();
+        while (!wanted.empty() && !cache_.full()) {
+            const std::size_t count = std::min(batch, wanted.size());
+            std::vector<SurfaceHit> hits;
+            std::vector<double> heights;
+            for (std::size_t k = 0; k < count; ++k) {
+                hits.push_back(wanted[k].hit);
+                heights.push_back(wanted[k].height);
+            }
+            cache_.make(hits, heights);
+            wanted.erase(wanted.begin(), wanted.begin() + static_cast<long>(count));
+            wanted = uncovered(wanted);
+        }
+        return any;
     }
 
     /// Centres of pixels of a raster that no record reaches, row by row.
@@ -107,7 +116,8 @@ private:
             }
         });
         result_.picture.rays += traced;
-        report(static_cast<std::size_t>(camera_.height) / 5);
+        const int pass = passes_++;
+        if (pass < 5) report(static_cast<std::size_t>(camera_.height) / 5);
         return rows;
     }
 
@@ -132,10 +142,12 @@ private:
             if (cache_.radiance(hit, found) || cache_.radiance(hit, found, widening)) return found;
             ++counts.uncovered;
         }
-        const bool gathered = settings_.direct == DirectLight::gathered;
-        const Walk walk = walk_.sampled(hit, gathered, random, counts.rays);
-        found = walk.radiance;
-        if (walk.end) add(found, walk.end->weight, cache_.surfaces().at(walk.end->hit));
+        const int walks = cache_.walksAt(hit);
+        found = {};
+        for (int k = 0; k < walks; ++k) {
+            const double share = 1.0 / walks;
+            add(found, {share, share, share}, cache_.sampled(hit, random, counts.rays));
+        }
         return found;
     }
 
@@ -205,6 +217,7 @@ private:
     const double slope_;  ///< height of the picture at distance 1
     const std::size_t total_;
     std::atomic<std::size_t> done_ = 0;
+    int passes_ = 0;
     CachedPicture result_;
 };
 

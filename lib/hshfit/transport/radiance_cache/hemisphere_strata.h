@@ -14,7 +14,8 @@ namespace hshfit::inline transport::inline radiance_cache {
 class HemisphereStrata {
 public:
     /// At most `rays` cells, about pi times as many azimuths as rings. Throws UsageError below 4.
-    HemisphereStrata(const IncomingFunctions& functions, int rays);
+    /// `bends` are kept if asked for.
+    HemisphereStrata(const IncomingFunctions& functions, int rays, bool bends = false);
 
     std::size_t rings() const { return rings_; }
     std::size_t azimuths() const { return azimuths_; }
@@ -32,6 +33,13 @@ public:
     /// azimuth before.
     const float* ringEdge(std::size_t cell) const { return ringEdges_.data() + cell * size_; }
     const float* azimuthEdge(std::size_t cell) const { return azimuthEdges_.data() + cell * size_; }
+    bool bends() const { return !ringBends_.empty(); }
+    /// Per unit of motion squared and per difference of radiance over an edge that a unit's
+    /// distance away: the second derivatives xx, xy and yy, [derivative][function] (record.h).
+    const float* ringBend(std::size_t cell) const { return ringBends_.data() + 3 * cell * size_; }
+    const float* azimuthBend(std::size_t cell) const {
+        return azimuthBends_.data() + 3 * cell * size_;
+    }
     /// The integral of each function: coefficients of radiance 1.
     const std::vector<float>& ofOne() const { return ofOne_; }
 
@@ -40,7 +48,7 @@ private:
 
     std::size_t rings_, azimuths_, size_;
     bool cosine_;
-    std::vector<float> ringEdges_, azimuthEdges_, ofOne_;
+    std::vector<float> ringEdges_, azimuthEdges_, ringBends_, azimuthBends_, ofOne_;
 };
 
 }  // namespace hshfit::inline transport::inline radiance_cache

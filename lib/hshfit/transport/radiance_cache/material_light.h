@@ -35,6 +35,7 @@ struct MaterialLight {
     int order = 0;
     double loss = 0;     ///< of energy at that order, or at the highest
     std::string reason;  ///< of sampling, where it is not the loss
+    int walks = 1;       ///< of each line of sight, if sampled
 
     std::size_t channels = 0;
     OutgoingSet outgoing = {};

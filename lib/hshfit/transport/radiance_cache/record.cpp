@@ -82,22 +82,41 @@ void addCoefficients(const Rays& rays, const Rgb& mean, const IncomingFunctions&
     addTo(part, times(mean, 1), strata.ofOne().data(), size);
 }
 
+/// Calls visit(cell, ring, step, inverse) for each edge between a cell and the one before, in the
+/// ring before if `ring`: the step of radiance and one over the nearer of the two distances.
+template <class Visit>
+void forEachEdge(const Rays& rays, const HemisphereStrata& strata, const Visit& visit) {
+    const std::size_t azimuths = strata.azimuths();
+    const auto edge = [&](std::size_t cell, std::size_t other, bool ring) {
+        const double inverse = std::max(rays.inverse[cell], rays.inverse[other]);
+        if (inverse == 0) return;
+        visit(cell, ring, minus(rays.radiance[cell], rays.radiance[other]), inverse);
+    };
+    for (std::size_t cell = 0; cell < strata.cells(); ++cell) {
+        if (cell >= azimuths) edge(cell, cell - azimuths, true);
+        edge(cell, cell % azimuths > 0 ? cell - 1 : cell + azimuths - 1, false);
+    }
+}
+
 void addStrataGradient(const Rays& rays, const HemisphereStrata& strata, std::size_t size,
                        Record& record) {
-    const std::size_t azimuths = strata.azimuths();
-    for (std::size_t cell = 0; cell < strata.cells(); ++cell) {
-        const std::size_t k = cell % azimuths;
-        const auto add = [&](std::size_t other, double phi, const float* edge) {
-            const double inverse = std::max(rays.inverse[cell], rays.inverse[other]);
-            if (inverse == 0) return;
-            const Rgb step = minus(rays.radiance[cell], rays.radiance[other]);
-            addTo(record.part(1, size), times(step, inverse * std::cos(phi)), edge, size);
-            addTo(record.part(2, size), times(step, inverse * std::sin(phi)), edge, size);
-        };
-        if (cell >= azimuths) add(cell - azimuths, strata.azimuthAt(k, 0.5), strata.ringEdge(cell));
-        add(k > 0 ? cell - 1 : cell + azimuths - 1, strata.azimuthAt(k, 0) + pi / 2,
-            strata.azimuthEdge(cell));
-    }
+    const auto visit = [&](std::size_t cell, bool ring, const Rgb& step, double inverse) {
+        const std::size_t k = cell % strata.azimuths();
+        const double phi = ring ? strata.azimuthAt(k, 0.5) : strata.azimuthAt(k, 0) + pi / 2;
+        const float* edge = ring ? strata.ringEdge(cell) : strata.azimuthEdge(cell);
+        addTo(record.part(1, size), times(step, inverse * std::cos(phi)), edge, size);
+        addTo(record.part(2, size), times(step, inverse * std::sin(phi)), edge, size);
+    };
+    forEachEdge(rays, strata, visit);
+}
+
+void addBends(const Rays& rays, const HemisphereStrata& strata, std::vector<float>& bends) {
+    const auto visit = [&](std::size_t cell, bool ring, const Rgb& step, double inverse) {
+        const float* bend = ring ? strata.ringBend(cell) : strata.azimuthBend(cell);
+        const auto factor = static_cast<float>((step[0] + step[1] + step[2]) * inverse * inverse);
+        for (std::size_t n = 0; n < bends.size(); ++n) bends[n] += factor * bend[n];
+    };
+    forEachEdge(rays, strata, visit);
 }
 
 /// Each ray's direction and solid angle from places beside the record, a hundredth of its length
@@ -148,28 +167,14 @@ void addTurns(const Rays& rays, const Rgb& mean, const HemisphereStrata& strata,
     }
 }
 
-/// The standard error of the coefficients together: half the mean square of differences between
-/// neighbouring cells is the variance within one.
-double noiseOf(const Rays& rays, const HemisphereStrata& strata, std::size_t size) {
-    double squares = 0;
-    for (std::size_t cell = 0; cell < strata.cells(); ++cell) {
-        const std::size_t k = cell % strata.azimuths();
-        const std::size_t other = k > 0 ? cell - 1 : cell + strata.azimuths() - 1;
-        const Rgb step = minus(rays.radiance[cell], rays.radiance[other]);
-        for (const double value : step) squares += value * value / 2;
-    }
-    // The mean over directions of the sum of squares of orthonormal functions, over the density.
-    const double functions = size == 1 ? 1 : static_cast<double>(size) / (2 * pi);
-    return strata.measure() * std::sqrt(squares * functions);
-}
-
 }  // namespace
 
-Record gather(const SurfaceHit& hit, std::uint32_t kind, const IncomingFunctions& functions,
-              const HemisphereStrata& strata, Gradient gradient, const GatherScene& scene,
-              RandomNumbers random, std::size_t& traces) {
+Gathered gather(const SurfaceHit& hit, std::uint32_t kind, const IncomingFunctions& functions,
+                const HemisphereStrata& strata, Gradient gradient, const GatherScene& scene,
+                RandomNumbers random, std::size_t& traces) {
     const Rays rays = traced(hit, strata, scene, random, traces);
-    Record record{.position = hit.position, .frame = hit.frame, .kind = kind};
+    Gathered gathered{.record = {.position = hit.position, .frame = hit.frame, .kind = kind}};
+    Record& record = gathered.record;
     record.values.resize(Record::valuesOf(functions));
     Rgb mean{};
     double inverse = 0;
@@ -182,14 +187,13 @@ Record gather(const SurfaceHit& hit, std::uint32_t kind, const IncomingFunctions
     const std::size_t size = functions.size();
     addCoefficients(rays, mean, functions, strata, record);
     if (gradient == Gradient::strata) addStrataGradient(rays, strata, size, record);
+    if (strata.bends()) {
+        gathered.bends.resize(3 * size);
+        addBends(rays, strata, gathered.bends);
+    }
     if (gradient == Gradient::hitPoints) addHitPointGradient(rays, functions, strata, record);
     if (!functions.basis() && gradient != Gradient::none) addTurns(rays, mean, strata, record);
-    double squares = 0;
-    for (const float value : record.part(0, size))
-        squares += static_cast<double>(value) * static_cast<double>(value);
-    record.norm = std::sqrt(squares);
-    record.noise = noiseOf(rays, strata, size);
-    return record;
+    return gathered;
 }
 
 }  // namespace hshfit::inline transport::inline radiance_cache

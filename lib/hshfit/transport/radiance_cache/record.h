@@ -26,9 +26,9 @@ struct Record {
     Frame frame{Orientation{}};
     std::uint32_t kind = 0;  ///< of IncomingFunctions
     double radius = 0;       ///< R_i of Eq. 23
-    double distance = 0;     ///< harmonic mean of the distances met, those of misses infinite
-    double norm = 0;         ///< root of the sum of squares of the coefficients
-    double noise = 0;        ///< its standard error, estimated by neighbouring strata
+    double longRadius = 0;   ///< along longAxis, where it is larger
+    Direction longAxis{1, 0, 0};
+    double distance = 0;  ///< harmonic mean of the distances met, those of misses infinite
     /// [part][R, G, B][function]: coefficients, their derivatives per length along the frame's
     /// tangent and bitangent and, for irradiance, those by turns about these two.
     std::vector<float> values = {};
@@ -53,11 +53,18 @@ struct GatherScene {
     const SurfaceIrradiance* surfaces = nullptr;
 };
 
+struct Gathered {
+    Record record;  ///< radii are left 0
+    /// [xx, xy, yy][function], if the strata have bends: second derivatives along the frame's
+    /// tangent and bitangent, R, G and B together, by the edges between strata as for the gradient.
+    std::vector<float> bends = {};
+};
+
 /// Traces one ray into each cell and makes a record of what they find (Eq. 22, stratified): the
 /// mean radiance is taken out of the sum and put back by its exact coefficients, so that even light
-/// has no noise. `radius` is left 0.
-Record gather(const SurfaceHit& hit, std::uint32_t kind, const IncomingFunctions& functions,
-              const HemisphereStrata& strata, Gradient gradient, const GatherScene& scene,
-              RandomNumbers random, std::size_t& rays);
+/// has no noise.
+Gathered gather(const SurfaceHit& hit, std::uint32_t kind, const IncomingFunctions& functions,
+                const HemisphereStrata& strata, Gradient gradient, const GatherScene& scene,
+                RandomNumbers random, std::size_t& rays);
 
 }  // namespace hshfit::inline transport::inline radiance_cache

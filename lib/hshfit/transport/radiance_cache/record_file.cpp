@@ -17,15 +17,16 @@ namespace hshfit::inline transport::inline radiance_cache {
 namespace {
 
 constexpr const char* format = "hshfit-radiance-records";
-constexpr std::size_t numbers = 16;  ///< float64 of each record
+constexpr std::size_t numbers = 18;  ///< float64 of each record
 
 std::array<double, numbers> numbersOf(const Record& record) {
     const Point& position = record.position;
     const Frame& frame = record.frame;
-    return {position[0],       position[1],     position[2],       frame.tangent.x,
-            frame.tangent.y,   frame.tangent.z, frame.bitangent.x, frame.bitangent.y,
-            frame.bitangent.z, frame.normal.x,  frame.normal.y,    frame.normal.z,
-            record.radius,     record.distance, record.norm,       record.noise};
+    return {position[0],       position[1],       position[2],       frame.tangent.x,
+            frame.tangent.y,   frame.tangent.z,   frame.bitangent.x, frame.bitangent.y,
+            frame.bitangent.z, frame.normal.x,    frame.normal.y,    frame.normal.z,
+            record.radius,     record.longRadius, record.distance,   record.longAxis.x,
+            record.longAxis.y, record.longAxis.z};
 }
 
 Record recordOf(const double* n) {
@@ -35,21 +36,21 @@ Record recordOf(const double* n) {
     record.frame.bitangent = {n[6], n[7], n[8]};
     record.frame.normal = {n[9], n[10], n[11]};
     record.radius = n[12];
-    record.distance = n[13];
-    record.norm = n[14];
-    record.noise = n[15];
+    record.longRadius = n[13];
+    record.distance = n[14];
+    record.longAxis = {n[15], n[16], n[17]};
     return record;
 }
 
 bool sound(const Record& record) {
     const Frame& f = record.frame;
-    for (const Direction& axis : {f.tangent, f.bitangent, f.normal})
+    for (const Direction& axis : {f.tangent, f.bitangent, f.normal, record.longAxis})
         if (!(std::abs(dot(axis, axis) - 1) < 1e-6)) return false;
     for (const double x : record.position)
         if (!std::isfinite(x)) return false;
-    return std::abs(dot(f.tangent, f.normal)) < 1e-6 && std::isfinite(record.radius) &&
-           record.radius > 0 && record.distance > 0 && std::isfinite(record.norm) &&
-           std::isfinite(record.noise);
+    return std::abs(dot(f.tangent, f.normal)) < 1e-6 && record.radius > 0 &&
+           std::isfinite(record.longRadius) && record.longRadius >= record.radius &&
+           record.distance > 0;
 }
 
 template <class Value>
@@ -75,7 +76,7 @@ std::uint64_t countOf(const TensorFile& file, const char* name, std::uint64_t of
 
 void writeRecords(const StoredRecords& stored, AtomicFile& file) {
     const nlohmann::ordered_json header = {{"format", format},
-                                           {"version", 1},
+                                           {"version", 2},
                                            {"generator", std::string("hshfit ") + version},
                                            {"key", stored.key},
                                            {"orders", stored.orders},
@@ -113,7 +114,7 @@ StoredRecords readRecords(const std::string& path, const std::string& key) {
         parseJson({reinterpret_cast<const char*>(text.data()), text.size()}, path, 4);
     const JsonFields header(parsed, "", path);
     if (header.word("format") != format) header.fail("is no file of records", "format");
-    header.integer("version", 1, 1);
+    header.integer("version", 2, 2);
     StoredRecords stored;
     stored.key = header.word("key");
     if (stored.key != key) {
