@@ -26,7 +26,15 @@ std::vector<const char*> groupNames() {
     return names;
 }
 
-std::string typeWord(const CLI::Option& option) {
+/// "FILE", "SPEC", … for an option of the table of values, else the type of its value.
+std::string typeWord(const CLI::App& command, const CLI::Option& option) {
+    if (const ValueRow* row = findValues(command, option)) {
+        if (row->syntax == Syntax::light) return "LIGHT";
+        if (row->syntax == Syntax::brdf) return "SPEC";
+        if (row->files == Files::folder) return "DIR";
+        if (row->files != Files::none) return "FILE";
+        if (row->words) return row->syntax == Syntax::list ? "NAMES" : "NAME";
+    }
     const std::string type = option.get_type_name();
     const std::string word = type.substr(0, type.find(':'));
     if (word == "FLOAT") return "NUMBER";
@@ -59,13 +67,14 @@ std::string namesOf(const std::set<CLI::Option*>& options) {
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string optionTerm(const CLI::Option& option) {
+std::string optionTerm(const CLI::App& command, const CLI::Option& option) {
     if (option.get_positional()) return option.get_name(true, false);
     std::vector<std::string> names;
     for (const std::string& name : option.get_snames()) names.push_back("-" + name);
     for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
     std::string term = fmt::format("{}", fmt::join(names, ", "));
-    if (option.get_type_size() != 0 && !typeWord(option).empty()) term += " " + typeWord(option);
+    const std::string type = option.get_type_size() != 0 ? typeWord(command, option) : "";
+    if (!type.empty()) term += " " + type;
     const bool several = option.get_expected_max() >= CLI::detail::expected_max_vector_size;
     return several ? term + "…" : term;
 }
@@ -93,7 +102,7 @@ void addOptions(Page& page, const CLI::App& app, const std::string& title,
     if (options.empty()) return;
     addHeading(page, title);
     for (const CLI::Option* option : options)
-        addRow(page, optionTerm(*option), optionText(*option));
+        addRow(page, optionTerm(app, *option), optionText(*option));
 }
 
 class PageFormat final : public CLI::Formatter {

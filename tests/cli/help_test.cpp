@@ -112,6 +112,8 @@ TEST_F(Help, TopicsHaveTheRowsOfTheTables) {
 
 TEST_F(Help, UnknownWordsAreRefusedWithTheNearest) {
     expectError("help projct", 2, "did you mean 'project'?", 0);
+    expectError("--versoin", 2, "unknown option '--versoin' (did you mean '--version'?)", 0);
+    expectError("list base", 2, "unknown value 'base' (did you mean 'bases'?); known: ", 0);
     expectError("help loses", 2, "did you mean 'losses'?", 0);
     expectError("fit lambert", 2, "; see hshfit help fit", 0);
 }

@@ -45,7 +45,7 @@ TEST_F(Installation, HasTheManualAndCompletionWhereManAndShellsLook) {
                                                   : "fish/vendor_completions.d/hshfit.fish";
         EXPECT_EQ(read(share / file), run("completion " + shell).out) << file;
     }
-    // The installed version is that of this program.
+    // The installed pages are those that this program writes.
     ASSERT_EQ(run("manual -o " + path("man")).code, 0);
     const std::string differ =
         "diff -r " + path("man") + " " + (share / "man").string() + " >" + path("log");
