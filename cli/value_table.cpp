@@ -163,7 +163,7 @@ constexpr ValueRow table[] = {
     {"list", "TEXT", presetWords},
     {"manual", "--output", nullptr, Syntax::word, Files::folder},
     {"plan", "--output", nullptr, Syntax::word, Files::folder},
-    {"plot", "--output", nullptr, Syntax::word, Files::written, ".png"},
+    {"plot", "--output", nullptr, Syntax::word, Files::written},
     {"render", "--output", nullptr, Syntax::word, Files::written, ".png"},
     {"report", "--output", nullptr, Syntax::word, Files::folder},
     {"rotate", "--method", rotationWords},
