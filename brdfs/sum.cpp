@@ -126,7 +126,10 @@ std::vector<WeightedSpec> splitSum(std::string_view spec, bool (*isWhole)(std::s
     std::vector<WeightedSpec> terms;
     for (std::size_t start = 0;;) {
         const std::size_t end = endOfTerm(spec, start, isWhole);
-        const std::string_view term = withoutSpaces(spec.substr(start, end - start));
+        // Spaces around a '+' mean nothing; a single specification is taken as it is.
+        const bool single = start == 0 && end == spec.size();
+        const std::string_view term =
+            single ? spec : withoutSpaces(spec.substr(start, end - start));
         terms.push_back(isWhole(term) ? WeightedSpec{1, std::string(term)} : parseTerm(term));
         if (end == spec.size()) break;
         start = end + 1;

@@ -5,8 +5,10 @@
 namespace hshfit::inline specification {
 namespace {
 
-/// Whether the '+' at `at` belongs to a number such as 1e+3.
-bool inExponent(std::string_view text, std::size_t at) {
+/// Whether the '+' at `at` belongs to a number such as 1e+3 or, as no number may begin, kd=+1.
+bool inNumber(std::string_view text, std::size_t at) {
+    if (at >= 1 && std::string_view("=/,").find(text[at - 1]) != std::string_view::npos)
+        return true;
     const auto digit = [&](std::size_t k) {
         return k < text.size() && std::isdigit(static_cast<unsigned char>(text[k])) != 0;
     };
@@ -18,7 +20,7 @@ bool inExponent(std::string_view text, std::size_t at) {
 
 std::size_t nextJoint(std::string_view text, std::size_t from) {
     std::size_t at = text.find('+', from);
-    while (at != std::string_view::npos && inExponent(text, at)) at = text.find('+', at + 1);
+    while (at != std::string_view::npos && inNumber(text, at)) at = text.find('+', at + 1);
     return at;
 }
 
