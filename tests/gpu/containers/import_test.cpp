@@ -101,7 +101,7 @@ TEST_F(Import, ErrorsAreOneLineAndLeaveNothing) {
 TEST_F(Import, HelpHasAnExample) {
     const Answer help = run("import --help");
     EXPECT_EQ(help.code, 0);
-    EXPECT_NE(help.out.find("Example: hshfit import "), std::string::npos);
+    EXPECT_NE(help.out.find("\nExample:\n  hshfit import "), std::string::npos) << help.out;
 }
 
 }  // namespace
