@@ -288,7 +288,8 @@ def curves(out):
     draw(points, units["whole"])
     terms = {"all": [], "gradient by hit points": ["--gradient", "hit-points"],
              "no gradient": ["--gradient", "none"]}
-    for term in ("gradient-limit", "neighbour-clamping", "error-control"):
+    # Gradients limit the spacing only where errors do not.
+    for term in ("neighbour-clamping", "error-control", "error-control,gradient-limit"):
         terms[f"without {term}"] = ["--without", term]
     terms["as published"] = ["--published"]
     for label, options in terms.items():
