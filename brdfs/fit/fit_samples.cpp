@@ -101,7 +101,7 @@ private:
         if (views_.empty()) return values.data();
         now_.assign(values.begin(), values.end());
         for (const ChannelView* view : views_) {
-            next_.resize(dynamic_cast<const Brdf&>(*view).channels().count());
+            next_.resize(view->channels().count());
             view->convert(now_, next_);
             std::swap(now_, next_);
         }

@@ -1,22 +1,54 @@
 #pragma once
 
 #include <hshfit/brdf/brdf.h>
+#include <hshfit/brdf/kink_curve.h>
 
+#include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace hshfit::inline brdf {
 
-/// A BRDF whose values at a pair of directions are combinations of another's channels there: its
-/// colours, or their mean. The samples behind that BRDF, converted value by value, are therefore
-/// the samples behind this one.
-class ChannelView {
+/// A BRDF whose channels are weighted sums of another's at the same directions: the colours of a
+/// spectrum, or the mean of the channels. The samples behind the other BRDF, converted value by
+/// value, are therefore the samples behind this one.
+class ChannelView final : public Brdf, public HasKinkCurves {
 public:
-    virtual const Brdf& seen() const = 0;
-    /// `from`: a value per channel of `seen()`; `to`: one per channel of this.
-    virtual void convert(std::span<const double> from, std::span<double> to) const = 0;
+    /// Everything that differs from the BRDF that is seen.
+    struct Look {
+        std::string name;
+        Channels channels;
+        Laws laws;
+        std::vector<std::vector<double>> weights;  ///< [channel][channel of the BRDF]
+        std::vector<Fact> facts = {};              ///< beside those of the BRDF
+    };
+    ChannelView(std::unique_ptr<Brdf> seen, Look look)
+        : seen_(std::move(seen)), look_(std::move(look)) {}
 
-protected:
-    ~ChannelView() = default;
+    const Brdf& seen() const { return *seen_; }
+    /// `from`: a value per channel of `seen()`; `to`: one per channel of this.
+    void convert(std::span<const double> from, std::span<double> to) const;
+
+    std::string name() const override { return look_.name; }
+    const Channels& channels() const override { return look_.channels; }
+    const Laws& laws() const override { return look_.laws; }
+    void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
+    void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override {
+        seen_->coverage(wo, wi, covered);
+    }
+    std::vector<Lobe> lobes(const Direction& wo) const override { return seen_->lobes(wo); }
+    std::vector<double> kinks(const Direction& wo) const override { return seen_->kinks(wo); }
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
+        return kinkCurvesOf(*seen_, wo);
+    }
+    double defaultTolerance() const override { return seen_->defaultTolerance(); }
+    std::vector<Fact> facts() const override;
+    void checkIntact() const override { seen_->checkIntact(); }
+
+private:
+    std::unique_ptr<Brdf> seen_;
+    Look look_;
 };
 
 }  // namespace hshfit::inline brdf

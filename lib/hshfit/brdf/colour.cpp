@@ -1,7 +1,6 @@
 #include <hshfit/brdf/channel_view.h>
 #include <hshfit/brdf/cie_1931.h>
 #include <hshfit/brdf/colour.h>
-#include <hshfit/brdf/kink_curve.h>
 #include <hshfit/error.h>
 #include <hshfit/wording.h>
 
@@ -67,68 +66,6 @@ double luminanceBeyond(std::span<const double> nanometres) {
     return beyond / all;
 }
 
-class RgbView : public Brdf, public HasKinkCurves, public ChannelView {
-public:
-    explicit RgbView(std::unique_ptr<Brdf> spectral)
-        : spectral_(std::move(spectral)),
-          weights_(rgbWeights(spectral_->channels().wavelengths)),
-          laws_(spectral_->laws()) {
-        // Weights of both signs: neither law follows from those of the wavelengths.
-        laws_.nonNegative = laws_.energyConserving = false;
-    }
-
-    std::string name() const override { return "rgb:" + spectral_->name(); }
-    const Channels& channels() const override { return channels_; }
-    const Laws& laws() const override { return laws_; }
-    void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override {
-        spectral_->coverage(wo, wi, covered);
-    }
-    std::vector<Lobe> lobes(const Direction& wo) const override { return spectral_->lobes(wo); }
-    std::vector<double> kinks(const Direction& wo) const override { return spectral_->kinks(wo); }
-    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
-        return kinkCurvesOf(*spectral_, wo);
-    }
-    double defaultTolerance() const override { return spectral_->defaultTolerance(); }
-    void checkIntact() const override { spectral_->checkIntact(); }
-
-    std::vector<Fact> facts() const override {
-        std::vector<Fact> facts = spectral_->facts();
-        facts.emplace_back("rgb_from", fmt::format("{} wavelengths, CIE 1931 2 degrees, D65",
-                                                   spectral_->channels().count()));
-        facts.emplace_back("luminance_beyond_wavelengths", weights_.continued);
-        return facts;
-    }
-
-    void eval(const Direction& wo, DirectionBatch wi, double* out) const override {
-        const std::size_t wavelengths = spectral_->channels().count();
-        std::vector<double> values(wavelengths * wi.count);
-        spectral_->eval(wo, wi, values.data());
-        std::fill_n(out, 3 * wi.count, 0.0);
-        for (std::size_t c = 0; c < 3; ++c) {
-            for (std::size_t i = 0; i < wavelengths; ++i) {
-                const double weight = weights_.weights[c][i];
-                const double* from = values.data() + i * wi.count;
-                double* to = out + c * wi.count;
-                for (std::size_t k = 0; k < wi.count; ++k) to[k] += weight * from[k];
-            }
-        }
-    }
-
-    const Brdf& seen() const override { return *spectral_; }
-    void convert(std::span<const double> from, std::span<double> to) const override {
-        for (std::size_t c = 0; c < 3; ++c) {
-            to[c] = 0;
-            for (std::size_t i = 0; i < from.size(); ++i) to[c] += weights_.weights[c][i] * from[i];
-        }
-    }
-
-private:
-    std::unique_ptr<Brdf> spectral_;
-    RgbWeights weights_;
-    Channels channels_ = Channels::rgb();
-    Laws laws_;
-};
-
 }  // namespace
 
 RgbWeights rgbWeights(std::span<const double> nanometres) {
@@ -174,7 +111,17 @@ std::unique_ptr<Brdf> asRgb(std::unique_ptr<Brdf> spectral) {
         throw UsageError(fmt::format("{}: is not spectral; {} is for spectral BRDFs",
                                      spectral->name(), Call{.function = "asRgb"}));
     }
-    return std::make_unique<RgbView>(std::move(spectral));
+    const RgbWeights rgb = rgbWeights(spectral->channels().wavelengths);
+    ChannelView::Look look{.name = "rgb:" + spectral->name(),
+                           .channels = Channels::rgb(),
+                           .laws = spectral->laws(),
+                           .weights = {rgb.weights.begin(), rgb.weights.end()}};
+    // Weights of both signs: neither law follows from those of the wavelengths.
+    look.laws.nonNegative = look.laws.energyConserving = false;
+    look.facts.emplace_back("rgb_from", fmt::format("{} wavelengths, CIE 1931 2 degrees, D65",
+                                                    spectral->channels().count()));
+    look.facts.emplace_back("luminance_beyond_wavelengths", rgb.continued);
+    return std::make_unique<ChannelView>(std::move(spectral), std::move(look));
 }
 
 }  // namespace hshfit::inline brdf

@@ -1,7 +1,6 @@
 #include <hshfit/brdf/one_channel.h>
 
 #include <hshfit/brdf/channel_view.h>
-#include <hshfit/brdf/kink_curve.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -17,54 +16,6 @@ namespace {
 
 constexpr std::string_view plain = "grey:", weighted = "grey=";
 
-class OneChannel final : public Brdf, public HasKinkCurves, public ChannelView {
-public:
-    OneChannel(std::unique_ptr<Brdf> brdf, std::vector<double> weights)
-        : brdf_(std::move(brdf)),
-          name_(greyPrefixOf(weights) + brdf_->name()),
-          weights_(std::move(weights)) {
-        const double sum = std::accumulate(weights_.begin(), weights_.end(), 0.0);
-        for (double& weight : weights_) weight /= sum;
-    }
-
-    std::string name() const override { return name_; }
-    const Channels& channels() const override { return channels_; }
-    const Laws& laws() const override { return brdf_->laws(); }
-    void eval(const Direction& wo, DirectionBatch wi, double* out) const override {
-        std::vector<double> values(weights_.size() * wi.count);
-        brdf_->eval(wo, wi, values.data());
-        for (std::size_t k = 0; k < wi.count; ++k) {
-            out[k] = 0;
-            for (std::size_t c = 0; c < weights_.size(); ++c) {
-                out[k] += weights_[c] * values[c * wi.count + k];
-            }
-        }
-    }
-    void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override {
-        brdf_->coverage(wo, wi, covered);
-    }
-    std::vector<Lobe> lobes(const Direction& wo) const override { return brdf_->lobes(wo); }
-    std::vector<double> kinks(const Direction& wo) const override { return brdf_->kinks(wo); }
-    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
-        return kinkCurvesOf(*brdf_, wo);
-    }
-    double defaultTolerance() const override { return brdf_->defaultTolerance(); }
-    std::vector<Fact> facts() const override { return brdf_->facts(); }
-    void checkIntact() const override { brdf_->checkIntact(); }
-
-    const Brdf& seen() const override { return *brdf_; }
-    void convert(std::span<const double> from, std::span<double> to) const override {
-        to[0] = 0;
-        for (std::size_t c = 0; c < from.size(); ++c) to[0] += weights_[c] * from[c];
-    }
-
-private:
-    std::unique_ptr<Brdf> brdf_;
-    std::string name_;
-    std::vector<double> weights_;  ///< their sum is 1
-    Channels channels_ = Channels::grey();
-};
-
 }  // namespace
 
 std::unique_ptr<Brdf> asGrey(std::unique_ptr<Brdf> brdf, std::vector<double> weights) {
@@ -78,7 +29,14 @@ std::unique_ptr<Brdf> asGrey(std::unique_ptr<Brdf> brdf, std::vector<double> wei
             "{}: grey takes one weight for each of its {} channels, none below 0, not all 0",
             brdf->name(), channels));
     }
-    return std::make_unique<OneChannel>(std::move(brdf), std::move(weights));
+    ChannelView::Look look{.name = greyPrefixOf(weights) + brdf->name(),
+                           .channels = Channels::grey(),
+                           .laws = brdf->laws(),
+                           .weights = {}};
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+    for (double& weight : weights) weight /= sum;
+    look.weights.push_back(std::move(weights));
+    return std::make_unique<ChannelView>(std::move(brdf), std::move(look));
 }
 
 std::string_view greyPrefix(std::string_view spec) {
