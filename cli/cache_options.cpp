@@ -96,6 +96,14 @@ CacheOptions cacheOptionsOf(const CacheArguments& arguments) {
     options.gradient = gradientOf(arguments.gradient);
     options.mostBytes = static_cast<std::size_t>(arguments.megabytes * 1e6);
     if (arguments.published) options.asPublished();
+    const auto leavesOut = [&](const char* name) {
+        return std::ranges::find(arguments.without, name) != arguments.without.end();
+    };
+    if (leavesOut("gradient-limit") && options.errorControl && !leavesOut("error-control")) {
+        throw UsageError(
+            "--without gradient-limit changes nothing beside error control; leave that out too: "
+            "--without gradient-limit,error-control");
+    }
     for (const std::string& name : arguments.without) {
         const auto* term = std::ranges::find(terms, name, &Term::name);
         options.*(term->member) = false;

@@ -205,6 +205,7 @@ TEST_F(Illuminate, RefusesWhatTheMethodDoesNotTake) {
     refuses(" --records some", "--records is for --method radiance-cache");
     refuses(quick + "--resume", "--resume is for --method path");
     refuses(quick + "--from-bounce 3", "--from-bounce is 3");
+    refuses(quick + "--without gradient-limit", "leave that out too");
     refuses(quick + "--accuracy 2", "--accuracy is 2; valid: above 0, up to 1");
     refuses(quick + "--basis lsosh", "--basis 'lsosh' is not orthonormal");
     refuses(quick + "--direct gathered --from-bounce 2", "cannot leave it out");
