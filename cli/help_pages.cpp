@@ -113,6 +113,15 @@ public:
     }
 };
 
+/// The purpose of the program or of a command, its usage, and its sections.
+Page helpPage(const std::string& purpose, const CLI::App& app, const Page& sections) {
+    Page page;
+    addParagraph(page, purpose);
+    addParagraph(page, "Usage: " + usageLine(app));
+    page.insert(page.end(), sections.begin(), sections.end());
+    return page;
+}
+
 }  // namespace
 
 std::string usageLine(const CLI::App& app) {
@@ -147,12 +156,7 @@ Page programSections(const CLI::App& program) {
 }
 
 Page programPage(const CLI::App& program) {
-    Page page;
-    addParagraph(page, summary);
-    addParagraph(page, "Usage: " + usageLine(program));
-    const Page sections = programSections(program);
-    page.insert(page.end(), sections.begin(), sections.end());
-    return page;
+    return helpPage(summary, program, programSections(program));
 }
 
 Page overviewPage() {
@@ -178,12 +182,7 @@ Page overviewPage() {
 }
 
 Page commandPage(const CLI::App& command) {
-    Page page;
-    addParagraph(page, command.get_description());
-    addParagraph(page, "Usage: " + usageLine(command));
-    const Page sections = commandSections(command);
-    page.insert(page.end(), sections.begin(), sections.end());
-    return page;
+    return helpPage(command.get_description(), command, commandSections(command));
 }
 
 Page commandSections(const CLI::App& command) {
