@@ -21,7 +21,7 @@ struct Candidates {
 /// `words` follow the name of the program; the last, perhaps empty, is the one being typed.
 Candidates candidatesOf(const CLI::App& program, const std::vector<std::string>& words);
 
-/// Those of the value of an option.
+/// Completions of the value of an option.
 Candidates valuesOf(const ValueRow& row, const std::string& typed);
 
 }  // namespace hshfit::cli

@@ -14,7 +14,7 @@
 namespace hshfit::cli {
 namespace {
 
-/// In the order of the enumerations.
+/// Names in the order of the enumerations TransferKind and Sides.
 const std::vector<std::string> kindNames{"unshadowed", "shadowed", "interreflected"};
 const std::vector<std::string> sidesNames{"automatic", "front", "both"};
 

@@ -195,7 +195,8 @@ Illuminated illuminate(const std::string& path, const std::string& folder,
     if (options.cache) {
         const double cpu = cpuSeconds();
         cache = cacheOf(scene, cacheOptionsOf(options, listener), options.records, recordsKey);
-        // Of all cameras, so that runs with one after the other choose as a run with all.
+        // All cameras count, so that runs with one camera after the other choose as one run with
+        // all.
         const std::vector<MaterialCost> costs =
             predictCosts(*cache, camerasOf(read, ""), options.path.samples);
         for (std::size_t k = 0; k < read.materials.size(); ++k) {

@@ -19,7 +19,7 @@ public:
     KeptRows(const std::string& path, const std::string& inputs, const Camera& camera,
              const PathOptions& options);
 
-    /// For tracePaths. They refer to this.
+    /// The rows as tracePaths takes them; they must not outlive this object.
     PathRows rows();
     /// Rows of an earlier run that were taken.
     std::size_t taken() const { return taken_; }

@@ -22,7 +22,7 @@ std::string checksumOf(const std::vector<Number>& numbers) {
     return sha256(std::as_bytes(std::span(numbers))) + "\n";
 }
 
-/// Of each file that a part of a specification names.
+/// Path and checksum of each file that a part of a specification names.
 std::string filesNamed(std::string_view specification, const fs::path& folder) {
     constexpr std::string_view separators = ":,+=";
     std::vector<std::size_t> cuts{0};

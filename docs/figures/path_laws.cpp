@@ -106,7 +106,7 @@ void printBias() {
         z[static_cast<std::size_t>(k)] = test::biasTrial(
             *scene, normalised({-4, -1.2 + 0.01 * k, -1 + 0.3 * (k % 5 - 2)}), runs, samples, k);
     });
-    // Past everything, the sky is seen without scatter.
+    // Directions that meet only the sky have no scatter.
     std::erase(z, 0.0);
     double sum = 0, squares = 0, largest = 0;
     for (const double value : z) {

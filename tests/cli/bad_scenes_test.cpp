@@ -147,7 +147,7 @@ TEST_F(BadScenes, WithTheCameraInsideOfAnObjectAreDark) {
     EXPECT_NE((answer.err + answer.out).find("camera 'eye' sees no light"), std::string::npos)
         << answer.err;
     shows(scene, 0, 0);
-    // In the very plane of a wall, it sees what is behind it or the wall, never nothing at all.
+    // A camera in the plane of a wall sees the wall or the things behind it.
     Json within = floor("square");
     within["cameras"][0]["position"] = {0.2, 0.2, 0};
     within["cameras"][0]["target"] = {0.2, 0.2, -1};

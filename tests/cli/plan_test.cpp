@@ -229,7 +229,7 @@ TEST_F(PlanCommand, CamerasGiveOrientationsAndViews) {
     EXPECT_EQ(materials[0]["orientations"], 1);
     ASSERT_EQ(seen["orientations"].size(), 1u);
     EXPECT_NEAR(seen["orientations"][0]["theta"], 0, 1e-6);
-    // To the corner of a square picture.
+    // The corner of a square picture is seen at this angle.
     EXPECT_LE(seen["views"]["theta"][1],
               std::atan(std::sqrt(2.0) * std::tan(10 * M_PI / 180)) * 180 / M_PI);
     EXPECT_GT(seen["views"]["theta"][1], 10);

@@ -83,7 +83,7 @@ TEST_F(Transfer, SaysWhatItWroteAndOthersReadIt) {
     EXPECT_EQ(glb["triangles"], json["triangles"]);
     EXPECT_NEAR(glb["energy"], energy, 1e-5 * energy);
     for (const Json& file : json["files"]) EXPECT_TRUE(std::filesystem::exists(file)) << file;
-    // Of the vectors, GGX is seen as diffuse with its albedo: not black, not white.
+    // Vectors see GGX as diffuse with its albedo, which is neither black nor white.
     EXPECT_FALSE(json["materials"][2]["diffuse"]);
     EXPECT_GT(json["materials"][2]["albedo"][0], 0.4);
     EXPECT_LT(json["materials"][2]["albedo"][0], 0.9);

@@ -19,7 +19,7 @@ namespace {
 constexpr std::string_view opening = "hshfit-checkpoint 1\n";
 constexpr std::size_t digits = 64;  // of SHA-256
 
-/// In front of a block's bytes. The checksum is that of index, size and bytes.
+/// The head in front of a block's bytes. The checksum covers index, size and bytes.
 struct Head {
     std::uint64_t index = 0, size = 0;
     char checksum[digits] = {};
@@ -30,7 +30,7 @@ std::string checksumOf(std::uint64_t index, std::span<const std::byte> bytes) {
     return sha256(fmt::format("{} {} {}", index, bytes.size(), sha256(bytes)));
 }
 
-/// Whether that many bytes could be read.
+/// Fills `bytes` from the file at `offset`. False where the file ends before.
 bool readAll(int descriptor, std::span<std::byte> bytes, std::uint64_t offset) {
     while (!bytes.empty()) {
         const ssize_t count =

@@ -31,7 +31,7 @@ void ClosedForm::vector(const MeshVector& normal, float* out) const {
 void ClosedForm::matrix(const MeshVector& normal, float* out) const {
     const Frame frame = rendering::frameAt(normalised(directionOf(normal)));
     const Direction &x = frame.tangent, &y = frame.bitangent, &z = frame.normal;
-    // From the world into the frame.
+    // The rotation from the world into the frame.
     const Rotation turn = Rotation::fromMatrix({x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z});
     const auto slots = static_cast<std::size_t>(order_) * static_cast<std::size_t>(order_);
     const auto rows = static_cast<std::size_t>(localOrder_) * static_cast<std::size_t>(localOrder_);

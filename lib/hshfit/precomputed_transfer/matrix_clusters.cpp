@@ -43,7 +43,8 @@ Matrix orthonormal(const Matrix& a) {
     return qr.householderQ() * Matrix::Identity(a.rows(), a.cols());
 }
 
-/// By subspace iteration, whose columns are then turned to the axes of the members' covariance.
+/// The mean and the principal components of some matrices. Subspace iteration finds the space that
+/// the components span; the eigenvectors of the covariance in that space are the components.
 Principal principalOf(const Rows& all, const Members& members, std::size_t wanted) {
     Principal result;
     result.mean = Eigen::RowVectorXd::Zero(all.cols());

@@ -14,7 +14,8 @@ namespace hshfit::inline rays {
 
 namespace {
 
-/// Of the bounds of used positions, in single precision: differences to places near it are exact.
+/// The middle of the bounds of all triangles, rounded to single precision: differences between it
+/// and places near it are then exact.
 std::array<double, 3> middleOf(const Mesh& mesh) {
     std::array<double, 3> middle{};
     if (mesh.triangles.empty()) return middle;

@@ -11,7 +11,7 @@ namespace hshfit::inline specification {
 /// who know of files.
 std::size_t nextJoint(std::string_view text, std::size_t from);
 
-/// Without spaces at both ends.
+/// The text without the spaces at its ends.
 std::string_view withoutSpaces(std::string_view text);
 
 }  // namespace hshfit::inline specification

@@ -29,8 +29,8 @@ struct Scattered {
     double pdf = 0;  ///< per steradian
 };
 
-/// By the sampler of the hit's material; nothing where no light is reflected. Three independent
-/// numbers, uniform in [0, 1).
+/// Draws a direction by the sampler of the hit's material; nothing where no light is reflected.
+/// `u`: three independent numbers, uniform in [0, 1).
 std::optional<Scattered> scatter(const SurfaceScene& scene, const SurfaceHit& hit,
                                  const std::array<double, 3>& u);
 

@@ -109,9 +109,9 @@ SurfaceHit SurfaceScene::pointOf(std::uint32_t triangle, double u, double v, boo
     return hitOf({.distance = 0, .triangle = triangle, .u = u, .v = v}, front ? -normal : normal);
 }
 
-/// Beside the surface by more than the rounding of a ray's origin and of its distances to the
-/// triangle, which are those of the largest coordinate from the scene's middle. The place itself is
-/// on the triangle in double precision, whatever the distance of the ray that found it.
+/// The origin of a ray that leaves a surface. It lies beside the triangle by more than the rounding
+/// of Embree's single precision, which grows with the largest coordinate from the scene's middle.
+/// The hit itself is on the triangle in double precision, however far the ray has come.
 Point SurfaceScene::leaving(const SurfaceHit& from) const {
     const Corners corners = cornersOf(all_, from.triangle);
     double largest = 0;

@@ -27,7 +27,7 @@ const scene = {
   cameras: [{ name: 'eye', position: [4, -4, 3], target: [0, 0, 0.5], width: 96 }],
 };
 
-// In the page: the canvas and a picture, as bytes.
+// Runs in the page: returns the bytes of the canvas and of a picture.
 async function pixels(picture) {
   await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
   const read = (source) => {

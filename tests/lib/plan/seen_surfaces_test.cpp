@@ -78,7 +78,7 @@ TEST(SeenMaterials, OfAFarWallHaveOneView) {
     EXPECT_NEAR(world.z, 0, 1e-3);
 }
 
-/// From far away, a sphere shows the half that faces the camera, and its disc of the picture.
+/// A camera far away sees the half of a sphere that faces it, as a disc.
 TEST(SeenMaterials, OfASphereAreHalfOfAllOrientations) {
     const SurfaceScene scene = sceneOf({{"ball", sphereMesh(6), 2, {}}});
     const double far = 1000;

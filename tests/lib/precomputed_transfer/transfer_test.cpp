@@ -112,7 +112,7 @@ void overHemisphere(const Direction& normal, F&& add) {
     for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
         const double u = (1 + rule.nodes[k]) / 2;
         for (int a = 0; a < azimuths; ++a) {
-            // In the square root of mu, in which functions of odd m are smooth.
+            // The rule is in the square root of mu, in which functions of odd m are smooth.
             const Direction local =
                 directionFromAngles(std::acos(u * u), 2 * pi * (a + 0.5) / azimuths);
             add(local, frame.toWorld(local), rule.weights[k] * u * 2 * pi / azimuths);

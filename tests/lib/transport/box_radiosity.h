@@ -139,7 +139,7 @@ inline std::vector<std::array<Rgb, walls>> radianceByBounce(int n, int bounces) 
     for (std::size_t i = 0; i < count; ++i) {
         const Direction normal = patches[i].normal();
         for (std::size_t j = 0; j < count; ++j) {
-            // Of one plane: they do not see each other.
+            // Patches of one plane do not see each other.
             if (std::abs(dot(patches[j].corner - patches[i].corner, normal)) < 1e-9 &&
                 std::abs(dot(patches[j].normal(), normal)) > 0.5)
                 continue;

@@ -89,8 +89,8 @@ TEST(RadianceCache, ShowsTheAlbedoOfAGlossyFloorUnderEvenLight) {
     }
 }
 
-/// Of all reflections in a sphere, those after the first: rho^2 / (1 - rho) times the share of the
-/// lamp, wherever one looks.
+/// Light of two and more reflections in a sphere is rho^2 / (1 - rho) times the share of the lamp
+/// in every direction.
 TEST(RadianceCache, FindsTheIndirectLightOfALampInASphere) {
     const double albedo = 0.7;
     Mesh lamp = sphereMesh(4);

@@ -7,7 +7,7 @@
 
 namespace hshfit::inline representation::inline constraints {
 
-/// As far down as outgoing directions are kept.
+/// The polar angle of the lowest outgoing directions that are kept.
 inline constexpr double lowestRing = 89 * (pi / 180);
 
 /// In slots: what each function of the basis contributes to the directional albedo,

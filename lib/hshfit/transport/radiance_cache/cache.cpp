@@ -21,7 +21,7 @@ namespace {
 /// the number of records among factors of 2 (docs/illuminate.md).
 constexpr double evenness = 0.15, mostStretch = 4;
 
-/// Of the index, a record and its share of the deque, rounded up.
+/// Bytes of a record beside its coefficients: itself and its shares of index and deque, rounded up.
 constexpr std::size_t recordOverhead = sizeof(Record) + 128;
 
 Direction between(const Point& from, const Point& to) {
@@ -406,8 +406,8 @@ void RadianceCache::limitByDistance(Record& record) const {
     record.longRadius = record.radius;
 }
 
-/// By the eigenvectors of the sum of squares of the second derivatives' matrices: in the direction
-/// of one, with the eigenvalue s^2, extrapolation over x misses by s x^2 / 2.
+/// Limits the reach by second derivatives. Along an eigenvector of the sum of their squared
+/// matrices, with the eigenvalue s^2, extrapolation over x misses by s x^2 / 2.
 void RadianceCache::limitByBends(Record& record, const std::vector<float>& bends,
                                  double height) const {
     const std::size_t size = materials_.kinds[record.kind].size();

@@ -47,7 +47,8 @@ public:
     /// Chooses for each material, and finds the light on diffuse surfaces. Throws UsageError for
     /// settings outside of their range and as chooseLight does. The scene has to outlive this.
     RadianceCache(const SurfaceScene& scene, const CacheOptions& options);
-    /// With records of the same scene and settings. Throws InputError where they do not fit.
+    /// A cache that begins with records of the same scene and settings. Throws InputError where
+    /// they do not fit.
     RadianceCache(const SurfaceScene& scene, const CacheOptions& options, StoredRecords stored);
     ~RadianceCache();
 

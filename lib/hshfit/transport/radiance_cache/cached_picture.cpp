@@ -98,8 +98,8 @@ private:
         tbb::parallel_for(0, count, [&](int k) {
             const int row = k * step;
             for (int column = 0; column < camera_.width; column += step) {
-                // Those of the coarser rasters have been reached; the last looks again, because
-                // reaches shrink.
+                // Pixels of the coarser rasters were reached before. The last raster looks at them
+                // again, because reaches shrink.
                 const bool before = row % (2 * step) == 0 && column % (2 * step) == 0;
                 if (before && step < coarsest && step > 1) continue;
                 ++traced;

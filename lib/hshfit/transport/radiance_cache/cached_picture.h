@@ -6,7 +6,7 @@ namespace hshfit::inline transport::inline radiance_cache {
 
 struct CachedPictureOptions {
     int samples = 16;  ///< rays through a pixel, stratified as far as the number allows
-    /// Of records and of rows, in any order.
+    /// Receives finished and total work, records and rows together.
     TransportProgress progress = {};
 };
 

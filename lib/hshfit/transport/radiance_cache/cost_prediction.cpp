@@ -30,7 +30,7 @@ struct Seen {
     double area = 0;    ///< of the surface that the line of sight stands for
 };
 
-/// Of one material, over all cameras.
+/// The places where cameras see a material.
 struct Sight {
     double pixels = 0;
     std::vector<Seen> seen;

@@ -155,7 +155,8 @@ void addHitPointGradient(const Rays& rays, const IncomingFunctions& functions,
     }
 }
 
-/// Of irradiance when the normal turns about the tangent and the bitangent (Ward & Heckbert 1992).
+/// The derivatives of irradiance as the normal turns about the tangent and about the bitangent
+/// (Ward & Heckbert 1992).
 void addTurns(const Rays& rays, const Rgb& mean, const HemisphereStrata& strata, Record& record) {
     for (std::size_t cell = 0; cell < strata.cells(); ++cell) {
         const double factor = strata.measure() / std::max(rays.z[cell], 1e-9);

@@ -17,8 +17,8 @@ public:
 
     /// A record whose reach will never grow.
     void add(std::uint32_t record, const Point& at, double reach);
-    /// Those of which the cube of half width `reach` meets the cube of half width `about` at `at`,
-    /// in ascending order.
+    /// Numbers of the records near a point, ascending. A record stands for the cube of half width
+    /// `reach` about it; it is found if that meets the cube of half width `about` about the point.
     void near(const Point& at, double about, std::vector<std::uint32_t>& found) const;
 
 private:
