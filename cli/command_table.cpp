@@ -26,6 +26,7 @@ void addLight(CLI::App& command, Globals& globals);
 void addIrradiance(CLI::App& command, Globals& globals);
 void addSample(CLI::App& command, Globals& globals);
 void addTransfer(CLI::App& command, Globals& globals);
+void addBatch(CLI::App& command, Globals& globals);
 void addHelp(CLI::App& command, Globals& globals);
 void addCompletion(CLI::App& command, Globals& globals);
 void addManual(CLI::App& command, Globals& globals);
@@ -193,6 +194,12 @@ constexpr Command table[] = {
      .file = "sample.cpp",
      .example = "hshfit sample ggx:alpha=.2 --outgoing 45,0 --count 100 -o samples.csv",
      .add = addSample},
+    {.name = "batch",
+     .group = studies,
+     .help = "Many materials: the commands of a manifest, in processes and on machines side by side",
+     .file = "batch.cpp",
+     .example = "hshfit batch examples/batch/materials.jsonl -o batch",
+     .add = addBatch},
     {.name = "help",
      .group = program,
      .help = "Commands by group and topics; the options of one command; one topic",

@@ -148,6 +148,10 @@ Words splitWords() {
 
 // A row for one command stands before the row for all.
 constexpr ValueRow table[] = {
+    {"batch", "MANIFEST", nullptr, Syntax::word, Files::read, ""},
+    {"batch", "--output", nullptr, Syntax::word, Files::folder},
+    {"batch", "--costs", nullptr, Syntax::word, Files::read},
+    {"batch", "--progress", nullptr, Syntax::word, Files::written},
     {"compare", "--output", nullptr, Syntax::word, Files::folder},
     {"completion", "--output", nullptr, Syntax::word, Files::written, ""},
     {"eval", "--output", nullptr, Syntax::word, Files::written, ".csv"},

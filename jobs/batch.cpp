@@ -70,18 +70,6 @@ std::optional<fs::path> pathOf(const std::string& spec) {
     return path.empty() ? std::nullopt : std::optional(fs::path(path));
 }
 
-std::string nameFor(const std::string& spec) {
-    if (const auto path = pathOf(spec)) return path->stem().string();
-    std::string name = spec;
-    for (char& c : name) {
-        const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-        const bool plain = letter || (c >= '0' && c <= '9') ||
-                           std::string_view("._=,+-").find(c) != std::string_view::npos;
-        if (!plain) c = '_';
-    }
-    return name;
-}
-
 /// Counts finished outgoing directions over all inputs. The number of an input is known once it
 /// has been opened; unopened inputs count with the average of the others.
 class TotalProgress {
@@ -128,6 +116,18 @@ std::vector<std::string> expandInputs(const std::vector<std::string>& specs) {
     return inputs;
 }
 
+std::string nameOf(const std::string& spec) {
+    if (const auto path = pathOf(spec)) return path->stem().string();
+    std::string name = spec;
+    for (char& c : name) {
+        const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+        const bool plain = letter || (c >= '0' && c <= '9') ||
+                           std::string_view("._=,+-").find(c) != std::string_view::npos;
+        if (!plain) c = '_';
+    }
+    return name;
+}
+
 bool areMany(const std::vector<std::string>& specs) {
     return specs.size() > 1 || std::ranges::any_of(specs, isFolder);
 }
@@ -137,7 +137,7 @@ std::vector<std::string> outputPaths(const std::vector<std::string>& specs,
     std::vector<std::string> paths;
     std::map<std::string, std::string> taken;
     for (const std::string& spec : specs) {
-        const std::string name = nameFor(spec) + extension;
+        const std::string name = nameOf(spec) + extension;
         const auto [other, isNew] = taken.try_emplace(name, spec);
         if (!isNew) {
             throw UsageError(fmt::format(

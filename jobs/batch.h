@@ -19,9 +19,12 @@ std::vector<std::string> expandInputs(const std::vector<std::string>& specs);
 /// Whether SPECs give many results: there are several of them, or one is a folder.
 bool areMany(const std::vector<std::string>& specs);
 
-/// FOLDER/NAME + extension for each input. NAME is a file's name without extension and options,
-/// or a model's specification with '_' for characters special to file systems and shells.
-/// Throws UsageError if two paths are equal.
+/// The name of a result: a file's name without extension and options, or a model's specification
+/// with '_' for characters special to file systems and shells.
+std::string nameOf(const std::string& spec);
+
+/// FOLDER/NAME + extension for each input. NAME is nameOf. Throws UsageError if two paths are
+/// equal.
 std::vector<std::string> outputPaths(const std::vector<std::string>& specs,
                                      const std::string& folder, const std::string& extension);
 

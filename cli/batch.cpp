@@ -1,0 +1,215 @@
+#include "batch_program.h"
+#include "batch_progress.h"
+#include "command.h"
+
+#include <hshfit/error.h>
+
+#include <jobs/batches/run.h>
+#include <jobs/batches/table.h>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <filesystem>
+
+namespace hshfit::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t shownFailures = 20, shownMistakes = 1000;
+
+struct BatchArguments {
+    std::string manifest, folder, shard, progress;
+    bool check = false, status = false, merge = false;
+    std::uint64_t memory = 0;
+    jobs::BatchOptions options;
+    jobs::MergeOptions mergeOptions;
+};
+
+/// Paths of a manifest are relative to its folder, which becomes the current one; those of the
+/// command line become absolute before.
+void enterFolderOf(BatchArguments& arguments) {
+    for (std::string* path : {&arguments.folder, &arguments.options.costs, &arguments.progress})
+        if (!path->empty() && *path != "-") *path = fs::absolute(*path).lexically_normal().string();
+    const fs::path manifest(arguments.manifest);
+    if (manifest.string().starts_with("/dev/") || !manifest.has_parent_path()) return;
+    std::error_code error;
+    fs::current_path(manifest.parent_path(), error);
+    if (error) throw InputError(fmt::format("{}: {}", arguments.manifest, error.message()));
+    arguments.manifest = manifest.filename().string();
+}
+
+/// Lines under the first, which says how many there are.
+void printList(const std::string& first, const std::vector<std::string>& lines, std::size_t most) {
+    printMessage(first);
+    for (std::size_t i = 0; i < std::min(lines.size(), most); ++i)
+        fmt::print(stderr, "  {}\n", lines[i]);
+    if (lines.size() > most) fmt::print(stderr, "  and {} more\n", lines.size() - most);
+}
+
+/// Exit code 3 with every mistake; false if there is none.
+bool refuse(const jobs::Manifest& manifest, const std::string& path, Globals& globals) {
+    const std::size_t count = manifest.mistakes.size();
+    if (count == 0) return false;
+    printList(fmt::format("{}: {} mistake{}; nothing was run", path, count, count == 1 ? "" : "s"),
+              manifest.mistakes, shownMistakes);
+    globals.exitCode = static_cast<int>(ExitCode::input);
+    return true;
+}
+
+Json head(const BatchArguments& arguments, std::size_t items) {
+    return {{"format", "hshfit-batch"},
+            {"version", 1},
+            {"manifest", arguments.manifest},
+            {"shard",
+             {{"index", arguments.options.shard.index}, {"count", arguments.options.shard.count}}},
+            {"items", items}};
+}
+
+Json failureJson(const jobs::ItemRecord& record) {
+    return {{"name", record.name}, {"exit_code", record.exitCode}, {"message", record.message}};
+}
+
+void reportFailed(const std::vector<jobs::ItemRecord>& failures, std::size_t items,
+                  Globals& globals) {
+    if (failures.empty()) return;
+    std::vector<std::string> lines;
+    bool numeric = true;
+    for (const jobs::ItemRecord& record : failures) {
+        lines.push_back(record.name + ": " + record.message);
+        numeric = numeric && record.exitCode == static_cast<int>(ExitCode::numeric);
+    }
+    printList(fmt::format("{} of {} items failed:", failures.size(), items), lines, shownFailures);
+    globals.exitCode = static_cast<int>(numeric ? ExitCode::numeric : ExitCode::input);
+}
+
+void check(const BatchArguments& arguments, Globals& globals) {
+    const jobs::Manifest manifest = jobs::readManifest(arguments.manifest, batchProgram());
+    if (refuse(manifest, arguments.manifest, globals)) return;
+    if (globals.json)
+        printJson(head(arguments, manifest.items.size()));
+    else
+        printText(
+            fmt::format("{}: {} items, no mistake\n", arguments.manifest, manifest.items.size()));
+}
+
+void run(BatchArguments& arguments, Globals& globals) {
+    jobs::BatchOptions& options = arguments.options;
+    if (!options.shard.origin.empty())
+        note(globals, fmt::format("shard {}/{} of the {}", options.shard.index, options.shard.count,
+                                  options.shard.origin));
+    jobs::BatchRun result;
+    {
+        BatchProgress progress(globals, arguments.progress);
+        result = jobs::runBatch(arguments.manifest, arguments.folder, batchProgram(), options,
+                                listenerFor(globals),
+                                [&](const jobs::BatchEvent& event) { progress.show(event); });
+    }
+    if (refuse(result.manifest, arguments.manifest, globals)) return;
+    Json document = head(arguments, result.items);
+    document["done"] = result.done;
+    document["kept"] = result.kept;
+    document["failed"] = result.failures.size();
+    document["seconds"] = result.seconds;
+    document["failures"] = Json::array();
+    for (const jobs::ItemRecord& record : result.failures)
+        document["failures"].push_back(failureJson(record));
+    if (globals.json)
+        printJson(document);
+    else
+        printText(fmt::format("{}: {} items, {} done ({} of them kept), {} failed, {:.3g} s\n",
+                              arguments.manifest, result.items, result.done, result.kept,
+                              result.failures.size(), result.seconds));
+    reportFailed(result.failures, result.items, globals);
+}
+
+/// Where the whole batch stands and, if asked for, its table.
+void survey(const BatchArguments& arguments, Globals& globals) {
+    const jobs::BatchProgram program = batchProgram();
+    const jobs::Manifest manifest = jobs::readManifest(arguments.manifest, program);
+    if (refuse(manifest, arguments.manifest, globals)) return;
+    const auto items = jobs::statusOf(manifest, arguments.folder, program, listenerFor(globals));
+    std::array<std::size_t, 4> counts{};
+    Json document = head(arguments, items.size()), failures = Json::array();
+    for (const jobs::ItemStatus& item : items) {
+        ++counts[static_cast<std::size_t>(item.state)];
+        if (item.state == jobs::ItemStatus::State::failed)
+            failures.push_back(failureJson(*item.record));
+    }
+    std::string text = fmt::format("{}: {} items", arguments.manifest, items.size());
+    for (const auto state : {jobs::ItemStatus::State::done, jobs::ItemStatus::State::failed,
+                             jobs::ItemStatus::State::stale, jobs::ItemStatus::State::missing}) {
+        const std::size_t count = counts[static_cast<std::size_t>(state)];
+        document[std::string(jobs::nameOf(state))] = count;
+        text += fmt::format(", {} {}", count, jobs::nameOf(state));
+    }
+    document["kept"] = document["done"];
+    document["failures"] = failures;
+    text += "\n";
+    if (arguments.merge) {
+        document["files"] = jobs::mergeBatch(items, arguments.folder, program,
+                                             arguments.mergeOptions, listenerFor(globals));
+        for (const auto& file : document["files"]) text += file.get<std::string>() + "\n";
+    }
+    globals.json ? printJson(document) : printText(text);
+}
+
+void runBatch(BatchArguments& arguments, Globals& globals) {
+    if (arguments.folder.empty() && !arguments.check)
+        throw UsageError("--output is missing: the folder of the results");
+    const int ways = arguments.check + arguments.status + arguments.merge;
+    if (ways > 1) throw UsageError("--check, --status and --merge: give one of them");
+    arguments.options.shard = jobs::shardOf(arguments.shard);
+    arguments.options.processes = static_cast<std::size_t>(globals.threads);
+    arguments.options.memory = arguments.memory;
+    enterFolderOf(arguments);
+    if (arguments.check)
+        check(arguments, globals);
+    else if (arguments.status || arguments.merge)
+        survey(arguments, globals);
+    else
+        run(arguments, globals);
+}
+
+}  // namespace
+
+void addBatch(CLI::App& command, Globals& globals) {
+    auto arguments = std::make_shared<BatchArguments>();
+    command
+        .add_option("MANIFEST", arguments->manifest,
+                    "JSON lines, each a command, its input and its options (docs/batch.md)")
+        ->required();
+    command.add_option("-o,--output", arguments->folder,
+                       "Folder of the results, one folder for each item in its items/");
+    command
+        .add_option(
+            "--shard", arguments->shard,
+            "K/N: the share K of N, from 1; /N: K from the environment of Slurm, Kubernetes "
+            "or Open MPI")
+        ->default_str("from the environment, else 1/1");
+    command
+        .add_option("--memory", arguments->memory,
+                    "Bytes for all processes together, with a unit (8G)")
+        ->transform(CLI::AsSizeValue(false));
+    command.add_option("--costs", arguments->options.costs,
+                       "times.csv of an earlier merge, by which shards are weighed");
+    command.add_option("--progress", arguments->progress,
+                       "File to which a JSON line is added for each item; -: standard error");
+    command.add_flag("--force", arguments->options.force, "Do again what is done and valid");
+    command.add_flag("--check", arguments->check, "Check the manifest and run nothing");
+    command.add_flag("--status", arguments->status, "Count what is done, failed, stale, missing");
+    command.add_flag("--merge", arguments->merge,
+                     "Write table.csv, table.jsonl, times.csv and index.html of all items");
+    command
+        .add_option("--thumbnails", arguments->mergeOptions.thumbnail,
+                    "With --merge: pixels of each material's sphere; 0: none")
+        ->check(CLI::Range(0, 512))
+        ->capture_default_str();
+    command.callback([arguments, &globals] { runBatch(*arguments, globals); });
+}
+
+}  // namespace hshfit::cli
