@@ -24,7 +24,7 @@ constexpr std::size_t shownFailures = 20, shownMistakes = 1000;
 
 struct BatchArguments {
     std::string manifest, folder, shard, progress;
-    bool check = false, status = false, merge = false;
+    bool check = false, list = false, status = false, merge = false;
     std::uint64_t memory = 0;
     jobs::BatchOptions options;
     jobs::MergeOptions mergeOptions;
@@ -88,13 +88,20 @@ void reportFailed(const std::vector<jobs::ItemRecord>& failures, std::size_t ite
 }
 
 void check(const BatchArguments& arguments, Globals& globals) {
-    const jobs::Manifest manifest = jobs::readManifest(arguments.manifest, batchProgram());
+    const jobs::BatchProgram program = batchProgram();
+    const jobs::Manifest manifest = jobs::readManifest(arguments.manifest, program);
     if (refuse(manifest, arguments.manifest, globals)) return;
-    if (globals.json)
-        printJson(head(arguments, manifest.items.size()));
-    else
-        printText(
-            fmt::format("{}: {} items, no mistake\n", arguments.manifest, manifest.items.size()));
+    const auto items = jobs::itemsOfShard(manifest, program, arguments.options);
+    Json document = head(arguments, items.size());
+    std::string text = fmt::format("{}: {} items, no mistake\n", arguments.manifest, items.size());
+    if (arguments.list) {
+        document["names"] = Json::array();
+        for (const std::size_t i : items) {
+            document["names"].push_back(manifest.items[i].name);
+            text += manifest.items[i].name + "\n";
+        }
+    }
+    globals.json ? printJson(document) : printText(text);
 }
 
 void run(BatchArguments& arguments, Globals& globals) {
@@ -163,6 +170,7 @@ void runBatch(BatchArguments& arguments, Globals& globals) {
         throw UsageError("--output is missing: the folder of the results");
     const int ways = arguments.check + arguments.status + arguments.merge;
     if (ways > 1) throw UsageError("--check, --status and --merge: give one of them");
+    if (arguments.list && !arguments.check) throw UsageError("--list: give --check too");
     arguments.options.shard = jobs::shardOf(arguments.shard);
     arguments.options.processes = static_cast<std::size_t>(globals.threads);
     arguments.options.memory = arguments.memory;
@@ -201,6 +209,8 @@ void addBatch(CLI::App& command, Globals& globals) {
                        "File to which a JSON line is added for each item; -: standard error");
     command.add_flag("--force", arguments->options.force, "Do again what is done and valid");
     command.add_flag("--check", arguments->check, "Check the manifest and run nothing");
+    command.add_flag("--list", arguments->list,
+                     "With --check: the names of the shard's items, the most costly first");
     command.add_flag("--status", arguments->status, "Count what is done, failed, stale, missing");
     command.add_flag("--merge", arguments->merge,
                      "Write table.csv, table.jsonl, times.csv and index.html of all items");

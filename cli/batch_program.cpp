@@ -23,19 +23,19 @@ namespace {
 
 using Output = jobs::BatchCommand::Output;
 
-/// The costs are those of docs/batch.md, "What a shard takes", on small inputs.
+/// Costs are mean processor seconds of small items: docs/batch.md, "Shards".
 constexpr jobs::BatchCommand items[] = {
-    {.name = "project", .output = Output::file, .outputName = "coefficients.json", .cost = .05},
-    {.name = "report", .output = Output::folder, .outputName = "report", .cost = 2},
-    {.name = "fit", .output = Output::file, .outputName = "fit.json", .cost = 1},
-    {.name = "convert", .output = Output::file, .cost = .5},
-    {.name = "tradeoff", .output = Output::folder, .outputName = "tradeoff", .cost = 20},
-    {.name = "export", .output = Output::folder, .outputName = "export", .cost = 1},
-    {.name = "compare", .comparesTwo = true, .cost = .5},
-    {.name = "info", .cost = .1},
-    {.name = "eval", .cost = .01},
-    {.name = "render", .output = Output::file, .outputName = "render.png", .cost = .5},
-    {.name = "gaussians", .output = Output::file, .outputName = "gaussians.json", .cost = 1},
+    {.name = "project", .output = Output::file, .outputName = "coefficients.json", .cost = .006},
+    {.name = "report", .output = Output::folder, .outputName = "report", .cost = .1},
+    {.name = "fit", .output = Output::file, .outputName = "fit.json", .cost = .06},
+    {.name = "convert", .output = Output::file, .cost = .34},
+    {.name = "tradeoff", .output = Output::folder, .outputName = "tradeoff", .cost = 12},
+    {.name = "export", .output = Output::folder, .outputName = "export", .cost = 2},
+    {.name = "compare", .comparesTwo = true, .cost = .034},
+    {.name = "info", .cost = .009},
+    {.name = "eval", .cost = .002},
+    {.name = "render", .output = Output::file, .outputName = "render.png", .cost = .15},
+    {.name = "gaussians", .output = Output::file, .outputName = "gaussians.json", .cost = 1.3},
 };
 
 constexpr std::array<std::string_view, 6> reserved{"json",   "quiet", "threads",

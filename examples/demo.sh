@@ -100,3 +100,8 @@ echo "the fit is out/fit_beckmann/fit.json, with comparison.html beside it;"
 echo "the plan is out/plan/plan.html;"
 echo "the viewer is out/export/ward_cosine_viewer.html;"
 echo "the coefficients are out/*.json and out/*.exr: build/hshfit info out/ward_cosine.json"
+
+echo
+echo "10. Many materials: a manifest of commands, and one table of all answers."
+show batch examples/batch/materials.jsonl -o out/batch
+show batch examples/batch/materials.jsonl -o out/batch --merge

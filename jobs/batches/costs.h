@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,19 +17,26 @@ class Costs {
 public:
     Costs() = default;
     /// Of the times.csv that a merge of earlier results wrote (docs/batch.md): items get the
-    /// measured time of their name or, if there is none, the mean of their class. Throws
-    /// InputError.
+    /// measured processor time of their name or, if there is none, the mean of their class or their
+    /// wider class. Throws InputError.
     static Costs fromFile(const std::string& path);
 
     double of(const BatchItem& item, const BatchProgram& program) const;
 
 private:
+    std::optional<double> classMean(const std::string& name, std::size_t least) const;
+
     std::map<std::string, double, std::less<>> seconds_;                          ///< by name
     std::map<std::string, std::pair<double, std::size_t>, std::less<>> classes_;  ///< sum, count
 };
 
-/// Items of one class take similar times: the command, its options, the kind of the input and the
-/// power of two of its size.
+/// Items of one class take similar times: the command, its options, and the model with the powers
+/// of two of its parameters or the extension of a file with that of its size.
 std::string classOf(const BatchItem& item, const BatchProgram& program);
+/// The same without the powers of two.
+std::string widerClassOf(const BatchItem& item, const BatchProgram& program);
+/// A text, different for each item, by whose order items that take similar times are neighbours:
+/// the class, then the values of parameters.
+std::string similarityOf(const BatchItem& item, const BatchProgram& program);
 
 }  // namespace hshfit::jobs

@@ -113,17 +113,18 @@ std::string nameOfItem(std::string name, const BatchItem& item, std::string_view
     replaceAll(name, "{parent}", nameOf(fs::path(input).parent_path().filename().string()));
     replaceAll(name, "{command}", std::string(command));
     replaceAll(name, "{line}", std::to_string(item.line));
+    std::ranges::replace(name, ',', '_');
     return name;
 }
 
 void requireName(const std::string& name, const std::string& where) {
     const bool plain = std::ranges::all_of(name, [](unsigned char c) {
         return std::isalnum(c) ||
-               std::string_view("._=,+-").find(static_cast<char>(c)) != std::string_view::npos;
+               std::string_view("._=+-").find(static_cast<char>(c)) != std::string_view::npos;
     });
     if (name.empty() || name.size() > longestName || name[0] == '.' || !plain)
         throw InputError(
-            fmt::format("{}: name '{}': give 1 to {} letters, digits and . _ = , + -, "
+            fmt::format("{}: name '{}': give 1 to {} letters, digits and . _ = + -, "
                         "without a dot at its beginning",
                         where, name, longestName));
 }

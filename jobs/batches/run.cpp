@@ -36,12 +36,12 @@ struct Share {
 Share shareOf(const Manifest& manifest, const BatchProgram& program, const BatchOptions& options) {
     const Costs costs = options.costs.empty() ? Costs() : Costs::fromFile(options.costs);
     Share share;
-    std::vector<std::string> names;
+    std::vector<std::string> similarity;
     for (const BatchItem& item : manifest.items) {
         share.costs.push_back(costs.of(item, program));
-        names.push_back(item.name);
+        similarity.push_back(similarityOf(item, program));
     }
-    const auto shards = assignShards(share.costs, names, options.shard.count);
+    const auto shards = assignShards(share.costs, similarity, options.shard.count);
     for (std::size_t i = 0; i < shards.size(); ++i)
         if (shards[i] + 1 == options.shard.index) share.items.push_back(i);
     std::ranges::stable_sort(
@@ -173,20 +173,25 @@ private:
 
 }  // namespace
 
+std::vector<std::size_t> itemsOfShard(const Manifest& manifest, const BatchProgram& program,
+                                      const BatchOptions& options) {
+    return shareOf(manifest, program, options).items;
+}
+
 BatchRun runBatch(const std::string& manifest, const std::string& folder,
                   const BatchProgram& program, const BatchOptions& options,
                   const Listener& listener, const std::function<void(const BatchEvent&)>& event) {
     const auto start = Clock::now();
     const auto work = [&program](const std::string& order) { return makeItem(order, program); };
-    const std::size_t processes = options.stopAfterCheck ? 0 : processesOf(options);
+    const std::size_t processes = processesOf(options);
     std::optional<Workers> workers, whole;
     // Before the check, which may start threads.
-    workers.emplace(processes, processes > 0 ? options.memory / processes : 0, work);
-    if (options.memory > 0 && processes > 0) whole.emplace(1, options.memory, work);
+    workers.emplace(processes, options.memory / processes, work);
+    if (options.memory > 0) whole.emplace(1, options.memory, work);
     BatchRun result{.manifest = readManifest(manifest, program)};
     const Share share = shareOf(result.manifest, program, options);
     result.items = share.items.size();
-    if (!result.manifest.mistakes.empty() || options.stopAfterCheck) return result;
+    if (!result.manifest.mistakes.empty()) return result;
     Run run(folder, program, options, event, result, share);
     run.all(*workers, false);
     if (run.hasPostponed()) {

@@ -23,7 +23,6 @@ struct BatchOptions {
     std::size_t memory = 0;
     std::string costs = {};  ///< times.csv of an earlier batch; empty: estimates
     bool force = false;      ///< what is done and valid is done again
-    bool stopAfterCheck = false;
 };
 
 /// A finished item, or one that was valid, and how far the batch is.
@@ -42,6 +41,11 @@ struct BatchRun {
     std::vector<ItemRecord> failures = {};  ///< sorted by name
     double seconds = 0;
 };
+
+/// The items of a shard, as indices, the most costly first. Throws InputError for a table of costs
+/// that cannot be read.
+std::vector<std::size_t> itemsOfShard(const Manifest& manifest, const BatchProgram& program,
+                                      const BatchOptions& options);
 
 /// Makes the items of a manifest, or a shard of them, in `folder`/items/NAME: the result of the
 /// command, answer.json (what it prints as JSON) and record.json. Results whose inputs, options

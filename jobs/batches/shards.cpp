@@ -1,7 +1,6 @@
 #include "shards.h"
 
 #include <hshfit/error.h>
-#include <hshfit/files/checksum.h>
 
 #include <fmt/format.h>
 
@@ -111,15 +110,13 @@ Shard shardOf(std::string_view text) {
 }
 
 std::vector<std::uint32_t> assignShards(std::span<const double> costs,
-                                        std::span<const std::string> names, std::size_t count) {
+                                        std::span<const std::string> texts, std::size_t count) {
     std::vector<std::uint32_t> shards(costs.size(), 0);
     if (count == 1) return shards;
-    std::vector<std::string> hashes(names.size());
-    for (std::size_t i = 0; i < names.size(); ++i) hashes[i] = sha256(names[i]);
     std::vector<std::size_t> order(costs.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
-        return costs[a] != costs[b] ? costs[a] > costs[b] : hashes[a] < hashes[b];
+        return costs[a] != costs[b] ? costs[a] > costs[b] : texts[a] < texts[b];
     });
     using Load = std::pair<double, std::uint32_t>;
     std::priority_queue<Load, std::vector<Load>, std::greater<>> loads;

@@ -29,11 +29,12 @@ struct Shard {
 Shard shardOf(std::string_view text);
 
 /// The shard of each item, from 0, for `count` shards: the same on every machine, since it depends
-/// on costs and names alone. Items in order of falling cost, ties by SHA-256 of the name, each go
-/// to the shard with the least sum so far (longest processing time first; R. L. Graham, Bounds on
+/// on costs and texts alone. Items in order of falling cost, ties by their texts, each go to the
+/// shard with the least sum so far (longest processing time first; R. L. Graham, Bounds on
 /// Multiprocessing Timing Anomalies, SIAM J. Appl. Math. 17, 1969): the largest sum is at most
-/// 4/3 - 1/(3 count) of the best possible one.
+/// 4/3 - 1/(3 count) of the best possible one. Items of equal cost whose texts are neighbours go to
+/// different shards, so that what the costs do not know spreads evenly over them.
 std::vector<std::uint32_t> assignShards(std::span<const double> costs,
-                                        std::span<const std::string> names, std::size_t count);
+                                        std::span<const std::string> texts, std::size_t count);
 
 }  // namespace hshfit::jobs

@@ -126,11 +126,12 @@ void writeCsv(AtomicFile& file, const std::vector<Json>& rows,
 
 void writeTimes(AtomicFile& file, const std::vector<ItemStatus>& items,
                 const BatchProgram& program) {
-    file.write("name,class,seconds,cpu_seconds,peak_bytes\n");
+    file.write("name,class,wider_class,seconds,cpu_seconds,peak_bytes\n");
     for (const ItemStatus& status : items)
         if (status.record && status.record->isDone())
-            file.write(fmt::format("{},{},{:.6g},{:.6g},{}\n", status.item->name,
-                                   classOf(*status.item, program), status.record->seconds,
+            file.write(fmt::format("{},{},{},{:.6g},{:.6g},{}\n", status.item->name,
+                                   classOf(*status.item, program),
+                                   widerClassOf(*status.item, program), status.record->seconds,
                                    status.record->cpuSeconds, status.record->peakBytes));
 }
 
