@@ -81,6 +81,11 @@ show illuminate examples/scenes/box.json -o out/box_cache --method radiance-cach
 show transfer examples/scenes/ball_and_wall.json -o out/ball --rays 64 --force
 
 echo
+echo "10. Many materials: a manifest of commands, and one table of all answers."
+show batch examples/batch/materials.jsonl -o out/batch
+show batch examples/batch/materials.jsonl -o out/batch --merge
+
+echo
 echo "Captured energy of f cos with order 7 (49 slots) and the files it went to:"
 # The BRDF is the last column, in quotes and with commas of its own.
 awk -F, '
@@ -97,11 +102,6 @@ done
 echo
 echo "Open out/report_cosine/report.html, and report_phong and report_ward beside it;"
 echo "the fit is out/fit_beckmann/fit.json, with comparison.html beside it;"
-echo "the plan is out/plan/plan.html;"
+echo "the plan is out/plan/plan.html; the table of the batch is out/batch/index.html;"
 echo "the viewer is out/export/ward_cosine_viewer.html;"
 echo "the coefficients are out/*.json and out/*.exr: build/hshfit info out/ward_cosine.json"
-
-echo
-echo "10. Many materials: a manifest of commands, and one table of all answers."
-show batch examples/batch/materials.jsonl -o out/batch
-show batch examples/batch/materials.jsonl -o out/batch --merge
