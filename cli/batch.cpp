@@ -34,21 +34,13 @@ struct BatchArguments {
 /// command line become absolute before.
 void enterFolderOf(BatchArguments& arguments) {
     for (std::string* path : {&arguments.folder, &arguments.options.costs, &arguments.progress})
-        if (!path->empty() && *path != "-") *path = fs::absolute(*path).lexically_normal().string();
+        if (!path->empty()) *path = fs::absolute(*path).lexically_normal().string();
     const fs::path manifest(arguments.manifest);
     if (manifest.string().starts_with("/dev/") || !manifest.has_parent_path()) return;
     std::error_code error;
     fs::current_path(manifest.parent_path(), error);
     if (error) throw InputError(fmt::format("{}: {}", arguments.manifest, error.message()));
     arguments.manifest = manifest.filename().string();
-}
-
-/// Lines under the first, which says how many there are.
-void printList(const std::string& first, const std::vector<std::string>& lines, std::size_t most) {
-    printMessage(first);
-    for (std::size_t i = 0; i < std::min(lines.size(), most); ++i)
-        fmt::print(stderr, "  {}\n", lines[i]);
-    if (lines.size() > most) fmt::print(stderr, "  and {} more\n", lines.size() - most);
 }
 
 /// Exit code 3 with every mistake; false if there is none.
@@ -206,7 +198,7 @@ void addBatch(CLI::App& command, Globals& globals) {
     command.add_option("--costs", arguments->options.costs,
                        "times.csv of an earlier merge, by which shards are weighed");
     command.add_option("--progress", arguments->progress,
-                       "File to which a JSON line is added for each item; -: standard error");
+                       "File to which a JSON line is added for each item, such as /dev/stderr");
     command.add_flag("--force", arguments->options.force, "Do again what is done and valid");
     command.add_flag("--check", arguments->check, "Check the manifest and run nothing");
     command.add_flag("--list", arguments->list,

@@ -7,6 +7,7 @@
 #include "value_table.h"
 
 #include <hshfit/error.h>
+#include <hshfit/files/json_fields.h>
 #include <hshfit/spelling.h>
 #include <hshfit/version.h>
 
@@ -51,7 +52,7 @@ void addOption(std::vector<std::string>& words, const std::string& key,
     else if (value.is_string())
         words.push_back(fmt::format("--{}={}", key, value.get<std::string>()));
     else if (!value.is_boolean())
-        words.push_back(fmt::format("--{}={}", key, value.dump()));
+        words.push_back(fmt::format("--{}={}", key, jsonText(value)));
 }
 
 std::vector<std::string> wordsOf(const jobs::BatchItem& item, const std::string& output) {

@@ -4,7 +4,6 @@
 #include <hshfit/files/json_fields.h>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
@@ -16,22 +15,19 @@ namespace hshfit::cli {
 struct BatchProgress::State {
     using Clock = std::chrono::steady_clock;
     std::string path;
+    TerminalLine terminal;
     std::FILE* file = nullptr;
-    bool onTerminal = false, visible = false;
     Clock::time_point shown = Clock::now();
 
     void line(const jobs::BatchEvent& event) {
         constexpr auto interval = std::chrono::milliseconds(200);
-        if (!onTerminal || (Clock::now() - shown < interval && event.finished != event.items))
-            return;
+        if (!terminal.isShown() || Clock::now() - shown < interval) return;
         shown = Clock::now();
-        visible = true;
         const std::string failed =
             event.failed > 0 ? fmt::format("  {} failed", event.failed) : std::string();
-        fmt::print(stderr, "\r\x1b[K{}/{} items  {:.3g}/s  {:.0f} s left{}", event.finished,
-                   event.items, static_cast<double>(event.finished) / event.seconds,
-                   event.secondsLeft, failed);
-        std::fflush(stderr);
+        terminal.show(fmt::format("{}/{} items  {:.3g}/s  {:.0f} s left{}", event.finished,
+                                  event.items, static_cast<double>(event.finished) / event.seconds,
+                                  event.secondsLeft, failed));
     }
     void record(const jobs::BatchEvent& event) const {
         if (!file) return;
@@ -57,20 +53,14 @@ struct BatchProgress::State {
 };
 
 BatchProgress::BatchProgress(const Globals& globals, const std::string& path)
-    : state_(std::make_unique<State>()) {
-    state_->path = path;
-    state_->onTerminal = !globals.quiet && isatty(STDERR_FILENO) != 0 && path != "-";
-    if (path == "-")
-        state_->file = stderr;
-    else if (!path.empty())
-        state_->file = std::fopen(path.c_str(), "ae");
-    if (!path.empty() && !state_->file)
-        throw OutputError(fmt::format("{}: {}", path, std::strerror(errno)));
+    : state_(new State{.path = path, .terminal = TerminalLine(globals)}) {
+    if (path.empty()) return;
+    state_->file = std::fopen(path.c_str(), "ae");
+    if (!state_->file) throw OutputError(fmt::format("{}: {}", path, std::strerror(errno)));
 }
 
 BatchProgress::~BatchProgress() {
-    if (state_->visible) fmt::print(stderr, "\r\x1b[K");
-    if (state_->file && state_->file != stderr) std::fclose(state_->file);
+    if (state_->file) std::fclose(state_->file);
 }
 
 void BatchProgress::show(const jobs::BatchEvent& event) {

@@ -13,7 +13,7 @@ namespace hshfit::cli {
 /// for programs that watch.
 class BatchProgress {
 public:
-    /// `path` gets a line for each item; empty: none; "-": standard error. Throws OutputError.
+    /// `path` gets a line for each item; empty: none. Throws OutputError.
     BatchProgress(const Globals& globals, const std::string& path);
     ~BatchProgress();
     BatchProgress(const BatchProgress&) = delete;

@@ -14,6 +14,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <chrono>
@@ -143,6 +144,26 @@ void occupyStandardStreams() {
 
 void note(const Globals& globals, std::string_view message) {
     if (!globals.quiet) writeError(messageLine("hshfit: ", message));
+}
+
+TerminalLine::TerminalLine(const Globals& globals)
+    : shown_(!globals.quiet && isatty(STDERR_FILENO) != 0) {}
+
+TerminalLine::~TerminalLine() {
+    if (visible_) writeError("\r\x1b[K");
+}
+
+void TerminalLine::show(std::string_view text) {
+    if (!shown_) return;
+    visible_ = true;
+    writeError(fmt::format("\r\x1b[K{}", printable(text)));
+}
+
+void printList(std::string_view message, const std::vector<std::string>& lines, std::size_t most) {
+    printMessage(message);
+    for (std::size_t i = 0; i < std::min(lines.size(), most); ++i)
+        writeError(messageLine("  ", lines[i]));
+    if (lines.size() > most) writeError(fmt::format("  and {} more\n", lines.size() - most));
 }
 
 struct Progress::State {

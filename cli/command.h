@@ -79,6 +79,26 @@ private:
     std::shared_ptr<State> state_;
 };
 
+/// One line on standard error that changes, while it lives. Nothing is shown with --quiet or if
+/// standard error is no terminal.
+class TerminalLine {
+public:
+    explicit TerminalLine(const Globals& globals);
+    ~TerminalLine();
+    TerminalLine(const TerminalLine&) = delete;
+    TerminalLine& operator=(const TerminalLine&) = delete;
+
+    bool isShown() const { return shown_; }
+    void show(std::string_view text);
+
+private:
+    bool shown_, visible_ = false;
+};
+
+/// A message on standard error and lines below it, with --quiet too; beyond `most` lines their
+/// number.
+void printList(std::string_view message, const std::vector<std::string>& lines, std::size_t most);
+
 /// A message on standard error, unless --quiet.
 void note(const Globals& globals, std::string_view message);
 

@@ -196,7 +196,8 @@ constexpr Command table[] = {
      .add = addSample},
     {.name = "batch",
      .group = studies,
-     .help = "Many materials: the commands of a manifest, in processes and on machines side by side",
+     .help =
+         "Many materials: the commands of a manifest, in processes and on machines side by side",
      .file = "batch.cpp",
      .example = "hshfit batch examples/batch/materials.jsonl -o batch",
      .add = addBatch},

@@ -84,13 +84,15 @@ matches '#include *[<"](Eigen|OpenEXR|Imf|Imath|nlohmann)' 'lib/*.h' ':!lib/**/i
     ':!lib/hshfit/linear_algebra/decompositions.h' |
     rule 'third-party headers stay out of public headers'
 # One function makes text printable (files/printable.h): everything printed goes through
-# cli/command.cpp (cli/terminal.cpp asks for the width), everything in JSON through
+# cli/command.cpp (cli/terminal.cpp asks for the width, and the items of a batch write theirs to
+# files), everything in JSON through
 # files/json_fields.cpp, every page and every script of gnuplot through printableLines. Shaders keep
 # to ASCII by themselves.
 streams='[^/_[:alnum:]](stderr|stdout|STD(OUT|ERR)_FILENO)|std::(cout|cerr|clog)'
 matches "$streams|fmt::print|printf\\(" \
     'lib/*.cpp' 'lib/*.h' brdfs jobs cli ':!cli/command.cpp' ':!cli/terminal.cpp' \
-    ':!lib/hshfit/pages/gnuplot.cpp' ':!lib/hshfit/files/standard_streams.cpp' |
+    ':!lib/hshfit/pages/gnuplot.cpp' ':!lib/hshfit/files/standard_streams.cpp' \
+    ':!jobs/batches/redirected_streams.cpp' |
     rule 'text is printed by printText, printMessage and note only (cli/command.h)'
 matches '\.dump\(' 'lib/*.cpp' 'lib/*.h' brdfs jobs cli ':!lib/hshfit/files/json_fields.cpp' |
     rule 'JSON becomes text in jsonText only (files/json_fields.h)'

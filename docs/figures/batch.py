@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""batch.py [HSHFIT]: the figures of docs/batch.md, printed as Markdown. Takes some minutes, and wants
-an idle machine.
+"""batch.py [HSHFIT]: the figures of docs/batch.md, printed as Markdown. Takes some minutes, and
+wants an idle machine.
 
 1. 2,000 small projections: one process against two, and the overhead of an item.
 2. A manifest of 100,000 lines: time and memory of its check.
-3. 10,000 items of six commands: how evenly 64 shards share their measured processor times, by the estimates of the
-   program and by the times of an earlier batch of other items.
+3. 10,000 items of six commands: how evenly 64 shards share their measured processor times, by the
+   estimates of the program and by the times of an earlier batch of other items.
 4. Kills: 50 shards ended by SIGKILL at random moments, then run again."""
 import csv
 import json

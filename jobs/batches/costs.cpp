@@ -5,6 +5,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/files/checksum.h>
+#include <hshfit/files/json_fields.h>
 #include <hshfit/specification/parameters.h>
 
 #include <fmt/format.h>
@@ -70,7 +71,7 @@ std::string textOf(const BatchItem& item, const BatchProgram& program, const Wri
                                  : path.extension().string() + " " +
                                        write(static_cast<double>(fs::file_size(path, error)));
     std::string text = fmt::format("{} {} {}", program.commands[item.command].name,
-                                   sha256(item.options->dump()).substr(0, digits), kind);
+                                   sha256(jsonText(*item.options)).substr(0, digits), kind);
     for (char& c : text)
         if (c == ',' || c == '"') c = ' ';
     return text;

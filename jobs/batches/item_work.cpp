@@ -1,21 +1,19 @@
 #include "item_work.h"
 
 #include "program.h"
+#include "redirected_streams.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/files/printable.h>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstdio>
 #include <cstring>
 #include <ctime>
 #include <fstream>
@@ -33,35 +31,6 @@ constexpr int deepest = 12;
 constexpr std::string_view answerName = "answer.json", recordName = "record.json",
                            messagesName = ".messages";
 constexpr std::string_view memoryWords = "not enough memory";
-
-/// Standard output and standard error in files, for as long as it lives.
-class Redirected {
-public:
-    Redirected(const fs::path& output, const fs::path& error)
-        : output_(take(STDOUT_FILENO, output)), error_(take(STDERR_FILENO, error)) {}
-    ~Redirected() {
-        give(STDOUT_FILENO, output_);
-        give(STDERR_FILENO, error_);
-    }
-    Redirected(const Redirected&) = delete;
-    Redirected& operator=(const Redirected&) = delete;
-
-private:
-    static int take(int stream, const fs::path& path) {
-        const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-        if (file < 0) throw OutputError(fmt::format("{}: {}", path.string(), std::strerror(errno)));
-        const int kept = ::fcntl(stream, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
-        ::dup2(file, stream);
-        ::close(file);
-        return kept;
-    }
-    static void give(int stream, int kept) {
-        std::fflush(stream == STDOUT_FILENO ? stdout : stderr);
-        ::dup2(kept, stream);
-        ::close(kept);
-    }
-    int output_, error_;
-};
 
 std::string textOf(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
@@ -139,7 +108,7 @@ ItemOrder orderOf(const std::string& text) {
 
 /// Runs the words; the answer and the messages stay in files of the part.
 int runWords(const ItemOrder& order, const BatchProgram& program) {
-    const Redirected redirected(order.part / answerName, order.part / messagesName);
+    const RedirectedStreams redirected(order.part / answerName, order.part / messagesName);
     return program.run(order.words);
 }
 

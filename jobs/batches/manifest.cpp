@@ -31,7 +31,7 @@ namespace {
 constexpr std::size_t longestLine = 1 << 20, longestName = 200;
 constexpr int deepest = 8;
 
-/// What lines have in common, and what was found out about their parts.
+/// The defaults of all lines, and mistakes of parts that lines share.
 struct Reading {
     const BatchProgram& program;
     Manifest manifest = {};
@@ -188,7 +188,7 @@ void addItem(Reading& reading, BatchItem item, const std::string& name, const st
         if (!found->second.empty()) throw InputError(where + ": " + found->second);
     }
     const std::string signature =
-        fmt::format("{} {} {}", command.name, item.output, item.options->dump());
+        fmt::format("{} {} {}", command.name, item.output, jsonText(*item.options));
     const auto [mistake, isNew] = reading.mistakesOfOptions.try_emplace(signature);
     if (isNew) mistake->second = reading.program.mistake(reading.program.words(item, item.output));
     if (!mistake->second.empty()) throw InputError(where + ": " + mistake->second);
@@ -227,7 +227,7 @@ void readItems(Reading& reading, json line, std::size_t number, const std::strin
             line[key] = reading.defaults[key];
     item.output = outputOf(line, command, where);
     const json options = mergedOptions(reading, line, command.name, where);
-    auto& shared = reading.options[options.dump()];
+    auto& shared = reading.options[jsonText(options)];
     if (!shared) shared = std::make_shared<const json>(options);
     item.options = shared;
     if (line.contains("cost")) {

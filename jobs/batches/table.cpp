@@ -9,6 +9,7 @@
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/checksum.h>
 #include <hshfit/files/json_fields.h>
+#include <hshfit/files/printable.h>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -89,7 +90,7 @@ Json rowOf(const ItemStatus& status, const BatchStore& store, const BatchProgram
 
 std::string csvCell(const Json& value) {
     if (value.is_null()) return "";
-    std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    std::string text = value.is_string() ? value.get<std::string>() : jsonText(value);
     if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
     std::string quoted = "\"";
     for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -182,9 +183,9 @@ std::string scriptText(const Json& value) {
     return text;
 }
 
-void writePage(AtomicFile& file, const std::vector<ItemStatus>& items, std::vector<Json> rows,
-               const std::vector<std::string>& columns, const fs::path& folder,
-               const MergeOptions& options, const Listener& listener) {
+std::string pageText(const std::vector<ItemStatus>& items, std::vector<Json> rows,
+                     const std::vector<std::string>& columns, const fs::path& folder,
+                     const MergeOptions& options, const Listener& listener) {
     if (options.thumbnail > 0) {
         const auto shown = drawThumbnails(items, folder, options.thumbnail, listener);
         for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -198,7 +199,7 @@ void writePage(AtomicFile& file, const std::vector<ItemStatus>& items, std::vect
     fields.set("columns", scriptText(columns));
     fields.set("pixels", std::to_string(options.thumbnail));
     kainjow::mustache::mustache page{std::string(embedded::batch_html)};
-    file.write(page.render(fields));
+    return printableLines(page.render(fields));
 }
 
 }  // namespace
@@ -262,7 +263,7 @@ std::vector<std::string> mergeBatch(const std::vector<ItemStatus>& items, const 
     });
     write("times.csv", [&](AtomicFile& file) { writeTimes(file, items, program); });
     write("index.html", [&](AtomicFile& file) {
-        writePage(file, items, rows, columns, folder, options, listener);
+        file.write(pageText(items, rows, columns, folder, options, listener));
     });
     return paths;
 }

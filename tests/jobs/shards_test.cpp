@@ -1,4 +1,4 @@
-// How the items of a batch are shared out.
+// Shares of a batch: their sums, their order, the engines that number them.
 
 #include <jobs/batches/shards.h>
 
