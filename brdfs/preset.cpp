@@ -4,6 +4,7 @@
 #include <brdfs/preset_collection.h>
 #include <brdfs/preset_json.h>
 #include <brdfs/spec.h>
+#include <brdfs/spectrum.h>
 #include <brdfs/sum.h>
 #include <hshfit/error.h>
 
@@ -33,6 +34,20 @@ std::unique_ptr<Brdf> openSpec(const std::string& spec, const std::string& where
     } catch (const UsageError& error) {
         throw InputError(fmt::format("{}: {}", where, error.what()));
     }
+}
+
+std::vector<PresetContent::Line> spectrumField(const JsonFields& preset) {
+    std::vector<PresetContent::Line> lines;
+    for (const JsonFields& line : preset.objects("spectrum")) {
+        const double wavelength = line.number("wavelength", 1, 1e6);
+        if (!lines.empty() && !(wavelength > lines.back().wavelength))
+            line.fail(fmt::format("is {}, after {}; expected ascending numbers of nm", wavelength,
+                                  lines.back().wavelength),
+                      "wavelength");
+        lines.push_back({wavelength, line.word("spec")});
+    }
+    if (lines.empty()) preset.fail("is empty; expected one wavelength or more", "spectrum");
+    return lines;
 }
 
 std::string quoted(const std::vector<std::string>& names) {
@@ -74,6 +89,10 @@ PresetContent parsePreset(std::string_view text, const std::string& where) {
     const JsonFields preset(json, "", where);
     PresetContent content;
     if (preset.has("source")) content.source = preset.word("source");
+    if (preset.has("spectrum")) {
+        content.spectrum = spectrumField(preset);
+        return content;
+    }
     if (preset.has("spec")) {
         content.spec = preset.word("spec");
         return content;
@@ -84,7 +103,18 @@ PresetContent parsePreset(std::string_view text, const std::string& where) {
 }
 
 std::unique_ptr<Brdf> openPreset(std::string_view text, const std::string& where) {
-    return openSpec(parsePreset(text, where).spec, where);
+    const PresetContent content = parsePreset(text, where);
+    if (content.spectrum.empty()) return openSpec(content.spec, where);
+    std::vector<Spectrum::Line> lines;
+    for (const auto& [wavelength, spec] : content.spectrum) {
+        lines.push_back({wavelength, openSpec(spec, where)});
+        if (lines.back().brdf->channels().kind != Channels::Kind::grey)
+            throw InputError(
+                fmt::format("{}: '{}' at {} nm has colours; expected a grey BRDF at "
+                            "each wavelength",
+                            where, spec, wavelength));
+    }
+    return std::make_unique<Spectrum>(std::move(lines), where);
 }
 
 std::unique_ptr<Brdf> openMaterial(std::string_view collection, const std::string& where,

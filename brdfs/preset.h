@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace hshfit::brdfs {
 
@@ -14,7 +15,9 @@ namespace hshfit::brdfs {
 ///     {"format": "hshfit-preset", "version": 1, "model": "ward",
 ///      "parameters": {"ax": 0.2, "kd": [0.1, 0.2, 0.3], "variant": "duer"}, "source": "…"}
 /// In place of "model" and "parameters" a preset may have "spec": a model or a sum of models
-/// (sum.h), such as a fit writes.
+/// (sum.h), such as a fit writes, or "spectrum": such a specification, of a grey BRDF, for each of
+/// several wavelengths (spectrum.h):
+///     {…, "spectrum": [{"wavelength": 550, "spec": "lambert:kd=0.2"}, …]}
 struct Preset {
     std::string_view name;
     std::string_view help;
@@ -24,8 +27,13 @@ std::span<const Preset> presets();
 
 /// The content of a preset: the specification of its model or models, and the source of its values.
 struct PresetContent {
-    std::string spec;
+    struct Line {
+        double wavelength = 0;  ///< nm
+        std::string spec;
+    };
+    std::string spec;  ///< empty for a spectrum
     std::string source;
+    std::vector<Line> spectrum;  ///< by ascending wavelengths
 };
 
 /// Reads the JSON of a preset. `where` (a path or "preset:NAME") starts every message.
