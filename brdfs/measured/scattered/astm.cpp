@@ -19,6 +19,8 @@ constexpr std::array<std::string_view, 4> angleNames = {"theta_i", "phi_i", "the
 struct Columns {
     std::array<std::optional<std::size_t>, 4> angle;
     std::vector<std::size_t> values;
+    std::vector<std::size_t> sigmas;  ///< of each value, or one for all
+    std::optional<std::size_t> scan;
     std::size_t count = 0;
 };
 
@@ -74,6 +76,44 @@ Channels channelsOf(const std::vector<std::string>& names, const TextReader& rea
                     fmt::format("{}", fmt::join(names, ",")).substr(0, 80)));
 }
 
+/// Moves the names sigma, sigma_CHANNEL and scan from the values to what is stated about them; a
+/// single value may have any name.
+void takeSigmas(const std::vector<std::string>& names, std::vector<std::string>& channelNames,
+                Columns& columns, const TextReader& reader) {
+    constexpr std::string_view prefix = "sigma_";
+    std::vector<std::size_t> values;
+    std::vector<std::pair<std::string, std::size_t>> stated;
+    std::vector<std::string> kept;
+    for (const std::size_t k : columns.values) {
+        const std::string name = lower(names[k]);
+        if (columns.values.size() > 1 && name == "scan" && !columns.scan) {
+            columns.scan = k;
+        } else if (columns.values.size() > 1 && (name == "sigma" || name.starts_with(prefix))) {
+            stated.emplace_back(name, k);
+        } else {
+            values.push_back(k);
+            kept.push_back(names[k]);
+        }
+    }
+    columns.values = values;
+    channelNames = kept;
+    if (stated.empty()) return;
+    if (stated.size() == 1 && stated.front().first == "sigma") {
+        columns.sigmas = {stated.front().second};
+        return;
+    }
+    for (const std::string& name : kept) {
+        const auto found = std::ranges::find(stated, std::string(prefix) + lower(name),
+                                             &std::pair<std::string, std::size_t>::first);
+        if (found == stated.end() || stated.size() != kept.size())
+            throw reader.error(
+                fmt::format("the uncertainties of VARS have to be one column sigma, "
+                            "or sigma_NAME for each value; there is none for {}",
+                            name));
+        columns.sigmas.push_back(found->second);
+    }
+}
+
 Columns readColumns(std::string_view list, const TextReader& reader, Channels& channels) {
     const std::vector<std::string> names = splitNames(list);
     Columns columns;
@@ -94,8 +134,25 @@ Columns readColumns(std::string_view list, const TextReader& reader, Channels& c
     if (!columns.angle[0] || !columns.angle[2] || channelNames.empty()) {
         throw reader.error("VARS has to name theta_i, theta_s and at least one value");
     }
+    takeSigmas(names, channelNames, columns, reader);
+    if (channelNames.empty()) throw reader.error("VARS names no value beside sigma and scan");
     channels = channelsOf(channelNames, reader);
     return columns;
+}
+
+/// The uncertainties of one row, a value per channel, and its scan.
+void addStatement(const Columns& columns, const std::vector<double>& row, const Row& at,
+                  Samples& samples) {
+    for (std::size_t c = 0; !columns.sigmas.empty() && c < columns.values.size(); ++c) {
+        const double sigma = row[columns.sigmas[columns.sigmas.size() == 1 ? 0 : c]];
+        if (!(sigma > 0) || !std::isfinite(sigma))
+            throw at.error(fmt::format("sigma is {}, expected a number above 0", sigma));
+        samples.sigmas.push_back(sigma);
+    }
+    if (!columns.scan) return;
+    if (!std::isfinite(row[*columns.scan]))
+        throw at.error(fmt::format("scan is {}, expected a number", row[*columns.scan]));
+    samples.scans.push_back(row[*columns.scan]);
 }
 
 bool looksLikeAstm(std::span<const unsigned char> head, std::uint64_t) {
@@ -155,8 +212,10 @@ Samples readAstm(std::string_view text, const std::string& where, bool inDegrees
                                    : checkedAzimuth(angle, at, angleNames[k]);
         }
         for (std::size_t c = 0; c < values.size(); ++c) values[c] = row[columns->values[c]];
+        const std::size_t before = samples.size();
         samples.add(directionFromAngles(angles[0], angles[1]),
                     directionFromAngles(angles[2], angles[3]), values, at);
+        if (samples.size() > before) addStatement(*columns, row, at, samples);
         ++rows;
     }
     if (announced && *announced != static_cast<double>(rows)) {

@@ -14,7 +14,8 @@ namespace hshfit::brdfs {
 /// and rows of as many numbers, between commas. NUM_POINTS, where it is given, has to be right.
 /// Angles are in radians (`inDegrees`: degrees) and may be negative; an azimuth that is not listed
 /// is 0. Each other NAME is a channel of f in 1/sr: wavelengths ("400nm"), R,G,B or Red,Green,Blue
-/// (and nothing else), or a single one of any name.
+/// (and nothing else), or a single one of any name. Beside them, `sigma` (or `sigma_NAME` for each
+/// channel) is the standard uncertainty of the values, and `scan` a number for the scan of a row.
 /// Throws InputError, with `where` and the line, for any other content.
 Samples readAstm(std::string_view text, const std::string& where, bool inDegrees = false);
 

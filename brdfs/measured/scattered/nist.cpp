@@ -23,7 +23,11 @@ using Geometry = std::array<double, 4>;
 struct Reading {
     Geometry at;
     std::size_t line = 0;
-    std::map<double, double> values;  ///< by wavelength in nm
+    struct Value {
+        double f = 0;
+        std::size_t line = 0;
+    };
+    std::map<double, Value> values;  ///< by wavelength in nm
 };
 
 bool looksLikeNist(std::span<const unsigned char> head, std::uint64_t) {
@@ -48,7 +52,9 @@ void addRow(const std::vector<double>& row, const TextReader& reader,
     for (std::size_t k = 0; k < 4; ++k) at[k] = std::round(row[k + 1] * 1e4) / 1e4;
     const auto [place, isNew] = known.try_emplace(at, readings.size());
     if (isNew) readings.push_back({at, reader.lineNumber(), {}});
-    if (!readings[place->second].values.try_emplace(nm, row[5]).second) {
+    if (!readings[place->second]
+             .values.try_emplace(nm, Reading::Value{row[5], reader.lineNumber()})
+             .second) {
         throw reader.error(fmt::format("a second row for these angles at {} nm", nm));
     }
 }
@@ -88,11 +94,15 @@ Samples readNist(std::string_view text, const std::string& where) {
             continue;
         }
         values.clear();
-        for (const auto& [nm, value] : reading.values) values.push_back(value);
+        for (const auto& [nm, value] : reading.values) values.push_back(value.f);
+        const std::size_t before = samples.size();
         const Geometry& at = reading.at;
         samples.add(directionFromAngles(radians(at[0]), radians(at[1])),
                     directionFromAngles(radians(at[2]), radians(at[3])), values,
                     {where, "line", reading.line});
+        auto line = samples.rows.begin() + static_cast<std::ptrdiff_t>(before * values.size());
+        for (const auto& [nm, value] : reading.values)
+            if (line != samples.rows.end()) *line++ = value.line;
     }
     if (incomplete > 0) {
         samples.leftOut.push_back(

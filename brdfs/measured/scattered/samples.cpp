@@ -12,6 +12,7 @@ InputError Row::error(std::string_view message) const {
 }
 
 void Samples::count(std::span<const double> f, const Row& row) {
+    ++read;
     census.values += f.size();
     for (std::size_t c = 0; c < f.size(); ++c) {
         if (!std::isfinite(f[c])) {
@@ -40,6 +41,8 @@ void Samples::add(const Direction& in, const Direction& out, std::span<const dou
     wi.push_back(lifted(in));
     wo.push_back(lifted(out));
     values.insert(values.end(), f.begin(), f.end());
+    rows.insert(rows.end(), f.size(), row.number);
+    order.push_back(read - 1);
 }
 
 double checkedPolarAngle(double theta, const Row& row, std::string_view field) {

@@ -34,6 +34,15 @@ struct Samples {
     Census census;
     std::vector<Fact> facts;           ///< the format and the facts of its header
     std::vector<std::string> leftOut;  ///< parts of the file that are not read
+    /// The line (or number) in the file of each value, [sample * channels.count() + channel].
+    std::vector<std::size_t> rows;
+    /// The place of each sample among the `read` ones of the file, those below the horizon
+    /// included.
+    std::vector<std::size_t> order;
+    std::size_t read = 0;
+    /// Where the file states them: standard uncertainties of the values, as `values`, and a number
+    /// for the scan of each sample.
+    std::vector<double> sigmas, scans;
 
     std::size_t size() const { return wi.size(); }
 
