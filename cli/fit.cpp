@@ -1,4 +1,5 @@
 #include "command.h"
+#include "fit_uncertainty.h"
 #include "measured_numbers.h"
 
 #include <hshfit/error.h>
@@ -32,14 +33,24 @@ std::string samplesLine(const Json& fit) {
     const std::map<std::string, std::string> kinds{{"cells", "cells of the table"},
                                                    {"measured", "measured samples"},
                                                    {"nodes", "nodes at which f was evaluated"}};
+    const std::map<std::string, std::string> weights{{"equal", "equally"},
+                                                     {"solid-angle", "by solid angle"},
+                                                     {"sigma", "by their stated uncertainties"}};
     return fmt::format("  fitted to {} {}, weighted {}\n", fit["samples"].get<std::size_t>(),
-                       kinds.at(fit["samples_of"]),
-                       fit["weights"] == "equal" ? "equally" : "by solid angle");
+                       kinds.at(fit["samples_of"]), weights.at(fit["weights"]));
+}
+
+/// The fit in one line: its specification, or its range of wavelengths.
+std::string headLine(const brdfs::FitResult& result) {
+    if (result.spectrum.empty()) return withShortNumbers(result.spec) + "\n";
+    return fmt::format("{} at {} wavelengths from {} to {} nm\n", result.model,
+                       result.spectrum.size(), result.spectrum.front().nanometres,
+                       result.spectrum.back().nanometres);
 }
 
 std::string text(const jobs::Fitted& fitted, const std::string& output) {
     const brdfs::FitResult& result = fitted.result;
-    std::string lines = withShortNumbers(result.spec) + "\n" + samplesLine(fitted.preset["fit"]);
+    std::string lines = headLine(result) + samplesLine(fitted.preset["fit"]);
     for (const brdfs::FittedParameter& p : result.parameters) {
         const std::string value = p.standardError ? withError(p.value, *p.standardError)
                                   : !p.bound.empty()
@@ -63,6 +74,7 @@ std::string text(const jobs::Fitted& fitted, const std::string& output) {
     lines += fmt::format("  rms residual {:.6g} over {} values, {} iterations, {}\n", result.loss,
                          result.values, result.iterations,
                          result.converged ? "converged" : "NOT CONVERGED");
+    lines += uncertaintyText(fitted.preset["fit"]);
     if (fitted.pageFiles > 0)
         lines += fmt::format("written to {}: fit.json, comparison.html and {} files beside it\n",
                              output, fitted.pageFiles - 1);
@@ -104,7 +116,7 @@ void runCompareModels(const FitArguments& arguments, Globals& globals) {
         }
         const brdfs::FitResult& fit = rank.fit;
         list.push_back({{"model", rank.model},
-                        {"spec", fit.spec},
+                        {"spec", fit.spectrum.empty() ? Json(fit.spec) : Json()},
                         {"parameters", fit.parameters.size()},
                         {"held_out_rms", rank.heldOut},
                         {"rms", fit.loss},
@@ -120,7 +132,7 @@ void runCompareModels(const FitArguments& arguments, Globals& globals) {
     const Json document = {{"format", "hshfit-fit-models"},
                            {"version", 1},
                            {"data", arguments.data},
-                           {"loss", arguments.options.loss},
+                           {"loss", jobs::lossOf(arguments.options)},
                            {"models", list}};
     if (!arguments.output.empty()) writeFile(arguments.output, jsonText(document, 2) + "\n");
     if (globals.json)
@@ -134,6 +146,11 @@ void runFit(const FitArguments& arguments, Globals& globals) {
         throw UsageError("fit: give either DATA or --all DIR");
     if (arguments.options.model.empty() == arguments.models.empty())
         throw UsageError("fit: give either --model or --compare-models");
+    const jobs::FitOptions& options = arguments.options;
+    if ((!arguments.all.empty() || !arguments.models.empty()) &&
+        (options.bootstrap > 0 || options.profile || !options.residuals.empty()))
+        throw UsageError(
+            "fit: --bootstrap, --profile and --residuals are for one model and one DATA");
     if (!arguments.all.empty()) {
         if (arguments.options.model.empty()) throw UsageError("fit --all: takes one --model");
         return runAll(arguments, globals);
@@ -172,8 +189,10 @@ void addFit(CLI::App& command, Globals& globals) {
                        "Fit each of these models and rank them by held-out directions");
     command.add_option("-o,--output", arguments->output,
                        "Where the fit goes: a preset (.json), or a folder for a report as well");
-    command.add_option("--loss", options.loss, "l2, cosine, log, cube-root or log-relative")
-        ->capture_default_str();
+    command
+        .add_option("--loss", options.loss,
+                    "l2 (default with --sigma), cosine, log, cube-root or log-relative")
+        ->default_str("cosine");
     command.add_option("--robust", options.robust, "none, huber or cauchy")->capture_default_str();
     command
         .add_option("--robust-scale", options.robustScale,
@@ -195,6 +214,20 @@ void addFit(CLI::App& command, Globals& globals) {
         ->capture_default_str();
     command.add_option("--seed", options.seed, "Of starts and drawn samples")
         ->capture_default_str();
+    command.add_option("--sigma", options.sigma,
+                       "Standard uncertainty of a sample: 2%+0.001 (relative and absolute, in "
+                       "squares), column, or FILE.csv with a row for each sample");
+    command.add_option("--scans", options.scans,
+                       "Samples with correlated errors: column, incidence, or so many after one "
+                       "another");
+    command
+        .add_option("--bootstrap", options.bootstrap,
+                    "Errors by so many fits to samples, or scans, drawn with replacement")
+        ->check(CLI::Range(2, 1000000));
+    command.add_flag("--profile", options.profile,
+                     "Intervals of 68 and 95 % by profile likelihood");
+    command.add_option("--residuals", options.residuals,
+                       "CSV file with a row for each value: model, residual, leverage, ...");
     command.add_flag("--accept", options.accept, "Take a fit that did not converge");
     addRgb(command, options.rgb);
     command.callback([arguments, &globals] { runFit(*arguments, globals); });

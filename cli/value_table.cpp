@@ -142,6 +142,15 @@ Words rotationWords() {
     return {{"exact"}, {"through-sh"}, {"table"}, {"paper-shift"}};
 }
 
+Words scanWords() {
+    return {{"column", "of the file, or of that of the uncertainties"},
+            {"incidence", "samples of one incident direction"}};
+}
+
+Words sigmaWords() {
+    return {{"column", "of the file"}};
+}
+
 Words splitWords() {
     return {{"diffuse", "the constant part"}};
 }
@@ -157,6 +166,9 @@ constexpr ValueRow table[] = {
     {"eval", "--output", nullptr, Syntax::word, Files::written, ".csv"},
     {"export", "--output", nullptr, Syntax::word, Files::folder},
     {"fit", "--all", nullptr, Syntax::word, Files::folder},
+    {"fit", "--residuals", nullptr, Syntax::word, Files::written, ".csv"},
+    {"fit", "--scans", scanWords},
+    {"fit", "--sigma", sigmaWords, Syntax::word, Files::read, ".csv"},
     {"fit", "--weights", weightWords},
     {"help", "WORD", helpWords},
     {"illuminate", "--output", nullptr, Syntax::word, Files::folder},

@@ -30,6 +30,8 @@ constexpr OptionRow options[] = {
     {"FitOptions::accept", "--accept"},
     {"FitOptions::model", "--model", Value::quoted},
     {"FitOptions::parts", "--extensions"},
+    {"FitOptions::sigma", "--sigma"},
+    {"FitOptions::weights", "--weights"},
     {"Form::basis", "--basis"},
     {"Form::condonShortley", "--condon-shortley"},
     {"Form::energyPreserving", "--energy-preserving"},

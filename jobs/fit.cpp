@@ -3,6 +3,7 @@
 #include "source.h"
 
 #include <hshfit/error.h>
+#include <hshfit/files/atomic_file.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/pages/comparison.h>
@@ -11,6 +12,7 @@
 
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit_json.h>
+#include <brdfs/fit/residual_rows.h>
 
 #include <fmt/format.h>
 
@@ -24,13 +26,17 @@ namespace {
 brdfs::FitOptions optionsOf(const FitOptions& options) {
     brdfs::FitOptions fit;
     fit.model = options.model;
-    fit.loss = brdfs::findLoss(options.loss).kind;
+    fit.loss = brdfs::findLoss(lossOf(options)).kind;
     fit.robust = brdfs::findRobust(options.robust);
     fit.robustScale = options.robustScale;
     fit.perChannel = options.perChannel;
     fit.starts = options.starts;
     fit.seed = options.seed;
     fit.iterations = options.iterations;
+    fit.uncertainty.report = !options.sigma.empty() || !options.scans.empty() ||
+                             options.bootstrap > 0 || options.profile || !options.residuals.empty();
+    fit.uncertainty.bootstrap = options.bootstrap;
+    fit.uncertainty.profile = options.profile;
     return fit;
 }
 
@@ -38,7 +44,12 @@ brdfs::FitSamples samplesOf(const FitOptions& options, const std::string& data) 
     const brdfs::SampleOptions how{.weights = brdfs::findSampleWeights(options.weights),
                                    .grazingCut = options.grazingCut,
                                    .most = options.samples,
-                                   .seed = options.seed};
+                                   .seed = options.seed,
+                                   .sigma = brdfs::parseSigma(options.sigma),
+                                   .scans = brdfs::parseScans(options.scans)};
+    if (!options.sigma.empty() && how.weights == brdfs::SampleWeights::solidAngle)
+        throw UsageError(fmt::format("{} states the weights of the samples; leave out {}",
+                                     Setting{"FitOptions::sigma"}, Setting{"FitOptions::weights"}));
     const auto brdf = openSource(data, options.rgb);
     brdfs::FitSamples samples = brdfs::gatherSamples(*brdf, how);
     requireReadable(*brdf);
@@ -100,7 +111,7 @@ std::size_t writePage(const std::string& data, const Fitted& fit, const std::str
                       bool rgb, const Listener& listener) {
     FileSet files(folder, true, FileSet::Above::require);
     const auto measured = openSource(data, rgb);
-    const auto fitted = brdfs::open(fit.result.spec);
+    const auto fitted = brdfs::openFit(fit.result);
     ComparisonOptions options;
     options.progress = options.sphere.progress = listener.part("report");
     const AddedComparison added = addComparison(makeComparison(*measured, *fitted, options), files);
@@ -110,7 +121,19 @@ std::size_t writePage(const std::string& data, const Fitted& fit, const std::str
     return added.names.size();
 }
 
+void writeResiduals(const brdfs::FitSamples& samples, const brdfs::FitResult& result,
+                    const std::string& path) {
+    AtomicFile file(path);
+    brdfs::writeResidualRows(samples, result, [&](std::string_view row) { file.write(row); });
+    file.commit();
+}
+
 }  // namespace
+
+std::string lossOf(const FitOptions& options) {
+    if (!options.loss.empty()) return options.loss;
+    return options.sigma.empty() ? "cosine" : "l2";
+}
 
 bool isPresetPath(const std::string& output) {
     return output.ends_with(".json");
@@ -122,6 +145,7 @@ Fitted fit(const std::string& data, const std::string& output, const FitOptions&
     const brdfs::FitSamples samples = samplesOf(options, data);
     const auto search = restrictParts(options, samples, how, listener);
     how.progress = listener.part("fit");
+    how.uncertainty.progress = listener.part("errors");
     Fitted fitted{.result = brdfs::fit(samples, how), .search = search, .preset = {}};
     if (!fitted.result.converged && !options.accept) {
         throw NumericError(
@@ -129,11 +153,13 @@ Fitted fit(const std::string& data, const std::string& output, const FitOptions&
                         "is",
                         data, options.model, fitted.result.message, Setting{"FitOptions::accept"}));
     }
-    fitted.preset = brdfs::fitPreset({data, &samples, how, fitted.result});
+    fitted.preset =
+        brdfs::fitPreset({data, &samples, how, fitted.result, options.sigma, options.scans});
     fitted.explained = explainedBy(fitted.result, samples, how.loss);
     fitted.poor = judgeFit(fitted.explained, data, options.model);
     fitted.preset["fit"]["explained"] = fitted.explained;
     if (search) fitted.preset["fit"]["parts"] = searchJson(*search);
+    if (!options.residuals.empty()) writeResiduals(samples, fitted.result, options.residuals);
     if (isPresetPath(output)) {
         writeFile(output, jsonText(fitted.preset, 2) + "\n");
     } else if (!output.empty()) {

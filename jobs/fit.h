@@ -22,7 +22,8 @@ namespace hshfit::jobs {
 struct FitOptions {
     /// MODEL[:key=value,…][+MODEL…]; parameters with a value are held fixed.
     std::string model;
-    std::string loss = "cosine";   ///< brdfs::findLoss
+    /// brdfs::findLoss. Empty: cosine, or l2 with stated uncertainties.
+    std::string loss = {};
     std::string robust = "none";   ///< brdfs::findRobust
     std::string weights = "auto";  ///< brdfs::findSampleWeights
     double robustScale = 0;        ///< residual at which `robust` sets in; 0: from their spread
@@ -37,7 +38,15 @@ struct FitOptions {
     /// Optional parts of the model (brdfs::ModelPart): "auto" for those that held-out directions
     /// find worth it, "none", "all", or names with commas. Empty: auto where the model has parts.
     std::string parts = {};
+    std::string sigma = {};      ///< standard uncertainty of the samples: brdfs::parseSigma
+    std::string scans = {};      ///< samples with correlated errors: brdfs::parseScans
+    std::size_t bootstrap = 0;   ///< fits to resampled data; 0: none
+    bool profile = false;        ///< intervals by profile likelihood
+    std::string residuals = {};  ///< CSV file, a row for each value; empty: none
 };
+
+/// The name of the loss that these options ask for.
+std::string lossOf(const FitOptions& options);
 
 struct Fitted {
     brdfs::FitResult result;

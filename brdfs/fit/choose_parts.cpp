@@ -83,6 +83,7 @@ PartSearch chooseParts(const FitSamples& all, const FitOptions& fit, const PartO
     const auto tried = [&](std::vector<std::string> parts) {
         FitOptions how = fit;
         how.progress = {};
+        how.uncertainty = {};
         const std::vector<std::string> specs{withParts(fit.model, parts)};
         const ModelRank rank = compareModels(samples, specs, how).front();
         if (options.progress) options.progress(++done, most);

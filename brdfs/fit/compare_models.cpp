@@ -54,6 +54,7 @@ FitSamples without(const FitSamples& samples, const std::vector<std::size_t>& fo
 double heldOutLoss(const FitSamples& samples, const Folds& folds, FitOptions options) {
     options.starts = std::max(1, options.starts / 4);
     options.progress = {};
+    options.uncertainty = {};
     double squares = 0, weights = 0;
     for (const std::vector<std::size_t>& fold : folds) {
         if (fold.empty()) continue;
@@ -61,7 +62,7 @@ double heldOutLoss(const FitSamples& samples, const Folds& folds, FitOptions opt
         const FitSamples held = samples.subset(fold);
         double weight = 0;
         for (const std::size_t k : fold) weight += samples.weights[k];
-        const double loss = lossOf(*open(result.spec), held, options.loss);
+        const double loss = lossOf(*openFit(result), held, options.loss);
         squares += weight * loss * loss;
         weights += weight;
     }

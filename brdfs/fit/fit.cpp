@@ -1,237 +1,22 @@
 #include <brdfs/fit/fit.h>
 
+#include <brdfs/catalog.h>
 #include <brdfs/fit/covariance.h>
-#include <brdfs/fit/minimise.h>
+#include <brdfs/fit/distributions.h>
+#include <brdfs/fit/fit_search.h>
+#include <brdfs/fit/minimum_study.h>
 #include <brdfs/fit/normal_equations.h>
 #include <brdfs/fit/parametric_sum.h>
+#include <brdfs/spectrum.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 namespace hshfit::brdfs {
 namespace {
-
-constexpr std::size_t coarseCount = 4096;
-/// Above this number of samples, a second and third search on all costs more than it finds.
-constexpr std::size_t manySamples = 200'000, middleCount = 50'000;
-
-struct Bounds {
-    std::vector<double> lower, upper;
-};
-
-Bounds shapeBounds(const ParametricSum& sum) {
-    Bounds bounds;
-    for (const ShapeParameter& shape : sum.shapes()) {
-        bounds.lower.push_back(shape.lower());
-        bounds.upper.push_back(shape.upper());
-    }
-    return bounds;
-}
-
-Bounds jointBounds(const ParametricSum& sum, std::size_t channels) {
-    Bounds bounds = shapeBounds(sum);
-    for (const LinearParameter& linear : sum.linears())
-        for (std::size_t c = 0; c < channels; ++c) {
-            bounds.lower.push_back(linear.min);
-            bounds.upper.push_back(linear.max);
-        }
-    return bounds;
-}
-
-/// Element `index` of van der Corput's sequence in a base.
-double radicalInverse(std::size_t index, int base) {
-    double value = 0, digit = 1;
-    for (; index > 0; index /= static_cast<std::size_t>(base)) {
-        digit /= base;
-        value += digit * static_cast<double>(index % static_cast<std::size_t>(base));
-    }
-    return value;
-}
-
-std::vector<std::vector<double>> startsOf(const ParametricSum& sum, std::size_t count,
-                                          std::uint64_t seed) {
-    constexpr int primes[] = {2,  3,  5,  7,  11, 13, 17, 19, 23, 29, 31, 37,
-                              41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89};
-    std::mt19937_64 random(seed);
-    std::vector<double> shift;
-    for (std::size_t j = 0; j < sum.shapes().size(); ++j)
-        shift.push_back(static_cast<double>(random() >> 11) * 0x1p-53);
-    std::vector<std::vector<double>> starts;
-    for (std::size_t i = 0; i < count; ++i) {
-        starts.emplace_back();
-        for (std::size_t j = 0; j < sum.shapes().size(); ++j) {
-            const ShapeParameter& shape = sum.shapes()[j];
-            const double share =
-                std::fmod(radicalInverse(i + 1, primes[j % std::size(primes)]) + shift[j], 1.0);
-            const double low = shape.toScale(shape.free.startLow),
-                         high = shape.toScale(shape.free.startHigh);
-            starts.back().push_back(low + share * (high - low));
-        }
-    }
-    return starts;
-}
-
-/// x = u followed by linear parameters.
-std::vector<double> joined(std::vector<double> u, const std::vector<double>& linear) {
-    u.insert(u.end(), linear.begin(), linear.end());
-    return u;
-}
-
-bool byCost(const Minimum& a, const Minimum& b) {
-    return (std::isfinite(a.cost) ? a.cost : 1e300) < (std::isfinite(b.cost) ? b.cost : 1e300);
-}
-
-/// Searches of one problem; `linear`: what is minimised over the shapes alone.
-class Search {
-public:
-    Search(const FitProblem& problem, bool linear)
-        : problem_(problem),
-          linear_(linear),
-          shapes_(shapeBounds(problem.sum())),
-          joint_(jointBounds(problem.sum(), problem.channels())) {}
-
-    /// From shapes: eliminated if that is the loss itself, else jointly, from the linear parameters
-    /// that elimination gives and from those at its minimum, whichever leads further.
-    Minimum fromShapes(const std::vector<double>& u, const MinimiseOptions& options) const {
-        Minimum minimum = eliminated(u, options);
-        if (linear_) return minimum;
-        minimum = fromAll(minimum, options);
-        Minimum direct;
-        std::vector<double> best;
-        problem_.eliminated(u, false, best);
-        direct.x = joined(u, best);
-        direct = fromAll(direct, options);
-        return byCost(direct, minimum) ? direct : minimum;
-    }
-
-    Minimum eliminated(const std::vector<double>& u, const MinimiseOptions& options) const {
-        std::vector<double> linear;
-        Minimum minimum =
-            minimise([&](std::span<const double> at,
-                         bool derivatives) { return problem_.eliminated(at, derivatives, linear); },
-                     u, shapes_.lower, shapes_.upper, options);
-        problem_.eliminated(minimum.x, false, linear);
-        minimum.x = joined(std::move(minimum.x), linear);
-        return minimum;
-    }
-
-    Minimum fromAll(const Minimum& start, const MinimiseOptions& options) const {
-        Minimum minimum =
-            minimise([&](std::span<const double> at,
-                         bool derivatives) { return problem_.joint(at, derivatives); },
-                     start.x, joint_.lower, joint_.upper, options);
-        minimum.iterations += start.iterations;
-        minimum.evaluations += start.evaluations;
-        return minimum;
-    }
-
-private:
-    const FitProblem& problem_;
-    bool linear_;
-    Bounds shapes_, joint_;
-};
-
-/// Minima of the problem on few samples, from the best of many starts, best first.
-std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
-                                  const FitOptions& options) {
-    const std::size_t shapes = problem.shapeCount();
-    const std::size_t starts = shapes == 0 ? 1 : static_cast<std::size_t>(options.starts);
-    std::vector<Minimum> candidates;
-    for (std::vector<double>& u :
-         startsOf(problem.sum(), shapes == 0 ? 1 : 4 * starts, options.seed)) {
-        std::vector<double> best;
-        Minimum candidate;
-        candidate.cost = problem.eliminated(u, false, best).cost;
-        if (!linear) candidate.cost = problem.joint(joined(u, best), false).cost;
-        candidate.x = std::move(u);
-        candidates.push_back(std::move(candidate));
-    }
-    std::ranges::stable_sort(candidates, byCost);
-    candidates.resize(std::min(candidates.size(), starts));
-    const Search search(problem, linear);
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-        candidates[i] = search.fromShapes(
-            candidates[i].x,
-            {.iterations = 60, .costTolerance = 1e-8, .stepTolerance = 1e-7, .curvature = false});
-        if (options.progress) options.progress(i + 1, candidates.size() + 1);
-    }
-    std::ranges::stable_sort(candidates, byCost);
-    return candidates;
-}
-
-/// The first few that differ by more than a search leaves undecided.
-std::vector<Minimum> distinct(const std::vector<Minimum>& minima, std::size_t most) {
-    std::vector<Minimum> chosen;
-    for (const Minimum& minimum : minima) {
-        if (chosen.size() >= most) break;
-        if (chosen.empty() || minimum.cost > chosen.back().cost * (1 + 1e-4))
-            chosen.push_back(minimum);
-    }
-    return chosen;
-}
-
-double medianSize(std::vector<double> residuals) {
-    for (double& r : residuals) r = std::abs(r);
-    const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-    std::ranges::nth_element(residuals, middle);
-    return *middle;
-}
-
-/// A search that goes on from another one's minimum.
-Minimum refined(const FitProblem& problem, bool linear, const Minimum& start,
-                const MinimiseOptions& options) {
-    const Search search(problem, linear);
-    if (!linear) return search.fromAll(start, options);
-    const auto shapes = static_cast<std::ptrdiff_t>(problem.shapeCount());
-    return search.eliminated({start.x.begin(), start.x.begin() + shapes}, options);
-}
-
-struct Fitted {
-    Minimum minimum;
-    double robustScale = 0;
-};
-
-Fitted search(FitProblem& problem, const FitOptions& options) {
-    const bool linear = options.loss == Loss::Kind::l2 || options.loss == Loss::Kind::cosine;
-    const FitSamples& samples = problem.samples();
-    const bool few = samples.size() <= coarseCount;
-    const FitSamples coarse = samples.drawn(coarseCount, options.seed);
-    const FitProblem small(coarse, problem.sum(), options.loss);
-    const std::vector<Minimum> minima = coarseMinima(few ? problem : small, linear, options);
-    const Search search(problem, linear);
-    const MinimiseOptions last{.iterations = options.iterations};
-    Fitted best;
-    int iterations = 0, evaluations = 0;
-    const bool many = samples.size() > manySamples;
-    const FitSamples middle = samples.drawn(many ? middleCount : 1, options.seed);
-    const FitProblem between(middle, problem.sum(), options.loss);
-    for (Minimum start : distinct(minima, many ? 1 : 3)) {
-        if (many)
-            start = refined(between, linear, start, {.costTolerance = 1e-9, .stepTolerance = 1e-8});
-        Minimum minimum = refined(problem, linear, start, last);
-        iterations += minimum.iterations, evaluations += minimum.evaluations;
-        if (best.minimum.x.empty() || byCost(minimum, best.minimum))
-            best.minimum = std::move(minimum);
-    }
-    if (options.robust != Robust::none) {
-        best.robustScale = options.robustScale;
-        if (!(best.robustScale > 0)) {
-            const double factor = options.robust == Robust::huber ? 1.345 : 2.385;
-            best.robustScale =
-                std::max(factor * 1.4826 * medianSize(problem.residuals(best.minimum.x)), 1e-12);
-        }
-        problem.setRobust(options.robust, best.robustScale);
-        best.minimum = search.fromAll(best.minimum, last);
-        iterations += best.minimum.iterations, evaluations += best.minimum.evaluations;
-    }
-    best.minimum.iterations = iterations;
-    best.minimum.evaluations = evaluations;
-    return best;
-}
 
 /// A fit of channels that share their shapes.
 struct Part {
@@ -278,7 +63,8 @@ void reportUnseenLobes(const FitProblem& problem, const std::vector<double>& x,
     }
 }
 
-void describe(const FitProblem& problem, const std::vector<double>& x, Part& part) {
+void describe(const FitProblem& problem, const std::vector<double>& x, const FitOptions& options,
+              Part& part) {
     const ParametricSum& sum = problem.sum();
     const std::size_t shapes = problem.shapeCount(), channels = problem.channels();
     const Bounds bounds = jointBounds(sum, channels);
@@ -319,8 +105,14 @@ void describe(const FitProblem& problem, const std::vector<double>& x, Part& par
                 std::max(part.result.projectedGradient, std::abs(pull) / scale);
         parameters.push_back(std::move(parameter));
     }
-    equations.spread = problem.joint(x, true, inverseOf(equations, fixed)).spread;
+    const std::vector<double> inverse = inverseOf(equations, fixed);
+    equations.spread = problem.joint(x, true, inverse).spread;
     Covariance covariance = covarianceOf(equations, fixed);
+    const Covariance sandwich = covariance;
+    if (!problem.samples().scans.empty()) {
+        equations.spread = spreadOfScans(problem, x, inverse);
+        covariance = covarianceOf(equations, fixed);
+    }
     reportUnseenLobes(problem, x, equations, fixed, covariance);
     for (std::size_t i = 0; i < x.size(); ++i)
         if (covariance.variance[i] >= 0)
@@ -334,6 +126,13 @@ void describe(const FitProblem& problem, const std::vector<double>& x, Part& par
                     ? parameters[i].name
                     : fmt::format("{} {}", parameters[i].name, parameters[i].channel));
     }
+    if (!options.uncertainty.report) return;
+    const StudiedMinimum minimum{problem, x, equations, fixed, slope, covariance, sandwich};
+    part.result.uncertainty = studied(minimum);
+    if (options.uncertainty.bootstrap > 0)
+        addBootstrap(minimum, options.uncertainty, options.seed, *part.result.uncertainty);
+    if (options.uncertainty.profile)
+        addProfiles(minimum, options.uncertainty, *part.result.uncertainty);
 }
 
 Part fitShared(const FitSamples& samples, const ParametricSum& sum, const FitOptions& options) {
@@ -345,9 +144,9 @@ Part fitShared(const FitSamples& samples, const ParametricSum& sum, const FitOpt
             fmt::format("'{}': {} values cannot determine {} free parameters; give some of them, "
                         "or more samples",
                         sum.spec(), values, parameters));
-    const Fitted fitted = search(problem, options);
+    const Fitted fitted = searchMinimum(problem, options);
     Part part;
-    describe(problem, fitted.minimum.x, part);
+    describe(problem, fitted.minimum.x, options, part);
     FitResult& result = part.result;
     result.converged = fitted.minimum.converged;
     result.message = fitted.minimum.message;
@@ -356,11 +155,36 @@ Part fitShared(const FitSamples& samples, const ParametricSum& sum, const FitOpt
     result.robustScale = fitted.robustScale;
     const std::vector<double> residuals = problem.residuals(fitted.minimum.x);
     for (std::size_t k = 0; k < residuals.size(); ++k) {
-        const double weight = samples.weights[k % samples.size()];
+        const double weight = samples.weight(k / samples.size(), k % samples.size());
         part.squares += weight * residuals[k] * residuals[k];
         part.weights += weight;
     }
     return part;
+}
+
+/// Adds the study of a part whose parameters begin at `first` of n.
+void addStudy(const Uncertainty& own, std::size_t first, std::size_t n,
+              std::optional<Uncertainty>& sum) {
+    if (!sum) {
+        sum.emplace();
+        sum->stated = own.stated;
+        sum->scans = own.scans;
+        sum->covariance.assign(n * n, 0);
+    }
+    sum->chiSquare += own.chiSquare;
+    sum->degreesOfFreedom += own.degreesOfFreedom;
+    if (own.stated)
+        sum->probability =
+            chiSquareProbability(sum->chiSquare, static_cast<double>(sum->degreesOfFreedom));
+    const std::size_t count = own.parameters.size();
+    sum->parameters.insert(sum->parameters.end(), own.parameters.begin(), own.parameters.end());
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t j = 0; j < count; ++j)
+            sum->covariance[(first + i) * n + first + j] = own.covariance[i * count + j];
+    sum->values.insert(sum->values.end(), own.values.begin(), own.values.end());
+    sum->outlierBound = std::max(sum->outlierBound, own.outlierBound);
+    sum->bootstrapDraws = own.bootstrapDraws;
+    sum->bootstrapFailures += own.bootstrapFailures;
 }
 
 /// Puts the fits of single channels together.
@@ -392,14 +216,44 @@ FitResult merged(std::vector<Part>& parts, const std::vector<std::string>& names
         result.evaluations += own.evaluations;
         result.projectedGradient = std::max(result.projectedGradient, own.projectedGradient);
         result.robustScale = std::max(result.robustScale, own.robustScale);
+        if (own.uncertainty) addStudy(*own.uncertainty, first, n, result.uncertainty);
         first += count;
     }
     return result;
 }
 
+void checkStatements(const FitSamples& samples, const FitOptions& options) {
+    if (!samples.sigmas.empty() && options.loss != Loss::Kind::l2)
+        throw UsageError(
+            "stated uncertainties are those of f, and weight its squared residuals; the loss has "
+            "to be l2");
+    const bool studied =
+        options.uncertainty.report || !samples.sigmas.empty() || !samples.scans.empty();
+    if (studied && options.robust != Robust::none)
+        throw UsageError(
+            "uncertainties are those of a sum of squares; leave out the robust kernel");
+}
+
+std::vector<FittedWavelength> spectrumOf(const ParametricSum& sum,
+                                         const std::vector<std::vector<double>>& shapes,
+                                         const std::vector<double>& linear,
+                                         const std::vector<double>& wavelengths) {
+    std::vector<FittedWavelength> spectrum;
+    const std::size_t channels = wavelengths.size();
+    for (std::size_t c = 0; c < channels; ++c) {
+        std::vector<double> own;
+        for (std::size_t k = 0; k < sum.linears().size(); ++k)
+            own.push_back(linear[k * channels + c]);
+        spectrum.push_back(
+            {wavelengths[c], sum.filledIn({shapes[shapes.size() == 1 ? 0 : c]}, own, 1)});
+    }
+    return spectrum;
+}
+
 }  // namespace
 
 FitResult fit(const FitSamples& samples, const FitOptions& options) {
+    checkStatements(samples, options);
     const ParametricSum sum(options.model, samples.isotropic);
     const std::size_t channels = samples.channels.count();
     const bool apart = options.perChannel && channels > 1;
@@ -418,7 +272,10 @@ FitResult fit(const FitSamples& samples, const FitOptions& options) {
                 linear[k * channels + c] = parts[c].linear[k];
     }
     result.model = sum.spec();
-    result.spec = sum.filledIn(shapes, linear, channels);
+    if (samples.channels.kind == Channels::Kind::spectral)
+        result.spectrum = spectrumOf(sum, shapes, linear, samples.channels.wavelengths);
+    else
+        result.spec = sum.filledIn(shapes, linear, channels);
     result.startCount = options.starts;
     result.seed = options.seed;
     result.samples = samples.size();
@@ -426,13 +283,23 @@ FitResult fit(const FitSamples& samples, const FitOptions& options) {
     double squares = 0, weights = 0;
     for (const Part& part : parts) squares += part.squares, weights += part.weights;
     result.loss = std::sqrt(squares / weights);
-    // The variance of the residuals is a parameter, too.
+    // The variance of the residuals is a parameter, too, unless it is stated.
+    const bool stated = !samples.sigmas.empty();
     const double count = static_cast<double>(result.values),
-                 parameters = static_cast<double>(result.parameters.size() + 1);
-    const double likelihood = count * std::log(std::max(squares / weights, 1e-300));
+                 parameters = static_cast<double>(result.parameters.size() + (stated ? 0 : 1));
+    const double likelihood =
+        stated ? squares : count * std::log(std::max(squares / weights, 1e-300));
     result.aic = likelihood + 2 * parameters;
     result.bic = likelihood + parameters * std::log(count);
     return result;
+}
+
+std::unique_ptr<Brdf> openFit(const FitResult& result) {
+    if (result.spectrum.empty()) return open(result.spec);
+    std::vector<Spectrum::Line> lines;
+    for (const FittedWavelength& own : result.spectrum)
+        lines.push_back({own.nanometres, open(own.spec)});
+    return std::make_unique<Spectrum>(std::move(lines), "fit of " + result.model);
 }
 
 std::vector<double> valuesOf(const Brdf& brdf, const FitSamples& samples) {
@@ -454,8 +321,9 @@ double lossOf(const Brdf& brdf, const FitSamples& samples, Loss::Kind loss) {
         for (std::size_t k = 0; k < samples.size(); ++k) {
             const double r = mapValue(loss, values[c * samples.size() + k], samples.wiZ[k]).value -
                              mapValue(loss, samples.value(c, k), samples.wiZ[k]).value;
-            squares += samples.weights[k] * r * r;
-            weights += samples.weights[k];
+            const double weight = samples.weight(c, k);
+            squares += weight * r * r;
+            weights += weight;
         }
     return std::sqrt(squares / weights);
 }

@@ -2,9 +2,11 @@
 
 #include <brdfs/fit/fit_samples.h>
 #include <brdfs/fit/loss.h>
+#include <brdfs/fit/uncertainty.h>
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +26,7 @@ struct FitOptions {
     std::uint64_t seed = 1;   ///< of the starts
     int iterations = 200;     ///< of the last search
     std::function<void(std::size_t, std::size_t)> progress = {};
+    UncertaintyOptions uncertainty = {};
 };
 
 /// A free parameter after a fit.
@@ -37,9 +40,16 @@ struct FittedParameter {
     bool linear = false;
 };
 
+/// The fit at one wavelength: the specification of a grey BRDF.
+struct FittedWavelength {
+    double nanometres = 0;
+    std::string spec;
+};
+
 struct FitResult {
     std::string model;  ///< as it was asked for
-    std::string spec;   ///< with values filled in: opens the fit
+    std::string spec;   ///< with values filled in: opens the fit; empty for a spectrum
+    std::vector<FittedWavelength> spectrum;  ///< of data with wavelengths, in their order
     std::vector<FittedParameter> parameters;
     /// Of parameters with a standard error, 0 otherwise: [n * n]. Channels that were fitted apart
     /// do not correlate.
@@ -55,6 +65,7 @@ struct FitResult {
     double loss = 0;               ///< root of the weighted mean square of g(f) - g(measured)
     double projectedGradient = 0;  ///< largest component that bounds do not stop, per unit of scale
     double aic = 0, bic = 0;
+    std::optional<Uncertainty> uncertainty;  ///< only if asked for
 };
 
 /// The parameters with the least loss, from several starts.
@@ -66,8 +77,16 @@ struct FitResult {
 /// noise of any kind, but take the residuals of samples for independent, and the model for true.
 /// AIC and BIC are those of Gaussian residuals of g with the given weights.
 ///
-/// Throws UsageError for the model, NumericError if there are fewer values than parameters.
+/// Samples with stated uncertainties are weighted by 1/sigma^2 (the loss has to be l2): the loss is
+/// the root of the weighted mean square of f - measured, and AIC and BIC are chi-square plus their
+/// terms, because the variance is known. With scans, errors and correlations are those by scan.
+///
+/// Throws UsageError for the model, for stated uncertainties with another loss, and for a study of
+/// uncertainties with a robust kernel; NumericError if there are fewer values than parameters.
 FitResult fit(const FitSamples& samples, const FitOptions& options);
+
+/// Opens the fit: `spec` or `spectrum`.
+std::unique_ptr<Brdf> openFit(const FitResult& result);
 
 /// f of a fitted specification at samples: [channel * size + k].
 std::vector<double> valuesOf(const Brdf& brdf, const FitSamples& samples);

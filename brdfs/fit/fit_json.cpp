@@ -1,6 +1,6 @@
 #include <brdfs/fit/fit_json.h>
 
-#include <brdfs/catalog.h>
+#include <brdfs/fit/uncertainty_json.h>
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/version.h>
 
@@ -39,7 +39,7 @@ Json correlationsJson(const FitResult& result) {
 
 Json metricsJson(const FitReport& report) {
     const FitSamples& samples = *report.samples;
-    const auto brdf = open(report.result.spec);
+    const auto brdf = openFit(report.result);
     const std::vector<double> own = valuesOf(*brdf, samples);
     Json metrics = Json::array();
     for (const MetricValue& value :
@@ -50,6 +50,13 @@ Json metricsJson(const FitReport& report) {
         metrics.push_back(std::move(json));
     }
     return metrics;
+}
+
+Json spectrumJson(const std::vector<FittedWavelength>& spectrum) {
+    Json list = Json::array();
+    for (const FittedWavelength& own : spectrum)
+        list.push_back({{"wavelength", own.nanometres}, {"spec", own.spec}});
+    return list;
 }
 
 }  // namespace
@@ -94,12 +101,20 @@ Json fitPreset(const FitReport& report) {
         {"metrics", metricsJson(report)},
     };
     if (options.robust != Robust::none) fit["robust_scale"] = result.robustScale;
-    return {{"format", "hshfit-preset"},
-            {"version", 1},
-            {"spec", result.spec},
-            {"source", fmt::format("fit of {} to {}", result.model, report.data)},
-            {"generator", fmt::format("hshfit {}", version)},
-            {"fit", std::move(fit)}};
+    if (!samples.sigmas.empty()) fit["weights"] = "sigma";
+    if (result.uncertainty) {
+        fit["uncertainty"] = uncertaintyJson(report);
+        fit["influence"] = influenceJson(samples, *result.uncertainty);
+    }
+    Json preset = {{"format", "hshfit-preset"}, {"version", 1}};
+    if (result.spectrum.empty())
+        preset["spec"] = result.spec;
+    else
+        preset["spectrum"] = spectrumJson(result.spectrum);
+    preset["source"] = fmt::format("fit of {} to {}", result.model, report.data);
+    preset["generator"] = fmt::format("hshfit {}", version);
+    preset["fit"] = std::move(fit);
+    return preset;
 }
 
 }  // namespace hshfit::brdfs

@@ -15,6 +15,7 @@ struct FitReport {
     FitSamples const* samples = nullptr;
     FitOptions options;
     FitResult result;
+    std::string sigma, scans;  ///< as they were stated
 };
 
 /// {"format": "hshfit-preset", …, "fit": {…}}: opened as a preset by every command. The same for

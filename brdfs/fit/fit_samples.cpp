@@ -1,5 +1,6 @@
 #include <brdfs/fit/fit_samples.h>
 
+#include <brdfs/fit/sample_source.h>
 #include <brdfs/measured/gridded/slice.h>
 #include <brdfs/measured/merl.h>
 #include <brdfs/measured/scattered/scattered.h>
@@ -12,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <span>
 
@@ -43,8 +45,9 @@ public:
     void belowHorizon() { ++samples_.masked.belowHorizon; }
     void invalid() { ++samples_.masked.invalid; }
 
-    /// `values`: one per channel of the source.
-    void add(const DirectionPair& pair, std::span<const double> values, double weight) {
+    /// `values`: one per channel of the source; `place`: that of a measured sample in it.
+    void add(const DirectionPair& pair, std::span<const double> values, double weight,
+             std::optional<std::size_t> place = {}) {
         const double* f = converted(values);
         Masked& masked = samples_.masked;
         const double lower = std::min(pair.wi.z, pair.wo.z);
@@ -60,6 +63,7 @@ public:
             samples_.wiZ.push_back(pair.wi.z);
             samples_.wo.push_back(pair.wo);
             samples_.weights.push_back(weight);
+            if (place) places_.push_back(*place);
             interleaved_.insert(interleaved_.end(), f, f + channelCount_);
         }
     }
@@ -89,11 +93,12 @@ public:
         if (!samples_.solidAngles) std::ranges::fill(samples_.weights, 1.0);
         const double sum = std::accumulate(samples_.weights.begin(), samples_.weights.end(), 0.0);
         for (double& weight : samples_.weights) weight *= static_cast<double>(count) / sum;
-        if (options_.most == 0 || options_.most >= count) return std::move(samples_);
-        FitSamples drawn = samples_.drawn(options_.most, options_.seed);
-        drawn.masked.notDrawn = count - drawn.size();
-        return drawn;
+        return std::move(samples_);
     }
+
+    /// The place in the source of each measured sample that was taken.
+    const std::vector<std::size_t>& places() const { return places_; }
+    bool hasViews() const { return !views_.empty(); }
 
 private:
     /// Values of the source as the views show them.
@@ -110,6 +115,7 @@ private:
 
     std::vector<const ChannelView*> views_;  ///< from the source outwards
     std::vector<double> now_, next_;
+    std::vector<std::size_t> places_;
     SampleOptions options_;
     std::size_t channelCount_;
     double lowest_;
@@ -181,7 +187,7 @@ void gatherScattered(const Scattered& scattered, Gatherer& gatherer) {
     const std::size_t channels = samples.channels.count();
     for (std::size_t k = 0; k < samples.size(); ++k)
         gatherer.add({samples.wi[k], samples.wo[k]},
-                     {samples.values.data() + k * channels, channels}, 1);
+                     {samples.values.data() + k * channels, channels}, 1, k);
 }
 
 /// Any other BRDF, at the nodes that the header names.
@@ -233,7 +239,13 @@ FitSamples FitSamples::subset(const std::vector<std::size_t>& indices) const {
         sum += weights[k];
     }
     for (std::size_t c = 0; c < channels.count(); ++c)
-        for (const std::size_t k : indices) result.values.push_back(value(c, k));
+        for (const std::size_t k : indices) {
+            result.values.push_back(value(c, k));
+            if (!sigmas.empty()) result.sigmas.push_back(sigmas[c * size() + k]);
+            if (!rows.empty()) result.rows.push_back(rows[c * size() + k]);
+        }
+    if (!scans.empty())
+        for (const std::size_t k : indices) result.scans.push_back(scans[k]);
     const double count = static_cast<double>(indices.size());
     if (sum > 0)
         for (double& weight : result.weights) weight *= count / sum;
@@ -254,15 +266,18 @@ FitSamples FitSamples::drawn(std::size_t count, std::uint64_t seed) const {
 FitSamples FitSamples::channel(std::size_t c) const {
     FitSamples result = *this;
     result.channels = Channels::grey();
-    const auto first = values.begin() + static_cast<std::ptrdiff_t>(c * size());
-    result.values.assign(first, first + static_cast<std::ptrdiff_t>(size()));
+    const auto own = [&]<class Value>(const std::vector<Value>& all) {
+        if (all.empty()) return all;
+        const auto first = all.begin() + static_cast<std::ptrdiff_t>(c * size());
+        return std::vector<Value>(first, first + static_cast<std::ptrdiff_t>(size()));
+    };
+    result.values = own(values);
+    result.sigmas = own(sigmas);
+    result.rows = own(rows);
     return result;
 }
 
 FitSamples gatherSamples(const Brdf& data, const SampleOptions& options) {
-    if (data.channels().kind == Channels::Kind::spectral)
-        throw UsageError(fmt::format(
-            "{}: has wavelengths; models have R, G and B: fit it with --rgb", data.name()));
     Gatherer gatherer(data, options);
     const Brdf& source = gatherer.source(data);
     SampleOrigin origin = SampleOrigin::cells;
@@ -279,7 +294,18 @@ FitSamples gatherSamples(const Brdf& data, const SampleOptions& options) {
     }
     FitSamples samples = gatherer.finish(data, origin != SampleOrigin::measured);
     samples.origin = origin;
-    return samples;
+    const auto* scattered = dynamic_cast<const Scattered*>(&source);
+    const SampleSource from{.samples = scattered ? &scattered->samples() : nullptr,
+                            .places = gatherer.places(),
+                            .converted = gatherer.hasViews(),
+                            .name = data.name()};
+    numberRows(from, samples);
+    stateScans(options.scans, options.sigma, from, samples);
+    stateSigmas(options.sigma, from, samples);
+    if (options.most == 0 || options.most >= samples.size()) return samples;
+    FitSamples drawn = samples.drawn(options.most, options.seed);
+    drawn.masked.notDrawn = samples.size() - drawn.size();
+    return drawn;
 }
 
 }  // namespace hshfit::brdfs

@@ -40,33 +40,43 @@ Sums sumOverBlocks(std::size_t count, Sums total, const Work& work) {
     return total;
 }
 
-struct Gram {
-    Matrix matrix;
-    void add(const Gram& other) { matrix += other.matrix; }
+struct Grams {
+    std::vector<Matrix> matrices;
+    void add(const Grams& other) {
+        for (std::size_t i = 0; i < matrices.size(); ++i) matrices[i] += other.matrices[i];
+    }
 };
 
-/// [columns and derivatives][data of `channels`], weighted inner products. `roots` of weights.
-Matrix gramOf(const FitSamples& samples, const ColumnBlocks& columns,
-              const std::vector<double>& roots, const std::vector<std::size_t>& channels) {
-    const auto rows = static_cast<Eigen::Index>(columns.count() + channels.size());
-    const Gram zero{Matrix::Zero(rows, rows)};
+/// [columns and derivatives][data], weighted inner products: one matrix with the data of all
+/// channels for weights that they share, else one for each channel. `roots` of weights.
+std::vector<Matrix> gramsOf(const FitSamples& samples, const ColumnBlocks& columns,
+                            const std::vector<std::vector<double>>& roots) {
+    const std::size_t channels = samples.channels.count(), own = channels / roots.size();
+    const auto first = static_cast<Eigen::Index>(columns.count());
+    const Eigen::Index rows = first + static_cast<Eigen::Index>(own);
+    const Grams zero{std::vector<Matrix>(roots.size(), Matrix::Zero(rows, rows))};
     const auto work = [&](const Block& block) {
         const auto size = static_cast<Eigen::Index>(block.size);
+        Matrix filled(size, first);
+        columns.fill(block.begin, block.size, filled.data());
+        Grams result = zero;
         Matrix z(size, rows);
-        columns.fill(block.begin, block.size, z.data());
-        for (std::size_t c = 0; c < channels.size(); ++c)
-            for (Eigen::Index k = 0; k < size; ++k)
-                z(k, static_cast<Eigen::Index>(columns.count() + c)) =
-                    samples.value(channels[c], block.begin + static_cast<std::size_t>(k));
-        const Eigen::Map<const Vector> root(roots.data() + block.begin, size);
-        z.array().colwise() *= root.array();
-        Gram result = zero;
-        result.matrix.selfadjointView<Eigen::Lower>().rankUpdate(z.transpose());
+        for (std::size_t i = 0; i < roots.size(); ++i) {
+            z.leftCols(first) = filled;
+            for (std::size_t c = 0; c < own; ++c)
+                for (Eigen::Index k = 0; k < size; ++k)
+                    z(k, first + static_cast<Eigen::Index>(c)) =
+                        samples.value(i + c, block.begin + static_cast<std::size_t>(k));
+            const Eigen::Map<const Vector> root(roots[i].data() + block.begin, size);
+            z.array().colwise() *= root.array();
+            result.matrices[i].selfadjointView<Eigen::Lower>().rankUpdate(z.transpose());
+        }
         return result;
     };
-    Matrix matrix = sumOverBlocks(samples.size(), zero, work).matrix;
-    matrix.triangularView<Eigen::StrictlyUpper>() = matrix.transpose();
-    return matrix;
+    std::vector<Matrix> matrices = sumOverBlocks(samples.size(), zero, work).matrices;
+    for (Matrix& matrix : matrices)
+        matrix.triangularView<Eigen::StrictlyUpper>() = matrix.transpose();
+    return matrices;
 }
 
 /// Sums of one channel.
@@ -110,15 +120,16 @@ Matrix jacobianOf(const ParametricSum& sum, const ColumnBlocks& columns, const M
 FitProblem::FitProblem(const FitSamples& samples, const ParametricSum& sum, Loss::Kind loss)
     : samples_(samples), sum_(sum), loss_(loss) {
     const bool linear = loss == Loss::Kind::l2 || loss == Loss::Kind::cosine;
-    projectionWeights_.resize(linear ? 1 : channels());
+    projectionWeights_.resize(linear && samples.sigmas.empty() ? 1 : channels());
     double squares = 0, weights = 0;
     for (std::size_t c = 0; c < channels(); ++c)
         for (std::size_t k = 0; k < samples.size(); ++k) {
             const Mapped g = mapValue(loss, samples.value(c, k), samples.wiZ[k]);
-            squares += samples.weights[k] * g.value * g.value;
-            weights += samples.weights[k];
+            const double weight = samples.weight(c, k);
+            squares += weight * g.value * g.value;
+            weights += weight;
             if (c < projectionWeights_.size())
-                projectionWeights_[c].push_back(std::sqrt(samples.weights[k]) * g.slope);
+                projectionWeights_[c].push_back(std::sqrt(weight) * g.slope);
         }
     normalisation_ = squares > 0 ? squares : weights;
 }
@@ -137,14 +148,10 @@ Equations FitProblem::eliminated(std::span<const double> u, bool derivatives,
     Matrix hessian = Matrix::Zero(n, n);
     Vector gradient = Vector::Zero(n);
     Equations result;
-    Matrix gram;
+    const bool shared = projectionWeights_.size() == 1;
+    const std::vector<Matrix> grams = gramsOf(samples_, columns, projectionWeights_);
     for (std::size_t c = 0; c < channels(); ++c) {
-        const bool shared = projectionWeights_.size() == 1;
-        std::vector<std::size_t> all(channels());
-        for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-        if (c == 0 || !shared)
-            gram = gramOf(samples_, columns, projectionWeights_[shared ? 0 : c],
-                          shared ? all : std::vector<std::size_t>{c});
+        const Matrix& gram = grams[shared ? 0 : c];
         const auto data = static_cast<Eigen::Index>(columns.count() + (shared ? c : 0));
         const auto count = static_cast<Eigen::Index>(terms);
         const Matrix a = gram.block(1, 1, count, count);
@@ -226,7 +233,7 @@ Equations FitProblem::joint(std::span<const double> x, bool derivatives,
         Vector root(z.rows()), slope(z.rows());
         for (Eigen::Index k = 0; k < z.rows(); ++k) {
             const std::size_t at = block.begin + static_cast<std::size_t>(k);
-            const double cosine = samples_.wiZ[at], weight = samples_.weights[at];
+            const double cosine = samples_.wiZ[at], weight = samples_.weight(c, at);
             const Mapped mapped = mapValue(loss_, f(k), cosine);
             const double r = mapped.value - mapValue(loss_, samples_.value(c, at), cosine).value;
             const Kernel kernel = applyKernel(robust_, scale_, r * r);
@@ -279,6 +286,43 @@ Equations FitProblem::joint(std::span<const double> x, bool derivatives,
     result.gradient.assign(gradient.data(), gradient.data() + total);
     result.hessian.assign(hessian.data(), hessian.data() + total * total);
     if (spread) result.spread.assign(meat.data(), meat.data() + total * total);
+    return result;
+}
+
+WeightedRows FitProblem::weightedRows(std::span<const double> x) const {
+    const std::size_t shapes = shapeCount(), terms = sum_.linears().size(), count = samples_.size();
+    const ColumnBlocks columns(samples_, sum_, x.first(shapes), true);
+    WeightedRows result{.samples = count, .channels = channels(), .columns = shapes + terms};
+    result.slopes.resize(channels() * count * result.columns);
+    result.residuals.resize(channels() * count);
+    result.values.resize(channels() * count);
+    const std::vector<Block> blocks = blocksOf(count);
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+        const Block& block = blocks[b];
+        Matrix z(static_cast<Eigen::Index>(block.size), static_cast<Eigen::Index>(columns.count()));
+        columns.fill(block.begin, block.size, z.data());
+        for (std::size_t c = 0; c < channels(); ++c) {
+            std::vector<double> linear;
+            for (std::size_t i = 0; i < terms; ++i)
+                linear.push_back(x[shapes + i * channels() + c]);
+            const Matrix rows = jacobianOf(sum_, columns, z, linear);
+            for (std::size_t k = 0; k < block.size; ++k) {
+                const auto row = static_cast<Eigen::Index>(k);
+                const std::size_t at = block.begin + k, place = c * count + at;
+                double f = z(row, 0);
+                for (std::size_t i = 0; i < terms; ++i)
+                    f += linear[i] * z(row, static_cast<Eigen::Index>(1 + i));
+                const double cosine = samples_.wiZ[at], root = std::sqrt(samples_.weight(c, at));
+                const Mapped mapped = mapValue(loss_, f, cosine);
+                result.values[place] = f;
+                result.residuals[place] =
+                    root * (mapValue(loss_, samples_.value(c, at), cosine).value - mapped.value);
+                for (std::size_t i = 0; i < result.columns; ++i)
+                    result.slopes[place * result.columns + i] =
+                        root * mapped.slope * rows(row, static_cast<Eigen::Index>(i));
+            }
+        }
+    });
     return result;
 }
 

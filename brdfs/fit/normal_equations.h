@@ -21,12 +21,27 @@ struct Equations {
     std::vector<double> spread;
 };
 
+/// The problem linearised at a point, value by value.
+struct WeightedRows {
+    std::size_t samples = 0, channels = 0;
+    std::size_t columns = 0;  ///< shapes, then the linear parameters of the value's channel
+    std::vector<double> slopes =
+        {};  ///< of root(w) g(f) by x: [(channel * samples + k) * columns + i]
+    std::vector<double> residuals = {};  ///< root(w) (g(measured) - g(f)): [channel * samples + k]
+    std::vector<double> values = {};     ///< f, likewise
+
+    /// The place in x of column i for a channel.
+    std::size_t place(std::size_t i, std::size_t channel, std::size_t shapes) const {
+        return i < shapes ? i : shapes + (i - shapes) * channels + channel;
+    }
+};
+
 /// The least-squares problem of one fit. Samples are streamed in blocks of a fixed size whose sums
 /// are added in order, so that results do not depend on the number of threads; memory does not
 /// grow with samples times parameters.
 ///
-/// cost = sum_{k,c} w_k rho((g(f) - g(measured))^2) / 2, divided by sum_{k,c} w_k g(measured)^2
-/// (by sum w where all is zero).
+/// cost = sum_{k,c} w_kc rho((g(f) - g(measured))^2) / 2, divided by sum_{k,c} w_kc g(measured)^2
+/// (by sum w where all is zero), w_kc = FitSamples::weight.
 class FitProblem {
 public:
     FitProblem(const FitSamples& samples, const ParametricSum& sum, Loss::Kind loss);
@@ -53,6 +68,9 @@ public:
     /// (MacKinnon & White 1985, 10.1016/0304-4076(85)90158-7: HC3).
     Equations joint(std::span<const double> x, bool derivatives,
                     std::span<const double> inverse = {}) const;
+
+    /// Without a robust kernel.
+    WeightedRows weightedRows(std::span<const double> x) const;
 
     /// g(f) - g(measured) at x: [channel * samples + k].
     std::vector<double> residuals(std::span<const double> x) const;

@@ -1,0 +1,220 @@
+#include <brdfs/fit/fit_search.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace hshfit::brdfs {
+namespace {
+
+constexpr std::size_t coarseCount = 4096;
+/// Above this number of samples, a second and third search on all costs more than it finds.
+constexpr std::size_t manySamples = 200'000, middleCount = 50'000;
+
+Bounds shapeBounds(const ParametricSum& sum) {
+    Bounds bounds;
+    for (const ShapeParameter& shape : sum.shapes()) {
+        bounds.lower.push_back(shape.lower());
+        bounds.upper.push_back(shape.upper());
+    }
+    return bounds;
+}
+
+/// Element `index` of van der Corput's sequence in a base.
+double radicalInverse(std::size_t index, int base) {
+    double value = 0, digit = 1;
+    for (; index > 0; index /= static_cast<std::size_t>(base)) {
+        digit /= base;
+        value += digit * static_cast<double>(index % static_cast<std::size_t>(base));
+    }
+    return value;
+}
+
+std::vector<std::vector<double>> startsOf(const ParametricSum& sum, std::size_t count,
+                                          std::uint64_t seed) {
+    constexpr int primes[] = {2,  3,  5,  7,  11, 13, 17, 19, 23, 29, 31, 37,
+                              41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89};
+    std::mt19937_64 random(seed);
+    std::vector<double> shift;
+    for (std::size_t j = 0; j < sum.shapes().size(); ++j)
+        shift.push_back(static_cast<double>(random() >> 11) * 0x1p-53);
+    std::vector<std::vector<double>> starts;
+    for (std::size_t i = 0; i < count; ++i) {
+        starts.emplace_back();
+        for (std::size_t j = 0; j < sum.shapes().size(); ++j) {
+            const ShapeParameter& shape = sum.shapes()[j];
+            const double share =
+                std::fmod(radicalInverse(i + 1, primes[j % std::size(primes)]) + shift[j], 1.0);
+            const double low = shape.toScale(shape.free.startLow),
+                         high = shape.toScale(shape.free.startHigh);
+            starts.back().push_back(low + share * (high - low));
+        }
+    }
+    return starts;
+}
+
+/// x = u followed by linear parameters.
+std::vector<double> joined(std::vector<double> u, const std::vector<double>& linear) {
+    u.insert(u.end(), linear.begin(), linear.end());
+    return u;
+}
+
+bool byCost(const Minimum& a, const Minimum& b) {
+    return (std::isfinite(a.cost) ? a.cost : 1e300) < (std::isfinite(b.cost) ? b.cost : 1e300);
+}
+
+/// Searches of one problem; `linear`: what is minimised over the shapes alone.
+class Search {
+public:
+    Search(const FitProblem& problem, bool linear)
+        : problem_(problem),
+          linear_(linear),
+          shapes_(shapeBounds(problem.sum())),
+          joint_(jointBounds(problem.sum(), problem.channels())) {}
+
+    /// From shapes: eliminated if that is the loss itself, else jointly, from the linear parameters
+    /// that elimination gives and from those at its minimum, whichever leads further.
+    Minimum fromShapes(const std::vector<double>& u, const MinimiseOptions& options) const {
+        Minimum minimum = eliminated(u, options);
+        if (linear_) return minimum;
+        minimum = fromAll(minimum, options);
+        Minimum direct;
+        std::vector<double> best;
+        problem_.eliminated(u, false, best);
+        direct.x = joined(u, best);
+        direct = fromAll(direct, options);
+        return byCost(direct, minimum) ? direct : minimum;
+    }
+
+    Minimum eliminated(const std::vector<double>& u, const MinimiseOptions& options) const {
+        std::vector<double> linear;
+        Minimum minimum =
+            minimise([&](std::span<const double> at,
+                         bool derivatives) { return problem_.eliminated(at, derivatives, linear); },
+                     u, shapes_.lower, shapes_.upper, options);
+        problem_.eliminated(minimum.x, false, linear);
+        minimum.x = joined(std::move(minimum.x), linear);
+        return minimum;
+    }
+
+    Minimum fromAll(const Minimum& start, const MinimiseOptions& options) const {
+        Minimum minimum =
+            minimise([&](std::span<const double> at,
+                         bool derivatives) { return problem_.joint(at, derivatives); },
+                     start.x, joint_.lower, joint_.upper, options);
+        minimum.iterations += start.iterations;
+        minimum.evaluations += start.evaluations;
+        return minimum;
+    }
+
+private:
+    const FitProblem& problem_;
+    bool linear_;
+    Bounds shapes_, joint_;
+};
+
+/// Minima of the problem on few samples, from the best of many starts, best first.
+std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
+                                  const FitOptions& options) {
+    const std::size_t shapes = problem.shapeCount();
+    const std::size_t starts = shapes == 0 ? 1 : static_cast<std::size_t>(options.starts);
+    std::vector<Minimum> candidates;
+    for (std::vector<double>& u :
+         startsOf(problem.sum(), shapes == 0 ? 1 : 4 * starts, options.seed)) {
+        std::vector<double> best;
+        Minimum candidate;
+        candidate.cost = problem.eliminated(u, false, best).cost;
+        if (!linear) candidate.cost = problem.joint(joined(u, best), false).cost;
+        candidate.x = std::move(u);
+        candidates.push_back(std::move(candidate));
+    }
+    std::ranges::stable_sort(candidates, byCost);
+    candidates.resize(std::min(candidates.size(), starts));
+    const Search search(problem, linear);
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        candidates[i] = search.fromShapes(
+            candidates[i].x,
+            {.iterations = 60, .costTolerance = 1e-8, .stepTolerance = 1e-7, .curvature = false});
+        if (options.progress) options.progress(i + 1, candidates.size() + 1);
+    }
+    std::ranges::stable_sort(candidates, byCost);
+    return candidates;
+}
+
+/// The first few that differ by more than a search leaves undecided.
+std::vector<Minimum> distinct(const std::vector<Minimum>& minima, std::size_t most) {
+    std::vector<Minimum> chosen;
+    for (const Minimum& minimum : minima) {
+        if (chosen.size() >= most) break;
+        if (chosen.empty() || minimum.cost > chosen.back().cost * (1 + 1e-4))
+            chosen.push_back(minimum);
+    }
+    return chosen;
+}
+
+double medianSize(std::vector<double> residuals) {
+    for (double& r : residuals) r = std::abs(r);
+    const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
+    std::ranges::nth_element(residuals, middle);
+    return *middle;
+}
+
+}  // namespace
+
+Bounds jointBounds(const ParametricSum& sum, std::size_t channels) {
+    Bounds bounds = shapeBounds(sum);
+    for (const LinearParameter& linear : sum.linears())
+        for (std::size_t c = 0; c < channels; ++c) {
+            bounds.lower.push_back(linear.min);
+            bounds.upper.push_back(linear.max);
+        }
+    return bounds;
+}
+
+Minimum refined(const FitProblem& problem, bool linear, const Minimum& start,
+                const MinimiseOptions& options) {
+    const Search search(problem, linear);
+    if (!linear) return search.fromAll(start, options);
+    const auto shapes = static_cast<std::ptrdiff_t>(problem.shapeCount());
+    return search.eliminated({start.x.begin(), start.x.begin() + shapes}, options);
+}
+
+Fitted searchMinimum(FitProblem& problem, const FitOptions& options) {
+    const bool linear = options.loss == Loss::Kind::l2 || options.loss == Loss::Kind::cosine;
+    const FitSamples& samples = problem.samples();
+    const bool few = samples.size() <= coarseCount;
+    const FitSamples coarse = samples.drawn(coarseCount, options.seed);
+    const FitProblem small(coarse, problem.sum(), options.loss);
+    const std::vector<Minimum> minima = coarseMinima(few ? problem : small, linear, options);
+    const Search search(problem, linear);
+    const MinimiseOptions last{.iterations = options.iterations};
+    Fitted best;
+    int iterations = 0, evaluations = 0;
+    const bool many = samples.size() > manySamples;
+    const FitSamples middle = samples.drawn(many ? middleCount : 1, options.seed);
+    const FitProblem between(middle, problem.sum(), options.loss);
+    for (Minimum start : distinct(minima, many ? 1 : 3)) {
+        if (many)
+            start = refined(between, linear, start, {.costTolerance = 1e-9, .stepTolerance = 1e-8});
+        Minimum minimum = refined(problem, linear, start, last);
+        iterations += minimum.iterations, evaluations += minimum.evaluations;
+        if (best.minimum.x.empty() || byCost(minimum, best.minimum))
+            best.minimum = std::move(minimum);
+    }
+    if (options.robust != Robust::none) {
+        best.robustScale = options.robustScale;
+        if (!(best.robustScale > 0)) {
+            const double factor = options.robust == Robust::huber ? 1.345 : 2.385;
+            best.robustScale =
+                std::max(factor * 1.4826 * medianSize(problem.residuals(best.minimum.x)), 1e-12);
+        }
+        problem.setRobust(options.robust, best.robustScale);
+        best.minimum = search.fromAll(best.minimum, last);
+        iterations += best.minimum.iterations, evaluations += best.minimum.evaluations;
+    }
+    best.minimum.iterations = iterations;
+    best.minimum.evaluations = evaluations;
+    return best;
+}
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <brdfs/fit/covariance.h>
+#include <brdfs/fit/normal_equations.h>
+#include <brdfs/fit/uncertainty.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// A minimum of a problem as its description found it. x as in FitProblem::joint.
+struct StudiedMinimum {
+    const FitProblem& problem;
+    const std::vector<double>& x;
+    const Equations& equations;        ///< without spread
+    const std::vector<bool>& fixed;    ///< held by a bound
+    const std::vector<double>& slope;  ///< of the parameters' values by x
+    const Covariance& stated;          ///< negative variance: no errors
+    const Covariance& sandwich;        ///< samples independent
+};
+
+/// Equations::spread with scans in place of samples: sum over scans of g g^T, g the gradient of a
+/// scan as it would be if the scan had not been fitted (CR3: Bell & McCaffrey 2002, Survey
+/// Methodology 28(2)), times (S - 1) / S for S scans. `inverse` as inverseOf gives it.
+/// Throws NumericError for fewer scans than parameters that act on one channel.
+std::vector<double> spreadOfScans(const FitProblem& problem, std::span<const double> x,
+                                  std::span<const double> inverse);
+
+/// Everything but bootstrap and profile.
+Uncertainty studied(const StudiedMinimum& minimum);
+
+/// Adds fits to samples, or scans, drawn with replacement, each from the minimum on. Draw b depends
+/// on the seed and b alone.
+void addBootstrap(const StudiedMinimum& minimum, const UncertaintyOptions& options,
+                  std::uint64_t seed, Uncertainty& result);
+
+/// Adds, for each parameter with an error, the values at which the least chi-square over all
+/// others exceeds the minimum by the square of a normal quantile: 68.27 % and 95 % (Venzon &
+/// Moolgavkar 1988, 10.2307/2347496). Without stated uncertainties, by that of Student's quantile
+/// times the variance of residuals.
+void addProfiles(const StudiedMinimum& minimum, const UncertaintyOptions& options,
+                 Uncertainty& result);
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,76 @@
+#include <brdfs/fit/residual_rows.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hshfit::brdfs {
+namespace {
+
+/// Places in descending order of a size; equal sizes keep the order of the values.
+template <class Size>
+std::vector<ValuePlace> descending(std::vector<std::size_t> values, std::size_t samples,
+                                   std::size_t most, const Size& size) {
+    std::ranges::stable_sort(values,
+                             [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
+    if (values.size() > most) values.resize(most);
+    std::vector<ValuePlace> places;
+    for (const std::size_t v : values) places.push_back({v / samples, v % samples});
+    return places;
+}
+
+}  // namespace
+
+std::size_t rowOf(const FitSamples& samples, const ValuePlace& place) {
+    return samples.rows.empty() ? place.sample + 1
+                                : samples.rows[place.channel * samples.size() + place.sample];
+}
+
+std::vector<ValuePlace> mostInfluential(const FitSamples& samples, const Uncertainty& uncertainty,
+                                        std::size_t most) {
+    std::vector<std::size_t> values;
+    for (std::size_t v = 0; v < uncertainty.values.size(); ++v) values.push_back(v);
+    return descending(std::move(values), samples.size(), most,
+                      [&](std::size_t v) { return uncertainty.values[v].cook; });
+}
+
+std::vector<ValuePlace> outliersOf(const FitSamples& samples, const Uncertainty& uncertainty) {
+    std::vector<std::size_t> values;
+    for (std::size_t v = 0; v < uncertainty.values.size(); ++v)
+        if (uncertainty.outlierBound > 0 &&
+            std::abs(uncertainty.values[v].studentised) > uncertainty.outlierBound)
+            values.push_back(v);
+    const std::size_t all = values.size();
+    return descending(std::move(values), samples.size(), all,
+                      [&](std::size_t v) { return std::abs(uncertainty.values[v].studentised); });
+}
+
+void writeResidualRows(const FitSamples& samples, const FitResult& result,
+                       const std::function<void(std::string_view)>& write) {
+    write(
+        "row,wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,channel,value,sigma,model,residual,studentised,"
+        "leverage,cook\n");
+    const std::size_t count = samples.size(), channels = samples.channels.count();
+    std::vector<std::string> names(channels);
+    for (std::size_t c = 0; c < channels; ++c) {
+        if (samples.channels.kind == Channels::Kind::spectral)
+            names[c] = fmt::format("{}", samples.channels.wavelengths[c]);
+        else if (channels > 1)
+            names[c] = samples.channels.names()[c];
+    }
+    for (std::size_t k = 0; k < count; ++k)
+        for (std::size_t c = 0; c < channels; ++c) {
+            const std::size_t v = c * count + k;
+            const ValueInfluence& own = result.uncertainty->values[v];
+            const double value = samples.values[v];
+            write(
+                fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+                            rowOf(samples, {c, k}), samples.wiX[k], samples.wiY[k], samples.wiZ[k],
+                            samples.wo[k].x, samples.wo[k].y, samples.wo[k].z, names[c], value,
+                            samples.sigmas.empty() ? "" : fmt::format("{}", samples.sigmas[v]),
+                            own.model, value - own.model, own.studentised, own.leverage, own.cook));
+        }
+}
+
+}  // namespace hshfit::brdfs

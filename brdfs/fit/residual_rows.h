@@ -1,0 +1,36 @@
+#pragma once
+
+#include <brdfs/fit/fit.h>
+
+#include <cstddef>
+#include <functional>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// The values of a fit as CSV, in the order of the samples, channel by channel for each:
+///     row         line (or number) in the file; for tables and functions the number of the sample
+///     wi_x … wo_z
+///     channel     nm, R, G or B; empty for grey
+///     value, sigma, model, residual    1/sr; residual = value - model; sigma empty if not stated
+///     studentised, leverage, cook      ValueInfluence
+/// `write` gets the text line by line. The result has to have its `uncertainty`.
+void writeResidualRows(const FitSamples& samples, const FitResult& result,
+                       const std::function<void(std::string_view)>& write);
+
+/// One value among the samples.
+struct ValuePlace {
+    std::size_t channel = 0, sample = 0;
+};
+
+/// The number of a value's row, as above.
+std::size_t rowOf(const FitSamples& samples, const ValuePlace& place);
+
+/// The values with the largest Cook's distances, largest first.
+std::vector<ValuePlace> mostInfluential(const FitSamples& samples, const Uncertainty& uncertainty,
+                                        std::size_t most);
+/// The values whose studentised residuals exceed the bound, largest first.
+std::vector<ValuePlace> outliersOf(const FitSamples& samples, const Uncertainty& uncertainty);
+
+}  // namespace hshfit::brdfs

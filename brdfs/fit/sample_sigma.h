@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace hshfit::brdfs {
+
+/// The standard uncertainty of each measured value, as somebody states it:
+///     formula   sigma^2 = (relative |f|)^2 + absolute^2
+///     column    a column of the data file (ASTM: sigma, or sigma_NAME for each channel)
+///     file      a companion file: a line of names, then a row for each sample of the data file in
+///               its order, those below the horizon included, with commas; the column sigma, or a
+///               column for each channel under its name (R, 550nm), and a column scan if there is
+///               one
+struct SigmaStatement {
+    enum class From { nothing, formula, column, file };
+    From from = From::nothing;
+    double relative = 0, absolute = 0;  ///< absolute in 1/sr
+    std::string path;
+    std::string text;  ///< as it was stated
+};
+
+/// "2%", "0.001", "2%+0.001", "column" or "FILE.csv"; empty: nothing. Throws UsageError.
+SigmaStatement parseSigma(std::string_view text);
+
+/// The samples whose errors may be correlated:
+///     column     those of one number in the column scan of the companion file of the
+///                uncertainties, or else of the data file (ASTM)
+///     incidence  those of one incident direction
+///     runs       so many after one another in the data file
+struct ScanStatement {
+    enum class From { nothing, column, incidence, runs };
+    From from = From::nothing;
+    std::size_t length = 0;
+    std::string text;  ///< as it was stated
+};
+
+/// "column", "incidence" or a number from 1 on; empty: nothing. Throws UsageError.
+ScanStatement parseScans(std::string_view text);
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,108 @@
+#include "fit_uncertainty.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <vector>
+
+namespace hshfit::cli {
+namespace {
+
+using Document = nlohmann::ordered_json;
+
+std::string number(const Document& value) {
+    return value.is_number() ? fmt::format("{:.3g}", value.get<double>()) : "-";
+}
+
+std::string interval(const Document& ends) {
+    const auto end = [](const Document& value) {
+        return value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : "bound";
+    };
+    return fmt::format("{} to {}", end(ends[0]), end(ends[1]));
+}
+
+std::string chiSquareLine(const Document& uncertainty) {
+    const auto degrees = uncertainty["degrees_of_freedom"].get<std::size_t>();
+    if (!uncertainty["chi_square"].is_number())
+        return fmt::format("  variance of residuals {:.6g} over {} degrees of freedom\n",
+                           uncertainty["residual_variance"].get<double>(), degrees);
+    return fmt::format(
+        "  chi-square {:.6g} over {} degrees of freedom, {:.4g} each, "
+        "probability {:.3g}\n",
+        uncertainty["chi_square"].get<double>(), degrees,
+        uncertainty["reduced_chi_square"].get<double>(), uncertainty["probability"].get<double>());
+}
+
+/// The errors of every parameter, a column for each route.
+std::string errorTable(const Document& uncertainty) {
+    const bool scans = uncertainty.contains("scans"), bootstrap = uncertainty.contains("bootstrap");
+    std::string lines =
+        fmt::format("  {:<27} {:>10} {:>10}{}{}\n", "standard errors", "normal", "sandwich",
+                    scans ? "    by scan" : "", bootstrap ? "  bootstrap" : "");
+    for (const Document& own : uncertainty["parameters"]) {
+        lines +=
+            fmt::format("  {:<24} {:>2} {:>10} {:>10}", own["name"].get<std::string>(),
+                        own.value("channel", ""), number(own["normal"]), number(own["sandwich"]));
+        if (scans) lines += fmt::format(" {:>10}", number(own["scans"]));
+        if (own.contains("bootstrap"))
+            lines += fmt::format(" {:>10}", number(own["bootstrap"]["standard_error"]));
+        lines += '\n';
+    }
+    return lines;
+}
+
+std::string profileTable(const Document& uncertainty) {
+    std::string lines;
+    for (const Document& own : uncertainty["parameters"]) {
+        if (!own.contains("profile")) continue;
+        const Document& profile = own["profile"];
+        lines += fmt::format("  {:<24} {:>2} 68 %: {}; 95 %: {}{}\n",
+                             own["name"].get<std::string>(), own.value("channel", ""),
+                             interval(profile["interval_68"]), interval(profile["interval_95"]),
+                             profile["quadratic"].get<bool>() ? "" : "; not quadratic");
+    }
+    return lines.empty() ? lines : "  profile likelihood\n" + lines;
+}
+
+std::string places(const Document& values, const char* size, const std::string& unit) {
+    constexpr std::size_t most = 5;
+    std::vector<std::string> parts;
+    for (std::size_t i = 0; i < std::min(most, values.size()); ++i) {
+        const Document& own = values[i];
+        const std::string channel = own.value("channel", "");
+        parts.push_back(fmt::format("{} {}{}{} ({:.3g})", unit, own["row"].get<std::size_t>(),
+                                    channel.empty() ? "" : " at ", channel,
+                                    own[size].get<double>()));
+    }
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string influenceText(const Document& influence) {
+    const std::string unit = influence["rows"] == "lines" ? "line" : "sample";
+    const auto count = influence["outlier_count"].get<std::size_t>();
+    std::string lines =
+        fmt::format("  {} {} with a studentised residual beyond {:.3g}{}\n", count,
+                    count == 1 ? "outlier" : "outliers", influence["outlier_bound"].get<double>(),
+                    count == 0 ? "" : ": " + places(influence["outliers"], "studentised", unit));
+    return lines + fmt::format("  most influential (Cook's distance): {}\n",
+                               places(influence["most_influential"], "cook", unit));
+}
+
+}  // namespace
+
+std::string uncertaintyText(const Document& fit) {
+    if (!fit.contains("uncertainty")) return {};
+    const Document& uncertainty = fit["uncertainty"];
+    std::string lines = chiSquareLine(uncertainty) + errorTable(uncertainty);
+    if (uncertainty.contains("bootstrap")) {
+        const Document& bootstrap = uncertainty["bootstrap"];
+        lines += fmt::format(
+            "  {} fits to resampled {}, {} failed\n", bootstrap["draws"].get<std::size_t>(),
+            bootstrap["of"].get<std::string>(), bootstrap["failed"].get<std::size_t>());
+    }
+    return lines + profileTable(uncertainty) + influenceText(fit["influence"]);
+}
+
+}  // namespace hshfit::cli
