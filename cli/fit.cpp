@@ -123,9 +123,19 @@ void runCompareModels(const FitArguments& arguments, Globals& globals) {
                         {"aic", fit.aic},
                         {"bic", fit.bic},
                         {"converged", fit.converged}});
+        if (fit.uncertainty) {
+            list.back()["chi_square"] =
+                fit.uncertainty->stated ? Json(fit.uncertainty->chiSquare) : Json();
+            list.back()["degrees_of_freedom"] = fit.uncertainty->degreesOfFreedom;
+            list.back()["tied"] = rank.tied;
+        }
         lines += fmt::format("  {:<28} {:>3} {:>12.6g} {:>12.6g} {:>12.8g} {:>12.8g}{}\n",
                              rank.model, fit.parameters.size(), rank.heldOut, fit.loss, fit.aic,
                              fit.bic, fit.converged ? "" : "  not converged");
+        if (fit.uncertainty && fit.uncertainty->stated)
+            lines.insert(lines.size() - 1, fmt::format("  chi-square {:.4g} each",
+                                                       fit.uncertainty->reducedChiSquare()));
+        if (rank.tied) lines.insert(lines.size() - 1, "  tied with the first");
         if (!fit.converged && !arguments.options.accept)
             globals.exitCode = static_cast<int>(ExitCode::numeric);
     }

@@ -1,6 +1,7 @@
 #include <brdfs/fit/compare_models.h>
 
 #include <brdfs/catalog.h>
+#include <brdfs/fit/distributions.h>
 #include <brdfs/fit/parametric_sum.h>
 #include <hshfit/error.h>
 
@@ -14,15 +15,27 @@ namespace {
 
 constexpr std::size_t foldCount = 5;
 using Folds = std::array<std::vector<std::size_t>, foldCount>;
+using Groups = std::map<std::pair<int, int>, std::vector<std::size_t>>;
 
-Folds foldsOf(const FitSamples& samples) {
-    std::map<std::pair<int, int>, std::vector<std::size_t>> rings;
+/// Samples that are held out together: scans, or rings in elevation.
+Groups groupsOf(const FitSamples& samples) {
+    Groups groups;
+    if (!samples.scans.empty()) {
+        for (std::size_t k = 0; k < samples.size(); ++k)
+            groups[{0, static_cast<int>(samples.scans[k])}].push_back(k);
+        if (groups.size() >= foldCount) return groups;
+        groups.clear();
+    }
     for (std::size_t k = 0; k < samples.size(); ++k) {
         const int ring = static_cast<int>(degrees(polarAngle(samples.wo[k])) / 3);
         const int sector =
             samples.isotropic ? 0 : static_cast<int>(degrees(azimuth(samples.wo[k]) + pi) / 30);
-        rings[{sector, ring}].push_back(k);
+        groups[{sector, ring}].push_back(k);
     }
+    return groups;
+}
+
+Folds foldsOf(const FitSamples& samples, const Groups& rings) {
     Folds folds;
     if (rings.size() < foldCount) {
         for (std::size_t k = 0; k < samples.size(); ++k)
@@ -51,22 +64,69 @@ FitSamples without(const FitSamples& samples, const std::vector<std::size_t>& fo
     return samples.subset(rest);
 }
 
-double heldOutLoss(const FitSamples& samples, const Folds& folds, FitOptions options) {
+struct HeldOut {
+    double loss = 0;
+    std::vector<double> squares;  ///< weighted squared residuals of each sample, over channels
+};
+
+/// Whether the samples say more of their errors than that they are of one kind.
+bool stated(const FitSamples& samples) {
+    return !samples.sigmas.empty() || !samples.scans.empty();
+}
+
+void addSquares(const Brdf& brdf, const FitSamples& held, Loss::Kind loss,
+                const std::vector<std::size_t>& fold, HeldOut& result) {
+    const std::vector<double> f = valuesOf(brdf, held);
+    for (std::size_t c = 0; c < held.channels.count(); ++c)
+        for (std::size_t k = 0; k < held.size(); ++k) {
+            const double r = mapValue(loss, f[c * held.size() + k], held.wiZ[k]).value -
+                             mapValue(loss, held.value(c, k), held.wiZ[k]).value;
+            result.squares[fold[k]] += held.weight(c, k) * r * r;
+        }
+}
+
+HeldOut heldOutLoss(const FitSamples& samples, const Folds& folds, FitOptions options) {
     options.starts = std::max(1, options.starts / 4);
     options.progress = {};
     options.uncertainty = {};
     double squares = 0, weights = 0;
+    HeldOut heldOut;
+    if (stated(samples)) heldOut.squares.assign(samples.size(), 0);
     for (const std::vector<std::size_t>& fold : folds) {
         if (fold.empty()) continue;
         const FitResult result = fit(without(samples, fold), options);
         const FitSamples held = samples.subset(fold);
         double weight = 0;
-        for (const std::size_t k : fold) weight += samples.weights[k];
-        const double loss = lossOf(*openFit(result), held, options.loss);
+        for (const std::size_t k : fold) {
+            if (samples.sigmas.empty()) weight += samples.weights[k];
+            for (std::size_t c = 0; !samples.sigmas.empty() && c < samples.channels.count(); ++c)
+                weight += samples.weight(c, k);
+        }
+        const auto fitted = openFit(result);
+        const double loss = lossOf(*fitted, held, options.loss);
         squares += weight * loss * loss;
         weights += weight;
+        if (stated(samples)) addSquares(*fitted, held, options.loss, fold, heldOut);
     }
-    return std::sqrt(squares / weights);
+    heldOut.loss = std::sqrt(squares / weights);
+    return heldOut;
+}
+
+/// Whether two models' squared residuals differ by no more than their spread over groups explains.
+bool areTied(const HeldOut& best, const HeldOut& other, const Groups& groups) {
+    if (groups.size() < 2) return false;
+    const double count = static_cast<double>(groups.size());
+    std::vector<double> differences;
+    double mean = 0, spread = 0;
+    for (const auto& [place, members] : groups) {
+        differences.push_back(0);
+        for (const std::size_t k : members)
+            differences.back() += other.squares[k] - best.squares[k];
+        mean += differences.back() / count;
+    }
+    for (const double difference : differences) spread += (difference - mean) * (difference - mean);
+    const double error = std::sqrt(spread / (count * (count - 1)));
+    return std::abs(mean) <= studentBound(0.05, count - 1) * error;
 }
 
 }  // namespace
@@ -75,18 +135,30 @@ std::vector<ModelRank> compareModels(const FitSamples& samples, std::span<const 
                                      FitOptions options) {
     // A model that is misspelt shows before the others are fitted.
     for (const std::string& model : models) ParametricSum(model, samples.isotropic);
-    const Folds folds = foldsOf(samples);
+    const Groups groups = groupsOf(samples);
+    const Folds folds = foldsOf(samples, groups);
     std::vector<ModelRank> ranks;
+    std::vector<HeldOut> heldOut;
     for (const std::string& model : models) {
         ModelRank rank{.model = model, .fit = {}, .failure = {}};
         options.model = model;
         try {
             rank.fit = fit(samples, options);
-            rank.heldOut = heldOutLoss(samples, folds, options);
+            heldOut.push_back(heldOutLoss(samples, folds, options));
+            rank.heldOut = heldOut.back().loss;
         } catch (const NumericError& error) {
             rank.failure = error.what();
         }
         ranks.push_back(std::move(rank));
+    }
+    if (stated(samples) && !heldOut.empty()) {
+        const auto best = std::ranges::min_element(heldOut, {}, &HeldOut::loss);
+        auto own = heldOut.begin();
+        for (ModelRank& rank : ranks)
+            if (rank.failure.empty()) {
+                rank.tied = own != best && areTied(*best, *own, groups);
+                ++own;
+            }
     }
     std::ranges::stable_sort(ranks, [](const ModelRank& a, const ModelRank& b) {
         if (a.failure.empty() != b.failure.empty()) return a.failure.empty();

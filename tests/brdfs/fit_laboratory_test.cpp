@@ -1,0 +1,197 @@
+// `hshfit fit` with stated uncertainties, as a laboratory meets it.
+#include <cli/program.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <random>
+#include <sstream>
+
+namespace {
+
+using hshfit::test::Answer;
+using hshfit::test::Cli;
+using Json = nlohmann::json;
+
+namespace fs = std::filesystem;
+
+std::string shared(const std::string& file) {
+    return hshfit::test::sharedFolder() + "/data/" + file;
+}
+
+/// Rows "theta_i,phi_i,theta_s,phi_s,value,sigma,scan" of a rough diffuse surface with noise.
+struct Table {
+    std::string astm = "VARS theta_i,phi_i,theta_s,phi_s,BRDF,sigma,scan\n";
+    std::string plain = "VARS theta_i,phi_i,theta_s,phi_s,BRDF\n";
+    std::string companion = "scan,sigma\n";
+
+    Table() {
+        std::mt19937 random(6);
+        for (int scan = 0; scan < 12; ++scan)
+            for (int k = 0; k < 8; ++k) {
+                const double out = 0.05 + 0.15 * k, sigma = 0.002 + 0.0005 * k;
+                const double noise = static_cast<double>(random()) / 0x1p32 - 0.5;
+                const std::string at = std::to_string(0.1 * scan) + ",0," + std::to_string(out) +
+                                       ",3.0," + std::to_string(0.2 + sigma * 3 * noise);
+                const std::string stated = std::to_string(sigma);
+                astm += at + "," + stated + "," + std::to_string(scan) + "\n";
+                plain += at + "\n";
+                companion += std::to_string(scan) + "," + stated + "\n";
+                // Below the horizon: not fitted, but a row of the file.
+                if (k != 3) continue;
+                astm += "0.1,0,1.5717,0,9,1,0\n";
+                plain += "0.1,0,1.5717,0,9\n";
+                companion += "0,1\n";
+            }
+    }
+};
+
+class Laboratory : public Cli {
+protected:
+    Json answer(const std::string& arguments) {
+        const Answer got = run("fit --json " + arguments);
+        EXPECT_EQ(got.code, 0) << arguments << "\n" << got.err;
+        if (got.code != 0) return {};
+        EXPECT_TRUE(keepsSchema(got.out, "fit"));
+        return Json::parse(got.out);
+    }
+};
+
+TEST_F(Laboratory, ColumnsAndCompanionFilesStateTheSame) {
+    const Table table;
+    write("own.astm", table.astm);
+    write("plain.astm", table.plain);
+    write("sigmas.csv", table.companion);
+    const std::string end = " --model oren-nayar --scans column";
+    Json own = answer(path("own.astm") + " --sigma column" + end),
+         beside = answer(path("plain.astm") + " --sigma " + path("sigmas.csv") + end);
+    EXPECT_EQ(own["fit"]["samples"], 96);
+    EXPECT_EQ(own["fit"]["weights"], "sigma");
+    EXPECT_EQ(own["fit"]["loss"], "l2");
+    EXPECT_EQ(own["fit"]["uncertainty"]["scans"]["count"], 12);
+    EXPECT_EQ(own["fit"]["parameters"], beside["fit"]["parameters"]);
+    own["fit"]["uncertainty"].erase("sigma");
+    beside["fit"]["uncertainty"].erase("sigma");
+    EXPECT_EQ(own["fit"]["uncertainty"], beside["fit"]["uncertainty"]);
+    // The plain file is what it was: sigma and scan are no channels.
+    EXPECT_EQ(answer(path("own.astm") + " --model oren-nayar")["fit"]["parameters"],
+              answer(path("plain.astm") + " --model oren-nayar")["fit"]["parameters"]);
+}
+
+TEST_F(Laboratory, ResidualsAreARowForEachValueAndAddUpToChiSquare) {
+    const Table table;
+    write("own.astm", table.astm);
+    const Json fit = answer(path("own.astm") + " --sigma column --model oren-nayar --residuals " +
+                            path("r.csv"))["fit"];
+    std::istringstream rows(read(path("r.csv")));
+    std::string line;
+    std::getline(rows, line);
+    EXPECT_EQ(line,
+              "row,wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,channel,value,sigma,model,residual,studentised,"
+              "leverage,cook");
+    double chiSquare = 0, leverage = 0;
+    std::size_t count = 0;
+    std::istringstream file(table.astm);
+    std::vector<std::string> lines{""};
+    for (std::string text; std::getline(file, text);) lines.push_back(text);
+    while (std::getline(rows, line)) {
+        std::vector<std::string> cells;
+        std::istringstream parts(line);
+        for (std::string cell; std::getline(parts, cell, ',');) cells.push_back(cell);
+        ASSERT_EQ(cells.size(), 15u) << line;
+        EXPECT_NE(lines[std::stoul(cells[0])].find(cells[8]), std::string::npos) << line;
+        EXPECT_NEAR(std::stod(cells[8]) - std::stod(cells[10]), std::stod(cells[11]), 1e-15);
+        chiSquare += std::pow(std::stod(cells[11]) / std::stod(cells[9]), 2);
+        leverage += std::stod(cells[13]);
+        ++count;
+    }
+    EXPECT_EQ(count, 96u);
+    EXPECT_NEAR(fit["uncertainty"]["chi_square"], chiSquare, 1e-9 * chiSquare);
+    EXPECT_NEAR(96 - fit["uncertainty"]["degrees_of_freedom"].get<double>(), leverage, 1e-6);
+}
+
+TEST_F(Laboratory, ThreadsDoNotChangeErrors) {
+    const Table table;
+    write("own.astm", table.astm);
+    for (const char* threads : {"1", "3"})
+        ASSERT_EQ(run("fit " + path("own.astm") +
+                      " --sigma column --scans column --model oren-nayar --bootstrap 50 --profile "
+                      "--residuals " +
+                      path(std::string("r") + threads) + " --threads " + threads + " -o " +
+                      path(std::string(threads) + ".json"))
+                      .code,
+                  0);
+    EXPECT_EQ(read(path("1.json")), read(path("3.json")));
+    EXPECT_EQ(read(path("r1")), read(path("r3")));
+}
+
+TEST_F(Laboratory, WrongStatementsAreOneLineAndLeaveNothing) {
+    const Table table;
+    write("own.astm", table.astm);
+    write("plain.astm", table.plain);
+    write("short.csv", "sigma\n1\n2\n");
+    write("named.csv", "error" + table.companion.substr(table.companion.find('\n')));
+    write("zero.csv",
+          "scan,sigma\n0,0\n" + table.companion.substr(table.companion.find('\n', 11) + 1));
+    write("odd.astm",
+          "VARS theta_i,phi_i,theta_s,phi_s,BRDF,sigma\n.1,0,.2,3,.5,.1\n.1,0,.3,3,.5,"
+          "0\n");
+    write("text.csv", "sigma\nhalf\n");
+    const std::string out = " --residuals " + path("r.csv") + " -o " + path("f.json");
+    const auto refused = [&](const std::string& arguments, int code, const std::string& part) {
+        expectError("fit " + arguments + out, code, part, 7);
+    };
+    const std::string plain = path("plain.astm") + " --model lambert ";
+    refused(plain + "--sigma two", 2, "2%+0.001");
+    refused(plain + "--sigma column", 2, "sigma");
+    refused(plain + "--scans column", 2, "scan");
+    refused(plain + "--sigma " + path("short.csv"), 3, "108");
+    refused(plain + "--sigma " + path("named.csv"), 3, "columns");
+    refused(plain + "--sigma " + path("zero.csv"), 3, "line 2");
+    refused(plain + "--sigma " + path("text.csv"), 3, "line 2");
+    refused(plain + "--sigma " + path("absent.csv"), 3, "absent.csv");
+    refused(path("odd.astm") + " --model lambert", 3, "line 3");
+    refused(plain + "--sigma 2% --loss log", 2, "l2");
+    refused(plain + "--sigma 2% --robust huber", 2, "robust");
+    refused(plain + "--sigma 2% --weights solid-angle", 2, "--weights");
+    refused("lambert --model lambert --scans 5", 2, "single samples");
+    refused("lambert:kd=0 --model lambert --sigma 2%", 3, "absolute");
+    expectError("fit " + path("plain.astm") + " --compare-models lambert --profile", 2, "--profile",
+                7);
+}
+
+TEST_F(Laboratory, EverySampleOfASpectralFileIsInTheAnswer) {
+    const std::string file = shared("cornell/garnet_red.brdf");
+    if (!fs::exists(file)) GTEST_SKIP() << "no shared data";
+    const Json preset =
+        answer(file + " --model lambert+ggx:F0=.04 --sigma 5%+0.002 -o " + path("f.json"));
+    EXPECT_EQ(preset["fit"]["samples"], 1439);
+    EXPECT_EQ(preset["fit"]["values"], 1439 * 31);
+    ASSERT_EQ(preset["spectrum"].size(), 31u);
+    EXPECT_TRUE(keepsSchema(read(path("f.json")), "preset"));
+    const Answer at = run("eval " + path("f.json") + " --wi 30,0 --wo 30,180");
+    EXPECT_EQ(at.code, 0) << at.err;
+    EXPECT_EQ(at.out.substr(0, 5), "400nm");
+    EXPECT_EQ(std::count(at.out.begin(), at.out.end(), '\n'), 31);
+    EXPECT_EQ(run("info " + path("f.json")).code, 0);
+    // Beside the mirror direction, where neighbours read 2 to 33 1/sr, these lines read below
+    // 0.001.
+    const Json& outliers = preset["fit"]["influence"]["outliers"];
+    ASSERT_FALSE(outliers.empty());
+    EXPECT_EQ(outliers[0]["row"], 1451);
+}
+
+TEST_F(Laboratory, AGreyFileHasOneAnswerWithAndWithoutThePrefix) {
+    const std::string file = shared("alta/retro-gray-tape.dat");
+    if (!fs::exists(file)) GTEST_SKIP() << "no shared data";
+    const std::string end = " --model lambert+ggx --sigma 5%+0.002 --scans 40";
+    Json plain = answer(file + end), grey = answer("grey:" + file + end);
+    for (Json* one : {&plain, &grey}) {
+        EXPECT_EQ((*one)["fit"]["samples"], 7400);
+        (*one)["fit"].erase("data");
+    }
+    EXPECT_EQ(plain["fit"], grey["fit"]);
+    EXPECT_EQ(plain["spec"], grey["spec"]);
+}
+
+}  // namespace
