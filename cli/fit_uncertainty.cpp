@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace hshfit::cli {
@@ -51,6 +52,29 @@ std::string errorTable(const Document& uncertainty) {
         lines += '\n';
     }
     return lines;
+}
+
+/// The pairs of parameters whose errors are nearly one.
+std::string correlationLine(const Document& uncertainty) {
+    constexpr double strong = 0.95;
+    constexpr std::size_t most = 5;
+    const Document &parameters = uncertainty["parameters"],
+                   &correlations = uncertainty["correlations"];
+    const auto nameOf = [&](std::size_t i) {
+        const std::string channel = parameters[i].value("channel", "");
+        return parameters[i]["name"].get<std::string>() + (channel.empty() ? "" : " " + channel);
+    };
+    std::vector<std::string> pairs;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < parameters.size(); ++i)
+        for (std::size_t j = i + 1; j < parameters.size(); ++j) {
+            const double value = correlations[i][j].get<double>();
+            if (std::abs(value) <= strong || ++count > most) continue;
+            pairs.push_back(fmt::format("{} and {} ({:.3f})", nameOf(i), nameOf(j), value));
+        }
+    if (count == 0) return {};
+    return fmt::format("  correlated beyond {}: {}{}\n", strong, fmt::join(pairs, ", "),
+                       count > most ? fmt::format(", and {} more", count - most) : "");
 }
 
 std::string profileTable(const Document& uncertainty) {
@@ -102,7 +126,8 @@ std::string uncertaintyText(const Document& fit) {
             "  {} fits to resampled {}, {} failed\n", bootstrap["draws"].get<std::size_t>(),
             bootstrap["of"].get<std::string>(), bootstrap["failed"].get<std::size_t>());
     }
-    return lines + profileTable(uncertainty) + influenceText(fit["influence"]);
+    return lines + correlationLine(uncertainty) + profileTable(uncertainty) +
+           influenceText(fit["influence"]);
 }
 
 }  // namespace hshfit::cli

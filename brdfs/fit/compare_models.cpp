@@ -94,7 +94,9 @@ HeldOut heldOutLoss(const FitSamples& samples, const Folds& folds, FitOptions op
     if (stated(samples)) heldOut.squares.assign(samples.size(), 0);
     for (const std::vector<std::size_t>& fold : folds) {
         if (fold.empty()) continue;
-        const FitResult result = fit(without(samples, fold), options);
+        FitSamples rest = without(samples, fold);
+        rest.scans.clear();  // errors of parameters are of no use here
+        const FitResult result = fit(rest, options);
         const FitSamples held = samples.subset(fold);
         double weight = 0;
         for (const std::size_t k : fold) {

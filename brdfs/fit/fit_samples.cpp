@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <random>
@@ -244,8 +245,12 @@ FitSamples FitSamples::subset(const std::vector<std::size_t>& indices) const {
             if (!sigmas.empty()) result.sigmas.push_back(sigmas[c * size() + k]);
             if (!rows.empty()) result.rows.push_back(rows[c * size() + k]);
         }
-    if (!scans.empty())
-        for (const std::size_t k : indices) result.scans.push_back(scans[k]);
+    if (!scans.empty()) {
+        // Numbers again from 0 on, because others count scans by their largest number.
+        std::map<std::size_t, std::size_t> numbers;
+        for (const std::size_t k : indices)
+            result.scans.push_back(numbers.try_emplace(scans[k], numbers.size()).first->second);
+    }
     const double count = static_cast<double>(indices.size());
     if (sum > 0)
         for (double& weight : result.weights) weight *= count / sum;

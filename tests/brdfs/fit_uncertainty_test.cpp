@@ -244,7 +244,7 @@ TEST(Uncertainty, ProfilesEndWhereChiSquareHasRisen) {
     }
 }
 
-/// The errors of the sample that made them.
+// Its line is what a laboratory looks up.
 TEST(Uncertainty, ANamedOutlierIsTheValueThatWasSpoilt) {
     std::mt19937_64 random(5);
     FitSamples samples = withNoise(scansOf(linearTruth, 40, random), 0.02, random);
@@ -288,7 +288,7 @@ TEST(Uncertainty, BootstrapAgreesWithTheSandwichAndNotWithThreads) {
     }
 }
 
-/// How often intervals of one and of two (1.96) standard errors hold the truth.
+/// The share of intervals of one and of two (1.96) standard errors that hold the truth.
 struct Coverage {
     std::size_t within = 0, within2 = 0, count = 0;
     void add(double deviation) {
@@ -361,6 +361,16 @@ TEST(ScanRanking, ModelsTieWhereScansDoNotTellThemApart) {
         EXPECT_NEAR(rank.fit.aic, rank.fit.uncertainty->chiSquare + 2 * terms, 1e-6);
         EXPECT_NEAR(rank.fit.bic, rank.fit.uncertainty->chiSquare + terms * std::log(count), 1e-6);
     }
+}
+
+TEST(Uncertainty, SubsetsKeepUncertaintiesAndNumberTheirScans) {
+    std::mt19937_64 random(2);
+    const FitSamples samples = withNoise(scansOf(linearTruth, 5, random), 0.02, random);
+    const std::vector<std::size_t> chosen = {3 * scanLength, 3 * scanLength + 2, scanLength + 1};
+    const FitSamples few = samples.subset(chosen);
+    EXPECT_EQ(few.scans, (std::vector<std::size_t>{0, 0, 1}));
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+        EXPECT_EQ(few.sigmas[i], samples.sigmas[chosen[i]]);
 }
 
 TEST(Uncertainty, StatementsThatDoNotFitAreRefused) {
