@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -121,11 +122,14 @@ std::size_t writePage(const std::string& data, const Fitted& fit, const std::str
     return added.names.size();
 }
 
-void writeResiduals(const brdfs::FitSamples& samples, const brdfs::FitResult& result,
-                    const std::string& path) {
-    AtomicFile file(path);
-    brdfs::writeResidualRows(samples, result, [&](std::string_view row) { file.write(row); });
-    file.commit();
+/// The residuals' file, complete but not yet under its name: none if no path is given.
+std::unique_ptr<AtomicFile> residualsOf(const brdfs::FitSamples& samples,
+                                        const brdfs::FitResult& result, const std::string& path) {
+    if (path.empty()) return nullptr;
+    auto file = std::make_unique<AtomicFile>(path);
+    brdfs::writeResidualRows(samples, result, [&](std::string_view row) { file->write(row); });
+    file->finish();
+    return file;
 }
 
 }  // namespace
@@ -156,15 +160,16 @@ Fitted fit(const std::string& data, const std::string& output, const FitOptions&
     fitted.preset =
         brdfs::fitPreset({data, &samples, how, fitted.result, options.sigma, options.scans});
     fitted.explained = explainedBy(fitted.result, samples, how.loss);
-    fitted.poor = judgeFit(fitted.explained, data, options.model);
+    fitted.poor = judgeFit(fitted.explained, data, options.model, options.sigma);
     fitted.preset["fit"]["explained"] = fitted.explained;
     if (search) fitted.preset["fit"]["parts"] = searchJson(*search);
-    if (!options.residuals.empty()) writeResiduals(samples, fitted.result, options.residuals);
+    const auto residuals = residualsOf(samples, fitted.result, options.residuals);
     if (isPresetPath(output)) {
         writeFile(output, jsonText(fitted.preset, 2) + "\n");
     } else if (!output.empty()) {
         fitted.pageFiles = writePage(data, fitted, output, options.rgb, listener);
     }
+    if (residuals) residuals->commit();
     return fitted;
 }
 

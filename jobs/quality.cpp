@@ -287,13 +287,15 @@ std::optional<Poor> judge(const gpu::ErrorSplit& split, const gpu::Payload& payl
         worst->better};
 }
 
-std::optional<Poor> judgeFit(double explained, const std::string& data, const std::string& model) {
+std::optional<Poor> judgeFit(double explained, const std::string& data, const std::string& model,
+                             const std::string& sigma) {
     if (explained >= leastCaptured) return std::nullopt;
     // A second lobe: the first alone is one of its sums, so that the loss cannot grow.
     const std::string second = model.starts_with("ggx") ? "eon" : "ggx";
-    const Call wider{.function = "fit",
-                     .subject = data,
-                     .settings = {{"FitOptions::model", model + "+" + second}}};
+    Call wider{.function = "fit",
+               .subject = data,
+               .settings = {{"FitOptions::model", model + "+" + second}}};
+    if (!sigma.empty()) wider.settings.push_back({"FitOptions::sigma", sigma});
     return Poor{fmt::format("the fit explains {} of the data", percent(std::max(explained, 0.0))),
                 fmt::format("{}", wider)};
 }

@@ -56,6 +56,7 @@ std::optional<Poor> judge(const Representation& kept, std::optional<double> capt
 std::optional<Poor> judge(const gpu::ErrorSplit& split, const gpu::Payload& payload,
                           const std::string& path, const std::string& folder);
 /// A fit that explains the share `explained` of its data, in units of its loss.
-std::optional<Poor> judgeFit(double explained, const std::string& data, const std::string& model);
+std::optional<Poor> judgeFit(double explained, const std::string& data, const std::string& model,
+                             const std::string& sigma = {});
 
 }  // namespace hshfit::jobs
