@@ -116,41 +116,6 @@ TEST(Astm, rowsAreRead) {
     EXPECT_EQ(inDegrees.channels.kind, Channels::Kind::grey);
 }
 
-// Columns about the values are no channels; a sample below the horizon takes its statement along.
-TEST(Astm, UncertaintiesAndScansStandBesideTheValues) {
-    const std::string angles = "VARS theta_i,phi_i,theta_s,phi_s,";
-    const Samples one = readAstm(angles +
-                                     "scan,BRDF,Sigma\n0.1,0,0.2,3,7,0.5,0.01\n"
-                                     "0.1,0,1.5715,3,7,0.6,0.02\n0.1,0,0.3,3,8,0.7,0.03\n",
-                                 "f");
-    EXPECT_EQ(one.channels.kind, Channels::Kind::grey);
-    EXPECT_EQ(one.values, (std::vector<double>{0.5, 0.7}));
-    EXPECT_EQ(one.sigmas, (std::vector<double>{0.01, 0.03}));
-    EXPECT_EQ(one.scans, (std::vector<double>{7, 8}));
-    EXPECT_EQ(one.rows, (std::vector<std::size_t>{2, 4}));
-    EXPECT_EQ(one.order, (std::vector<std::size_t>{0, 2}));
-    EXPECT_EQ(one.read, 3u);
-    const Samples spectral =
-        readAstm(angles + "400nm,500nm,sigma_500nm,sigma_400nm\n0.1,0,0.2,3,1,2,0.02,0.01\n", "f");
-    EXPECT_EQ(spectral.channels.wavelengths, (std::vector<double>{400, 500}));
-    EXPECT_EQ(spectral.sigmas, (std::vector<double>{0.01, 0.02}));
-    const Samples shared = readAstm(angles + "r,g,b,sigma\n0.1,0,0.2,3,1,2,3,0.1\n", "f");
-    EXPECT_EQ(shared.sigmas, (std::vector<double>{0.1, 0.1, 0.1}));
-    // Alone, any name is a value.
-    EXPECT_EQ(readAstm(angles + "sigma\n0.1,0,0.2,3,4\n", "f").values, std::vector<double>{4});
-    for (const char* rest : {
-             "a,sigma\n0.1,0,0.2,3,1,0\n",
-             "a,sigma\n0.1,0,0.2,3,1,-1\n",
-             "a,sigma\n0.1,0,0.2,3,1,nan\n",
-             "a,scan\n0.1,0,0.2,3,1,inf\n",
-             "sigma,scan\n0.1,0,0.2,3,1,1\n",
-             "400nm,500nm,sigma_400nm\n0.1,0,0.2,3,1,1,1\n",
-             "a,sigma_b\n0.1,0,0.2,3,1,1\n",
-             "a,sigma,sigma\n0.1,0,0.2,3,1,1,1\n",
-         })
-        EXPECT_THROW(readAstm(angles + rest, "f"), InputError) << rest;
-}
-
 std::string nistRow(const std::string& start) {
     std::string row = start;
     for (int k = 0; k < 15; ++k) row += ",0.01";
