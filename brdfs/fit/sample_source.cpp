@@ -143,6 +143,18 @@ void sigmasOfFormula(const SigmaStatement& sigma, const SampleSource& source, Fi
     }
 }
 
+/// Weights are 1 / sigma^2, and their products have to be numbers.
+void checkSizes(const SampleSource& source, const FitSamples& samples) {
+    constexpr double least = 1e-30, most = 1e30;
+    for (std::size_t i = 0; i < samples.sigmas.size(); ++i)
+        if (!(samples.sigmas[i] >= least && samples.sigmas[i] <= most))
+            throw InputError(
+                fmt::format("{}: {} {}: its uncertainty is {}, expected {} to {} 1/sr", source.name,
+                            samples.rows.empty() ? "sample" : "line",
+                            samples.rows.empty() ? i % samples.size() + 1 : samples.rows[i],
+                            samples.sigmas[i], least, most));
+}
+
 /// Numbers of equal keys, in the order of their first sample.
 template <class Key>
 std::vector<std::size_t> numbered(const std::vector<Key>& keys) {
@@ -213,9 +225,13 @@ void stateSigmas(const SigmaStatement& sigma, const SampleSource& source, FitSam
     if (sigma.from == From::nothing) return;
     if (samples.solidAngles) std::ranges::fill(samples.weights, 1.0);
     samples.solidAngles = false;
-    if (sigma.from == From::file) return sigmasOfFile(sigma, source, samples);
-    if (sigma.from == From::column) return sigmasOfColumn(source, samples);
-    sigmasOfFormula(sigma, source, samples);
+    if (sigma.from == From::file)
+        sigmasOfFile(sigma, source, samples);
+    else if (sigma.from == From::column)
+        sigmasOfColumn(source, samples);
+    else
+        sigmasOfFormula(sigma, source, samples);
+    checkSizes(source, samples);
 }
 
 }  // namespace hshfit::brdfs

@@ -27,7 +27,7 @@ void stateScans(const ScanStatement& scans, const SigmaStatement& sigma, const S
 
 /// Sets `sigmas`. Throws UsageError for a column that the data do not have and for statements about
 /// single values of a table, of a function or of converted values; InputError for an unreadable
-/// file and for uncertainties that are not above 0.
+/// file and for uncertainties outside 1e-30 to 1e30.
 void stateSigmas(const SigmaStatement& sigma, const SampleSource& source, FitSamples& samples);
 
 }  // namespace hshfit::brdfs

@@ -151,6 +151,8 @@ TEST_F(Laboratory, WrongStatementsAreOneLineAndLeaveNothing) {
     refused(plain + "--sigma " + path("text.csv"), 3, "line 2");
     refused(plain + "--sigma " + path("absent.csv"), 3, "absent.csv");
     refused(path("odd.astm") + " --model lambert", 3, "line 3");
+    refused(plain + "--sigma 1e-200", 3, "1e-200");
+    refused(plain + "--sigma 1e200", 3, "line 2");
     refused(plain + "--sigma 2% --loss log", 2, "l2");
     refused(plain + "--sigma 2% --robust huber", 2, "robust");
     refused(plain + "--sigma 2% --weights solid-angle", 2, "--weights");
