@@ -1,6 +1,7 @@
 // screenshots.mjs PROGRAM MEASURED FOLDER [NAME…]: the pictures of docs/viewer.md,
 // by the program and Chromium. MEASURED: an RGL file, whose folder the program runs in. Not in the
-// page, but to be looked at: viewer-form-dark, viewer-form-narrow.
+// page, but to be looked at: viewer-form-dark, viewer-form-narrow. tutorial-viewer is
+// of docs/tutorial.md.
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -42,6 +43,13 @@ const shots = [
       'sky:type=12,elevation=40',
     ],
     view: 'frames=4&cycles=12&order=10&shape=teapot&skyTurn=20&azimuth=-8&elevation=18',
+  },
+  // Of docs/tutorial.md, whose first command writes MEASURED.
+  {
+    name: 'tutorial-viewer',
+    spec: basename(measured),
+    form: ['--form', 'halfway', '--halfway', '8,4,2', '--precision', 'half'],
+    view: 'frames=4&cycles=12',
   },
   ...[
     { name: 'viewer-form', view: 'frames=4&cycles=12' },
