@@ -90,7 +90,8 @@ function(hshfit_install_documents)
   install(FILES README.md CHANGELOG.md LICENSE
           DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
   install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation
-          FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN schemas EXCLUDE)
+          FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN schemas EXCLUDE
+          PATTERN site EXCLUDE)
   install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
   install(DIRECTORY docs/schemas
           DESTINATION ${CMAKE_INSTALL_DATADIR}/hshfit COMPONENT program)
