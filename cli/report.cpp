@@ -46,6 +46,8 @@ std::string summary(const ReportEntry& entry) {
             text += fmt::format("; within 1 %: order {}\n", within->order);
         }
     }
+    if (!entry.better.empty())
+        text += fmt::format("  no basis captures 90 % over solid angle; better: {}\n", entry.better);
     return text;
 }
 

@@ -224,6 +224,15 @@ std::optional<double> capturedShare(const Representation& kept, const Brdf& sour
     return measuredShare(source, *reconstruct(kept, sourceOpener()), kept.head.outgoing, pairs);
 }
 
+std::string betterCall(const CoefficientHead& head, const Brdf& source, const std::string& output) {
+    if (const auto order = sufficientOrder(source, head); order && *order > head.order)
+        return projectedAgain(head, settingsWith(*order, head), output);
+    const bool all =
+        head.outgoing.directions.empty() || head.outgoing.map != OutgoingSet::Map::direction;
+    if (!all || !isAboutTheMirror(source)) return {};
+    return projectedAgain(head, {kindSetting(Kind::halfway)}, output);
+}
+
 std::optional<Poor> judge(const Projection& projection, std::optional<double> captured,
                           const Brdf& source, const std::string& output) {
     const Coefficients& c = projection.coefficients;

@@ -48,6 +48,9 @@ std::optional<double> capturedShare(const Representation& kept, const Brdf& sour
 /// twice the order.
 std::optional<Poor> judge(const Projection& projection, std::optional<double> captured,
                           const Brdf& source, const std::string& output);
+/// The call that captures more than coefficients with this head, by the same trial; empty if it
+/// finds neither an order nor that the halfway form is made for this BRDF.
+std::string betterCall(const CoefficientHead& head, const Brdf& source, const std::string& output);
 /// A form: the step that changed it most, or the share that it captures.
 std::optional<Poor> judge(const Representation& kept, std::optional<double> captured,
                           const std::optional<PairSummary>& pairs, const Brdf& source,

@@ -1,5 +1,6 @@
 #include "report.h"
 
+#include "quality.h"
 #include "source.h"
 
 #include <hshfit/bases/catalog.h>
@@ -74,6 +75,9 @@ ReportEntry entryOf(const std::string& spec, std::span<const Basis* const> bases
         projections = withoutNumbers(*brdf, bases, outgoing, quantity, error.what());
     }
     ReportEntry entry = reportEntry(projections);
+    // Orders below the default are left out on purpose, and nothing is advised against them.
+    if (entry.energy.finite && !suffices(entry) && options.maxOrder >= ReportOptions{}.maxOrder)
+        entry.better = betterCall(projections.front().coefficients, *brdf, "OUT.json");
     if (options.wavelets) addWavelets(entry, *brdf, options.maxOrder);
     return entry;
 }

@@ -10,7 +10,10 @@
 #include <fmt/ranges.h>
 #include <kainjow/mustache.hpp>
 
+#include <array>
 #include <cmath>
+#include <span>
+#include <string_view>
 
 namespace hshfit::embedded {
 extern const std::string_view comparison_html;
@@ -87,6 +90,14 @@ data residualData(const Comparison& comparison) {
     return fields;
 }
 
+/// The left ends of the columns of panels, as comparison.gp places them.
+std::span<const int> columnsOfKind(std::string_view kind) {
+    static constexpr std::array polar{0, 550}, residual{0, 560};
+    static constexpr std::array half{0, 365, 725};
+    if (kind == "polar") return polar;
+    return kind == "half" ? std::span<const int>(half) : residual;
+}
+
 /// One entry an azimuth, with its three figures.
 data azimuthData(const Comparison& comparison, const std::vector<std::string>& figures) {
     data azimuths{data::type::list};
@@ -95,7 +106,8 @@ data azimuthData(const Comparison& comparison, const std::vector<std::string>& f
         data entry;
         entry.set("azimuth", fmt::format("{}", files[i].azimuth));
         for (std::size_t k = i; k < i + 3 && k < figures.size(); ++k) {
-            entry.set(files[k].kind, inlinedFigure(figures[k], k + 1));
+            const std::string_view kind = files[k].kind;
+            entry.set(files[k].kind, inlinedFigure(figures[k], k + 1, columnsOfKind(kind)));
         }
         azimuths.push_back(entry);
     }
@@ -125,8 +137,8 @@ std::string comparisonPage(const Comparison& comparison, const std::vector<std::
     page.set("drawnFigures", !figures.empty());
     page.set("reference", sideData(comparison.reference, comparison.referenceSphere));
     page.set("approximation", sideData(comparison.approximation, comparison.approximationSphere));
-    page.set("title", shortName(comparison.approximation.name, 60) + " against " +
-                          shortName(comparison.reference.name, 60));
+    page.set("title", shortName(withoutFolders(comparison.approximation.name), 60) + " against " +
+                          shortName(withoutFolders(comparison.reference.name), 60));
     page.set("outgoing", outgoingText(comparison.outgoing));
     page.set("oneDirection", comparison.outgoing.map == OutgoingSet::Map::direction);
     page.set("metrics", metricRows(comparison.metrics));

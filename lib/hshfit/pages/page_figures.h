@@ -2,6 +2,8 @@
 
 // The common parts of pages: their style and the figures in them.
 
+#include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -11,7 +13,10 @@ namespace hshfit::inline pages {
 std::string fileContent(const std::string& path);
 
 /// An SVG document as part of a page: no prologue, no fixed size, names that no other `index` has.
-std::string inlinedFigure(std::string svg, std::size_t index);
+/// `columns` are the left ends of its columns of panels, in its own units: on narrow screens the
+/// page shows the columns below one another. One column, or none: the figure stays whole.
+std::string inlinedFigure(std::string svg, std::size_t index,
+                          std::span<const int> columns = std::span<const int>());
 
 /// "gnuplot 5.4 patchlevel 4", from the SVG document; else "gnuplot".
 std::string plotterOf(const std::string& svg);

@@ -61,16 +61,18 @@ Json curveJson(const ReportCurve& curve) {
 Json entryJson(const ReportEntry& entry) {
     Json curves = Json::array();
     for (const ReportCurve& curve : entry.curves) curves.push_back(curveJson(curve));
-    return {{"brdf", entry.brdf},
-            {"quantity", quantityName(entry.quantity)},
-            {"outgoing", outgoingJson(entry.outgoing)},
-            {"channels", entry.channels.names()},
-            {"condon_shortley", entry.condonShortley},
-            {"energy", energyJson(entry.energy)},
-            {"error", finiteOrNull(entry.error)},
-            {"tolerance", finiteOrNull(entry.tolerance)},
-            {"evaluations", entry.evaluations},
-            {"curves", std::move(curves)}};
+    Json json = {{"brdf", entry.brdf},
+                 {"quantity", quantityName(entry.quantity)},
+                 {"outgoing", outgoingJson(entry.outgoing)},
+                 {"channels", entry.channels.names()},
+                 {"condon_shortley", entry.condonShortley},
+                 {"energy", energyJson(entry.energy)},
+                 {"error", finiteOrNull(entry.error)},
+                 {"tolerance", finiteOrNull(entry.tolerance)},
+                 {"evaluations", entry.evaluations},
+                 {"curves", std::move(curves)}};
+    if (!entry.better.empty()) json["better"] = entry.better;
+    return json;
 }
 
 ReportCurve curveOf(const Projection& projection, const Energy& reference) {
@@ -148,6 +150,12 @@ std::optional<ReportPoint> firstReaching(const ReportCurve& curve, double accura
         if (point.accuracy && *point.accuracy >= accuracy) return point;
     }
     return std::nullopt;
+}
+
+bool suffices(const ReportEntry& entry) {
+    return std::ranges::any_of(entry.curves, [](const ReportCurve& curve) {
+        return !curve.energy && !curve.bestTerms && firstReaching(curve, leastOfNeeds);
+    });
 }
 
 std::string reportJson(const Report& report) {

@@ -45,8 +45,17 @@ struct ReportEntry {
     double error = 0;      ///< as in Coefficients
     double tolerance = 0;  ///< as in Coefficients
     std::size_t evaluations = 0;
+    /// Where no basis captures `leastOfNeeds`: the call that captures more, if one is known.
+    std::string better = {};
 };
 
+/// The least share of the energy for which a report states the coefficients that are needed.
+inline constexpr double leastOfNeeds = 0.9;
+
+/// Whether a curve that measures energy over solid angle reaches `leastOfNeeds`.
+bool suffices(const ReportEntry& entry);
+
+/// The content of a report: an entry for each BRDF.
 struct Report {
     std::vector<ReportEntry> reports;
 };

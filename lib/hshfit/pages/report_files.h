@@ -23,6 +23,10 @@ std::string reportPage(const Report& report, const std::vector<std::string>& fig
 /// The specification on one line, printable, shortened in its middle to `limit` bytes.
 std::string shortName(const std::string& brdf, std::size_t limit);
 
+/// The specification with files by their names alone: "lambert:kd=.1 + 0.5 * paint.bsdf" for a file
+/// in any folder. A file is known by a '/' and an extension that begins with a letter.
+std::string withoutFolders(const std::string& brdf);
+
 /// "1.234 ± 1e-09", or "does not exist".
 std::string energyText(const Energy& energy);
 

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <kainjow/mustache.hpp>
 
 namespace hshfit::embedded {
@@ -20,7 +21,7 @@ namespace {
 
 using kainjow::mustache::data;
 
-constexpr std::array<double, 4> thresholds{0.90, 0.95, 0.99, 0.999};
+constexpr std::array<double, 4> thresholds{leastOfNeeds, 0.95, 0.99, 0.999};
 
 std::string percent(double fraction) {
     return fmt::format("{:g} %", 100 * fraction);
@@ -52,9 +53,23 @@ int fewest(const ReportEntry& entry, double threshold) {
     return best;
 }
 
+/// The curves below the first threshold, with the most that they capture: "sh 79.1 % (144), …".
+std::string shortCurves(const ReportEntry& entry) {
+    std::vector<std::string> names;
+    for (const auto& curve : entry.curves) {
+        if (curve.points.empty() || firstReaching(curve, leastOfNeeds)) continue;
+        const ReportPoint& last = curve.points.back();
+        names.push_back(
+            fmt::format("{} {} ({})", curve.basis, accuracyText(last.accuracy), last.coefficients));
+    }
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// A row for each curve that reaches a threshold.
 data needsOf(const ReportEntry& entry) {
     data rows{data::type::list};
     for (const auto& curve : entry.curves) {
+        if (!firstReaching(curve, leastOfNeeds)) continue;
         data cells{data::type::list};
         for (const double threshold : thresholds) {
             data cell;
@@ -110,6 +125,9 @@ data entryData(const ReportEntry& entry, std::size_t index) {
     data fields;
     fields.set("index", std::to_string(index));
     fields.set("brdf", entry.brdf);
+    const std::string name = shortName(withoutFolders(entry.brdf), 100);
+    fields.set("name", name);
+    fields.set("isShort", name != entry.brdf);
     fields.set("quantity", entry.quantity == Quantity::brdf ? "f, without the cosine"
                                                             : "f cos θ, with the cosine");
     fields.set("outgoing", outgoingText(entry.outgoing));
@@ -134,7 +152,12 @@ data entryData(const ReportEntry& entry, std::size_t index) {
     fields.set("columns", columns);
     fields.set("ownEnergy", own);
     fields.set("bestTerms", best);
-    fields.set("needs", needsOf(entry));
+    const data needs = needsOf(entry);
+    fields.set("anyNeeds", !needs.is_empty_list());
+    fields.set("needs", needs);
+    const std::string below = shortCurves(entry);
+    if (!below.empty()) fields.set("short", below);
+    if (!entry.better.empty()) fields.set("better", entry.better);
     fields.set("rows", everyOrder(entry));
     return fields;
 }
@@ -146,8 +169,8 @@ std::string reportPage(const Report& report, const std::vector<std::string>& fig
     data page;
     page.set("generator", std::string("hshfit ") + version);
     page.set("style", std::string(pageStyle()));
-    page.set("count", std::to_string(count));
-    page.set("plural", count == 1 ? "" : "s");
+    page.set("title", count == 1 ? shortName(withoutFolders(report.reports[0].brdf), 60)
+                                 : fmt::format("{} BRDFs", count));
     page.set("many", count > 1);
     const bool phase = count > 0 && report.reports.front().condonShortley;
     page.set("phase", phase ? "carry" : "do not carry");
@@ -155,12 +178,14 @@ std::string reportPage(const Report& report, const std::vector<std::string>& fig
     for (const double threshold : thresholds) limits.push_back(data("text", percent(threshold)));
     page.set("thresholds", limits);
     std::string plotter = "gnuplot";
+    // The panels over coefficients and over the order, as curves.gp places them.
+    constexpr std::array columns{0, 510};
     data entries{data::type::list};
     for (std::size_t i = 0; i < count; ++i) {
         data entry = entryData(report.reports[i], i + 1);
         if (i < figures.size()) {
             plotter = plotterOf(figures[i]);
-            entry.set("figure", inlinedFigure(figures[i], i + 1));
+            entry.set("figure", inlinedFigure(figures[i], i + 1, columns));
         }
         entries.push_back(entry);
     }

@@ -4,8 +4,10 @@
 #include <hshfit/pages/report_files.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iterator>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <kainjow/mustache.hpp>
@@ -31,6 +33,18 @@ std::vector<std::string> basesOf(const Report& report) {
         }
     }
     return names;
+}
+
+/// The places, from 1, of the bases that have a curve in this entry: " 1 2 5 ".
+std::string ownCurves(const ReportEntry& entry, const std::vector<std::string>& names) {
+    std::string own = " ";
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const bool drawn = std::ranges::any_of(entry.curves, [&](const ReportCurve& curve) {
+            return curve.basis == names[i] && firstReaching(curve, -HUGE_VAL);
+        });
+        if (drawn) own += fmt::format("{} ", i + 1);
+    }
+    return own;
 }
 
 /// The end of the axis of the missing share: below the best point at 50 %, 20 % or a power of ten,
@@ -65,7 +79,7 @@ std::string wrapped(const std::string& text, std::size_t width) {
 }
 
 std::string titleOf(const ReportEntry& entry) {
-    return fmt::format("{}    {}, {}, energy {}", shortName(entry.brdf, 70),
+    return fmt::format("{}\n{}, {}, energy {}", shortName(withoutFolders(entry.brdf), 60),
                        entry.quantity == Quantity::brdf ? "f" : "f cos θ",
                        outgoingText(entry.outgoing), energyText(entry.energy));
 }
@@ -88,6 +102,27 @@ bases::Style curveStyle(const std::string& basis) {
 
 std::string shortName(const std::string& brdf, std::size_t limit) {
     return shortened(printable(brdf), limit);
+}
+
+std::string withoutFolders(const std::string& brdf) {
+    constexpr std::string_view ends = ":=,+*";
+    std::string out;
+    for (std::size_t at = 0; at < brdf.size();) {
+        const std::size_t end = std::min(brdf.find_first_of(ends, at), brdf.size());
+        std::string part = brdf.substr(at, end - at);
+        const std::size_t slash = part.rfind('/'), dot = part.rfind('.');
+        const bool file = slash != part.npos && dot != part.npos && dot > slash &&
+                          dot + 1 < part.size() &&
+                          std::isalpha(static_cast<unsigned char>(part[dot + 1]));
+        if (file) {
+            const std::size_t first = part.find_first_not_of(' ');
+            part.erase(first, slash + 1 - first);
+        }
+        out += part;
+        if (end < brdf.size()) out += brdf[end];
+        at = end + 1;
+    }
+    return out;
 }
 
 std::string energyText(const Energy& energy) {
@@ -113,6 +148,7 @@ std::string reportScript(const Report& report) {
     data fields;
     fields.set("rows", std::to_string(std::max<std::size_t>(1, report.reports.size())));
     data entries{data::type::list};
+    const auto names = basesOf(report);
     for (std::size_t i = 0; i < report.reports.size(); ++i) {
         const ReportEntry& entry = report.reports[i];
         int maxCount = 2, maxOrder = 2;
@@ -131,12 +167,12 @@ std::string reportScript(const Report& report) {
         row.set("maxCount", std::to_string(maxCount));
         row.set("maxOrder", std::to_string(maxOrder));
         row.set("leastMissing", fmt::format("{:g}", leastMissing(entry)));
+        row.set("own", gnuplotString(ownCurves(entry, names)));
         row.set("interval", std::to_string(std::max(1, maxOrder / 16)));
         entries.push_back(row);
     }
     fields.set("entries", entries);
     data lines{data::type::list};
-    const auto names = basesOf(report);
     for (std::size_t i = 0; i < names.size(); ++i) {
         const bases::Style style = curveStyle(names[i]);
         data line;

@@ -159,8 +159,18 @@ TEST_F(ComparisonFiles, ThePageHoldsEveryFigureAndNamesEveryFile) {
         EXPECT_NE(page.find("href=\"" + name + "\""), std::string::npos) << name;
     }
     EXPECT_EQ(page.find("{{"), std::string::npos) << "a field was not filled in";
-    static const std::regex figure("<svg ");
-    EXPECT_EQ(std::distance(std::sregex_iterator(page.begin(), page.end(), figure), {}), 3);
+    const auto count = [&](const std::string& pattern) {
+        const std::regex figure(pattern);
+        return std::distance(std::sregex_iterator(page.begin(), page.end(), figure), {});
+    };
+    // For narrow screens: two columns of polar plots, three of half angles, map and albedos.
+    EXPECT_EQ(count("<svg class=\"whole\" role=\"img\""), 3);
+    EXPECT_EQ(count("<svg class=\"part\""), 2 + 3 + 2);
+    for (const int figure : {1, 2, 3}) {
+        const std::string group = "f" + std::to_string(figure) + "-whole";
+        EXPECT_EQ(count("<g id=\"" + group + "\">"), 1);
+        EXPECT_EQ(count("<use href=\"#" + group + "\"/>"), figure == 2 ? 3 : 2);
+    }
     EXPECT_NE(page.find(base64(contentOf(folder / "a/spheres.png"))), std::string::npos);
     // Nothing is fetched.
     EXPECT_FALSE(std::regex_search(page, std::regex(R"re((src|href)\s*=\s*["'](https?:|//))re")));
@@ -209,6 +219,35 @@ TEST_F(ComparisonFiles, ZeroNegativeAndNotFiniteValuesAreDrawn) {
     EXPECT_EQ(residualShares(c).cells, 0u);
     EXPECT_TRUE(Json::parse(comparisonJson(c))["residual"]["median_ratio"].is_null());
     EXPECT_EQ(residualShares(makeComparison(zero, reference(), small())).noRatio, 90u * 90);
+}
+
+// f is 1, and 0 where theta_i is between 30 and 50 degrees: every point of the curve is on the ring
+// of 1, which is the outermost one, and none in the centre.
+TEST_F(ComparisonFiles, ZerosLeaveGapsInPolarPlots) {
+    const FormulaBrdf holes(
+        [](const Direction& wi, const Direction&) {
+            const double theta = degrees(polarAngle(wi));
+            return theta > 30 && theta < 50 ? 0.0 : 1.0;
+        },
+        {}, {.isotropic = true});
+    writeComparison(holes, holes, small(), folder / "a");
+    const std::string svg = contentOf(folder / "a/polar-0.svg");
+    // The reference has the broad lines. Panels are 550 wide and 300 high, the first centre is at
+    // (275, 288.39), the radius 253 / 1.12 (comparison.gp).
+    static const std::regex curve(
+        "stroke-width=\"5.00\"[^>]*>\\s*<path stroke='(?!rgb\\(200)[^>]*d='([^']*)'");
+    static const std::regex point(R"(([\d.]+),([\d.]+))");
+    std::size_t points = 0;
+    for (std::sregex_iterator i(svg.begin(), svg.end(), curve), end; i != end; ++i) {
+        const std::string path = (*i)[1];
+        for (std::sregex_iterator p(path.begin(), path.end(), point); p != end; ++p, ++points) {
+            const double x = std::stod((*p)[1]), y = std::stod((*p)[2]);
+            const double right = x - (x < 550 ? 275 : 825);
+            const double up = 288.39 + 300 * std::floor(y / 300.0) - y;
+            ASSERT_NEAR(std::hypot(right, up), 253 / 1.12, 1) << x << ' ' << y;
+        }
+    }
+    EXPECT_GT(points, 8u * 2 * 60);
 }
 
 TEST_F(ComparisonFiles, NamesAreText) {

@@ -34,8 +34,8 @@ slice[{{index}}] = {{slice}}; top[{{index}}] = {{top}}; low[{{index}}] = {{low}}
 slices = {{slices}}
 
 radius(f, p, logarithmic) = logarithmic ? \
-    (f <= 10.0**low[p] ? 0 : f >= 10.0**high[p] ? 1 : (log10(f) - low[p]) / (high[p] - low[p])) : \
-    (f <= 0 ? 0 : f >= top[p] ? 1 : f / top[p])
+    (f <= 10.0**low[p] ? NaN : f >= 10.0**high[p] ? 1 : (log10(f) - low[p]) / (high[p] - low[p])) : \
+    (f <= 0 ? NaN : f >= top[p] ? 1 : f / top[p])
 x(f, p, logarithmic) = radius(f, p, logarithmic) * sin(column(3) * pi / 180)
 y(f, p, logarithmic) = radius(f, p, logarithmic) * cos(column(3) * pi / 180)
 # '+' runs over the range of x, which becomes a half turn.

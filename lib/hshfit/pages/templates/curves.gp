@@ -11,14 +11,15 @@ if (!exists("pdf")) pdf = 'curves.pdf'
 set encoding utf8
 set datafile separator comma
 
-# One entry a row: its title, why it has no curves, the ends of its axes and
-# how many points go to a mark.
+# One entry a row: its title, why it has no curves, the ends of its axes, how
+# many points go to a mark, and the places of the bases that have a curve.
 array rowTitle[{{rows}}]
 array reason[{{rows}}]
 array maxCount[{{rows}}]
 array maxOrder[{{rows}}]
 array leastMissing[{{rows}}]
 array interval[{{rows}}]
+array own[{{rows}}]
 {{#entries}}
 rowTitle[{{index}}] = {{{title}}}
 reason[{{index}}] = {{{reason}}}
@@ -26,6 +27,7 @@ maxCount[{{index}}] = {{maxCount}}
 maxOrder[{{index}}] = {{maxOrder}}
 leastMissing[{{index}}] = {{leastMissing}}
 interval[{{index}}] = {{interval}}
+own[{{index}}] = {{{own}}}
 {{/entries}}
 
 bases = '{{bases}}'
@@ -74,7 +76,7 @@ do for [pass = 1:2] {
             set ytics ('0 %%' 1, '50 %%' 0.5, '80 %%' 0.2, '90 %%' 1e-1, '99 %%' 1e-2, \
                        '99.9 %%' 1e-3, '99.99 %%' 1e-4, '99.999 %%' 1e-5, '99.9999 %%' 1e-6)
         } }
-        set label 1 rowTitle[row] at screen 0.105, screen bottom + 0.93 * rowHeight left
+        set label 1 rowTitle[row] at screen 0.105, screen bottom + 0.95 * rowHeight left
         if (reason[row] eq '') {
             unset label 2
         } else {
@@ -107,7 +109,7 @@ do for [pass = 1:2] {
         }
         plot for [basis = 1:words(bases)] csv skip 1 \
             using (is(row, basis) ? column(3) : NaN):(missing(row)) \
-            title word(bases, basis) \
+            title (strstrt(own[row], sprintf(' %d ', basis)) ? word(bases, basis) : '') \
             with linespoints linetype basis pointinterval interval[row]
         unset key
     }
