@@ -74,6 +74,25 @@ TEST_F(Quality, ALittleEnergyCapturedIsCalledPoor) {
     EXPECT_EQ(quiet.err, "");
 }
 
+// An order where one up to 24 suffices, and else the halfway form.
+TEST_F(Quality, AReportNamesTheCallThatCapturesMore) {
+    for (const std::string spec : {"phong:exponent=150", "ggx:alpha=.03"}) {
+        const Json entry =
+            Json::parse(run("report " + spec + " --bases hsh --json").out)["reports"][0];
+        EXPECT_LT(entry["curves"][0]["points"].back()["accuracy"], 0.9);
+        std::string command = entry["better"];
+        command.replace(command.find("OUT.json"), 8, path("better.json"));
+        const Answer answer = run(command.substr(7) + " --json");
+        ASSERT_EQ(answer.code, 0) << command << "\n" << answer.err;
+        EXPECT_GT(Json::parse(answer.out)["accuracy"], 0.9) << command;
+    }
+    // Enough is captured, or higher orders were left out on purpose.
+    for (const std::string spec : {"lambert", "phong:exponent=150 --max-order 6"}) {
+        const Json entry = Json::parse(run("report " + spec + " --json").out)["reports"][0];
+        EXPECT_FALSE(entry.contains("better")) << spec;
+    }
+}
+
 /// A poor result states its share of the energy, and its suggestion has a larger one.
 TEST_F(Quality, EveryBasisHasAVerdictAndASuggestionThatDoesBetter) {
     for (const Json& basis : Json::parse(run("list bases --json").out)["bases"]) {
