@@ -78,6 +78,7 @@ struct Writer {
     bool readBack = true;  ///< `open` opens what was written
 };
 
+/// The catalogs, in the order in which they are listed.
 std::span<const Model> models();
 std::span<const Format> formats();
 std::span<const Writer> writers();

@@ -21,6 +21,7 @@ struct Repair {
     std::string (*reason)(const Brdf& brdf, const Health& health);
 };
 
+/// All repairs, in the order in which they are applied.
 std::span<const Repair> repairs();
 
 /// The effect of a repair during evaluation (a channel of a direction pair is a value).

@@ -47,7 +47,8 @@ std::string summary(const ReportEntry& entry) {
         }
     }
     if (!entry.better.empty())
-        text += fmt::format("  no basis captures 90 % over solid angle; better: {}\n", entry.better);
+        text +=
+            fmt::format("  no basis captures 90 % over solid angle; better: {}\n", entry.better);
     return text;
 }
 

@@ -9,6 +9,7 @@
 
 namespace hshfit::brdfs {
 
+/// The weight of a sample in a fit: that of the kind of data, 1, or its solid angle.
 enum class SampleWeights { automatic, equal, solidAngle };
 /// "auto", "equal" or "solid-angle". Throws UsageError.
 SampleWeights findSampleWeights(std::string_view name);

@@ -29,6 +29,7 @@ struct Call {
     std::string output = {};
 };
 
+/// The text of a setting and of a call in messages.
 struct Wording {
     std::function<std::string(const Setting&)> setting;
     std::function<std::string(const Call&)> call;
@@ -51,6 +52,7 @@ inline std::string asFunction(const Call& call) {
     return std::string(call.function) + "(" + arguments + ")";
 }
 
+/// The wording in use, that of the library's own interface unless `setWording` replaced it.
 inline Wording& currentWording() {
     static Wording wording{asMember, asFunction};
     return wording;

@@ -39,6 +39,7 @@ enum class Chart {
     neumann,             ///< |H_p|, |B_p|
 };
 
+/// The number of coordinates of the points of a chart.
 int dimensions(Chart chart);
 /// "pairs of directions", "theta_h", …, as `info` prints it.
 std::string_view chartName(Chart chart);
@@ -58,6 +59,7 @@ std::vector<Point> images(Chart chart, const Folding& folding);
 /// The canonical one of the images of a point.
 Point folded(const Point& point, const std::vector<Point>& images);
 
+/// The Euclidean distance of two points of a chart.
 double distance(const Point& a, const Point& b);
 
 }  // namespace hshfit::brdfs

@@ -59,6 +59,7 @@ struct HealthOptions {
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
 
+/// Evaluates the BRDF at pairs of directions and integrates its albedos.
 Health examine(const Brdf& brdf, const HealthOptions& options = {});
 
 }  // namespace hshfit::inline accuracy

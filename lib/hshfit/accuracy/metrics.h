@@ -23,6 +23,7 @@ struct Metric {
     bool squaresWithoutCosine;
 };
 
+/// All metrics, in the order in which they are listed.
 std::span<const Metric> metricCatalog();
 
 /// "all" or a comma-separated list. Throws UsageError that names the known ones.

@@ -38,8 +38,10 @@ struct Elevation {
     Real oneMinusMu;
 };
 
+/// The elevation of a unit vector, 1 - mu from `oneMinusZ`.
 Elevation<double> elevationOf(const Direction& d);
 
+/// The inner product; of unit vectors, the cosine of the angle between them.
 double dot(const Direction& a, const Direction& b);
 
 /// `d` turned about +z by `angle` radians.
@@ -50,6 +52,7 @@ inline Direction mirrored(const Direction& d) {
     return {-d.x, -d.y, d.z};
 }
 
+/// An incoming and an outgoing direction.
 struct DirectionPair {
     Direction wi, wo;
 };
@@ -60,8 +63,10 @@ struct DirectionPair {
 DirectionPair fromHalfDifference(double thetaHalf, double phiHalf, double thetaDifference,
                                  double phiDifference);
 
+/// Half the circumference of the unit circle, rounded to double.
 constexpr double pi = 3.14159265358979323846264338327950288;
 
+/// Degrees to radians, and back.
 inline double radians(double degrees) {
     return degrees * (pi / 180);
 }

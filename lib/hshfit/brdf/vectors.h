@@ -6,6 +6,7 @@
 
 namespace hshfit::inline brdf {
 
+/// Componentwise sums, differences and multiples; the results need not have length 1.
 inline Direction operator+(const Direction& a, const Direction& b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
 }

@@ -46,6 +46,7 @@ BasisName readBasisName(const JsonFields& basis);
 /// The head as (key, JSON text), in the order in which it is written.
 using CoefficientMetadata = std::vector<std::pair<std::string, std::string>>;
 
+/// The head of a coefficient file as it is written.
 CoefficientMetadata metadataOf(const CoefficientHead& head);
 
 /// The head of a coefficient file from its root object; keys that this version does not know are
@@ -60,6 +61,8 @@ CoefficientHead readSharedHead(const JsonFields& root, std::size_t outgoingCount
 /// Throws NumericError at the first coefficient that is not finite.
 void requireFinite(const Coefficients& coefficients);
 
+/// Coefficients as a JSON document, and back. `file` is the name in messages; reading throws
+/// InputError that names it and the field.
 std::string coefficientsToJson(const Coefficients& coefficients);
 Coefficients coefficientsFromJson(std::string_view text, const std::string& file);
 
@@ -69,6 +72,8 @@ Representation representationFromJson(std::string_view text, const std::string& 
 /// Whether a text that begins a JSON file has that member at its top level, by a look at the keys.
 bool hasRepresentation(std::string_view text);
 
+/// Coefficients as an OpenEXR file, and back. `file` is the name in messages; reading throws
+/// InputError that names it.
 void coefficientsToExr(const Coefficients& coefficients, AtomicFile& file);
 Coefficients coefficientsFromExr(std::string_view bytes, const std::string& file);
 

@@ -19,6 +19,8 @@ void writeLight(const LightCoefficients& light, AtomicFile& file);
 /// not know are ignored. Throws InputError naming the file and the field.
 LightCoefficients readLight(const std::string& path);
 
+/// Coefficients of light as a JSON document, and back; `file` is the name in messages. Reading
+/// throws as `readLight` does.
 std::string lightToJson(const LightCoefficients& light);
 LightCoefficients lightFromJson(std::string_view text, const std::string& file);
 

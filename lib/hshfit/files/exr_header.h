@@ -38,6 +38,7 @@ std::vector<ExrHeader> checkExrParts(std::string_view bytes, const std::string& 
 /// Whether the file states several parts.
 bool exrHasParts(std::string_view bytes);
 
+/// Whether the bytes begin as an OpenEXR file does.
 bool hasExrMagic(std::string_view bytes);
 
 /// Whether the header that starts `bytes`, which may be cut off, has the attribute; false if it is

@@ -8,6 +8,7 @@
 
 namespace hshfit::gpu {
 
+/// The languages that shaders are written in.
 enum class Language { glslEs, glsl, hlsl, wgsl, metal, osl };
 
 /// A row of the language table.

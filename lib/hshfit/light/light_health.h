@@ -28,6 +28,7 @@ struct LightHealth {
     PictureCensus invalid = {};  ///< of all pictures; these count as 0
 };
 
+/// The facts about the sum of lights.
 LightHealth examine(const std::vector<Light>& lights);
 
 /// "disc", "panel", "sky", "picture", "direction" or "coefficients".

@@ -15,6 +15,7 @@ namespace hshfit::inline light {
 /// Linear Rec. 709.
 using Rgb = std::array<double, 3>;
 
+/// The mean of the three components.
 inline double meanOf(const Rgb& rgb) {
     return (rgb[0] + rgb[1] + rgb[2]) / 3;
 }
@@ -104,6 +105,7 @@ struct CoefficientLight {
     double scale = 1;
 };
 
+/// A light of any kind; several shine as their sum.
 using Light =
     std::variant<DiscLight, PanelLight, SkyLight, PictureLight, DirectionalLight, CoefficientLight>;
 

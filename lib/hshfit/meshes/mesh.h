@@ -9,8 +9,10 @@
 
 namespace hshfit::inline meshes {
 
+/// A position or a normal as meshes store it.
 using MeshVector = std::array<float, 3>;
 
+/// The same numbers in double precision; the length is kept.
 inline Direction directionOf(const MeshVector& v) {
     return {v[0], v[1], v[2]};
 }

@@ -29,6 +29,7 @@ std::string albedoCsv(const Comparison& comparison);
 /// Azimuth, theta_d, theta_h, log10_ratio (empty where there is none), measured (0 or 1).
 std::string residualCsv(const Comparison& comparison);
 
+/// The script of gnuplot that draws the figures, and comparison.json.
 std::string comparisonScript(const Comparison& comparison);
 std::string comparisonJson(const Comparison& comparison);
 

@@ -30,6 +30,7 @@ struct LadderSource {
     std::vector<std::pair<std::string, std::size_t>> splits = {{"", 0}};
 };
 
+/// The forms that a plan tries.
 struct LadderOptions {
     std::vector<std::string> bases = {"hsh", "zernike", "makhotkin"};
     int maxOrder = 12;

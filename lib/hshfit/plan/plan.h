@@ -50,6 +50,7 @@ struct MaterialPlan {
     double referenceError = 0;  ///< change of L over the last two levels of light sampling
 };
 
+/// A scene with the cheapest form found for each of its materials.
 struct Plan {
     Scene scene;
     std::vector<MaterialPlan> materials;

@@ -21,6 +21,7 @@ struct KeptParts {
     std::function<void(std::uint64_t part, std::span<const std::byte> bytes)> keep = {};
 };
 
+/// Settings of the gathering of light at vertices.
 struct GatheringOptions {
     int order = 5;            ///< bands of light, 1 to 16
     std::size_t rays = 2025;  ///< of a vertex; 2,025 = 45 x 45 as in Schönefeld 2005
@@ -31,6 +32,7 @@ struct GatheringOptions {
     TransferProgress progress = {};
     KeptParts kept = {};  ///< of partVertices vertices each
 };
+/// Vertices of a finished part of the work, as `KeptParts` stores it.
 constexpr std::size_t partVertices = 64;
 
 /// A vertex that another one sees, and the share of its irradiance that comes from there.

@@ -27,6 +27,7 @@ struct TermBlock {
     std::vector<Entry> entries;
 };
 
+/// The blocks into which these terms fall, with the entries that each of them contributes to.
 std::vector<TermBlock> termBlocks(const std::vector<ProductTerm>& terms,
                                   const ProductSymmetry& symmetry);
 

@@ -34,6 +34,7 @@ public:
     virtual double pdf(const Direction& wo, const Direction& wi) const = 0;
 };
 
+/// Densities, one for each lobe of a BRDF.
 using SamplerList = std::vector<std::shared_ptr<const Sampler>>;
 
 /// A BRDF that names densities close to its f cos(theta_i), apart from the cosine: its parts, each

@@ -13,6 +13,7 @@ namespace hshfit::stability {
 /// The error of an order that was not measured.
 inline constexpr double unmeasured = std::numeric_limits<double>::quiet_NaN();
 
+/// The number type that is measured, float or double, and its name.
 enum class Precision { single, twice };
 std::string precisionName(Precision precision);  ///< "float", "double"
 

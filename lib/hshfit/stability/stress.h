@@ -24,6 +24,7 @@ struct LobeProjection {
     std::string reason = {};  ///< the reason why it did not converge
 };
 
+/// The Gram system of least-squares harmonics of one order.
 struct GramPoint {
     int order = 0;
     bases::LsoshGram gram;
@@ -40,6 +41,7 @@ struct StressReport {
     std::vector<ErrorTrialSummary> statedErrors = {};  ///< of trials (error_trials.h), if any
 };
 
+/// The range of the study: the largest degree, and the elevations of outgoing directions.
 struct StressOptions {
     int maxOrder = 1000;
     std::vector<double> thetaDegrees = {0, 30, 60, 80, 89, 89.9, 89.99};
@@ -53,6 +55,7 @@ struct StressOptions {
 StressReport stress(std::span<const bases::Entry* const> bases, std::span<const Brdf* const> lobes,
                     const StressOptions& options = {});
 
+/// The document of docs/schemas/stress.schema.json.
 std::string stressJson(const StressReport& report);
 /// The Markdown tables of docs/stability.md.
 std::string stressMarkdown(const StressReport& report);

@@ -53,7 +53,7 @@ struct Container {
     std::string fileName(const std::string& name, Role role, Number number) const;
 };
 
-std::span<const Container> catalog();
+std::span<const Container> catalog();  ///< all containers
 /// Throws UsageError with the known names.
 const Container& findContainer(std::string_view name);
 

@@ -21,6 +21,7 @@ struct ThreeOptions {
     std::string fitError = {};                     ///< JSON, as in the sidecar
 };
 
+/// A file by its path in the folder of the export, and its text.
 struct TextFile {
     std::string path, text;
 };
