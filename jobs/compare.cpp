@@ -48,16 +48,19 @@ std::optional<PairSummary> overPairs(const Brdf& a, const Brdf& b) {
 
 Compared compare(const std::string& a, const std::string& b, const std::string& output,
                  const CompareOptions& options, const Listener& listener) {
-    const auto metrics = selectMetrics(options.metrics);
+    selectMetrics(options.metrics);  // a word that is none fails before any file is opened
     const auto reference = openSource(a, options.rgb), approximation = openSource(b, options.rgb);
-    Compared result{.a = reference->name(),
-                    .b = approximation->name(),
-                    .outgoing = outgoingOf(options, *reference, *approximation)};
-    result.metrics = hshfit::compare(*reference, *approximation, result.outgoing, metrics,
-                                     {.progress = listener.part("compare")});
-    result.pairs = overPairs(*reference, *approximation);
-    if (!output.empty())
-        result.files = writePage(*reference, *approximation, result, output, options, listener);
+    return compareBrdfs(*reference, *approximation, output, options, listener);
+}
+
+Compared compareBrdfs(const Brdf& a, const Brdf& b, const std::string& output,
+                      const CompareOptions& options, const Listener& listener) {
+    const auto metrics = selectMetrics(options.metrics);
+    Compared result{.a = a.name(), .b = b.name(), .outgoing = outgoingOf(options, a, b)};
+    result.metrics =
+        hshfit::compare(a, b, result.outgoing, metrics, {.progress = listener.part("compare")});
+    result.pairs = overPairs(a, b);
+    if (!output.empty()) result.files = writePage(a, b, result, output, options, listener);
     return result;
 }
 

@@ -34,4 +34,8 @@ struct Compared {
 Compared compare(const std::string& a, const std::string& b, const std::string& output,
                  const CompareOptions& options, const Listener& listener = {});
 
+/// The same of BRDFs that are open; `rgb` is not used.
+Compared compareBrdfs(const Brdf& a, const Brdf& b, const std::string& output,
+                      const CompareOptions& options, const Listener& listener = {});
+
 }  // namespace hshfit::jobs

@@ -91,47 +91,68 @@ std::optional<Poor> judgeLoss(double error, const std::string& output) {
                 fmt::format("more nodes, or another format ({})", Call{.function = "writers"})};
 }
 
-Converted converted(const std::string& input, const std::string& output,
-                    const brdfs::Writer& writer, const ConvertOptions& options,
-                    const Listener& listener) {
+/// Writes, and measures what was lost. The counts of repairs are known once all is written.
+Converted converted(const Brdf& brdf, const brdfs::RepairedBrdf* repaired,
+                    const std::string& output, const brdfs::Writer& writer,
+                    const ConvertOptions& options, const Listener& listener) {
     const brdfs::Parameters parameters = writerParameters(writer, options.format);
-    std::unique_ptr<Brdf> brdf = openSource(input, options.rgb);
-    const brdfs::RepairedBrdf* repaired = nullptr;
-    if (!options.repairs.empty()) {
-        auto wrapped = brdfs::repaired(std::move(brdf), options.repairs, listener.part("repair"));
-        repaired = wrapped.get();
-        brdf = std::move(wrapped);
-    }
-
     Converted result;
-    result.input = brdf->name();
+    result.input = brdf.name();
     result.written = writer.name;
-    result.altered = writer.write(*brdf, output, parameters,
+    result.altered = writer.write(brdf, output, parameters,
                                   {.force = options.force, .progress = listener.part("convert")});
     std::error_code error;  // standard output has no size
     const auto bytes = std::filesystem::file_size(output, error);
     result.bytes = error ? 0 : bytes;
     if (repaired) result.repairs = Repairs{repaired->evaluated(), repaired->counts()};
     if (options.measureLoss) {
-        result.loss = measureLoss(*brdf, writer, output, options, listener);
+        result.loss = measureLoss(brdf, writer, output, options, listener);
     }
-    if (writer.readBack && !isStandardOutput(output)) result.error = errorOf(*brdf, output);
+    if (writer.readBack && !isStandardOutput(output)) result.error = errorOf(brdf, output);
     if (result.error) result.poor = judgeLoss(*result.error, output);
-    brdf->checkIntact();
+    brdf.checkIntact();
     return result;
+}
+
+/// The same of a specification, which is opened after the format is known to take it.
+Converted convertedFrom(const std::string& input, const std::string& output,
+                        const brdfs::Writer& writer, const ConvertOptions& options,
+                        const Listener& listener) {
+    writerParameters(writer, options.format);
+    std::unique_ptr<Brdf> brdf = openSource(input, options.rgb);
+    if (options.repairs.empty())
+        return converted(*brdf, nullptr, output, writer, options, listener);
+    const auto repaired =
+        brdfs::repaired(std::move(brdf), options.repairs, listener.part("repair"));
+    return converted(*repaired, repaired.get(), output, writer, options, listener);
+}
+
+/// The writer, once the options are known not to contradict it.
+const brdfs::Writer& checkedWriter(const ConvertOptions& options, const std::string& output) {
+    const brdfs::Writer& writer = chooseWriter(options.format, output);
+    if (options.measureLoss && isStandardOutput(output))
+        throw UsageError(fmt::format("{}: standard output is not read back",
+                                     Setting{"ConvertOptions::measureLoss"}));
+    return writer;
 }
 
 }  // namespace
 
 Converted convert(const std::string& input, const std::string& output,
                   const ConvertOptions& options, const Listener& listener) {
-    const brdfs::Writer& writer = chooseWriter(options.format, output);
-    if (options.measureLoss && isStandardOutput(output))
-        throw UsageError(fmt::format("{}: standard output is not read back",
-                                     Setting{"ConvertOptions::measureLoss"}));
+    const brdfs::Writer& writer = checkedWriter(options, output);
     Converted result;
-    withFileNamed(input, [&] { result = converted(input, output, writer, options, listener); });
+    withFileNamed(input, [&] { result = convertedFrom(input, output, writer, options, listener); });
     return result;
+}
+
+Converted convertBrdf(const Brdf& brdf, const std::string& output, const ConvertOptions& options,
+                      const Listener& listener) {
+    if (!options.repairs.empty() || options.rgb)
+        throw UsageError(fmt::format("{} and {} are for a specification, not for a BRDF at hand",
+                                     Setting{"ConvertOptions::repairs"},
+                                     Setting{"ConvertOptions::rgb"}));
+    return converted(brdf, nullptr, output, checkedWriter(options, output), options, listener);
 }
 
 }  // namespace hshfit::jobs

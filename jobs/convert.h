@@ -55,4 +55,9 @@ struct Converted {
 Converted convert(const std::string& input, const std::string& output,
                   const ConvertOptions& options, const Listener& listener = {});
 
+/// The same of a BRDF that is open. Throws UsageError if `options` have repairs or `rgb`, which are
+/// for BRDFs that this opens.
+Converted convertBrdf(const Brdf& brdf, const std::string& output, const ConvertOptions& options,
+                      const Listener& listener = {});
+
 }  // namespace hshfit::jobs

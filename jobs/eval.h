@@ -1,7 +1,9 @@
 #pragma once
 
-#include <hshfit/brdf/directions.h>
+#include <hshfit/brdf/brdf.h>
 
+#include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,5 +30,23 @@ Evaluated evaluatePair(const std::string& source, const Direction& wi, const Dir
 /// `output`, unless that is empty. Throws InputError and OutputError.
 std::string evaluatePairs(const std::string& source, const std::string& pairs,
                           const std::string& output, const EvalOptions& options);
+
+/// Vectors in memory of the caller: component j of vector k is at data[k * stride + j * step].
+/// A stride of 0 is one vector for all k.
+struct VectorArray {
+    const double* data = nullptr;
+    std::ptrdiff_t stride = 3, step = 1;  ///< in doubles
+
+    Direction at(std::size_t k) const {
+        const double* d = data + static_cast<std::ptrdiff_t>(k) * stride;
+        return {d[0], d[step], d[2 * step]};
+    }
+};
+
+/// f at `count` pairs, out[k * channels + c]: the same bits as by evaluatePair, on all threads.
+/// Pairs that follow each other with one wo are evaluated together. Throws InputError as
+/// unitDirection does, with the name "wi" or "wo" and the number of the pair.
+void evaluateArrays(const Brdf& brdf, const VectorArray& wi, const VectorArray& wo,
+                    std::size_t count, double* out, const EvalOptions& options);
 
 }  // namespace hshfit::jobs

@@ -41,7 +41,7 @@ brdfs::FitOptions optionsOf(const FitOptions& options) {
     return fit;
 }
 
-brdfs::FitSamples samplesOf(const FitOptions& options, const std::string& data) {
+brdfs::FitSamples samplesOf(const FitOptions& options, const Brdf& data) {
     const brdfs::SampleOptions how{.weights = brdfs::findSampleWeights(options.weights),
                                    .grazingCut = options.grazingCut,
                                    .most = options.samples,
@@ -51,9 +51,8 @@ brdfs::FitSamples samplesOf(const FitOptions& options, const std::string& data) 
     if (!options.sigma.empty() && how.weights == brdfs::SampleWeights::solidAngle)
         throw UsageError(fmt::format("{} states the weights of the samples; leave out {}",
                                      Setting{"FitOptions::sigma"}, Setting{"FitOptions::weights"}));
-    const auto brdf = openSource(data, options.rgb);
-    brdfs::FitSamples samples = brdfs::gatherSamples(*brdf, how);
-    requireReadable(*brdf);
+    brdfs::FitSamples samples = brdfs::gatherSamples(data, how);
+    requireReadable(data);
     return samples;
 }
 
@@ -116,7 +115,7 @@ std::size_t writePage(const std::string& data, const Fitted& fit, const std::str
     ComparisonOptions options;
     options.progress = options.sphere.progress = listener.part("report");
     const AddedComparison added = addComparison(makeComparison(*measured, *fitted, options), files);
-    files.write("fit.json", jsonText(fit.preset, 2) + "\n");
+    files.write("fit.json", presetText(fit));
     files.commit();
     if (added.undrawn) throw NoFigures(*added.undrawn);
     return added.names.size();
@@ -143,10 +142,18 @@ bool isPresetPath(const std::string& output) {
     return output.ends_with(".json");
 }
 
-Fitted fit(const std::string& data, const std::string& output, const FitOptions& options,
-           const Listener& listener) {
+std::string presetText(const Fitted& fitted) {
+    return jsonText(fitted.preset, 2) + "\n";
+}
+
+namespace {
+
+/// A fit, and its residuals' file as above.
+std::pair<Fitted, std::unique_ptr<AtomicFile>> fitOpen(const Brdf& brdf, const std::string& data,
+                                                       const FitOptions& options,
+                                                       const Listener& listener) {
     brdfs::FitOptions how = optionsOf(options);
-    const brdfs::FitSamples samples = samplesOf(options, data);
+    const brdfs::FitSamples samples = samplesOf(options, brdf);
     const auto search = restrictParts(options, samples, how, listener);
     how.progress = listener.part("fit");
     how.uncertainty.progress = listener.part("errors");
@@ -163,14 +170,30 @@ Fitted fit(const std::string& data, const std::string& output, const FitOptions&
     fitted.poor = judgeFit(fitted.explained, data, options.model, options.sigma);
     fitted.preset["fit"]["explained"] = fitted.explained;
     if (search) fitted.preset["fit"]["parts"] = searchJson(*search);
-    const auto residuals = residualsOf(samples, fitted.result, options.residuals);
+    auto residuals = residualsOf(samples, fitted.result, options.residuals);
+    return {std::move(fitted), std::move(residuals)};
+}
+
+}  // namespace
+
+Fitted fitBrdf(const Brdf& brdf, const std::string& data, const FitOptions& options,
+               const Listener& listener) {
+    auto [fitted, residuals] = fitOpen(brdf, data, options, listener);
+    if (residuals) residuals->commit();
+    return std::move(fitted);
+}
+
+Fitted fit(const std::string& data, const std::string& output, const FitOptions& options,
+           const Listener& listener) {
+    const auto brdf = openSource(data, options.rgb);
+    auto [fitted, residuals] = fitOpen(*brdf, data, options, listener);
     if (isPresetPath(output)) {
-        writeFile(output, jsonText(fitted.preset, 2) + "\n");
+        writeFile(output, presetText(fitted));
     } else if (!output.empty()) {
         fitted.pageFiles = writePage(data, fitted, output, options.rgb, listener);
     }
     if (residuals) residuals->commit();
-    return fitted;
+    return std::move(fitted);
 }
 
 BatchOutcome fitAll(const std::string& folder, const std::string& results,
@@ -183,6 +206,11 @@ BatchOutcome fitAll(const std::string& folder, const std::string& results,
 
 std::vector<brdfs::ModelRank> rankModels(const std::string& data,
                                          const std::vector<std::string>& models,
+                                         const FitOptions& options) {
+    return rankModels(*openSource(data, options.rgb), models, options);
+}
+
+std::vector<brdfs::ModelRank> rankModels(const Brdf& data, const std::vector<std::string>& models,
                                          const FitOptions& options) {
     const brdfs::FitSamples samples = samplesOf(options, data);
     return brdfs::compareModels(samples, models, optionsOf(options));

@@ -68,6 +68,14 @@ bool isPresetPath(const std::string& output);
 Fitted fit(const std::string& data, const std::string& output, const FitOptions& options,
            const Listener& listener = {});
 
+/// The same of a BRDF that is open, called `name` in messages and in the preset; no file but that
+/// of residuals.
+Fitted fitBrdf(const Brdf& data, const std::string& name, const FitOptions& options,
+               const Listener& listener = {});
+
+/// The preset file of a fit.
+std::string presetText(const Fitted& fitted);
+
 /// Fits every file of a folder, each to RESULTS/NAME.EXTENSION.json. Existing results are kept.
 BatchOutcome fitAll(const std::string& folder, const std::string& results,
                     const FitOptions& options, const Listener& listener = {});
@@ -75,6 +83,8 @@ BatchOutcome fitAll(const std::string& folder, const std::string& results,
 /// Fits every model to the same data and ranks them by error at held-out directions.
 std::vector<brdfs::ModelRank> rankModels(const std::string& data,
                                          const std::vector<std::string>& models,
+                                         const FitOptions& options);
+std::vector<brdfs::ModelRank> rankModels(const Brdf& data, const std::vector<std::string>& models,
                                          const FitOptions& options);
 
 }  // namespace hshfit::jobs

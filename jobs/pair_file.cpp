@@ -25,17 +25,16 @@ double numberIn(std::string_view cell, const std::string& where) {
     return value;
 }
 
-/// The vector over its length. Lengths are checked: a column of angles is a likely mistake.
-Direction unit(const Direction& d, const std::string& where) {
+}  // namespace
+
+Direction unitDirection(const Direction& d, const std::function<std::string()>& where) {
     const double length = std::hypot(d.x, d.y, d.z);
-    if (std::abs(length - 1) > 1e-3) {
-        throw InputError(fmt::format("{}: the direction {}, {}, {} has length {:.4g}, not 1", where,
-                                     d.x, d.y, d.z, length));
+    if (!(std::abs(length - 1) <= 1e-3)) {
+        throw InputError(fmt::format("{}: the direction {}, {}, {} has length {:.4g}, not 1",
+                                     where(), d.x, d.y, d.z, length));
     }
     return {d.x / length, d.y / length, d.z / length};
 }
-
-}  // namespace
 
 void readPairs(const std::string& path, const std::function<void(const PairRow&)>& take) {
     try {
@@ -55,8 +54,8 @@ void readPairs(const std::string& path, const std::function<void(const PairRow&)
             const std::string where = fmt::format("{}, line {}", path, reader.get_file_line());
             std::array<double, 6> v{};
             for (std::size_t k = 0; k < v.size(); ++k) v[k] = numberIn(row.cells[k], where);
-            row.wi = unit({v[0], v[1], v[2]}, where);
-            row.wo = unit({v[3], v[4], v[5]}, where);
+            row.wi = unitDirection({v[0], v[1], v[2]}, [&] { return where; });
+            row.wo = unitDirection({v[3], v[4], v[5]}, [&] { return where; });
             if (reader.has_column("weight")) row.weight = numberIn(weight, where);
             take(row);
         }

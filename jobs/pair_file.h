@@ -17,6 +17,10 @@ struct PairRow {
     std::optional<double> weight = {};
 };
 
+/// `d` over its length: the rule for directions that somebody else wrote. Throws InputError that
+/// begins with `where()` for a length that is not 1 within 0.001; angles are a likely mistake.
+Direction unitDirection(const Direction& d, const std::function<std::string()>& where);
+
 /// Calls `take` for each row of the file; other columns are ignored. Throws InputError for a file
 /// that cannot be read, a missing column, and cells that are no unit vectors within 0.001 or, for
 /// the weight, no number.

@@ -76,7 +76,8 @@ public:
     Projected run(const std::string& spec, const std::string& output,
                   const ProgressCall& progress) const {
         Projected result;
-        withFileNamed(spec, [&] { result = projected(spec, output, progress); });
+        withFileNamed(spec,
+                      [&] { result = projected(*openBrdf(spec, options_.rgb), output, progress); });
         return result;
     }
 
@@ -87,35 +88,34 @@ public:
             writeCoefficients(result.projection.coefficients, file);
     }
 
-private:
-    Projected projected(const std::string& spec, const std::string& output,
+    Projected projected(const Brdf& brdf, const std::string& output,
                         const ProgressCall& progress) const {
-        const auto brdf = openBrdf(spec, options_.rgb);
         const ProjectionOptions how = {.quantity = quantityOf(options_),
                                        .tolerance = options_.tolerance,
                                        .maxEvaluations = options_.maxEvaluations,
                                        .progress = progress};
         Projected result{.projection = {}, .output = output};
         if (form_) {
-            result.kept = represent(*brdf, *form_, sourceOpener(), how);
+            result.kept = represent(brdf, *form_, sourceOpener(), how);
             result.projection.coefficients = {result.kept->head};
             if (result.kept->kind() == Representation::Kind::halfway) {
-                result.errors = summaryOf(*brdf, *reconstruct(*result.kept, sourceOpener()));
+                result.errors = summaryOf(brdf, *reconstruct(*result.kept, sourceOpener()));
             }
-            result.captured = capturedShare(*result.kept, *brdf, result.errors);
-            result.poor = judge(*result.kept, result.captured, result.errors, *brdf, output);
+            result.captured = capturedShare(*result.kept, brdf, result.errors);
+            result.poor = judge(*result.kept, result.captured, result.errors, brdf, output);
             return result;
         }
-        const OutgoingSet outgoing = outgoingOf({.outgoing = options_.outgoing}, brdf->laws());
+        const OutgoingSet outgoing = outgoingOf({.outgoing = options_.outgoing}, brdf.laws());
         const Basis* const one[] = {basis_.get()};
         result.projection = options_.leastSquares
-                                ? projectSamples(*brdf, *basis_, outgoing, options_, progress)
-                                : std::move(hshfit::project(*brdf, one, outgoing, how)[0]);
-        result.captured = capturedShare(result.projection, *brdf);
-        result.poor = judge(result.projection, result.captured, *brdf, output);
+                                ? projectSamples(brdf, *basis_, outgoing, options_, progress)
+                                : std::move(hshfit::project(brdf, one, outgoing, how)[0]);
+        result.captured = capturedShare(result.projection, brdf);
+        result.poor = judge(result.projection, result.captured, brdf, output);
         return result;
     }
 
+private:
     const ProjectOptions& options_;
     std::unique_ptr<Basis> basis_;
     std::optional<Form> form_;
@@ -127,10 +127,19 @@ Projected project(const std::string& spec, const std::string& output, const Proj
                   const Listener& listener) {
     const Projector projector(options);
     Projected result = projector.run(spec, output, listener.part("project"));
-    AtomicFile file(output);
+    writeProjected(result, output);
+    return result;
+}
+
+Projected projectBrdf(const Brdf& brdf, const ProjectOptions& options, const Listener& listener,
+                      const std::string& output) {
+    return Projector(options).projected(brdf, output, listener.part("project"));
+}
+
+void writeProjected(const Projected& result, const std::string& path) {
+    AtomicFile file(path);
     Projector::write(result, file);
     file.commit();
-    return result;
 }
 
 ManyProjected projectMany(const std::vector<std::string>& specs, const std::string& folder,

@@ -51,6 +51,13 @@ struct Projected {
 Projected project(const std::string& spec, const std::string& output, const ProjectOptions& options,
                   const Listener& listener = {});
 
+/// The same of a BRDF that is open, without a file; suggestions name `output` as the file.
+Projected projectBrdf(const Brdf& brdf, const ProjectOptions& options,
+                      const Listener& listener = {}, const std::string& output = {});
+/// Writes the coefficients, in the form that they were projected to. Throws UsageError,
+/// NumericError and OutputError as writeCoefficients and writeRepresentation do.
+void writeProjected(const Projected& result, const std::string& path);
+
 struct ManyProjected {
     std::vector<std::string> specs;  ///< with folders expanded
     /// In the order of `specs`; none where one failed. Coefficients are in the files alone.

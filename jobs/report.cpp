@@ -26,6 +26,12 @@ std::vector<std::unique_ptr<Basis>> makeBases(const ReportOptions& options) {
     return made;
 }
 
+std::vector<const Basis*> pointersTo(const std::vector<std::unique_ptr<Basis>>& bases) {
+    std::vector<const Basis*> pointers;
+    for (const auto& basis : bases) pointers.push_back(basis.get());
+    return pointers;
+}
+
 /// Empty projections of a BRDF whose coefficients do not exist or did not converge.
 std::vector<Projection> withoutNumbers(const Brdf& brdf, std::span<const Basis* const> bases,
                                        const OutgoingSet& outgoing, Quantity quantity,
@@ -59,26 +65,25 @@ void addWavelets(ReportEntry& entry, const Brdf& brdf, int maxOrder) {
     entry.curves.push_back(waveletCurve(slices ? &*slices : nullptr, entry.energy, maxOrder));
 }
 
-ReportEntry entryOf(const std::string& spec, std::span<const Basis* const> bases,
+ReportEntry entryOf(const Brdf& brdf, std::span<const Basis* const> bases,
                     const ReportOptions& options, const ProgressCall& progress) {
-    const auto brdf = openBrdf(spec, options.rgb);
-    const OutgoingSet outgoing = outgoingOrDefault(options.outgoing, *brdf);
+    const OutgoingSet outgoing = outgoingOrDefault(options.outgoing, brdf);
     const Quantity quantity = options.cosine ? Quantity::brdfCosine : Quantity::brdf;
     std::vector<Projection> projections;
     try {
-        projections = hshfit::project(*brdf, bases, outgoing,
+        projections = hshfit::project(brdf, bases, outgoing,
                                       {.quantity = quantity,
                                        .tolerance = options.tolerance,
                                        .maxEvaluations = options.maxEvaluations,
                                        .progress = progress});
     } catch (const NumericError& error) {
-        projections = withoutNumbers(*brdf, bases, outgoing, quantity, error.what());
+        projections = withoutNumbers(brdf, bases, outgoing, quantity, error.what());
     }
     ReportEntry entry = reportEntry(projections);
     // Orders below the default are left out on purpose, and nothing is advised against them.
     if (entry.energy.finite && !suffices(entry) && options.maxOrder >= ReportOptions{}.maxOrder)
-        entry.better = betterCall(projections.front().coefficients, *brdf, "OUT.json");
-    if (options.wavelets) addWavelets(entry, *brdf, options.maxOrder);
+        entry.better = betterCall(projections.front().coefficients, brdf, "OUT.json");
+    if (options.wavelets) addWavelets(entry, brdf, options.maxOrder);
     return entry;
 }
 
@@ -87,8 +92,7 @@ ReportEntry entryOf(const std::string& spec, std::span<const Basis* const> bases
 Reported report(const std::vector<std::string>& specs, const ReportOptions& options,
                 const Listener& listener) {
     const auto bases = makeBases(options);
-    std::vector<const Basis*> pointers;
-    for (const auto& basis : bases) pointers.push_back(basis.get());
+    const auto pointers = pointersTo(bases);
 
     Reported result;
     result.specs = expandInputs(specs);
@@ -96,17 +100,24 @@ Reported report(const std::vector<std::string>& specs, const ReportOptions& opti
     std::vector<ReportEntry>& found = result.report.reports;
     if (!areMany(specs)) {
         const std::string& spec = result.specs.front();
-        found.push_back(entryOf(spec, pointers, options, listener.part(spec)));
+        found.push_back(
+            entryOf(*openBrdf(spec, options.rgb), pointers, options, listener.part(spec)));
         return result;
     }
     std::vector<std::optional<ReportEntry>> entries(result.specs.size());
     result.failures = forEachInput(
         result.specs, listener, "report", [&](std::size_t i, const ProgressCall& progress) {
-            entries[i] = entryOf(result.specs[i], pointers, options, progress);
+            entries[i] =
+                entryOf(*openBrdf(result.specs[i], options.rgb), pointers, options, progress);
         });
     for (auto& entry : entries)
         if (entry) found.push_back(std::move(*entry));
     return result;
+}
+
+ReportEntry reportOf(const Brdf& brdf, const ReportOptions& options, const Listener& listener) {
+    const auto bases = makeBases(options);
+    return entryOf(brdf, pointersTo(bases), options, listener.part(brdf.name()));
 }
 
 }  // namespace hshfit::jobs

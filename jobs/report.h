@@ -35,4 +35,7 @@ struct Reported {
 Reported report(const std::vector<std::string>& specs, const ReportOptions& options,
                 const Listener& listener = {});
 
+/// The entry of a BRDF that is open; `rgb` is not used.
+ReportEntry reportOf(const Brdf& brdf, const ReportOptions& options, const Listener& listener = {});
+
 }  // namespace hshfit::jobs

@@ -34,71 +34,6 @@ Energy leftOf(Energy energy, double captured, double lost) {
     return energy;
 }
 
-Rotated rotateBrdf(const std::string& input, const std::string& output,
-                   const RotateOptions& options) {
-    Coefficients c = readCoefficients(input);
-    const auto basis = bases::make(c.basis, c.order, {.condonShortley = c.condonShortley});
-    const HemisphereRotation rotation(*basis, options.way);
-    // Loss and error weigh outgoing directions by their solid angles.
-    const double largest =
-        *std::max_element(c.outgoing.solidAngles.begin(), c.outgoing.solidAngles.end());
-    const std::size_t perDirection = c.channels.count() * c.slots();
-    const auto scaleOf = [&](std::size_t i) {
-        return std::sqrt(std::max(c.outgoing.solidAngles[i / perDirection], 1e-12 * largest));
-    };
-    double captured = 0;
-    for (std::size_t i = 0; i < c.values.size(); ++i) {
-        c.values[i] *= scaleOf(i);
-        captured += c.values[i] * c.values[i];
-    }
-    const HemisphereRotated rotated = rotation.rotate(options.rotation, c.values);
-    for (std::size_t i = 0; i < c.values.size(); ++i) c.values[i] = rotated.values[i] / scaleOf(i);
-    c.energy = leftOf(c.energy, captured, rotated.lostEnergy);
-    if (options.way.method != HemisphereMethod::exact) c.error += rotated.error;
-    c.isotropic = c.isotropic && c.outgoing.map == OutgoingSet::Map::elevations;
-    c.bilateral = c.bilateral && keepsMirrorPlane(options.rotation);
-    c.reciprocal = false;
-    c.leastSquares.reset();
-    c.source += " (rotated)";
-    writeCoefficients(c, output);
-    return {
-        "brdf",        c.basis,      "hemisphere", c.order, options.way.method, rotated.lostEnergy,
-        rotated.error, rotated.bands};
-}
-
-Rotated rotateLight(const std::string& input, const std::string& output,
-                    const RotateOptions& options) {
-    LightCoefficients light = readLight(input);
-    Rotated result{"light", light.basis, "sphere", light.order, options.way.method, 0, 0, 0};
-    if (light.domain == LightCoefficients::Domain::sphere) {
-        if (options.way.method != HemisphereMethod::exact)
-            throw UsageError(
-                fmt::format("'{}' is light on the whole sphere, which only the method "
-                            "exact rotates",
-                            input));
-        const ShRotation rotate(light.order, {.condonShortley = light.condonShortley});
-        light.values = rotate.rotate(options.rotation, light.values);
-    } else {
-        const auto basis =
-            bases::make(light.basis, light.order, {.condonShortley = light.condonShortley});
-        const HemisphereRotated rotated =
-            HemisphereRotation(*basis, options.way).rotate(options.rotation, light.values);
-        double captured = 0;
-        for (const double value : light.values) captured += value * value;
-        light.values = rotated.values;
-        light.energy = leftOf(light.energy, captured, rotated.lostEnergy);
-        if (options.way.method != HemisphereMethod::exact) light.error += rotated.error;
-        light.curves.clear();
-        result.domain = "hemisphere";
-        result.lostEnergy = rotated.lostEnergy;
-        result.error = rotated.error;
-        result.bands = rotated.bands;
-    }
-    light.source += " (rotated)";
-    writeLight(light, output);
-    return result;
-}
-
 using Rows = std::vector<std::vector<double>>;
 
 Rows rowsOf(const std::vector<double>& values, std::size_t columns) {
@@ -169,9 +104,76 @@ Rows unsignedMatrix(const MatrixOptions& options) {
 
 }  // namespace
 
+Rotated rotate(Coefficients& c, const RotateOptions& options) {
+    const auto basis = bases::make(c.basis, c.order, {.condonShortley = c.condonShortley});
+    const HemisphereRotation rotation(*basis, options.way);
+    // Loss and error weigh outgoing directions by their solid angles.
+    const double largest =
+        *std::max_element(c.outgoing.solidAngles.begin(), c.outgoing.solidAngles.end());
+    const std::size_t perDirection = c.channels.count() * c.slots();
+    const auto scaleOf = [&](std::size_t i) {
+        return std::sqrt(std::max(c.outgoing.solidAngles[i / perDirection], 1e-12 * largest));
+    };
+    double captured = 0;
+    for (std::size_t i = 0; i < c.values.size(); ++i) {
+        c.values[i] *= scaleOf(i);
+        captured += c.values[i] * c.values[i];
+    }
+    const HemisphereRotated rotated = rotation.rotate(options.rotation, c.values);
+    for (std::size_t i = 0; i < c.values.size(); ++i) c.values[i] = rotated.values[i] / scaleOf(i);
+    c.energy = leftOf(c.energy, captured, rotated.lostEnergy);
+    if (options.way.method != HemisphereMethod::exact) c.error += rotated.error;
+    c.isotropic = c.isotropic && c.outgoing.map == OutgoingSet::Map::elevations;
+    c.bilateral = c.bilateral && keepsMirrorPlane(options.rotation);
+    c.reciprocal = false;
+    c.leastSquares.reset();
+    c.source += " (rotated)";
+    return {
+        "brdf",        c.basis,      "hemisphere", c.order, options.way.method, rotated.lostEnergy,
+        rotated.error, rotated.bands};
+}
+
+Rotated rotate(LightCoefficients& light, const RotateOptions& options, const std::string& name) {
+    Rotated result{"light", light.basis, "sphere", light.order, options.way.method, 0, 0, 0};
+    if (light.domain == LightCoefficients::Domain::sphere) {
+        if (options.way.method != HemisphereMethod::exact)
+            throw UsageError(
+                fmt::format("'{}' is light on the whole sphere, which only the method "
+                            "exact rotates",
+                            name));
+        const ShRotation turn(light.order, {.condonShortley = light.condonShortley});
+        light.values = turn.rotate(options.rotation, light.values);
+    } else {
+        const auto basis =
+            bases::make(light.basis, light.order, {.condonShortley = light.condonShortley});
+        const HemisphereRotated rotated =
+            HemisphereRotation(*basis, options.way).rotate(options.rotation, light.values);
+        double captured = 0;
+        for (const double value : light.values) captured += value * value;
+        light.values = rotated.values;
+        light.energy = leftOf(light.energy, captured, rotated.lostEnergy);
+        if (options.way.method != HemisphereMethod::exact) light.error += rotated.error;
+        light.curves.clear();
+        result.domain = "hemisphere";
+        result.lostEnergy = rotated.lostEnergy;
+        result.error = rotated.error;
+        result.bands = rotated.bands;
+    }
+    light.source += " (rotated)";
+    return result;
+}
+
 Rotated rotate(const std::string& input, const std::string& output, const RotateOptions& options) {
-    return isLightFile(input) ? rotateLight(input, output, options)
-                              : rotateBrdf(input, output, options);
+    if (isLightFile(input)) {
+        LightCoefficients light = readLight(input);
+        const Rotated result = rotate(light, options, input);
+        writeLight(light, output);
+        return result;
+    }
+    Coefficients coefficients = readCoefficients(input);
+    const Rotated result = rotate(coefficients, options);
+    writeCoefficients(coefficients, output);
+    return result;
 }
 
 std::vector<std::vector<double>> matrix(const MatrixOptions& options) {

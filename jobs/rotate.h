@@ -1,5 +1,7 @@
 #pragma once
 
+#include <hshfit/coefficients/coefficients.h>
+#include <hshfit/coefficients/light_coefficients.h>
 #include <hshfit/rotation/hemisphere_rotation.h>
 #include <hshfit/rotation/rotation.h>
 
@@ -34,6 +36,10 @@ struct Rotated {
 /// the part that stays. Throws UsageError for a way that the basis does not have, InputError and
 /// OutputError.
 Rotated rotate(const std::string& input, const std::string& output, const RotateOptions& options);
+
+/// The same of coefficients at hand, in place; `name` is that of light in messages.
+Rotated rotate(Coefficients& coefficients, const RotateOptions& options);
+Rotated rotate(LightCoefficients& light, const RotateOptions& options, const std::string& name);
 
 struct MatrixOptions {
     std::string from, to;  ///< bases
