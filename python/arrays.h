@@ -1,0 +1,65 @@
+#pragma once
+
+// Numbers between NumPy and the library.
+
+#include "module.h"
+
+#include <hshfit/brdf/directions.h>
+
+#include <jobs/eval.h>
+
+#include <pybind11/numpy.h>
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hshfit::python {
+
+using Doubles = py::array_t<double, py::array::forcecast>;
+using Shape = std::vector<py::ssize_t>;
+
+/// An argument of shape (..., 3), in place where it is an array of float64.
+struct Vectors {
+    Doubles array;
+    Shape shape;  ///< without the last axis
+    std::size_t count = 1;
+    jobs::VectorArray data;
+};
+/// Throws UsageError that begins with `name` for anything else.
+Vectors vectorsOf(const py::object& argument, const char* name);
+/// Two of them, broadcast against each other as NumPy does it.
+std::pair<Vectors, Vectors> broadcast(const py::object& a, const char* nameOfA, const py::object& b,
+                                      const char* nameOfB);
+/// Their unit vectors, in the order of the memory. Throws InputError as unitDirection does.
+std::vector<Direction> directionsIn(const Vectors& vectors, const char* name);
+/// As three arrays, for batch evaluation.
+struct DirectionColumns {
+    explicit DirectionColumns(const std::vector<Direction>& directions);
+    DirectionBatch batch() const { return {x.data(), y.data(), z.data(), x.size()}; }
+    std::vector<double> x, y, z;
+};
+
+/// An array that takes the vector over, without a copy.
+py::array_t<double> arrayOf(std::vector<double> values, const Shape& shape);
+/// A read-only array over memory of `owner`, which it keeps alive.
+py::array_t<double> viewOf(const double* values, const Shape& shape, const py::object& owner);
+/// Directions as an array (n, 3).
+py::array_t<double> arrayOf(const std::vector<Direction>& directions);
+/// A copy of a float64 array of `count` numbers, in C order. Throws UsageError with `name`.
+std::vector<double> numbersOf(const py::object& argument, const char* name);
+
+/// The document as Python's json module reads it.
+py::object fromJson(const nlohmann::ordered_json& document);
+/// A string, or a path-like object, as a string. Throws UsageError with `name`.
+std::string pathOf(const py::object& path, const char* name);
+/// An outgoing set as text: "32x32", 16, (52, 0) in degrees, an Outgoing, or None for "".
+std::string outgoingText(const py::object& outgoing);
+/// Names as a list with commas: a string as it is, or a sequence of strings.
+std::string listText(const py::object& names);
+/// An optional number, NaN where there is none.
+double orNaN(const std::optional<double>& value);
+
+}  // namespace hshfit::python

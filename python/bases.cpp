@@ -1,0 +1,113 @@
+#include "arrays.h"
+
+#include <hshfit/bases/catalog.h>
+#include <hshfit/error.h>
+
+#include <jobs/plot.h>
+#include <jobs/rotate.h>
+
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace hshfit::python {
+namespace {
+
+std::string innerName(const Basis& basis) {
+    return basis.inner() == Basis::Inner::solidAngle ? "solid_angle" : "projected_solid_angle";
+}
+
+py::array_t<double> valuesOf(const Basis& basis, const py::object& directions) {
+    const Vectors vectors = vectorsOf(directions, "directions");
+    const DirectionColumns columns(directionsIn(vectors, "directions"));
+    Shape shape = vectors.shape;
+    shape.push_back(basis.slots());
+    py::array_t<double> values(shape);
+    double* to = values.mutable_data();
+    const py::gil_scoped_release released;
+    basis.evaluate(columns.batch(), to);
+    return values;
+}
+
+py::array_t<bool> functionsOf(const Basis& basis) {
+    py::array_t<bool> has(Shape{basis.slots()});
+    bool* to = has.mutable_data();
+    for (int l = 0; l < basis.order(); ++l)
+        for (int m = -l; m <= l; ++m) to[slotOf(l, m)] = basis.has(l, m);
+    return has;
+}
+
+/// Degree l and order m of every slot.
+std::pair<py::array_t<int>, py::array_t<int>> indicesOf(const Basis& basis) {
+    py::array_t<int> ls(Shape{basis.slots()}), ms(Shape{basis.slots()});
+    for (int l = 0; l < basis.order(); ++l) {
+        for (int m = -l; m <= l; ++m) {
+            ls.mutable_data()[slotOf(l, m)] = l;
+            ms.mutable_data()[slotOf(l, m)] = m;
+        }
+    }
+    return {ls, ms};
+}
+
+std::string reprOf(const Basis& basis) {
+    return "<hshfit.Basis " + basis.name() + ", order " + std::to_string(basis.order()) + ">";
+}
+
+py::dict plotted(const std::string& basis, const py::object& path, int order,
+                 const std::string& domain, bool condonShortley) {
+    if (domain != "hemisphere" && domain != "sphere")
+        throw UsageError("domain: 'hemisphere' or 'sphere', not '" + domain + "'");
+    const std::string output = pathOf(path, "path");
+    jobs::Plotted done;
+    {
+        const py::gil_scoped_release released;
+        done = jobs::plot(
+            basis, output,
+            {.order = order,
+             .domain = domain == "sphere" ? FigureDomain::sphere : FigureDomain::hemisphere,
+             .condonShortley = condonShortley});
+    }
+    py::dict out;
+    out["basis"] = done.basis;
+    out["order"] = done.order;
+    out["functions"] = done.functions;
+    return out;
+}
+
+}  // namespace
+
+void bindBases(py::module_& module) {
+    py::class_<Basis>(
+        module, "Basis",
+        R"(Real functions on the hemisphere (for "sh" on the sphere) in bands l = 0 .. order-1.
+
+Slot l(l+1)+m has the function of degree l and order m; see catalog("bases") for names, formulas'
+sources and the largest orders. Throws UsageError for others.)")
+        .def(py::init([](const std::string& name, int order, bool condonShortley) {
+                 return bases::make(name, order, {.condonShortley = condonShortley});
+             }),
+             py::arg("name"), py::arg("order"), py::kw_only(), py::arg("condon_shortley") = false)
+        .def_property_readonly("name", &Basis::name)
+        .def_property_readonly("order", &Basis::order)
+        .def_property_readonly("slots", &Basis::slots, "order^2")
+        .def_property_readonly("condon_shortley", &Basis::condonShortley)
+        .def_property_readonly("inner", innerName,
+                               "The inner product in which energies are measured: \"solid_angle\"\n"
+                               "or \"projected_solid_angle\".")
+        .def_property_readonly("has", functionsOf,
+                               "(slots,), whether a slot has a function that can be non-zero.")
+        .def_property_readonly("indices", indicesOf, "Degrees l and orders m, both (slots,).")
+        .def("__call__", valuesOf, py::arg("directions"),
+             "All functions at unit vectors (..., 3): (..., slots).")
+        .def("__repr__", reprOf);
+    module.def(
+        "plot", plotted, py::arg("basis"), py::arg("path"), py::kw_only(),
+        py::arg("order") = jobs::PlotOptions{}.order, py::arg("domain") = "hemisphere",
+        py::arg("condon_shortley") = false,
+        R"(Draw the functions of a basis by gnuplot to a .png, .svg or .pdf (Fig. 10 of Gautron
+et al. 2004). OutputError without gnuplot.)");
+}
+
+}  // namespace hshfit::python

@@ -1,0 +1,31 @@
+"""hshfit: BRDFs as hemispherical-basis coefficients.
+
+A BRDF, analytic, measured or a function of Python, becomes coefficients of hemispherical harmonics
+or of another basis, with an error estimate; they are compared, fitted, compressed, rotated and
+exported. The same work as by the program hshfit, on NumPy arrays.
+
+    import hshfit
+    gold = hshfit.open("ggx:alpha=0.3,ks=1/0.77/0.34")
+    found = hshfit.project(gold, basis="hsh", order=10, cosine=True)
+    found.accuracy, found.coefficients.values.shape
+
+Directions are unit vectors (..., 3) that point away from the surface, +z the normal, +x the
+tangent; angles are in degrees; f is in 1/sr and never has a cosine.
+"""
+from ._hshfit import (
+    Basis, Brdf, Coefficients, Comparison, Curve, Curves, Error, Fit, FittedParameter, Form,
+    InputError, Light, NumericError, Outgoing, OutputError, Projection, Rotation, UsageError,
+    __version__, catalog, compare, convert, curves, describe, direction, export, fit, function,
+    import_coefficients, irradiance, light, matrix, open, plot, project, project_all, rank_models,
+    read, sample, set_threads, threads)
+from . import _html
+
+_html.attach()
+
+__all__ = [
+    "Basis", "Brdf", "Coefficients", "Comparison", "Curve", "Curves", "Error", "Fit",
+    "FittedParameter", "Form", "InputError", "Light", "NumericError", "Outgoing", "OutputError",
+    "Projection", "Rotation", "UsageError", "catalog", "compare", "convert", "curves", "describe",
+    "direction", "export", "fit", "function", "import_coefficients", "irradiance", "light",
+    "matrix", "open", "plot", "project", "project_all", "rank_models", "read", "sample",
+    "set_threads", "threads"]

@@ -1,0 +1,244 @@
+#include "answers.h"
+#include "arrays.h"
+#include "rotation.h"
+#include "watched.h"
+
+#include <hshfit/coefficient_files/light_file.h>
+#include <hshfit/error.h>
+#include <hshfit/irradiance/conventions.h>
+
+#include <jobs/irradiance.h>
+#include <jobs/light.h>
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace hshfit::python {
+namespace {
+
+/// Light with what the projection found beside its coefficients; nothing of that after reading a
+/// file or a rotation.
+struct Lit {
+    LightCoefficients light;
+    std::vector<double> bands = {};
+    std::vector<std::optional<int>> enough = {};
+    std::optional<LightCurve> wavelets = {};
+};
+
+py::array_t<double> valuesOf(const py::object& self) {
+    const LightCoefficients& light = self.cast<const Lit&>().light;
+    return viewOf(
+        light.values.data(),
+        {static_cast<py::ssize_t>(light.channels.count()), static_cast<py::ssize_t>(light.slots())},
+        self);
+}
+
+py::array_t<double> accuracyOf(const LightCurve& curve) {
+    std::vector<double> values;
+    for (const LightCurve::Point& point : curve.points) values.push_back(point.accuracy);
+    const auto count = static_cast<py::ssize_t>(values.size());
+    return arrayOf(std::move(values), {count});
+}
+
+py::dict curvesOf(const Lit& lit) {
+    py::dict out;
+    for (const LightCurve& curve : lit.light.curves) out[py::str(curve.basis)] = accuracyOf(curve);
+    if (lit.wavelets) out[py::str(lit.wavelets->basis)] = accuracyOf(*lit.wavelets);
+    return out;
+}
+
+py::dict enoughOf(const Lit& lit) {
+    py::dict out;
+    for (std::size_t k = 0; k < lit.enough.size(); ++k)
+        out[py::cast(jobs::lightShares[k])] = py::cast(lit.enough[k]);
+    return out;
+}
+
+std::vector<std::string> specificationsOf(const py::object& specs) {
+    if (py::isinstance<py::str>(specs) || py::hasattr(specs, "__fspath__"))
+        return {pathOf(specs, "spec")};
+    std::vector<std::string> texts;
+    for (const py::handle spec : specs)
+        texts.push_back(pathOf(py::reinterpret_borrow<py::object>(spec), "spec"));
+    if (texts.empty()) throw UsageError("spec: no light; catalog('lights') lists them");
+    return texts;
+}
+
+std::shared_ptr<Lit> projected(const py::object& specs, const std::string& basis, int order,
+                               const py::object& normal, bool condonShortley, double tolerance,
+                               bool wavelets) {
+    jobs::LightOptions options;
+    options.basis = basis;
+    options.order = order;
+    options.condonShortley = condonShortley;
+    options.tolerance = tolerance;
+    options.wavelets = wavelets;
+    if (!normal.is_none()) {
+        const std::vector<double> angles = numbersOf(normal, "normal");
+        if (angles.size() != 2) throw UsageError("normal: (theta, phi) in degrees");
+        options.normal = Orientation{.theta = radians(angles[0]), .phi = radians(angles[1])};
+    }
+    const std::vector<std::string> texts = specificationsOf(specs);
+    jobs::ProjectedLight done;
+    watched(py::none(), {}, [&](const jobs::Listener&) { done = jobs::light(texts, "", options); });
+    return std::make_shared<Lit>(Lit{.light = std::move(done.light),
+                                     .bands = std::move(done.bands),
+                                     .enough = std::move(done.enough),
+                                     .wavelets = std::move(done.wavelets)});
+}
+
+std::pair<std::shared_ptr<Lit>, py::dict> rotated(const Lit& lit, const Rotation& rotation,
+                                                  const std::string& method, double tolerance,
+                                                  int tables) {
+    const jobs::RotateOptions options = rotateOptions(rotation, method, tolerance, tables);
+    auto turned = std::make_shared<Lit>(Lit{.light = lit.light});
+    jobs::Rotated done;
+    {
+        const py::gil_scoped_release released;
+        done = jobs::rotate(turned->light, options, lit.light.source);
+    }
+    return {turned, rotatedDict(done)};
+}
+
+py::object normalOf(const Lit& lit) {
+    if (lit.light.domain == LightCoefficients::Domain::sphere) return py::none();
+    return py::cast(std::pair(degrees(lit.light.normalTheta), degrees(lit.light.normalPhi)));
+}
+
+void bindClass(py::module_& module) {
+    py::class_<Lit, std::shared_ptr<Lit>>(
+        module, "Light",
+        R"(Coefficients of incident radiance L, W / (m^2 sr), linear Rec. 709 or grey:
+    c_{l,m} = integral over the domain of L B_{l,m} d omega
+over the sphere (world frame, right-handed, +z up) or the hemisphere about a normal. Made by
+light() and read().)")
+        .def_property_readonly("basis", [](const Lit& l) { return l.light.basis; })
+        .def_property_readonly("order", [](const Lit& l) { return l.light.order; })
+        .def_property_readonly("condon_shortley",
+                               [](const Lit& l) { return l.light.condonShortley; })
+        .def_property_readonly("normal", normalOf,
+                               "(theta, phi) in degrees of a hemisphere; None for the sphere.")
+        .def_property_readonly("channels", [](const Lit& l) { return l.light.channels.names(); })
+        .def_property_readonly("values", valuesOf,
+                               "Read-only (channels, slots), slot l(l+1)+m, in place.")
+        .def_property_readonly(
+            "energy", [](const Lit& l) { return energyDict(l.light.energy); },
+            "Integral of L^2 over the domain; not finite for lights that are\n"
+            "points.")
+        .def_property_readonly(
+            "error", [](const Lit& l) { return l.light.error; },
+            "Estimated relative error of the coefficients.")
+        .def_property_readonly(
+            "bands",
+            [](const Lit& l) {
+                return arrayOf(l.bands, {static_cast<py::ssize_t>(l.bands.size())});
+            },
+            "(order,), energy of each band; empty for light that was read or rotated.")
+        .def_property_readonly("curves", curvesOf,
+                               "{basis: (order,)}, the captured share of the energy by order.")
+        .def_property_readonly("enough", enoughOf,
+                               "{share: least order that captures it, or None}.")
+        .def_property_readonly("source", [](const Lit& l) { return l.light.source; })
+        .def("rotate", rotated, py::arg("rotation"), py::kw_only(), py::arg("method") = "exact",
+             py::arg("tolerance") = HemisphereRotationOptions{}.tolerance,
+             py::arg("tables") = HemisphereRotationOptions{}.tables,
+             "Returns (Light, {\"method\", \"lost_energy\", \"error\", \"bands\"}).")
+        .def(
+            "save",
+            [](const Lit& l, const py::object& path) {
+                const std::string output = pathOf(path, "path");
+                const py::gil_scoped_release released;
+                writeLight(l.light, output);
+            },
+            py::arg("path"), "Write .json, the bytes of the command light.")
+        .def("__repr__", [](const Lit& l) {
+            return fmt::format("<hshfit.Light {} order {}, {}>", l.light.basis, l.light.order,
+                               l.light.source);
+        });
+}
+
+py::array_t<double> nineArray(const NineRgb& nine) {
+    std::vector<double> values;
+    for (const Rgb& rgb : nine) values.insert(values.end(), rgb.begin(), rgb.end());
+    return arrayOf(std::move(values), {9, 3});
+}
+
+py::dict errorsDict(const IrradianceErrors& errors) {
+    py::dict out;
+    out["maximum"] = errors.maximum;
+    out["mean"] = errors.mean;
+    out["worst"] = angles(errors.worst);
+    out["negative"] = errors.negative;
+    return out;
+}
+
+py::dict irradianceOfSpecs(const py::object& specs, int order, const std::string& window,
+                           std::size_t normals, const std::string& convention) {
+    const std::vector<std::string> texts = specificationsOf(specs);
+    const auto chosen =
+        convention.empty() ? std::vector<const Convention*>{} : selectConventions(convention);
+    jobs::LitSurface done;
+    watched(py::none(), {}, [&](const jobs::Listener&) {
+        done = jobs::irradianceOfLight(
+            texts, {.order = order, .window = window, .normals = normals, .byNormal = {}});
+    });
+    py::dict out, engines;
+    out["light"] = done.light;
+    out["radiance"] = nineArray(done.radiance);
+    out["irradiance"] = nineArray(done.irradiance);
+    out["window"] = done.window;
+    out["factors"] = done.factors;
+    out["mean_irradiance"] = done.meanIrradiance;
+    out["error"] = errorsDict(done.error);
+    for (const Convention* one : chosen) {
+        py::dict row;
+        row["values"] = engineValues(*one, done.radiance);
+        row["shader"] = engineShader(*one, done.radiance);
+        engines[py::str(std::string(one->name))] = row;
+    }
+    out["engines"] = engines;
+    return out;
+}
+
+}  // namespace
+
+void bindLight(py::module_& module) {
+    bindClass(module);
+    const jobs::LightOptions options;
+    module.def("light", projected, py::arg("spec"), py::kw_only(), py::arg("basis") = options.basis,
+               py::arg("order") = options.order, py::arg("normal") = py::none(),
+               py::arg("condon_shortley") = options.condonShortley,
+               py::arg("tolerance") = options.tolerance, py::arg("wavelets") = options.wavelets,
+               R"(Project light onto a basis.
+
+spec     a picture, coefficients of light, or a kind of catalog("lights") ("sky:type=12,
+         elevation=40"); joined by " + ", or as a sequence, they add up
+basis    "sh" for the sphere; any for the hemisphere about normal=(theta, phi) in degrees
+wavelets the captured energy of the best SOHO wavelets too
+
+Returns a Light.)");
+    const jobs::IrradianceOptions irradiance;
+    module.def("irradiance", irradianceOfSpecs, py::arg("spec"), py::kw_only(),
+               py::arg("order") = irradiance.order, py::arg("window") = irradiance.window,
+               py::arg("normals") = irradiance.normals, py::arg("convention") = "",
+               R"(The irradiance of light by nine coefficients (Ramamoorthi & Hanrahan 2001).
+
+Returns a dict: "radiance" and "irradiance" (9, 3) in the order l(l+1)+m, "error" against direct
+integration ("maximum", "mean", relative to the mean irradiance), and for `convention` ("three",
+"unity", "filament", "godot", "unreal" or "all") "engines" with their numbers and shader code.)");
+    module.def(
+        "_read_light",
+        [](const std::string& path) {
+            const py::gil_scoped_release released;
+            return std::make_shared<Lit>(Lit{.light = readLight(path)});
+        },
+        py::arg("path"));
+}
+
+}  // namespace hshfit::python

@@ -1,0 +1,275 @@
+#include "answers.h"
+#include "arrays.h"
+#include "watched.h"
+
+#include <hshfit/bases/catalog.h>
+#include <hshfit/coefficients/reconstruction.h>
+#include <hshfit/error.h>
+#include <hshfit/pages/pair_summary_json.h>
+#include <hshfit/representation/forms/represented_brdf.h>
+#include <hshfit/representation/stored_array.h>
+#include <hshfit/transfer/windows.h>
+
+#include <jobs/project.h>
+#include <jobs/source.h>
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace hshfit::python {
+namespace {
+
+/// A projection with its coefficients where NumPy can look at them.
+struct Result {
+    jobs::Projected projected;
+    std::shared_ptr<Coefficients> coefficients = {};
+    std::shared_ptr<Representation> form = {};
+};
+
+Result resultOf(jobs::Projected projected) {
+    Result result{std::move(projected)};
+    Coefficients& c = result.projected.projection.coefficients;
+    if (result.projected.kept)
+        result.form = std::make_shared<Representation>(*result.projected.kept);
+    else
+        result.coefficients = std::make_shared<Coefficients>(c);
+    return result;
+}
+
+/// The options of a form as words; nothing given means plain coefficients.
+struct FormWords {
+    std::string form, halfway, split, window, precision;
+    bool reciprocal = false, nonNegative = false, energyPreserving = false;
+    bool nonNegativeFactors = false;
+    int rank = 0;
+    double rankError = 0;
+    std::size_t keep = 0;
+
+    std::optional<Form> build() const {
+        const bool asked = !form.empty() || !halfway.empty() || !split.empty() || !window.empty() ||
+                           !precision.empty() || reciprocal || nonNegative || energyPreserving ||
+                           nonNegativeFactors || rank > 0 || rankError > 0 || keep > 0;
+        if (!asked) return std::nullopt;
+        Form made;
+        if (!form.empty()) made.kind = parseKind(form);
+        if (!halfway.empty()) {
+            if (made.kind != Representation::Kind::halfway)
+                throw UsageError("halfway belongs to form='halfway'");
+            made.halfway = parseHalfway(halfway);
+        }
+        if (!window.empty()) made.window = parseWindow(window);
+        if (!precision.empty()) made.precision = parsePrecision(precision);
+        made.split = split;
+        made.reciprocal = reciprocal;
+        made.nonNegative = nonNegative;
+        made.energyPreserving = energyPreserving;
+        made.nonNegativeFactors = nonNegativeFactors;
+        made.rank = rank;
+        made.rankError = rankError;
+        made.keep = keep;
+        return made;
+    }
+};
+
+std::shared_ptr<Result> projected(const py::object& brdf, const std::string& basis, int order,
+                                  const py::object& outgoing, bool cosine, bool condonShortley,
+                                  bool rgb, double tolerance, double maxEvaluations,
+                                  bool leastSquares, double regularise, double kernel,
+                                  const std::string& form, const std::string& halfway,
+                                  bool reciprocal, const std::string& split,
+                                  const std::string& window, bool nonNegative,
+                                  bool energyPreserving, int rank, double rankError,
+                                  bool nonNegativeFactors, std::size_t keep,
+                                  const std::string& precision, const py::object& progress) {
+    const FormWords words{.form = form,
+                          .halfway = halfway,
+                          .split = split,
+                          .window = window,
+                          .precision = precision,
+                          .reciprocal = reciprocal,
+                          .nonNegative = nonNegative,
+                          .energyPreserving = energyPreserving,
+                          .nonNegativeFactors = nonNegativeFactors,
+                          .rank = rank,
+                          .rankError = rankError,
+                          .keep = keep};
+    const jobs::ProjectOptions options{.basis = basis,
+                                       .order = order,
+                                       .outgoing = outgoingText(outgoing),
+                                       .cosine = cosine,
+                                       .condonShortley = condonShortley,
+                                       .tolerance = tolerance,
+                                       .maxEvaluations = static_cast<std::size_t>(maxEvaluations),
+                                       .leastSquares = leastSquares,
+                                       .regularise = regularise,
+                                       .kernel = kernel,
+                                       .form = words.build()};
+    Source source(brdf, rgb);
+    jobs::Projected done;
+    Source* const sources[] = {&source};
+    watched(progress, sources, [&](const jobs::Listener& listener) {
+        done = jobs::projectBrdf(source.brdf(), options, listener, "projection.json");
+    });
+    return std::make_shared<Result>(resultOf(std::move(done)));
+}
+
+/// Every basis at once, from one quadrature.
+py::dict projectedAll(const py::object& brdf, const py::object& names, int order,
+                      const py::object& outgoing, bool cosine, bool condonShortley, bool rgb,
+                      double tolerance, const py::object& progress) {
+    std::vector<std::unique_ptr<Basis>> made;
+    std::vector<const Basis*> pointers;
+    for (const bases::Entry* entry : bases::select(listText(names))) {
+        made.push_back(bases::make(entry->name, std::min(order, entry->maxOrder),
+                                   {.condonShortley = condonShortley}));
+        pointers.push_back(made.back().get());
+    }
+    const std::string set = outgoingText(outgoing);
+    Source source(brdf, rgb);
+    std::vector<Projection> found;
+    Source* const sources[] = {&source};
+    watched(progress, sources, [&](const jobs::Listener& listener) {
+        found = hshfit::project(source.brdf(), pointers,
+                                outgoingOf({.outgoing = set}, source.brdf().laws()),
+                                {.quantity = cosine ? Quantity::brdfCosine : Quantity::brdf,
+                                 .tolerance = tolerance,
+                                 .progress = listener.part("project")});
+    });
+    py::dict results;
+    for (Projection& one : found) {
+        jobs::Projected result{.projection = std::move(one), .output = {}};
+        result.captured = jobs::capturedShare(result.projection, source.brdf());
+        const std::string name = result.projection.coefficients.basis;
+        results[py::str(name)] = std::make_shared<Result>(resultOf(std::move(result)));
+    }
+    return results;
+}
+
+std::shared_ptr<Brdf> brdfOf(const Result& result) {
+    if (!result.form) return std::make_shared<Reconstruction>(*result.coefficients);
+    const py::gil_scoped_release released;
+    return reconstruct(*result.form, jobs::sourceOpener());
+}
+
+py::array_t<double> capturedBy(const Result& result) {
+    const std::vector<double>& captured = result.projected.projection.captured;
+    return arrayOf(captured, {static_cast<py::ssize_t>(captured.size())});
+}
+
+void saveResult(const Result& result, const py::object& path) {
+    const std::string output = pathOf(path, "path");
+    const py::gil_scoped_release released;
+    jobs::writeProjected(result.projected, output);
+}
+
+std::string reprOf(const Result& result) {
+    const CoefficientHead& head = result.projected.projection.coefficients;
+    return fmt::format(
+        "<hshfit.Projection {} order {} of {}, {}>", head.basis, head.order, head.source,
+        result.projected.captured ? fmt::format("{:.6f} of the energy", *result.projected.captured)
+                                  : "no captured energy");
+}
+
+void bindResult(py::module_& module) {
+    py::class_<Result, std::shared_ptr<Result>>(
+        module, "Projection",
+        "What project() found: coefficients or a form, and how good they are.")
+        .def_property_readonly(
+            "coefficients", [](const Result& r) { return r.coefficients; },
+            "Coefficients, or None for a form.")
+        .def_property_readonly(
+            "form", [](const Result& r) { return r.form; }, "Form, or None for plain coefficients.")
+        .def_property_readonly(
+            "captured", capturedBy,
+            "(order,): energy that the first n bands capture, element n - 1; empty for a form.")
+        .def_property_readonly(
+            "accuracy", [](const Result& r) { return orNaN(r.projected.captured); },
+            "The captured share of the energy (Gautron et al. 2004, Eq. 15); NaN if not known.")
+        .def_property_readonly(
+            "energy",
+            [](const Result& r) { return energyDict(r.projected.projection.coefficients.energy); })
+        .def_property_readonly(
+            "error", [](const Result& r) { return r.projected.projection.coefficients.error; },
+            "Estimated relative error of quadrature.")
+        .def_property_readonly(
+            "evaluations", [](const Result& r) { return r.projected.projection.evaluations; },
+            "Evaluations of f.")
+        .def_property_readonly(
+            "errors",
+            [](const Result& r) -> py::object {
+                if (!r.projected.errors) return py::none();
+                return fromJson(pairSummaryJson(*r.projected.errors));
+            },
+            "Errors over pairs of directions, for the halfway form; else None.")
+        .def_property_readonly(
+            "poor", [](const Result& r) { return poorDict(r.projected.poor); },
+            "None, or {\"reason\", \"better\"} where more than a tenth of the\n"
+            "energy is missing.")
+        .def("brdf", brdfOf, "The reconstruction as a Brdf.")
+        .def("save", saveResult, py::arg("path"),
+             "Write .json (exact) or .exr (float32): the bytes of the command project.")
+        .def("__repr__", reprOf);
+}
+
+void bindProject(py::module_& module) {
+    const jobs::ProjectOptions options;
+    const Form form;
+    module.def(
+        "project", projected, py::arg("brdf"), py::kw_only(), py::arg("basis") = options.basis,
+        py::arg("order") = options.order, py::arg("outgoing") = py::none(),
+        py::arg("cosine") = options.cosine, py::arg("condon_shortley") = options.condonShortley,
+        py::arg("rgb") = options.rgb, py::arg("tolerance") = options.tolerance,
+        py::arg("max_evaluations") = static_cast<double>(options.maxEvaluations),
+        py::arg("least_squares") = options.leastSquares, py::arg("regularise") = options.regularise,
+        py::arg("kernel") = options.kernel, py::arg("form") = "", py::arg("halfway") = "",
+        py::arg("reciprocal") = form.reciprocal, py::arg("split") = form.split,
+        py::arg("window") = "", py::arg("non_negative") = form.nonNegative,
+        py::arg("energy_preserving") = form.energyPreserving, py::arg("rank") = form.rank,
+        py::arg("rank_error") = form.rankError,
+        py::arg("non_negative_factors") = form.nonNegativeFactors, py::arg("keep") = form.keep,
+        py::arg("precision") = "", py::arg("progress") = py::none(),
+        R"(Project a BRDF over wi onto a basis, for every outgoing direction.
+
+    c_{l,m}(wo) = integral of q(wi, wo) B_{l,m}(wi) d omega_i   (Gautron et al. 2004, Eq. 17)
+
+brdf        a Brdf, or a specification or path as for open()
+basis, order  catalog("bases"); bands l = 0 .. order-1
+outgoing    "32x32", 16 (elevations) or (theta, phi) in degrees; None: 32 elevations of an
+            isotropic BRDF, else 32x32
+cosine      q = f cos(theta_i) instead of f
+tolerance   relative, of quadrature; 0: the BRDF's own
+least_squares, regularise, kernel
+            fit scattered samples themselves; Tikhonov weight; degrees about wo that count
+form        "outgoing", "basis" or "halfway" (`halfway` as "12,6,3"): a compressed form, as does any
+            of reciprocal, split, window, non_negative, energy_preserving, rank, rank_error,
+            non_negative_factors, keep and precision
+progress    called as progress(part, done, total) from this thread; an exception from it stops
+
+Returns a Projection. The same numbers as by the command project. Raises NumericError where the
+coefficients do not exist or do not converge.)");
+    module.def(
+        "project_all", projectedAll, py::arg("brdf"), py::kw_only(), py::arg("bases") = "all",
+        py::arg("order") = options.order, py::arg("outgoing") = py::none(),
+        py::arg("cosine") = options.cosine, py::arg("condon_shortley") = options.condonShortley,
+        py::arg("rgb") = options.rgb, py::arg("tolerance") = options.tolerance,
+        py::arg("progress") = py::none(),
+        R"(Project onto several bases from one quadrature: {name: Projection}. bases: "all", names
+with commas, or a sequence of names; a basis that ends below the order has its largest.)");
+}
+
+}  // namespace
+
+void bindProjection(py::module_& module) {
+    bindResult(module);
+    bindProject(module);
+}
+
+}  // namespace hshfit::python
