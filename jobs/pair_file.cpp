@@ -28,8 +28,8 @@ double numberIn(std::string_view cell, const std::string& where) {
 }  // namespace
 
 Direction unitDirection(const Direction& d, const std::function<std::string()>& where) {
-    const double length = std::hypot(d.x, d.y, d.z);
-    if (!(std::abs(length - 1) <= 1e-3)) {
+    const double length = lengthOf(d.x, d.y, d.z);
+    if (!isUnit(length)) {
         throw InputError(fmt::format("{}: the direction {}, {}, {} has length {:.4g}, not 1",
                                      where(), d.x, d.y, d.z, length));
     }

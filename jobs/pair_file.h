@@ -2,8 +2,11 @@
 
 #include <hshfit/accuracy/pair_sample.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -16,6 +19,18 @@ struct PairRow {
     Direction wi, wo;
     std::optional<double> weight = {};
 };
+
+/// The length of a vector, by the formula of std::hypot, which compilers do not vectorise.
+inline double lengthOf(double x, double y, double z) {
+    constexpr double least = std::numeric_limits<double>::min();  // 0 has the length 0
+    const double most = std::max(std::max(std::abs(x), least), std::max(std::abs(y), std::abs(z)));
+    const double a = x / most, b = y / most, c = z / most;
+    return most * std::sqrt(a * a + b * b + c * c);
+}
+/// Whether it may stand for 1. Not NaN.
+inline bool isUnit(double length) {
+    return std::abs(length - 1) <= 1e-3;
+}
 
 /// `d` over its length: the rule for directions that somebody else wrote. Throws InputError that
 /// begins with `where()` for a length that is not 1 within 0.001; angles are a likely mistake.

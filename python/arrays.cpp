@@ -161,6 +161,16 @@ std::string listText(const py::object& names) {
     return text;
 }
 
+void requireWithin(const char* name, double value, double low, double high) {
+    if (value >= low && value <= high) return;
+    throw UsageError(fmt::format("{}: {} is not from {} to {}", name, value, low, high));
+}
+
+void requireQuadrature(double tolerance, double maxEvaluations) {
+    if (tolerance != 0) requireWithin("tolerance", tolerance, 1e-13, 1);
+    requireWithin("max_evaluations", maxEvaluations, 1e3, 1e12);
+}
+
 double orNaN(const std::optional<double>& value) {
     return value.value_or(std::numeric_limits<double>::quiet_NaN());
 }

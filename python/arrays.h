@@ -59,6 +59,10 @@ std::string pathOf(const py::object& path, const char* name);
 std::string outgoingText(const py::object& outgoing);
 /// Names as a list with commas: a string as it is, or a sequence of strings.
 std::string listText(const py::object& names);
+/// Throws UsageError with `name` unless low <= value <= high. The bounds are those of the program.
+void requireWithin(const char* name, double value, double low, double high);
+/// Of a projection: the tolerance, where 0 is the BRDF's own, and the most evaluations.
+void requireQuadrature(double tolerance, double maxEvaluations);
 /// An optional number, NaN where there is none.
 double orNaN(const std::optional<double>& value);
 

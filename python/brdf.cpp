@@ -120,8 +120,8 @@ py::array_t<double> albedos(const py::object& self, const py::object& wo, double
 }
 
 SpherePicture sphereOf(const py::object& self, int size, int samples, const py::object& progress) {
-    if (size < 1 || size > 8192) throw UsageError("size: from 1 to 8192 pixels");
-    if (samples < 1 || samples > 64) throw UsageError("samples: from 1 to 64");
+    requireWithin("size", size, 1, 8192);
+    requireWithin("samples", samples, 1, 64);
     Source source(self);
     SpherePicture picture;
     Source* const sources[] = {&source};

@@ -59,11 +59,10 @@ jobs::FitOptions optionsFrom(const std::string& model, const std::string& loss,
                              const std::string& weights, bool perChannel, double grazingCut,
                              std::size_t samples, int starts, int iterations, std::uint64_t seed,
                              bool accept, const py::object& parts) {
-    if (starts < 1 || starts > 10000) throw UsageError("starts: from 1 to 10000");
-    if (iterations < 1 || iterations > 100000) throw UsageError("iterations: from 1 to 100000");
-    if (!(grazingCut >= 0 && grazingCut <= 90))
-        throw UsageError("grazing_cut: from 0 to 90 degrees");
-    if (!(robustScale >= 0)) throw UsageError("robust_scale: 0 or more");
+    requireWithin("starts", starts, 1, 10000);
+    requireWithin("iterations", iterations, 1, 100000);
+    requireWithin("grazing_cut", grazingCut, 0, 90);
+    requireWithin("robust_scale", robustScale, 0, 1e300);
     jobs::FitOptions options;
     options.model = model;
     options.loss = loss;
@@ -104,6 +103,7 @@ std::shared_ptr<jobs::Fitted> fitted(const py::object& data, const std::string& 
 py::list ranked(const py::object& data, const std::vector<std::string>& models,
                 const std::string& loss, int starts, std::size_t samples, std::uint64_t seed,
                 bool rgb) {
+    requireWithin("starts", starts, 1, 10000);
     jobs::FitOptions options;
     options.loss = loss;
     options.starts = starts;
@@ -137,7 +137,7 @@ py::list ranked(const py::object& data, const std::vector<std::string>& models,
 void bindResult(py::module_& module) {
     using brdfs::FittedParameter;
     using jobs::Fitted;
-    py::class_<FittedParameter>(module, "FittedParameter", "A free parameter after a fit.")
+    py::class_<FittedParameter>(module, "FittedParameter", "A free parameter after a fit, with its standard error.")
         .def_readonly("name", &FittedParameter::name, "\"ggx.alpha\"")
         .def_readonly("channel", &FittedParameter::channel, "\"R\"; empty: all channels")
         .def_readonly("value", &FittedParameter::value)

@@ -79,18 +79,18 @@ struct FormWords {
     }
 };
 
-std::shared_ptr<Result> projected(const py::object& brdf, const std::string& basis, int order,
-                                  const py::object& outgoing, bool cosine, bool condonShortley,
-                                  bool rgb, double tolerance, double maxEvaluations,
-                                  bool leastSquares, double regularise, double kernel,
-                                  const std::string& form, const std::string& halfway,
-                                  bool reciprocal, const std::string& split,
-                                  const std::string& window, bool nonNegative,
-                                  bool energyPreserving, int rank, double rankError,
-                                  bool nonNegativeFactors, std::size_t keep,
-                                  const std::string& precision, const py::object& progress) {
+std::shared_ptr<Result> projected(
+    const py::object& brdf, const std::string& basis, int order, const py::object& outgoing,
+    bool cosine, bool condonShortley, bool rgb, double tolerance, double maxEvaluations,
+    bool leastSquares, double regularise, double kernel, const std::string& form,
+    const py::object& halfway, bool reciprocal, const std::string& split, const std::string& window,
+    bool nonNegative, bool energyPreserving, int rank, double rankError, bool nonNegativeFactors,
+    std::size_t keep, const std::string& precision, const py::object& progress) {
+    requireQuadrature(tolerance, maxEvaluations);
+    requireWithin("regularise", regularise, 0, 1e3);
+    requireWithin("kernel", kernel, 0.1, 180);
     const FormWords words{.form = form,
-                          .halfway = halfway,
+                          .halfway = halfway.is_none() ? "" : listText(halfway),
                           .split = split,
                           .window = window,
                           .precision = precision,
@@ -125,6 +125,7 @@ std::shared_ptr<Result> projected(const py::object& brdf, const std::string& bas
 py::dict projectedAll(const py::object& brdf, const py::object& names, int order,
                       const py::object& outgoing, bool cosine, bool condonShortley, bool rgb,
                       double tolerance, const py::object& progress) {
+    if (tolerance != 0) requireWithin("tolerance", tolerance, 1e-13, 1);
     std::vector<std::unique_ptr<Basis>> made;
     std::vector<const Basis*> pointers;
     for (const bases::Entry* entry : bases::select(listText(names))) {
@@ -229,7 +230,7 @@ void bindProject(py::module_& module) {
         py::arg("rgb") = options.rgb, py::arg("tolerance") = options.tolerance,
         py::arg("max_evaluations") = static_cast<double>(options.maxEvaluations),
         py::arg("least_squares") = options.leastSquares, py::arg("regularise") = options.regularise,
-        py::arg("kernel") = options.kernel, py::arg("form") = "", py::arg("halfway") = "",
+        py::arg("kernel") = options.kernel, py::arg("form") = "", py::arg("halfway") = py::none(),
         py::arg("reciprocal") = form.reciprocal, py::arg("split") = form.split,
         py::arg("window") = "", py::arg("non_negative") = form.nonNegative,
         py::arg("energy_preserving") = form.energyPreserving, py::arg("rank") = form.rank,
@@ -248,7 +249,7 @@ cosine      q = f cos(theta_i) instead of f
 tolerance   relative, of quadrature; 0: the BRDF's own
 least_squares, regularise, kernel
             fit scattered samples themselves; Tikhonov weight; degrees about wo that count
-form        "outgoing", "basis" or "halfway" (`halfway` as "12,6,3"): a compressed form, as does any
+form        "outgoing", "basis" or "halfway" (`halfway` as (12, 6, 3)): a compressed form, as does any
             of reciprocal, split, window, non_negative, energy_preserving, rank, rank_error,
             non_negative_factors, keep and precision
 progress    called as progress(part, done, total) from this thread; an exception from it stops

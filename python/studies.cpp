@@ -39,6 +39,8 @@ std::shared_ptr<Report> curvesOf(const py::object& brdf, const py::object& bases
                                  const py::object& outgoing, bool cosine, bool rgb, bool wavelets,
                                  double tolerance, double maxEvaluations,
                                  const py::object& progress) {
+    requireQuadrature(tolerance, maxEvaluations);
+    requireWithin("max_order", maxOrder, 1, 1000);
     jobs::ReportOptions options;
     options.bases = listText(bases);
     options.maxOrder = maxOrder;

@@ -1,0 +1,182 @@
+"""Failures are exceptions by kind, with the program's messages; long work can be stopped."""
+import os
+import re
+import signal
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import hshfit
+import program
+
+UP = [0.0, 0.0, 1.0]
+
+
+def slow(wi, wo):
+    time.sleep(0.002)
+    return np.full(len(wi), 0.1)
+
+
+class Kinds(program.InFolder):
+    def test_kinds_have_the_exit_codes_of_the_program(self):
+        codes = {hshfit.UsageError: 2, hshfit.InputError: 3, hshfit.NumericError: 4,
+                 hshfit.OutputError: 5}
+        for kind, code in codes.items():
+            self.assertTrue(issubclass(kind, hshfit.Error))
+            self.assertEqual(kind.exit_code, code)
+
+    def check(self, call, kind, *words):
+        """The exception has the kind and the message of the program for the same."""
+        with self.assertRaises(kind) as caught:
+            call()
+        code, message = self.refusal(*words)
+        self.assertEqual(kind.exit_code, code)
+        # Options have the names of arguments.
+        named = re.sub(r"--([a-z-]+)", lambda option: option[1].replace("-", "_"), message)
+        self.assertEqual(str(caught.exception), named)
+
+    def test_messages_are_those_of_the_program(self):
+        with open("broken.json", "w", encoding="ascii") as file:
+            file.write('{"format": "hshfit-coefficients", "version": 1}')
+        self.check(lambda: hshfit.open("broken.json"), hshfit.InputError, "eval", "broken.json",
+                   "--wi", "0,0", "--wo", "0,0")
+        self.check(lambda: hshfit.open("absent.binary"), hshfit.InputError, "eval",
+                   "absent.binary", "--wi", "0,0", "--wo", "0,0")
+        self.check(lambda: hshfit.project("lambert").save("absent/c.json"), hshfit.OutputError,
+                   "project", "lambert", "-o", "absent/c.json")
+        self.check(lambda: hshfit.project("ggx:alpha=0.01", tolerance=1e-12, order=30,
+                                          max_evaluations=1000),
+                   hshfit.NumericError, "project", "ggx:alpha=0.01", "--tolerance", "1e-12",
+                   "--order", "30", "--max-evaluations", "1000", "-o", "c.json")
+        self.assertFalse(os.path.exists("c.json"))
+
+    def test_usage_errors_name_the_right_words(self):
+        with self.assertRaisesRegex(hshfit.UsageError, "unknown model 'gxx' .did you mean 'ggx'"):
+            hshfit.open("gxx")
+        with self.assertRaisesRegex(hshfit.UsageError, "order 4 of basis 'h-basis'"):
+            hshfit.project("lambert", basis="h-basis", order=4)
+        with self.assertRaisesRegex(hshfit.UsageError, "form='halfway' keeps f: no cosine=True"):
+            hshfit.project("lambert", form="halfway", cosine=True)
+        with self.assertRaisesRegex(hshfit.UsageError, "least_squares is for files"):
+            hshfit.project("lambert", least_squares=True)
+        with self.assertRaisesRegex(hshfit.UsageError, "known: bases, models"):
+            hshfit.catalog("base")
+        with self.assertRaisesRegex(hshfit.UsageError, "1 rotations|0 rotations; give one of"):
+            hshfit.Rotation()
+
+    def test_arrays_that_are_no_directions(self):
+        f = hshfit.open("lambert")
+        with self.assertRaisesRegex(hshfit.UsageError, r"wi: .*shape \(\.\.\., 3\), not \(2\)"):
+            f([0, 1], UP)
+        with self.assertRaisesRegex(hshfit.UsageError, "wo: no array of numbers"):
+            f(UP, "up")
+        with self.assertRaisesRegex(hshfit.UsageError, "do not go together"):
+            f(np.tile(UP, (2, 1)), np.tile(UP, (3, 1)))
+        with self.assertRaisesRegex(hshfit.InputError, r"wi\[1\]: .* has length 2, not 1"):
+            f([UP, [0, 0, 2]], UP)
+        with self.assertRaisesRegex(hshfit.InputError, r"wo\[0\]"):
+            f(UP, [np.nan, 0, 1])
+        with self.assertRaises(TypeError):
+            hshfit.project("lambert", ordr=3)
+
+    def test_numbers_out_of_bounds(self):
+        with self.assertRaisesRegex(hshfit.UsageError, "tolerance: 2 is not from 1e-13 to 1"):
+            hshfit.project("lambert", tolerance=2)
+        with self.assertRaisesRegex(hshfit.UsageError, "starts: 0 is not from 1 to 10000"):
+            hshfit.fit("lambert", "lambert", starts=0)
+
+    def test_functions_have_to_become_brdfs_first(self):
+        with self.assertRaisesRegex(hshfit.UsageError, r"hshfit\.function\(\)"):
+            hshfit.project(lambda wi, wo: 1)
+        with self.assertRaisesRegex(hshfit.UsageError, "a string or a path, not int"):
+            hshfit.project(3)
+
+    def test_views_are_read_only_and_keep_their_owner(self):
+        values = hshfit.project("lambert", outgoing=4).coefficients.values
+        with self.assertRaises(ValueError):
+            values[0] = 1
+        # The projection is gone; the numbers are those of 1 / pi against the first function,
+        # 1 / sqrt(2 pi) on the hemisphere.
+        np.testing.assert_allclose(values[:, 0, 0], np.sqrt(2 * np.pi) / np.pi, rtol=1e-9)
+
+    def test_values_can_be_replaced_in_a_copy(self):
+        found = hshfit.project("lambert", outgoing=4).coefficients
+        halved = found.with_values(found.values / 2)
+        np.testing.assert_array_equal(halved.values, found.values / 2)
+        with self.assertRaisesRegex(hshfit.UsageError, r"shape \(4, 1, 49\)"):
+            found.with_values(np.zeros(3))
+
+
+class Stopping(program.InFolder):
+    # Minutes of work.
+    LONG = {"order": 100, "outgoing": "256x256", "tolerance": 1e-11}
+
+    def stop_after(self, call, seconds=0.5):
+        """The time from a signal to the KeyboardInterrupt that it becomes."""
+        sent = []
+
+        def interrupt():
+            sent.append(time.monotonic())
+            os.kill(os.getpid(), signal.SIGINT)
+
+        timer = threading.Timer(seconds, interrupt)
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            call()
+        timer.join()
+        return time.monotonic() - sent[0]
+
+    def test_interrupt_stops_a_long_projection(self):
+        calls = []
+
+        def progress(part, done, total):
+            calls.append((part, done, total))
+
+        self.stop_after(lambda: hshfit.project("ward:ax=0.1,ay=0.3", cosine=True,
+                                               progress=progress, **self.LONG))
+        # It was stopped long before its end.
+        self.assertTrue(calls)
+        self.assertLess(calls[-1][1], 256 * 256)
+
+    def test_interrupt_stops_a_function_of_python(self):
+        brdf = hshfit.function(slow)
+        self.stop_after(lambda: hshfit.project(brdf, **self.LONG))
+
+    def test_work_that_is_stopped_leaves_no_file(self):
+        calls = []
+
+        def fails_later(wi, wo):
+            calls.append(len(wi))
+            if len(calls) > 1000:
+                raise RuntimeError("enough")
+            return np.full(len(wi), 0.1)
+
+        brdf = hshfit.function(fails_later, isotropic=True)
+        with self.assertRaisesRegex(RuntimeError, "enough"):
+            brdf.write("big.binary")
+        self.stop_after(lambda: hshfit.function(slow, isotropic=True).write("big.binary", format="merl"))
+        self.assertEqual(os.listdir("."), [])
+
+    def test_an_exception_of_progress_stops_the_work(self):
+        def progress(part, done, total):
+            raise RuntimeError("enough")
+
+        with self.assertRaisesRegex(RuntimeError, "enough"):
+            hshfit.project("ward:ax=0.1,ay=0.3", cosine=True, progress=progress, **self.LONG)
+
+    def test_progress_comes_on_the_calling_thread_and_ends_at_the_total(self):
+        calls = []
+
+        def progress(part, done, total):
+            calls.append((part, done, total, threading.get_ident()))
+
+        hshfit.project("ward:ax=0.1,ay=0.3", cosine=True, outgoing="8x8", progress=progress)
+        self.assertEqual({call[3] for call in calls}, {threading.get_ident()})
+        part, done, total, _ = calls[-1]
+        self.assertEqual((part, done), ("project", total))
+
+
+if __name__ == "__main__":
+    program.main()

@@ -1,0 +1,46 @@
+"""What the tests of the Python package share: the program, run in a folder that goes away."""
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = os.environ["HSHFIT_PROGRAM"]
+
+
+class InFolder(unittest.TestCase):
+    """A test with a folder of its own, which is the current one."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.before = os.getcwd()
+        os.chdir(self.folder.name)
+
+    def tearDown(self):
+        os.chdir(self.before)
+        self.folder.cleanup()
+
+    def run_program(self, *words):
+        """Standard output of the program, which has to succeed."""
+        done = subprocess.run([PROGRAM, *words, "--quiet"], check=False, capture_output=True,
+                              text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def json_of(self, *words):
+        return json.loads(self.run_program(*words, "--json"))
+
+    def refusal(self, *words):
+        """Exit code and message of the program, which has to fail."""
+        done = subprocess.run([PROGRAM, *words, "--quiet"], check=False, capture_output=True,
+                              text=True)
+        self.assertNotEqual(done.returncode, 0)
+        return done.returncode, done.stderr.strip().removeprefix("hshfit: ")
+
+    def bytes_of(self, path):
+        with open(path, "rb") as file:
+            return file.read()
+
+
+def main():
+    unittest.main(verbosity=2)

@@ -1,0 +1,174 @@
+"""The package gives the numbers of the program, bit for bit."""
+import csv
+import json
+
+import numpy as np
+
+import hshfit
+import program
+
+MATERIALS = ["lambert:kd=0.3/0.2/0.1", "phong:kd=0.1,ks=0.4,exponent=37", "ggx:alpha=0.2",
+             "ward:ks=0.3,ax=0.1,ay=0.4", "disney:roughness=0.4", "preset:hsh-ward",
+             "lambert:kd=0.2 + 0.5 * ggx:alpha=0.3"]
+
+
+def directions(count, seed):
+    """Unit vectors, a tenth of them below the horizon."""
+    random = np.random.default_rng(seed)
+    z = random.uniform(-0.1, 1, count)
+    phi = random.uniform(0, 2 * np.pi, count)
+    r = np.sqrt(1 - z * z)
+    return np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=-1)
+
+
+class SameNumbers(program.InFolder):
+    def eval_by_program(self, spec, wi, wo, *words):
+        with open("in.csv", "w", newline="", encoding="ascii") as file:
+            out = csv.writer(file)
+            out.writerow("wi_x wi_y wi_z wo_x wo_y wo_z".split())
+            for row in np.concatenate([wi, wo], axis=1):
+                out.writerow([repr(float(number)) for number in row])
+        self.run_program("eval", spec, "--pairs", "in.csv", "-o", "out.csv", *words)
+        with open("out.csv", encoding="ascii") as file:
+            rows = list(csv.reader(file))[1:]
+        return np.array([[float(cell) for cell in row[6:]] for row in rows])
+
+    def test_eval_of_pairs_is_that_of_the_program(self):
+        wi, wo = directions(500, 1), directions(500, 2)
+        for spec in MATERIALS:
+            for cosine in (False, True):
+                values = hshfit.open(spec)(wi, wo, cosine=cosine)
+                expected = self.eval_by_program(spec, wi, wo, *["--cosine"] * cosine)
+                with self.subTest(spec=spec, cosine=cosine):
+                    self.assertTrue(np.array_equal(np.broadcast_to(values, expected.shape),
+                                                   expected))
+
+    def test_files_of_projections_are_those_of_the_program(self):
+        cases = [("ggx:alpha=0.4", {}, []),
+                 ("ggx:alpha=0.4", {"outgoing": (52, 0), "order": 12, "cosine": True},
+                  ["--outgoing", "52,0", "--order", "12", "--cosine"]),
+                 ("ward:ax=0.2,ay=0.4", {"basis": "sh", "outgoing": "6x6", "cosine": True},
+                  ["--basis", "sh", "--outgoing", "6x6", "--cosine"]),
+                 ("phong:exponent=10", {"outgoing": 8, "rank": 3, "precision": "half"},
+                  ["--outgoing", "8", "--rank", "3", "--precision", "half"]),
+                 ("phong:exponent=10", {"form": "halfway", "halfway": (8, 4, 2)},
+                  ["--form", "halfway", "--halfway", "8,4,2"])]
+        for spec, options, words in cases:
+            for extension in ("json", "exr"):
+                if extension == "exr" and ("rank" in options or "form" in options):
+                    continue  # a form that only JSON can hold
+                with self.subTest(spec=spec, options=options, extension=extension):
+                    hshfit.project(spec, **options).save(f"ours.{extension}")
+                    self.run_program("project", spec, "-o", f"theirs.{extension}", *words)
+                    self.assertEqual(self.bytes_of(f"ours.{extension}"),
+                                     self.bytes_of(f"theirs.{extension}"))
+
+    def test_values_of_a_projection_are_those_in_the_file(self):
+        found = hshfit.project("ggx:alpha=0.4", outgoing=8)
+        self.run_program("project", "ggx:alpha=0.4", "--outgoing", "8", "-o", "c.json")
+        with open("c.json", encoding="utf-8") as file:
+            document = json.load(file)
+        self.assertTrue(np.array_equal(found.coefficients.values, document["coefficients"]))
+        self.assertEqual(found.energy["value"], document["energy"])
+
+    def test_all_bases_at_once_are_those_one_by_one(self):
+        for name, found in hshfit.project_all("ggx:alpha=0.5", order=4, outgoing=4).items():
+            order = found.coefficients.order
+            alone = hshfit.project("ggx:alpha=0.5", basis=name, order=order, outgoing=4)
+            scale = np.abs(alone.coefficients.values).max()
+            difference = found.coefficients.values - alone.coefficients.values
+            # One grid for all bases may be finer than that for one: both are within 1e-6.
+            self.assertLess(np.abs(difference).max() / scale, 2e-6, name)
+
+    def test_fits_are_those_of_the_program(self):
+        for options, words in (({}, []), ({"loss": "log", "samples": 500, "seed": 7},
+                                          ["--loss", "log", "--samples", "500", "--seed", "7"])):
+            hshfit.fit("beckmann:alpha=0.3", "ggx", starts=2, **options).save("ours.json")
+            self.run_program("fit", "beckmann:alpha=0.3", "--model", "ggx", "--starts", "2",
+                             "-o", "theirs.json", *words)
+            self.assertEqual(self.bytes_of("ours.json"), self.bytes_of("theirs.json"))
+
+    def test_curves_are_those_of_the_program(self):
+        found = hshfit.curves("ward:ax=0.2,ay=0.3", max_order=5, outgoing=(40, 10), cosine=True)
+        expected = self.run_program("report", "ward:ax=0.2,ay=0.3", "--max-order", "5",
+                                    "--outgoing", "40,10", "--cosine", "--json")
+        self.assertEqual(found.json(), expected)
+        by_name = {curve["basis"]: curve for curve in json.loads(expected)["reports"][0]["curves"]}
+        for curve in found:
+            points = by_name[curve.basis]["points"]
+            self.assertEqual(curve.accuracy.tolist(), [point["accuracy"] for point in points])
+            self.assertEqual(curve.coefficients.tolist(),
+                             [point["coefficients"] for point in points])
+
+    def test_metrics_are_those_of_the_program(self):
+        found = hshfit.compare("ggx:alpha=0.4", "beckmann:alpha=0.4", outgoing=4)
+        expected = self.json_of("compare", "ggx:alpha=0.4", "beckmann:alpha=0.4", "--outgoing",
+                                "4")
+        self.assertEqual(found.pairs, expected["pairs"])
+        for row in expected["metrics"]:
+            if row["value"] is None:
+                self.assertTrue(np.isnan(found[row["name"]]), row["name"])
+            else:
+                self.assertEqual(found[row["name"]], row["value"], row["name"])
+
+    def test_light_is_that_of_the_program(self):
+        light = hshfit.light("sky:type=12,elevation=40", order=6)
+        light.save("ours.json")
+        self.run_program("light", "sky:type=12,elevation=40", "--order", "6", "-o", "theirs.json")
+        self.assertEqual(self.bytes_of("ours.json"), self.bytes_of("theirs.json"))
+        turned, _ = light.rotate(hshfit.Rotation(euler=(10, 20, 30)))
+        turned.save("ours_turned.json")
+        self.run_program("rotate", "theirs.json", "-o", "theirs_turned.json", "--euler",
+                         "10,20,30")
+        self.assertEqual(self.bytes_of("ours_turned.json"), self.bytes_of("theirs_turned.json"))
+        nine = hshfit.irradiance("sky:type=12,elevation=40")
+        expected = self.json_of("irradiance", "sky:type=12,elevation=40")
+        self.assertEqual(nine["radiance"].tolist(), expected["radiance"])
+        self.assertEqual(nine["error"]["maximum"], expected["error"]["maximum"])
+
+    def test_rotated_coefficients_and_matrices_are_those_of_the_program(self):
+        found = hshfit.project("ggx:alpha=0.5", outgoing=4, order=4).coefficients
+        found.save("c.json")
+        turned, cost = found.rotate(hshfit.Rotation(up=(20, 30)))
+        turned.save("ours.json")
+        expected = self.json_of("rotate", "c.json", "-o", "theirs.json", "--up", "20,30")
+        self.assertEqual(self.bytes_of("ours.json"), self.bytes_of("theirs.json"))
+        self.assertEqual(cost["lost_energy"], expected["lost_energy"])
+        matrix = hshfit.matrix("sh", "hsh", order=3, from_order=4)
+        expected = self.json_of("matrix", "sh", "hsh", "--order", "3", "--from-order", "4")
+        self.assertEqual(matrix.tolist(), expected["matrix"])
+
+    def test_exports_and_conversions_are_those_of_the_program(self):
+        self.run_program("project", "ggx:alpha=0.5", "--outgoing", "8", "-o", "c.json")
+        done = hshfit.export("c.json", "ours", targets=["bin", "glsl-es"])
+        self.run_program("export", "c.json", "-o", "theirs", "--target", "bin,glsl-es")
+        self.assertTrue(done["files"])
+        for file in done["files"]:
+            self.assertEqual(self.bytes_of(f"ours/{file['path']}"),
+                             self.bytes_of(f"theirs/{file['path']}"))
+        sidecar = f"ours/{done['sidecar']}"
+        hshfit.import_coefficients(sidecar, "back.json")
+        self.run_program("import", sidecar, "-o", "theirs_back.json")
+        self.assertEqual(self.bytes_of("back.json"), self.bytes_of("theirs_back.json"))
+        hshfit.open("phong:exponent=9").write("ours.bsdf", format="rgl")
+        self.run_program("convert", "phong:exponent=9", "theirs.bsdf")
+        self.assertEqual(self.bytes_of("ours.bsdf"), self.bytes_of("theirs.bsdf"))
+
+    def test_files_come_back_as_what_they_are(self):
+        plain = hshfit.project("ggx:alpha=0.5", outgoing=4)
+        plain.save("plain.json")
+        self.assertTrue(np.array_equal(hshfit.read("plain.json").values,
+                                       plain.coefficients.values))
+        hshfit.project("ggx:alpha=0.5", outgoing=4, precision="unorm8").save("form.json")
+        form = hshfit.read("form.json")
+        self.assertEqual(form.kind, "outgoing")
+        form.save("again.json")
+        self.assertEqual(self.bytes_of("form.json"), self.bytes_of("again.json"))
+        hshfit.light("uniform:radiance=2", order=2).save("light.json")
+        # The constant 2 over the sphere is 2 sqrt(4 pi) times the first function.
+        self.assertAlmostEqual(hshfit.read("light.json").values[0, 0], 2 * np.sqrt(4 * np.pi), 12)
+        self.assertEqual(hshfit.read("preset:hsh-phong").channels, ["grey"])
+
+
+if __name__ == "__main__":
+    program.main()
