@@ -251,19 +251,17 @@ command eval, bit for bit; all threads work, without the interpreter's lock.)")
             py::arg("progress") = py::none(),
             R"(Directional albedo, the integral of f cos(theta_i) over wi: (..., channels) for wo of
 shape (..., 3), to a relative tolerance. NumericError where it does not converge.)")
-        .def(
-            "sphere", sphereArray, py::arg("size") = SphereOptions{}.size, py::kw_only(),
-            py::arg("samples") = SphereOptions{}.samples, py::arg("progress") = py::none(),
-            R"(Radiance of a lit sphere of the material, float32 (size, size, 3), linear Rec. 709, row
-0 at the top, samples x samples per pixel. The lights are those of the program's reports.)")
+        .def("sphere", sphereArray, py::arg("size") = SphereOptions{}.size, py::kw_only(),
+             py::arg("samples") = SphereOptions{}.samples, py::arg("progress") = py::none(),
+             R"(Radiance of a lit sphere of the material, float32 (size, size, 3), linear Rec. 709,
+row 0 at the top, samples x samples per pixel. The lights are those of the program's reports.)")
         .def("_sphere_png", spherePng, py::arg("size"), py::arg("samples") = 2)
-        .def(
-            "write", writtenTo, py::arg("path"), py::kw_only(), py::arg("format") = "",
-            py::arg("measure_loss") = false, py::arg("force") = false,
-            py::arg("progress") = py::none(),
-            R"(Write it in the format of other programs (catalog("writers")), chosen by the extension
-or by `format`. Returns a dict: `altered` (what the format leaves out), `error` (relative L2 of
-f cos of the file read back, or None), with measure_loss every metric. force replaces a file.)")
+        .def("write", writtenTo, py::arg("path"), py::kw_only(), py::arg("format") = "",
+             py::arg("measure_loss") = false, py::arg("force") = false,
+             py::arg("progress") = py::none(),
+             R"(Write it in the format of other programs (catalog("writers")), chosen by the
+extension or by `format`. Returns a dict: `altered` (what the format leaves out), `error`
+(relative L2 of f cos of the file read back, or None), with measure_loss every metric. force replaces a file.)")
         .def("__repr__", [](const Brdf& b) { return "<hshfit.Brdf " + b.name() + ">"; });
 }
 

@@ -162,11 +162,10 @@ py::list catalogOf(const std::string& name) {
 }  // namespace
 
 void bindCatalog(py::module_& module) {
-    module.def(
-        "catalog", catalogOf, py::arg("kind"),
-        R"(The rows of a table of the program, each a dict with "name" and "help": "bases", "models",
-"formats", "writers", "metrics", "lights" or "presets". Where there are parameters, "parameters"
-has their names, kinds, defaults and ranges.)");
+    module.def("catalog", catalogOf, py::arg("kind"),
+               R"(The rows of a table of the program, each a dict with "name" and "help": "bases",
+"models", "formats", "writers", "metrics", "lights" or "presets". Where there are parameters,
+"parameters" has their names, kinds, defaults and ranges.)");
 }
 
 }  // namespace hshfit::python

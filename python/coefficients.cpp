@@ -106,7 +106,7 @@ parabolic map), 16 (elevations, for isotropic BRDFs) or (theta, phi) in degrees.
              [](const OutgoingSet& set) { return "<hshfit.Outgoing " + set.spec() + ">"; });
 }
 
-/// What coefficients and compressed forms say of themselves alike.
+/// The head of coefficients and of compressed forms.
 template <class Class, class Head>
 void addHead(Class& bound, Head head) {
     bound
@@ -139,8 +139,8 @@ void bindPlain(py::module_& module) {
     py::class_<Coefficients, std::shared_ptr<Coefficients>> bound(
         module, "Coefficients",
         R"(Coefficients c_{l,m}(wo) of one BRDF over wi, for a set of outgoing directions:
-    q(wi, wo) = sum of c_{l,m}(wo) B_{l,m}(wi),  q = f or f cos(theta_i)   (Gautron et al. 2004, Eq. 16)
-Made by project() and read().)");
+    q(wi, wo) = sum of c_{l,m}(wo) B_{l,m}(wi),  q = f or f cos(theta_i)
+(Gautron et al. 2004, Eq. 16). Made by project() and read().)");
     addHead(bound, [](const Coefficients& c) -> const CoefficientHead& { return c; });
     bound
         .def_property_readonly("values", valuesOf,
@@ -153,13 +153,12 @@ Made by project() and read().)");
                 return std::make_shared<Reconstruction>(c);
             },
             "The reconstruction as a Brdf; values ring and may be negative.")
-        .def(
-            "rotate", rotated, py::arg("rotation"), py::kw_only(), py::arg("method") = "exact",
-            py::arg("tolerance") = HemisphereRotationOptions{}.tolerance,
-            py::arg("tables") = HemisphereRotationOptions{}.tables,
-            R"(For each outgoing direction the function over wi, rotated; what leaves the hemisphere is
-lost. Returns (Coefficients, {"method", "lost_energy", "error", "bands"}). method: "exact",
-"through-sh", "table" or "paper-shift".)")
+        .def("rotate", rotated, py::arg("rotation"), py::kw_only(), py::arg("method") = "exact",
+             py::arg("tolerance") = HemisphereRotationOptions{}.tolerance,
+             py::arg("tables") = HemisphereRotationOptions{}.tables,
+             R"(For each outgoing direction the function over wi, rotated; what leaves the
+hemisphere is lost. Returns (Coefficients, {"method", "lost_energy", "error", "bands"}).
+method: "exact", "through-sh", "table" or "paper-shift".)")
         .def(
             "save",
             [](const Coefficients& c, const py::object& path) {
@@ -181,8 +180,8 @@ std::vector<std::pair<std::string, double>> stepsOf(const Representation& form) 
 void bindForm(py::module_& module) {
     py::class_<Representation, std::shared_ptr<Representation>> bound(
         module, "Form",
-        R"(A BRDF in a compressed form, as a coefficient file holds it. Made by project() with an option
-of forms, and by read().)");
+        R"(A BRDF in a compressed form, as a coefficient file holds it. Made by project() with
+an option of forms, and by read().)");
     addHead(bound, [](const Representation& form) -> const CoefficientHead& { return form.head; });
     bound
         .def_property_readonly(

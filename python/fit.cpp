@@ -137,7 +137,8 @@ py::list ranked(const py::object& data, const std::vector<std::string>& models,
 void bindResult(py::module_& module) {
     using brdfs::FittedParameter;
     using jobs::Fitted;
-    py::class_<FittedParameter>(module, "FittedParameter", "A free parameter after a fit, with its standard error.")
+    py::class_<FittedParameter>(module, "FittedParameter",
+                                "A free parameter after a fit, with its standard error.")
         .def_readonly("name", &FittedParameter::name, "\"ggx.alpha\"")
         .def_readonly("channel", &FittedParameter::channel, "\"R\"; empty: all channels")
         .def_readonly("value", &FittedParameter::value)
@@ -221,7 +222,8 @@ Returns a Fit. The same numbers as by the command fit.)");
         py::arg("samples") = options.samples, py::arg("seed") = options.seed,
         py::arg("rgb") = options.rgb,
         R"(Fit every model to the same data and rank them by the error at held-out directions: a
-list of dicts with "model", "spec", "held_out_rms", "rms", "aic", "bic", "converged" and "failure".)");
+list of dicts with "model", "spec", "held_out_rms", "rms", "aic", "bic", "converged" and
+"failure".)");
 }
 
 }  // namespace hshfit::python

@@ -249,8 +249,8 @@ cosine      q = f cos(theta_i) instead of f
 tolerance   relative, of quadrature; 0: the BRDF's own
 least_squares, regularise, kernel
             fit scattered samples themselves; Tikhonov weight; degrees about wo that count
-form        "outgoing", "basis" or "halfway" (`halfway` as (12, 6, 3)): a compressed form, as does any
-            of reciprocal, split, window, non_negative, energy_preserving, rank, rank_error,
+form        "outgoing", "basis" or "halfway" (`halfway` as (12, 6, 3)): a compressed form, as does
+            any of reciprocal, split, window, non_negative, energy_preserving, rank, rank_error,
             non_negative_factors, keep and precision
 progress    called as progress(part, done, total) from this thread; an exception from it stops
 

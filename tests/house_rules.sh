@@ -40,7 +40,8 @@ fi
 # shellcheck disable=SC2086  # a list of paths without spaces
 shellcheck $scripts | rule 'shellcheck' || true
 
-tracked '*.h' '*.cpp' '*.cmake' '*CMakeLists.txt' '*.py' '*.sh' run .ci/run bench/summary |
+tracked '*.h' '*.cpp' '*.cmake' '*CMakeLists.txt' '*.py' '*.pyi' '*.sh' run .ci/run bench/summary \
+    bench/python_eval |
     LC_ALL=C.UTF-8 xargs -r grep -HnE '^.{101,}' | cut -c -80 |
     rule 'lines past 100 columns'
 tracked '*.h' '*.cpp' '*.sh' '*.py' run | while read -r file; do
@@ -76,7 +77,8 @@ matches '"([^"]*[^-[:alnum:]"])?--[a-z]|"[^"]*hshfit [a-z]+ ' 'lib/*.cpp' 'lib/*
     rule 'options and commands of the program are named in cli only (wording.h)'
 matches 'hshfit::brdfs|hshfit_brdfs' 'lib/**CMakeLists.txt' | rule 'lib links nothing from brdfs'
 matches '#include *[<"](jobs|cli)/' brdfs | rule 'brdfs includes nothing from jobs or cli'
-matches '#include *[<"](cli|CLI)/' jobs | rule 'jobs includes nothing from cli, nor CLI11'
+matches '#include *[<"](cli|CLI|python)/' jobs | rule 'jobs includes nothing from cli, nor CLI11'
+matches '#include *[<"](cli|CLI)/' python | rule 'python includes nothing from cli, nor CLI11'
 # These wrap a library for the rooms above them, or give them a JSON value.
 matches '#include *[<"](Eigen|OpenEXR|Imf|Imath|nlohmann)' 'lib/*.h' ':!lib/**/internal/*.h' \
     ':!lib/hshfit/files/json_fields.h' ':!lib/hshfit/files/exr_stream.h' \

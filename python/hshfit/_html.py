@@ -1,4 +1,4 @@
-"""The objects of hshfit as HTML, for notebooks: tables, and the pictures of the program's reports."""
+"""The objects of hshfit as HTML, for notebooks: tables, and pictures of the program's reports."""
 import base64
 import html
 import math

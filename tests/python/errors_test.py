@@ -156,7 +156,8 @@ class Stopping(program.InFolder):
         brdf = hshfit.function(fails_later, isotropic=True)
         with self.assertRaisesRegex(RuntimeError, "enough"):
             brdf.write("big.binary")
-        self.stop_after(lambda: hshfit.function(slow, isotropic=True).write("big.binary", format="merl"))
+        waits = hshfit.function(slow, isotropic=True)
+        self.stop_after(lambda: waits.write("big.binary", format="merl"))
         self.assertEqual(os.listdir("."), [])
 
     def test_an_exception_of_progress_stops_the_work(self):

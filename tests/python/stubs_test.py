@@ -1,4 +1,4 @@
-"""The type stubs name what the module has, with the same arguments, and everything is documented."""
+"""The type stubs have the names and arguments of the module, and everything is documented."""
 import ast
 import os
 import re
