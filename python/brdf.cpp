@@ -261,7 +261,8 @@ row 0 at the top, samples x samples per pixel. The lights are those of the progr
              py::arg("progress") = py::none(),
              R"(Write it in the format of other programs (catalog("writers")), chosen by the
 extension or by `format`. Returns a dict: `altered` (what the format leaves out), `error`
-(relative L2 of f cos of the file read back, or None), with measure_loss every metric. force replaces a file.)")
+(relative L2 of f cos of the file read back, or None), with measure_loss every metric.
+force replaces a file.)")
         .def("__repr__", [](const Brdf& b) { return "<hshfit.Brdf " + b.name() + ">"; });
 }
 

@@ -48,7 +48,7 @@ def _drawn(write, name, show):
 
 def _svg(figure):
     text = figure.decode()
-    return text[text.find("<svg"):]
+    return text[text.find("<svg"):].replace("<svg", '<svg style="max-width:100%;height:auto"', 1)
 
 
 def _poor(found):
