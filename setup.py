@@ -28,8 +28,9 @@ class ByCMake(build_ext):
                  "-DHSHFIT_INSTALL=OFF", "-DHSHFIT_UNITY=ON",
                  f"-DPython_EXECUTABLE={sys.executable}"], check=True)
         subprocess.run(["cmake", "--build", OWN, "--target", "hshfit_python_package"], check=True)
-        subprocess.run(["cmake", "--install", OWN, "--component", "python", "--prefix",
-                        OWN / "python-installed"], check=True)
+        for component in ("python", "python_pictures"):
+            subprocess.run(["cmake", "--install", OWN, "--component", component, "--prefix",
+                            OWN / "python-installed"], check=True)
         built = Path(self.get_ext_fullpath(ext.name))
         for file in (OWN / "python-installed").rglob("*.so"):
             built.parent.mkdir(parents=True, exist_ok=True)

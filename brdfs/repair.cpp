@@ -2,11 +2,11 @@
 #include <brdfs/repair.h>
 #include <brdfs/spec.h>
 #include <hshfit/brdf/kink_curve.h>
+#include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/projection/albedo.h>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -79,7 +79,7 @@ public:
         azimuths_ = isotropic ? 1 : 24;
         albedo_.resize(channels_ * thetas_ * azimuths_);
         std::atomic<std::size_t> done = 0;
-        tbb::parallel_for(std::size_t{0}, thetas_ * azimuths_, [&](std::size_t node) {
+        eachInParallel(thetas_ * azimuths_, [&](std::size_t node) {
             const double theta = thetaStep() * static_cast<double>(node / azimuths_);
             const double phi =
                 2 * pi * static_cast<double>(node % azimuths_) / static_cast<double>(azimuths_);

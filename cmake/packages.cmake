@@ -67,8 +67,23 @@ hshfit_package(documentation hshfit-doc doc
   "BRDFs as coefficients of hemispherical harmonics, documentation" "" "" ""
   "${about}\n.\nThis package has the pages of documentation and the examples.")
 
+if(HSHFIT_PYTHON)
+  # The extension module is for one minor version of Python.
+  find_package(Python REQUIRED COMPONENTS Interpreter)
+  math(EXPR next "${Python_VERSION_MINOR} + 1")
+  hshfit_package(python python3-hshfit python
+    "BRDFs as coefficients of hemispherical harmonics, Python package"
+    "python3 (>= 3.${Python_VERSION_MINOR}~), python3 (<< 3.${next}~), python3-numpy"
+    "gnuplot-nox" "hshfit-doc, hshfit-pictures ${same}"
+    "${about}\n.\nThis package has the module hshfit for Python, which works on arrays of NumPy.")
+  list(APPEND HSHFIT_DEBIAN_PACKAGES python3-hshfit)
+endif()
+
 set(CPACK_GENERATOR DEB)
 set(CPACK_COMPONENTS_ALL program pictures development documentation)
+if(HSHFIT_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_PACKAGE_NAME hshfit)
@@ -79,6 +94,7 @@ set(CPACK_DEBIAN_PACKAGE_RELEASE ${HSHFIT_DEBIAN_REVISION})
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PICTURES_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS

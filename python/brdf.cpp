@@ -2,6 +2,7 @@
 #include "arrays.h"
 #include "watched.h"
 
+#include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/pictures/sphere_picture.h>
 #include <hshfit/projection/albedo.h>
@@ -13,7 +14,6 @@
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
-#include <tbb/parallel_for.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -108,7 +108,7 @@ py::array_t<double> albedos(const py::object& self, const py::object& wo, double
         const auto report = listener.part("albedo");
         std::vector<std::vector<double>> found(directions.size());
         std::atomic<std::size_t> done = 0;
-        tbb::parallel_for(std::size_t{0}, directions.size(), [&](std::size_t k) {
+        eachInParallel(directions.size(), [&](std::size_t k) {
             found[k] = directionalAlbedo(source.brdf(), directions[k], tolerance);
             report(++done, directions.size());
         });

@@ -1,4 +1,5 @@
 #include <hshfit/accuracy/health.h>
+#include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/projection/albedo.h>
 
@@ -151,7 +152,7 @@ Health examine(const Brdf& brdf, const HealthOptions& options) {
     const AlbedoOptions how{.tolerance = options.albedoTolerance,
                             .maxEvaluations = options.albedoEvaluations / health.albedos.size()};
     std::atomic<std::size_t> done = 0, evaluations = 0;
-    tbb::parallel_for(std::size_t{0}, health.albedos.size(), [&](std::size_t i) {
+    eachInParallel(health.albedos.size(), [&](std::size_t i) {
         Health::Albedo& albedo = health.albedos[i];
         try {
             AlbedoEstimate found = estimateAlbedo(brdf, albedo.wo, how);

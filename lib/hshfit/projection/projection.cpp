@@ -1,13 +1,13 @@
 #include <hshfit/projection/projection.h>
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/projection/horizon.h>
 #include <hshfit/projection/internal/refinement.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
@@ -111,7 +111,7 @@ std::vector<RefinedMoments> projectGroups(const Brdf& brdf, std::span<const Basi
     std::atomic<std::size_t> firstFailure = groups.size(), done = 0;
     const std::vector<const Basis*> all = withMonitor(bases);
     const ProjectionTables tables(all);
-    tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
+    eachInParallel(groups.size(), [&](std::size_t g) {
         if (g > firstFailure) return;
         try {
             results[g] = refineMoments(brdf, tables, groups[g].wo,

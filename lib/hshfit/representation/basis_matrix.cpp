@@ -1,13 +1,13 @@
 #include <hshfit/representation/basis_matrix.h>
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/quadrature/quadrature.h>
 #include <hshfit/representation/factoring_blocks.h>
 #include <hshfit/wording.h>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
@@ -141,7 +141,7 @@ std::vector<Projection> projectRings(const Brdf& brdf, const Basis& basis, const
     const double heaviest = *std::max_element(grid.weights.begin(), grid.weights.end());
     std::vector<Projection> results(grid.rings.size());
     std::atomic<std::size_t> done = 0;
-    tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t r) {
+    eachInParallel(results.size(), [&](std::size_t r) {
         ProjectionOptions own = options;
         own.progress = {};
         own.tolerance = std::clamp(options.tolerance * heaviest / grid.weights[r],
