@@ -1,7 +1,7 @@
 # %% [markdown]
 # # A BRDF of your own
-# A function of NumPy arrays is projected, compared and fitted like any other material. The library calls it with
-# batches: many incoming directions at once, one outgoing direction.
+# A function of NumPy arrays is projected, compared and fitted like any other material. The library
+# calls it with batches: many incoming directions at once, one outgoing direction.
 
 # %%
 import time
@@ -60,7 +60,8 @@ theta = np.linspace(-85, 85, 300)
 for phi, colour in ((0, "C0"), (90, "C1")):
     wi = hshfit.direction(np.abs(theta), np.where(theta < 0, phi + 180, phi))
     wo = hshfit.direction(20, phi + 180)
-    plt.plot(theta, material(wi, wo, cosine=True), colour, label=f"f cos θ, plane of azimuth {phi}°")
+    plt.plot(theta, material(wi, wo, cosine=True), colour,
+             label=f"f cos θ, plane of azimuth {phi}°")
     plt.plot(theta, found.brdf()(wi, wo, cosine=True), colour, linestyle="--",
              label="series of order 8")
 plt.xlabel("angle of incidence, degrees")

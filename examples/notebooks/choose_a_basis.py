@@ -1,7 +1,7 @@
 # %% [markdown]
 # # A basis for my material
-# Bases and forms are weighed against each other: error, bytes, and the smallest file within an error.
-# Put the path of a measured file in the place of the specification.
+# Bases and forms are weighed against each other: error, bytes, and the smallest file within an
+# error. Put the path of a measured file in the place of the specification.
 
 # %%
 import matplotlib.pyplot as plt
@@ -22,8 +22,9 @@ plt.xlabel("captured energy of f cos θ, %")
 plt.show()
 
 # %% [markdown]
-# The forms of a coefficient file: per outgoing direction in full, factored, in fewer bits, and ln(1 + f) over
-# half and difference vectors. Errors are relative to f cos θ over outgoing elevations.
+# The forms of a coefficient file: per outgoing direction in full, factored, in fewer bits, and
+# ln(1 + f) over half and difference vectors. Errors are relative to f cos θ over outgoing
+# elevations.
 
 # %%
 forms = {

@@ -1,8 +1,8 @@
 # %% [markdown]
 # # Accuracy curves of the HSH paper
-# Figures 4 and 5 of Gautron, Křivánek, Pattanaik and Bouatouch 2004, *A Novel Hemispherical Basis for Accurate and
-# Efficient Rendering*: the captured share of the energy of a lobe against the number of
-# coefficients, for several bases.
+# Figures 4 and 5 of Gautron, Křivánek, Pattanaik and Bouatouch 2004, *A Novel Hemispherical Basis
+# for Accurate and Efficient Rendering*: the captured share of the energy of a lobe against the
+# number of coefficients, for several bases.
 
 # %%
 import matplotlib.pyplot as plt
@@ -25,15 +25,16 @@ def draw(curves, title):
 BASES = ["hsh", "sh", "esh", "zernike", "makhotkin"]
 
 # %% [markdown]
-# **Figure 4**, a Phong lobe. Functions that can be non-zero are counted: n(n+1)/2 of order n for even-symmetric
-# harmonics and Zernike polynomials, n² for the others.
+# **Figure 4**, a Phong lobe. Functions that can be non-zero are counted: n(n+1)/2 of order n for
+# even-symmetric harmonics and Zernike polynomials, n² for the others.
 
 # %%
 phong = hshfit.curves("preset:hsh-phong", bases=BASES, max_order=12, outgoing=(60, 0))
 draw(phong, "Phong, outgoing direction at 60°")
 
 # %% [markdown]
-# **Figure 5**, anisotropic Ward. Without the cosine its energy does not exist, and the library says why:
+# **Figure 5**, anisotropic Ward. Without the cosine its energy does not exist, and the library
+# says why:
 
 # %%
 ward = hshfit.curves("preset:hsh-ward", bases=BASES, max_order=12, outgoing=(45, 0))

@@ -1,6 +1,7 @@
 # %% [markdown]
 # # First steps
-# A material becomes coefficients of hemispherical harmonics, and the coefficients a material again.
+# A material becomes coefficients of hemispherical harmonics, and the coefficients a material
+# again.
 
 # %%
 import matplotlib.pyplot as plt
@@ -12,8 +13,8 @@ gold = hshfit.open("ggx:alpha=0.35,ks=1/0.77/0.34")
 gold
 
 # %% [markdown]
-# `gold(wi, wo)` is f in 1/sr for arrays of directions: unit vectors that point away from the surface, +z the
-# normal. Here are the plane of incidence and three outgoing directions.
+# `gold(wi, wo)` is f in 1/sr for arrays of directions: unit vectors that point away from the
+# surface, +z the normal. Here are the plane of incidence and three outgoing directions.
 
 # %%
 theta = np.linspace(-89.5, 89.5, 400)
@@ -27,8 +28,8 @@ plt.legend()
 plt.show()
 
 # %% [markdown]
-# The projection integrates f cos θ against every basis function, for a set of outgoing directions. Its
-# accuracy is the captured share of the energy (Gautron et al. 2004, Eq. 15).
+# The projection integrates f cos θ against every basis function, for a set of outgoing directions.
+# Its accuracy is the captured share of the energy (Gautron et al. 2004, Eq. 15).
 
 # %%
 found = hshfit.project(gold, basis="hsh", order=10, cosine=True)
@@ -40,7 +41,8 @@ print(values.shape, "= outgoing directions, channels, functions")
 print("energy captured by the first bands:", np.round(found.captured / found.energy["value"], 3))
 
 # %% [markdown]
-# The sum of the series against the material: it rings where the lobe is narrower than the functions.
+# The sum of the series against the material: it rings where the lobe is narrower than the
+# functions.
 
 # %%
 back = found.brdf()

@@ -1,6 +1,7 @@
 # %% [markdown]
 # # Fits with uncertainties
-# A model is fitted to data; the covariance of its parameters tells how well the data determine them.
+# A model is fitted to data; the covariance of its parameters tells how well the data determine
+# them.
 
 # %%
 import matplotlib.pyplot as plt
@@ -13,8 +14,8 @@ fit = hshfit.fit(data, "ggx+lambert", starts=4, seed=1)
 fit
 
 # %% [markdown]
-# GGX has longer tails than Beckmann, so that the residuals are more than noise. Models are ranked by directions that
-# a fit did not see:
+# GGX has longer tails than Beckmann, so that the residuals are more than noise. Models are ranked
+# by directions that a fit did not see:
 
 # %%
 models = ["beckmann+lambert", "ggx+lambert", "ward+lambert", "phong+lambert"]
@@ -38,9 +39,9 @@ plt.colorbar(label="correlation")
 plt.show()
 
 # %% [markdown]
-# Draws from the covariance carry the uncertainty over to f: here the 90 % band of draws around the fit,
-# magnified tenfold about it. The misfit is far wider than the band: the covariance takes the model for true, and GGX is
-# not the model of these data.
+# Draws from the covariance carry the uncertainty over to f: here the 90 % band of draws around the
+# fit, magnified tenfold about it. The misfit is far wider than the band: the covariance takes the
+# model for true, and GGX is not the model of these data.
 
 # %%
 random = np.random.default_rng(1)
