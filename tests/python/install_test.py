@@ -25,17 +25,22 @@ class Install(program.InFolder):
         self.assertEqual(done.returncode, 0, done.stdout[-3000:] + done.stderr[-3000:])
         return done.stdout
 
+    def state_of(self, source):
+        """Untracked, ignored and changed files of a checkout."""
+        if not (Path(source) / ".git").exists():
+            return ""
+        return self.run_in("git", "-C", source, "status", "--porcelain", "--ignored")
+
     def test_pip_install_then_import_and_project(self):
         build = Path(os.environ["HSHFIT_PROGRAM"]).parent
         source = os.environ["HSHFIT_SOURCE"]
-        before = self.run_in("git", "-C", source, "status", "--porcelain", "--ignored")
+        before = self.state_of(source)
         self.run_in(sys.executable, "-m", "venv", "--system-site-packages", "venv")
         self.run_in("venv/bin/python", "-m", "pip", "install", "--no-build-isolation",
                     "--no-index", "--no-deps", source, HSHFIT_BUILD=str(build))
         self.run_in("venv/bin/python", "-c", OUTSIDE.format(build=str(build)))
         # The source tree is as it was.
-        self.assertEqual(before, self.run_in("git", "-C", source, "status", "--porcelain",
-                                             "--ignored"))
+        self.assertEqual(before, self.state_of(source))
 
 
 if __name__ == "__main__":
