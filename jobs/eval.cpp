@@ -32,7 +32,7 @@ std::vector<std::string> columnsOf(const Channels& channels) {
 /// Unit vectors of some pairs, made 1 in length.
 class UnitVectors {
 public:
-    static constexpr std::size_t most = 512;
+    static constexpr std::size_t most = 128;
 
     /// Those of the pairs first to first + count - 1. Throws InputError at the first that is none.
     void take(const VectorArray& vectors, const char* name, std::size_t first, std::size_t count) {
@@ -97,7 +97,7 @@ private:
 void evaluateArrays(const Brdf& brdf, const VectorArray& wi, const VectorArray& wo,
                     std::size_t count, double* out, const EvalOptions& options) {
     const std::size_t channels = brdf.channels().count();
-    constexpr std::size_t grain = 8 * UnitVectors::most;  // some 0.2 ms for the cheapest models
+    constexpr std::size_t grain = 32 * UnitVectors::most;  // some 0.2 ms for the cheapest models
     const auto work = [&](const tbb::blocked_range<std::size_t>& range) {
         PairBlock block(brdf);
         UnitVectors in, from;
