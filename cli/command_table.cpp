@@ -142,7 +142,7 @@ constexpr Command table[] = {
      .help = "Where the program's numbers stop being good: bases by degree, lobes by width and "
              "elevation",
      .file = "stress.cpp",
-     .example = "hshfit stress --max-order 1000 --trials 200 -o out/stress",
+     .example = "hshfit stress --max-order 300 --trials 20 -o out/stress",
      .add = addStress},
     {.name = "import",
      .group = files,
