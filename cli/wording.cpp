@@ -20,6 +20,8 @@ struct OptionRow {
 constexpr OptionRow options[] = {
     {"ConvertOptions::format", "--to"},
     {"ConvertOptions::measureLoss", "--report-loss"},
+    {"ConvertOptions::repairs", "--repair"},
+    {"ConvertOptions::rgb", "--rgb", Value::none},
     {"ExportOptions::allowLoss", "--allow-loss"},
     {"ExportOptions::force", "--force"},
     {"ExportOptions::lights", "--light"},
