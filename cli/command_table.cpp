@@ -27,6 +27,7 @@ void addIrradiance(CLI::App& command, Globals& globals);
 void addSample(CLI::App& command, Globals& globals);
 void addTransfer(CLI::App& command, Globals& globals);
 void addBatch(CLI::App& command, Globals& globals);
+void addSvbrdf(CLI::App& command, Globals& globals);
 void addHelp(CLI::App& command, Globals& globals);
 void addCompletion(CLI::App& command, Globals& globals);
 void addManual(CLI::App& command, Globals& globals);
@@ -201,6 +202,12 @@ constexpr Command table[] = {
      .file = "batch.cpp",
      .example = "hshfit batch examples/batch/materials.jsonl -o batch",
      .add = addBatch},
+    {.name = "svbrdf",
+     .group = studies,
+     .help = "Textures of materials: parameter maps as coefficient textures with mip levels",
+     .file = "svbrdf.cpp",
+     .example = "hshfit svbrdf examples/maps/coin.json -o coin --form low-rank",
+     .add = addSvbrdf},
     {.name = "help",
      .group = program,
      .help = "Commands by group and topics; the options of one command; one topic",

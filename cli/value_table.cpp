@@ -185,6 +185,7 @@ constexpr ValueRow table[] = {
     {"rotate", "--method", rotationWords},
     {"sample", "--output", nullptr, Syntax::word, Files::written, ".csv"},
     {"stress", "--output", nullptr, Syntax::word, Files::folder},
+    {"svbrdf", "--output", nullptr, Syntax::word, Files::folder},
     {"tradeoff", "--output", nullptr, Syntax::word, Files::folder},
     {"tradeoff", "--halfway"},
     {"transfer", "--output", nullptr, Syntax::word, Files::folder},

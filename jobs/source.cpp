@@ -8,13 +8,16 @@
 #include <hshfit/error.h>
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/forms/form_files.h>
+#include <hshfit/material_maps/material_map.h>
 #include <hshfit/representation/forms/represented_brdf.h>
+#include <hshfit/specification/parameters.h>
 
 #include <brdfs/catalog.h>
 #include <brdfs/measured/measured_brdf.h>
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 namespace hshfit::jobs {
@@ -23,6 +26,31 @@ namespace {
 std::unique_ptr<Brdf> seenAsRgb(std::unique_ptr<Brdf> brdf, bool rgb) {
     if (!rgb || brdf->channels().kind != Channels::Kind::spectral) return brdf;
     return asRgb(std::move(brdf));
+}
+
+/// A texel of a material map, "FILE:x=3,y=5,level=0"; null where SPEC is none.
+std::unique_ptr<Brdf> openTexel(const std::string& spec) {
+    const std::string path(pathIn(spec));
+    if (path.empty() || !isMapSidecar(path)) return nullptr;
+    constexpr double most = 1 << 20;
+    const Parameter parameters[] = {
+        {.name = "x", .help = "column", .fallback = 0, .max = most},
+        {.name = "y", .help = "row, from the top", .fallback = 0, .max = most},
+        {.name = "level", .help = "0 is the full size", .fallback = 0, .max = 30}};
+    const std::string rest = spec.substr(path.size());
+    const Parameters texel =
+        parseParameters(path, parameters, rest.empty() ? rest : rest.substr(1));
+    const auto index = [&](std::string_view name) {
+        const double value = texel.number(name);
+        if (value != std::floor(value))
+            throw UsageError(
+                fmt::format("{}: {} is {}; it has to be a whole number", path, name, value));
+        return static_cast<std::size_t>(value);
+    };
+    const MaterialMap map(path);
+    Coefficients coefficients = map.coefficients(index("level"), index("x"), index("y"));
+    map.checkIntact();
+    return std::make_unique<Reconstruction>(std::move(coefficients));
 }
 
 }  // namespace
@@ -35,6 +63,7 @@ std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb) {
 }
 
 std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb) {
+    if (auto texel = openTexel(spec)) return texel;
     if (auto read = gpu::readIfForm(spec, sourceOpener()))
         return seenAsRgb(reconstruct(std::move(read->payload.form), sourceOpener()), rgb);
     if (gpu::looksLikePayload(spec)) {

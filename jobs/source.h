@@ -13,8 +13,8 @@ namespace hshfit::jobs {
 /// 709 and leaves others unchanged.
 std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb = false);
 
-/// Opens a BRDF specification, a coefficient file, or a file of an export (a sidecar or a
-/// container with one) as a BRDF; `rgb` as above.
+/// Opens a BRDF specification, a coefficient file, a file of an export (a sidecar or a container
+/// with one) or a texel of a material map (FILE:x=3,y=5,level=0) as a BRDF; `rgb` as above.
 std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb = false);
 
 /// `openSource` as the opener of BRDFs that representations add.

@@ -9,6 +9,7 @@
 #include <hshfit/light/placement.h>
 #include <hshfit/light/sky.h>
 #include <hshfit/light/solar_position.h>
+#include <hshfit/picture_files/picture_file.h>
 #include <hshfit/specification/sums.h>
 
 #include <fmt/format.h>

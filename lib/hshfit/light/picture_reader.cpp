@@ -1,12 +1,10 @@
 #include <hshfit/light/picture_reader.h>
 
 #include <hshfit/error.h>
-#include <hshfit/files/mapped_file.h>
-#include <hshfit/light/internal/image_module.h>
+#include <hshfit/picture_files/picture_file.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,11 +14,6 @@
 
 namespace hshfit::inline light {
 namespace {
-
-constexpr std::uint64_t mostPixels = std::uint64_t{1} << 28;
-constexpr std::size_t blockBytes = std::size_t{1} << 24;
-constexpr std::size_t mostTileBytes = std::size_t{1} << 28;
-constexpr std::size_t mostBlockRows = 256;  // as many as any compression of OpenEXR joins
 
 constexpr CurveName curves[] = {
     {TransferCurve::linear, "linear", "values are radiance"},
@@ -37,88 +30,6 @@ constexpr FaceNames faces[] = {
     {"right", "left", "top", "bottom", "front", "back"},
     {"right", "left", "up", "down", "front", "back"},
 };
-
-// --- formats --------------------------------------------------------------------------------
-
-struct PictureFormat {
-    const char* plugin;  ///< of OpenImageIO
-    std::string_view name;
-    std::string_view start;
-};
-constexpr PictureFormat formats[] = {
-    {"openexr", "OpenEXR", {"\x76\x2f\x31\x01", 4}},
-    {"hdr", "Radiance HDR", "#?"},
-    {"png", "PNG", {"\x89PNG\r\n\x1a\n", 8}},
-    {"jpeg", "JPEG", "\xff\xd8\xff"},
-    {"tiff", "TIFF", {"II*\0", 4}},
-    {"tiff", "TIFF", {"MM\0*", 4}},
-    {"bmp", "BMP", "BM"},
-    {"pnm", "PNM", "P5"},
-    {"pnm", "PNM", "P6"},
-    {"pnm", "PFM", "PF"},
-    {"pnm", "PFM", "Pf"},
-};
-
-/// Two letters say little: white space follows those of PNM, and zeros the length in a BMP file.
-bool starts(std::string_view head, const PictureFormat& format) {
-    if (!head.starts_with(format.start)) return false;
-    if (format.start[0] == 'P') return head.size() > 2 && (head[2] == '\n' || head[2] == ' ');
-    if (format.start == "BM")
-        return head.size() > 9 && head.substr(6, 4) == std::string_view("\0\0\0\0", 4);
-    return true;
-}
-
-const PictureFormat& formatOf(const MappedFile& file) {
-    const std::string_view head(reinterpret_cast<const char*>(file.data()), file.size());
-    for (const PictureFormat& format : formats) {
-        if (starts(head, format)) return format;
-    }
-    throw InputError(
-        fmt::format("{}: of no known picture format; known: OpenEXR, Radiance HDR, "
-                    "PNG, JPEG, TIFF, BMP, PNM, PFM",
-                    file.path()));
-}
-
-/// Whether compressed data reach the marker of the end: libjpeg makes up what is missing.
-bool jpegIsWhole(std::span<const unsigned char> bytes) {
-    std::size_t at = 2;  // the segments before the first scan
-    while (at + 4 <= bytes.size() && bytes[at] == 0xff && bytes[at + 1] != 0xda) {
-        at += 2 + 256 * std::size_t{bytes[at + 2]} + bytes[at + 3];
-    }
-    for (; at + 1 < bytes.size(); ++at) {
-        if (bytes[at] == 0xff && bytes[at + 1] == 0xd9) return true;
-    }
-    return false;
-}
-
-/// Whether the chunks reach the last one and keep their checksums: libpng prints what is wrong.
-bool pngIsWhole(std::span<const unsigned char> bytes) {
-    const auto number = [&](std::size_t at) {
-        return std::size_t{bytes[at]} << 24 | std::size_t{bytes[at + 1]} << 16 |
-               std::size_t{bytes[at + 2]} << 8 | std::size_t{bytes[at + 3]};
-    };
-    constexpr std::size_t around = 12;  // length, name, checksum
-    for (std::size_t at = 8; at + around <= bytes.size();) {
-        const std::size_t length = number(at);
-        if (length > bytes.size() - at - around) return false;
-        const unsigned char* name = bytes.data() + at + 4;
-        if (crc32(0, name, static_cast<uInt>(length + 4)) != number(at + 8 + length)) return false;
-        if (std::equal(name, name + 4, "IEND")) return true;
-        at += around + length;
-    }
-    return false;
-}
-
-std::string firstLine(std::string text) {
-    return text.substr(0, text.find('\n'));
-}
-
-std::string lower(std::string text) {
-    for (char& c : text) {
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    }
-    return text;
-}
 
 // --- six files ------------------------------------------------------------------------------
 
@@ -160,37 +71,33 @@ std::vector<std::string> filesOf(const std::string& path) {
 
 // --- one file -------------------------------------------------------------------------------
 
-/// One file, opened, its header checked.
+/// A file with the channels of a picture of light.
 class PictureReader::File {
 public:
-    explicit File(const std::string& path) : mapped_(path) {
-        const PictureFormat& format = formatOf(mapped_);
-        format_ = format.name;
-        if (format_ == "JPEG" && !jpegIsWhole(mapped_.bytes())) fail("breaks off");
-        if (format_ == "PNG" && !pngIsWhole(mapped_.bytes())) fail("breaks off or is damaged");
-        std::string error;
-        image_.reset(imageModule()(format.plugin, path.c_str(), error));
-        if (!image_) fail(why(error));
-        checkSpec();
+    explicit File(const std::string& path) : picture_(path) {
+        // ImfEnvmap.h turns the faces in another way.
+        if (picture_.environment() == "CubeFace Environment") {
+            picture_.fail(
+                "is an OpenEXR cube, whose faces are turned otherwise; make it latlong with "
+                "exrenvmap");
+        }
         chooseChannels();
     }
 
-    std::size_t width() const { return static_cast<std::size_t>(image_->width); }
-    std::size_t height() const { return static_cast<std::size_t>(image_->height); }
-    const std::string& format() const { return format_; }
-    std::string number() const { return image_->number; }
-    bool wholeNumbers() const { return !image_->floating; }
+    const PictureFile& picture() const { return picture_; }
 
     void forEachRow(std::size_t firstRow, TransferCurve curve, const RowVisitor& visit) {
         const std::vector<float> table = codes(curve);
         const std::size_t stride = static_cast<std::size_t>(last_ - first_);
-        std::vector<float> block(blockRows() * width() * stride), rgb(3 * width());
-        for (std::size_t top = 0; top < height(); top += blockRows()) {
-            const std::size_t bottom = std::min(top + blockRows(), height());
-            readBlock(static_cast<int>(top), static_cast<int>(bottom), block.data());
+        const std::size_t width = picture_.width(), height = picture_.height();
+        const std::size_t rows = picture_.blockRows(stride);
+        std::vector<float> block(rows * width * stride), rgb(3 * width);
+        for (std::size_t top = 0; top < height; top += rows) {
+            const std::size_t bottom = std::min(top + rows, height);
+            picture_.read(top, bottom, first_, last_, block.data());
             for (std::size_t row = top; row < bottom; ++row) {
-                const float* values = block.data() + (row - top) * width() * stride;
-                for (std::size_t column = 0; column < width(); ++column) {
+                const float* values = block.data() + (row - top) * width * stride;
+                for (std::size_t column = 0; column < width; ++column) {
                     for (std::size_t c = 0; c < 3; ++c) {
                         const float value = values[column * stride + channels_[c]];
                         rgb[3 * column + c] = table.empty() ? value : lookedUp(table, value);
@@ -199,68 +106,22 @@ public:
                 visit(firstRow + row, rgb);
             }
         }
-        mapped_.checkIntact();
+        picture_.checkIntact();
     }
 
 private:
-    [[noreturn]] void fail(const std::string& what) const {
-        throw InputError(fmt::format("{}: {}", mapped_.path(), what));
-    }
-    std::string why(const std::string& message) const {
-        return message.empty()
-                   ? fmt::format("is no valid {} file", format_)
-                   : fmt::format("is no valid {} file: {}", format_, firstLine(message));
-    }
-
-    void checkSpec() {
-        const ImageModulePicture& i = *image_;
-        if (i.deep) fail("holds deep data; a picture of light is flat");
-        if (i.width < 1 || i.height < 1 || i.depth > 1) fail("holds no flat picture");
-        const auto pixels =
-            static_cast<std::uint64_t>(i.width) * static_cast<std::uint64_t>(i.height);
-        if (pixels > mostPixels) {
-            fail(fmt::format("has {} x {} pixels; at most {} are read", i.width, i.height,
-                             mostPixels));
-        }
-        if (i.width != i.fullWidth || i.height != i.fullHeight || i.x != i.fullX ||
-            i.y != i.fullY) {
-            fail(fmt::format("holds {} x {} pixels of a picture of {} x {}; all have to be there",
-                             i.width, i.height, i.fullWidth, i.fullHeight));
-        }
-        if (i.orientation != 1) {
-            fail(fmt::format("is stored turned or mirrored (orientation {}); save it upright",
-                             i.orientation));
-        }
-        // ImfEnvmap.h turns the faces in another way.
-        if (i.environment == "CubeFace Environment") {
-            fail(
-                "is an OpenEXR cube, whose faces are turned otherwise; make it latlong with "
-                "exrenvmap");
-        }
-    }
-
     /// R, G and B, or the one channel of a grey picture.
     void chooseChannels() {
-        int found[3] = {-1, -1, -1};
-        const auto& names = image_->channels;
-        for (std::size_t k = 0; k < names.size(); ++k) {
-            const std::string name = lower(names[k]);
-            for (int c = 0; c < 3; ++c) {
-                constexpr std::string_view wanted[] = {"red", "green", "blue"};
-                if (name == wanted[c].substr(0, 1) || name == wanted[c]) {
-                    found[c] = static_cast<int>(k);
-                }
-            }
-        }
-        const auto greyName = [](const std::string& name) {
-            return name == "y" || name == "i" || name == "l" || name == "channel0";
-        };
-        const bool grey = found[0] < 0 && found[1] < 0 && found[2] < 0 && !names.empty() &&
-                          names.size() <= 2 && (names.size() == 1 || greyName(lower(names[0])));
+        int found[3];
+        for (std::size_t c = 0; c < 3; ++c)
+            found[c] = picture_.find(std::string_view("RGB").substr(c, 1));
+        const auto& names = picture_.channels();
+        const bool noColour = found[0] < 0 && found[1] < 0 && found[2] < 0;
+        const bool grey = noColour && (names.size() == 1 || (names.size() == 2 && hasGreyFirst()));
         for (int c = 0; c < 3; ++c) {
             if (grey) found[c] = 0;
             if (found[c] < 0) {
-                fail(
+                picture_.fail(
                     fmt::format("has no channel {}; channels: {}; a picture of light has R, G and "
                                 "B, or Y alone",
                                 "RGB"[c], fmt::join(names, ", ")));
@@ -272,32 +133,17 @@ private:
             channels_[c] = static_cast<std::size_t>(found[c] - first_);
     }
 
-    std::size_t blockRows() const {
-        const std::size_t rowBytes =
-            width() * static_cast<std::size_t>(last_ - first_) * sizeof(float);
-        if (image_->tileHeight > 0) {
-            const auto rows = std::min(static_cast<std::size_t>(image_->tileHeight), height());
-            if (rows * rowBytes > mostTileBytes) {
-                fail(fmt::format("has tiles of {} rows, too many for rows of {} pixels",
-                                 image_->tileHeight, image_->width));
-            }
-            return rows;
-        }
-        return std::clamp(blockBytes / rowBytes, std::size_t{1}, mostBlockRows);
-    }
-
-    void readBlock(int top, int bottom, float* values) {
-        if (image_->read(top, bottom, first_, last_, values)) return;
-        const std::string message = firstLine(image_->error);
-        fail(fmt::format("breaks off or is damaged in rows {} to {}{}{}", top, bottom - 1,
-                         message.empty() ? "" : ": ", message));
+    /// Beside alpha.
+    bool hasGreyFirst() const {
+        return std::ranges::any_of(std::array{"y", "i", "l", "channel0"},
+                                   [&](const char* name) { return picture_.find(name) == 0; });
     }
 
     /// Linear values of the codes of 8 or 16 bits, or of fractions of 1 for other whole numbers;
     /// empty for linear values.
     std::vector<float> codes(TransferCurve curve) const {
         if (curve == TransferCurve::linear) return {};
-        std::vector<float> table(image_->number == "uint8" ? 256 : 65536);
+        std::vector<float> table(picture_.number() == "uint8" ? 256 : 65536);
         for (std::size_t k = 0; k < table.size(); ++k) {
             table[k] = static_cast<float>(
                 decoded(curve, static_cast<double>(k) / static_cast<double>(table.size() - 1)));
@@ -309,9 +155,7 @@ private:
         return table[static_cast<std::size_t>(std::clamp(value * most + 0.5F, 0.0F, most))];
     }
 
-    MappedFile mapped_;
-    std::string format_;
-    std::unique_ptr<ImageModulePicture> image_;
+    PictureFile picture_;
     int first_ = 0, last_ = 0;  ///< channels that are read
     std::array<std::size_t, 3> channels_{};
 };
@@ -319,16 +163,17 @@ private:
 PictureReader::PictureReader(const std::string& path, const PictureOptions& options) : path_(path) {
     for (const std::string& file : filesOf(path)) files_.push_back(std::make_unique<File>(file));
     const File& first = *files_.front();
-    const std::size_t width = first.width(), height = first.height() * files_.size();
+    const std::size_t width = first.picture().width(),
+                      height = first.picture().height() * files_.size();
     for (const auto& file : files_) {
-        if (file->width() != file->height() && files_.size() > 1) {
+        if (file->picture().width() != file->picture().height() && files_.size() > 1) {
             throw InputError(fmt::format("{}: a face of {} x {} pixels is not square", path,
-                                         file->width(), file->height()));
+                                         file->picture().width(), file->picture().height()));
         }
-        if (file->width() != width) {
+        if (file->picture().width() != width) {
             throw InputError(
                 fmt::format("{}: faces of {} and {} pixels; all six have to have one size", path,
-                            width, file->width()));
+                            width, file->picture().width()));
         }
     }
     const auto layout = options.layout ? options.layout : layoutOfSize(width, height);
@@ -344,18 +189,19 @@ PictureReader::PictureReader(const std::string& path, const PictureOptions& opti
         throw InputError(fmt::format("{}: is {} x {} pixels; the layout {} has to be {}", path,
                                      width, height, layoutName(*layout), layoutSizes(*layout)));
     }
-    const bool whole = std::ranges::any_of(files_, [](const auto& f) { return f->wholeNumbers(); });
+    const bool whole =
+        std::ranges::any_of(files_, [](const auto& f) { return f->picture().wholeNumbers(); });
     if (whole && !options.curve) {
         throw InputError(
             fmt::format("{}: its {} values are codes; state their curve, such as srgb or linear",
-                        path, first.number()));
+                        path, first.picture().number()));
     }
     if (!whole && options.curve.value_or(TransferCurve::linear) != TransferCurve::linear) {
         throw InputError(fmt::format("{}: its {} values are linear, not coded by {}", path,
-                                     first.number(), curveName(*options.curve)));
+                                     first.picture().number(), curveName(*options.curve)));
     }
-    facts_ = {.format = first.format(),
-              .number = first.number(),
+    facts_ = {.format = first.picture().format(),
+              .number = first.picture().number(),
               .curve = options.curve.value_or(TransferCurve::linear),
               .geometry = {*layout, width, height}};
 }
@@ -366,7 +212,7 @@ void PictureReader::forEachRow(const RowVisitor& visit) {
     std::size_t row = 0;
     for (const auto& file : files_) {
         file->forEachRow(row, facts_.curve, visit);
-        row += file->height();
+        row += file->picture().height();
     }
 }
 
@@ -398,10 +244,6 @@ double decoded(TransferCurve curve, double v) {
 
 std::span<const FaceNames> faceNames() {
     return faces;
-}
-
-bool hasPictureMagic(std::string_view head) {
-    return std::ranges::any_of(formats, [&](const auto& f) { return starts(head, f); });
 }
 
 bool isPicturePath(std::string_view text) {

@@ -71,9 +71,6 @@ private:
 using FaceNames = std::array<std::string_view, 6>;
 std::span<const FaceNames> faceNames();
 
-/// Whether a file that starts with `head` is of a format that is read.
-bool hasPictureMagic(std::string_view head);
-
 /// Whether a text is the path of a file, or of six with "{face}" or "%s".
 bool isPicturePath(std::string_view text);
 

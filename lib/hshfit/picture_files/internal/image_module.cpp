@@ -1,11 +1,11 @@
 // The module itself: all that is linked to OpenImageIO.
-#include <hshfit/light/internal/image_module.h>
+#include <hshfit/picture_files/internal/image_module.h>
 
 #include <OpenImageIO/imageio.h>
 
 #include <memory>
 
-namespace hshfit::inline light {
+namespace hshfit::inline picture_files {
 namespace {
 
 class Picture : public ImageModulePicture {
@@ -40,7 +40,7 @@ private:
 };
 
 }  // namespace
-}  // namespace hshfit::inline light
+}  // namespace hshfit::inline picture_files
 
 extern "C" [[gnu::visibility("default")]] hshfit::ImageModulePicture* hshfitOpenImage(
     const char* plugin, const char* path, std::string& error) {

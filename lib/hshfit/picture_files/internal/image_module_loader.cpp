@@ -1,5 +1,5 @@
 #include <hshfit/error.h>
-#include <hshfit/light/internal/image_module.h>
+#include <hshfit/picture_files/internal/image_module.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,7 +8,7 @@
 
 #include <filesystem>
 
-namespace hshfit::inline light {
+namespace hshfit::inline picture_files {
 namespace {
 
 constexpr std::string_view moduleName = "libhshfit_openimageio.so";
@@ -46,7 +46,7 @@ ImageModuleFunction* load() {
         if (message && std::filesystem::exists(path, error)) reason = message;
     }
     throw InputError(
-        fmt::format("pictures of light cannot be read: the module "
+        fmt::format("pictures cannot be read: the module "
                     "libhshfit_openimageio.so (Debian package hshfit-pictures) belongs beside "
                     "the program or in ../lib/hshfit: {}",
                     reason));
@@ -59,4 +59,4 @@ ImageModuleFunction& imageModule() {
     return *function;
 }
 
-}  // namespace hshfit::inline light
+}  // namespace hshfit::inline picture_files

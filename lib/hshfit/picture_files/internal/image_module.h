@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace hshfit::inline light {
+namespace hshfit::inline picture_files {
 
 /// A picture as OpenImageIO opened it. OpenImageIO and its libraries take some tenths of a second
 /// to load, so that they are linked to a module (image_module.cpp) that the first picture loads.
@@ -35,4 +35,4 @@ using ImageModuleFunction = ImageModulePicture*(const char* plugin, const char* 
 /// That function. Throws InputError where the module, a file beside the program, is missing.
 ImageModuleFunction& imageModule();
 
-}  // namespace hshfit::inline light
+}  // namespace hshfit::inline picture_files

@@ -1,0 +1,219 @@
+#include "command.h"
+#include "documents.h"
+
+#include <hshfit/error.h>
+#include <hshfit/files/json_fields.h>
+#include <hshfit/material_maps/texel_encoder.h>
+
+#include <jobs/quality.h>
+#include <jobs/svbrdf/svbrdf.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace hshfit::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct SvbrdfArguments {
+    std::string description, output;
+    std::string mips = "reflectance";
+    std::size_t memoryMegabytes = 1024;
+    jobs::SvbrdfOptions options;
+};
+
+double megabytes(std::size_t bytes) {
+    return static_cast<double>(bytes) / 1e6;
+}
+
+Json jsonOf(const jobs::MapChoice& choice) {
+    return {{"form", choice.form},
+            {"count", choice.count},
+            {"bytes_per_texel", choice.bytesOfTexel},
+            {"shared_bytes", choice.sharedBytes},
+            {"error",
+             {{"mean", choice.errors.mean},
+              {"percentile_99", choice.errors.percentile99},
+              {"maximum", choice.errors.maximum}}}};
+}
+
+Json levelsJson(const jobs::Svbrdf& done) {
+    Json levels = Json::array();
+    for (std::size_t level = 0; level < done.levels.size(); ++level) {
+        const LevelErrors& errors = done.errors[level];
+        Json json = {{"width", done.levels[level].width},
+                     {"height", done.levels[level].height},
+                     {"error",
+                      {{"mean", errors.mean},
+                       {"maximum", errors.maximum},
+                       {"column", errors.column},
+                       {"row", errors.row}}}};
+        for (const jobs::LevelCheck& check : done.checks) {
+            if (check.level != level) continue;
+            json["against_samples"] = {
+                {"texels", check.texels},
+                {"stored", {{"mean", check.stored}, {"maximum", check.storedMaximum}}},
+                {"parameters", {{"mean", check.parameters}, {"maximum", check.parametersMaximum}}}};
+        }
+        levels.push_back(std::move(json));
+    }
+    return levels;
+}
+
+Json jsonOf(const jobs::Svbrdf& done) {
+    Json choices = Json::array();
+    for (const jobs::MapChoice& choice : done.choices) choices.push_back(jsonOf(choice));
+    return {
+        {"format", "hshfit-svbrdf-answer"},
+        {"version", 1},
+        {"description", done.description},
+        {"model", done.model},
+        {"width", done.width},
+        {"height", done.height},
+        {"isotropic", done.isotropic},
+        {"outgoing", done.outgoing},
+        {"lobes", done.lobes},
+        {"table", {{"axes", done.axes}, {"nodes", done.tableNodes}, {"error", done.tableError}}},
+        {"form", done.form},
+        {"count", done.count},
+        {"choices", choices},
+        {"levels", levelsJson(done)},
+        {"bytes", done.bytes},
+        {"seconds", {{"preparation", done.tableSeconds}, {"writing", done.seconds}}},
+        {"texels_per_second", {{"written", done.rate}, {"kernel", done.kernelRate}}},
+        {"files", done.files}};
+}
+
+std::string textOf(const jobs::MapChoice& choice) {
+    return fmt::format(
+        "  {:<10} {:>6}  {:>8.4g} bytes a texel{}, error {} mean, {} of 99 %, {} at "
+        "most\n",
+        choice.form, choice.count, choice.bytesOfTexel,
+        choice.sharedBytes > 0 ? fmt::format(" and {:.3g} MB", megabytes(choice.sharedBytes)) : "",
+        jobs::percent(choice.errors.mean, 2), jobs::percent(choice.errors.percentile99, 2),
+        jobs::percent(choice.errors.maximum, 2));
+}
+
+std::string levelText(const jobs::Svbrdf& done, std::size_t level) {
+    const LevelErrors& errors = done.errors[level];
+    std::string text = fmt::format("  level {:>2}: {} x {}", level, done.levels[level].width,
+                                   done.levels[level].height);
+    if (done.form != "outgoing") {
+        text += fmt::format(", error of the form {} mean, {} at most at ({}, {})",
+                            jobs::percent(errors.mean, 2), jobs::percent(errors.maximum, 2),
+                            errors.column, errors.row);
+    }
+    for (const jobs::LevelCheck& check : done.checks) {
+        if (check.level != level) continue;
+        text += fmt::format(
+            "; against samples of the reflectance {} mean, {} at most (averaged parameters: {}, "
+            "{})",
+            jobs::percent(check.stored, 2), jobs::percent(check.storedMaximum, 2),
+            jobs::percent(check.parameters, 2), jobs::percent(check.parametersMaximum, 2));
+    }
+    return text + "\n";
+}
+
+std::string textOf(const jobs::Svbrdf& done) {
+    std::string text = fmt::format(
+        "{}: {} x {} texels of {}, {} outgoing directions; lobes {}{}\n", done.description,
+        done.width, done.height, done.model, done.outgoing, fmt::join(done.lobes, ", "),
+        done.axes.empty()
+            ? ""
+            : fmt::format(" at {} nodes over {}, error {}", done.tableNodes,
+                          fmt::join(done.axes, ", "), jobs::percent(done.tableError, 2)));
+    if (done.choices.size() > 1) {
+        text += "forms, relative to the norm of a texel, over sampled texels:\n";
+        for (const jobs::MapChoice& choice : done.choices) text += textOf(choice);
+    }
+    text +=
+        fmt::format("{}{}, {:.4g} MB, {:.1f} s ({:.3g} texels a second; the bare kernel {:.3g})\n",
+                    done.form, done.count > 0 ? fmt::format(" {}", done.count) : "",
+                    megabytes(done.bytes), done.seconds, done.rate, done.kernelRate);
+    for (std::size_t level = 0; level < done.levels.size(); ++level) text += levelText(done, level);
+    for (const std::string& file : done.files) text += fmt::format("  {}\n", file);
+    return text;
+}
+
+void runSvbrdf(SvbrdfArguments& arguments, const Globals& globals) {
+    jobs::SvbrdfOptions& options = arguments.options;
+    options.mips = arguments.mips == "reflectance";
+    options.memory = arguments.memoryMegabytes << 20;
+    if (options.precision == "half") options.precision = "float16";
+    if (options.rank > 0 && options.form == "outgoing")
+        throw UsageError("--rank belongs to --form low-rank or clusters");
+    const jobs::Svbrdf done =
+        jobs::svbrdf(arguments.description, arguments.output, options, listenerFor(globals));
+    if (globals.json) return printJson(jsonOf(done));
+    printText(textOf(done));
+}
+
+}  // namespace
+
+void addSvbrdf(CLI::App& command, Globals& globals) {
+    auto arguments = std::make_shared<SvbrdfArguments>();
+    jobs::SvbrdfOptions& options = arguments->options;
+    command
+        .add_option("DESCRIPTION", arguments->description,
+                    "A model and its parameters, numbers or maps, as JSON")
+        ->required();
+    command
+        .add_option("-o,--output", arguments->output,
+                    "Folder for material.ktx2, material.json and errors.png")
+        ->required();
+    command
+        .add_option("--form", options.form,
+                    "outgoing: all coefficients; low-rank: weights of shared shapes; clusters: "
+                    "the index of a shared material")
+        ->check(CLI::IsMember({"outgoing", "low-rank", "clusters"}))
+        ->capture_default_str();
+    command.add_option("--basis", options.basis, "Basis over incoming directions")
+        ->capture_default_str();
+    command.add_option("--order", options.order, "Bands of the basis")
+        ->check(CLI::Range(1, 32))
+        ->capture_default_str();
+    command.add_option("--outgoing", options.outgoing,
+                       "Outgoing directions: N elevations, or WxH (default: 8 elevations where all "
+                       "texels are isotropic, else 8x8)");
+    command.add_flag("--cosine", options.cosine, "Coefficients of f cos(theta_i) instead of f");
+    command.add_option("--precision", options.precision, "Numbers of the texture: half or float32")
+        ->check(CLI::IsMember({"half", "float16", "float32"}))
+        ->default_str("half");
+    command
+        .add_option("--tolerance", options.tolerance,
+                    "Relative error of lobes between the nodes of their table")
+        ->check(CLI::Range(1e-6, 0.1))
+        ->capture_default_str();
+    command.add_option("--rank", options.rank, "Shared shapes (default: by --error)")
+        ->check(CLI::Range(1, 4096));
+    command
+        .add_option("--error", options.error,
+                    "With --form low-rank or clusters: the largest relative error that shared "
+                    "shapes may leave in a sampled texel")
+        ->check(CLI::Range(1e-6, 1.0))
+        ->capture_default_str();
+    command.add_option("--clusters", options.clusters, "Shared materials of --form clusters")
+        ->check(CLI::Range(std::size_t{1}, ClusterEncoder::most))
+        ->capture_default_str();
+    command
+        .add_option("--mips", arguments->mips,
+                    "reflectance: levels of averaged reflectance; none: level 0 alone")
+        ->check(CLI::IsMember({"reflectance", "none"}))
+        ->capture_default_str();
+    command
+        .add_option("--checks", options.checks,
+                    "Texels of each level that are measured against the texels that they stand for")
+        ->check(CLI::Range(0, 4096))
+        ->capture_default_str();
+    command
+        .add_option("--memory", arguments->memoryMegabytes, "MiB that bands of the map may take")
+        ->check(CLI::Range(16, 1 << 20))
+        ->capture_default_str();
+    command.add_flag("--force", options.force, "Replace existing files");
+    command.callback([arguments, &globals] { runSvbrdf(*arguments, globals); });
+}
+
+}  // namespace hshfit::cli

@@ -1,0 +1,90 @@
+#pragma once
+
+#include "../listener.h"
+
+#include <hshfit/coefficients/coefficients.h>
+#include <hshfit/material_maps/map_writer.h>
+#include <hshfit/material_maps/reduction.h>
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hshfit::jobs {
+
+/// Processes that share the bands of a map (jobs/svbrdf/mpi_dealer.h); one is all there is without.
+struct MapTeam {
+    std::size_t rank = 0, size = 1;
+    std::function<std::unique_ptr<BandDealer>(std::size_t bands)> dealer = {};
+    /// The text of the first process, in all; every process calls it.
+    std::function<std::string(const std::string&)> tell = {};
+};
+
+struct SvbrdfOptions {
+    std::string form = "outgoing";  ///< "outgoing", "low-rank" or "clusters"
+    std::string basis = "hsh";
+    int order = 4;
+    std::string outgoing;  ///< OutgoingSet::parse; empty: 8 elevations if isotropic, else 8x8
+    bool cosine = false;   ///< f cos(theta_i) instead of f
+    std::string precision = "float16";  ///< or "float32"; clusters have bytes
+    double tolerance = 1e-3;            ///< of the table of lobes, relative
+    std::size_t rank = 0;               ///< shared shapes; 0: as many as `error` takes
+    double error = 0.01;                ///< the largest error of a sampled texel, relative
+    std::size_t clusters = 256;
+    bool mips = true;
+    bool force = false;
+    std::size_t memory = std::size_t{1} << 30;  ///< bytes for bands
+    std::size_t samples = 32768;                ///< texels that shapes and clusters are made from
+    std::size_t checks = 16;                    ///< texels of each level that are measured
+    MapTeam team = {};
+};
+
+/// A form and its cost and error over sampled texels.
+struct MapChoice {
+    std::string form = {};
+    std::size_t count = 0;  ///< shared shapes, or materials
+    double bytesOfTexel = 0;
+    std::size_t sharedBytes = 0;
+    TexelErrors errors = {};
+};
+
+/// The distance of texels of a level from the mean of up to 1,024 texels that they stand for,
+/// relative to its norm, in coefficients (over all incoming and outgoing directions).
+struct LevelCheck {
+    std::size_t level = 0, texels = 0;
+    double stored = 0, storedMaximum = 0;          ///< as written
+    double parameters = 0, parametersMaximum = 0;  ///< of averaged parameters
+};
+
+struct Svbrdf {
+    std::string description = {}, model = {}, folder = {};
+    std::size_t width = 0, height = 0;
+    std::vector<std::string> lobes = {}, axes = {};
+    bool isotropic = false;
+    std::string outgoing = {};
+    std::size_t tableNodes = 0;
+    double tableError = 0;
+    std::string form = {};
+    std::size_t count = 0;  ///< shared shapes, or materials
+    std::vector<MapChoice> choices = {};
+    std::vector<LevelSize> levels = {};
+    std::vector<LevelErrors> errors = {};
+    std::vector<LevelCheck> checks = {};
+    std::size_t bytes = 0;
+    double tableSeconds = 0, kernelSeconds = 0, seconds = 0;
+    double kernelRate = 0;  ///< texels per second of the bare kernel, on all threads
+    double rate = 0;        ///< texels of level 0 per second of writing
+    std::vector<std::string> files = {};
+};
+
+/// A description of materials by maps as a coefficient texture with mip levels, in FOLDER:
+/// material.ktx2, material.json and errors.png. All maps are read and checked before anything is
+/// written. The same bytes for any number of threads and processes. Throws UsageError, InputError,
+/// NumericError and OutputError. Processes but the first return what they know.
+Svbrdf svbrdf(const std::string& description, const std::string& folder,
+              const SvbrdfOptions& options, const Listener& listener = {});
+
+}  // namespace hshfit::jobs

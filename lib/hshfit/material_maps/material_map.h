@@ -1,0 +1,35 @@
+#pragma once
+
+#include <hshfit/coefficients/coefficients.h>
+#include <hshfit/files/mapped_file.h>
+#include <hshfit/material_maps/map_sidecar.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace hshfit::inline material_maps {
+
+/// A written map, of which single texels are read.
+class MaterialMap {
+public:
+    /// `sidecar` is the path of the JSON file. Throws InputError for one that is invalid, and for a
+    /// texture file whose head says something else.
+    explicit MaterialMap(const std::string& sidecar);
+
+    const MapSidecar& sidecar() const { return sidecar_; }
+    /// The numbers of a texel as a GPU reads them: [layer * 4 + lane].
+    std::vector<double> numbers(std::size_t level, std::size_t column, std::size_t row) const;
+    /// Its coefficients. Throws UsageError for a texel or a level that the map does not have.
+    Coefficients coefficients(std::size_t level, std::size_t column, std::size_t row) const;
+    /// Throws InputError if the texture file was changed since it was opened.
+    void checkIntact() const { texture_.checkIntact(); }
+
+private:
+    std::string file_;
+    MapSidecar sidecar_;
+    MappedFile texture_;
+    std::vector<std::size_t> offsets_;  ///< of levels
+};
+
+}  // namespace hshfit::inline material_maps

@@ -1,0 +1,212 @@
+#include <hshfit/vector_targets.h>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "hshfit/material_maps/texel_kernel.cpp"
+#include <hwy/foreach_target.h>
+
+#include <hshfit/material_maps/texel_kernel.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#ifndef HSHFIT_TEXEL_MIXTURE
+#define HSHFIT_TEXEL_MIXTURE
+namespace hshfit::inline material_maps {
+
+/// The lobes of a texel and how they make its channels.
+struct Mixture {
+    const float* shapes;   ///< [place][lobe][outgoing][slot]
+    std::size_t pitch;     ///< from the shapes of a channel to those of the next; 0: one for all
+    const float* weights;  ///< [lobe][channel]
+    std::size_t lobes, channels, outgoing, slots, stride;
+};
+
+}  // namespace hshfit::inline material_maps
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace hshfit::inline material_maps {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Tag = hn::CappedTag<float, 16>;
+
+/// sum[i] = sum over the nodes of a place of weight * row[i]; both have room beyond `count`.
+void interpolate(const float* values, std::size_t stride, const LobeTable::Place& place,
+                 std::size_t count, float* sum) {
+    const Tag d;
+    const std::size_t lanes = hn::Lanes(d);
+    for (std::size_t i = 0; i < count; i += lanes) {
+        auto total = hn::Zero(d);
+        for (std::uint32_t k = 0; k < place.count; ++k) {
+            total = hn::MulAdd(hn::Set(d, place.weight[k]),
+                               hn::LoadU(d, values + place.row[k] * stride + i), total);
+        }
+        hn::StoreU(total, d, sum + i);
+    }
+}
+
+/// to[i] = sum over lobes of weight[lobe * step] * shape[lobe * length + i], i < count, and beyond
+/// it up to a vector.
+void combine(const float* shape, std::size_t length, const float* weight, std::size_t step,
+             std::size_t lobes, std::size_t count, float* to) {
+    const Tag d;
+    const std::size_t lanes = hn::Lanes(d);
+    for (std::size_t i = 0; i < count; i += lanes) {
+        auto total = hn::Zero(d);
+        for (std::size_t k = 0; k < lobes; ++k) {
+            total = hn::MulAdd(hn::Set(d, weight[k * step]), hn::LoadU(d, shape + k * length + i),
+                               total);
+        }
+        hn::StoreU(total, d, to + i);
+    }
+}
+
+/// A whole texel. Vectors write beyond the slots of a channel, over values that come later.
+void mix(const Mixture& m, float* texel) {
+    for (std::size_t o = 0; o < m.outgoing; ++o) {
+        float* to = texel + o * m.stride;
+        for (std::size_t c = 0; c < m.channels; ++c) {
+            combine(m.shapes + c * m.pitch + o * m.slots, m.outgoing * m.slots, m.weights + c,
+                    m.channels, m.lobes, m.slots, to + c * m.slots);
+        }
+        std::fill(to + m.channels * m.slots, to + m.stride, 0.0F);
+    }
+}
+
+HalfRange halfLayers(const float* texels, std::size_t count, std::size_t layers, std::uint16_t* out,
+                     std::size_t pitch) {
+    const hn::CappedTag<float, 4> d;  // one lane where there are no vectors
+    const hn::Rebind<hwy::float16_t, decltype(d)> half;
+    const std::size_t lanes = hn::Lanes(d);
+    auto largest = hn::Zero(d);
+    bool good = true;
+    for (std::size_t t = 0; t < count; ++t) {
+        const float* texel = texels + t * layers * 4;
+        auto ordered = hn::Eq(largest, largest);
+        for (std::size_t k = 0; k < layers; ++k) {
+            for (std::size_t lane = 0; lane < 4; lane += lanes) {
+                const auto value = hn::LoadU(d, texel + 4 * k + lane);
+                largest = hn::Max(largest, hn::Abs(value));
+                ordered = hn::And(ordered, hn::Eq(value, value));
+                hn::StoreU(hn::DemoteTo(half, value), half,
+                           reinterpret_cast<hwy::float16_t*>(out + 4 * (k * pitch + t) + lane));
+            }
+        }
+        good = good && hn::AllTrue(d, ordered);
+    }
+    float each[4] = {};
+    hn::StoreU(largest, d, each);
+    const float most = *std::max_element(each, each + 4);
+    return {most, good && most <= std::numeric_limits<float>::max()};
+}
+
+/// The nearest of points in columns; `count` is a multiple of 16.
+Nearest nearestOf(const float* columns, std::size_t dimensions, std::size_t count,
+                  const float* point) {
+    const Tag d;
+    const hn::RebindToUnsigned<Tag> whole;
+    const std::size_t lanes = hn::Lanes(d);
+    auto best = hn::Set(d, std::numeric_limits<float>::max());
+    auto bestIndex = hn::Zero(whole);
+    for (std::size_t i = 0; i < count; i += lanes) {
+        auto square = hn::Zero(d);
+        for (std::size_t k = 0; k < dimensions; ++k) {
+            const auto off = hn::Sub(hn::LoadU(d, columns + k * count + i), hn::Set(d, point[k]));
+            square = hn::MulAdd(off, off, square);
+        }
+        const auto nearer = hn::Lt(square, best);
+        best = hn::IfThenElse(nearer, square, best);
+        bestIndex = hn::IfThenElse(hn::RebindMask(whole, nearer),
+                                   hn::Set(whole, static_cast<std::uint32_t>(i)), bestIndex);
+    }
+    float squares[16];
+    std::uint32_t starts[16];
+    hn::StoreU(best, d, squares);
+    hn::StoreU(bestIndex, whole, starts);
+    Nearest nearest{starts[0], squares[0]};
+    for (std::uint32_t k = 1; k < lanes; ++k) {
+        const std::uint32_t index = starts[k] + k;
+        if (squares[k] < nearest.square || (squares[k] == nearest.square && index < nearest.index))
+            nearest = {index, squares[k]};
+    }
+    return nearest;
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace hshfit::inline material_maps
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace hshfit::inline material_maps {
+
+HWY_EXPORT(interpolate);
+HWY_EXPORT(mix);
+HWY_EXPORT(halfLayers);
+HWY_EXPORT(nearestOf);
+
+namespace {
+constexpr std::size_t slack = 16;
+}
+
+TexelKernel::TexelKernel(const LobeTable& table, const TexelLayout& layout, bool placesByChannel)
+    : table_(table), layout_(layout), placesByChannel_(placesByChannel) {}
+
+void TexelKernel::run(const TexelBlock& block, float* out) const {
+    const std::size_t channels = layout_.channels;
+    const std::size_t lobes = table_.lobes(), shape = layout_.shape();
+    const std::size_t places = placesByChannel_ ? channels : 1;
+    const std::size_t shapesLength = lobes * shape + slack;
+    std::vector<float> shapes(places * shapesLength), weights(lobes * channels);
+    std::vector<float> texel(layout_.floats() + slack);
+    float p[3];
+    LobeTable::Place place;
+    const Mixture mixture{.shapes = shapes.data(),
+                          .pitch = places > 1 ? shapesLength : 0,
+                          .weights = weights.data(),
+                          .lobes = lobes,
+                          .channels = channels,
+                          .outgoing = layout_.outgoing.size(),
+                          .slots = layout_.slots.size(),
+                          .stride = layout_.stride()};
+    for (std::size_t t = 0; t < block.count; ++t) {
+        for (std::size_t k = 0; k < weights.size(); ++k)
+            weights[k] = block.weights[k * block.count + t];
+        for (std::size_t c = 0; c < places; ++c) {
+            for (std::size_t a = 0; a < table_.axes(); ++a)
+                p[a] = block.places[(a * places + c) * block.count + t];
+            table_.find(p, place);
+            HWY_DYNAMIC_DISPATCH(interpolate)
+            (table_.values().data(), table_.rowStride(), place, lobes * shape,
+             shapes.data() + c * shapesLength);
+        }
+        HWY_DYNAMIC_DISPATCH(mix)(mixture, texel.data());
+        std::copy_n(texel.data(), layout_.floats(), out + t * layout_.floats());
+    }
+}
+
+HalfRange toHalfLayers(const float* texels, std::size_t count, std::size_t layers,
+                       std::uint16_t* out, std::size_t pitch) {
+    return HWY_DYNAMIC_DISPATCH(halfLayers)(texels, count, layers, out, pitch);
+}
+
+NearestPoint::NearestPoint(std::span<const float> points, std::size_t dimensions)
+    : dimensions_(dimensions),
+      count_(points.size() / dimensions),
+      padded_((count_ + 15) / 16 * 16),
+      columns_(padded_ * dimensions, 1e18F) {
+    for (std::size_t i = 0; i < count_; ++i)
+        for (std::size_t k = 0; k < dimensions_; ++k)
+            columns_[k * padded_ + i] = points[i * dimensions_ + k];
+}
+
+Nearest NearestPoint::operator()(const float* point) const {
+    return HWY_DYNAMIC_DISPATCH(nearestOf)(columns_.data(), dimensions_, padded_, point);
+}
+
+}  // namespace hshfit::inline material_maps
+#endif

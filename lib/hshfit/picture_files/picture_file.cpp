@@ -1,0 +1,210 @@
+#include <hshfit/picture_files/picture_file.h>
+
+#include <hshfit/error.h>
+#include <hshfit/files/mapped_file.h>
+#include <hshfit/picture_files/internal/image_module.h>
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+
+namespace hshfit::inline picture_files {
+namespace {
+
+constexpr std::uint64_t mostPixels = std::uint64_t{1} << 28;
+constexpr std::size_t blockBytes = std::size_t{1} << 24;
+constexpr std::size_t mostTileBytes = std::size_t{1} << 28;
+constexpr std::size_t mostBlockRows = 256;  // as many as any compression of OpenEXR joins
+
+struct PictureFormat {
+    const char* plugin;  ///< of OpenImageIO
+    std::string_view name;
+    std::string_view start;
+};
+constexpr PictureFormat formats[] = {
+    {"openexr", "OpenEXR", {"\x76\x2f\x31\x01", 4}},
+    {"hdr", "Radiance HDR", "#?"},
+    {"png", "PNG", {"\x89PNG\r\n\x1a\n", 8}},
+    {"jpeg", "JPEG", "\xff\xd8\xff"},
+    {"tiff", "TIFF", {"II*\0", 4}},
+    {"tiff", "TIFF", {"MM\0*", 4}},
+    {"bmp", "BMP", "BM"},
+    {"pnm", "PNM", "P5"},
+    {"pnm", "PNM", "P6"},
+    {"pnm", "PFM", "PF"},
+    {"pnm", "PFM", "Pf"},
+};
+
+/// Two letters say little: white space follows those of PNM, and zeros the length in a BMP file.
+bool starts(std::string_view head, const PictureFormat& format) {
+    if (!head.starts_with(format.start)) return false;
+    if (format.start[0] == 'P') return head.size() > 2 && (head[2] == '\n' || head[2] == ' ');
+    if (format.start == "BM")
+        return head.size() > 9 && head.substr(6, 4) == std::string_view("\0\0\0\0", 4);
+    return true;
+}
+
+const PictureFormat& formatOf(const MappedFile& file) {
+    const std::string_view head(reinterpret_cast<const char*>(file.data()), file.size());
+    for (const PictureFormat& format : formats) {
+        if (starts(head, format)) return format;
+    }
+    throw InputError(
+        fmt::format("{}: of no known picture format; known: OpenEXR, Radiance HDR, "
+                    "PNG, JPEG, TIFF, BMP, PNM, PFM",
+                    file.path()));
+}
+
+/// Whether compressed data reach the marker of the end: libjpeg makes up what is missing.
+bool jpegIsWhole(std::span<const unsigned char> bytes) {
+    std::size_t at = 2;  // the segments before the first scan
+    while (at + 4 <= bytes.size() && bytes[at] == 0xff && bytes[at + 1] != 0xda) {
+        at += 2 + 256 * std::size_t{bytes[at + 2]} + bytes[at + 3];
+    }
+    for (; at + 1 < bytes.size(); ++at) {
+        if (bytes[at] == 0xff && bytes[at + 1] == 0xd9) return true;
+    }
+    return false;
+}
+
+/// Whether the chunks reach the last one and keep their checksums: libpng prints what is wrong.
+bool pngIsWhole(std::span<const unsigned char> bytes) {
+    const auto number = [&](std::size_t at) {
+        return std::size_t{bytes[at]} << 24 | std::size_t{bytes[at + 1]} << 16 |
+               std::size_t{bytes[at + 2]} << 8 | std::size_t{bytes[at + 3]};
+    };
+    constexpr std::size_t around = 12;  // length, name, checksum
+    for (std::size_t at = 8; at + around <= bytes.size();) {
+        const std::size_t length = number(at);
+        if (length > bytes.size() - at - around) return false;
+        const unsigned char* name = bytes.data() + at + 4;
+        if (crc32(0, name, static_cast<uInt>(length + 4)) != number(at + 8 + length)) return false;
+        if (std::equal(name, name + 4, "IEND")) return true;
+        at += around + length;
+    }
+    return false;
+}
+
+std::string firstLine(std::string text) {
+    return text.substr(0, text.find('\n'));
+}
+
+std::string lower(std::string text) {
+    for (char& c : text) {
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    }
+    return text;
+}
+
+}  // namespace
+
+struct PictureFile::State {
+    explicit State(const std::string& path) : mapped(path) {}
+    MappedFile mapped;
+    std::string_view format;
+    std::unique_ptr<ImageModulePicture> image;
+};
+
+PictureFile::PictureFile(const std::string& path) : state_(std::make_unique<State>(path)) {
+    const PictureFormat& format = formatOf(state_->mapped);
+    state_->format = format.name;
+    if (format.name == "JPEG" && !jpegIsWhole(state_->mapped.bytes())) fail("breaks off");
+    if (format.name == "PNG" && !pngIsWhole(state_->mapped.bytes()))
+        fail("breaks off or is damaged");
+    std::string error;
+    state_->image.reset(imageModule()(format.plugin, path.c_str(), error));
+    if (!state_->image) {
+        fail(fmt::format("is no valid {} file{}{}", format.name, error.empty() ? "" : ": ",
+                         firstLine(error)));
+    }
+    const ImageModulePicture& i = *state_->image;
+    if (i.deep) fail("holds deep data; the picture has to be flat");
+    if (i.width < 1 || i.height < 1 || i.depth > 1) fail("holds no flat picture");
+    const auto pixels = static_cast<std::uint64_t>(i.width) * static_cast<std::uint64_t>(i.height);
+    if (pixels > mostPixels) {
+        fail(fmt::format("has {} x {} pixels; at most {} are read", i.width, i.height, mostPixels));
+    }
+    if (i.width != i.fullWidth || i.height != i.fullHeight || i.x != i.fullX || i.y != i.fullY) {
+        fail(fmt::format("holds {} x {} pixels of a picture of {} x {}; all have to be there",
+                         i.width, i.height, i.fullWidth, i.fullHeight));
+    }
+    if (i.orientation != 1) {
+        fail(fmt::format("is stored turned or mirrored (orientation {}); save it upright",
+                         i.orientation));
+    }
+}
+
+PictureFile::~PictureFile() = default;
+
+const std::string& PictureFile::path() const {
+    return state_->mapped.path();
+}
+std::size_t PictureFile::width() const {
+    return static_cast<std::size_t>(state_->image->width);
+}
+std::size_t PictureFile::height() const {
+    return static_cast<std::size_t>(state_->image->height);
+}
+std::string PictureFile::format() const {
+    return std::string(state_->format);
+}
+std::string PictureFile::number() const {
+    return state_->image->number;
+}
+bool PictureFile::wholeNumbers() const {
+    return !state_->image->floating;
+}
+std::string PictureFile::environment() const {
+    return state_->image->environment;
+}
+const std::vector<std::string>& PictureFile::channels() const {
+    return state_->image->channels;
+}
+
+int PictureFile::find(std::string_view channel) const {
+    constexpr std::array<std::string_view, 4> colours{"red", "green", "blue", "alpha"};
+    const std::string wanted = lower(std::string(channel));
+    const auto& names = channels();
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        const std::string name = lower(names[k]);
+        const bool colour =
+            std::ranges::find(colours, name) != colours.end() && name.substr(0, 1) == wanted;
+        if (name == wanted || colour) return static_cast<int>(k);
+    }
+    return -1;
+}
+
+std::size_t PictureFile::blockRows(std::size_t channels) const {
+    const std::size_t rowBytes = width() * channels * sizeof(float);
+    const int tile = state_->image->tileHeight;
+    if (tile == 0) return std::clamp(blockBytes / rowBytes, std::size_t{1}, mostBlockRows);
+    const auto rows = std::min(static_cast<std::size_t>(tile), height());
+    if (rows * rowBytes > mostTileBytes) {
+        fail(fmt::format("has tiles of {} rows, too many for rows of {} pixels", tile, width()));
+    }
+    return rows;
+}
+
+void PictureFile::read(std::size_t top, std::size_t bottom, int first, int last, float* out) {
+    ImageModulePicture& image = *state_->image;
+    if (image.read(static_cast<int>(top), static_cast<int>(bottom), first, last, out)) return;
+    const std::string message = firstLine(image.error);
+    fail(fmt::format("breaks off or is damaged in rows {} to {}{}{}", top, bottom - 1,
+                     message.empty() ? "" : ": ", message));
+}
+
+void PictureFile::checkIntact() const {
+    state_->mapped.checkIntact();
+}
+
+void PictureFile::fail(const std::string& what) const {
+    throw InputError(fmt::format("{}: {}", path(), what));
+}
+
+bool hasPictureMagic(std::string_view head) {
+    return std::ranges::any_of(formats, [&](const auto& f) { return starts(head, f); });
+}
+
+}  // namespace hshfit::inline picture_files

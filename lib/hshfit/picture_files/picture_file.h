@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::inline picture_files {
+
+/// A flat picture file through OpenImageIO, a few rows in memory at a time: OpenEXR, Radiance HDR,
+/// PNG, JPEG, TIFF, BMP, PNM and PFM, told apart by their first bytes; at most 2^28 pixels,
+/// upright, with a data window that is the whole picture. Row 0 is at the top. One thread at a
+/// time.
+///
+/// Throws InputError that starts with the path for a file that is absent, of no known format, cut
+/// short or damaged as far as its header, its checksums (PNG) and its end (JPEG) tell; `read`
+/// finds the rest.
+class PictureFile {
+public:
+    explicit PictureFile(const std::string& path);
+    ~PictureFile();
+    PictureFile(const PictureFile&) = delete;
+    PictureFile& operator=(const PictureFile&) = delete;
+
+    const std::string& path() const;
+    std::size_t width() const;
+    std::size_t height() const;
+    std::string format() const;       ///< "OpenEXR", "Radiance HDR", "PNG", …
+    std::string number() const;       ///< "half", "float", "uint8", …
+    bool wholeNumbers() const;        ///< values are fractions of the largest code, 0 to 1
+    std::string environment() const;  ///< of an OpenEXR environment map: the kind
+    const std::vector<std::string>& channels() const;
+    /// The index of a channel, by its name in any case or, for R, G, B and A, by "red", …; none
+    /// where there is no such channel.
+    int find(std::string_view channel) const;
+
+    /// Rows to read at a time: those of a row of tiles, else as many as fit into 16 MiB for
+    /// `channels` channels, at most 256.
+    std::size_t blockRows(std::size_t channels) const;
+    /// Rows [top, bottom) of channels [first, last): out[row][column][channel], values as stored.
+    /// `top` and `bottom` lie on multiples of `blockRows` or at the end of the picture.
+    void read(std::size_t top, std::size_t bottom, int first, int last, float* out);
+
+    /// Throws InputError if the file was changed since it was opened.
+    void checkIntact() const;
+    [[noreturn]] void fail(const std::string& what) const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// Whether a file that starts with `head` is of a format that is read.
+bool hasPictureMagic(std::string_view head);
+
+}  // namespace hshfit::inline picture_files
