@@ -3,7 +3,7 @@
 #include "parameter_maps.h"
 
 #include <hshfit/bases/basis.h>
-#include <hshfit/material_maps/lobe_table.h>
+#include <hshfit/material_maps/lobe_grid.h>
 #include <hshfit/material_maps/lobe_texels.h>
 #include <hshfit/material_maps/texel_layout.h>
 #include <hshfit/projection/projection.h>

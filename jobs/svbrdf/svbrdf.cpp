@@ -66,7 +66,7 @@ struct Work {
     ModelLobes lobes;
     std::unique_ptr<Basis> basis;
     TexelLayout layout;
-    LobeTable table;
+    LobeGrid table;
     ModelRows rows;
     LobeTexels texels;
     TexelKernel kernel;

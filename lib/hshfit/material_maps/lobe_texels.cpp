@@ -32,7 +32,7 @@ private:
 
 }  // namespace
 
-LobeTexels::LobeTexels(ParameterRows& rows, const LobeTable& table, const TexelLayout& layout,
+LobeTexels::LobeTexels(ParameterRows& rows, const LobeGrid& table, const TexelLayout& layout,
                        bool placesByChannel)
     : rows_(rows), layout_(layout), kernel_(table, layout, placesByChannel) {}
 

@@ -23,7 +23,7 @@ public:
 class LobeTexels final : public TexelSource {
 public:
     /// All references have to outlive this.
-    LobeTexels(ParameterRows& rows, const LobeTable& table, const TexelLayout& layout,
+    LobeTexels(ParameterRows& rows, const LobeGrid& table, const TexelLayout& layout,
                bool placesByChannel);
 
     std::size_t width() const override { return rows_.width(); }

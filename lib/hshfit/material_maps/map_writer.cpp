@@ -298,19 +298,20 @@ MapWritten writeMap(TexelSource& source, const TexelEncoder& encoder, LevelFile&
     std::optional<std::size_t> band = dealer.next();
     auto read = reading(band);
     std::future<void> writing;
+    std::vector<std::byte> buffers[2];  // one is filled while the other is written
     while (band) {
         const std::unique_ptr<TexelBand> texels = read.get();
         const std::size_t current = *band;
         band = dealer.next();
         read = reading(band);
-        auto bytes = std::make_shared<std::vector<std::byte>>();
-        results[current] = work.levelsOf(current, *texels, *bytes).floats();
+        std::vector<std::byte>& bytes = buffers[done % 2];
+        results[current] = work.levelsOf(current, *texels, bytes).floats();
         if (writing.valid()) writing.get();
-        writing = std::async(std::launch::async, [&, current, bytes] {
-            file.write(0, work.topOf(current), work.bottomOf(current) - work.topOf(current),
-                       *bytes);
+        writing = std::async(std::launch::async, [&, current] {
+            file.write(0, work.topOf(current), work.bottomOf(current) - work.topOf(current), bytes);
         });
-        if (options.progress) options.progress(++done, plan.count);
+        ++done;
+        if (options.progress) options.progress(done, plan.count);
     }
     if (writing.valid()) writing.get();
     dealer.collect(results);

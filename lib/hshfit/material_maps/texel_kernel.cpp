@@ -35,7 +35,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::CappedTag<float, 16>;
 
 /// sum[i] = sum over the nodes of a place of weight * row[i]; both have room beyond `count`.
-void interpolate(const float* values, std::size_t stride, const LobeTable::Place& place,
+void interpolate(const float* values, std::size_t stride, const LobeGrid::Place& place,
                  std::size_t count, float* sum) {
     const Tag d;
     const std::size_t lanes = hn::Lanes(d);
@@ -153,7 +153,7 @@ namespace {
 constexpr std::size_t slack = 16;
 }
 
-TexelKernel::TexelKernel(const LobeTable& table, const TexelLayout& layout, bool placesByChannel)
+TexelKernel::TexelKernel(const LobeGrid& table, const TexelLayout& layout, bool placesByChannel)
     : table_(table), layout_(layout), placesByChannel_(placesByChannel) {}
 
 void TexelKernel::run(const TexelBlock& block, float* out) const {
@@ -164,7 +164,7 @@ void TexelKernel::run(const TexelBlock& block, float* out) const {
     std::vector<float> shapes(places * shapesLength), weights(lobes * channels);
     std::vector<float> texel(layout_.floats() + slack);
     float p[3];
-    LobeTable::Place place;
+    LobeGrid::Place place;
     const Mixture mixture{.shapes = shapes.data(),
                           .pitch = places > 1 ? shapesLength : 0,
                           .weights = weights.data(),

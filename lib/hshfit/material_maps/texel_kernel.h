@@ -1,6 +1,6 @@
 #pragma once
 
-#include <hshfit/material_maps/lobe_table.h>
+#include <hshfit/material_maps/lobe_grid.h>
 #include <hshfit/material_maps/texel_layout.h>
 
 #include <cstddef>
@@ -25,7 +25,7 @@ class TexelKernel {
 public:
     /// The table's lobes are shapes of the layout. `placesByChannel`: every channel has a place of
     /// its own. Both references have to outlive this.
-    TexelKernel(const LobeTable& table, const TexelLayout& layout, bool placesByChannel);
+    TexelKernel(const LobeGrid& table, const TexelLayout& layout, bool placesByChannel);
 
     std::size_t weightsOfTexel() const { return table_.lobes() * layout_.channels; }
     std::size_t placesOfTexel() const {
@@ -36,7 +36,7 @@ public:
     void run(const TexelBlock& block, float* out) const;
 
 private:
-    const LobeTable& table_;
+    const LobeGrid& table_;
     const TexelLayout& layout_;
     bool placesByChannel_;
 };

@@ -1,4 +1,4 @@
-#include <hshfit/material_maps/lobe_table.h>
+#include <hshfit/material_maps/lobe_grid.h>
 
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
@@ -31,9 +31,9 @@ void eachIndex(const std::vector<std::size_t>& sizes, const Visit& visit) {
 }  // namespace
 
 /// Computed lobes by place, and the refinement of the grid.
-struct LobeTable::Builder {
+struct LobeGrid::Builder {
     const LobeFunction& function;
-    const LobeTableOptions& options;
+    const LobeGridOptions& options;
     std::vector<Axis>& axes;
     std::map<std::vector<double>, std::vector<double>> known = {};
     double error = 0;  ///< of the last test
@@ -138,7 +138,7 @@ struct LobeTable::Builder {
     }
 };
 
-LobeTable::Stencil LobeTable::stencilOf(const Axis& axis, double place) {
+LobeGrid::Stencil LobeGrid::stencilOf(const Axis& axis, double place) {
     const std::vector<double>& x = axis.places;
     Stencil stencil{.count = std::min<std::size_t>(x.size(), 4)};
     const auto above = static_cast<std::size_t>(std::ranges::upper_bound(x, place) - x.begin());
@@ -157,7 +157,7 @@ LobeTable::Stencil LobeTable::stencilOf(const Axis& axis, double place) {
     return stencil;
 }
 
-LobeTable::LobeTable(const LobeFunction& function, const LobeTableOptions& options)
+LobeGrid::LobeGrid(const LobeFunction& function, const LobeGridOptions& options)
     : lobes_(function.lobes), length_(function.length) {
     if (function.axes.size() > 3) {
         throw UsageError(fmt::format(
@@ -196,7 +196,7 @@ LobeTable::LobeTable(const LobeFunction& function, const LobeTableOptions& optio
     });
 }
 
-void LobeTable::find(const float* p, Place& place) const {
+void LobeGrid::find(const float* p, Place& place) const {
     place.count = 1;
     place.row[0] = 0;
     place.weight[0] = 1;

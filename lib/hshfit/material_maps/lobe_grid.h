@@ -28,7 +28,7 @@ struct LobeFunction {
     std::vector<double> weights = {};
 };
 
-struct LobeTableOptions {
+struct LobeGridOptions {
     double tolerance = 1e-3;        ///< relative error of interpolation in the norm of the lobes
     std::size_t mostNodes = 20000;  ///< of the table, before NumericError
     std::function<void(std::size_t done, std::size_t total)> progress = {};
@@ -40,7 +40,7 @@ struct LobeTableOptions {
 /// axes. That test is the stated error; a function that is smooth between these points is assumed.
 ///
 /// Immutable; safe to use from many threads. Results do not depend on their number.
-class LobeTable {
+class LobeGrid {
 public:
     /// The nodes of a place and their weights: rows of `values()`.
     struct Place {
@@ -51,7 +51,7 @@ public:
 
     /// Throws UsageError for more than three axes, and NumericError where the tolerance takes more
     /// than `mostNodes` nodes, with the error that was reached.
-    explicit LobeTable(const LobeFunction& function, const LobeTableOptions& options = {});
+    explicit LobeGrid(const LobeFunction& function, const LobeGridOptions& options = {});
 
     std::size_t axes() const { return nodes_.size(); }
     std::size_t lobes() const { return lobes_; }
