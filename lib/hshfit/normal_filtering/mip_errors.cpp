@@ -1,0 +1,330 @@
+#include <hshfit/normal_filtering/mip_errors.h>
+
+#include <hshfit/bases/sh.h>
+#include <hshfit/brdf/uniform.h>
+#include <hshfit/each_in_parallel.h>
+#include <hshfit/error.h>
+#include <hshfit/normal_filtering/surface_frame.h>
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hshfit::inline normal_filtering {
+namespace {
+
+/// A base texel ready for evaluation.
+struct Facet {
+    SurfaceTexel texel;
+    SurfaceFrame frame;
+    explicit Facet(const SurfaceTexel& t) : texel(t), frame(t.normal, t.tangent) {}
+};
+
+/// The base texels of a mip texel: from, and how many.
+struct Footprint {
+    std::size_t x, y, width, height;
+};
+Footprint footprintOf(const FilteredSurface& s, const MipLevel& level, std::size_t index) {
+    const std::size_t x = index % level.width, y = index / level.width;
+    const std::size_t left = x * s.width / level.width, top = y * s.height / level.height;
+    return {left, top, (x + 1) * s.width / level.width - left,
+            (y + 1) * s.height / level.height - top};
+}
+
+std::vector<Facet> sampled(const FilteredSurface& s, const Footprint& f, int samples,
+                           std::mt19937_64& random) {
+    std::vector<Facet> facets;
+    if (f.width * f.height <= static_cast<std::size_t>(samples)) {
+        for (std::size_t k = 0; k < f.width * f.height; ++k)
+            facets.emplace_back(s.texel(f.x + k % f.width, f.y + k / f.width));
+        return facets;
+    }
+    const int side = static_cast<int>(std::sqrt(samples));
+    for (int k = 0; k < side * side; ++k) {
+        const double x = (k % side + uniform(random)) / side * static_cast<double>(f.width);
+        const double y = (k / side + uniform(random)) / side * static_cast<double>(f.height);
+        facets.emplace_back(
+            s.texel(f.x + static_cast<std::size_t>(x), f.y + static_cast<std::size_t>(y)));
+    }
+    return facets;
+}
+
+/// The texel of ordinary mips: every parameter averaged by itself.
+SurfaceTexel meanTexel(const FilteredSurface& s, const Footprint& f) {
+    SurfaceTexel mean;
+    mean.normal = mean.tangent = {0, 0, 0};
+    mean.weights = {};
+    const double share = 1 / static_cast<double>(f.width * f.height);
+    for (std::size_t k = 0; k < f.width * f.height; ++k) {
+        const SurfaceTexel t = s.texel(f.x + k % f.width, f.y + k / f.width);
+        mean.normal = mean.normal + share * normalised(t.normal);
+        mean.tangent = mean.tangent + share * t.tangent;
+        for (std::size_t i = 0; i < 2; ++i) mean.lobe[i] += share * t.lobe[i];
+        for (std::size_t i = 0; i < SurfaceTexel::most; ++i) {
+            mean.weights[i] += share * t.weights[i];
+            mean.albedos[i] += share * t.albedos[i];
+        }
+    }
+    if (!(dot(mean.normal, mean.normal) > 1e-12)) mean.normal = {0, 0, 1};
+    return mean;
+}
+
+void addReflected(const FilteredSurface& s, const Facet& facet, const Direction& wi,
+                  const Direction& wo, std::span<double> out) {
+    std::fill(out.begin(), out.end(), 0.0);
+    const Direction i = facet.frame.toLocal(wi), o = facet.frame.toLocal(wo);
+    if (!(i.z > 0) || !(o.z > 0)) return;
+    s.brdf(facet.texel, i, o, out);
+    for (double& value : out) value *= i.z;
+}
+
+/// A Gaussian in the stereographic plane for half vectors.
+class HalfSampler {
+public:
+    HalfSampler(const PlanePoint& mean, double xx, double xy, double yy) : mean_(mean) {
+        a_ = std::sqrt(std::max(xx, 1e-12));
+        b_ = xy / a_;
+        c_ = std::sqrt(std::max(yy - b_ * b_, 1e-12));
+    }
+    Direction draw(std::mt19937_64& random) const {
+        const double radius = std::sqrt(-2 * std::log(1 - uniform(random)));
+        const double phi = 2 * pi * uniform(random);
+        const double x = radius * std::cos(phi), y = radius * std::sin(phi);
+        return fromPlane({mean_[0] + a_ * x, mean_[1] + b_ * x + c_ * y});
+    }
+    double density(const Direction& h) const {
+        const PlanePoint u = toPlane(h);
+        const double x = (u[0] - mean_[0]) / a_, y = (u[1] - mean_[1] - b_ * x) / c_;
+        const double scale = 1 + (u[0] * u[0] + u[1] * u[1]) / 4;
+        return std::exp(-(x * x + y * y) / 2) / (2 * pi * a_ * c_) * scale * scale;
+    }
+
+private:
+    PlanePoint mean_;
+    double a_, b_, c_;
+};
+
+struct Pair {
+    Direction wi, wo;
+    double weight;  ///< of the integral over both hemispheres; 0 below the horizon
+};
+
+/// Incoming directions for one wo: half over the hemisphere by cosine, a quarter each about the
+/// mirror direction with the widths of filtered and base lobes; weights by the sum of densities.
+void appendPairs(const Direction& wo, double weight, const HalfSampler& wide,
+                 const HalfSampler& narrow, int count, std::mt19937_64& random,
+                 std::vector<Pair>& pairs) {
+    const int cells = std::max(1, static_cast<int>(std::sqrt(count / 2)));
+    for (int k = 0; k < count; ++k) {
+        Direction wi;
+        if (k % 2 == 0) {
+            const int cell = k / 2;
+            const double square = (cell % cells + uniform(random)) / cells;
+            const double phi = 2 * pi * ((cell / cells) % cells + uniform(random)) / cells;
+            wi = {std::sqrt(square) * std::cos(phi), std::sqrt(square) * std::sin(phi),
+                  std::sqrt(1 - square)};
+        } else {
+            const Direction h = (k % 4 == 1 ? wide : narrow).draw(random);
+            wi = 2 * dot(h, wo) * h - wo;
+        }
+        Pair pair{wi, wo, 0};
+        if (wi.z > 1e-6) {
+            const Direction h = normalised(wi + wo);
+            const double jacobian = 1 / (4 * dot(h, wo));
+            const double density = 0.5 * wi.z / pi + 0.25 * jacobian * wide.density(h) +
+                                   0.25 * jacobian * narrow.density(h);
+            pair.weight = weight / (count * density);
+        }
+        pairs.push_back(pair);
+    }
+}
+
+std::vector<Pair> pairsFor(std::span<const double> numbers, const MipErrorOptions& options,
+                           std::mt19937_64& random) {
+    const double* u = &numbers[MipLayout::plane];
+    const double* squares = &numbers[MipLayout::planeSquares];
+    const double* width = &numbers[MipLayout::widths];
+    const PlanePoint mean{u[0], u[1]};
+    const HalfSampler narrow(mean, width[0], width[1], width[2]);
+    const HalfSampler wide(mean, squares[0] - u[0] * u[0] + width[0],
+                           squares[1] - u[0] * u[1] + width[1],
+                           squares[2] - u[1] * u[1] + width[2]);
+    std::vector<Pair> pairs;
+    const double step = radians(88) / options.outgoing;
+    double turn = uniform(random);
+    for (int k = 0; k < options.outgoing; ++k) {
+        const double theta = (k + uniform(random)) * step;
+        turn += 0.6180339887498949;  // the golden ratio spreads azimuths over all elevations
+        appendPairs(directionFromAngles(theta, 2 * pi * turn), 2 * pi * step * std::sin(theta),
+                    wide, narrow, options.incoming, random, pairs);
+    }
+    return pairs;
+}
+
+/// f cos(theta_i) of the truth and of all forms for the pairs of a mip texel.
+struct Values {
+    std::vector<double> truth, variance;     // [pair][channel]
+    std::vector<std::vector<double>> forms;  // [form][pair][channel]
+};
+
+struct Form {
+    std::string name;
+    int order;
+    std::size_t numbers;
+};
+
+std::vector<Form> formsOf(const MipLayout& layout, const MipErrorOptions& options) {
+    const std::size_t harmonics = layout.ellipseSize();
+    // A normal, a tangent's angle, the lobe's place, weights and albedos.
+    std::vector<Form> forms{
+        {"parameters", 0, static_cast<std::size_t>(5 + layout.weights + layout.albedos)},
+        {"ellipse", 0, harmonics}};
+    std::vector<int> orders = options.orders;
+    if (orders.empty()) orders = {layout.order};
+    for (const int order : orders) {
+        if (order < 1 || order % 2 == 0 || order > layout.order)
+            throw UsageError(
+                fmt::format("order {} of a filtered texel: an odd number from 1 to "
+                            "{} is needed",
+                            order, layout.order));
+        forms.push_back({"harmonics", order,
+                         harmonics + static_cast<std::size_t>(layout.weights) * evenSlots(order)});
+    }
+    return forms;
+}
+
+void trueValues(const FilteredSurface& s, const std::vector<Facet>& facets, const Pair& pair,
+                bool all, double* truth, double* variance) {
+    const auto channels = static_cast<std::size_t>(s.channels);
+    std::vector<double> value(channels);
+    const double n = static_cast<double>(facets.size());
+    for (const Facet& facet : facets) {
+        addReflected(s, facet, pair.wi, pair.wo, value);
+        for (std::size_t c = 0; c < channels; ++c) {
+            truth[c] += value[c] / n;
+            variance[c] += value[c] * value[c] / n;
+        }
+    }
+    for (std::size_t c = 0; c < channels; ++c)
+        variance[c] = all ? 0 : std::max(0.0, variance[c] - truth[c] * truth[c]) / (n - 1);
+}
+
+Values valuesOf(const FilteredSurface& s, const std::vector<Facet>& facets, const Facet& mean,
+                const FilteredTexel& filtered, const std::vector<Form>& forms,
+                const std::vector<Pair>& pairs, bool all) {
+    const auto channels = static_cast<std::size_t>(s.channels);
+    Values v;
+    v.truth.assign(pairs.size() * channels, 0.0);
+    v.variance = v.truth;
+    v.forms.assign(forms.size(), v.truth);
+    eachInParallel(pairs.size(), [&](std::size_t k) {
+        const Pair& pair = pairs[k];
+        if (!(pair.weight > 0)) return;
+        trueValues(s, facets, pair, all, &v.truth[k * channels], &v.variance[k * channels]);
+        for (std::size_t f = 0; f < forms.size(); ++f) {
+            const std::span<double> out(&v.forms[f][k * channels], channels);
+            if (forms[f].name == "parameters")
+                addReflected(s, mean, pair.wi, pair.wo, out);
+            else
+                filtered.reflect(forms[f].order == 0 ? MipForm::ellipse : MipForm::harmonics,
+                                 forms[f].order, s.rest, pair.wi, pair.wo, out);
+        }
+    });
+    return v;
+}
+
+struct Sums {
+    double distance = 0, albedo = 0;
+};
+
+/// Adds the errors of one mip texel.
+void addErrors(const std::vector<Pair>& pairs, const Values& v, std::size_t channels,
+               std::size_t incoming, std::vector<MipError>& errors, std::vector<Sums>& sums,
+               double& norm, double& noise, double& albedo) {
+    double largest = 0;
+    for (std::size_t k = 0; k < v.truth.size(); ++k)
+        largest = std::max(largest, v.truth[k] * pairs[k / channels].wo.z);
+    std::vector<double> true_(pairs.size() / incoming, 0.0);
+    for (std::size_t k = 0; k < v.truth.size(); ++k) {
+        const Pair& p = pairs[k / channels];
+        const double scale = p.weight * p.wo.z * p.wo.z;
+        norm += scale * v.truth[k] * v.truth[k];
+        noise += scale * v.variance[k];
+        albedo += p.weight * p.wo.z * v.truth[k];
+        true_[k / channels / incoming] += p.weight * v.truth[k];
+    }
+    for (std::size_t f = 0; f < errors.size(); ++f) {
+        std::vector<double> own(true_.size(), 0.0);
+        for (std::size_t k = 0; k < v.truth.size(); ++k) {
+            const Pair& p = pairs[k / channels];
+            const double difference = (v.forms[f][k] - v.truth[k]) * p.wo.z;
+            sums[f].distance += p.weight * difference * difference;
+            sums[f].albedo += p.weight * p.wo.z * v.forms[f][k];
+            own[k / channels / incoming] += p.weight * v.forms[f][k];
+            const double relative = largest > 0 ? std::abs(difference) / largest : 0;
+            if (p.weight > 0 && relative > errors[f].maximum) {
+                errors[f].maximum = relative;
+                errors[f].wi = p.wi;
+                errors[f].wo = p.wo;
+            }
+        }
+        for (std::size_t o = 0; o < own.size(); ++o) {
+            const double ratio = own[o] / true_[o];
+            if (std::abs(std::log(ratio)) > std::abs(std::log(errors[f].worstAlbedo)))
+                errors[f].worstAlbedo = ratio;
+        }
+    }
+}
+
+}  // namespace
+
+MipErrors measureMipLevel(const FilteredSurface& surface, int level, const MipLevel& filtered,
+                          const LobeTable& table, const MipErrorOptions& options) {
+    if (filtered.width != mipSize(surface.width, level) ||
+        filtered.height != mipSize(surface.height, level))
+        throw UsageError(fmt::format("level {} of {} x {} texels has {} x {}, not {} x {}", level,
+                                     surface.width, surface.height, mipSize(surface.width, level),
+                                     mipSize(surface.height, level), filtered.width,
+                                     filtered.height));
+    if (options.samples < 4 || options.texels < 1 || options.outgoing < 1 || options.incoming < 4)
+        throw UsageError(
+            "errors of mip levels need at least 4 samples, 1 texel, 1 outgoing and 4 "
+            "incoming directions");
+    const std::vector<Form> forms = formsOf(filtered.layout, options);
+    MipErrors result;
+    for (const Form& form : forms)
+        result.forms.push_back({.form = form.name, .order = form.order, .numbers = form.numbers});
+    std::vector<Sums> sums(forms.size());
+    double norm = 0, noise = 0, albedo = 0;
+    std::mt19937_64 random(options.seed);
+    const std::size_t count = filtered.width * filtered.height,
+                      texels =
+                          std::min<std::size_t>(count, static_cast<std::size_t>(options.texels));
+    const std::shared_ptr<const Basis> basis = bases::makeSh(filtered.layout.order, {});
+    double at = uniform(random);
+    for (std::size_t k = 0; k < texels; ++k) {
+        at = std::fmod(at + 0.6180339887498949, 1.0);
+        const std::size_t index =
+            count <= texels ? k : static_cast<std::size_t>(at * static_cast<double>(count));
+        const Footprint footprint = footprintOf(surface, filtered, index);
+        const std::vector<Facet> facets = sampled(surface, footprint, options.samples, random);
+        const bool all = facets.size() == footprint.width * footprint.height;
+        const auto numbers = filtered.texel(index % filtered.width, index / filtered.width);
+        const std::vector<Pair> pairs = pairsFor(numbers, options, random);
+        const Values values =
+            valuesOf(surface, facets, Facet(meanTexel(surface, footprint)),
+                     FilteredTexel(filtered.layout, numbers, table, basis), forms, pairs, all);
+        addErrors(pairs, values, static_cast<std::size_t>(surface.channels),
+                  static_cast<std::size_t>(options.incoming), result.forms, sums, norm, noise,
+                  albedo);
+    }
+    for (std::size_t f = 0; f < forms.size(); ++f) {
+        result.forms[f].relative = std::sqrt(sums[f].distance / norm);
+        result.forms[f].albedo = sums[f].albedo / albedo;
+    }
+    result.noise = std::sqrt(noise / norm);
+    return result;
+}
+
+}  // namespace hshfit::inline normal_filtering
