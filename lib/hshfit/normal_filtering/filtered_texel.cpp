@@ -97,12 +97,24 @@ FilteredTexel::FilteredTexel(const MipLayout& layout, std::span<const double> te
     covariance_ = {xx, std::clamp(squares[1] - u[0] * u[1], -most, most), yy};
 }
 
+/// The widths with their axes turned by an angle.
+std::array<double, 3> FilteredTexel::turnedWidths(double angle) const {
+    const double* w = &numbers_[MipLayout::widths];
+    const double c = std::cos(2 * angle), s = std::sin(2 * angle);
+    const double mean = (w[0] + w[2]) / 2, half = (w[0] - w[2]) / 2;
+    const double x = half * c - w[1] * s;
+    return {mean + x, half * s + w[1] * c, mean - x};
+}
+
 FilteredTexel::Facets FilteredTexel::facets(const Direction& half) const {
     const double* m = &numbers_[MipLayout::plane];
-    const double* width = &numbers_[MipLayout::widths];
     const auto& [cxx, cxy, cyy] = covariance_;
     const PlanePoint u = toPlane(half.z < 0 ? -half : half);
     const double dx = u[0] - m[0], dy = u[1] - m[1];
+    // As complex numbers, h has the place (u - m) / (1 + conj(m) u / 4) in the plane about m: seen
+    // from u, the axes of D are turned by the angle of the denominator.
+    const std::array<double, 3> width =
+        turnedWidths(std::atan2(m[0] * u[1] - m[1] * u[0], 4 + m[0] * u[0] + m[1] * u[1]));
     const double scale =
         (1 + (u[0] * u[0] + u[1] * u[1]) / 4) * (1 + (m[0] * m[0] + m[1] * m[1] + cxx + cyy) / 4);
     const GaussianSum& sum = table_->gaussians(lobe_);
@@ -141,9 +153,8 @@ FilteredTexel::Facets FilteredTexel::facets(const Direction& half) const {
     return f;
 }
 
-void FilteredTexel::density(MipForm form, int order, const Direction& h,
-                            std::span<double> out) const {
-    if (form == MipForm::ellipse) {
+void FilteredTexel::density(const MipUse& use, const Direction& h, std::span<double> out) const {
+    if (use.form == MipForm::ellipse) {
         const double value = facets(h).density;
         for (std::size_t k = 0; k < out.size(); ++k)
             out[k] = value * numbers_[MipLayout::weight + k];
@@ -151,7 +162,7 @@ void FilteredTexel::density(MipForm form, int order, const Direction& h,
     }
     if (numbers_.size() < layout_.size())
         throw UsageError("a filtered texel without harmonics has the ellipse alone");
-    const int used = order == 0 ? layout_.order : std::min(order, layout_.order);
+    const int used = use.order == 0 ? layout_.order : std::min(use.order, layout_.order);
     std::vector<double> y(static_cast<std::size_t>(basis_->slots()));
     basis_->evaluate(h, y.data());
     for (std::size_t k = 0; k < out.size(); ++k) {
@@ -193,7 +204,7 @@ void FilteredTexel::diffuse(const Direction& wi, const Direction& wo, std::span<
     }
 }
 
-void FilteredTexel::reflect(MipForm form, int order, const Rest& rest, const Direction& wi,
+void FilteredTexel::reflect(const MipUse& use, const Rest& rest, const Direction& wi,
                             const Direction& wo, std::span<double> out) const {
     std::fill(out.begin(), out.end(), 0.0);
     if (layout_.albedos > 0) {
@@ -207,15 +218,17 @@ void FilteredTexel::reflect(MipForm form, int order, const Rest& rest, const Dir
     const Direction h = normalised(sum);
     double density[SurfaceTexel::most];
     const std::span<const double> densities(density, static_cast<std::size_t>(layout_.weights));
-    this->density(form, order, h, {density, densities.size()});
+    this->density(use, h, {density, densities.size()});
     std::vector<double> part(out.size());
-    for (const Direction& n : normalsGiven(h)) {
-        if (!(dot(n, wi) > 0) || !(dot(n, wo) > 0)) continue;
+    const auto add = [&](const Direction& n, double share) {
+        if (!(dot(n, wi) > 0) || !(dot(n, wo) > 0)) return;
         const SurfaceFrame frame(n, tangentAt(n));
         std::fill(part.begin(), part.end(), 0.0);
         rest(*this, frame.toLocal(wi), frame.toLocal(wo), densities, part);
-        for (std::size_t c = 0; c < out.size(); ++c) out[c] += part[c] / 4;
-    }
+        for (std::size_t c = 0; c < out.size(); ++c) out[c] += share * part[c];
+    };
+    if (!use.facets) return add(normal_, 1);
+    for (const Direction& n : normalsGiven(h)) add(n, 0.25);
 }
 
 }  // namespace hshfit::inline normal_filtering

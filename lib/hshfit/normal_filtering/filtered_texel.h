@@ -20,6 +20,15 @@ enum class MipForm {
     ellipse,
 };
 
+/// A way to evaluate a filtered texel.
+struct MipUse {
+    MipForm form = MipForm::ellipse;
+    int order = 0;  ///< bands of the harmonics that are used, odd; 0: all
+    /// Whether M is taken at the normals of the facets that reflect about h; otherwise once, at the
+    /// mean normal, which costs a fourth and errs at grazing angles.
+    bool facets = true;
+};
+
 /// The averaged reflectance of a mip texel, in the frame of the surface. f cos(theta_i) is the sum
 /// of
 ///     specular  E[w D(h) M] = E[w D(h)] M averaged over `normalsGiven(h)`,
@@ -38,9 +47,9 @@ public:
     double meanNormalLength() const { return length_; }
     const LobePlace& lobe() const { return lobe_; }
 
-    /// E[w_k D(h)] for each weight k; not negative: what truncated harmonics have below 0 is cut.
-    /// `order`: of the harmonics used, odd; 0 for all.
-    void density(MipForm form, int order, const Direction& h, std::span<double> out) const;
+    /// E[w_k D(h)] for each weight k. Truncated harmonics below 0 count as 0, which brings them
+    /// closer to the truth everywhere and adds energy.
+    void density(const MipUse& use, const Direction& h, std::span<double> out) const;
 
     /// The normals of those facets that reflect about h: mean and covariance of n given h, for
     /// Gaussians, as four points of equal shares. Where normals or lobes are narrow, n = h or n =
@@ -59,8 +68,8 @@ public:
                            std::span<const double> density, std::span<double> out)>;
     /// f cos(theta_i) by channel, as many as `out` has: specular by `rest`, diffuse from albedos
     /// (one for all channels, or one each).
-    void reflect(MipForm form, int order, const Rest& rest, const Direction& wi,
-                 const Direction& wo, std::span<double> out) const;
+    void reflect(const MipUse& use, const Rest& rest, const Direction& wi, const Direction& wo,
+                 std::span<double> out) const;
 
 private:
     /// E[D(h)] by the ellipse, and mean and covariance of the normals given h in the plane.
@@ -68,6 +77,7 @@ private:
         double density, x, y, xx, xy, yy;
     };
     Facets facets(const Direction& h) const;
+    std::array<double, 3> turnedWidths(double angle) const;
 
     MipLayout layout_;
     std::vector<double> numbers_;

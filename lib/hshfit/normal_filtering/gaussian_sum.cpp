@@ -42,14 +42,14 @@ std::vector<double> nonNegativeLeastSquares(const std::vector<std::vector<double
         a.col(static_cast<Eigen::Index>(j)) =
             Eigen::Map<const Eigen::VectorXd>(columns[j].data(), rows);
     const Eigen::Map<const Eigen::VectorXd> right(b.data(), rows);
-    const double least = 1e-12 * a.colwise().norm().maxCoeff() * right.norm();
+    const Eigen::VectorXd least = 1e-12 * right.norm() * a.colwise().norm().transpose();
     Eigen::VectorXd x = Eigen::VectorXd::Zero(a.cols());
     std::vector<bool> passive(n, false);
     for (std::size_t step = 0; step < 3 * n; ++step) {
         const Eigen::VectorXd gradient = a.transpose() * (right - a * x);
         Eigen::Index best = -1;
         for (Eigen::Index j = 0; j < a.cols(); ++j)
-            if (!passive[static_cast<std::size_t>(j)] && gradient[j] > least &&
+            if (!passive[static_cast<std::size_t>(j)] && gradient[j] > least[j] &&
                 (best < 0 || gradient[j] > gradient[best]))
                 best = j;
         if (best < 0) break;
@@ -99,7 +99,7 @@ GaussianSum fitGaussians(const NormalDistribution& distribution) {
     std::vector<double> right;
     for (std::size_t i = 0; i < radii.size(); ++i) {
         const double r = radii[i], area = r * r;
-        const double weight = std::sqrt(area / std::max(values[i], 1e-6 * peak));
+        const double weight = std::sqrt(area / (values[i] + 1e-3 * peak));
         right.push_back(weight * values[i]);
         for (std::size_t j = 0; j < candidates.size(); ++j)
             columns[j].push_back(weight * std::exp(-r * r / (2 * candidates[j])));

@@ -105,9 +105,10 @@ private:
     double a_, b_, c_;
 };
 
+/// Weights of integrals over the hemispheres; 0 for wi below the horizon.
 struct Pair {
     Direction wi, wo;
-    double weight;  ///< of the integral over both hemispheres; 0 below the horizon
+    double outgoingWeight, incomingWeight = 0, weight = 0;
 };
 
 /// Incoming directions for one wo: half over the hemisphere by cosine, a quarter each about the
@@ -128,13 +129,14 @@ void appendPairs(const Direction& wo, double weight, const HalfSampler& wide,
             const Direction h = (k % 4 == 1 ? wide : narrow).draw(random);
             wi = 2 * dot(h, wo) * h - wo;
         }
-        Pair pair{wi, wo, 0};
+        Pair pair{wi, wo, weight};
         if (wi.z > 1e-6) {
             const Direction h = normalised(wi + wo);
             const double jacobian = 1 / (4 * dot(h, wo));
             const double density = 0.5 * wi.z / pi + 0.25 * jacobian * wide.density(h) +
                                    0.25 * jacobian * narrow.density(h);
-            pair.weight = weight / (count * density);
+            pair.incomingWeight = 1 / (count * density);
+            pair.weight = weight * pair.incomingWeight;
         }
         pairs.push_back(pair);
     }
@@ -168,18 +170,14 @@ struct Values {
     std::vector<std::vector<double>> forms;  // [form][pair][channel]
 };
 
-struct Form {
-    std::string name;
-    int order;
-    std::size_t numbers;
-};
-
-std::vector<Form> formsOf(const MipLayout& layout, const MipErrorOptions& options) {
-    const std::size_t harmonics = layout.ellipseSize();
-    // A normal, a tangent's angle, the lobe's place, weights and albedos.
-    std::vector<Form> forms{
-        {"parameters", 0, static_cast<std::size_t>(5 + layout.weights + layout.albedos)},
-        {"ellipse", 0, harmonics}};
+/// All forms of a level, without errors yet.
+std::vector<MipError> formsOf(const MipLayout& layout, const MipErrorOptions& options) {
+    const std::size_t ellipse = layout.ellipseSize();
+    // Ordinary mips have a normal, a tangent's angle, the lobe's place, weights and albedos.
+    std::vector<MipError> forms{
+        {.form = "parameters",
+         .numbers = static_cast<std::size_t>(5 + layout.weights + layout.albedos)},
+        {.form = "ellipse", .use = {MipForm::ellipse}, .numbers = ellipse}};
     std::vector<int> orders = options.orders;
     if (orders.empty()) orders = {layout.order};
     for (const int order : orders) {
@@ -188,31 +186,48 @@ std::vector<Form> formsOf(const MipLayout& layout, const MipErrorOptions& option
                 fmt::format("order {} of a filtered texel: an odd number from 1 to "
                             "{} is needed",
                             order, layout.order));
-        forms.push_back({"harmonics", order,
-                         harmonics + static_cast<std::size_t>(layout.weights) * evenSlots(order)});
+        forms.push_back(
+            {.form = "harmonics",
+             .use = {MipForm::harmonics, order},
+             .numbers = ellipse + static_cast<std::size_t>(layout.weights) * evenSlots(order)});
+    }
+    const std::size_t count = forms.size();
+    for (std::size_t f = 1; options.atMeanNormal && f < count; ++f) {
+        MipError form = forms[f];
+        form.form += " at normal";
+        form.use.facets = false;
+        forms.push_back(form);
     }
     return forms;
 }
 
 void trueValues(const FilteredSurface& s, const std::vector<Facet>& facets, const Pair& pair,
-                bool all, double* truth, double* variance) {
+                bool all, bool byVisibleArea, double* truth, double* variance) {
     const auto channels = static_cast<std::size_t>(s.channels);
     std::vector<double> value(channels);
     const double n = static_cast<double>(facets.size());
+    double areas = 0;
     for (const Facet& facet : facets) {
+        const Direction& normal = facet.frame.z;
+        const double area =
+            byVisibleArea ? std::max(0.0, dot(normal, pair.wo)) / std::max(normal.z, 1e-3) : 1;
+        areas += area;
         addReflected(s, facet, pair.wi, pair.wo, value);
         for (std::size_t c = 0; c < channels; ++c) {
-            truth[c] += value[c] / n;
-            variance[c] += value[c] * value[c] / n;
+            truth[c] += area * value[c];
+            variance[c] += area * value[c] * value[c];
         }
     }
-    for (std::size_t c = 0; c < channels; ++c)
-        variance[c] = all ? 0 : std::max(0.0, variance[c] - truth[c] * truth[c]) / (n - 1);
+    if (!(areas > 0)) return;
+    for (std::size_t c = 0; c < channels; ++c) {
+        truth[c] /= areas;
+        variance[c] = all ? 0 : std::max(0.0, variance[c] / areas - truth[c] * truth[c]) / (n - 1);
+    }
 }
 
 Values valuesOf(const FilteredSurface& s, const std::vector<Facet>& facets, const Facet& mean,
-                const FilteredTexel& filtered, const std::vector<Form>& forms,
-                const std::vector<Pair>& pairs, bool all) {
+                const FilteredTexel& filtered, const std::vector<MipError>& forms,
+                const std::vector<Pair>& pairs, bool all, bool byVisibleArea) {
     const auto channels = static_cast<std::size_t>(s.channels);
     Values v;
     v.truth.assign(pairs.size() * channels, 0.0);
@@ -221,59 +236,59 @@ Values valuesOf(const FilteredSurface& s, const std::vector<Facet>& facets, cons
     eachInParallel(pairs.size(), [&](std::size_t k) {
         const Pair& pair = pairs[k];
         if (!(pair.weight > 0)) return;
-        trueValues(s, facets, pair, all, &v.truth[k * channels], &v.variance[k * channels]);
+        trueValues(s, facets, pair, all, byVisibleArea, &v.truth[k * channels],
+                   &v.variance[k * channels]);
         for (std::size_t f = 0; f < forms.size(); ++f) {
             const std::span<double> out(&v.forms[f][k * channels], channels);
-            if (forms[f].name == "parameters")
+            if (forms[f].form == "parameters")
                 addReflected(s, mean, pair.wi, pair.wo, out);
             else
-                filtered.reflect(forms[f].order == 0 ? MipForm::ellipse : MipForm::harmonics,
-                                 forms[f].order, s.rest, pair.wi, pair.wo, out);
+                filtered.reflect(forms[f].use, s.rest, pair.wi, pair.wo, out);
         }
     });
     return v;
 }
 
+/// Sums over all mip texels: of the truth, and of each form.
 struct Sums {
-    double distance = 0, albedo = 0;
+    double norm = 0, noise = 0, albedo = 0;
+    std::vector<double> distances, albedos;
 };
 
-/// Adds the errors of one mip texel.
+/// Adds one mip texel.
 void addErrors(const std::vector<Pair>& pairs, const Values& v, std::size_t channels,
-               std::size_t incoming, std::vector<MipError>& errors, std::vector<Sums>& sums,
-               double& norm, double& noise, double& albedo) {
-    double largest = 0;
-    for (std::size_t k = 0; k < v.truth.size(); ++k)
-        largest = std::max(largest, v.truth[k] * pairs[k / channels].wo.z);
-    std::vector<double> true_(pairs.size() / incoming, 0.0);
+               std::size_t incoming, std::vector<MipError>& errors, Sums& sums) {
+    double largest = 0, albedo = 0, cosines = 0;
+    std::vector<double> directional(pairs.size() / incoming, 0.0);
     for (std::size_t k = 0; k < v.truth.size(); ++k) {
         const Pair& p = pairs[k / channels];
+        largest = std::max(largest, v.truth[k] * p.wo.z);
         const double scale = p.weight * p.wo.z * p.wo.z;
-        norm += scale * v.truth[k] * v.truth[k];
-        noise += scale * v.variance[k];
-        albedo += p.weight * p.wo.z * v.truth[k];
-        true_[k / channels / incoming] += p.weight * v.truth[k];
+        sums.norm += scale * v.truth[k] * v.truth[k];
+        sums.noise += scale * v.variance[k];
+        albedo += p.outgoingWeight * p.incomingWeight * p.wo.z * v.truth[k];
+        directional[k / channels / incoming] += p.incomingWeight * v.truth[k];
     }
+    for (std::size_t o = 0; o < directional.size(); ++o)
+        cosines += pairs[o * incoming].outgoingWeight * pairs[o * incoming].wo.z;
+    sums.albedo += albedo;
     for (std::size_t f = 0; f < errors.size(); ++f) {
-        std::vector<double> own(true_.size(), 0.0);
+        std::vector<double> own(directional.size(), 0.0);
         for (std::size_t k = 0; k < v.truth.size(); ++k) {
             const Pair& p = pairs[k / channels];
             const double difference = (v.forms[f][k] - v.truth[k]) * p.wo.z;
-            sums[f].distance += p.weight * difference * difference;
-            sums[f].albedo += p.weight * p.wo.z * v.forms[f][k];
-            own[k / channels / incoming] += p.weight * v.forms[f][k];
-            const double relative = largest > 0 ? std::abs(difference) / largest : 0;
-            if (p.weight > 0 && relative > errors[f].maximum) {
-                errors[f].maximum = relative;
+            sums.distances[f] += p.weight * difference * difference;
+            sums.albedos[f] += p.weight * p.wo.z * v.forms[f][k];
+            own[k / channels / incoming] += p.incomingWeight * v.forms[f][k];
+            if (p.weight > 0 && std::abs(difference) > errors[f].maximum * largest) {
+                errors[f].maximum = std::abs(difference) / largest;
                 errors[f].wi = p.wi;
                 errors[f].wo = p.wo;
             }
         }
-        for (std::size_t o = 0; o < own.size(); ++o) {
-            const double ratio = own[o] / true_[o];
-            if (std::abs(std::log(ratio)) > std::abs(std::log(errors[f].worstAlbedo)))
-                errors[f].worstAlbedo = ratio;
-        }
+        for (std::size_t o = 0; o < own.size(); ++o)
+            errors[f].worstAlbedo = std::max(
+                errors[f].worstAlbedo, std::abs(own[o] - directional[o]) / (albedo / cosines));
     }
 }
 
@@ -291,16 +306,12 @@ MipErrors measureMipLevel(const FilteredSurface& surface, int level, const MipLe
         throw UsageError(
             "errors of mip levels need at least 4 samples, 1 texel, 1 outgoing and 4 "
             "incoming directions");
-    const std::vector<Form> forms = formsOf(filtered.layout, options);
-    MipErrors result;
-    for (const Form& form : forms)
-        result.forms.push_back({.form = form.name, .order = form.order, .numbers = form.numbers});
-    std::vector<Sums> sums(forms.size());
-    double norm = 0, noise = 0, albedo = 0;
+    MipErrors result{.forms = formsOf(filtered.layout, options)};
+    Sums sums;
+    sums.distances = sums.albedos = std::vector<double>(result.forms.size(), 0.0);
     std::mt19937_64 random(options.seed);
-    const std::size_t count = filtered.width * filtered.height,
-                      texels =
-                          std::min<std::size_t>(count, static_cast<std::size_t>(options.texels));
+    const std::size_t count = filtered.width * filtered.height;
+    const std::size_t texels = std::min(count, static_cast<std::size_t>(options.texels));
     const std::shared_ptr<const Basis> basis = bases::makeSh(filtered.layout.order, {});
     double at = uniform(random);
     for (std::size_t k = 0; k < texels; ++k) {
@@ -312,19 +323,44 @@ MipErrors measureMipLevel(const FilteredSurface& surface, int level, const MipLe
         const bool all = facets.size() == footprint.width * footprint.height;
         const auto numbers = filtered.texel(index % filtered.width, index / filtered.width);
         const std::vector<Pair> pairs = pairsFor(numbers, options, random);
-        const Values values =
-            valuesOf(surface, facets, Facet(meanTexel(surface, footprint)),
-                     FilteredTexel(filtered.layout, numbers, table, basis), forms, pairs, all);
+        const Values values = valuesOf(surface, facets, Facet(meanTexel(surface, footprint)),
+                                       FilteredTexel(filtered.layout, numbers, table, basis),
+                                       result.forms, pairs, all, options.byVisibleArea);
         addErrors(pairs, values, static_cast<std::size_t>(surface.channels),
-                  static_cast<std::size_t>(options.incoming), result.forms, sums, norm, noise,
-                  albedo);
+                  static_cast<std::size_t>(options.incoming), result.forms, sums);
     }
-    for (std::size_t f = 0; f < forms.size(); ++f) {
-        result.forms[f].relative = std::sqrt(sums[f].distance / norm);
-        result.forms[f].albedo = sums[f].albedo / albedo;
+    for (std::size_t f = 0; f < result.forms.size(); ++f) {
+        result.forms[f].relative = std::sqrt(sums.distances[f] / sums.norm);
+        result.forms[f].albedo = sums.albedos[f] / sums.albedo;
     }
-    result.noise = std::sqrt(noise / norm);
+    result.noise = std::sqrt(sums.noise / sums.norm);
     return result;
+}
+
+const MipError& cheapestForm(const MipErrors& errors, double tolerance) {
+    const auto better = [&](const MipError& a, const MipError& b) {
+        const bool goodA = a.relative <= tolerance, goodB = b.relative <= tolerance;
+        if (goodA != goodB) return goodA;
+        return goodA ? a.numbers < b.numbers : a.relative < b.relative;
+    };
+    return *std::min_element(errors.forms.begin(), errors.forms.end(), better);
+}
+
+int orderFor(const MipLevel& level, double tolerance) {
+    const MipLayout& layout = level.layout;
+    std::vector<double> energies(static_cast<std::size_t>(layout.order / 2 + 1), 0.0);
+    for (std::size_t at = 0; at < level.texels.size(); at += layout.size())
+        for (int k = 0; k < layout.weights; ++k) {
+            const double* c = &level.texels[at + layout.harmonics(k)];
+            for (std::size_t band = 0; band < energies.size(); ++band)
+                for (std::size_t i = 0; i < 4 * band + 1; ++i, ++c) energies[band] += *c * *c;
+        }
+    double all = 0, tail = 0;
+    for (const double energy : energies) all += energy;
+    std::size_t bands = energies.size();
+    while (bands > 1 && tail + energies[bands - 1] <= tolerance * tolerance * all)
+        tail += energies[--bands];
+    return static_cast<int>(2 * bands) - 1;
 }
 
 }  // namespace hshfit::inline normal_filtering

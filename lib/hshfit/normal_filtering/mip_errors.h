@@ -32,21 +32,25 @@ struct MipErrorOptions {
     int incoming = 64;  ///< half of them about the mirror direction, half over the hemisphere
     std::uint64_t seed = 1;
     std::vector<int> orders = {};  ///< of harmonics; empty: that of the layout
+    bool atMeanNormal = false;     ///< also the forms with M at the mean normal (MipUse::facets)
+    /// Whether base texels count by the area that wo sees of them, max(0, n.wo) / n.z, rather than
+    /// equally. Forms do not change.
+    bool byVisibleArea = false;
 };
 
-/// The distance of a form from the average of f cos(theta_i) cos(theta_o) over base texels, for the
-/// cosines at each texel's own normal and 0 below its horizon.
+/// The distance of a form from the average of f cos(theta_i) over base texels, each with its own
+/// normal and 0 below its horizon, times cos(theta_o) of the surface.
 struct MipError {
-    std::string form;         ///< "parameters", "harmonics", "ellipse"
-    int order = 0;            ///< of harmonics
+    std::string form = {};  ///< "parameters", "harmonics", "ellipse", the latter "… at normal"
+    MipUse use = {};
     std::size_t numbers = 0;  ///< of a texel
     double relative = 0;  ///< L2 over both hemispheres and all mip texels, over the truth's norm
     /// Largest difference, over the largest true value of that mip texel, and its place.
     double maximum = 0;
     Direction wi = {}, wo = {};
     double albedo = 1;  ///< hemispherical albedo over the true one
-    /// Of the outgoing directions of all mip texels, the one whose albedo is furthest off.
-    double worstAlbedo = 1;
+    /// Largest error of a directional albedo, over the true hemispherical albedo of its mip texel.
+    double worstAlbedo = 0;
 };
 struct MipErrors {
     std::vector<MipError> forms;
@@ -58,5 +62,14 @@ struct MipErrors {
 /// normal renormalised, mean tangent, lobe place, weights and albedos, in `brdf`.
 MipErrors measureMipLevel(const FilteredSurface& surface, int level, const MipLevel& filtered,
                           const LobeTable& table, const MipErrorOptions& options = {});
+
+/// The form with the fewest numbers whose relative error is at most `tolerance`; where there is
+/// none, the one with the least error.
+const MipError& cheapestForm(const MipErrors& errors, double tolerance);
+
+/// The least order whose truncation moves the averages of all texels of a level by at most
+/// `tolerance`, in L2 over the sphere relative to their norm (Parseval), within the bands that the
+/// level has. LobeTable::truncation tells what these bands miss of the unfiltered lobe.
+int orderFor(const MipLevel& level, double tolerance);
 
 }  // namespace hshfit::inline normal_filtering
