@@ -5,6 +5,7 @@
 #include <hshfit/normal_filtering/lobe_table.h>
 
 #include <cmath>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -17,6 +18,13 @@ inline double ggxDensity(const Direction& h, double ax, double ay) {
 }
 inline NormalDistribution ggxDistribution(double ax, double ay) {
     return {[=](const Direction& h) { return ggxDensity(h, ax, ay); }, ax, ay};
+}
+
+/// A table of one entry.
+inline std::shared_ptr<const LobeTable> ggxTable(int order, double ax, double ay) {
+    return std::make_shared<LobeTable>(
+        1, 1, [=](std::size_t, std::size_t) { return test::ggxDistribution(ax, ay); },
+        LobeTableOptions{order});
 }
 
 /// A map of slopes: a sum of waves with random directions and phases.
