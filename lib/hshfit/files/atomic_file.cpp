@@ -1,6 +1,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/standard_streams.h>
+#include <hshfit/wording.h>
 
 #include <atomic>
 #include <cerrno>
@@ -54,7 +55,10 @@ AtomicFile::AtomicFile(std::string path, Existing existing)
     if (!stands || S_ISREG(status.st_mode)) target_ = endOfLinks(path_);
     if (stands) {
         if (S_ISDIR(status.st_mode)) fail(EISDIR);
-        if (existing_ == Existing::refuse) fail(EEXIST);
+        if (existing_ == Existing::refuse) {
+            throw OutputError(fmt::format("'{}' exists; nothing is written without {}", path_,
+                                          Setting{"FileSet::force"}));
+        }
         if (::access(target_.c_str(), W_OK) != 0) fail(errno);
         if (!S_ISREG(status.st_mode)) {
             temporary_ = target_;
