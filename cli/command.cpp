@@ -216,6 +216,13 @@ jobs::Listener listenerFor(const Globals& globals) {
         .note = [&globals](const std::string& remark) { note(globals, remark); }};
 }
 
+nlohmann::ordered_json failuresJson(const std::vector<jobs::InputFailure>& failures) {
+    auto rows = nlohmann::ordered_json::array();
+    for (const jobs::InputFailure& failure : failures)
+        rows.push_back({{"spec", failure.spec}, {"reason", failure.reason}});
+    return rows;
+}
+
 void reportFailures(const std::vector<jobs::InputFailure>& failures, std::size_t inputs,
                     Globals& globals) {
     if (failures.empty()) return;

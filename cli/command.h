@@ -105,6 +105,9 @@ void note(const Globals& globals, std::string_view message);
 /// Progress lines and notes of a job; none with --quiet.
 jobs::Listener listenerFor(const Globals& globals);
 
+/// [{"spec": …, "reason": …}]
+nlohmann::ordered_json failuresJson(const std::vector<jobs::InputFailure>& failures);
+
 /// Prints one line for each failure to standard error, with --quiet too, and sets the exit
 /// code: 4 if all failures are numerical, else 3.
 void reportFailures(const std::vector<jobs::InputFailure>& failures, std::size_t inputs,

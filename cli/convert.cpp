@@ -2,6 +2,8 @@
 #include "documents.h"
 
 #include <hshfit/accuracy/metrics.h>
+#include <hshfit/error.h>
+#include <hshfit/files/standard_streams.h>
 
 #include <brdfs/catalog.h>
 
@@ -11,6 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -20,7 +23,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct ConvertArguments {
-    std::string input, output;
+    std::string input, output, folder;
+    std::vector<std::string> more;  ///< inputs, with a folder for the results
     jobs::ConvertOptions options;
 };
 
@@ -76,7 +80,7 @@ std::string convertText(const Json& document, const std::optional<jobs::Conversi
     return text;
 }
 
-void runConvert(const ConvertArguments& arguments, const Globals& globals) {
+void convertOne(const ConvertArguments& arguments, const Globals& globals) {
     const jobs::Converted converted =
         jobs::convert(arguments.input, arguments.output, arguments.options, listenerFor(globals));
     if (converted.poor) note(globals, converted.poor->line());
@@ -88,14 +92,58 @@ void runConvert(const ConvertArguments& arguments, const Globals& globals) {
     }
 }
 
+/// Every input to a file of its own in the folder `-o`.
+void convertMany(const ConvertArguments& arguments, Globals& globals) {
+    std::vector<std::string> inputs{arguments.input};
+    if (!arguments.output.empty()) inputs.push_back(arguments.output);
+    inputs.insert(inputs.end(), arguments.more.begin(), arguments.more.end());
+    if (std::ranges::any_of(inputs, isStandardOutput))
+        throw UsageError("convert -o: several files are written; '-' is not one of the inputs");
+    const auto many =
+        jobs::convertMany(inputs, arguments.folder, arguments.options, listenerFor(globals));
+    Json documents = Json::array();
+    std::string text;
+    for (std::size_t i = 0; i < many.results.size(); ++i) {
+        const auto& converted = many.results[i];
+        if (!converted) continue;
+        if (converted->poor) note(globals, converted->poor->line());
+        documents.push_back(document(*converted, many.outputs[i]));
+        text += convertText(documents.back(), converted->loss);
+    }
+    if (globals.json)
+        printJson({{"format", "hshfit-converts"},
+                   {"version", 1},
+                   {"conversions", documents},
+                   {"failures", failuresJson(many.failures)}});
+    else
+        printText(text);
+    reportFailures(many.failures, many.specs.size(), globals);
+}
+
+void runConvert(const ConvertArguments& arguments, Globals& globals) {
+    if (!arguments.folder.empty()) return convertMany(arguments, globals);
+    if (arguments.output.empty())
+        throw UsageError("convert: give IN and OUT, or one or more IN and the folder -o DIR");
+    if (!arguments.more.empty())
+        throw UsageError("convert: several inputs go to a folder; give -o DIR and --to FORMAT");
+    convertOne(arguments, globals);
+}
+
 }  // namespace
 
 void addConvert(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ConvertArguments>();
     jobs::ConvertOptions& options = arguments->options;
-    command.add_option("IN", arguments->input, "BRDF, measured file or coefficient file")
+    command
+        .add_option("IN", arguments->input,
+                    "BRDF, measured file or coefficient file; with -o also a folder of measured "
+                    "files")
         ->required();
-    command.add_option("OUT", arguments->output, "File to write")->required();
+    command.add_option("OUT", arguments->output, "File to write; with -o another IN");
+    command.add_option("MORE", arguments->more, "With -o: further IN");
+    command.add_option("-o,--output", arguments->folder,
+                       "Folder for the files of one or more IN, each named after its input; needs "
+                       "--to");
     command.add_option("--to", options.format,
                        "Format and its options, NAME[:key=value,...] (default: by the extension); "
                        "`hshfit help formats` lists them");

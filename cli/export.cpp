@@ -5,6 +5,7 @@
 #include <hshfit/gpu/error_split.h>
 
 #include <jobs/export.h>
+#include <jobs/many.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,7 +22,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct ExportArguments {
-    std::string coefficients, output, number, storage = "auto", packing = "coef4";
+    std::vector<std::string> coefficients;
+    std::string output, number, storage = "auto", packing = "coef4";
     std::string lighting;  ///< models; empty: none
     bool chroma = false, noError = false, sampling = false, noSampling = false;
     jobs::ExportOptions options;
@@ -223,13 +225,59 @@ void runLighting(const ExportArguments& arguments, const Globals& globals) {
     options.errors.lights = jobs::catalogLights();
     if (!shared.lights.empty())
         options.errors.lights.insert(options.errors.lights.begin(), options.light);
-    runExportLighting(arguments.coefficients, arguments.output, options, globals);
+    runExportLighting(arguments.coefficients[0], arguments.output, options, globals);
 }
 
-void runExport(ExportArguments& arguments, const CLI::App& command, const Globals& globals) {
+std::string answerText(const Json& answer) {
+    return text(answer) + (answer.contains("proposal") ? proposalText(answer["proposal"]) : "");
+}
+
+void exportOne(const ExportArguments& arguments, const Globals& globals) {
+    const jobs::Exported exported = jobs::exportCoefficients(
+        arguments.coefficients[0], arguments.output, arguments.options, listenerFor(globals));
+    if (exported.poor) note(globals, exported.poor->line());
+    const Json answer = document(exported, arguments.output);
+    if (globals.json)
+        printJson(answer);
+    else
+        printText(answerText(answer));
+}
+
+/// Every coefficient file to a folder of its own in the folder `-o`.
+void exportMany(const ExportArguments& arguments, Globals& globals) {
+    jobs::ExportPlaces places = jobs::exportPlaces(arguments.coefficients, arguments.output);
+    const auto many = jobs::makeMany<Json>(
+        std::move(places.inputs), std::move(places.folders), "export", listenerFor(globals),
+        [&](const std::string& input, const std::string& folder, const jobs::Listener& each) {
+            const jobs::Exported exported =
+                jobs::exportCoefficients(input, folder, arguments.options, each);
+            if (exported.poor) each.say(exported.poor->line());
+            return document(exported, folder);
+        });
+    Json documents = Json::array();
+    std::string lines;
+    for (const auto& answer : many.results) {
+        if (!answer) continue;
+        documents.push_back(*answer);
+        lines += answerText(*answer);
+    }
+    if (globals.json)
+        printJson({{"format", "hshfit-exports"},
+                   {"version", 1},
+                   {"exports", documents},
+                   {"failures", failuresJson(many.failures)}});
+    else
+        printText(lines);
+    reportFailures(many.failures, many.specs.size(), globals);
+}
+
+void runExport(ExportArguments& arguments, const CLI::App& command, Globals& globals) {
     jobs::ExportOptions& options = arguments.options;
     const bool materials = jobs::areMaterials(options.targets);
     requireOptions(command, materials);
+    const bool many = jobs::areMany(arguments.coefficients);
+    if (many && (materials || !arguments.lighting.empty()))
+        throw UsageError("export: the targets gltf and materialx and --lighting take one input");
     if (!arguments.lighting.empty()) return runLighting(arguments, globals);
     if (materials) {
         jobs::MaterialExportOptions& material = arguments.material;
@@ -237,7 +285,7 @@ void runExport(ExportArguments& arguments, const CLI::App& command, const Global
         material.name = options.name;
         material.source = options.source;
         material.force = options.force;
-        return runMaterialExport(arguments.coefficients, arguments.output, material, globals);
+        return runMaterialExport(arguments.coefficients[0], arguments.output, material, globals);
     }
     if (!arguments.number.empty()) options.number = gpu::parseNumber(arguments.number);
     options.storage = gpu::parseStorage(arguments.storage);
@@ -245,16 +293,7 @@ void runExport(ExportArguments& arguments, const CLI::App& command, const Global
     options.pack.luminanceChroma = arguments.chroma || options.pack.chromaOrder > 0;
     options.measureError = !arguments.noError;
     if (arguments.sampling || arguments.noSampling) options.sampling = arguments.sampling;
-    const jobs::Exported exported = jobs::exportCoefficients(
-        arguments.coefficients, arguments.output, options, listenerFor(globals));
-    if (exported.poor) note(globals, exported.poor->line());
-    const Json answer = document(exported, arguments.output);
-    if (globals.json) {
-        printJson(answer);
-    } else {
-        printText(text(answer) +
-                  (answer.contains("proposal") ? proposalText(answer["proposal"]) : ""));
-    }
+    many ? exportMany(arguments, globals) : exportOne(arguments, globals);
 }
 
 }  // namespace
@@ -263,10 +302,15 @@ void addExport(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ExportArguments>();
     jobs::ExportOptions& options = arguments->options;
     command
-        .add_option("COEFFS", arguments->coefficients,
-                    "Coefficient file of hshfit project; for gltf and materialx a BRDF too")
+        .add_option(
+            "COEFFS", arguments->coefficients,
+            "Coefficient file of hshfit project, one or more, or a folder of them; for gltf and "
+            "materialx a BRDF too")
         ->required();
-    command.add_option("-o,--output", arguments->output, "Folder, made if absent")->required();
+    command
+        .add_option("-o,--output", arguments->output,
+                    "Folder, made if absent; with many COEFFS, of one folder for each")
+        ->required();
     command
         .add_option(
             "--target", options.targets,

@@ -7,6 +7,7 @@
 #include <hshfit/files/json_fields.h>
 
 #include <jobs/info.h>
+#include <jobs/many.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -107,27 +108,68 @@ std::string infoText(const Json& document) {
     return out;
 }
 
+struct InfoArguments {
+    std::vector<std::string> specs;
+    bool rgb = false;
+};
+
+/// The answer, and whether it is that of a light.
+struct Described {
+    Json document;
+    bool light = false;
+
+    std::string text() const { return light ? lightText(document) : infoText(document); }
+};
+
+Described describe(const std::string& spec, bool rgb, const jobs::Listener& listener) {
+    if (looksLikeLight(spec)) return {lightAnswer(spec, jobs::describeLight(spec)), true};
+    return {answer(jobs::describeSource(spec, rgb, listener))};
+}
+
+/// One after the other, with an empty line in between.
+void infoMany(const InfoArguments& arguments, Globals& globals) {
+    const auto many = jobs::makeMany<Described>(
+        jobs::expandInputs(arguments.specs, jobs::Members::both), {}, "info", listenerFor(globals),
+        [&](const std::string& spec, const std::string&, const jobs::Listener& each) {
+            return describe(spec, arguments.rgb, each);
+        });
+    Json documents = Json::array();
+    std::string text;
+    for (const auto& described : many.results) {
+        if (!described) continue;
+        documents.push_back(described->document);
+        text += (text.empty() ? "" : "\n") + described->text();
+    }
+    if (globals.json)
+        printJson({{"format", "hshfit-infos"},
+                   {"version", 1},
+                   {"infos", documents},
+                   {"failures", failuresJson(many.failures)}});
+    else
+        printText(text);
+    reportFailures(many.failures, many.specs.size(), globals);
+}
+
+void runInfo(const InfoArguments& arguments, Globals& globals) {
+    if (jobs::areMany(arguments.specs)) return infoMany(arguments, globals);
+    const Described described = describe(arguments.specs[0], arguments.rgb, listenerFor(globals));
+    if (globals.json)
+        printJson(described.document);
+    else
+        printText(described.text());
+}
+
 }  // namespace
 
 void addInfo(CLI::App& command, Globals& globals) {
-    struct Options {
-        std::string spec;
-        bool rgb = false;
-    };
-    auto options = std::make_shared<Options>();
-    command.add_option("SPEC", options->spec, "BRDF, light, coefficient file or file of an export")
+    auto arguments = std::make_shared<InfoArguments>();
+    command
+        .add_option("SPEC", arguments->specs,
+                    "BRDF, light, coefficient file or file of an export; one or more, and of a "
+                    "folder its measured and coefficient files")
         ->required();
-    addRgb(command, options->rgb);
-    command.callback([options, &globals] {
-        const bool light = looksLikeLight(options->spec);
-        const Json document =
-            light ? lightAnswer(options->spec, jobs::describeLight(options->spec))
-                  : answer(jobs::describeSource(options->spec, options->rgb, listenerFor(globals)));
-        if (globals.json)
-            printJson(document);
-        else
-            printText(light ? lightText(document) : infoText(document));
-    });
+    addRgb(command, arguments->rgb);
+    command.callback([arguments, &globals] { runInfo(*arguments, globals); });
 }
 
 }  // namespace hshfit::cli

@@ -112,7 +112,7 @@ void projectMany(const ProjectArguments& arguments, Globals& globals) {
     const jobs::ManyProjected many =
         jobs::projectMany(arguments.specs, arguments.output, "." + arguments.files,
                           arguments.options, listenerFor(globals));
-    Json documents = Json::array(), failed = Json::array();
+    Json documents = Json::array();
     std::string text;
     for (const auto& result : many.results) {
         if (!result) continue;
@@ -120,13 +120,11 @@ void projectMany(const ProjectArguments& arguments, Globals& globals) {
         documents.push_back(answer(*result));
         text += line(*result);
     }
-    for (const jobs::InputFailure& failure : many.failures)
-        failed.push_back({{"spec", failure.spec}, {"reason", failure.reason}});
     if (globals.json)
         printJson({{"format", "hshfit-projects"},
                    {"version", 1},
                    {"projections", documents},
-                   {"failures", failed}});
+                   {"failures", failuresJson(many.failures)}});
     else
         printText(text);
     reportFailures(many.failures, many.specs.size(), globals);

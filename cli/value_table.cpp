@@ -162,6 +162,8 @@ constexpr ValueRow table[] = {
     {"batch", "--costs", nullptr, Syntax::word, Files::read},
     {"batch", "--progress", nullptr, Syntax::word, Files::written},
     {"compare", "--output", nullptr, Syntax::word, Files::folder},
+    {"convert", "--output", nullptr, Syntax::word, Files::folder},
+    {"convert", "MORE", nullptr, Syntax::brdf, Files::read},
     {"completion", "--output", nullptr, Syntax::word, Files::written, ""},
     {"eval", "--output", nullptr, Syntax::word, Files::written, ".csv"},
     {"export", "--output", nullptr, Syntax::word, Files::folder},

@@ -1,21 +1,21 @@
 #include "batch.h"
 
 #include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/each_in_parallel.h>
 #include <hshfit/wording.h>
 
 #include <brdfs/catalog.h>
 #include <brdfs/spec.h>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
+#include <glob.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <exception>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <new>
@@ -49,18 +49,43 @@ bool isMeasured(const fs::path& path) {
     return known && !looksLikeCoefficients(path.string());
 }
 
-std::vector<std::string> measuredFiles(const std::string& folder) {
+bool isMember(const fs::path& path, Members members) {
+    const bool coefficients = looksLikeCoefficients(path.string());
+    if (members == Members::coefficients) return coefficients;
+    return (members == Members::both && coefficients) || isMeasured(path);
+}
+
+[[noreturn]] void refuseEmpty(const std::string& folder, Members members) {
+    if (members == Members::coefficients)
+        throw InputError(fmt::format("{}: no coefficient file in this folder", folder));
+    throw InputError(fmt::format("{}: no measured BRDF{} in this folder; {} shows what is read",
+                                 folder, members == Members::both ? " and no coefficient file" : "",
+                                 Call{.function = "formats"}));
+}
+
+std::vector<std::string> filesIn(const std::string& folder, Members members) {
     std::error_code error;
     std::vector<std::string> files;
     fs::directory_iterator entries(folder, error);
     if (error) throw InputError(fmt::format("{}: {}", folder, error.message()));
     for (const fs::directory_entry& entry : entries)
-        if (entry.is_regular_file(error) && isMeasured(entry.path()))
+        if (entry.is_regular_file(error) && isMember(entry.path(), members))
             files.push_back(entry.path().string());
-    if (files.empty())
-        throw InputError(fmt::format("{}: no measured BRDF in this folder; {} shows what is read",
-                                     folder, Call{.function = "formats"}));
+    if (files.empty()) refuseEmpty(folder, members);
     std::ranges::sort(files);
+    return files;
+}
+
+/// The files that match a pattern, sorted; none for any other specification.
+std::vector<std::string> filesMatching(const std::string& spec) {
+    std::vector<std::string> files;
+    if (spec.find_first_of("*?[") == std::string::npos || !brdfs::pathIn(spec).empty())
+        return files;
+    glob_t found{};
+    if (::glob(spec.c_str(), 0, nullptr, &found) == 0)
+        files.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+    ::globfree(&found);
+    std::erase_if(files, isFolder);
     return files;
 }
 
@@ -104,14 +129,13 @@ private:
 
 }  // namespace
 
-std::vector<std::string> expandInputs(const std::vector<std::string>& specs) {
+std::vector<std::string> expandInputs(const std::vector<std::string>& specs, Members members) {
     std::vector<std::string> inputs;
     for (const std::string& spec : specs) {
-        if (isFolder(spec)) {
-            for (std::string& file : measuredFiles(spec)) inputs.push_back(std::move(file));
-        } else {
-            inputs.push_back(spec);
-        }
+        std::vector<std::string> files =
+            isFolder(spec) ? filesIn(spec, members) : filesMatching(spec);
+        if (files.empty()) files = {spec};
+        std::ranges::move(files, std::back_inserter(inputs));
     }
     return inputs;
 }
@@ -129,7 +153,9 @@ std::string nameOf(const std::string& spec) {
 }
 
 bool areMany(const std::vector<std::string>& specs) {
-    return specs.size() > 1 || std::ranges::any_of(specs, isFolder);
+    return specs.size() > 1 || std::ranges::any_of(specs, [](const std::string& spec) {
+               return isFolder(spec) || !filesMatching(spec).empty();
+           });
 }
 
 std::vector<std::string> outputPaths(const std::vector<std::string>& specs,
@@ -149,47 +175,37 @@ std::vector<std::string> outputPaths(const std::vector<std::string>& specs,
     return paths;
 }
 
+void requireFolder(const std::string& folder) {
+    std::error_code error;
+    if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
+        throw OutputError(fmt::format("{}: a file stands there; {} of several inputs is a folder",
+                                      folder, Setting{"output"}));
+    }
+}
+
 std::vector<InputFailure> forEachInput(const std::vector<std::string>& specs,
                                        const Listener& listener, const std::string& part,
                                        const std::function<void(std::size_t, ProgressCall)>& work) {
     TotalProgress progress(specs.size(), listener.part(part));
     std::vector<std::optional<InputFailure>> failed(specs.size());
-    // An exception that left a task would cancel the loops within other inputs, which would go on
-    // with results that nobody has computed: it waits until all have ended.
-    std::mutex mutex;
-    std::exception_ptr end;
-    std::atomic<bool> ended = false;
-    const auto stop = [&] {
-        const std::lock_guard lock(mutex);
-        if (!ended.exchange(true)) end = std::current_exception();
-    };
     const auto one = [&](std::size_t i) {
-        if (ended) return;
         try {
             work(i, [&progress, i](std::size_t done, std::size_t total) {
                 progress.update(i, done, total);
             });
         } catch (const OutputError&) {
-            stop();
+            throw;
         } catch (const Error& error) {
             failed[i] = {specs[i], error.what(), error.code()};
         } catch (const std::bad_alloc&) {
             failed[i] = {specs[i], "not enough memory", ExitCode::numeric};
-        } catch (...) {
-            stop();
         }
         progress.finish(i);
     };
     // Task isolation keeps a thread that waits within one input from starting another; without
     // it all inputs would be open at once.
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, specs.size(), 1),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i)
-                tbb::this_task_arena::isolate([&] { one(i); });
-        },
-        tbb::simple_partitioner());
-    if (end) std::rethrow_exception(end);
+    eachInParallel(specs.size(),
+                   [&](std::size_t i) { tbb::this_task_arena::isolate([&] { one(i); }); });
     std::vector<InputFailure> failures;
     for (auto& failure : failed)
         if (failure) failures.push_back(std::move(*failure));

@@ -10,13 +10,18 @@
 
 namespace hshfit::jobs {
 
-/// SPECs with each folder replaced by its measured files, sorted by name. A format
-/// recognises a file by content or by extension. Coefficient files, presets and
-/// subfolders are skipped. Throws InputError for a folder that cannot be read or has no
-/// such file.
-std::vector<std::string> expandInputs(const std::vector<std::string>& specs);
+/// The files of a folder that are inputs.
+enum class Members { measured, coefficients, both };
 
-/// Whether SPECs give many results: there are several of them, or one is a folder.
+/// SPECs with each folder replaced by its files of a kind, sorted by name, and each pattern (`*`,
+/// `?`, `[...]`, glob(7)) by the files that match. A format recognises a measured file by content
+/// or by extension. Presets and subfolders are skipped. Throws InputError for a folder that cannot
+/// be read or has no such file.
+std::vector<std::string> expandInputs(const std::vector<std::string>& specs,
+                                      Members members = Members::measured);
+
+/// Whether SPECs give many results: there are several of them, or one is a folder or a pattern that
+/// matches.
 bool areMany(const std::vector<std::string>& specs);
 
 /// The name of a result: a file's name without extension and options, or a model's specification
@@ -27,6 +32,9 @@ std::string nameOf(const std::string& spec);
 /// equal.
 std::vector<std::string> outputPaths(const std::vector<std::string>& specs,
                                      const std::string& folder, const std::string& extension);
+
+/// Throws OutputError if a file stands where the folder of many results should.
+void requireFolder(const std::string& folder);
 
 struct InputFailure {
     std::string spec, reason;

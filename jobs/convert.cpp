@@ -4,6 +4,7 @@
 #include "source.h"
 
 #include <hshfit/error.h>
+#include <hshfit/files/file_set.h>
 #include <hshfit/files/standard_streams.h>
 #include <hshfit/spelling.h>
 #include <hshfit/wording.h>
@@ -144,6 +145,28 @@ Converted convert(const std::string& input, const std::string& output,
     Converted result;
     withFileNamed(input, [&] { result = convertedFrom(input, output, writer, options, listener); });
     return result;
+}
+
+Many<Converted> convertMany(const std::vector<std::string>& specs, const std::string& folder,
+                            const ConvertOptions& options, const Listener& listener) {
+    if (options.format.empty())
+        throw UsageError(fmt::format("{}: give the format of many files, of {}",
+                                     Setting{"ConvertOptions::format"}, writableFormats()));
+    const brdfs::Writer& writer = chooseWriter(options.format, {});
+    writerParameters(writer, options.format);
+    std::vector<std::string> inputs = expandInputs(specs);
+    std::vector<std::string> outputs = outputPaths(inputs, folder, std::string(writer.extension));
+    requireFolder(folder);
+    FileSet made(folder, options.force);  // the folder, which goes again if it stays empty
+    for (const std::string& output : outputs)
+        made.requireFree(std::filesystem::path(output).filename().string());
+    auto many = makeMany<Converted>(
+        std::move(inputs), std::move(outputs), "convert", listener,
+        [&](const std::string& input, const std::string& output, const Listener& each) {
+            return convert(input, output, options, each);
+        });
+    made.commit();
+    return many;
 }
 
 Converted convertBrdf(const Brdf& brdf, const std::string& output, const ConvertOptions& options,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "listener.h"
+#include "many.h"
 #include "quality.h"
 
 #include <hshfit/accuracy/metrics.h>
@@ -54,6 +55,12 @@ struct Converted {
 /// and OutputError.
 Converted convert(const std::string& input, const std::string& output,
                   const ConvertOptions& options, const Listener& listener = {});
+
+/// The same of many inputs, each to FOLDER/NAME with the extension of the format, which has to be
+/// given. Folders stand for their measured files. Files that stand are refused before any is
+/// written, unless `force`; each new one appears when it is complete.
+Many<Converted> convertMany(const std::vector<std::string>& specs, const std::string& folder,
+                            const ConvertOptions& options, const Listener& listener = {});
 
 /// The same of a BRDF that is open. Throws UsageError if `options` have repairs or `rgb`, which are
 /// for BRDFs that this opens.

@@ -355,4 +355,11 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
     return exported;
 }
 
+ExportPlaces exportPlaces(const std::vector<std::string>& inputs, const std::string& folder) {
+    ExportPlaces places{.inputs = expandInputs(inputs, Members::coefficients), .folders = {}};
+    places.folders = outputPaths(places.inputs, folder, "");
+    requireFolder(folder);
+    return places;
+}
+
 }  // namespace hshfit::jobs

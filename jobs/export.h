@@ -1,5 +1,6 @@
 #pragma once
 
+#include "batch.h"
 #include "listener.h"
 #include "quality.h"
 
@@ -98,5 +99,13 @@ struct Exported {
 /// A failed measurement of the error is thrown only if `source` is given.
 Exported exportCoefficients(const std::string& coefficients, const std::string& folder,
                             const ExportOptions& options, const Listener& listener = {});
+
+/// The inputs of an export of several, folders and patterns expanded, and the folder of each below
+/// `folder`, named after it. Throws UsageError if two are equal, OutputError if a file stands in
+/// the place of `folder`.
+struct ExportPlaces {
+    std::vector<std::string> inputs, folders;
+};
+ExportPlaces exportPlaces(const std::vector<std::string>& inputs, const std::string& folder);
 
 }  // namespace hshfit::jobs

@@ -18,7 +18,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <system_error>
 #include <utility>
 
 namespace hshfit::jobs {
@@ -149,11 +148,7 @@ ManyProjected projectMany(const std::vector<std::string>& specs, const std::stri
     ManyProjected many;
     many.specs = expandInputs(specs);
     const std::vector<std::string> outputs = outputPaths(many.specs, folder, extension);
-    std::error_code error;
-    if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error)) {
-        throw OutputError(fmt::format("{}: a file stands there; {} of several inputs is a folder",
-                                      folder, Setting{"output"}));
-    }
+    requireFolder(folder);
     FileSet files(folder, true);
     many.results.resize(many.specs.size());
     many.failures = forEachInput(

@@ -62,7 +62,7 @@ TEST_F(Cli, BadInputIsOneLineAndLeavesNothing) {
     expectError("info " + path("empty.binary"), 3, "empty.binary", 6);
     expectError("info " + path("noise.bsdf"), 3, "noise.bsdf", 6);
     expectError("info " + path("short.json"), 3, "short.json", 6);
-    expectError("info " + folder_.string(), 3, folder_.filename(), 6);
+    expectError("eval " + folder_.string() + " --wi 0,0 --wo 0,0", 3, folder_.filename(), 6);
     expectError("project " + path("noise.bsdf") + " -o " + path("x.json"), 3, "noise.bsdf", 6);
     for (const char* csv : {"columns.csv", "length.csv", "nan.csv"}) {
         expectError("eval lambert --pairs " + path(csv) + " -o " + path("out.csv"), 3, csv, 6);
