@@ -30,12 +30,15 @@ struct FitArguments {
 
 /// The samples of the fit, from the fields of its preset.
 std::string samplesLine(const Json& fit) {
-    const std::map<std::string, std::string> kinds{{"cells", "cells of the table"},
-                                                   {"measured", "measured samples"},
-                                                   {"nodes", "nodes at which f was evaluated"}};
+    const std::map<std::string, std::string> kinds{
+        {"cells", "cells of the table"},
+        {"measured", "measured samples"},
+        {"nodes", "nodes at which f was evaluated"},
+        {"pixels", "pixels of spheres under five lights"}};
     const std::map<std::string, std::string> weights{{"equal", "equally"},
                                                      {"solid-angle", "by solid angle"},
-                                                     {"sigma", "by their stated uncertainties"}};
+                                                     {"sigma", "by their stated uncertainties"},
+                                                     {"area", "by area"}};
     return fmt::format("  fitted to {} {}, weighted {}\n", fit["samples"].get<std::size_t>(),
                        kinds.at(fit["samples_of"]), weights.at(fit["weights"]));
 }
@@ -74,6 +77,10 @@ std::string text(const jobs::Fitted& fitted, const std::string& output) {
     lines += fmt::format("  rms residual {:.6g} over {} values, {} iterations, {}\n", result.loss,
                          result.values, result.iterations,
                          result.converged ? "converged" : "NOT CONVERGED");
+    lines += fmt::format("  explains {} of the data by the loss {}; relative error of f cos {}\n",
+                         jobs::percent(fitted.explained, 4),
+                         fitted.preset["fit"]["loss"].get<std::string>(),
+                         jobs::percent(fitted.relativeError));
     lines += uncertaintyText(fitted.preset["fit"]);
     if (fitted.pageFiles > 0)
         lines += fmt::format("written to {}: fit.json, comparison.html and {} files beside it\n",
@@ -104,7 +111,8 @@ void runAll(const FitArguments& arguments, Globals& globals) {
 }
 
 void runCompareModels(const FitArguments& arguments, Globals& globals) {
-    const auto ranks = jobs::rankModels(arguments.data, arguments.models, arguments.options);
+    const auto [loss, ranks] =
+        jobs::rankModels(arguments.data, arguments.models, arguments.options);
     Json list = Json::array();
     std::string lines = fmt::format("  {:<28} {:>3} {:>12} {:>12} {:>12} {:>12}\n", "model", "p",
                                     "held out", "rms", "AIC", "BIC");
@@ -142,7 +150,7 @@ void runCompareModels(const FitArguments& arguments, Globals& globals) {
     const Json document = {{"format", "hshfit-fit-models"},
                            {"version", 1},
                            {"data", arguments.data},
-                           {"loss", jobs::lossOf(arguments.options)},
+                           {"loss", loss},
                            {"models", list}};
     if (!arguments.output.empty()) writeFile(arguments.output, jsonText(document, 2) + "\n");
     if (globals.json)
@@ -199,10 +207,9 @@ void addFit(CLI::App& command, Globals& globals) {
                        "Fit each of these models and rank them by held-out directions");
     command.add_option("-o,--output", arguments->output,
                        "Where the fit goes: a preset (.json), or a folder for a report as well");
-    command
-        .add_option("--loss", options.loss,
-                    "l2 (default with --sigma), cosine, log, cube-root or log-relative")
-        ->default_str("cosine");
+    command.add_option("--loss", options.loss,
+                       "picture (default for functions and tables), l2 (default with --sigma), "
+                       "cosine (default for scattered samples), log, cube-root or log-relative");
     command.add_option("--robust", options.robust, "none, huber or cauchy")->capture_default_str();
     command
         .add_option("--robust-scale", options.robustScale,
@@ -210,6 +217,11 @@ void addFit(CLI::App& command, Globals& globals) {
         ->check(CLI::Range(0.0, 1e300));
     command.add_flag("--per-channel", options.perChannel, "Shapes of their own for each channel");
     command.add_option("--weights", options.weights, "auto, equal or solid-angle")
+        ->capture_default_str();
+    command
+        .add_option("--at", options.places,
+                    "Places of samples: auto, cells of a table, or nodes of the quadrature by "
+                    "which BRDFs are compared")
         ->capture_default_str();
     command
         .add_option("--grazing-cut", options.grazingCut,

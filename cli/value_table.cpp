@@ -130,6 +130,10 @@ Words numberWords() {
     return {{"float16"}, {"float32"}, {"unorm16"}, {"unorm8"}};
 }
 
+Words placeWords() {
+    return {{"auto"}, {"cells"}, {"nodes"}};
+}
+
 Words robustWords() {
     return {{"none"}, {"huber"}, {"cauchy"}};
 }
@@ -168,6 +172,7 @@ constexpr ValueRow table[] = {
     {"eval", "--output", nullptr, Syntax::word, Files::written, ".csv"},
     {"export", "--output", nullptr, Syntax::word, Files::folder},
     {"fit", "--all", nullptr, Syntax::word, Files::folder},
+    {"fit", "--at", placeWords},
     {"fit", "--residuals", nullptr, Syntax::word, Files::written, ".csv"},
     {"fit", "--scans", scanWords},
     {"fit", "--sigma", sigmaWords, Syntax::word, Files::read, ".csv"},

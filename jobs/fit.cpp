@@ -12,11 +12,13 @@
 
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit_json.h>
+#include <brdfs/fit/picture_samples.h>
 #include <brdfs/fit/residual_rows.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,10 +26,10 @@
 namespace hshfit::jobs {
 namespace {
 
-brdfs::FitOptions optionsOf(const FitOptions& options) {
+brdfs::FitOptions optionsOf(const FitOptions& options, const Brdf& data) {
     brdfs::FitOptions fit;
     fit.model = options.model;
-    fit.loss = brdfs::findLoss(lossOf(options)).kind;
+    fit.loss = brdfs::findLoss(lossOf(options, data)).kind;
     fit.robust = brdfs::findRobust(options.robust);
     fit.robustScale = options.robustScale;
     fit.perChannel = options.perChannel;
@@ -41,25 +43,73 @@ brdfs::FitOptions optionsOf(const FitOptions& options) {
     return fit;
 }
 
-brdfs::FitSamples samplesOf(const FitOptions& options, const Brdf& data) {
+/// Whether an option is about single samples, which pixels are not.
+std::optional<Setting> sampleSetting(const FitOptions& options) {
+    const std::pair<bool, const char*> rows[] = {
+        {options.weights != "auto", "FitOptions::weights"},
+        {options.places != "auto", "FitOptions::places"},
+        {!options.sigma.empty(), "FitOptions::sigma"},
+        {!options.scans.empty(), "FitOptions::scans"},
+        {options.bootstrap > 0, "FitOptions::bootstrap"},
+        {options.profile, "FitOptions::profile"},
+        {!options.residuals.empty(), "FitOptions::residuals"},
+    };
+    for (const auto& [given, name] : rows)
+        if (given) return Setting{name};
+    return std::nullopt;
+}
+
+brdfs::FitSamples samplesOf(const FitOptions& options, const Brdf& data, brdfs::Loss::Kind loss) {
     const brdfs::SampleOptions how{.weights = brdfs::findSampleWeights(options.weights),
+                                   .places = brdfs::findSamplePlaces(options.places),
                                    .grazingCut = options.grazingCut,
                                    .most = options.samples,
                                    .seed = options.seed,
                                    .sigma = brdfs::parseSigma(options.sigma),
                                    .scans = brdfs::parseScans(options.scans)};
-    if (!options.sigma.empty() && how.weights == brdfs::SampleWeights::solidAngle)
-        throw UsageError(fmt::format("{} states the weights of the samples; leave out {}",
-                                     Setting{"FitOptions::sigma"}, Setting{"FitOptions::weights"}));
-    brdfs::FitSamples samples = brdfs::gatherSamples(data, how);
+    brdfs::FitSamples samples;
+    if (loss == brdfs::Loss::Kind::picture) {
+        if (const auto setting = sampleSetting(options))
+            throw UsageError(
+                fmt::format("{} is about single samples, and the loss picture fits pixels of lit "
+                            "spheres; leave it out, or choose another loss",
+                            *setting));
+        samples = brdfs::pictureSamples(data, {.grazingCut = options.grazingCut});
+        if (options.samples > 0) samples = samples.drawn(options.samples, options.seed);
+    } else {
+        if (!options.sigma.empty() && how.weights == brdfs::SampleWeights::solidAngle)
+            throw UsageError(fmt::format("{} states the weights of the samples; leave out {}",
+                                         Setting{"FitOptions::sigma"},
+                                         Setting{"FitOptions::weights"}));
+        samples = brdfs::gatherSamples(data, how);
+    }
     requireReadable(data);
     return samples;
 }
 
+/// The root of the weighted mean square of what the samples show about their mean.
+double spreadOf(const brdfs::FitSamples& samples, brdfs::Loss::Kind loss) {
+    double variance = 0;
+    const auto channels = samples.channels.count();
+    for (std::size_t c = 0; c < channels; ++c) {
+        double sum = 0, squares = 0, weights = 0;
+        for (std::size_t k = 0; k < samples.size(); ++k) {
+            const double g = brdfs::mapValue(loss, samples.value(c, k), samples.wiZ[k]).value;
+            weights += samples.weights[k];
+            sum += samples.weights[k] * g;
+            squares += samples.weights[k] * g * g;
+        }
+        variance += (squares - sum * sum / weights) / (weights * static_cast<double>(channels));
+    }
+    return std::sqrt(std::max(variance, 0.0));
+}
+
 double explainedBy(const brdfs::FitResult& result, const brdfs::FitSamples& samples,
                    brdfs::Loss::Kind loss) {
-    const double black = brdfs::lossOf(*brdfs::open("lambert:kd=0"), samples, loss);
-    return black > 0 ? 1 - (result.loss / black) * (result.loss / black) : 1;
+    const double unit = loss == brdfs::Loss::Kind::picture
+                            ? spreadOf(samples, loss)
+                            : brdfs::lossOf(*brdfs::open("lambert:kd=0"), samples, loss);
+    return unit > 0 ? 1 - (result.loss / unit) * (result.loss / unit) : 1;
 }
 
 std::vector<std::string> namesIn(const std::string& list) {
@@ -133,9 +183,12 @@ std::unique_ptr<AtomicFile> residualsOf(const brdfs::FitSamples& samples,
 
 }  // namespace
 
-std::string lossOf(const FitOptions& options) {
+std::string lossOf(const FitOptions& options, const Brdf& data) {
     if (!options.loss.empty()) return options.loss;
-    return options.sigma.empty() ? "cosine" : "l2";
+    if (!options.sigma.empty()) return "l2";
+    const bool ofSamples =
+        sampleSetting(options) || options.robust != "none" || brdfs::areMeasured(data);
+    return ofSamples ? "cosine" : "picture";
 }
 
 bool isPresetPath(const std::string& output) {
@@ -152,8 +205,8 @@ namespace {
 std::pair<Fitted, std::unique_ptr<AtomicFile>> fitOpen(const Brdf& brdf, const std::string& data,
                                                        const FitOptions& options,
                                                        const Listener& listener) {
-    brdfs::FitOptions how = optionsOf(options);
-    const brdfs::FitSamples samples = samplesOf(options, brdf);
+    brdfs::FitOptions how = optionsOf(options, brdf);
+    const brdfs::FitSamples samples = samplesOf(options, brdf, how.loss);
     const auto search = restrictParts(options, samples, how, listener);
     how.progress = listener.part("fit");
     how.uncertainty.progress = listener.part("errors");
@@ -164,11 +217,20 @@ std::pair<Fitted, std::unique_ptr<AtomicFile>> fitOpen(const Brdf& brdf, const s
                         "is",
                         data, options.model, fitted.result.message, Setting{"FitOptions::accept"}));
     }
-    fitted.preset =
-        brdfs::fitPreset({data, &samples, how, fitted.result, options.sigma, options.scans});
+    // Metrics are those of f, not of pixels.
+    const bool pixels = samples.origin == brdfs::SampleOrigin::pixels;
+    const brdfs::FitSamples ofMetrics =
+        pixels ? brdfs::gatherSamples(brdf, {.grazingCut = options.grazingCut})
+               : brdfs::FitSamples();
+    fitted.preset = brdfs::fitPreset({data, &samples, how, fitted.result, options.sigma,
+                                      options.scans, pixels ? &ofMetrics : &samples});
+    for (const auto& metric : fitted.preset["fit"]["metrics"])
+        if (metric["name"] == "relative-l2-cosine" && metric["value"].is_number())
+            fitted.relativeError = metric["value"];
     fitted.explained = explainedBy(fitted.result, samples, how.loss);
     fitted.poor = judgeFit(fitted.explained, data, options.model, options.sigma);
     fitted.preset["fit"]["explained"] = fitted.explained;
+    fitted.preset["fit"]["relative_error"] = fitted.relativeError;
     if (search) fitted.preset["fit"]["parts"] = searchJson(*search);
     auto residuals = residualsOf(samples, fitted.result, options.residuals);
     return {std::move(fitted), std::move(residuals)};
@@ -204,16 +266,16 @@ BatchOutcome fitAll(const std::string& folder, const std::string& results,
         listener.part("files"));
 }
 
-std::vector<brdfs::ModelRank> rankModels(const std::string& data,
-                                         const std::vector<std::string>& models,
-                                         const FitOptions& options) {
+RankedModels rankModels(const std::string& data, const std::vector<std::string>& models,
+                        const FitOptions& options) {
     return rankModels(*openSource(data, options.rgb), models, options);
 }
 
-std::vector<brdfs::ModelRank> rankModels(const Brdf& data, const std::vector<std::string>& models,
-                                         const FitOptions& options) {
-    const brdfs::FitSamples samples = samplesOf(options, data);
-    return brdfs::compareModels(samples, models, optionsOf(options));
+RankedModels rankModels(const Brdf& data, const std::vector<std::string>& models,
+                        const FitOptions& options) {
+    const brdfs::FitOptions how = optionsOf(options, data);
+    const brdfs::FitSamples samples = samplesOf(options, data, how.loss);
+    return {lossOf(options, data), brdfs::compareModels(samples, models, how)};
 }
 
 }  // namespace hshfit::jobs

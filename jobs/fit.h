@@ -22,10 +22,13 @@ namespace hshfit::jobs {
 struct FitOptions {
     /// MODEL[:key=value,…][+MODEL…]; parameters with a value are held fixed.
     std::string model;
-    /// brdfs::findLoss. Empty: cosine, or l2 with stated uncertainties.
+    /// brdfs::findLoss. Empty: l2 with stated uncertainties; cosine for scattered samples, and
+    /// where another option is about single samples (robust, weights, places, scans, bootstrap,
+    /// profile, residuals); else picture, whose spheres look most like those of the data.
     std::string loss = {};
     std::string robust = "none";   ///< brdfs::findRobust
     std::string weights = "auto";  ///< brdfs::findSampleWeights
+    std::string places = "auto";   ///< brdfs::findSamplePlaces
     double robustScale = 0;        ///< residual at which `robust` sets in; 0: from their spread
     bool perChannel = false;       ///< separate shape parameters for each channel
     int starts = 16;               ///< local searches
@@ -45,8 +48,8 @@ struct FitOptions {
     std::string residuals = {};  ///< CSV file, a row for each value; empty: none
 };
 
-/// The name of the loss that these options ask for.
-std::string lossOf(const FitOptions& options);
+/// The name of the loss that these options ask for with these data.
+std::string lossOf(const FitOptions& options, const Brdf& data);
 
 struct Fitted {
     brdfs::FitResult result;
@@ -54,8 +57,12 @@ struct Fitted {
 
     nlohmann::ordered_json preset;  ///< docs/schemas/fit.schema.json
     std::size_t pageFiles = 0;      ///< of the page, where one was asked for
-    /// 1 - (loss / loss of a black surface)^2: the share of the data, in units of the loss.
+    /// 1 - (loss / loss of a black surface)^2: the share of the data, in units of the loss. Of
+    /// `picture` with the spread of the data about their mean in place of a black surface.
     double explained = 0;
+    /// Root of the integral of ((fit - data) cos(theta_i))^2 over that of (data cos(theta_i))^2,
+    /// over the samples; of `picture` over the nodes of a comparison.
+    double relativeError = 0;
     std::optional<Poor> poor = {};
 };
 
@@ -80,11 +87,15 @@ std::string presetText(const Fitted& fitted);
 BatchOutcome fitAll(const std::string& folder, const std::string& results,
                     const FitOptions& options, const Listener& listener = {});
 
+struct RankedModels {
+    std::string loss;
+    std::vector<brdfs::ModelRank> models;
+};
+
 /// Fits every model to the same data and ranks them by error at held-out directions.
-std::vector<brdfs::ModelRank> rankModels(const std::string& data,
-                                         const std::vector<std::string>& models,
-                                         const FitOptions& options);
-std::vector<brdfs::ModelRank> rankModels(const Brdf& data, const std::vector<std::string>& models,
-                                         const FitOptions& options);
+RankedModels rankModels(const std::string& data, const std::vector<std::string>& models,
+                        const FitOptions& options);
+RankedModels rankModels(const Brdf& data, const std::vector<std::string>& models,
+                        const FitOptions& options);
 
 }  // namespace hshfit::jobs

@@ -1,5 +1,6 @@
 #include "source.h"
 
+#include <hshfit/accuracy/metrics.h>
 #include <hshfit/brdf/colour.h>
 #include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/coefficient_files/light_file.h>
@@ -93,7 +94,7 @@ void requireReadable(const Brdf& brdf) {
 
 OutgoingSet outgoingOrDefault(const std::string& text, const Brdf& brdf) {
     if (!text.empty()) return OutgoingSet::parse(text);
-    return brdf.laws().isotropic ? OutgoingSet::elevations(16) : OutgoingSet::parabolic(16, 16);
+    return comparedOutgoing(brdf.laws().isotropic);
 }
 
 }  // namespace hshfit::jobs

@@ -113,7 +113,7 @@ py::list ranked(const py::object& data, const std::vector<std::string>& models,
     std::vector<brdfs::ModelRank> ranks;
     Source* const sources[] = {&source};
     watched(py::none(), sources, [&](const jobs::Listener&) {
-        ranks = jobs::rankModels(source.brdf(), models, options);
+        ranks = jobs::rankModels(source.brdf(), models, options).models;
     });
     py::list rows;
     for (const brdfs::ModelRank& rank : ranks) {
@@ -179,7 +179,9 @@ void bindResult(py::module_& module) {
         .def_property_readonly("aic", [=](const Fitted& f) { return result(f).aic; })
         .def_property_readonly("bic", [=](const Fitted& f) { return result(f).bic; })
         .def_property_readonly("samples", [=](const Fitted& f) { return result(f).samples; })
-        .def_readonly("explained", &Fitted::explained, "1 - (rms / rms of a black surface)^2.")
+        .def_readonly("explained", &Fitted::explained,
+                      "1 - (rms / rms of a black surface)^2; of the loss picture, of the spread\n"
+                      "of the data about their mean.")
         .def_property_readonly("poor", [](const Fitted& f) { return poorDict(f.poor); })
         .def_property_readonly(
             "preset", [](const Fitted& f) { return fromJson(f.preset); },
@@ -207,7 +209,8 @@ void bindFit(py::module_& module) {
                R"(Fit a model to a Brdf, or to a specification or path.
 
 model     "MODEL[:key=value,...][+MODEL...]": parameters with a value are held fixed
-loss      "l2", "cosine", "log", "cube-root" or "log-relative"
+loss      "picture" (default for functions and tables), "l2", "cosine" (default for scattered
+          samples), "log", "cube-root" or "log-relative"
 robust    "none", "huber" or "cauchy", from `robust_scale` on (0: from the residuals' spread)
 weights   "auto", "equal" or "solid-angle"
 samples   to draw; 0: all

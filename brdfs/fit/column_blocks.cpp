@@ -1,5 +1,7 @@
 #include <brdfs/fit/column_blocks.h>
 
+#include <Eigen/Core>
+
 #include <algorithm>
 
 namespace hshfit::brdfs {
@@ -9,21 +11,16 @@ bool same(const Direction& a, const Direction& b) {
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/// Columns at samples, one call for each run of samples with one outgoing direction.
-void evalRuns(const FitSamples& samples, const Columns& columns, std::size_t begin,
-              std::size_t size, double* out) {
+/// Columns at pairs, one call for each run of pairs with one outgoing direction.
+void evalRuns(const PairPlaces& pairs, const Columns& columns, double* out) {
     double buffer[64 * 8];
     const std::size_t most = std::max<std::size_t>(1, std::size(buffer) / columns.count());
-    for (std::size_t k = 0; k < size;) {
-        const std::size_t at = begin + k;
+    for (std::size_t k = 0; k < pairs.count;) {
         std::size_t run = 1;
-        while (k + run < size && run < most && same(samples.wo[at + run], samples.wo[at])) ++run;
-        columns.eval(
-            samples.wo[at],
-            {samples.wiX.data() + at, samples.wiY.data() + at, samples.wiZ.data() + at, run},
-            buffer);
+        while (k + run < pairs.count && run < most && same(pairs.wo[k + run], pairs.wo[k])) ++run;
+        columns.eval(pairs.wo[k], {pairs.x + k, pairs.y + k, pairs.z + k, run}, buffer);
         for (std::size_t c = 0; c < columns.count(); ++c)
-            std::copy_n(buffer + c * run, run, out + c * size + k);
+            std::copy_n(buffer + c * run, run, out + c * pairs.count + k);
         k += run;
     }
 }
@@ -67,39 +64,97 @@ ColumnBlocks::ColumnBlocks(const FitSamples& samples, const ParametricSum& sum,
 }
 
 void ColumnBlocks::fill(std::size_t begin, std::size_t size, double* out) const {
-    std::fill_n(out, size, 0.0);
+    if (samples_.sums) return fillSums(begin, size, out);
+    fillPairs({samples_.wiX.data() + begin, samples_.wiY.data() + begin,
+               samples_.wiZ.data() + begin, samples_.wo.data() + begin, size},
+              out);
+}
+
+void ColumnBlocks::fillPairs(const PairPlaces& pairs, double* out) const {
+    std::fill_n(out, pairs.count, 0.0);
     for (const Term& term : terms_) {
         if (term.formula)
-            fillByFormula(term, begin, size, out);
+            fillByFormula(term, pairs, out);
         else
-            fillByDifferences(term, begin, size, out);
+            fillByDifferences(term, pairs, out);
     }
 }
 
-void ColumnBlocks::fillByFormula(const Term& term, std::size_t begin, std::size_t size,
-                                 double* out) const {
+// Node by node in blocks; sums over the same nodes are a product of matrices.
+void ColumnBlocks::fillSums(std::size_t begin, std::size_t size, double* out) const {
+    using Matrix = Eigen::MatrixXd;
+    using Factors = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const NodeSums& sums = *samples_.sums;
+    Eigen::Map<Matrix> result(out, static_cast<Eigen::Index>(size),
+                              static_cast<Eigen::Index>(count_));
+    result.setZero();
+    const auto rowOf = [&](std::size_t k) -> const NodeSums::Row& {
+        return sums.rows[samples_.sumRows[begin + k]];
+    };
+    Matrix columns;
+    for (std::size_t k = 0; k < size;) {
+        // Samples whose nodes fit into one block, or the samples of one range of nodes.
+        const std::size_t first = rowOf(k).firstNode;
+        std::size_t next = k + 1, last = first + rowOf(k).nodes;
+        while (next < size && (rowOf(next).firstNode == rowOf(next - 1).firstNode ||
+                               rowOf(next).firstNode + rowOf(next).nodes <= first + blockSize)) {
+            last = rowOf(next).firstNode + rowOf(next).nodes;
+            ++next;
+        }
+        for (std::size_t node = first; node < last; node += blockSize) {
+            const std::size_t count = std::min(blockSize, last - node);
+            columns.resize(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count_));
+            fillPairs({sums.wiX.data() + node, sums.wiY.data() + node, sums.wiZ.data() + node,
+                       sums.wo.data() + node, count},
+                      columns.data());
+            for (std::size_t s = k; s < next;) {
+                const NodeSums::Row& row = rowOf(s);
+                // Sums over the same nodes, whose factors follow one another.
+                std::size_t end = s + 1;
+                while (end < next && rowOf(end).firstNode == row.firstNode &&
+                       rowOf(end).firstFactor == row.firstFactor + (end - s) * row.nodes)
+                    ++end;
+                const std::size_t from = std::max(row.firstNode, node),
+                                  to = std::min(row.firstNode + row.nodes, node + count);
+                if (from < to) {
+                    const Eigen::Map<const Factors, 0, Eigen::OuterStride<>> factors(
+                        sums.factors.data() + row.firstFactor + (from - row.firstNode),
+                        static_cast<Eigen::Index>(end - s), static_cast<Eigen::Index>(to - from),
+                        Eigen::OuterStride<>(static_cast<Eigen::Index>(row.nodes)));
+                    result.middleRows(static_cast<Eigen::Index>(s),
+                                      static_cast<Eigen::Index>(end - s)) +=
+                        factors * columns.middleRows(static_cast<Eigen::Index>(from - node),
+                                                     static_cast<Eigen::Index>(to - from));
+                }
+                s = end;
+            }
+        }
+        k = next;
+    }
+}
+
+void ColumnBlocks::fillByFormula(const Term& term, const PairPlaces& pairs, double* out) const {
+    const std::size_t size = pairs.count;
     double* slopes = out + term.firstSlope * size;
-    const PairBatch pairs{.wi = {samples_.wiX.data() + begin, samples_.wiY.data() + begin,
-                                 samples_.wiZ.data() + begin, size},
-                          .wo = samples_.wo.data() + begin};
-    term.formula->fill(pairs, out, out + term.firstLinear * size, slopes);
+    const PairBatch batch{.wi = {pairs.x, pairs.y, pairs.z, size}, .wo = pairs.wo};
+    term.formula->fill(batch, out, out + term.firstLinear * size, slopes);
     const std::size_t rows = (1 + term.linears) * size;
     for (std::size_t j = 0; j < term.slopes.size(); ++j)
         for (std::size_t k = 0; k < rows; ++k) slopes[j * rows + k] *= term.slopes[j];
 }
 
-void ColumnBlocks::fillByDifferences(const Term& term, std::size_t begin, std::size_t size,
-                                     double* out) const {
+void ColumnBlocks::fillByDifferences(const Term& term, const PairPlaces& pairs, double* out) const {
+    const std::size_t size = pairs.count;
     std::vector<double> own(term.columns.count() * size);
-    evalRuns(samples_, term.columns, begin, size, own.data());
+    evalRuns(pairs, term.columns, own.data());
     for (std::size_t k = 0; k < size; ++k) out[k] += own[k];
     std::copy(own.begin() + static_cast<std::ptrdiff_t>(size), own.end(),
               out + term.firstLinear * size);
     for (std::size_t j = 0; j < term.differences.size(); ++j) {
         const Difference& difference = term.differences[j];
         double* to = out + (term.firstSlope + j * (1 + term.linears)) * size;
-        evalRuns(samples_, difference.above, begin, size, to);
-        evalRuns(samples_, difference.below, begin, size, own.data());
+        evalRuns(pairs, difference.above, to);
+        evalRuns(pairs, difference.below, own.data());
         for (std::size_t k = 0; k < own.size(); ++k) to[k] = (to[k] - own[k]) * difference.inverse;
     }
 }

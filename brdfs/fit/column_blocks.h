@@ -37,9 +37,11 @@ private:
         std::vector<Difference> differences;
         std::size_t linears = 0, firstLinear = 0, firstSlope = 0;
     };
-    void fillByFormula(const Term& term, std::size_t begin, std::size_t size, double* out) const;
-    void fillByDifferences(const Term& term, std::size_t begin, std::size_t size,
-                           double* out) const;
+    /// The columns of f at pairs, at most blockSize of them.
+    void fillPairs(const PairPlaces& pairs, double* out) const;
+    void fillSums(std::size_t begin, std::size_t size, double* out) const;
+    void fillByFormula(const Term& term, const PairPlaces& pairs, double* out) const;
+    void fillByDifferences(const Term& term, const PairPlaces& pairs, double* out) const;
 
     const FitSamples& samples_;
     std::vector<Term> terms_;

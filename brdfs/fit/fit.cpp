@@ -306,6 +306,12 @@ std::vector<double> valuesOf(const Brdf& brdf, const FitSamples& samples) {
     const std::size_t count = samples.size(), channels = samples.channels.count();
     const std::size_t own = brdf.channels().count();
     std::vector<double> values(count * channels), buffer(own);
+    if (samples.sums) {
+        const std::vector<double> sums =
+            summed(*samples.sums, samples.sumRows, valuesAt(brdf, *samples.sums));
+        for (std::size_t v = 0; v < values.size(); ++v) values[v] = sums[own == 1 ? v % count : v];
+        return values;
+    }
     for (std::size_t k = 0; k < count; ++k) {
         brdf.eval(samples.wo[k], {&samples.wiX[k], &samples.wiY[k], &samples.wiZ[k], 1},
                   buffer.data());

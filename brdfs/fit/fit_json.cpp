@@ -38,7 +38,7 @@ Json correlationsJson(const FitResult& result) {
 }
 
 Json metricsJson(const FitReport& report) {
-    const FitSamples& samples = *report.samples;
+    const FitSamples& samples = *report.ofMetrics;
     const auto brdf = openFit(report.result);
     const std::vector<double> own = valuesOf(*brdf, samples);
     Json metrics = Json::array();
@@ -50,6 +50,12 @@ Json metricsJson(const FitReport& report) {
         metrics.push_back(std::move(json));
     }
     return metrics;
+}
+
+std::string_view weightsOf(const FitSamples& samples) {
+    if (!samples.sigmas.empty()) return "sigma";
+    if (samples.origin == SampleOrigin::pixels) return "area";
+    return samples.solidAngles ? "solid-angle" : "equal";
 }
 
 Json spectrumJson(const std::vector<FittedWavelength>& spectrum) {
@@ -74,7 +80,7 @@ Json fitPreset(const FitReport& report) {
         {"model", result.model},
         {"loss", loss},
         {"robust", robustName(options.robust)},
-        {"weights", samples.solidAngles ? "solid-angle" : "equal"},
+        {"weights", weightsOf(samples)},
         {"samples", result.samples},
         {"samples_of", nameOf(samples.origin)},
         {"values", result.values},
@@ -101,7 +107,6 @@ Json fitPreset(const FitReport& report) {
         {"metrics", metricsJson(report)},
     };
     if (options.robust != Robust::none) fit["robust_scale"] = result.robustScale;
-    if (!samples.sigmas.empty()) fit["weights"] = "sigma";
     if (result.uncertainty) {
         fit["uncertainty"] = uncertaintyJson(report);
         fit["influence"] = influenceJson(samples, *result.uncertainty);

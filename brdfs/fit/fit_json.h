@@ -15,7 +15,8 @@ struct FitReport {
     FitSamples const* samples = nullptr;
     FitOptions options;
     FitResult result;
-    std::string sigma, scans;  ///< as they were stated
+    std::string sigma, scans;               ///< as they were stated
+    FitSamples const* ofMetrics = nullptr;  ///< those that metrics are of
 };
 
 /// {"format": "hshfit-preset", …, "fit": {…}}: opened as a preset by every command. The same for

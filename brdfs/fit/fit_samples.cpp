@@ -4,8 +4,12 @@
 #include <brdfs/measured/gridded/slice.h>
 #include <brdfs/measured/merl.h>
 #include <brdfs/measured/scattered/scattered.h>
+#include <hshfit/accuracy/metrics.h>
 #include <hshfit/brdf/channel_view.h>
+#include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
+#include <hshfit/quadrature/quadrature.h>
+#include <hshfit/quadrature/ring_points.h>
 
 #include <fmt/format.h>
 
@@ -20,10 +24,6 @@
 
 namespace hshfit::brdfs {
 namespace {
-
-double square(double x) {
-    return x * x;
-}
 
 /// Takes samples one by one and counts those left out.
 class Gatherer {
@@ -191,22 +191,63 @@ void gatherScattered(const Scattered& scattered, Gatherer& gatherer) {
                      {samples.values.data() + k * channels, channels}, 1, k);
 }
 
-/// Any other BRDF, at the nodes that the header names.
-void gatherNodes(const Brdf& data, Gatherer& gatherer) {
-    constexpr int halfCount = 45, differenceCount = 30, azimuthCount = 30, turnCount = 12;
-    const auto half = [](double h) { return pi / 2 * square((h + 0.5) / halfCount); };
-    const int turns = data.laws().isotropic ? 1 : turnCount;
-    for (int h = 0; h < halfCount; ++h)
-        for (int d = 0; d < differenceCount; ++d) {
-            const double thetaD = radians(3 * (d + 0.5));
-            const double measure = cellMeasure(half, h, thetaD, radians(3));
-            for (int p = 0; p < azimuthCount; ++p)
-                for (int t = 0; t < turns; ++t)
-                    addIfCovered(data,
-                                 fromHalfDifference(half(h), (t + 0.5) * 2 * pi / turns, thetaD,
-                                                    radians(12 * (p + 0.5))),
-                                 measure, gatherer);
+/// f at the nodes of wi for one outgoing direction.
+struct NodesOfOne {
+    std::vector<Direction> wi;
+    std::vector<double> weights;
+    std::vector<double> values;  ///< [node * channels + channel]
+    std::vector<unsigned char> covered;
+};
+
+NodesOfOne nodesOfOne(const Brdf& data, const Direction& wo, double solidAngle, int level,
+                      bool everywhere) {
+    NodesOfOne nodes;
+    const std::size_t channels = data.channels().count();
+    const HemisphereGrid grid = gridFor(data.lobes(wo), wo, {.level = level, .squeezed = true});
+    RingPoints points;
+    std::vector<double> f;
+    for (const auto& panel : grid.panels) {
+        points.start(panel);
+        for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring) {
+            points.move(grid, ring);
+            const std::size_t count = points.count(), first = nodes.covered.size();
+            f.resize(channels * count);
+            data.eval(wo, points.directions(), f.data());
+            nodes.covered.resize(first + count, 1);
+            if (!everywhere) data.coverage(wo, points.directions(), nodes.covered.data() + first);
+            for (std::size_t j = 0; j < count; ++j) {
+                nodes.wi.push_back(points.direction(j));
+                nodes.weights.push_back(solidAngle * points.weight(j));
+                for (std::size_t c = 0; c < channels; ++c) nodes.values.push_back(f[c * count + j]);
+            }
         }
+    }
+    return nodes;
+}
+
+/// At the nodes at which BRDFs are compared. `everywhere`: also where f rests on no sample.
+void gatherNodes(const Brdf& data, bool everywhere, Gatherer& gatherer) {
+    // Anisotropic data have 16 times as many outgoing directions.
+    const int level = data.laws().isotropic ? 0 : -1;
+    const OutgoingSet outgoing = comparedOutgoing(data.laws().isotropic);
+    const std::size_t channels = data.channels().count();
+    std::vector<NodesOfOne> all(outgoing.size());
+    eachInParallel(outgoing.size(), [&](std::size_t k) {
+        if (outgoing.solidAngles[k] > 0)
+            all[k] = nodesOfOne(data, outgoing.directions[k], outgoing.solidAngles[k], level,
+                                everywhere);
+    });
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        NodesOfOne& own = all[k];
+        for (std::size_t j = 0; j < own.wi.size(); ++j) {
+            if (!own.covered[j])
+                gatherer.invalid();
+            else
+                gatherer.add({own.wi[j], outgoing.directions[k]},
+                             {own.values.data() + j * channels, channels}, own.weights[j]);
+        }
+        own = {};
+    }
 }
 
 }  // namespace
@@ -218,8 +259,15 @@ SampleWeights findSampleWeights(std::string_view name) {
     throw UsageError(fmt::format("unknown weights '{}'; known: auto, equal, solid-angle", name));
 }
 
+SamplePlaces findSamplePlaces(std::string_view name) {
+    if (name == "auto") return SamplePlaces::automatic;
+    if (name == "cells") return SamplePlaces::cells;
+    if (name == "nodes") return SamplePlaces::nodes;
+    throw UsageError(fmt::format("unknown places '{}'; known: auto, cells, nodes", name));
+}
+
 std::string_view nameOf(SampleOrigin origin) {
-    constexpr std::string_view names[] = {"cells", "measured", "nodes"};
+    constexpr std::string_view names[] = {"cells", "measured", "nodes", "pixels"};
     return names[static_cast<std::size_t>(origin)];
 }
 
@@ -230,8 +278,10 @@ FitSamples FitSamples::subset(const std::vector<std::size_t>& indices) const {
     result.solidAngles = solidAngles;
     result.origin = origin;
     result.masked = masked;
+    result.sums = sums;
     double sum = 0;
     for (const std::size_t k : indices) {
+        if (sums) result.sumRows.push_back(sumRows[k]);
         result.wiX.push_back(wiX[k]);
         result.wiY.push_back(wiY[k]);
         result.wiZ.push_back(wiZ[k]);
@@ -282,24 +332,38 @@ FitSamples FitSamples::channel(std::size_t c) const {
     return result;
 }
 
+bool areMeasured(const Brdf& data) {
+    const Brdf* source = &data;
+    while (const auto* view = dynamic_cast<const ChannelView*>(source)) source = &view->seen();
+    return dynamic_cast<const Scattered*>(source) != nullptr;
+}
+
 FitSamples gatherSamples(const Brdf& data, const SampleOptions& options) {
     Gatherer gatherer(data, options);
     const Brdf& source = gatherer.source(data);
-    SampleOrigin origin = SampleOrigin::cells;
-    if (const auto* merl = dynamic_cast<const MerlBrdf*>(&source)) {
-        gatherMerl(*merl, gatherer);
-    } else if (const auto* slices = dynamic_cast<const SliceBrdf*>(&source)) {
-        gatherSlices(*slices, gatherer);
-    } else if (const auto* scattered = dynamic_cast<const Scattered*>(&source)) {
+    SampleOrigin origin = SampleOrigin::nodes;
+    const auto* merl = dynamic_cast<const MerlBrdf*>(&source);
+    const auto* slices = dynamic_cast<const SliceBrdf*>(&source);
+    const auto* scattered = dynamic_cast<const Scattered*>(&source);
+    if (options.places == SamplePlaces::cells && !merl && !slices)
+        throw UsageError(
+            fmt::format("{}: is no table with cells in half and difference angles", data.name()));
+    if (options.places == SamplePlaces::nodes) scattered = nullptr;
+    if (scattered) {
         gatherScattered(*scattered, gatherer);
         origin = SampleOrigin::measured;
+    } else if (merl && options.places != SamplePlaces::nodes) {
+        gatherMerl(*merl, gatherer);
+        origin = SampleOrigin::cells;
+    } else if (slices && options.places == SamplePlaces::cells) {
+        gatherSlices(*slices, gatherer);
+        origin = SampleOrigin::cells;
     } else {
-        gatherNodes(source, gatherer);
-        origin = SampleOrigin::nodes;
+        // A slice says of itself that it holds for pairs beside its plane.
+        gatherNodes(source, slices != nullptr, gatherer);
     }
     FitSamples samples = gatherer.finish(data, origin != SampleOrigin::measured);
     samples.origin = origin;
-    const auto* scattered = dynamic_cast<const Scattered*>(&source);
     const SampleSource from{.samples = scattered ? &scattered->samples() : nullptr,
                             .places = gatherer.places(),
                             .converted = gatherer.hasViews(),

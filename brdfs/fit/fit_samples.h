@@ -1,9 +1,11 @@
 #pragma once
 
+#include <brdfs/fit/node_sums.h>
 #include <brdfs/fit/sample_sigma.h>
 #include <hshfit/brdf/brdf.h>
 
 #include <cstdint>
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -14,18 +16,27 @@ enum class SampleWeights { automatic, equal, solidAngle };
 /// "auto", "equal" or "solid-angle". Throws UsageError.
 SampleWeights findSampleWeights(std::string_view name);
 
+/// Where f is taken. automatic: scattered measurements as they are, full tables in half and
+/// difference angles at their cells, everything else at nodes; cells: of a table; nodes: of a
+/// quadrature, by interpolation if need be.
+enum class SamplePlaces { automatic, cells, nodes };
+/// "auto", "cells" or "nodes". Throws UsageError.
+SamplePlaces findSamplePlaces(std::string_view name);
+
 /// cells     of a table
 /// measured  scattered measurements, as they are
 /// nodes     f at chosen directions: for functions, and for tables in coordinates of their own
-enum class SampleOrigin { cells, measured, nodes };
+/// pixels    radiance of lit spheres (picture_samples.h)
+enum class SampleOrigin { cells, measured, nodes, pixels };
 
-/// "cells", "measured" or "nodes".
+/// "cells", "measured", "nodes" or "pixels".
 std::string_view nameOf(SampleOrigin origin);
 
 struct SampleOptions {
     /// automatic: solid angles for tables and functions, equal for scattered samples, which stand
     /// for no area.
     SampleWeights weights = SampleWeights::automatic;
+    SamplePlaces places = SamplePlaces::automatic;
     double grazingCut = 90;     ///< degrees: samples with a larger polar angle are left out
     std::size_t most = 0;       ///< draw so many of the samples; 0: all
     std::uint64_t seed = 1;     ///< of that draw
@@ -42,7 +53,8 @@ struct Masked {
     std::size_t notDrawn = 0;   ///< above `most`
 };
 
-/// Pairs of directions with the values of f that a fit is to follow.
+/// Pairs of directions with the values of f that a fit is to follow; or, with `sums`, values that
+/// are sums of f over many pairs, each with the normal of its surface in place of wi.
 struct FitSamples {
     std::vector<double> wiX, wiY, wiZ;
     std::vector<Direction> wo;
@@ -55,6 +67,8 @@ struct FitSamples {
     /// Line (or number) in the file of each measured value, [channel * size() + sample]; empty for
     /// tables and functions.
     std::vector<std::size_t> rows;
+    std::shared_ptr<const NodeSums> sums = {};
+    std::vector<std::size_t> sumRows;  ///< with `sums`: the row of each sample, ascending
     Channels channels;
     bool isotropic = false;
     bool solidAngles = false;  ///< what the weights are
@@ -77,12 +91,15 @@ struct FitSamples {
     FitSamples channel(std::size_t c) const;
 };
 
-/// The samples that stand behind a BRDF: the cells of a MERL table or of slices, scattered
-/// measurements as they are (values below zero included); also where that BRDF is seen as RGB or
-/// as grey (ChannelView), by the converted values. For anything else f is sampled at nodes
-/// in half and difference angles: theta_h (i / 45)^2 90, theta_d 3 j, phi_d 12 k degrees, each at
-/// the middle of its bin, and for anisotropic f twelve azimuths of the half vector.
-/// Weights by solid angle are those of d(wi) d(wo) = 4 cos(theta_d) d(h) d(d).
+/// Whether a BRDF is made of scattered measurements, also where it is seen as RGB or as grey.
+bool areMeasured(const Brdf& data);
+
+/// The samples that stand behind a BRDF: the cells of a MERL table, scattered measurements as they
+/// are (values below zero included); also where that BRDF is seen as RGB or as grey (ChannelView),
+/// by the converted values. Anything else, slices of a table included, is sampled at the nodes of a
+/// quadrature over wi (gridFor with the lobes of f) for the outgoing directions over which BRDFs
+/// are compared (comparedOutgoing), so that sums over samples are the integrals of its metrics.
+/// Weights by solid angle are those of d(wi) d(wo), of cells 4 cos(theta_d) d(h) d(d).
 /// Throws NumericError if none is left; for the statements as sample_sigma.h says.
 FitSamples gatherSamples(const Brdf& data, const SampleOptions& options);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 
 namespace hshfit::brdfs {
@@ -86,6 +87,29 @@ public:
         return byCost(direct, minimum) ? direct : minimum;
     }
 
+    /// Goes on from shapes with the linear parameters of a minimum, but those that vanish in every
+    /// channel at `lifted`: without its lobe a minimum of a loss that is not linear may be local.
+    /// Nothing if none vanishes.
+    std::optional<Minimum> lifted(const std::vector<double>& u, const Minimum& minimum,
+                                  const MinimiseOptions& options) const {
+        constexpr double lifted = 0.2;
+        const std::size_t shapes = problem_.shapeCount(), channels = problem_.channels();
+        Minimum start = minimum;
+        std::ranges::copy(u, start.x.begin());
+        bool any = false;
+        for (std::size_t first = shapes; first < start.x.size(); first += channels) {
+            bool vanishes = true;
+            for (std::size_t i = first; i < first + channels; ++i)
+                vanishes = vanishes && minimum.x[i] <= joint_.lower[i] + 1e-9;
+            if (!vanishes) continue;
+            any = true;
+            for (std::size_t i = first; i < first + channels; ++i)
+                start.x[i] = std::clamp(lifted, joint_.lower[i], joint_.upper[i]);
+        }
+        if (!any) return std::nullopt;
+        return fromAll(start, options);
+    }
+
     Minimum eliminated(const std::vector<double>& u, const MinimiseOptions& options) const {
         std::vector<double> linear;
         Minimum minimum =
@@ -131,10 +155,18 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
     std::ranges::stable_sort(candidates, byCost);
     candidates.resize(std::min(candidates.size(), starts));
     const Search search(problem, linear);
+    // Of measured samples and cells, fits keep the minima that they had in earlier versions.
+    const SampleOrigin origin = problem.samples().origin;
+    const bool lifts = !linear && (origin == SampleOrigin::nodes || origin == SampleOrigin::pixels);
+    const MinimiseOptions few{
+        .iterations = 60, .costTolerance = 1e-8, .stepTolerance = 1e-7, .curvature = false};
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-        candidates[i] = search.fromShapes(
-            candidates[i].x,
-            {.iterations = 60, .costTolerance = 1e-8, .stepTolerance = 1e-7, .curvature = false});
+        const std::vector<double> u = candidates[i].x;
+        candidates[i] = search.fromShapes(u, few);
+        if (lifts) {
+            auto lifted = search.lifted(u, candidates[i], few);
+            if (lifted && byCost(*lifted, candidates[i])) candidates[i] = std::move(*lifted);
+        }
         if (options.progress) options.progress(i + 1, candidates.size() + 1);
     }
     std::ranges::stable_sort(candidates, byCost);

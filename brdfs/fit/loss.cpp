@@ -19,16 +19,33 @@ namespace {
 constexpr double logOffset = 1e-3, rootOffset = 1e-6;
 
 constexpr std::array table{
-    Loss{"l2", "f", "", Loss::Kind::l2, true},
+    Loss{"l2", "f", "", Loss::Kind::l2, true, "relative-l2"},
     Loss{"cosine", "f c", "Ngan, Durand & Matusik 2005, 10.2312/EGWR/EGSR05/117-126",
-         Loss::Kind::cosine, true},
-    Loss{"log", "ln(1 + f c)", "Löw et al. 2012, 10.1145/2077341.2077350", Loss::Kind::log, false},
+         Loss::Kind::cosine, true, "relative-l2-cosine"},
+    Loss{"log", "ln(1 + f c)", "Löw et al. 2012, 10.1145/2077341.2077350", Loss::Kind::log, false,
+         "low"},
     Loss{"cube-root", "(f c + 1e-6)^(1/3)",
-         "Fores, Ferwerda & Gu 2012, 10.2352/CIC.2012.20.1.art00025", Loss::Kind::cubeRoot, false},
+         "Fores, Ferwerda & Gu 2012, 10.2352/CIC.2012.20.1.art00025", Loss::Kind::cubeRoot, false,
+         "cube-root"},
     Loss{"log-relative", "ln(f c + 1e-3)",
          "Nielsen, Jensen & Ramamoorthi 2015, 10.1145/2816795.2818085", Loss::Kind::logRelative,
-         false},
+         false, "log-rms"},
+    Loss{"picture", "lightness of spheres under five lights", "CIE 15:2004, lightness L*",
+         Loss::Kind::picture, false, ""},
 };
+
+/// Lightness L* / 100 of a radiance x over that of white; above white, which pictures clip, it goes
+/// on with a slope that falls.
+Mapped lightness(double x) {
+    constexpr double delta = 6.0 / 29, knee = delta * delta * delta;
+    if (x <= knee) return {1.16 * x / (3 * delta * delta), 1.16 / (3 * delta * delta)};
+    if (x <= 1) {
+        const double root = std::cbrt(x);
+        return {1.16 * root - 0.16, 1.16 / (3 * root * root)};
+    }
+    constexpr double reach = 0.25, slope = 1.16 / 3;
+    return {1 + slope * reach * std::log1p((x - 1) / reach), slope / (1 + (x - 1) / reach)};
+}
 
 }  // namespace
 
@@ -46,6 +63,7 @@ Mapped mapValue(Loss::Kind kind, double f, double cosine) {
     if (kind == Loss::Kind::l2) return {f, 1};
     if (kind == Loss::Kind::cosine) return {f * cosine, cosine};
     const double x = std::max(f, 0.0) * cosine;
+    if (kind == Loss::Kind::picture) return lightness(x);
     if (kind == Loss::Kind::log) return {std::log1p(x), cosine / (1 + x)};
     if (kind == Loss::Kind::logRelative) return {std::log(x + logOffset), cosine / (x + logOffset)};
     const double root = std::cbrt(x + rootOffset);

@@ -8,12 +8,14 @@ namespace hshfit::brdfs {
 /// One row of the table of losses: a fit minimises sum w rho((g(f) - g(measured))^2) / 2, where g
 /// is below, c = cos(theta_i), w is the weight of the sample and rho the robust kernel.
 struct Loss {
-    enum class Kind { l2, cosine, log, cubeRoot, logRelative };
+    enum class Kind { l2, cosine, log, cubeRoot, logRelative, picture };
     std::string_view name;
     std::string_view help;
     std::string_view source;
     Kind kind;
     bool linear;  ///< g is linear in f: linear parameters can be eliminated exactly
+    /// The metric of metricCatalog() that has its least value where the loss has over nodes.
+    std::string_view metric = {};
 };
 std::span<const Loss> losses();
 /// Throws UsageError that names the known ones.

@@ -267,12 +267,14 @@ TEST(Robust, OutliersPullLess) {
     EXPECT_LT(cauchy, plain / 5);
 }
 
-// More starts find nothing better, and every loss is smallest for the fit that minimised it.
+// Every loss of samples is smallest for the fit that minimised it; `picture` is one of pixels.
 TEST(Losses, EachFitIsBestByItsOwn) {
     const FitSamples samples =
         gatherSamples(*open("lambert:kd=.1/.2/.3 + ggx:alpha=.2,F0=.05"), {}).drawn(1500, 2);
     std::vector<std::string> specs;
-    for (const Loss& loss : losses())
+    const auto ofSamples = losses().first(losses().size() - 1);
+    ASSERT_EQ(losses().back().kind, Loss::Kind::picture);
+    for (const Loss& loss : ofSamples)
         specs.push_back(fit(samples, {.model = "ward", .loss = loss.kind}).spec);
     for (std::size_t own = 0; own < specs.size(); ++own)
         for (std::size_t other = 0; other < specs.size(); ++other) {

@@ -41,8 +41,9 @@ inline constexpr std::array rivals{
 /// The samples that both sides are measured on: the cells of a slice with both directions within 80
 /// degrees of the normal (Ngan et al. 2005 leave out the rest), weighted by solid angle.
 inline FitSamples samplesOfSlice(const std::string& path, double grazingCut = 80) {
-    return gatherSamples(*open(path),
-                         {.weights = SampleWeights::solidAngle, .grazingCut = grazingCut});
+    return gatherSamples(*open(path), {.weights = SampleWeights::solidAngle,
+                                       .places = SamplePlaces::cells,
+                                       .grazingCut = grazingCut});
 }
 
 struct Duel {

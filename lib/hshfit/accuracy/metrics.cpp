@@ -42,7 +42,7 @@ double squareRoot(double x) {
     return std::sqrt(std::max(x, 0.0));
 }
 
-constexpr double logOffset = 1e-3;
+constexpr double logOffset = 1e-3, rootOffset = 1e-6;
 
 const Formula formulas[] = {
     {{"relative-l2", "root of the integral of (g - f)^2 over that of f^2", "", true},
@@ -82,6 +82,20 @@ const Formula formulas[] = {
      },
      nullptr,
      identity},
+    {{"cube-root", "root mean square of (g c + 1e-6)^(1/3) - (f c + 1e-6)^(1/3)", "", false},
+     [](const Sample& s) {
+         return square(std::cbrt(s.clamped() * s.c + rootOffset) -
+                       std::cbrt(s.f * s.c + rootOffset));
+     },
+     nullptr,
+     squareRoot},
+    {{"log-rms", "root mean square of ln((f c + 1e-3) / (g c + 1e-3))",
+      "Nielsen, Jensen & Ramamoorthi 2015", false},
+     [](const Sample& s) {
+         return square(std::log((s.f * s.c + logOffset) / (s.clamped() * s.c + logOffset)));
+     },
+     nullptr,
+     squareRoot},
     {{"negativity", "integral of max(-g c, 0) over that of f c", "", false},
      [](const Sample& s) { return std::max(-s.g * s.c, 0.0); },
      [](const Sample& s) { return s.f * s.c; },
@@ -305,6 +319,10 @@ std::vector<const Metric*> selectMetrics(std::string_view names) {
         start = comma + 1;
     }
     return chosen;
+}
+
+OutgoingSet comparedOutgoing(bool isotropic) {
+    return isotropic ? OutgoingSet::elevations(16) : OutgoingSet::parabolic(16, 16);
 }
 
 std::vector<MetricValue> compare(const Brdf& f, const Brdf& g, const OutgoingSet& outgoing,

@@ -38,6 +38,10 @@ struct MetricValue {
     std::optional<Direction> wi, wo;
 };
 
+/// The outgoing directions over which BRDFs are compared unless others are named: 16 elevations, or
+/// 16 x 16 texels where one of them is anisotropic.
+OutgoingSet comparedOutgoing(bool isotropic);
+
 struct CompareOptions {
     /// Two quadrature levels are compared; each level has 2.25 times the points of the one before.
     int level = 3;

@@ -225,10 +225,9 @@ std::vector<float> flip(const RgbPicture& reference, const RgbPicture& test,
     std::vector<float> result;
     for (std::size_t k = 0; k < a.colours.size(); ++k) {
         const double colour = colourError(hyab(a.colours[k], b.colours[k]));
-        const double feature =
-            std::sqrt(std::max(std::abs(a.edges[k] - b.edges[k]),
-                               std::abs(a.points[k] - b.points[k])) /
-                      std::sqrt(2.0));
+        const double feature = std::sqrt(
+            std::max(std::abs(a.edges[k] - b.edges[k]), std::abs(a.points[k] - b.points[k])) /
+            std::sqrt(2.0));
         result.push_back(static_cast<float>(std::pow(colour, 1 - feature)));
     }
     return result;

@@ -1,0 +1,240 @@
+// Errors of fits by their losses:
+//     fit_losses CSV DATA… [--model MODEL] [--size PIXELS] [--light SPEC]… [--picture PNG]
+// fits MODEL (lambert+ggx) to each DATA with every loss, at nodes or at the pixels of `picture`,
+// and as fits were by default before (`former`): the loss cosine, at nodes in half and difference
+// angles, or at the cells of a slice. It writes a row per DATA and loss to CSV: each loss' own
+// metric as compare measures it, and of spheres under the lights of `picture` (or those given) mean
+// FLIP and relative L2, with the largest FLIP of a pixel. Means over DATA go to stdout.
+
+#include <brdfs/catalog.h>
+#include <brdfs/fit/fit.h>
+#include <brdfs/fit/picture_samples.h>
+#include <brdfs/measured/gridded/slice.h>
+#include <hshfit/accuracy/metrics.h>
+#include <hshfit/light/catalog.h>
+#include <hshfit/pictures/flip.h>
+#include <hshfit/pictures/sphere_picture.h>
+#include <hshfit/rendering/lit_picture.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace hshfit;
+using namespace hshfit::brdfs;
+
+struct Arguments {
+    std::string csv, picture, model = "lambert+ggx";
+    std::vector<std::string> data, lights;
+    int size = 96;
+};
+
+Arguments argumentsOf(int argc, char** argv) {
+    Arguments result;
+    for (int k = 1; k < argc; ++k) {
+        const std::string word = argv[k];
+        if (word.starts_with("--") && k + 1 < argc) {
+            const std::string value = argv[++k];
+            if (word == "--model") result.model = value;
+            if (word == "--size") result.size = std::atoi(value.c_str());
+            if (word == "--light") result.lights.push_back(value);
+            if (word == "--picture") result.picture = value;
+        } else if (result.csv.empty()) {
+            result.csv = word;
+        } else {
+            result.data.push_back(word);
+        }
+    }
+    if (result.lights.empty())
+        for (const PictureLightRow& row : pictureLights()) result.lights.emplace_back(row.spec);
+    return result;
+}
+
+/// Samples as they were before there was a loss of pictures: the cells of slices, of others nodes
+/// in 45 x 30 x 30 bins of half and difference angles, crowded at grazing angles.
+FitSamples formerSamples(const Brdf& data) {
+    if (dynamic_cast<const SliceBrdf*>(&data))
+        return gatherSamples(data, {.places = SamplePlaces::cells});
+    FitSamples samples;
+    samples.channels = data.channels();
+    samples.isotropic = data.laws().isotropic;
+    samples.solidAngles = true;
+    const auto band = [](double from, double to) {
+        return std::cos(std::max(from, 0.0)) - std::cos(std::min(to, pi / 2));
+    };
+    const auto half = [](double h) { return pi / 2 * ((h + 0.5) / 45) * ((h + 0.5) / 45); };
+    std::vector<double> interleaved;
+    for (int h = 0; h < 45; ++h)
+        for (int d = 0; d < 30; ++d)
+            for (int p = 0; p < 30; ++p) {
+                const double thetaD = radians(3 * (d + 0.5)), step = radians(3);
+                const DirectionPair pair =
+                    fromHalfDifference(half(h), 0, thetaD, radians(12 * (p + 0.5)));
+                if (std::min(pair.wi.z, pair.wo.z) <= 1e-12) continue;
+                samples.wiX.push_back(pair.wi.x);
+                samples.wiY.push_back(pair.wi.y);
+                samples.wiZ.push_back(pair.wi.z);
+                samples.wo.push_back(pair.wo);
+                samples.weights.push_back(band(h > 0 ? half(h - 0.5) : 0.0, half(h + 0.5)) * 4 *
+                                          std::cos(thetaD) *
+                                          band(thetaD - step / 2, thetaD + step / 2));
+                const auto f = evaluate(data, pair.wi, pair.wo);
+                interleaved.insert(interleaved.end(), f.begin(), f.end());
+            }
+    const std::size_t count = samples.size(), channels = samples.channels.count();
+    for (std::size_t c = 0; c < channels; ++c)
+        for (std::size_t k = 0; k < count; ++k)
+            samples.values.push_back(interleaved[k * channels + c]);
+    double sum = 0;
+    for (const double weight : samples.weights) sum += weight;
+    for (double& weight : samples.weights) weight *= static_cast<double>(count) / sum;
+    return samples;
+}
+
+RgbPicture shown(const SpherePicture& sphere, double stops) {
+    RgbPicture result{sphere.size, sphere.size, sphere.radiance};
+    for (std::size_t k = 0; k < result.values.size(); ++k)
+        result.values[k] *= static_cast<float>(std::exp2(stops)) * sphere.coverage[k / 3];
+    return result;
+}
+
+/// Pictures of a material under each light.
+std::vector<SpherePicture> spheresOf(const Brdf& brdf, const Arguments& arguments) {
+    const View view(radians(75), 0);
+    const SurfacePoints points = spherePoints(view, arguments.size, 1);
+    std::vector<SpherePicture> result;
+    for (const std::string& text : arguments.lights) {
+        const std::vector<Light> lights = parseLights(text).lights;
+        const DirectIntegral integral(lights);
+        result.push_back(renderByIntegration(brdf, points, view, integral,
+                                             {.tolerance = 0.05, .maxEvaluations = 1 << 11})
+                             .picture);
+    }
+    return result;
+}
+
+struct PictureErrors {
+    double flip = 0, largest = 0, relativeL2 = 0;  ///< means over lights; the largest of all
+};
+
+PictureErrors errorsOf(const std::vector<SpherePicture>& reference,
+                       const std::vector<SpherePicture>& own) {
+    PictureErrors result;
+    for (std::size_t l = 0; l < reference.size(); ++l) {
+        const double stops = automaticExposure({&reference[l], 1});
+        const std::vector<float> error = flip(shown(reference[l], stops), shown(own[l], stops));
+        double sum = 0, area = 0;
+        for (std::size_t k = 0; k < error.size(); ++k) {
+            sum += static_cast<double>(error[k] * reference[l].coverage[k]);
+            area += static_cast<double>(reference[l].coverage[k]);
+            result.largest = std::max(result.largest, static_cast<double>(error[k]));
+        }
+        const double count = static_cast<double>(reference.size());
+        result.flip += sum / area / count;
+        result.relativeL2 += differenceOf(reference[l], own[l]).relativeL2 / count;
+    }
+    return result;
+}
+
+struct Row {
+    std::string data, loss;
+    FitResult fit = {};
+    std::vector<MetricValue> metrics = {};
+    PictureErrors errors = {};
+};
+
+std::vector<Row> rowsOf(const std::string& path, const Arguments& arguments,
+                        std::vector<std::vector<SpherePicture>>& pictures) {
+    const auto data = open(path);
+    std::vector<std::string_view> names;
+    for (const Loss& loss : losses())
+        if (!loss.metric.empty()) names.push_back(loss.metric);
+    const auto metrics = selectMetrics(fmt::format("{}", fmt::join(names, ",")));
+    const OutgoingSet outgoing = comparedOutgoing(data->laws().isotropic);
+    pictures.push_back(spheresOf(*data, arguments));
+    const std::vector<SpherePicture> reference = pictures.back();
+    const FitSamples nodes = gatherSamples(*data, {}), pixels = pictureSamples(*data),
+                     former = formerSamples(*data);
+    std::vector<Row> rows;
+    const auto add = [&](const FitSamples& samples, Loss::Kind kind, std::string name) {
+        Row row{.data = std::filesystem::path(path).stem().string(), .loss = std::move(name)};
+        row.fit = fit(samples, {.model = arguments.model, .loss = kind});
+        const auto fitted = openFit(row.fit);
+        row.metrics = compare(*data, *fitted, outgoing, metrics);
+        pictures.push_back(spheresOf(*fitted, arguments));
+        row.errors = errorsOf(reference, pictures.back());
+        fmt::print(stderr, "{} {}: FLIP {:.4f} L2 {:.4f} {} samples {}\n", row.data, row.loss,
+                   row.errors.flip, row.errors.relativeL2, samples.size(), row.fit.spec);
+        rows.push_back(std::move(row));
+    };
+    add(former, Loss::Kind::cosine, "former");
+    for (const Loss& loss : losses())
+        add(loss.kind == Loss::Kind::picture ? pixels : nodes, loss.kind, std::string(loss.name));
+    return rows;
+}
+
+void run(const Arguments& arguments) {
+    std::ofstream file(arguments.csv);
+    std::map<std::string, std::vector<PictureErrors>> byLoss;
+    std::vector<std::vector<SpherePicture>> pictures;
+    for (const std::string& path : arguments.data) {
+        for (const Row& row : rowsOf(path, arguments, pictures)) {
+            if (byLoss.empty()) {
+                file << "data,loss";
+                for (const MetricValue& value : row.metrics) file << "," << value.metric->name;
+                file << ",flip,largest,l2,spec\n";
+            }
+            file << fmt::format("{},{}", row.data, row.loss);
+            for (const MetricValue& value : row.metrics)
+                file << (value.value ? fmt::format(",{:.7g}", *value.value) : ",");
+            file << fmt::format(",{:.5f},{:.5f},{:.5f},\"{}\"\n", row.errors.flip,
+                                row.errors.largest, row.errors.relativeL2, row.fit.spec);
+            file.flush();
+            byLoss[row.loss].push_back(row.errors);
+        }
+    }
+    fmt::print(
+        "| loss | mean FLIP | of the worst material | largest of a pixel | relative L2 |\n"
+        "|---|---|---|---|---|\n");
+    for (const auto& [loss, all] : byLoss) {
+        PictureErrors mean;
+        double worst = 0;
+        for (const PictureErrors& own : all) {
+            mean.flip += own.flip / static_cast<double>(all.size());
+            mean.relativeL2 += own.relativeL2 / static_cast<double>(all.size());
+            mean.largest = std::max(mean.largest, own.largest);
+            worst = std::max(worst, own.flip);
+        }
+        fmt::print("| `{}` | {:.4f} | {:.4f} | {:.3f} | {:.3f} |\n", loss, mean.flip, worst,
+                   mean.largest, mean.relativeL2);
+    }
+    if (arguments.picture.empty()) return;
+    Sheet sheet;
+    for (const auto& row : pictures) sheet.emplace_back(row);
+    AtomicFile out(arguments.picture);
+    writeSheet(sheet, automaticExposure(pictures.front()), out);
+    out.commit();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    const Arguments arguments = argumentsOf(argc, argv);
+    if (arguments.data.empty()) return 2;
+    run(arguments);
+    return 0;
+} catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+}
