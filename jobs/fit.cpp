@@ -156,6 +156,42 @@ nlohmann::ordered_json searchJson(const brdfs::PartSearch& search) {
             {"trials", trials}};
 }
 
+/// Wider models than that of a poor fit, fitted in brief: a second lobe, and sums of the catalog
+/// that are known to describe much.
+std::vector<TriedModel> triedModels(const brdfs::FitSamples& samples, brdfs::FitOptions how) {
+    constexpr std::size_t few = 4096;
+    const bool pixels = samples.origin == brdfs::SampleOrigin::pixels;
+    const brdfs::FitSamples drawn = samples.drawn(pixels ? samples.size() : few, how.seed);
+    const std::string own = how.model;
+    how.starts = 2;
+    how.iterations = 60;
+    how.progress = {};
+    how.uncertainty = {};
+    std::vector<TriedModel> tried;
+    for (const std::string& model : {own + (own.starts_with("ggx") ? "+eon" : "+ggx"),
+                                     std::string("lambert+ggx"), std::string("lambert+ggx+ggx")}) {
+        if (model == own || std::ranges::find(tried, model, &TriedModel::model) != tried.end())
+            continue;
+        how.model = model;
+        try {
+            tried.push_back({model, explainedBy(brdfs::fit(drawn, how), drawn, how.loss)});
+        } catch (const Error&) {
+            // A model that these samples do not determine is no better one.
+        }
+    }
+    return tried;
+}
+
+std::optional<Poor> judged(const Fitted& fitted, const brdfs::FitSamples& samples,
+                           const std::string& data, const FitOptions& options,
+                           const brdfs::FitOptions& how) {
+    if (!judgeFit(fitted.explained, data, {}, {})) return std::nullopt;
+    std::vector<Setting> settings;
+    if (!options.loss.empty()) settings.push_back({"FitOptions::loss", options.loss});
+    if (!options.sigma.empty()) settings.push_back({"FitOptions::sigma", options.sigma});
+    return judgeFit(fitted.explained, data, triedModels(samples, how), std::move(settings));
+}
+
 /// Writes a page that compares data and fit into the fit's folder. Returns the number of files.
 std::size_t writePage(const std::string& data, const Fitted& fit, const std::string& folder,
                       bool rgb, const Listener& listener) {
@@ -228,7 +264,7 @@ std::pair<Fitted, std::unique_ptr<AtomicFile>> fitOpen(const Brdf& brdf, const s
         if (metric["name"] == "relative-l2-cosine" && metric["value"].is_number())
             fitted.relativeError = metric["value"];
     fitted.explained = explainedBy(fitted.result, samples, how.loss);
-    fitted.poor = judgeFit(fitted.explained, data, options.model, options.sigma);
+    fitted.poor = judged(fitted, samples, data, options, how);
     fitted.preset["fit"]["explained"] = fitted.explained;
     fitted.preset["fit"]["relative_error"] = fitted.relativeError;
     if (search) fitted.preset["fit"]["parts"] = searchJson(*search);

@@ -296,17 +296,23 @@ std::optional<Poor> judge(const gpu::ErrorSplit& split, const gpu::Payload& payl
         worst->better};
 }
 
-std::optional<Poor> judgeFit(double explained, const std::string& data, const std::string& model,
-                             const std::string& sigma) {
+std::optional<Poor> judgeFit(double explained, const std::string& data,
+                             const std::vector<TriedModel>& tried, std::vector<Setting> settings) {
     if (explained >= leastCaptured) return std::nullopt;
-    // A second lobe: the first alone is one of its sums, so that the loss cannot grow.
-    const std::string second = model.starts_with("ggx") ? "eon" : "ggx";
-    Call wider{.function = "fit",
-               .subject = data,
-               .settings = {{"FitOptions::model", model + "+" + second}}};
-    if (!sigma.empty()) wider.settings.push_back({"FitOptions::sigma", sigma});
-    return Poor{fmt::format("the fit explains {} of the data", percent(std::max(explained, 0.0))),
-                fmt::format("{}", wider)};
+    constexpr double leastGain = 0.02;
+    std::string reason =
+        fmt::format("the fit explains {} of the data", percent(std::max(explained, 0.0)));
+    const auto best = std::ranges::max_element(tried, {}, &TriedModel::explained);
+    if (best == tried.end() || best->explained < explained + leastGain)
+        return Poor{reason, fmt::format("{}", Call{.function = "writeRepresentation",
+                                                   .subject = data,
+                                                   .settings = {kindSetting(Kind::halfway)},
+                                                   .output = "halfway.json"})};
+    reason += fmt::format(", {} {}", best->model, percent(best->explained));
+    settings.insert(settings.begin(), {"FitOptions::model", best->model});
+    return Poor{reason, fmt::format("{}", Call{.function = "fit",
+                                               .subject = data,
+                                               .settings = std::move(settings)})};
 }
 
 }  // namespace hshfit::jobs

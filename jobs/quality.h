@@ -11,6 +11,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace hshfit::jobs {
 
@@ -58,8 +59,15 @@ std::optional<Poor> judge(const Representation& kept, std::optional<double> capt
 /// An export of the coefficients at `path` to `folder`: its largest cause of error.
 std::optional<Poor> judge(const gpu::ErrorSplit& split, const gpu::Payload& payload,
                           const std::string& path, const std::string& folder);
-/// A fit that explains the share `explained` of its data, in units of its loss.
-std::optional<Poor> judgeFit(double explained, const std::string& data, const std::string& model,
-                             const std::string& sigma = {});
+/// A model that was fitted in a trial, and the share of the data that it explains.
+struct TriedModel {
+    std::string model;
+    double explained = 0;
+};
+/// A fit that explains the share `explained` of its data, in units of its loss: better is the model
+/// of the trial that explains most; the halfway form if none explains 2 % more. `settings`: those
+/// that the call shares with the fit.
+std::optional<Poor> judgeFit(double explained, const std::string& data,
+                             const std::vector<TriedModel>& tried, std::vector<Setting> settings);
 
 }  // namespace hshfit::jobs

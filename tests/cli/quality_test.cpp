@@ -189,6 +189,11 @@ TEST_F(Quality, AFitThatExplainsLittleIsCalledPoor) {
     EXPECT_LT(poor["fit"]["explained"], 0.9);
     EXPECT_NE(poor["poor"]["better"].get<std::string>().find("--model 'lambert+ggx'"),
               std::string::npos);
+    // The call explains what the reason says.
+    EXPECT_NE(poor["poor"]["reason"].get<std::string>().find("lambert+ggx 100 %"),
+              std::string::npos)
+        << poor["poor"];
+    EXPECT_GT(answerOf(job + "lambert+ggx", false)["fit"]["explained"], 0.999);
     EXPECT_GT(answerOf(job + "ggx", false)["fit"]["explained"], 0.999);
 }
 
