@@ -114,6 +114,14 @@ Words formWords() {
     return {{"outgoing"}, {"basis"}, {"halfway"}};
 }
 
+Words mapFormWords() {
+    return {{"outgoing"}, {"low-rank"}, {"clusters"}};
+}
+
+Words mapPrecisionWords() {
+    return {{"half"}, {"float32"}};
+}
+
 Words precisionWords() {
     return {{"float64"}, {"float32"}, {"half"}, {"unorm16"}, {"unorm8"}};
 }
@@ -192,7 +200,10 @@ constexpr ValueRow table[] = {
     {"rotate", "--method", rotationWords},
     {"sample", "--output", nullptr, Syntax::word, Files::written, ".csv"},
     {"stress", "--output", nullptr, Syntax::word, Files::folder},
+    {"svbrdf", "DESCRIPTION", nullptr, Syntax::word, Files::read, ".json"},
+    {"svbrdf", "--form", mapFormWords},
     {"svbrdf", "--output", nullptr, Syntax::word, Files::folder},
+    {"svbrdf", "--precision", mapPrecisionWords},
     {"tradeoff", "--output", nullptr, Syntax::word, Files::folder},
     {"tradeoff", "--halfway"},
     {"transfer", "--output", nullptr, Syntax::word, Files::folder},

@@ -81,7 +81,12 @@ show illuminate examples/scenes/box.json -o out/box_cache --method radiance-cach
 show transfer examples/scenes/ball_and_wall.json -o out/ball --rays 64 --force
 
 echo
-echo "10. Many materials: a manifest of commands, and one table of all answers."
+echo "10. Maps of a coin as a texture of coefficients, and a texel of it."
+show svbrdf examples/maps/coin.json -o out/coin --form low-rank --force
+show eval out/coin/material.json:x=32,y=32 --wi 30,180 --wo 20,0
+
+echo
+echo "11. Many materials: a manifest of commands, and one table of all answers."
 show batch examples/batch/materials.jsonl -o out/batch
 show batch examples/batch/materials.jsonl -o out/batch --merge
 

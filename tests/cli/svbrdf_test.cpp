@@ -1,0 +1,221 @@
+// `svbrdf` as a user meets it: texels against `project` of their BRDFs, levels against means.
+
+#include "places.h"
+
+#include <cli/program.h>
+
+#include <nlohmann/json.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+namespace {
+
+using hshfit::test::Answer;
+using hshfit::test::Cli;
+using Json = nlohmann::json;
+
+class Svbrdf : public Cli {
+protected:
+    /// A grey PFM picture: rows from the bottom to the top.
+    void writeMap(const std::string& name, int width, int height, auto value) const {
+        std::ofstream file(path(name), std::ios::binary);
+        file << "Pf\n" << width << ' ' << height << "\n-1.0\n";
+        for (int y = height; y-- > 0;) {
+            for (int x = 0; x < width; ++x) {
+                const float v = value(x, y);
+                file.write(reinterpret_cast<const char*>(&v), sizeof v);
+            }
+        }
+    }
+    void describe(const std::string& model, const Json& parameters) const {
+        std::ofstream(path("d.json")) << Json{{"format", "hshfit-svbrdf"},
+                                              {"version", 1},
+                                              {"model", model},
+                                              {"parameters", parameters}};
+    }
+    Answer made(const std::string& more) const {
+        return run("svbrdf " + path("d.json") + " --json " + more);
+    }
+    /// f of a texel at some pairs.
+    std::vector<double> values(const std::string& texel) const {
+        std::vector<double> all;
+        for (const char* pair : {"--wi 30,180 --wo 20,0", "--wi 10,40 --wo 60,0"}) {
+            const Answer answer = run("eval " + texel + " " + pair + " --json");
+            EXPECT_EQ(answer.code, 0) << answer.err;
+            for (const auto& value : Json::parse(answer.out)["values"]) all.push_back(value);
+        }
+        return all;
+    }
+    std::string bytes(const std::string& file) const {
+        std::ifstream stream(path(file), std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+};
+
+struct Case {
+    std::string name, model;
+    std::vector<std::string> parameters;
+    std::vector<double> low, high;
+    std::string outgoing;
+    std::size_t lobes;
+};
+
+class SvbrdfModels : public Svbrdf, public testing::WithParamInterface<Case> {};
+
+/// f at the outgoing directions of the map, by the texel and by the projected BRDF, to the
+/// tolerance of the grid of lobes.
+TEST_P(SvbrdfModels, TexelsAreTheProjectionsOfTheirBrdfs) {
+    const Case& test = GetParam();
+    constexpr int side = 4;
+    Json parameters;
+    const auto valueAt = [&](std::size_t k, int x, int y) {
+        const double share =
+            std::fmod(0.13 + 0.29 * x + 0.41 * y + 0.37 * static_cast<double>(k), 1);
+        return static_cast<float>(test.low[k] + share * (test.high[k] - test.low[k]));
+    };
+    for (std::size_t k = 0; k < test.parameters.size(); ++k) {
+        writeMap(test.parameters[k] + ".pfm", side, side,
+                 [&](int x, int y) { return valueAt(k, x, y); });
+        parameters[test.parameters[k]] = {{"map", test.parameters[k] + ".pfm"}};
+    }
+    describe(test.model, parameters);
+    const Answer answer = made("-o " + path("out") +
+                               " --precision float32 --tolerance 1e-4 --outgoing " + test.outgoing);
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "svbrdf"));
+    const Json json = Json::parse(answer.out);
+    EXPECT_EQ(json["lobes"].size(), test.lobes) << json["lobes"];
+    EXPECT_LE(json["table"]["error"], 1e-4);
+    for (const auto& [x, y] : {std::pair(0, 0), std::pair(3, 1), std::pair(2, 3)}) {
+        std::string spec = test.model;
+        for (std::size_t k = 0; k < test.parameters.size(); ++k) {
+            spec += fmt::format("{}{}={:.9g}", k == 0 ? ':' : ',', test.parameters[k],
+                                static_cast<double>(valueAt(k, x, y)));
+        }
+        ASSERT_EQ(run("project '" + spec + "' -o " + path("p.json") + " --order 4 --outgoing " +
+                      test.outgoing)
+                      .code,
+                  0);
+        const std::vector<double> texel =
+            values(path("out/material.json") + fmt::format(":x={},y={}", x, y));
+        const std::vector<double> exact = values(path("p.json"));
+        ASSERT_EQ(texel.size(), exact.size());
+        double scale = 0;
+        for (const double value : exact) scale = std::max(scale, std::abs(value));
+        for (std::size_t k = 0; k < exact.size(); ++k)
+            EXPECT_NEAR(texel[k], exact[k], 2e-3 * scale) << spec << ' ' << k;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Every, SvbrdfModels,
+    testing::Values(
+        Case{"ggx", "ggx", {"kd", "ks", "alpha"}, {0, 0, 0.05}, {0.8, 0.2, 0.9}, "8", 2},
+        Case{"gltf",
+             "gltf-pbr",
+             {"baseColorFactor", "metallicFactor", "roughnessFactor"},
+             {0, 0, 0.2},
+             {1, 1, 1},
+             "8",
+             4},
+        Case{"phong", "phong", {"ks", "exponent"}, {0.1, 1}, {1, 100}, "5", 1},
+        Case{"oren_nayar", "oren-nayar", {"kd", "sigma"}, {0.1, 0}, {1, 60}, "8", 1},
+        Case{"ward", "ward", {"kd", "ax", "ay"}, {0, 0.1, 0.15}, {1, 0.5, 0.6}, "6x6", 2}),
+    [](const auto& row) { return row.param.name; });
+
+/// Values of two materials, a checkerboard, and their mean in level 1.
+TEST_F(Svbrdf, LevelsAreMeansOfReflectance) {
+    writeMap("alpha.pfm", 4, 2, [](int x, int y) { return (x + y) % 2 == 0 ? 0.1F : 0.7F; });
+    describe("ggx", {{"alpha", {{"map", "alpha.pfm"}}}, {"ks", {0.9, 0.5, 0.1}}});
+    const Answer answer = made("-o " + path("out") + " --precision float32");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const Json levels = Json::parse(answer.out)["levels"];
+    ASSERT_EQ(levels.size(), 3);
+    EXPECT_EQ(levels[2]["width"], 1);
+    const std::string map = path("out/material.json");
+    const std::vector<double> a = values(map + ":x=0,y=0"), b = values(map + ":x=1,y=0");
+    for (const char* texel : {":x=0,level=1", ":x=1,level=1", ":level=2"}) {
+        const std::vector<double> mean = values(map + texel);
+        ASSERT_EQ(mean.size(), a.size());
+        for (std::size_t k = 0; k < a.size(); ++k)
+            EXPECT_NEAR(mean[k], (a[k] + b[k]) / 2, 1e-5 * (std::abs(a[k]) + std::abs(b[k])));
+    }
+    // The parameters' mean is another material.
+    EXPECT_GT(levels[1]["against_samples"]["parameters"]["mean"], 0.1);
+    EXPECT_LT(levels[1]["against_samples"]["stored"]["maximum"], 1e-6);
+}
+
+TEST_F(Svbrdf, BytesDoNotDependOnThreadsOrMemory) {
+    writeMap("alpha.pfm", 64, 1024, [](int x, int y) {
+        return 0.3F + 0.2F * static_cast<float>(std::sin(x * 0.7) * std::cos(y * 0.3));
+    });
+    describe("ggx", {{"alpha", {{"map", "alpha.pfm"}}}});
+    for (const std::string form : {"outgoing", "low-rank", "clusters --clusters 32"}) {
+        const std::string more = " --force --form " + form;
+        ASSERT_EQ(made("-o " + path("a") + more + " --threads 1 --memory 16").code, 0);
+        ASSERT_EQ(made("-o " + path("b") + more + " --threads 3").code, 0);
+        for (const char* file : {"material.ktx2", "material.json", "errors.png"}) {
+            EXPECT_EQ(bytes(std::string("a/") + file), bytes(std::string("b/") + file)) << form;
+        }
+    }
+}
+
+/// The rest is orthogonal to the kept shapes: energies of the plain and the low-rank texel differ
+/// by the square of the stated error.
+TEST_F(Svbrdf, StatedErrorsAreThoseOfTheTexels) {
+    writeMap("alpha.pfm", 6, 6,
+             [](int x, int y) { return 0.1F + 0.02F * static_cast<float>(x + 6 * y); });
+    describe("ggx", {{"alpha", {{"map", "alpha.pfm"}}}});
+    ASSERT_EQ(made("-o " + path("plain") + " --precision float32").code, 0);
+    const Answer answer =
+        made("-o " + path("low") + " --form low-rank --rank 2 --precision float32");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const Json level = Json::parse(answer.out)["levels"][0]["error"];
+    const double stated = level["maximum"];
+    double worst = 0;
+    int where = 0;
+    for (int texel = 0; texel < 36; ++texel) {
+        const auto energy = [&](const char* folder) -> double {
+            const Answer info = run("info " + path(folder) + "/material.json" +
+                                    fmt::format(":x={},y={} --json", texel % 6, texel / 6));
+            return Json::parse(info.out)["facts"]["energy"];
+        };
+        const double error = std::sqrt(std::max(0.0, 1 - energy("low") / energy("plain")));
+        if (error > worst) worst = error, where = texel;
+    }
+    EXPECT_GT(stated, 1e-3);
+    EXPECT_NEAR(worst, stated, 0.02 * stated);
+    EXPECT_EQ(level["column"], where % 6);
+    EXPECT_EQ(level["row"], where / 6);
+}
+
+TEST_F(Svbrdf, BrokenMapsEndBeforeAnyWork) {
+    writeMap("a.pfm", 4, 4, [](int, int) { return 0.5F; });
+    writeMap("small.pfm", 4, 3, [](int, int) { return 0.5F; });
+    writeMap("nan.pfm", 4, 4, [](int x, int y) { return x == 2 && y == 1 ? NAN : 0.5F; });
+    writeMap("high.pfm", 4, 4, [](int x, int) { return x == 3 ? 1.5F : 0.5F; });
+    std::ofstream(path("cut.pfm"), std::ios::binary) << bytes("a.pfm").substr(0, 40);
+    const auto refused = [&](const Json& parameters, const std::string& part) {
+        describe("ggx", parameters);
+        const Answer answer = made("-o " + path("out"));
+        EXPECT_EQ(answer.code, 3) << answer.err;
+        EXPECT_NE(answer.err.find(part), std::string::npos) << answer.err;
+        EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1) << answer.err;
+        EXPECT_FALSE(std::filesystem::exists(path("out")));
+    };
+    const auto map = [](const char* file) { return Json{{"map", file}}; };
+    refused({{"alpha", map("a.pfm")}, {"ks", map("small.pfm")}}, "has 4 x 3 texels");
+    refused({{"alpha", map("nan.pfm")}}, "texel (2, 1): alpha is nan");
+    refused({{"kd", map("high.pfm")}, {"alpha", map("nothing.pfm")}}, "nothing.pfm");
+    refused({{"alpha", map("cut.pfm")}}, "cut.pfm");
+    refused({{"alpha", {{"map", "a.pfm"}, {"channels", {"G"}}}}}, "has no channel G");
+    refused({{"alpha", 0.5}}, "no parameter is a map");
+    refused({{"alfa", map("a.pfm")}}, "did you mean 'alpha'");
+    refused({{"alpha", {{"map", "a.pfm"}, {"gamma", 2}}}}, "gamma");
+}
+
+}  // namespace
