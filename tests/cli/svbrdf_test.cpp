@@ -193,6 +193,34 @@ TEST_F(Svbrdf, StatedErrorsAreThoseOfTheTexels) {
     EXPECT_EQ(level["row"], where / 6);
 }
 
+/// Another reader's numbers of a texel, summed by hand: at the pole f is the sum of c_{l,0}
+/// sqrt((2 l + 1) / (2 pi)), since P_l(1) = 1.
+TEST_F(Svbrdf, KtxParseFindsTheLevels) {
+    const std::string tests = hshfit::test::sourceFolder() + "/tests/";
+    if (!std::filesystem::exists(tests + "gpu/node_modules/ktx-parse"))
+        GTEST_SKIP() << "no ktx-parse (npm ci in tests/gpu)";
+    writeMap("alpha.pfm", 8, 4,
+             [](int x, int y) { return 0.2F + 0.02F * static_cast<float>(x * y); });
+    describe("ggx", {{"alpha", {{"map", "alpha.pfm"}}}, {"kd", 0.3}});
+    ASSERT_EQ(made("-o " + path("out")).code, 0);
+    const std::string command = "node " + tests + "cli/read_levels.mjs " +
+                                path("out/material.ktx2") + " 1 3 1 >" + path("said");
+    ASSERT_EQ(std::system(command.c_str()), 0);
+    const Json said = Json::parse(bytes("said"));
+    EXPECT_EQ(said["vkFormat"], 97);  // VK_FORMAT_R16G16B16A16_SFLOAT
+    EXPECT_EQ(said["width"], 8);
+    EXPECT_EQ(said["height"], 4);
+    // 8 elevations x ceil(10 / 4) layers x 8 bytes, of 8 x 4, 4 x 2, 2 x 1 and 1 x 1 texels
+    EXPECT_EQ(said["bytes"], Json({32 * 192, 8 * 192, 2 * 192, 192}));
+    double f = 0;
+    const int zonal[] = {0, 1, 3, 6};  // lanes of m = 0 among m >= 0
+    for (int l = 0; l < 4; ++l)
+        f += said["numbers"][zonal[l]].get<double>() * std::sqrt((2 * l + 1) / (2 * M_PI));
+    const Answer answer =
+        run("eval " + path("out/material.json:x=3,y=1,level=1") + " --wi 0,0 --wo 0,0 --json");
+    EXPECT_NEAR(Json::parse(answer.out)["values"][0], f, 1e-6);
+}
+
 TEST_F(Svbrdf, BrokenMapsEndBeforeAnyWork) {
     writeMap("a.pfm", 4, 4, [](int, int) { return 0.5F; });
     writeMap("small.pfm", 4, 3, [](int, int) { return 0.5F; });
