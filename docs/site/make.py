@@ -78,6 +78,10 @@ def write_source(path, pages):
         kind = KINDS.get(each.suffix, "text")
         if len(files) > 1:
             lines += [f"## {each.relative_to(path)}", ""]
+        if each.suffix == ".png":
+            shutil.copyfile(each, page.parent / each.name)
+            lines += [f"![{each.name}]({each.name})", ""]
+            continue
         text = each.read_text(encoding="utf-8")
         lines += [f"````{kind}", text.rstrip(), "````", ""]
     page.write_text("\n".join(lines), encoding="utf-8")
