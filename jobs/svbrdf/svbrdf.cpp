@@ -229,37 +229,28 @@ std::string errorPicture(const MapWritten& written) {
 
 void write(Work& work, const TexelEncoder& encoder, const SvbrdfOptions& options, Svbrdf& result,
            const Listener& listener) {
-    const MapTeam& team = options.team;
-    const bool first = team.rank == 0;
-    std::optional<FileSet> files;
-    std::string texturePath;
-    if (first) {
-        files.emplace(result.folder, options.force);
-        for (const char* name : {textureName, sidecarName, pictureName}) files->requireFree(name);
-        texturePath = files->add(textureName).temporaryPath();
-    }
-    if (team.tell) texturePath = team.tell(texturePath);
+    FileSet files(result.folder, options.force);
+    for (const char* name : {textureName, sidecarName, pictureName}) files.requireFree(name);
+    const std::string texturePath = files.add(textureName).temporaryPath();
     result.levels = levelSizes(work.maps.width(), work.maps.height(), options.mips);
     const MapSidecar sidecar = sidecarOf(work, options, encoder, result.levels);
     LevelFile texture(texturePath, encoder.number(), encoder.layers(), result.levels,
                       {{"hshfit:form", encoder.form()}});
     const std::size_t texelBytes = texture.bytesOfTexel() + encoder.linear() + sizeof(float);
     const BandPlan plan = planBands(levelSizes(work.maps.width(), work.maps.height()), texelBytes,
-                                    options.memory / 3 / std::max<std::size_t>(team.size, 1));
-    const auto dealer =
-        team.dealer ? team.dealer(plan.count) : std::make_unique<OneProcess>(plan.count);
+                                    options.memory / 3);
+    OneProcess dealer(plan.count);
     const auto start = Clock::now();
-    const MapWritten written = writeMap(work.texels, encoder, texture, plan, *dealer,
+    const MapWritten written = writeMap(work.texels, encoder, texture, plan, dealer,
                                         {.progress = listener.part("texels")});
     result.seconds = secondsSince(start);
     result.rate = static_cast<double>(work.maps.width() * work.maps.height()) / result.seconds;
     work.maps.checkIntact();
-    if (!first) return;
     result.errors = written.levels;
     result.bytes = texture.bytes();
-    files->write(sidecarName, toText(sidecar));
-    files->write(pictureName, errorPicture(written));
-    files->commit();
+    files.write(sidecarName, toText(sidecar));
+    files.write(pictureName, errorPicture(written));
+    files.commit();
     for (const char* name : {textureName, sidecarName, pictureName})
         result.files.push_back((std::filesystem::path(result.folder) / name).string());
 }
@@ -286,7 +277,7 @@ Svbrdf svbrdf(const std::string& description, const std::string& folder,
     result.form = encoder->form();
     measureKernel(work, result);
     write(work, *encoder, options, result, listener);
-    if (options.team.rank == 0 && options.checks > 0 && result.levels.size() > 1) {
+    if (options.checks > 0 && result.levels.size() > 1) {
         const MaterialMap map((std::filesystem::path(folder) / sidecarName).string());
         result.checks =
             checkLevels(map, work.maps, work.lobes, work.kernel, options.checks, listener);

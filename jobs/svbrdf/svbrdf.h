@@ -7,21 +7,10 @@
 #include <hshfit/material_maps/reduction.h>
 
 #include <cstddef>
-#include <functional>
-#include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace hshfit::jobs {
-
-/// Processes that share the bands of a map (jobs/svbrdf/mpi_dealer.h); one is all there is without.
-struct MapTeam {
-    std::size_t rank = 0, size = 1;
-    std::function<std::unique_ptr<BandDealer>(std::size_t bands)> dealer = {};
-    /// The text of the first process, in all; every process calls it.
-    std::function<std::string(const std::string&)> tell = {};
-};
 
 struct SvbrdfOptions {
     std::string form = "outgoing";  ///< "outgoing", "low-rank" or "clusters"
@@ -39,7 +28,6 @@ struct SvbrdfOptions {
     std::size_t memory = std::size_t{1} << 30;  ///< bytes for bands
     std::size_t samples = 32768;                ///< texels that shapes and clusters are made from
     std::size_t checks = 16;                    ///< texels of each level that are measured
-    MapTeam team = {};
 };
 
 /// A form and its cost and error over sampled texels.
@@ -82,8 +70,8 @@ struct Svbrdf {
 
 /// A description of materials by maps as a coefficient texture with mip levels, in FOLDER:
 /// material.ktx2, material.json and errors.png. All maps are read and checked before anything is
-/// written. The same bytes for any number of threads and processes. Throws UsageError, InputError,
-/// NumericError and OutputError. Processes but the first return what they know.
+/// written. Results are the same bytes for any number of threads. Throws UsageError, InputError,
+/// NumericError and OutputError.
 Svbrdf svbrdf(const std::string& description, const std::string& folder,
               const SvbrdfOptions& options, const Listener& listener = {});
 

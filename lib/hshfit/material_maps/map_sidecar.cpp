@@ -129,6 +129,8 @@ MapSidecar readMapSidecar(const std::string& file) {
 }
 
 bool isMapSidecar(const std::string& file) {
+    std::error_code error;  // what a pipe holds can be read only once
+    if (!std::filesystem::is_regular_file(file, error)) return false;
     std::ifstream stream(file, std::ios::binary);
     std::string head(64, '\0');
     stream.read(head.data(), static_cast<std::streamsize>(head.size()));

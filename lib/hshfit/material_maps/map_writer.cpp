@@ -14,12 +14,12 @@ namespace {
 
 constexpr std::size_t chunkTexels = 64;
 
-/// Levels [first, last) of a band or of the end of a map, with what the next level needs.
+/// Encodes rows of a level and writes them to the file.
 class LevelWriter {
 public:
     LevelWriter(const TexelEncoder& encoder, LevelFile& file) : encoder_(encoder), file_(file) {}
 
-    /// Rows of a level in linear numbers, from row `top` on.
+    /// Rows of a level from row `top` on, in the numbers that are averaged; returns them.
     LevelTexels written(LevelTexels texels, std::size_t level, std::size_t top,
                         std::vector<LevelErrors>& errors) const {
         std::vector<std::byte> bytes(texels.count() * file_.bytesOfTexel());
@@ -43,8 +43,8 @@ private:
 
 [[noreturn]] void refuse(std::size_t row, float largest) {
     throw NumericError(fmt::format(
-        "row {}: a number of {:.3g} is not finite or beyond float16 (65504); store float32", row,
-        largest));
+        "from row {} on, a number of {:.3g} is not finite or beyond float16 (65504); store float32",
+        row, largest));
 }
 
 LevelErrors LevelWriter::errorsOfRows(const std::vector<EncodedTexels>& rows, std::size_t top) {
@@ -297,8 +297,8 @@ MapWritten writeMap(TexelSource& source, const TexelEncoder& encoder, LevelFile&
     };
     std::optional<std::size_t> band = dealer.next();
     auto read = reading(band);
-    std::future<void> writing;
     std::vector<std::byte> buffers[2];  // one is filled while the other is written
+    std::future<void> writing;          // ends before the buffers do, also after an exception
     while (band) {
         const std::unique_ptr<TexelBand> texels = read.get();
         const std::size_t current = *band;
