@@ -77,6 +77,7 @@ Json jsonOf(const jobs::Svbrdf& done) {
         {"outgoing", done.outgoing},
         {"lobes", done.lobes},
         {"table", {{"axes", done.axes}, {"nodes", done.tableNodes}, {"error", done.tableError}}},
+        {"captured", {{"least", done.captured}, {"brdf", done.leastCaptured}}},
         {"form", done.form},
         {"count", done.count},
         {"choices", choices},
@@ -125,6 +126,12 @@ std::string textOf(const jobs::Svbrdf& done) {
             ? ""
             : fmt::format(" at {} nodes over {}, error {}", done.tableNodes,
                           fmt::join(done.axes, ", "), jobs::percent(done.tableError, 2)));
+    if (!done.leastCaptured.empty()) {
+        text += fmt::format(
+            "the basis captures {} of the energy of {}, the least of all lobes{}\n",
+            jobs::percent(done.captured, 2), done.leastCaptured,
+            done.captured < jobs::leastCaptured ? ": poor; a higher --order captures more" : "");
+    }
     if (done.choices.size() > 1) {
         text += "forms, relative to the norm of a texel, over sampled texels:\n";
         for (const jobs::MapChoice& choice : done.choices) text += textOf(choice);

@@ -1,5 +1,7 @@
 #include "model_lobes.h"
 
+#include "../quality.h"
+
 #include <hshfit/error.h>
 
 #include <brdfs/catalog.h>
@@ -199,17 +201,26 @@ std::vector<std::string> ModelLobes::names() const {
 }
 
 LobeFunction ModelLobes::function(const TexelLayout& layout, const Basis& basis,
-                                  const ProjectionOptions& options) const {
+                                  const ProjectionOptions& options, LeastCaptured& least) const {
     LobeFunction result{.axes = axes_, .lobes = count(), .length = layout.shape()};
     for (std::size_t o = 0; o < layout.outgoing.size(); ++o)
         result.weights.insert(result.weights.end(), layout.slots.size(), layout.weights()[o]);
-    result.at = [this, &layout, &basis, options](std::span<const double> p) {
+    result.at = [this, &layout, &basis, &least, options](std::span<const double> p) {
         std::vector<double> lobes;
         for (std::size_t k = 0; k < products_.size(); ++k) {
-            const auto brdf = brdfs::openModel(specification(valuesAt(products_[k], p)));
+            const std::string spec = specification(valuesAt(products_[k], p));
+            const auto brdf = brdfs::openModel(spec);
             const Basis* bases[] = {&basis};
-            const Coefficients c =
-                hshfit::project(*brdf, bases, layout.outgoing, options).front().coefficients;
+            const Projection projection =
+                hshfit::project(*brdf, bases, layout.outgoing, options).front();
+            const Coefficients& c = projection.coefficients;
+            if (const auto share = capturedShare(projection, *brdf)) {
+                const std::lock_guard lock(least.mutex);
+                if (*share < least.share || (*share == least.share && spec < least.brdf)) {
+                    least.share = *share;
+                    least.brdf = spec;
+                }
+            }
             std::vector<double> lobe;
             for (std::size_t o = 0; o < layout.outgoing.size(); ++o)
                 for (const int slot : layout.slots) lobe.push_back(c.at(o, 0)[slot]);

@@ -9,10 +9,18 @@
 #include <hshfit/projection/projection.h>
 
 #include <cstddef>
+#include <mutex>
 #include <string>
 #include <vector>
 
 namespace hshfit::jobs {
+
+/// The least share of the energy of a BRDF at a node of the grid that the basis captures.
+struct LeastCaptured {
+    std::mutex mutex = {};
+    double share = 1;
+    std::string brdf = {};
+};
 
 /// A model with parameters from texel to texel as a sum of lobes. f is affine in some parameters,
 /// each by itself while the others are held, and so is a sum over products of them,
@@ -34,9 +42,9 @@ public:
     /// Laws that hold for all texels.
     const Laws& laws() const { return laws_; }
 
-    /// Coefficients of the lobes, as a function of the axes.
+    /// Coefficients of the lobes, as a function of the axes, whose calls lower `least`.
     LobeFunction function(const TexelLayout& layout, const Basis& basis,
-                          const ProjectionOptions& options) const;
+                          const ProjectionOptions& options, LeastCaptured& least) const;
     /// A row of ParameterMaps as weights and places.
     TexelBlock block(const std::vector<float>& row, std::size_t count) const;
     /// The specification of one texel in one channel; values[parameter].

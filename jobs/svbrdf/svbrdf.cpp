@@ -53,10 +53,10 @@ struct Work {
           lobes(maps, description),
           basis(bases::make(options.basis, options.order)),
           layout(layoutFor(options, lobes, *basis)),
-          table(
-              lobes.function(layout, *basis,
-                             {.quantity = options.cosine ? Quantity::brdfCosine : Quantity::brdf}),
-              {.tolerance = options.tolerance, .progress = listener.part("lobes")}),
+          table(lobes.function(layout, *basis,
+                               {.quantity = options.cosine ? Quantity::brdfCosine : Quantity::brdf},
+                               least),
+                {.tolerance = options.tolerance, .progress = listener.part("lobes")}),
           rows(maps, lobes),
           texels(rows, table, layout, lobes.axesByChannel()),
           kernel(table, layout, lobes.axesByChannel()) {}
@@ -66,6 +66,7 @@ struct Work {
     ModelLobes lobes;
     std::unique_ptr<Basis> basis;
     TexelLayout layout;
+    LeastCaptured least = {};
     LobeGrid table;
     ModelRows rows;
     LobeTexels texels;
@@ -270,7 +271,9 @@ Svbrdf svbrdf(const std::string& description, const std::string& folder,
                   .isotropic = work.lobes.laws().isotropic,
                   .outgoing = work.layout.outgoing.spec(),
                   .tableNodes = work.table.nodes(),
-                  .tableError = work.table.error()};
+                  .tableError = work.table.error(),
+                  .captured = work.least.share,
+                  .leastCaptured = work.least.brdf};
     for (const LobeAxis& axis : work.lobes.axes()) result.axes.push_back(axis.name);
     result.tableSeconds = secondsSince(start);
     const auto encoder = encoderFor(work, options, result, listener);

@@ -55,6 +55,8 @@ struct Svbrdf {
     std::string outgoing = {};
     std::size_t tableNodes = 0;
     double tableError = 0;
+    double captured = 1;  ///< the least share of energy that the basis holds at a node of the grid
+    std::string leastCaptured = {};  ///< the BRDF there
     std::string form = {};
     std::size_t count = 0;  ///< shared shapes, or materials
     std::vector<MapChoice> choices = {};
