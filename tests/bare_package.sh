@@ -1,9 +1,10 @@
 #!/bin/sh
 # Tries the packages of `./run package` in a minimal Debian 12 that never saw the project: installs
-# hshfit with what it depends on, runs it, installs the other packages and builds an outside project
-# against libhshfit-dev, uninstalls all of them, and compares the files with those before. The
-# relocatable archive is unpacked into a root without a single package more, and run. Needs root,
-# debootstrap and an apt mirror.
+# hshfit with what it depends on, runs it and the commands of the tutorial as they are printed,
+# installs the other packages, builds an outside project against libhshfit-dev and uses the Python
+# package, uninstalls all of them, and compares the files with those before. The relocatable archive
+# is unpacked into a root without a single package more, and run. Needs root, debootstrap, Python
+# and an apt mirror.
 #   tests/bare_package.sh [FOLDER]    default: out/packages
 # With BARE_ROOT=FOLDER a minimal root that is there already is copied, and made there if it is not.
 set -eu
@@ -68,6 +69,9 @@ dependencies() {
         dpkg-deb -f "$package" Depends | tr ',' '\n' | sed 's/(.*//; s/|.*//; s/ //g'
     done | grep -v hshfit | sort -u
 }
+installed() {
+    for package in "$packages"/*.deb; do dpkg-deb -f "$package" Package; done
+}
 start=$(seconds)
 mkdir "$work/root/tmp/packages"
 cp "$packages"/*.deb "$work/root/tmp/packages/"
@@ -79,6 +83,13 @@ inside "$work/root" sh -ec '
     hshfit project phong:exponent=22 -o phong.json --quiet >/dev/null
     hshfit info phong.json --quiet >/dev/null'
 cmp "$work/root/tmp/phong.json" "$work/from_archive.json"
+tests/docs/run_pages.py --script docs/tutorial.md >"$work/root/tmp/tutorial.sh"
+start=$(seconds)
+inside "$work/root" sh -ec 'mkdir /tmp/tutorial && cd /tmp/tutorial && bash ../tutorial.sh' \
+    >"$work/log" 2>&1 || { tail -n 20 "$work/log" >&2; exit 1; }
+[ -s "$work/root/tmp/tutorial/page/gold_viewer.html" ] ||
+    { echo "bare_package: the tutorial left no page to open" >&2; exit 1; }
+echo "bare_package: the commands of the tutorial took $(($(seconds) - start)) s"
 apt remove --purge hshfit
 # Packages that ours depend on stay while the files of ours are compared.
 # shellcheck disable=SC2046  # a list of words
@@ -102,8 +113,13 @@ inside "$work/root" sh -ec '
     outside/all/all_parts
     cmake -S /usr/share/doc/hshfit/examples -B examples >/dev/null
     cmake --build examples >/dev/null
-    examples/quick_start_example phong:exponent=22 quick.json'
-inside "$work/root" dpkg --purge hshfit hshfit-pictures libhshfit-dev hshfit-doc \
+    examples/quick_start_example phong:exponent=22 quick.json
+    cd /
+    PYTHONDONTWRITEBYTECODE=1 python3 -c "
+import hshfit
+assert hshfit.project(\"phong:exponent=22\").accuracy > 0.5"'
+# shellcheck disable=SC2046  # a list of words
+inside "$work/root" dpkg --purge $(installed) \
     >"$work/log" 2>&1 || { tail -n 20 "$work/log" >&2; exit 1; }
 list >"$work/after"
 diff "$work/before" "$work/after" ||

@@ -10,6 +10,9 @@ A block whose first line is a comment that begins with "Not run" is not run. Its
 and that its commands of ./run and of hshfit, its scripts and its folders exist.
 
 Prints each breach as page:line and ends with 1 if there is one.
+
+run_pages.py --script PAGE: prints the blocks that are run, as one script for bash, to run them on
+another machine, where the program is installed.
 """
 import os
 import re
@@ -34,6 +37,16 @@ def blocks(page):
         else:
             yield start + 1, kind, "\n".join(lines[start:at])
             start = None
+
+
+def is_unrun(text):
+    return re.match(r"#+ Not run", text)
+
+
+def script(page):
+    """The blocks of a page that are run."""
+    return "\n".join(["set -euo pipefail"] + [text for _, kind, text in blocks(page)
+                                              if kind == "sh" and not is_unrun(text)])
 
 
 def answer(program, *words):
@@ -74,7 +87,7 @@ def run_page(program, page):
         env = os.environ | {"PATH": f"{commands}:{os.environ['PATH']}", "COLUMNS": "100"}
         output = ""
         for line, kind, text in blocks(page):
-            if kind == "sh" and re.match(r"#+ Not run", text):
+            if kind == "sh" and is_unrun(text):
                 for breach in check_unrun(program, text):
                     yield f"{page}:{line}: {breach}"
             elif kind == "sh":
@@ -99,7 +112,10 @@ def run_page(program, page):
 
 def main():
     if len(sys.argv) < 3:
-        sys.exit("usage: run_pages.py PROGRAM PAGE…")
+        sys.exit("usage: run_pages.py PROGRAM PAGE…, or run_pages.py --script PAGE")
+    if sys.argv[1] == "--script":
+        print(script(Path(sys.argv[2])))
+        return 0
     program = Path(sys.argv[1]).resolve()
     found = [breach for name in sys.argv[2:] for breach in run_page(program, Path(name))]
     print("\n".join(found), end="\n" if found else "")
