@@ -3,6 +3,7 @@
 #include <brdfs/spec.h>
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
+#include <hshfit/spelling.h>
 
 #include <fmt/format.h>
 
@@ -139,6 +140,11 @@ std::vector<stability::ErrorTrial> randomCases(const RandomCasesOptions& options
             std::ranges::find(options.formats, writer.name) != options.formats.end();
         if (writer.readBack && wanted && options.tablesPerFormat > 0) formats.push_back(&writer);
     }
+    std::vector<std::string_view> names = spelling::namesOf(models());
+    for (const Writer* format : formats) names.emplace_back(format->name);
+    for (const std::string& name : options.only)
+        if (std::ranges::find(names, name) == names.end())
+            throw spelling::unknown("model or format with random cases", name, names);
     // Written when they are first used, each from draws of its own.
     std::vector<std::shared_ptr<const Brdf>> tables(formats.size() * options.tablesPerFormat);
     const std::size_t groups = models().size() + formats.size();
@@ -168,7 +174,9 @@ std::vector<stability::ErrorTrial> randomCases(const RandomCasesOptions& options
         trial.thetaDegrees = draws.between(0, 89);
         trial.phiDegrees = draws.between(0, 360);
         trial.quantity = draws.oneIn(2) ? Quantity::brdfCosine : Quantity::brdf;
-        cases.push_back(std::move(trial));
+        const bool wanted = options.only.empty() ||
+                            std::ranges::find(options.only, trial.group) != options.only.end();
+        if (wanted) cases.push_back(std::move(trial));
     }
     return cases;
 }

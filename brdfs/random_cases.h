@@ -37,11 +37,14 @@ struct RandomCasesOptions {
     /// Names of writers; empty: all whose files are read back.
     std::vector<std::string> formats = {};
     int maxOrder = 12;
+    /// Names of models and formats whose cases are kept, each as it is among all; empty: all.
+    std::vector<std::string> only = {};
 };
 
 /// Projections over the whole catalog, one of each model and of each format that can be written and
 /// read back in turn: random parameters, elevation to 89 degrees, azimuth, basis, order and
 /// quantity. Tables are written from typical models into files that are gone once this returns.
+/// Throws UsageError for a name among `only` that no model or format with cases has.
 std::vector<stability::ErrorTrial> randomCases(const RandomCasesOptions& options);
 
 }  // namespace hshfit::brdfs

@@ -34,6 +34,12 @@ void addStress(CLI::App& command, Globals& globals) {
                        "(default: 2000, or none if lobes are given)");
     command.add_option("--seed", arguments->options.seed, "Of the random projections")
         ->capture_default_str();
+    command
+        .add_option(
+            "--of", arguments->options.of,
+            "Models and formats whose random projections are tried, each as it is among all "
+            "(default: all)")
+        ->delimiter(',');
     command.add_option("-o,--output", arguments->output,
                        "Folder for stress.json, stress.md and stress.csv, made if absent");
     command.callback([arguments, &globals] { runStress(*arguments, globals); });

@@ -23,6 +23,7 @@ struct StressOptions {
     /// lobes are given.
     std::optional<std::size_t> trials = {};
     std::uint64_t seed = brdfs::RandomCasesOptions{}.seed;  ///< of the random projections
+    std::vector<std::string> of = {};  ///< models and formats whose projections are kept; all
 };
 
 /// The accuracy of each computation by degree, order and width, with its files in the folder

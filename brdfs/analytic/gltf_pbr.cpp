@@ -67,6 +67,11 @@ void evalByVectors(const GltfPbrShape<double>& shape, const TermBatch& batch) {
     HWY_DYNAMIC_DISPATCH(evalGltfPbr)(shape, batch);
 }
 
+/// By how much the second derivative jumps at a node of Catmull and Rom's cubics, per step squared.
+double curvatureJump(const double* node) {
+    return std::abs(node[-2] - 2 * node[-1] + 2 * node[1] - node[2]);
+}
+
 class GltfPbr final : public ShapedBrdf<GltfPbrShape<double>, evalByVectors,
                                         evalAll<double, GltfPbrTerms, GltfPbrShape<double>>> {
 public:
@@ -83,10 +88,19 @@ public:
         return lobes;
     }
 
-    /// Charlie's masking has a kink at 60 degrees; the base is scaled by the larger of two albedos.
+    /// Charlie's masking has a kink at 60 degrees; the base is scaled by the larger of two albedos,
+    /// which are cubics between the nodes of a table.
     std::vector<double> kinks(const Direction& wo) const override {
         if (shape_.sheen == 0) return {};
-        return {0.5, wo.z};
+        std::vector<double> heights = {0.5, wo.z};
+        for (int k = 1; k < SheenAlbedoTable::steps; ++k) {
+            // A smaller jump of the curvature, per step squared, moves integrals by less than 1e-7.
+            constexpr double least = 1e-6;
+            if (shape_.sheenPeak * curvatureJump(shape_.albedo.data() + k + 1) < least) continue;
+            const double root = static_cast<double>(k) / SheenAlbedoTable::steps;
+            heights.push_back(root * root);
+        }
+        return heights;
     }
     double defaultTolerance() const override {
         return shape_.sheen > 0 ? 1e-5 : ShapedBrdf::defaultTolerance();

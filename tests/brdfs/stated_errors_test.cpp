@@ -2,9 +2,11 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/brdf/kink_curve.h>
+#include <hshfit/error.h>
 #include <hshfit/projection/projection.h>
 #include <hshfit/stability/error_trials.h>
 
+#include <brdfs/analytic/sheen_albedo.h>
 #include <brdfs/catalog.h>
 #include <brdfs/random_cases.h>
 
@@ -169,6 +171,24 @@ TEST(StatedErrors, HoldForOrenNayarAtTheMeridianAcross) {
     }
 }
 
+/// Its albedo is made of cubics between heights whose roots are multiples of 1/64. Without panels
+/// that end there, the error was 23 times the one stated.
+TEST(StatedErrors, HoldForSheenWhoseAlbedoIsATable) {
+    const Case c{
+        "gltf-pbr:sheenColorFactor=0.49,clearcoatFactor=0.69,"
+        "clearcoatRoughnessFactor=0.8",
+        4.808,
+        286.192,
+        "esh",
+        6,
+        Quantity::brdfCosine};
+    std::vector<double> thetas = {radians(c.theta), radians(60)};
+    constexpr int steps = brdfs::SheenAlbedoTable::steps;
+    for (int k = 0; k <= steps; ++k)
+        thetas.push_back(std::acos(std::pow(static_cast<double>(k) / steps, 2)));
+    expectStatedErrors(c, integrated(c, thetas, [](const Direction&) { return 1.0; }));
+}
+
 /// Without panels at the curve, 1e-6 took 143,756 evaluations.
 TEST(StatedErrors, KinksAtKnownCurvesCostLittle) {
     const Case c{"phong:exponent=1", 30, 0, "hsh", 7, Quantity::brdfCosine};
@@ -197,6 +217,50 @@ TEST(StatedErrors, AreThoseOfOneThread) {
         EXPECT_EQ(many[k].coefficients, alone[k].coefficients);
         EXPECT_EQ(many[k].evaluations, alone[k].evaluations);
     }
+}
+
+TEST(StatedErrors, SummaryListsTheCasesThatDoNotHold) {
+    using Result = stability::ErrorTrialResult;
+    const std::vector<Result> results = {
+        {.trial = {.group = "a", .brdf = {}}, .stated = 1e-6, .coefficients = 9e-7},
+        {.trial = {.group = "a", .brdf = {}}, .stated = 1e-6, .coefficients = 2e-6},
+        {.trial = {.group = "b", .brdf = {}},
+         .stated = 1e-6,
+         .coefficients = 1e-7,
+         .hasEnergy = true,
+         .statedEnergy = 1e-6,
+         .energy = 5e-6},
+        {.trial = {.group = "b", .brdf = {}},
+         .state = Result::State::refused,
+         .stated = 1,
+         .coefficients = 2}};
+    const auto rows = stability::summarise(results);
+    ASSERT_EQ(rows.size(), 3U);
+    ASSERT_EQ(rows[0].exceptions.size(), 1U);
+    EXPECT_EQ(rows[0].exceptions[0].coefficients, 2e-6);
+    ASSERT_EQ(rows[1].exceptions.size(), 1U);
+    EXPECT_EQ(rows[1].exceptions[0].energy, 5e-6);
+    EXPECT_EQ(rows[2].exceptions.size(), 2U);
+    EXPECT_EQ(rows[2].measured, rows[2].bothHold + rows[2].exceptions.size());
+}
+
+TEST(RandomCases, OfSomeGroupsAreTheSameAsAmongAll) {
+    const auto all = brdfs::randomCases({.count = 60, .seed = 7, .tablesPerFormat = 0});
+    const auto some =
+        brdfs::randomCases({.count = 60, .seed = 7, .tablesPerFormat = 0, .only = {"ggx", "sg"}});
+    std::size_t at = 0;
+    for (const auto& trial : all) {
+        if (trial.group != "ggx" && trial.group != "sg") continue;
+        ASSERT_LT(at, some.size());
+        EXPECT_EQ(some[at].brdf->name(), trial.brdf->name());
+        EXPECT_EQ(some[at].thetaDegrees, trial.thetaDegrees);
+        EXPECT_EQ(some[at].order, trial.order);
+        ++at;
+    }
+    EXPECT_EQ(at, some.size());
+    EXPECT_GT(at, 2U);
+    const brdfs::RandomCasesOptions misspelt{.count = 1, .tablesPerFormat = 0, .only = {"gxx"}};
+    EXPECT_THROW(brdfs::randomCases(misspelt), UsageError);
 }
 
 TEST(RandomCases, AreThoseOfTheSeed) {

@@ -100,7 +100,8 @@ ErrorTrialSummary summaryOf(std::string group, const std::vector<const ErrorTria
         s.coefficientsHold += r->coefficientsHold();
         s.energyMeasured += r->hasEnergy;
         s.energyHolds += r->hasEnergy && r->energyHolds();
-        s.bothHold += r->coefficientsHold() && (!r->hasEnergy || r->energyHolds());
+        s.bothHold += r->bothHold();
+        if (!r->bothHold()) s.exceptions.push_back(*r);
         if (r->coefficients > rounding) s.worst = std::max(s.worst, r->coefficients / r->stated);
         if (r->hasEnergy && r->energy > rounding)
             s.worst = std::max(s.worst, r->energy / r->statedEnergy);

@@ -42,6 +42,7 @@ struct ErrorTrialResult {
     /// Neither error is above the one stated, but for rounding.
     bool coefficientsHold() const;
     bool energyHolds() const;
+    bool bothHold() const { return coefficientsHold() && (!hasEnergy || energyHolds()); }
     /// Stated by true error, of coefficients and energy the one that is nearer; infinite where the
     /// true error is rounding.
     double overstatement() const;
@@ -66,6 +67,7 @@ struct ErrorTrialSummary {
     double medianOverstatement = 0;  ///< of those whose error is more than rounding
     double medianEvaluations = 0;
     std::size_t evaluations = 0;
+    std::vector<ErrorTrialResult> exceptions = {};  ///< those in which not both hold
 };
 
 /// One for each group, in the order of their first trials, and the last one of all.

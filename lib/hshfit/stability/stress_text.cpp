@@ -116,6 +116,42 @@ std::string trialsTable(const std::vector<ErrorTrialSummary>& rows) {
     return text;
 }
 
+/// The cases in which a stated error does not hold, so that each can be projected again.
+std::string exceptionsTable(const std::vector<ErrorTrialResult>& exceptions) {
+    std::string text =
+        "| BRDF | outgoing | basis, order | of | error stated | true | energy's stated | true |\n"
+        "|---|---|---|---|---|---|---|---|\n";
+    for (const ErrorTrialResult& row : exceptions) {
+        const ErrorTrial& trial = row.trial;
+        text +=
+            fmt::format("| `{}` | {:.17g},{:.17g} | {} {} | {} | {:.2g} | {:.2g} |",
+                        trial.brdf->name(), trial.thetaDegrees, trial.phiDegrees, trial.basis,
+                        trial.order, quantityName(trial.quantity), row.stated, row.coefficients);
+        text += row.hasEnergy ? fmt::format(" {:.2g} | {:.2g} |\n", row.statedEnergy, row.energy)
+                              : " | |\n";
+    }
+    return text;
+}
+
+Json exceptionsJson(const std::vector<ErrorTrialResult>& exceptions) {
+    Json list = Json::array();
+    for (const ErrorTrialResult& row : exceptions) {
+        const ErrorTrial& trial = row.trial;
+        list.push_back({{"brdf", trial.brdf->name()},
+                        {"theta_o", trial.thetaDegrees},
+                        {"phi_o", trial.phiDegrees},
+                        {"basis", trial.basis},
+                        {"order", trial.order},
+                        {"quantity", quantityName(trial.quantity)},
+                        {"stated", row.stated},
+                        {"true", finiteOrNull(row.coefficients)}});
+        if (!row.hasEnergy) continue;
+        list.back()["stated_energy"] = row.statedEnergy;
+        list.back()["true_energy"] = finiteOrNull(row.energy);
+    }
+    return list;
+}
+
 Json trialsJson(const std::vector<ErrorTrialSummary>& rows) {
     Json list = Json::array();
     for (const ErrorTrialSummary& row : rows) {
@@ -128,7 +164,8 @@ Json trialsJson(const std::vector<ErrorTrialSummary>& rows) {
                         {"both_hold", row.bothHold},
                         {"worst", finiteOrNull(row.worst)},
                         {"median_overstatement", finiteOrNull(row.medianOverstatement)},
-                        {"evaluations", row.evaluations}});
+                        {"evaluations", row.evaluations},
+                        {"exceptions", exceptionsJson(row.exceptions)}});
     }
     return list;
 }
@@ -194,6 +231,9 @@ std::string stressMarkdown(const StressReport& report) {
             "\n## Stated errors\nRandom projections at the default tolerance, against ones at a "
             "hundredth of it.\n\n" +
             trialsTable(report.statedErrors);
+    if (!report.statedErrors.empty() && !report.statedErrors.back().exceptions.empty())
+        text += "\nCases in which an error is larger than stated:\n\n" +
+                exceptionsTable(report.statedErrors.back().exceptions);
     if (report.projection.empty()) return text;
     text += "\n## Projection of lobes\nf cos(theta_i) onto HSH, order 7, one outgoing direction.\n";
     text += "\nEstimated error:\n\n" + projectionTable(report.projection, [](const auto& row) {
