@@ -29,27 +29,6 @@ Channels channelsOf(const Brdf& a, const Brdf& b) {
     return x;
 }
 
-/// All of up to four; else those nearest to 450, 550 and 650 nm, or first, middle and last where
-/// these are outside of the range.
-std::vector<std::size_t> drawnOf(const Channels& channels) {
-    std::vector<std::size_t> drawn;
-    const std::size_t count = channels.count();
-    if (count <= 4) {
-        for (std::size_t c = 0; c < count; ++c) drawn.push_back(c);
-        return drawn;
-    }
-    const auto& nm = channels.wavelengths;
-    if (nm.front() > 450 || nm.back() < 650) return {0, count / 2, count - 1};
-    for (const double wanted : {450.0, 550.0, 650.0}) {
-        const auto nearest = std::min_element(nm.begin(), nm.end(), [&](double a, double b) {
-            return std::abs(a - wanted) < std::abs(b - wanted);
-        });
-        const auto index = static_cast<std::size_t>(nearest - nm.begin());
-        if (drawn.empty() || drawn.back() != index) drawn.push_back(index);
-    }
-    return drawn;
-}
-
 /// f at pairs of directions, all channels, one pair after the other.
 class Sampler {
 public:
@@ -193,12 +172,31 @@ std::vector<MetricValue> allMetrics(const Brdf& reference, const Brdf& approxima
 
 }  // namespace
 
+std::vector<std::size_t> drawnChannels(const Channels& channels) {
+    std::vector<std::size_t> drawn;
+    const std::size_t count = channels.count();
+    if (count <= 4) {
+        for (std::size_t c = 0; c < count; ++c) drawn.push_back(c);
+        return drawn;
+    }
+    const auto& nm = channels.wavelengths;
+    if (nm.front() > 450 || nm.back() < 650) return {0, count / 2, count - 1};
+    for (const double wanted : {450.0, 550.0, 650.0}) {
+        const auto nearest = std::min_element(nm.begin(), nm.end(), [&](double a, double b) {
+            return std::abs(a - wanted) < std::abs(b - wanted);
+        });
+        const auto index = static_cast<std::size_t>(nearest - nm.begin());
+        if (drawn.empty() || drawn.back() != index) drawn.push_back(index);
+    }
+    return drawn;
+}
+
 Comparison makeComparison(const Brdf& reference, const Brdf& approximation,
                           const ComparisonOptions& options) {
     const bool isotropic = reference.laws().isotropic && approximation.laws().isotropic;
     Comparison result;
     result.channels = channelsOf(reference, approximation);
-    result.drawn = drawnOf(result.channels);
+    result.drawn = drawnChannels(result.channels);
     result.outgoing = options.outgoing ? *options.outgoing
                       : isotropic      ? OutgoingSet::elevations(16)
                                        : OutgoingSet::parabolic(16, 16);

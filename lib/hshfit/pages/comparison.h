@@ -67,6 +67,10 @@ struct Comparison {
     double amplification = 1;  ///< of the difference that is shown
 };
 
+/// The channels that figures show: all of up to four; else those nearest to 450, 550 and 650 nm, or
+/// first, middle and last where these are outside of the range.
+std::vector<std::size_t> drawnChannels(const Channels& channels);
+
 /// Samples both and computes everything that the page shows. A grey BRDF compares with any
 /// channels; otherwise the channels have to agree (UsageError).
 Comparison makeComparison(const Brdf& reference, const Brdf& approximation,

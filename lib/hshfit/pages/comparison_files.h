@@ -29,6 +29,9 @@ std::string albedoCsv(const Comparison& comparison);
 /// Azimuth, theta_d, theta_h, log10_ratio (empty where there is none), measured (0 or 1).
 std::string residualCsv(const Comparison& comparison);
 
+/// The ratio at the ends of the colour bar, which 98 % of the cells keep to.
+double largestRatio(const Comparison& comparison);
+
 /// The script of gnuplot that draws the figures, and comparison.json.
 std::string comparisonScript(const Comparison& comparison);
 std::string comparisonJson(const Comparison& comparison);

@@ -1,4 +1,5 @@
 #include <hshfit/files/printable.h>
+#include <hshfit/pages/axis_ticks.h>
 #include <hshfit/pages/comparison_files.h>
 #include <hshfit/pages/gnuplot.h>
 #include <hshfit/pages/report_files.h>
@@ -57,32 +58,6 @@ std::array<double, 2> rangeOf(const ComparisonCurve& curve, double steepest) {
     return most > 0 ? std::array{least, most} : std::array{0.1, 1.0};
 }
 
-/// Whole decades from below the least to above the greatest, at most `decades` of them. No double
-/// is outside of 10^-300 to 10^300 but a few, which would have no axis.
-std::array<int, 2> decadesOf(double least, double most, int decades) {
-    const int high = std::clamp(static_cast<int>(std::ceil(std::log10(most) - 1e-9)), -290, 300);
-    const int low = static_cast<int>(std::floor(std::log10(least) + 1e-9));
-    return {std::clamp(low, high - decades, high - 1), high};
-}
-
-/// The least of some round numbers times a power of ten at or above `value`.
-double roundedUp(double value) {
-    const double power = std::pow(10, std::floor(std::log10(value)));
-    for (const double digit : {1.0, 1.2, 1.6, 2.0, 2.4, 3.0, 4.0, 6.0, 8.0}) {
-        if (value <= digit * power * (1 + 1e-9)) return digit * power;
-    }
-    return 10 * power;
-}
-
-/// The ratio at the ends of the colour bar, which 98 % of the cells keep to.
-double largestRatio(const Comparison& comparison) {
-    const double most = std::pow(10, std::min(2.0, residualShares(comparison).most));
-    for (const double ratio : {1.02, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0}) {
-        if (most <= ratio) return ratio;
-    }
-    return 100;
-}
-
 data polarPanels(const Comparison& comparison) {
     data panels{data::type::list};
     for (std::size_t i = 0; i < comparison.polar.size(); ++i) {
@@ -120,6 +95,14 @@ double albedoTop(const Comparison& comparison) {
 }
 
 }  // namespace
+
+double largestRatio(const Comparison& comparison) {
+    const double most = std::pow(10, std::min(2.0, residualShares(comparison).most));
+    for (const double ratio : {1.02, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0}) {
+        if (most <= ratio) return ratio;
+    }
+    return 100;
+}
 
 std::vector<ComparisonFigure> figuresOf(const Comparison& comparison) {
     std::vector<ComparisonFigure> figures;
