@@ -81,7 +81,7 @@ const Model& blinnPhongModel() {
         .help = "power of the cosine between half vector and normal",
         .source = "Blinn 1977, 10.1145/563858.563893",
         .parameters = {kdParameter(0, 1e6),
-                       ksParameter("scale of the lobe; its normal albedo if normalized"),
+                       ksParameter("scale of the lobe, 1/sr; its normal albedo if normalized"),
                        exponentParameter("exponent", "of cos(theta_h)", {.low = 1, .high = 2e4}),
                        {.name = "normalized",
                         .help = "true: a normal albedo of ks; phong: times (n + 2) / (2 pi)",

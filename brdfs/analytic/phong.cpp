@@ -83,7 +83,7 @@ const Model& phongModel() {
         .help = "power of the cosine about the mirror direction",
         .source = "Phong 1975, 10.1145/360825.360839; Lafortune & Willems 1994, CW 197",
         .parameters = {kdParameter(0, 1e6),
-                       ksParameter("scale of the lobe; its normal albedo if normalized"),
+                       ksParameter("scale of the lobe, 1/sr; its normal albedo if normalized"),
                        exponentParameter("exponent", "of cos(alpha)", {.low = 1, .high = 3e3}),
                        switchParameter("normalized", "multiply ks by (exponent + 2) / (2 pi)")},
         .laws = claims,

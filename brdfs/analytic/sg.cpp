@@ -89,7 +89,7 @@ const Model& sgModel() {
         .help = "spherical Gaussian about the mirror direction, or of the half vector",
         .source = "Wang, Ren, Gong, Snyder & Guo 2009, 10.1145/1618452.1618479",
         .parameters = {kdParameter(0, 1e6),
-                       ksParameter("amplitude of the lobe; largest albedo if normalized"),
+                       ksParameter("amplitude of the lobe, 1/sr; largest albedo if normalized"),
                        exponentParameter("sharpness", "lambda; 1 / lambda is its variance",
                                          {.low = 1, .high = 1e4}),
                        {.name = "axis",

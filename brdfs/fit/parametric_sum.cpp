@@ -1,4 +1,5 @@
 #include <brdfs/fit/parametric_sum.h>
+#include <brdfs/fit/split_models.h>
 
 #include <brdfs/spec.h>
 #include <hshfit/error.h>
@@ -7,28 +8,10 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cctype>
 #include <cmath>
 
 namespace hshfit::brdfs {
 namespace {
-
-/// Split at every '+' before a letter: the '+' of a number stands before a digit.
-std::vector<std::string> splitModels(std::string_view spec) {
-    std::vector<std::string> parts(1);
-    for (std::size_t k = 0; k < spec.size(); ++k) {
-        std::size_t next = k + 1;
-        while (next < spec.size() && spec[next] == ' ') ++next;
-        const bool letter =
-            next < spec.size() && std::isalpha(static_cast<unsigned char>(spec[next]));
-        if (spec[k] == '+' && letter) {
-            parts.emplace_back();
-        } else if (spec[k] != ' ') {
-            parts.back() += spec[k];
-        }
-    }
-    return parts;
-}
 
 const Model& modelNamed(std::string_view name) {
     const auto found = std::ranges::find(models(), name, &Model::name);

@@ -46,11 +46,37 @@ std::vector<ValuePlace> outliersOf(const FitSamples& samples, const Uncertainty&
                       [&](std::size_t v) { return std::abs(uncertainty.values[v].studentised); });
 }
 
-void writeResidualRows(const FitSamples& samples, const FitResult& result,
+std::vector<double> standardisedResiduals(const FitSamples& samples,
+                                          const std::vector<double>& model, Loss::Kind loss,
+                                          std::size_t parameters) {
+    const std::size_t count = samples.size(), channels = samples.channels.count();
+    std::vector<double> residuals(count * channels);
+    double squares = 0;
+    for (std::size_t c = 0; c < channels; ++c)
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::size_t v = c * count + k;
+            residuals[v] = std::sqrt(samples.weight(c, k)) *
+                           (mapValue(loss, samples.values[v], samples.wiZ[k]).value -
+                            mapValue(loss, model[v], samples.wiZ[k]).value);
+            squares += residuals[v] * residuals[v];
+        }
+    if (!samples.sigmas.empty() || squares == 0) return residuals;
+    const auto values = static_cast<double>(residuals.size());
+    const double degrees = std::max(values - static_cast<double>(parameters), 1.0);
+    for (double& residual : residuals) residual /= std::sqrt(squares / degrees);
+    return residuals;
+}
+
+double aspecularAngle(const FitSamples& samples, std::size_t k) {
+    const Direction mirror = mirrored({samples.wiX[k], samples.wiY[k], samples.wiZ[k]});
+    return degrees(std::acos(std::clamp(dot(samples.wo[k], mirror), -1.0, 1.0)));
+}
+
+void writeResidualRows(const FitSamples& samples, const FitResult& result, Loss::Kind loss,
                        const std::function<void(std::string_view)>& write) {
     write(
         "row,wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,channel,value,sigma,model,residual,studentised,"
-        "leverage,cook\n");
+        "leverage,cook,theta_i,theta_o,aspecular,standardised\n");
     const std::size_t count = samples.size(), channels = samples.channels.count();
     std::vector<std::string> names(channels);
     for (std::size_t c = 0; c < channels; ++c) {
@@ -59,18 +85,28 @@ void writeResidualRows(const FitSamples& samples, const FitResult& result,
         else if (channels > 1)
             names[c] = samples.channels.names()[c];
     }
-    for (std::size_t k = 0; k < count; ++k)
+    std::vector<double> model;
+    for (const ValueInfluence& own : result.uncertainty->values) model.push_back(own.model);
+    const std::vector<double> standardised =
+        standardisedResiduals(samples, model, loss, result.parameters.size());
+    for (std::size_t k = 0; k < count; ++k) {
+        const Direction wi{samples.wiX[k], samples.wiY[k], samples.wiZ[k]};
+        const std::string angles =
+            fmt::format("{},{},{}", degrees(polarAngle(wi)), degrees(polarAngle(samples.wo[k])),
+                        aspecularAngle(samples, k));
         for (std::size_t c = 0; c < channels; ++c) {
             const std::size_t v = c * count + k;
             const ValueInfluence& own = result.uncertainty->values[v];
             const double value = samples.values[v];
-            write(
-                fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-                            rowOf(samples, {c, k}), samples.wiX[k], samples.wiY[k], samples.wiZ[k],
-                            samples.wo[k].x, samples.wo[k].y, samples.wo[k].z, names[c], value,
-                            samples.sigmas.empty() ? "" : fmt::format("{}", samples.sigmas[v]),
-                            own.model, value - own.model, own.studentised, own.leverage, own.cook));
+            write(fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+                              rowOf(samples, {c, k}), samples.wiX[k], samples.wiY[k],
+                              samples.wiZ[k], samples.wo[k].x, samples.wo[k].y, samples.wo[k].z,
+                              names[c], value,
+                              samples.sigmas.empty() ? "" : fmt::format("{}", samples.sigmas[v]),
+                              own.model, value - own.model, own.studentised, own.leverage, own.cook,
+                              angles, standardised[v]));
         }
+    }
 }
 
 }  // namespace hshfit::brdfs

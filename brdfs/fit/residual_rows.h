@@ -15,9 +15,22 @@ namespace hshfit::brdfs {
 ///     channel     nm, R, G or B; empty for grey
 ///     value, sigma, model, residual    1/sr; residual = value - model; sigma empty if not stated
 ///     studentised, leverage, cook      ValueInfluence
-/// `write` gets the text line by line. The result has to have its `uncertainty`.
-void writeResidualRows(const FitSamples& samples, const FitResult& result,
+///     theta_i, theta_o, aspecular      degrees; the last as aspecularAngle
+///     standardised                     standardisedResiduals
+/// `loss` is that of the fit. `write` gets the text line by line. The result has to have its
+/// `uncertainty`.
+void writeResidualRows(const FitSamples& samples, const FitResult& result, Loss::Kind loss,
                        const std::function<void(std::string_view)>& write);
+
+/// root(w) (g(measured) - g(model)) over the root of the weighted sum of its squares per degree of
+/// freedom; with stated uncertainties (measured - model) / sigma. [channel * size + sample].
+std::vector<double> standardisedResiduals(const FitSamples& samples,
+                                          const std::vector<double>& model, Loss::Kind loss,
+                                          std::size_t parameters);
+
+/// The angle between the outgoing direction of a sample and the mirror direction of its incoming
+/// one, degrees.
+double aspecularAngle(const FitSamples& samples, std::size_t k);
 
 /// One value among the samples.
 struct ValuePlace {
