@@ -1,5 +1,6 @@
 #include "command.h"
 #include "documents.h"
+#include "figure_options.h"
 
 #include <hshfit/error.h>
 #include <hshfit/pages/pair_summary_json.h>
@@ -17,10 +18,11 @@ using Json = nlohmann::ordered_json;
 
 struct CompareArguments {
     std::string a, b, output;
+    FigureArguments figures;
     jobs::CompareOptions options;
 };
 
-Json answer(const jobs::Compared& compared, const std::string& folder) {
+Json answer(const jobs::Compared& compared, const CompareArguments& arguments) {
     Json document = {{"format", "hshfit-compare"},
                      {"version", 1},
                      {"a", compared.a},
@@ -29,7 +31,9 @@ Json answer(const jobs::Compared& compared, const std::string& folder) {
                      {"metrics", metricValuesJson(compared.metrics)}};
     if (compared.pairs) document["pairs"] = pairSummaryJson(*compared.pairs);
     if (!compared.files.empty())
-        document["report"] = {{"folder", folder}, {"files", compared.files}};
+        document["report"] = {{"folder", arguments.output}, {"files", compared.files}};
+    if (!compared.figures.names.empty())
+        document["figures"] = figuresJson(compared.figures, arguments.figures.folder);
     return document;
 }
 
@@ -41,16 +45,20 @@ std::string text(const jobs::Compared& compared, const CompareArguments& argumen
     if (!compared.files.empty())
         out += fmt::format("written to {}: comparison.html and {} files beside it\n",
                            arguments.output, compared.files.size() - 1);
-    return out;
+    return out + figuresText(compared.figures, arguments.figures);
 }
 
-void runCompare(const CompareArguments& arguments, Globals& globals) {
+void runCompare(CompareArguments& arguments, Globals& globals) {
+    arguments.options.figures = arguments.figures.parsed();
+    if (!arguments.options.sigma.empty() && arguments.figures.folder.empty())
+        throw UsageError("compare: --sigma is for the bars of figures; give --figures DIR");
     const jobs::Compared compared = jobs::compare(arguments.a, arguments.b, arguments.output,
                                                   arguments.options, listenerFor(globals));
     if (globals.json)
-        printJson(answer(compared, arguments.output));
+        printJson(answer(compared, arguments));
     else
         printText(text(compared, arguments));
+    noteFont(compared.figures, arguments.figures, globals);
     // A metric without a value is an error if it was named, and a row of the table otherwise.
     const bool named = arguments.options.metrics != "all";
     for (const MetricValue& result : compared.metrics) {
@@ -73,6 +81,10 @@ void addCompare(CLI::App& command, Globals& globals) {
                        "16x16 if anisotropic)");
     command.add_option("-o,--output", arguments->output,
                        "Folder for a page with figures and spheres, made if absent");
+    addFigureOptions(command, arguments->figures);
+    command.add_option("--sigma", arguments->options.sigma,
+                       "Standard uncertainty of measured samples of A, for bars in the figures: "
+                       "2%+0.001, column, or FILE.csv");
     addRgb(command, arguments->options.rgb);
     command.callback([arguments, &globals] { runCompare(*arguments, globals); });
 }

@@ -1,4 +1,5 @@
 #include "command.h"
+#include "figure_options.h"
 #include "fit_uncertainty.h"
 #include "measured_numbers.h"
 
@@ -25,6 +26,7 @@ using Json = nlohmann::ordered_json;
 struct FitArguments {
     std::string data, all, output;
     std::vector<std::string> models;  ///< to compare
+    FigureArguments figures;
     jobs::FitOptions options;
 };
 
@@ -51,7 +53,7 @@ std::string headLine(const brdfs::FitResult& result) {
                        result.spectrum.back().nanometres);
 }
 
-std::string text(const jobs::Fitted& fitted, const std::string& output) {
+std::string text(const jobs::Fitted& fitted, const FitArguments& arguments) {
     const brdfs::FitResult& result = fitted.result;
     std::string lines = headLine(result) + samplesLine(fitted.preset["fit"]);
     for (const brdfs::FittedParameter& p : result.parameters) {
@@ -84,8 +86,8 @@ std::string text(const jobs::Fitted& fitted, const std::string& output) {
     lines += uncertaintyText(fitted.preset["fit"]);
     if (fitted.pageFiles > 0)
         lines += fmt::format("written to {}: fit.json, comparison.html and {} files beside it\n",
-                             output, fitted.pageFiles - 1);
-    return lines;
+                             arguments.output, fitted.pageFiles - 1);
+    return lines + figuresText(fitted.figures, arguments.figures);
 }
 
 void runAll(const FitArguments& arguments, Globals& globals) {
@@ -159,16 +161,18 @@ void runCompareModels(const FitArguments& arguments, Globals& globals) {
         printText(lines);
 }
 
-void runFit(const FitArguments& arguments, Globals& globals) {
+void runFit(FitArguments& arguments, Globals& globals) {
+    arguments.options.figures = arguments.figures.parsed();
     if (arguments.data.empty() == arguments.all.empty())
         throw UsageError("fit: give either DATA or --all DIR");
     if (arguments.options.model.empty() == arguments.models.empty())
         throw UsageError("fit: give either --model or --compare-models");
     const jobs::FitOptions& options = arguments.options;
     if ((!arguments.all.empty() || !arguments.models.empty()) &&
-        (options.bootstrap > 0 || options.profile || !options.residuals.empty()))
+        (options.bootstrap > 0 || options.profile || !options.residuals.empty() || options.figures))
         throw UsageError(
-            "fit: --bootstrap, --profile and --residuals are for one model and one DATA");
+            "fit: --bootstrap, --profile, --residuals and --figures are for one model and one "
+            "DATA");
     if (!arguments.all.empty()) {
         if (arguments.options.model.empty()) throw UsageError("fit --all: takes one --model");
         return runAll(arguments, globals);
@@ -179,11 +183,14 @@ void runFit(const FitArguments& arguments, Globals& globals) {
     jobs::Fitted fitted =
         jobs::fit(arguments.data, arguments.output, arguments.options, listenerFor(globals));
     if (fitted.poor) note(globals, fitted.poor->line());
-    if (!globals.json) return printText(text(fitted, arguments.output));
+    noteFont(fitted.figures, arguments.figures, globals);
+    if (!globals.json) return printText(text(fitted, arguments));
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     fitted.preset["time"] = {
         {"seconds", elapsed.count()},
         {"cpu_seconds", static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC}};
+    if (!fitted.figures.names.empty())
+        fitted.preset["figures"] = figuresJson(fitted.figures, arguments.figures.folder);
     if (fitted.poor) fitted.preset["poor"] = jobs::poorJson(*fitted.poor);
     printJson(fitted.preset);
 }
@@ -250,6 +257,7 @@ void addFit(CLI::App& command, Globals& globals) {
                      "Intervals of 68 and 95 % by profile likelihood");
     command.add_option("--residuals", options.residuals,
                        "CSV file with a row for each value: model, residual, leverage, ...");
+    addFigureOptions(command, arguments->figures);
     command.add_flag("--accept", options.accept, "Take a fit that did not converge");
     addRgb(command, options.rgb);
     command.callback([arguments, &globals] { runFit(*arguments, globals); });

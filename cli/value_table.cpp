@@ -154,6 +154,18 @@ Words rotationWords() {
     return {{"exact"}, {"through-sh"}, {"table"}, {"paper-shift"}};
 }
 
+Words figureAxisWords() {
+    return {{"auto"}, {"linear"}, {"log"}};
+}
+
+Words figureWidthWords() {
+    return {{"column", "84 mm"}, {"page", "174 mm"}};
+}
+
+Words panelWords() {
+    return {{"auto", "at most six"}, {"all"}};
+}
+
 Words scanWords() {
     return {{"column", "of the file, or of that of the uncertainties"},
             {"incidence", "samples of one incident direction"}};
@@ -174,6 +186,7 @@ constexpr ValueRow table[] = {
     {"batch", "--costs", nullptr, Syntax::word, Files::read},
     {"batch", "--progress", nullptr, Syntax::word, Files::written},
     {"compare", "--output", nullptr, Syntax::word, Files::folder},
+    {"compare", "--sigma", sigmaWords, Syntax::word, Files::read, ".csv"},
     {"convert", "--output", nullptr, Syntax::word, Files::folder},
     {"convert", "MORE", nullptr, Syntax::brdf, Files::read},
     {"completion", "--output", nullptr, Syntax::word, Files::written, ""},
@@ -207,11 +220,16 @@ constexpr ValueRow table[] = {
     {"tradeoff", "--output", nullptr, Syntax::word, Files::folder},
     {"tradeoff", "--halfway"},
     {"transfer", "--output", nullptr, Syntax::word, Files::folder},
+    {"", "--axis", figureAxisWords},
     {"", "--basis", basisWords},
     {"", "--bases", basisLists, Syntax::list},
     {"", "--compare-models", modelWords, Syntax::sum},
     {"", "--constraints", constraintWords, Syntax::list},
     {"", "--convention", conventionWords},
+    {"", "--figure-width", figureWidthWords},
+    {"", "--figures", nullptr, Syntax::word, Files::folder},
+    {"", "--font"},
+    {"", "--font-size"},
     {"", "--form", formWords},
     {"", "--forms", formWords, Syntax::list},
     {"", "--library", nullptr, Syntax::word, Files::read},
@@ -225,6 +243,7 @@ constexpr ValueRow table[] = {
     {"", "--number", numberWords},
     {"", "--output", nullptr, Syntax::word, Files::written, ".json"},
     {"", "--pairs", nullptr, Syntax::word, Files::read, ""},
+    {"", "--panels", panelWords},
     {"", "--precision", precisionWords},
     {"", "--precisions", precisionWords, Syntax::list},
     {"", "--records", nullptr, Syntax::word, Files::written},

@@ -5,7 +5,11 @@
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
 #include <hshfit/pages/comparison.h>
+#include <hshfit/pages/gnuplot.h>
 #include <hshfit/representation/forms/represented_brdf.h>
+
+#include <memory>
+#include <utility>
 
 namespace hshfit::jobs {
 namespace {
@@ -25,14 +29,34 @@ OutgoingSet outgoingOf(const CompareOptions& options, const Brdf& a, const Brdf&
     return outgoingOrDefault(options.outgoing, a.laws().isotropic ? b : a);
 }
 
-/// The page, whose table holds every metric, including those that were not asked for.
-std::vector<std::string> writePage(const Brdf& a, const Brdf& b, const Compared& compared,
-                                   const std::string& folder, const CompareOptions& options,
-                                   const Listener& listener) {
-    ComparisonOptions page{.outgoing = compared.outgoing};
-    if (options.metrics == "all") page.metrics = compared.metrics;
-    page.progress = page.sphere.progress = listener.part("report");
-    return writeComparison(a, b, page, folder);
+/// The page, whose table holds every metric, including those that were not asked for, and figures
+/// for print.
+void writeFiles(const Brdf& a, const Brdf& b, const std::string& folder,
+                const CompareOptions& options, const Listener& listener, Compared& compared) {
+    const auto filesIn = [](const std::string& name) {
+        return name.empty() ? nullptr
+                            : std::make_unique<FileSet>(name, true, FileSet::Above::require);
+    };
+    const auto page = filesIn(folder),
+               figures = filesIn(options.figures ? options.figures->folder : "");
+    ComparisonOptions how{.outgoing = compared.outgoing};
+    if (options.metrics == "all") how.metrics = compared.metrics;
+    how.progress = how.sphere.progress = listener.part("report");
+    const Comparison comparison = makeComparison(a, b, how);
+    std::optional<std::string> undrawn;
+    if (page) {
+        AddedComparison added = addComparison(comparison, *page);
+        compared.files = std::move(added.names);
+        undrawn = std::move(added.undrawn);
+    }
+    if (figures) {
+        compared.figures =
+            addComparisonFigures(comparison, a, b, options.sigma, *options.figures, *figures);
+        if (compared.figures.undrawn) undrawn = compared.figures.undrawn;
+    }
+    if (page) page->commit();
+    if (figures) figures->commit();
+    if (undrawn) throw NoFigures(*undrawn);
 }
 
 std::optional<PairSummary> overPairs(const Brdf& a, const Brdf& b) {
@@ -49,6 +73,7 @@ std::optional<PairSummary> overPairs(const Brdf& a, const Brdf& b) {
 Compared compare(const std::string& a, const std::string& b, const std::string& output,
                  const CompareOptions& options, const Listener& listener) {
     selectMetrics(options.metrics);  // a word that is none fails before any file is opened
+    if (options.figures) checkFigures(*options.figures);
     const auto reference = openSource(a, options.rgb), approximation = openSource(b, options.rgb);
     return compareBrdfs(*reference, *approximation, output, options, listener);
 }
@@ -60,7 +85,7 @@ Compared compareBrdfs(const Brdf& a, const Brdf& b, const std::string& output,
     result.metrics =
         hshfit::compare(a, b, result.outgoing, metrics, {.progress = listener.part("compare")});
     result.pairs = overPairs(a, b);
-    if (!output.empty()) result.files = writePage(a, b, result, output, options, listener);
+    if (!output.empty() || options.figures) writeFiles(a, b, output, options, listener, result);
     return result;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "figures.h"
 #include "listener.h"
 
 #include <hshfit/accuracy/metrics.h>
@@ -15,7 +16,10 @@ struct CompareOptions {
     std::string metrics = "all";  ///< or names, separated by commas
     /// OutgoingSet::parse; empty: those of the coefficients, else as in outgoingOrDefault.
     std::string outgoing = {};
-    bool rgb = false;  ///< wavelengths as linear Rec. 709
+    bool rgb = false;                           ///< wavelengths as linear Rec. 709
+    std::optional<FigureOptions> figures = {};  ///< for print; none: not drawn
+    /// Standard uncertainty of the reference's samples, for bars in figures: brdfs::parseSigma.
+    std::string sigma = {};
 };
 
 struct Compared {
@@ -26,6 +30,7 @@ struct Compared {
     /// channels differ or `a` is not finite.
     std::optional<PairSummary> pairs = {};
     std::vector<std::string> files = {};  ///< of the page, where one was asked for
+    FigureFiles figures = {};
 };
 
 /// Errors of the approximation `b` against the reference `a`, sources as in openSource. `output`

@@ -38,6 +38,10 @@ brdfs::FitOptions optionsOf(const FitOptions& options, const Brdf& data) {
     fit.iterations = options.iterations;
     fit.uncertainty.report = !options.sigma.empty() || !options.scans.empty() ||
                              options.bootstrap > 0 || options.profile || !options.residuals.empty();
+    // Of measured samples, figures come with a row for each; a robust kernel has no such study.
+    if (options.figures && fit.robust == brdfs::Robust::none &&
+        fit.loss != brdfs::Loss::Kind::picture && brdfs::areMeasured(data))
+        fit.uncertainty.report = true;
     fit.uncertainty.bootstrap = options.bootstrap;
     fit.uncertainty.profile = options.profile;
     return fit;
@@ -209,10 +213,12 @@ std::size_t writePage(const std::string& data, const Fitted& fit, const std::str
 
 /// The residuals' file, complete but not yet under its name: none if no path is given.
 std::unique_ptr<AtomicFile> residualsOf(const brdfs::FitSamples& samples,
-                                        const brdfs::FitResult& result, const std::string& path) {
+                                        const brdfs::FitResult& result, brdfs::Loss::Kind loss,
+                                        const std::string& path) {
     if (path.empty()) return nullptr;
     auto file = std::make_unique<AtomicFile>(path);
-    brdfs::writeResidualRows(samples, result, [&](std::string_view row) { file->write(row); });
+    brdfs::writeResidualRows(samples, result, loss,
+                             [&](std::string_view row) { file->write(row); });
     file->finish();
     return file;
 }
@@ -237,10 +243,27 @@ std::string presetText(const Fitted& fitted) {
 
 namespace {
 
-/// A fit, and its residuals' file as above.
-std::pair<Fitted, std::unique_ptr<AtomicFile>> fitOpen(const Brdf& brdf, const std::string& data,
-                                                       const FitOptions& options,
-                                                       const Listener& listener) {
+/// Files that are complete but not yet under their names; null: not asked for.
+struct PreparedFiles {
+    std::unique_ptr<AtomicFile> residuals;
+    std::unique_ptr<FileSet> figures;
+
+    void commit(const Fitted& fitted) const {
+        if (residuals) residuals->commit();
+        if (figures) figures->commit();
+        if (fitted.figures.undrawn) throw NoFigures(*fitted.figures.undrawn);
+    }
+};
+
+/// A fit, and its other files.
+std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& data,
+                                         const FitOptions& options, const Listener& listener) {
+    PreparedFiles files;
+    if (options.figures) {
+        checkFigures(*options.figures);
+        files.figures =
+            std::make_unique<FileSet>(options.figures->folder, true, FileSet::Above::require);
+    }
     brdfs::FitOptions how = optionsOf(options, brdf);
     const brdfs::FitSamples samples = samplesOf(options, brdf, how.loss);
     const auto search = restrictParts(options, samples, how, listener);
@@ -258,8 +281,14 @@ std::pair<Fitted, std::unique_ptr<AtomicFile>> fitOpen(const Brdf& brdf, const s
     const brdfs::FitSamples ofMetrics =
         pixels ? brdfs::gatherSamples(brdf, {.grazingCut = options.grazingCut})
                : brdfs::FitSamples();
-    fitted.preset = brdfs::fitPreset({data, &samples, how, fitted.result, options.sigma,
-                                      options.scans, pixels ? &ofMetrics : &samples});
+    const brdfs::FitReport report{data,
+                                  &samples,
+                                  how,
+                                  fitted.result,
+                                  options.sigma,
+                                  options.scans,
+                                  pixels ? &ofMetrics : &samples};
+    fitted.preset = brdfs::fitPreset(report);
     for (const auto& metric : fitted.preset["fit"]["metrics"])
         if (metric["name"] == "relative-l2-cosine" && metric["value"].is_number())
             fitted.relativeError = metric["value"];
@@ -268,29 +297,31 @@ std::pair<Fitted, std::unique_ptr<AtomicFile>> fitOpen(const Brdf& brdf, const s
     fitted.preset["fit"]["explained"] = fitted.explained;
     fitted.preset["fit"]["relative_error"] = fitted.relativeError;
     if (search) fitted.preset["fit"]["parts"] = searchJson(*search);
-    auto residuals = residualsOf(samples, fitted.result, options.residuals);
-    return {std::move(fitted), std::move(residuals)};
+    files.residuals = residualsOf(samples, fitted.result, how.loss, options.residuals);
+    if (files.figures)
+        fitted.figures = addFitFigures(brdf, report, *options.figures, *files.figures, listener);
+    return {std::move(fitted), std::move(files)};
 }
 
 }  // namespace
 
 Fitted fitBrdf(const Brdf& brdf, const std::string& data, const FitOptions& options,
                const Listener& listener) {
-    auto [fitted, residuals] = fitOpen(brdf, data, options, listener);
-    if (residuals) residuals->commit();
+    auto [fitted, files] = fitOpen(brdf, data, options, listener);
+    files.commit(fitted);
     return std::move(fitted);
 }
 
 Fitted fit(const std::string& data, const std::string& output, const FitOptions& options,
            const Listener& listener) {
     const auto brdf = openSource(data, options.rgb);
-    auto [fitted, residuals] = fitOpen(*brdf, data, options, listener);
+    auto [fitted, files] = fitOpen(*brdf, data, options, listener);
     if (isPresetPath(output)) {
         writeFile(output, presetText(fitted));
     } else if (!output.empty()) {
         fitted.pageFiles = writePage(data, fitted, output, options.rgb, listener);
     }
-    if (residuals) residuals->commit();
+    files.commit(fitted);
     return std::move(fitted);
 }
 

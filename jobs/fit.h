@@ -1,5 +1,6 @@
 #pragma once
 
+#include "figures.h"
 #include "fit_folder.h"
 #include "listener.h"
 #include "quality.h"
@@ -46,6 +47,7 @@ struct FitOptions {
     std::size_t bootstrap = 0;   ///< fits to resampled data; 0: none
     bool profile = false;        ///< intervals by profile likelihood
     std::string residuals = {};  ///< CSV file, a row for each value; empty: none
+    std::optional<FigureOptions> figures = {};  ///< for print; none: not drawn
 };
 
 /// The name of the loss that these options ask for with these data.
@@ -64,6 +66,7 @@ struct Fitted {
     /// over the samples; of `picture` over the nodes of a comparison.
     double relativeError = 0;
     std::optional<Poor> poor = {};
+    FigureFiles figures = {};
 };
 
 /// Whether `output` is a preset file rather than a folder with a preset and a page.
