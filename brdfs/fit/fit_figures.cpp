@@ -147,7 +147,7 @@ private:
                                     .y = curves.of(drawn_.size() + t)});
         for (std::size_t i = 0; i < drawn_.size(); ++i) {
             panel.series.push_back({.label = single ? model_.name : channelName(i),
-                                    .ink = i,
+                                    .ink = inkOf(i),
                                     .dash = i,
                                     .x = curves.angles(),
                                     .y = curves.of(i)});
@@ -157,11 +157,13 @@ private:
             panel.series.push_back(pointsOf(cut, drawn_[i]));
             PrintSeries& points = panel.series.back();
             points.label = single ? "measured" : channelName(i);
-            points.ink = single ? 3 : i;
+            points.ink = single ? 3 : inkOf(i);
             points.marker = i;
         }
         return panel;
     }
+
+    std::size_t inkOf(std::size_t i) const { return channelInk(model_.samples.channels.kind, i); }
 
     std::string channelName(std::size_t i) const {
         return fmt::format("{}, measured and {}", names_[drawn_[i]], model_.name);
@@ -262,7 +264,7 @@ PrintFigure residualFigure(const PlottedModel& model) {
         for (std::size_t p = 0; p < 4; ++p) {
             series[p].kind = Kind::points;
             series[p].label = drawn.size() > 1 ? names[drawn[i]] : "";
-            series[p].ink = drawn.size() > 1 ? i : 0;
+            series[p].ink = channelInk(samples.channels.kind, i);
             series[p].marker = i;
             figure.panels[p].series.push_back(std::move(series[p]));
         }

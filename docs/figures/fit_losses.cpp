@@ -1,10 +1,13 @@
 // Errors of fits by their losses:
-//     fit_losses CSV DATA… [--model MODEL] [--size PIXELS] [--light SPEC]… [--picture PNG]
+//     fit_losses CSV DATA… [--model MODEL] [--size PIXELS] [--light SPEC]… [--loss NAME]…
+//                [--picture PNG] [--spheres PNG]
 // fits MODEL (lambert+ggx) to each DATA with every loss, at nodes or at the pixels of `picture`,
 // and as fits were by default before (`former`): the loss cosine, at nodes in half and difference
 // angles, or at the cells of a slice. It writes a row per DATA and loss to CSV: each loss' own
 // metric as compare measures it, and of spheres under the lights of `picture` (or those given) mean
-// FLIP and relative L2, with the largest FLIP of a pixel. Means over DATA go to stdout.
+// FLIP and relative L2, with the largest FLIP of a pixel. Means over DATA go to stdout. --loss
+// leaves out other losses. --spheres writes a row for each DATA: for each light the source, the fit
+// by the first loss, and the former fit, exposed for the source.
 
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit.h>
@@ -35,8 +38,8 @@ using namespace hshfit;
 using namespace hshfit::brdfs;
 
 struct Arguments {
-    std::string csv, picture, model = "lambert+ggx";
-    std::vector<std::string> data, lights;
+    std::string csv, picture, spheres, model = "lambert+ggx";
+    std::vector<std::string> data, lights, losses;
     int size = 96;
 };
 
@@ -49,7 +52,9 @@ Arguments argumentsOf(int argc, char** argv) {
             if (word == "--model") result.model = value;
             if (word == "--size") result.size = std::atoi(value.c_str());
             if (word == "--light") result.lights.push_back(value);
+            if (word == "--loss") result.losses.push_back(value);
             if (word == "--picture") result.picture = value;
+            if (word == "--spheres") result.spheres = value;
         } else if (result.csv.empty()) {
             result.csv = word;
         } else {
@@ -180,8 +185,33 @@ std::vector<Row> rowsOf(const std::string& path, const Arguments& arguments,
     };
     add(former, Loss::Kind::cosine, "former");
     for (const Loss& loss : losses())
-        add(loss.kind == Loss::Kind::picture ? pixels : nodes, loss.kind, std::string(loss.name));
+        if (arguments.losses.empty() || std::ranges::count(arguments.losses, loss.name) > 0)
+            add(loss.kind == Loss::Kind::picture ? pixels : nodes, loss.kind,
+                std::string(loss.name));
     return rows;
+}
+
+SpherePicture exposed(SpherePicture sphere, double stops) {
+    for (float& value : sphere.radiance) value *= static_cast<float>(std::exp2(stops));
+    return sphere;
+}
+
+/// `pictures` has, for each of DATA, those of the source, of the former fit, and of each loss.
+void writeCompared(const std::vector<std::vector<SpherePicture>>& pictures, std::size_t data,
+                   const std::string& path) {
+    const std::size_t each = pictures.size() / data;
+    std::vector<std::vector<SpherePicture>> rows;
+    for (std::size_t first = 0; first < pictures.size(); first += each) {
+        rows.emplace_back();
+        for (std::size_t l = 0; l < pictures[first].size(); ++l) {
+            const double stops = automaticExposure({&pictures[first][l], 1});
+            for (const std::size_t k : {first, first + 2, first + 1})
+                rows.back().push_back(exposed(pictures[k][l], stops));
+        }
+    }
+    AtomicFile out(path);
+    writeSheet(Sheet(rows.begin(), rows.end()), 0, out);
+    out.commit();
 }
 
 void run(const Arguments& arguments) {
@@ -219,6 +249,8 @@ void run(const Arguments& arguments) {
         fmt::print("| `{}` | {:.4f} | {:.4f} | {:.3f} | {:.3f} |\n", loss, mean.flip, worst,
                    mean.largest, mean.relativeL2);
     }
+    if (!arguments.spheres.empty())
+        writeCompared(pictures, arguments.data.size(), arguments.spheres);
     if (arguments.picture.empty()) return;
     Sheet sheet;
     for (const auto& row : pictures) sheet.emplace_back(row);

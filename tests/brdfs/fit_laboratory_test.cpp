@@ -88,7 +88,7 @@ TEST_F(Laboratory, ResidualsAreARowForEachValueAndAddUpToChiSquare) {
     std::getline(rows, line);
     EXPECT_EQ(line,
               "row,wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,channel,value,sigma,model,residual,studentised,"
-              "leverage,cook");
+              "leverage,cook,theta_i,theta_o,aspecular,standardised");
     double chiSquare = 0, leverage = 0;
     std::size_t count = 0;
     std::istringstream file(table.astm);
@@ -98,7 +98,7 @@ TEST_F(Laboratory, ResidualsAreARowForEachValueAndAddUpToChiSquare) {
         std::vector<std::string> cells;
         std::istringstream parts(line);
         for (std::string cell; std::getline(parts, cell, ',');) cells.push_back(cell);
-        ASSERT_EQ(cells.size(), 15u) << line;
+        ASSERT_EQ(cells.size(), 19u) << line;
         EXPECT_NE(lines[std::stoul(cells[0])].find(cells[8]), std::string::npos) << line;
         EXPECT_NEAR(std::stod(cells[8]) - std::stod(cells[10]), std::stod(cells[11]), 1e-15);
         chiSquare += std::pow(std::stod(cells[11]) / std::stod(cells[9]), 2);

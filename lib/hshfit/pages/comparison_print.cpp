@@ -53,7 +53,7 @@ private:
                 const std::string channel =
                     count > 1 ? ", " + names[comparison_.drawn[c]] : std::string();
                 series.push_back({.label = (own ? "approximation" : "reference") + channel,
-                                  .ink = count > 1 ? c
+                                  .ink = count > 1 ? channelInk(comparison_.channels.kind, c)
                                          : own     ? 1U
                                                    : 0U,
                                   .dash = own ? 1U : 0U,

@@ -1,9 +1,16 @@
 #include <hshfit/pages/print_figure.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hshfit::inline pages {
+
+std::size_t channelInk(Channels::Kind kind, std::size_t place) {
+    constexpr std::size_t red = 1, yellow = 2, blue = 0;
+    constexpr std::array rgb{red, yellow, blue};
+    return kind == Channels::Kind::rgb ? rgb[place % rgb.size()] : place;
+}
 
 PrintAxis linearAxis(double low, double high, const std::string& label, int ticks) {
     return {label, low, high, PrintAxis::Scale::linear, linearTicks(low, high, ticks)};

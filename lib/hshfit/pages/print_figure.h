@@ -1,5 +1,6 @@
 #pragma once
 
+#include <hshfit/brdf/channels.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/pages/axis_ticks.h>
 #include <hshfit/pages/figure_style.h>
@@ -59,6 +60,10 @@ struct PrintFigure {
     std::array<std::string, 2> columns = {"x", "y"};  ///< names in the CSV file
     std::vector<PrintPanel> panels = {};
 };
+
+/// The ink of a drawn channel, by its place among those drawn: of R, G and B the red, the yellow
+/// and the blue one.
+std::size_t channelInk(Channels::Kind kind, std::size_t place);
 
 /// The range and ticks of an axis of f for values: `style.axis`, with 0 on a linear one. On a
 /// logarithmic one, of at most 6 decades, values at or below its low end have no place: markers
