@@ -111,7 +111,7 @@ TEST_F(FitFigures, SamplesAreRowsThatAgreeWithEval) {
     const auto rows = rowsOf(read(path("figures/samples.csv")));
     ASSERT_EQ(rows.size() - 1, elevations * scattered + 2);
     EXPECT_EQ(answer["fit"]["samples"], rows.size() - 1);
-    // What `eval` gives for the preset at the directions of the rows.
+    // The values of the preset at the directions of the rows.
     const Answer evaluated = run("eval " + path("fit.json") + " --pairs " +
                                  path("figures/samples.csv") + " -o " + path("f.csv"));
     ASSERT_EQ(evaluated.code, 0) << evaluated.err;
@@ -211,7 +211,7 @@ TEST_F(FitFigures, AppearWholeOrNotAtAll) {
     EXPECT_FALSE(fs::exists(path("figures")));
 }
 
-/// The arguments of a group that begins at `at`, up to its brace.
+/// Whether every brace that is no character of a name has its other.
 bool bracesBalance(const std::string& tex) {
     int depth = 0;
     for (std::size_t k = 0; k < tex.size(); ++k) {
