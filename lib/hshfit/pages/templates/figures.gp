@@ -37,7 +37,7 @@ do for [format in "pdf svg"] {
         set terminal pdfcairo size {{widthCm}}cm,{{heightCm}}cm enhanced color rounded font font fontscale 0.75
         set output pdf{{index}}
     } else {
-        set terminal svg size {{widthPt}},{{heightPt}} enhanced rounded font font fontscale 1.0
+        set terminal svg size {{widthPt}},{{heightPt}} enhanced rounded linewidth 0.5 font font fontscale 1.0
         set output svg{{index}}
     }
     set multiplot
