@@ -32,11 +32,11 @@ std::string withPower(const std::string& number, int power) {
     return power == 0 ? number : fmt::format("{}\\times10^{{{}}}", number, power);
 }
 
-/// A number of six digits without an error.
-std::string bareNumber(double value) {
+/// A number without an error.
+std::string bareNumber(double value, int digits = 6) {
     if (!std::isfinite(value))
         return std::isnan(value) ? "\\mathrm{nan}" : value > 0 ? "\\infty" : "-\\infty";
-    std::string text = fmt::format("{:.6g}", value);
+    std::string text = fmt::format("{:.{}g}", value, digits);
     const std::size_t e = text.find('e');
     if (e == text.npos) return text;
     int power = 0;
@@ -177,16 +177,16 @@ private:
         const std::optional<Uncertainty>& own = result_.uncertainty;
         std::string fitness;
         if (own && own->stated) {
-            fitness = fmt::format("$\\chi^2/\\nu = {:.4g}/{} = {:.4g}$", own->chiSquare,
-                                  own->degreesOfFreedom, own->reducedChiSquare());
+            fitness = fmt::format("$\\chi^2/\\nu = {}/{} = {}$", bareNumber(own->chiSquare, 5),
+                                  own->degreesOfFreedom, bareNumber(own->reducedChiSquare(), 4));
+            // Below the least double, the probability is known to be less.
             if (own->probability)
-                fitness +=
-                    fmt::format(", probability ${}$",
-                                bareNumber(std::stod(fmt::format("{:.3g}", *own->probability))));
+                fitness += *own->probability > 0
+                               ? fmt::format(", probability ${}$", bareNumber(*own->probability, 3))
+                               : ", probability below $10^{-300}$";
         } else {
             fitness = fmt::format("root mean square residual ${}$ by the loss {}",
-                                  bareNumber(std::stod(fmt::format("{:.4g}", result_.loss))),
-                                  latexText(lossName()));
+                                  bareNumber(result_.loss, 4), latexText(lossName()));
         }
         std::string text =
             fmt::format("\\par\\smallskip {}; $N = {}$ samples, {} values; {}",
@@ -217,8 +217,7 @@ std::string latexNumber(double value, double error) {
     const int first = rounded == 0 ? last + 1 : std::max(powerOf(rounded, 15), last + 1);
     constexpr int mostDigits = 9, leastFixed = -3, mostFixed = 5;
     if (first - last >= mostDigits)
-        return bareNumber(value) +
-               fmt::format("\\pm {}", bareNumber(std::stod(fmt::format("{:.1e}", error))));
+        return bareNumber(value) + fmt::format("\\pm {}", bareNumber(error, 2));
     const bool fixed = last <= 0 && first >= leastFixed && first < mostFixed;
     const int power = fixed ? 0 : first;
     const int decimals = power - last;

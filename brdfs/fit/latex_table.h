@@ -9,7 +9,7 @@ namespace hshfit::brdfs {
 
 /// A number for LaTeX with its standard error in units of its last digits, two of them:
 /// "0.0663(22)" is 0.0663 +- 0.0022, "1.235(68)\times10^{4}" is 12350 +- 680, in math mode. Without
-/// an error above 0, six digits; with one that is below 1e-8 of the number, nine.
+/// an error above 0, six digits; with one below 1e-8 of the number, six digits and \pm.
 std::string latexNumber(double value, double error);
 
 /// Text in which none of LaTeX's special characters is one. Control characters become '?'.

@@ -1,0 +1,46 @@
+// Numbers with their errors as physicists print them, and text that LaTeX shows as it is.
+
+#include <brdfs/fit/latex_table.h>
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace hshfit::brdfs {
+namespace {
+
+TEST(LatexNumber, HasTheDigitsOfItsError) {
+    EXPECT_EQ(latexNumber(0.0663, 0.0022), "0.0663(22)");
+    EXPECT_EQ(latexNumber(-0.12341, 0.003), "-0.1234(30)");
+    EXPECT_EQ(latexNumber(0, 0.5), "0.00(50)");
+    EXPECT_EQ(latexNumber(0.00004, 0.0022), "0.0000(22)");
+    EXPECT_EQ(latexNumber(5.3, 3.9), "5.3(39)");
+    EXPECT_EQ(latexNumber(41, 12), "41(12)");
+}
+
+TEST(LatexNumber, RoundsUpToANewDigit) {
+    EXPECT_EQ(latexNumber(0.99999, 0.01), "1.000(10)");
+    EXPECT_EQ(latexNumber(5, 0.0996), "5.00(10)");
+}
+
+TEST(LatexNumber, TakesAPowerOfTenFarFromOne) {
+    EXPECT_EQ(latexNumber(12350, 680), "1.235(68)\\times10^{4}");
+    EXPECT_EQ(latexNumber(1e-7, 2e-9), "1.000(20)\\times10^{-7}");
+    EXPECT_EQ(latexNumber(3e-12, 0), "3\\times10^{-12}");
+}
+
+TEST(LatexNumber, StandsAloneWithoutAnError) {
+    EXPECT_EQ(latexNumber(551.315, 0), "551.315");
+    EXPECT_EQ(latexNumber(1.25, std::numeric_limits<double>::infinity()), "1.25");
+    EXPECT_EQ(latexNumber(1, 1e-12), "1\\pm 1\\times10^{-12}");
+}
+
+TEST(LatexText, HasNoCommandOfItsOwn) {
+    EXPECT_EQ(latexText("a_b%$&#{}"), "a\\_b\\%\\$\\&\\#\\{\\}");
+    EXPECT_EQ(latexText("~^\\"), "\\textasciitilde{}\\textasciicircum{}\\textbackslash{}");
+    EXPECT_EQ(latexText("a\nb"), "a?b");
+    EXPECT_EQ(latexText("é"), "é");
+}
+
+}  // namespace
+}  // namespace hshfit::brdfs
