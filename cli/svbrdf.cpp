@@ -3,7 +3,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
-#include <hshfit/material_maps/texel_encoder.h>
+#include <hshfit/material_maps/cluster_encoder.h>
 
 #include <jobs/quality.h>
 #include <jobs/svbrdf/svbrdf.h>
@@ -13,6 +13,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <cstdlib>
+
 namespace hshfit::cli {
 namespace {
 
@@ -20,7 +22,7 @@ using Json = nlohmann::ordered_json;
 
 struct SvbrdfArguments {
     std::string description, output;
-    std::string mips = "reflectance";
+    std::string mips = "reflectance", writes = "direct";
     std::size_t memoryMegabytes = 1024;
     jobs::SvbrdfOptions options;
 };
@@ -83,6 +85,8 @@ Json jsonOf(const jobs::Svbrdf& done) {
         {"choices", choices},
         {"levels", levelsJson(done)},
         {"bytes", done.bytes},
+        {"processes", done.processes},
+        {"writes", done.pastPageCache ? "direct" : "cached"},
         {"seconds", {{"preparation", done.tableSeconds}, {"writing", done.seconds}}},
         {"texels_per_second", {{"written", done.rate}, {"kernel", done.kernelRate}}},
         {"files", done.files}};
@@ -145,10 +149,27 @@ std::string textOf(const jobs::Svbrdf& done) {
     return text;
 }
 
+/// Several processes that a launcher started would each make the whole map, unless they share it.
+void refuseLaunchers() {
+    if (jobs::processesOfMaps().count() > 1) return;
+    for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"}) {
+        const char* text = std::getenv(name);
+        const long count = text ? std::strtol(text, nullptr, 10) : 1;
+        if (count > 1) {
+            throw UsageError(fmt::format(
+                "{} processes were started ({}), and each would make the whole map; start "
+                "hshfit-mpi svbrdf with that MPI (built with -DHSHFIT_MPI=ON), or one process",
+                count, name));
+        }
+    }
+}
+
 void runSvbrdf(SvbrdfArguments& arguments, const Globals& globals) {
     jobs::SvbrdfOptions& options = arguments.options;
     options.mips = arguments.mips == "reflectance";
     options.memory = arguments.memoryMegabytes << 20;
+    options.pastPageCache = arguments.writes == "direct";
+    refuseLaunchers();
     if (options.precision == "half") options.precision = "float16";
     if (options.rank > 0 && options.form == "outgoing")
         throw UsageError("--rank belongs to --form low-rank or clusters");
@@ -216,8 +237,15 @@ void addSvbrdf(CLI::App& command, Globals& globals) {
         ->check(CLI::Range(0, 4096))
         ->capture_default_str();
     command
-        .add_option("--memory", arguments->memoryMegabytes, "MiB that bands of the map may take")
+        .add_option("--memory", arguments->memoryMegabytes,
+                    "MiB that bands of the map may take, of each process")
         ->check(CLI::Range(16, 1 << 20))
+        ->capture_default_str();
+    command
+        .add_option("--writes", arguments->writes,
+                    "direct: texels go past the page cache, where the file system can; cached: "
+                    "through it, for a slow disk or files that are read at once")
+        ->check(CLI::IsMember({"direct", "cached"}))
         ->capture_default_str();
     command.add_flag("--force", options.force, "Replace existing files");
     command.callback([arguments, &globals] { runSvbrdf(*arguments, globals); });

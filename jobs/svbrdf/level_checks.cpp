@@ -50,7 +50,7 @@ void addSamples(const Checked& texel, std::size_t index, const std::vector<Level
 std::vector<float> texelOf(const TexelKernel& kernel, const ModelLobes& lobes,
                            const std::vector<float>& parameters, std::size_t floats) {
     std::vector<float> out(floats);
-    kernel.run(lobes.block(parameters, 1), out.data());
+    kernel.run(lobes.block(parameters, 1), 0, 1, out.data());
     return out;
 }
 
@@ -83,14 +83,16 @@ std::vector<double> storedTexel(const MaterialMap& map, const Checked& texel) {
 
 std::vector<LevelCheck> checkLevels(const MaterialMap& map, ParameterMaps& maps,
                                     const ModelLobes& lobes, const TexelKernel& kernel,
-                                    std::size_t checks, const Listener& listener) {
+                                    const CheckWork& work, const Listener& listener) {
     const TexelLayout& layout = map.sidecar().layout;
     const auto& levels = map.sidecar().levels;
     std::mt19937_64 generator(1);
-    std::vector<Checked> texels = drawnTexels(levels, checks, generator);
+    std::vector<Checked> texels = drawnTexels(levels, work.checks, generator);
+    const ItemRange mine = work.processes.share(texels.size());
     std::vector<Sample> samples;
     for (std::size_t k = 0; k < texels.size(); ++k)
         addSamples(texels[k], k, levels, generator, samples);
+    std::erase_if(samples, [&](const Sample& s) { return s.of < mine.first || s.of >= mine.last; });
     std::ranges::stable_sort(samples, {}, &Sample::row);
     const auto progress = listener.part("measuring levels");
     const std::size_t values = maps.valuesOfTexel();
@@ -112,19 +114,25 @@ std::vector<LevelCheck> checkLevels(const MaterialMap& map, ParameterMaps& maps,
         ++checked.samples;
         if (progress) progress(k + 1, samples.size());
     }
-    std::vector<LevelCheck> result;
-    for (Checked& checked : texels) {
+    std::vector<double> errors(2 * texels.size());  // as stored, and of averaged parameters
+    for (std::size_t k = mine.first; k < mine.last; ++k) {
+        Checked& checked = texels[k];
         const auto count = static_cast<double>(checked.samples);
         for (double& c : checked.coefficients) c /= count;
         for (std::size_t v = 0; v < values; ++v)
             parameters[v] = static_cast<float>(checked.parameters[v] / count);
         const std::vector<float> averaged = texelOf(kernel, lobes, parameters, layout.floats());
-        if (result.empty() || result.back().level != checked.level)
-            result.push_back({.level = checked.level});
-        LevelCheck& sum = result.back();
-        const double stored = distance(layout, storedTexel(map, checked), checked.coefficients);
-        const double byParameters =
+        errors[2 * k] = distance(layout, storedTexel(map, checked), checked.coefficients);
+        errors[2 * k + 1] =
             distance(layout, {averaged.begin(), averaged.end()}, checked.coefficients);
+    }
+    gatherValues(work.processes, texels.size(), errors);
+    std::vector<LevelCheck> result;
+    for (std::size_t k = 0; k < texels.size(); ++k) {
+        if (result.empty() || result.back().level != texels[k].level)
+            result.push_back({.level = texels[k].level});
+        LevelCheck& sum = result.back();
+        const double stored = errors[2 * k], byParameters = errors[2 * k + 1];
         ++sum.texels;
         sum.stored += stored;
         sum.parameters += byParameters;

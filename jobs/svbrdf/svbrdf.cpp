@@ -8,6 +8,7 @@
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
+#include <hshfit/material_maps/cluster_encoder.h>
 #include <hshfit/material_maps/lobe_texels.h>
 #include <hshfit/material_maps/map_sidecar.h>
 #include <hshfit/material_maps/texel_encoder.h>
@@ -20,6 +21,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 namespace hshfit::jobs {
 namespace {
@@ -28,6 +30,13 @@ using Clock = std::chrono::steady_clock;
 constexpr const char* textureName = "material.ktx2";
 constexpr const char* sidecarName = "material.json";
 constexpr const char* pictureName = "errors.png";
+
+Processes* sharing = nullptr;
+
+Processes& processes() {
+    static Processes alone;
+    return sharing ? *sharing : alone;
+}
 
 double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -80,32 +89,13 @@ gpu::Number numberOf(const SvbrdfOptions& options) {
     return number;
 }
 
-/// Cluster centres over sampled texels, and the errors of these texels.
-std::vector<float> centresOf(const LowRank& lowRank, const std::vector<float>& samples,
-                             std::size_t floats, std::size_t clusters, const Listener& listener) {
-    const std::size_t count = samples.size() / floats, d = lowRank.weightsOfTexel();
-    std::vector<float> points(count * d), weights(count);
-    eachInParallel(count, [&](std::size_t t) {
-        const float rest = lowRank.reduce(samples.data() + t * floats, points.data() + t * d);
-        double square = static_cast<double>(rest) * static_cast<double>(rest);
-        for (std::size_t k = 0; k < d; ++k)
-            square +=
-                static_cast<double>(points[t * d + k]) * static_cast<double>(points[t * d + k]);
-        weights[t] = square > 0 ? static_cast<float>(1 / square) : 0;
-    });
-    return clusterCentres({points, weights, d},
-                          {.clusters = clusters, .progress = listener.part("clusters")});
-}
-
-TexelErrors errorsOfEncoder(const TexelEncoder& encoder, const std::vector<float>& samples,
-                            std::size_t floats) {
-    const std::size_t count = samples.size() / floats;
+/// Of level 0.
+TexelErrors errorsOfEncoder(const TexelEncoder& encoder, const std::vector<float>& linear) {
+    const std::size_t n = encoder.linear(), count = linear.size() / n;
     std::vector<float> errors(count);
     eachInParallel(count, [&](std::size_t t) {
-        std::vector<float> linear(encoder.linear());
         std::vector<std::byte> bytes(encoder.layers() * 16);
-        encoder.reduce(samples.data() + t * floats, linear.data());
-        errors[t] = encoder.encode(linear.data(), 1, bytes.data(), 16).errors.front();
+        encoder.encode(0, {linear.data() + t * n, n}, {bytes.data(), 16, &errors[t]});
     });
     return errorsOf(errors);
 }
@@ -115,6 +105,39 @@ std::size_t rankFor(const std::vector<TexelErrors>& errors, double error) {
         std::ranges::find_if(errors, [&](const auto& e) { return e.maximum <= error; });
     return std::min<std::size_t>(static_cast<std::size_t>(good - errors.begin()) + 1,
                                  errors.size());
+}
+
+/// The encoder of clusters; lists other numbers of them.
+std::unique_ptr<TexelEncoder> clustersFor(Work& work, const SvbrdfOptions& options,
+                                          const LowRank& lowRank, const std::vector<float>& samples,
+                                          Svbrdf& result, const Listener& listener) {
+    constexpr std::size_t blocks = 512;
+    const std::size_t floats = work.layout.floats();
+    const LevelSamples levels =
+        sampleLevels(work.texels, lowRank, samples, result.levels, blocks, processes());
+    std::vector<std::size_t> counts{16, 64, 256, 1024};
+    if (std::ranges::find(counts, options.clusters) == counts.end())
+        counts.push_back(options.clusters);
+    std::unique_ptr<TexelEncoder> chosen;
+    for (const std::size_t clusters : counts) {
+        if (clusters > std::max<std::size_t>(1024, options.clusters)) continue;
+        const bool isAsked = clusters == options.clusters;
+        const ClusterEncoder::Options asked{.clusters = clusters,
+                                            .levels = isAsked ? result.levels.size() : 1,
+                                            .progress = listener.part("clusters")};
+        auto encoder = std::make_unique<ClusterEncoder>(
+            lowRank, isAsked ? levels : LevelSamples{levels.front()}, asked, processes());
+        const std::size_t count = encoder->count(0);
+        result.choices.push_back({.form = "clusters",
+                                  .count = count,
+                                  .bytesOfTexel = 4,
+                                  .sharedBytes = count * floats * sizeof(float),
+                                  .errors = errorsOfEncoder(*encoder, levels.front())});
+        if (!isAsked) continue;
+        result.count = count;
+        chosen = std::move(encoder);
+    }
+    return chosen;
 }
 
 /// The encoder that the options ask for; forms with shared shapes list their choices.
@@ -130,9 +153,9 @@ std::unique_ptr<TexelEncoder> encoderFor(Work& work, const SvbrdfOptions& option
     if (options.form != "low-rank" && options.form != "clusters")
         throw UsageError(
             fmt::format("unknown form '{}'; known: outgoing, low-rank, clusters", options.form));
-    const std::vector<float> samples = sampleTexels(work.texels, options.samples);
-    const PrincipalShapes principal(layout, samples);
-    const std::vector<TexelErrors> errors = principal.errors(samples);
+    const std::vector<float> samples = sampleTexels(work.texels, options.samples, processes());
+    const PrincipalShapes principal(layout, samples, processes());
+    const std::vector<TexelErrors> errors = principal.errors(samples, processes());
     for (std::size_t rank = 1; rank <= principal.most(); rank *= 2) {
         const LowRankEncoder encoder(principal.lowRank(rank), number);
         result.choices.push_back(
@@ -145,29 +168,10 @@ std::unique_ptr<TexelEncoder> encoderFor(Work& work, const SvbrdfOptions& option
     const std::size_t rank = options.rank > 0 ? std::min(options.rank, principal.most())
                                               : rankFor(errors, options.error);
     const LowRank lowRank = principal.lowRank(rank);
-    if (options.form == "low-rank") {
-        result.count = rank;
-        return std::make_unique<LowRankEncoder>(lowRank, number);
-    }
-    std::vector<std::size_t> counts{16, 64, 256, 1024};
-    if (std::ranges::find(counts, options.clusters) == counts.end())
-        counts.push_back(options.clusters);
-    std::unique_ptr<TexelEncoder> chosen;
-    for (const std::size_t clusters : counts) {
-        if (clusters > std::max<std::size_t>(1024, options.clusters)) continue;
-        auto centres = centresOf(lowRank, samples, layout.floats(), clusters, listener);
-        const std::size_t count = centres.size() / lowRank.weightsOfTexel();
-        auto encoder = std::make_unique<ClusterEncoder>(lowRank, std::move(centres));
-        result.choices.push_back({.form = "clusters",
-                                  .count = count,
-                                  .bytesOfTexel = 4,
-                                  .sharedBytes = count * layout.floats() * sizeof(float),
-                                  .errors = errorsOfEncoder(*encoder, samples, layout.floats())});
-        if (clusters != options.clusters) continue;
-        result.count = count;
-        chosen = std::move(encoder);
-    }
-    return chosen;
+    if (options.form == "clusters")
+        return clustersFor(work, options, lowRank, samples, result, listener);
+    result.count = rank;
+    return std::make_unique<LowRankEncoder>(lowRank, number);
 }
 
 /// Texels per second of the kernel alone, on all threads, parameters in memory.
@@ -184,7 +188,7 @@ void measureKernel(Work& work, Svbrdf& result) {
     const auto start = Clock::now();
     eachInParallel(texels / chunk, [&](std::size_t) {
         std::vector<float> out(chunk * work.layout.floats());
-        work.kernel.run(block, out.data());
+        work.kernel.run(block, 0, chunk, out.data());
     });
     result.kernelSeconds = secondsSince(start);
     result.kernelRate = static_cast<double>(texels) / result.kernelSeconds;
@@ -228,38 +232,46 @@ std::string errorPicture(const MapWritten& written) {
     return rgbPng(picture, 0);
 }
 
-void write(Work& work, const TexelEncoder& encoder, const SvbrdfOptions& options, Svbrdf& result,
+/// Writes the files; the first process has them under temporary names until all are complete.
+void write(Work& work, TexelEncoder& encoder, const SvbrdfOptions& options, Svbrdf& result,
            const Listener& listener) {
-    FileSet files(result.folder, options.force);
-    for (const char* name : {textureName, sidecarName, pictureName}) files.requireFree(name);
-    const std::string texturePath = files.add(textureName).temporaryPath();
-    result.levels = levelSizes(work.maps.width(), work.maps.height(), options.mips);
-    const MapSidecar sidecar = sidecarOf(work, options, encoder, result.levels);
-    LevelFile texture(texturePath, encoder.number(), encoder.layers(), result.levels,
-                      {{"hshfit:form", encoder.form()}});
+    std::optional<FileSet> files;
+    std::string texturePath;
+    if (processes().isFirst()) {
+        files.emplace(result.folder, options.force);
+        for (const char* name : {textureName, sidecarName, pictureName}) files->requireFree(name);
+        texturePath = std::filesystem::absolute(files->add(textureName).temporaryPath()).string();
+    }
+    processes().broadcast(texturePath);
+    LevelFile texture(
+        texturePath, encoder.number(), encoder.layers(), result.levels,
+        {.pairs = {{"hshfit:form", encoder.form()}}, .pastPageCache = options.pastPageCache});
     const std::size_t texelBytes = texture.bytesOfTexel() + encoder.linear() + sizeof(float);
     const BandPlan plan = planBands(levelSizes(work.maps.width(), work.maps.height()), texelBytes,
                                     options.memory / 3);
-    OneProcess dealer(plan.count);
     const auto start = Clock::now();
-    const MapWritten written = writeMap(work.texels, encoder, texture, plan, dealer,
+    const MapWritten written = writeMap(work.texels, encoder, texture, plan, processes(),
                                         {.progress = listener.part("texels")});
+    work.maps.checkIntact();
+    processes().meet();
     result.seconds = secondsSince(start);
     result.rate = static_cast<double>(work.maps.width() * work.maps.height()) / result.seconds;
-    work.maps.checkIntact();
     result.errors = written.levels;
+    result.errors.resize(result.levels.size());  // the others have none
     result.bytes = texture.bytes();
-    files.write(sidecarName, toText(sidecar));
-    files.write(pictureName, errorPicture(written));
-    files.commit();
+    result.pastPageCache = texture.isPastPageCache();
+    if (files) {
+        files->write(sidecarName, toText(sidecarOf(work, options, encoder, result.levels)));
+        files->write(pictureName, errorPicture(written));
+        files->commit();
+    }
+    processes().meet();
     for (const char* name : {textureName, sidecarName, pictureName})
         result.files.push_back((std::filesystem::path(result.folder) / name).string());
 }
 
-}  // namespace
-
-Svbrdf svbrdf(const std::string& description, const std::string& folder,
-              const SvbrdfOptions& options, const Listener& listener) {
+Svbrdf made(const std::string& description, const std::string& folder, const SvbrdfOptions& options,
+            const Listener& listener) {
     const auto start = Clock::now();
     Work work(description, options, listener);
     Svbrdf result{.description = description,
@@ -273,19 +285,43 @@ Svbrdf svbrdf(const std::string& description, const std::string& folder,
                   .tableNodes = work.table.nodes(),
                   .tableError = work.table.error(),
                   .captured = work.least.share,
-                  .leastCaptured = work.least.brdf};
+                  .leastCaptured = work.least.brdf,
+                  .levels = levelSizes(work.maps.width(), work.maps.height(), options.mips),
+                  .processes = processes().count()};
     for (const LobeAxis& axis : work.lobes.axes()) result.axes.push_back(axis.name);
-    result.tableSeconds = secondsSince(start);
     const auto encoder = encoderFor(work, options, result, listener);
+    result.tableSeconds = secondsSince(start);
     result.form = encoder->form();
     measureKernel(work, result);
     write(work, *encoder, options, result, listener);
     if (options.checks > 0 && result.levels.size() > 1) {
         const MaterialMap map((std::filesystem::path(folder) / sidecarName).string());
-        result.checks =
-            checkLevels(map, work.maps, work.lobes, work.kernel, options.checks, listener);
+        result.checks = checkLevels(map, work.maps, work.lobes, work.kernel,
+                                    {options.checks, processes()}, listener);
     }
     return result;
+}
+
+}  // namespace
+
+void shareMapsWith(Processes& processes) {
+    sharing = &processes;
+}
+
+const Processes& processesOfMaps() {
+    return processes();
+}
+
+Svbrdf svbrdf(const std::string& description, const std::string& folder,
+              const SvbrdfOptions& options, const Listener& listener) {
+    try {
+        Svbrdf result = made(description, folder, options, listener);
+        processes().meet();
+        return result;
+    } catch (...) {
+        processes().fail();
+        throw;
+    }
 }
 
 }  // namespace hshfit::jobs

@@ -25,7 +25,8 @@ struct SvbrdfOptions {
     std::size_t clusters = 256;
     bool mips = true;
     bool force = false;
-    std::size_t memory = std::size_t{1} << 30;  ///< bytes for bands
+    std::size_t memory = std::size_t{1} << 30;  ///< bytes for bands, of each process
+    bool pastPageCache = true;                  ///< texels go straight to the disk
     std::size_t samples = 32768;                ///< texels that shapes and clusters are made from
     std::size_t checks = 16;                    ///< texels of each level that are measured
 };
@@ -64,6 +65,8 @@ struct Svbrdf {
     std::vector<LevelErrors> errors = {};
     std::vector<LevelCheck> checks = {};
     std::size_t bytes = 0;
+    std::size_t processes = 1;
+    bool pastPageCache = false;
     double tableSeconds = 0, kernelSeconds = 0, seconds = 0;
     double kernelRate = 0;  ///< texels per second of the bare kernel, on all threads
     double rate = 0;        ///< texels of level 0 per second of writing
@@ -72,9 +75,14 @@ struct Svbrdf {
 
 /// A description of materials by maps as a coefficient texture with mip levels, in FOLDER:
 /// material.ktx2, material.json and errors.png. All maps are read and checked before anything is
-/// written. Results are the same bytes for any number of threads. Throws UsageError, InputError,
-/// NumericError and OutputError.
+/// written. Results are the same bytes for any number of threads and processes. Throws UsageError,
+/// InputError, NumericError and OutputError.
 Svbrdf svbrdf(const std::string& description, const std::string& folder,
               const SvbrdfOptions& options, const Listener& listener = {});
+
+/// The processes that share the work of `svbrdf` from now on; by default this one alone. The first
+/// has the results. `processes` has to outlive all calls.
+void shareMapsWith(Processes& processes);
+const Processes& processesOfMaps();
 
 }  // namespace hshfit::jobs

@@ -1,19 +1,34 @@
 #include <hshfit/material_maps/level_file.h>
 
 #include <hshfit/error.h>
+#include <hshfit/material_maps/internal/page_buffer.h>
 
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 
 #include <fcntl.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 namespace hshfit::inline material_maps {
+namespace {
+
+/// Lengthens the head by an entry without meaning until what follows ends on a page.
+constexpr const char* paddingKey = "hshfit:padding";
+
+bool isWholePages(std::span<const std::byte> bytes, std::size_t offset) {
+    return (reinterpret_cast<std::uintptr_t>(bytes.data()) | bytes.size() | offset) %
+               PageBuffer::page ==
+           0;
+}
+
+}  // namespace
 
 LevelFile::LevelFile(const std::string& path, gpu::Number number, std::size_t layers,
-                     std::vector<LevelSize> sizes, std::map<std::string, std::string> pairs)
+                     std::vector<LevelSize> sizes, const LevelFileOptions& options)
     : path_(path),
       layers_(layers),
       texelBytes_(4 * gpu::numberBytes(number)),
@@ -22,11 +37,18 @@ LevelFile::LevelFile(const std::string& path, gpu::Number number, std::size_t la
                          .width = sizes_.front().width,
                          .height = sizes_.front().height,
                          .layers = layers,
-                         .pairs = std::move(pairs)};
+                         .pairs = options.pairs};
+    std::size_t below = 0;  // bytes of the levels before level 0
     for (const LevelSize& size : sizes_) {
         const std::size_t bytes = size.width * size.height * layers_ * texelBytes_;
         image.levels.push_back({bytes, bytes});
+        below += bytes;
     }
+    below -= image.levels.front().stored;
+    image.pairs[paddingKey] = "";
+    const std::size_t before = gpu::ktx2Head(image).size() + below;
+    image.pairs[paddingKey].resize(
+        (PageBuffer::page - before % PageBuffer::page) % PageBuffer::page, ' ');
     head_ = gpu::ktx2Head(image);
     // The smallest level comes first, each where the one before it ends: they are whole texels.
     offsets_.resize(sizes_.size());
@@ -37,13 +59,25 @@ LevelFile::LevelFile(const std::string& path, gpu::Number number, std::size_t la
     }
     descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor_ < 0) throw OutputError(fmt::format("{}: {}", path_, std::strerror(errno)));
+#ifdef O_DIRECT
+    // Some file systems have no such writes, and say so here.
+    if (options.pastPageCache) direct_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC | O_DIRECT);
+#endif
 }
 
 LevelFile::~LevelFile() {
     ::close(descriptor_);
+    if (direct_ >= 0) ::close(direct_);
 }
 
 void LevelFile::begin() {
+    // Room is not taken beforehand: writes into such extents take a fifth longer.
+    struct statvfs disk {};
+    if (::fstatvfs(descriptor_, &disk) == 0 && disk.f_blocks > 0 &&
+        disk.f_bavail < length_ / disk.f_frsize) {
+        throw OutputError(fmt::format("{}: no room for {} bytes; {} are free", path_, length_,
+                                      disk.f_bavail * disk.f_frsize));
+    }
     if (::ftruncate(descriptor_, static_cast<off_t>(length_)) != 0)
         throw OutputError(fmt::format("{}: {}", path_, std::strerror(errno)));
     put(std::as_bytes(std::span(head_)), 0);
@@ -61,8 +95,13 @@ void LevelFile::write(std::size_t level, std::size_t top, std::size_t rows,
 
 void LevelFile::put(std::span<const std::byte> bytes, std::size_t offset) {
     while (!bytes.empty()) {
-        const ssize_t done =
-            ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+        const bool past = direct_ >= 0 && isWholePages(bytes, offset);
+        ssize_t done = ::pwrite(past ? direct_ : descriptor_, bytes.data(), bytes.size(),
+                                static_cast<off_t>(offset));
+        // A device with larger blocks than pages refuses.
+        if (done < 0 && past && errno == EINVAL) {
+            done = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+        }
         if (done < 0 && errno == EINTR) continue;
         if (done <= 0) throw OutputError(fmt::format("{}: {}", path_, std::strerror(errno)));
         bytes = bytes.subspan(static_cast<std::size_t>(done));

@@ -134,6 +134,7 @@ struct LobeGrid::Builder {
         for (std::size_t k = 0; k + 1 < nodes.size(); ++k)
             if (halved[k]) places.push_back((nodes[k] + nodes[k + 1]) / 2);
         std::ranges::sort(places);
+        findFactors(axes[axis]);
         return any;
     }
 };
@@ -145,16 +146,24 @@ LobeGrid::Stencil LobeGrid::stencilOf(const Axis& axis, double place) {
     // Two nodes on each side, fewer at the ends.
     const std::size_t wanted = above > 2 ? above - 2 : 0;
     stencil.first = std::min(wanted, x.size() - stencil.count);
+    const double* factors = axis.factors.data() + 4 * stencil.first;
     for (std::size_t k = 0; k < stencil.count; ++k) {
-        double weight = 1;
-        for (std::size_t j = 0; j < stencil.count; ++j) {
-            if (j == k) continue;
-            weight *=
-                (place - x[stencil.first + j]) / (x[stencil.first + k] - x[stencil.first + j]);
-        }
+        double weight = factors[k];
+        for (std::size_t j = 0; j < stencil.count; ++j)
+            weight *= j == k ? 1 : place - x[stencil.first + j];
         stencil.weight[k] = weight;
     }
     return stencil;
+}
+
+void LobeGrid::findFactors(Axis& axis) {
+    const std::vector<double>& x = axis.places;
+    const std::size_t count = std::min<std::size_t>(x.size(), 4);
+    axis.factors.assign(4 * (x.size() - count + 1), 1.0);
+    for (std::size_t first = 0; first + count <= x.size(); ++first)
+        for (std::size_t k = 0; k < count; ++k)
+            for (std::size_t j = 0; j < count; ++j)
+                if (j != k) axis.factors[4 * first + k] /= x[first + k] - x[first + j];
 }
 
 LobeGrid::LobeGrid(const LobeFunction& function, const LobeGridOptions& options)
@@ -174,6 +183,7 @@ LobeGrid::LobeGrid(const LobeFunction& function, const LobeGridOptions& options)
             for (std::size_t k = 1; k <= firstIntervals; ++k)
                 made.places.push_back(low + (high - low) * static_cast<double>(k) / firstIntervals);
         }
+        findFactors(made);
         nodes_.push_back(std::move(made));
     }
     Builder builder{function, options, nodes_};

@@ -71,12 +71,15 @@ private:
     struct Axis {
         std::vector<double> places = {};  ///< of nodes, in the variable of interpolation
         bool logarithmic = false;
+        /// [first][k] = prod over j of 1 / (x_k - x_j), nodes j and k of the stencil at `first`
+        std::vector<double> factors = {};
     };
     struct Stencil {
         std::size_t first = 0, count = 0;
         double weight[4] = {};
     };
     static Stencil stencilOf(const Axis& axis, double place);
+    static void findFactors(Axis& axis);
     struct Builder;
 
     std::vector<Axis> nodes_;

@@ -1,7 +1,5 @@
 #include <hshfit/material_maps/lobe_texels.h>
 
-#include <algorithm>
-
 namespace hshfit::inline material_maps {
 namespace {
 
@@ -11,20 +9,10 @@ public:
         : kernel_(kernel), top_(top), rows_(std::move(rows)) {}
 
     void texels(std::size_t row, std::size_t column, std::size_t count, float* out) const override {
-        const TexelBlock& whole = rows_[row - top_];
-        TexelBlock part{.count = count};
-        copy(whole.weights, whole.count, column, count, part.weights);
-        copy(whole.places, whole.count, column, count, part.places);
-        kernel_.run(part, out);
+        kernel_.run(rows_[row - top_], column, count, out);
     }
 
 private:
-    static void copy(const std::vector<float>& from, std::size_t pitch, std::size_t column,
-                     std::size_t count, std::vector<float>& to) {
-        for (std::size_t at = column; at < from.size(); at += pitch)
-            to.insert(to.end(), from.data() + at, from.data() + at + count);
-    }
-
     const TexelKernel& kernel_;
     std::size_t top_;
     std::vector<TexelBlock> rows_;

@@ -1,41 +1,16 @@
 #pragma once
 
 #include <hshfit/material_maps/level_file.h>
+#include <hshfit/material_maps/processes.h>
 #include <hshfit/material_maps/texel_encoder.h>
 #include <hshfit/material_maps/texel_source.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
-#include <optional>
 #include <vector>
 
 namespace hshfit::inline material_maps {
-
-/// Deals the bands of a map to the processes that share the work, and brings their results to the
-/// first of them.
-class BandDealer {
-public:
-    virtual ~BandDealer() = default;
-    /// The next band that nobody has yet; none: all are taken.
-    virtual std::optional<std::size_t> next() = 0;
-    /// Afterwards the first process has the results of all, by band, and the others none.
-    virtual void collect(std::map<std::size_t, std::vector<float>>& results) { (void)results; }
-    virtual bool isFirst() const { return true; }
-};
-
-/// All bands, in order.
-class OneProcess final : public BandDealer {
-public:
-    explicit OneProcess(std::size_t bands) : bands_(bands) {}
-    std::optional<std::size_t> next() override {
-        return next_ < bands_ ? std::optional(next_++) : std::nullopt;
-    }
-
-private:
-    std::size_t bands_, next_ = 0;
-};
 
 /// The errors of the texels of a level, relative to the norm of each.
 struct LevelErrors {
@@ -53,12 +28,14 @@ struct MapWritten {
 };
 
 struct MapWriterOptions {
-    std::size_t memory = std::size_t{512} << 20;  ///< bytes that a band may take
     std::size_t pictureSide = 512;
     std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
-/// Bands of a map of these levels: rows that end up in whole rows of as many levels as can be.
+/// Bands of a map of these levels: rows that end up in whole rows of as many levels as can be, up
+/// to
+/// 7. A band has at most 64 rows, `memory` permitting: enough for writes of a megabyte, and no more
+/// memory than needed, which a system hands out slowly.
 struct BandPlan {
     std::size_t rows = 1;    ///< of a band, but the last
     std::size_t count = 1;   ///< bands
@@ -73,7 +50,8 @@ BandPlan planBands(const std::vector<LevelSize>& sizes, std::size_t bytesOfTexel
 ///
 /// The first process returns the errors; the others return nothing. Throws NumericError for
 /// numbers beyond the format, InputError and OutputError.
-MapWritten writeMap(TexelSource& source, const TexelEncoder& encoder, LevelFile& file,
-                    const BandPlan& plan, BandDealer& dealer, const MapWriterOptions& options = {});
+MapWritten writeMap(TexelSource& source, TexelEncoder& encoder, LevelFile& file,
+                    const BandPlan& plan, Processes& processes,
+                    const MapWriterOptions& options = {});
 
 }  // namespace hshfit::inline material_maps

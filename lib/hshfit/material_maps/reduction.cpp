@@ -37,48 +37,37 @@ Eigen::MatrixXd weightedShapes(const TexelLayout& layout, const float* texel) {
 }  // namespace
 
 LowRank::LowRank(const TexelLayout& layout, std::vector<double> shapes)
-    : layout_(layout), rank_(shapes.size() / layout.shape()), shapes_(std::move(shapes)) {
-    const std::size_t slots = layout.slots.size();
+    : layout_(layout),
+      rank_(shapes.size() / layout.shape()),
+      padded_((layout.shape() + 15) / 16 * 16),
+      shapes_(std::move(shapes)),
+      directions_(rank_ * padded_, 0.0F) {
+    for (const double weight : layout.weights())
+        roots_.push_back(static_cast<float>(std::sqrt(weight)));
+    const std::size_t shape = layout.shape();
     for (std::size_t i = 0; i < shapes_.size(); ++i) {
-        const std::size_t outgoing = i % layout.shape() / slots;
-        forward_.push_back(static_cast<float>(shapes_[i] * layout.weights()[outgoing]));
+        const std::size_t outgoing = i % shape / layout.slots.size();
+        directions_[i / shape * padded_ + i % shape] =
+            static_cast<float>(shapes_[i] * std::sqrt(layout.weights()[outgoing]));
         back_.push_back(static_cast<float>(shapes_[i]));
     }
 }
 
 float LowRank::reduce(const float* texel, float* weights) const {
-    const std::size_t slots = layout_.slots.size(), shape = layout_.shape();
-    std::fill_n(weights, weightsOfTexel(), 0.0F);
+    const std::size_t slots = layout_.slots.size();
+    thread_local std::vector<float> channel;
+    channel.assign(padded_, 0.0F);
+    float rest = 0;
     for (std::size_t c = 0; c < layout_.channels; ++c) {
-        for (std::size_t r = 0; r < rank_; ++r) {
-            float sum = 0;
-            for (std::size_t o = 0; o < layout_.outgoing.size(); ++o) {
-                const float* from = texel + o * layout_.stride() + c * slots;
-                const float* by = forward_.data() + r * shape + o * slots;
-                for (std::size_t s = 0; s < slots; ++s) sum += by[s] * from[s];
-            }
-            weights[c * rank_ + r] = sum;
-        }
-    }
-    double rest = 0;
-    std::vector<float> restored(shape);
-    for (std::size_t c = 0; c < layout_.channels; ++c) {
-        std::ranges::fill(restored, 0.0F);
-        for (std::size_t r = 0; r < rank_; ++r) {
-            const float weight = weights[c * rank_ + r];
-            for (std::size_t i = 0; i < shape; ++i) restored[i] += weight * back_[r * shape + i];
-        }
         for (std::size_t o = 0; o < layout_.outgoing.size(); ++o) {
             const float* from = texel + o * layout_.stride() + c * slots;
-            float square = 0;
-            for (std::size_t s = 0; s < slots; ++s) {
-                const float off = from[s] - restored[o * slots + s];
-                square += off * off;
-            }
-            rest += layout_.weights()[o] * static_cast<double>(square);
+            float* to = channel.data() + o * slots;
+            for (std::size_t s = 0; s < slots; ++s) to[s] = roots_[o] * from[s];
         }
+        rest +=
+            projectOnto(directions_.data(), rank_, padded_, channel.data(), weights + c * rank_);
     }
-    return static_cast<float>(std::sqrt(rest));
+    return std::sqrt(rest);
 }
 
 void LowRank::restore(const float* weights, float* texel) const {
@@ -96,13 +85,15 @@ void LowRank::restore(const float* weights, float* texel) const {
     }
 }
 
-PrincipalShapes::PrincipalShapes(const TexelLayout& layout, std::span<const float> texels)
+PrincipalShapes::PrincipalShapes(const TexelLayout& layout, std::span<const float> texels,
+                                 Processes& processes)
     : layout_(layout) {
     const std::size_t count = texels.size() / layout.floats(), shape = layout.shape();
-    const std::size_t chunks = (count + chunk - 1) / chunk;
-    std::vector<Eigen::MatrixXd> grams(chunks);
-    eachInParallel(chunks, [&](std::size_t k) {
-        const std::size_t end = std::min((k + 1) * chunk, count);
+    const std::size_t chunks = (count + chunk - 1) / chunk, square = shape * shape;
+    std::vector<double> grams(chunks * square);
+    const ItemRange mine = processes.share(chunks);
+    eachInParallel(mine.last - mine.first, [&](std::size_t part) {
+        const std::size_t k = mine.first + part, end = std::min((k + 1) * chunk, count);
         Eigen::MatrixXd rows(shape, layout.channels * (end - k * chunk));
         rows.setZero();
         for (std::size_t t = k * chunk; t < end; ++t) {
@@ -114,10 +105,13 @@ PrincipalShapes::PrincipalShapes(const TexelLayout& layout, std::span<const floa
                                 static_cast<Eigen::Index>(layout.channels)) = shapes / norm;
             }
         }
-        grams[k] = rows * rows.transpose();
+        Eigen::Map<Eigen::MatrixXd>(grams.data() + k * square, shape, shape) =
+            rows * rows.transpose();
     });
+    gatherValues(processes, chunks, grams);
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(shape, shape);
-    for (const Eigen::MatrixXd& part : grams) gram += part;
+    for (std::size_t k = 0; k < chunks; ++k)
+        gram += Eigen::Map<const Eigen::MatrixXd>(grams.data() + k * square, shape, shape);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
     const Eigen::VectorXd& values = solver.eigenvalues();  // rising
     // Float texels have relative errors of 6e-8, of which the eigenvalues are squares.
@@ -137,7 +131,8 @@ LowRank PrincipalShapes::lowRank(std::size_t rank) const {
     return {layout_, {shapes_.begin(), shapes_.begin() + static_cast<std::ptrdiff_t>(kept)}};
 }
 
-std::vector<TexelErrors> PrincipalShapes::errors(std::span<const float> texels) const {
+std::vector<TexelErrors> PrincipalShapes::errors(std::span<const float> texels,
+                                                 Processes& processes) const {
     const std::size_t count = texels.size() / layout_.floats();
     Eigen::MatrixXd shapes(most_, layout_.shape());
     for (std::size_t r = 0; r < most_; ++r) {
@@ -147,9 +142,11 @@ std::vector<TexelErrors> PrincipalShapes::errors(std::span<const float> texels) 
                 std::sqrt(layout_.weights()[i / layout_.slots.size()]);
         }
     }
-    std::vector<std::vector<float>> relative(most_, std::vector<float>(count));
-    eachInParallel((count + chunk - 1) / chunk, [&](std::size_t k) {
-        for (std::size_t t = k * chunk; t < std::min((k + 1) * chunk, count); ++t) {
+    std::vector<float> relative(count * most_);  // [texel][rank - 1]
+    const ItemRange mine = processes.share(count);
+    eachInParallel((mine.last - mine.first + chunk - 1) / chunk, [&](std::size_t k) {
+        const std::size_t first = mine.first + k * chunk;
+        for (std::size_t t = first; t < std::min(first + chunk, mine.last); ++t) {
             const Eigen::MatrixXd whole =
                 weightedShapes(layout_, texels.data() + t * layout_.floats());
             Eigen::MatrixXd rest = whole;
@@ -158,12 +155,17 @@ std::vector<TexelErrors> PrincipalShapes::errors(std::span<const float> texels) 
             for (std::size_t r = 0; r < most_; ++r) {
                 const auto row = static_cast<Eigen::Index>(r);
                 rest -= shapes.row(row).transpose() * weights.row(row);
-                relative[r][t] = norm > 0 ? static_cast<float>(rest.norm() / norm) : 0;
+                relative[t * most_ + r] = norm > 0 ? static_cast<float>(rest.norm() / norm) : 0;
             }
         }
     });
+    gatherValues(processes, count, relative);
     std::vector<TexelErrors> result;
-    for (auto& errors : relative) result.push_back(errorsOf(errors));
+    std::vector<float> ofRank(count);
+    for (std::size_t r = 0; r < most_; ++r) {
+        for (std::size_t t = 0; t < count; ++t) ofRank[t] = relative[t * most_ + r];
+        result.push_back(errorsOf(ofRank));
+    }
     return result;
 }
 
@@ -233,19 +235,22 @@ std::vector<float> clusterCentres(const WeightedPoints& all, const ClusterOption
     const std::size_t count = all.weights.size(), d = all.dimensions;
     std::vector<float> centres = starts(all, options);
     if (centres.empty()) centres.assign(d, 0.0F);
-    const std::size_t clusters = centres.size() / d, chunks = (count + chunk - 1) / chunk;
-    std::vector<std::uint32_t> index(count, 0);
+    const std::size_t clusters = centres.size() / d;
+    std::vector<std::uint32_t> index, before;
+    Processes alone;
+    Processes& processes = options.processes ? *options.processes : alone;
+    const ItemRange mine = processes.share(count);
     for (int round = 0; round < options.mostRounds; ++round) {
         const NearestPoint nearest(centres, d);
-        std::vector<char> changed(chunks, 0);
-        eachInParallel(chunks, [&](std::size_t k) {
-            for (std::size_t i = k * chunk; i < std::min((k + 1) * chunk, count); ++i) {
-                const std::uint32_t now = nearest(all.points.data() + i * d).index;
-                if (now != index[i] || round == 0) changed[k] = 1;
-                index[i] = now;
-            }
+        index.resize(count);
+        eachInParallel((mine.last - mine.first + chunk - 1) / chunk, [&](std::size_t k) {
+            const std::size_t first = mine.first + k * chunk;
+            for (std::size_t i = first; i < std::min(first + chunk, mine.last); ++i)
+                index[i] = nearest(all.points.data() + i * d).index;
         });
-        if (std::ranges::find(changed, 1) == changed.end()) break;
+        gatherValues(processes, count, index);
+        if (index == before) break;
+        before = index;
         std::vector<double> sums(clusters * d, 0.0), weights(clusters, 0.0);
         for (std::size_t i = 0; i < count; ++i) {
             const double weight = static_cast<double>(all.weights[i]);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <hshfit/material_maps/processes.h>
 #include <hshfit/material_maps/texel_kernel.h>
 #include <hshfit/material_maps/texel_layout.h>
 
@@ -32,9 +33,11 @@ public:
 
 private:
     TexelLayout layout_;
-    std::size_t rank_;
+    std::size_t rank_, padded_;  ///< length of a direction
     std::vector<double> shapes_;
-    std::vector<float> forward_, back_;  ///< [rank][outgoing][slot], with and without weights
+    std::vector<float> roots_;       ///< of the weights, [outgoing]
+    std::vector<float> directions_;  ///< [rank][outgoing][slot] times these roots, padded
+    std::vector<float> back_;        ///< [rank][outgoing][slot]
 };
 
 /// Errors of texels, each relative to its own norm; black texels count as exact.
@@ -46,16 +49,16 @@ struct TexelErrors {
 
 /// The shapes that are best in the mean over texels of the square of the relative error (principal
 /// components of the shapes of all channels, about zero, each texel divided by its norm).
-/// texels[count][layout.floats()].
+/// texels[count][layout.floats()]; all processes have all of them and share the work.
 class PrincipalShapes {
 public:
-    PrincipalShapes(const TexelLayout& layout, std::span<const float> texels);
+    PrincipalShapes(const TexelLayout& layout, std::span<const float> texels, Processes& processes);
 
     /// Up to layout.shape(), those after the numerical rank left out.
     std::size_t most() const { return most_; }
     LowRank lowRank(std::size_t rank) const;
     /// Over the texels, for every rank up to `most()`: [rank - 1].
-    std::vector<TexelErrors> errors(std::span<const float> texels) const;
+    std::vector<TexelErrors> errors(std::span<const float> texels, Processes& processes) const;
 
 private:
     TexelLayout layout_;
@@ -76,11 +79,13 @@ struct ClusterOptions {
     int mostRounds = 40;
     std::uint64_t seed = 1;
     std::function<void(std::size_t done, std::size_t total)> progress = {};
+    Processes* processes = nullptr;  ///< that share the work; each has all points
 };
 
 /// Centres that make the weighted sum of squared distances small: k-means (Lloyd 1982) from starts
 /// by k-means++ (Arthur & Vassilvitskii 2007), a local minimum. At most as many centres as there
-/// are different points. Deterministic, on any number of threads. [centre][dimension]
+/// are different points. Deterministic, on any number of threads and processes.
+/// [centre][dimension]
 std::vector<float> clusterCentres(const WeightedPoints& points, const ClusterOptions& options);
 
 /// Sorted in place.

@@ -5,17 +5,20 @@
 #include <hshfit/material_maps/texel_layout.h>
 
 #include <cstddef>
-#include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace hshfit::inline material_maps {
 
-/// The largest magnitude among stored numbers, and the errors of texels relative to their norms.
+/// Where encoded texels go: layer k of `bytes` begins at k * pitch.
 struct EncodedTexels {
-    std::vector<float> errors = {};  ///< [texel]
+    std::byte* bytes = nullptr;
+    std::size_t pitch = 0;
+    float* errors = nullptr;  ///< of each texel, relative to its norm
+};
+
+/// The largest magnitude among stored numbers, and whether all are finite.
+struct EncodedRange {
     float largest = 0;
     bool finite = true;
 };
@@ -31,11 +34,19 @@ public:
     virtual std::size_t layers() const = 0;
     /// Floats that are averaged.
     virtual std::size_t linear() const = 0;
+    /// Whether these are the texel itself, and `reduce` a copy.
+    virtual bool averagesTexels() const { return false; }
     /// From a texel of layout.floats() to them.
     virtual void reduce(const float* texel, float* linear) const = 0;
-    /// linear[texel][linear()] to out[layer][texel]: layer k begins at byte k * pitch.
-    virtual EncodedTexels encode(const float* linear, std::size_t count, std::byte* out,
-                                 std::size_t pitch) const = 0;
+    /// Neighbours of a level, linear[texel][linear()].
+    virtual EncodedRange encode(std::size_t level, std::span<const float> linear,
+                                const EncodedTexels& to) const = 0;
+    /// All texels of a level, before they are encoded; by the first process alone, of the levels
+    /// that are made from the results of all.
+    virtual void learn(std::size_t level, std::span<const float> linear) {
+        (void)level;
+        (void)linear;
+    }
 };
 
 /// All coefficients of a texel, as float16 or float32. Errors are zero: those of rounding, at most
@@ -47,9 +58,10 @@ public:
     gpu::Number number() const override { return number_; }
     std::size_t layers() const override { return layers_; }
     std::size_t linear() const override { return 4 * layers_; }
+    bool averagesTexels() const override { return true; }
     void reduce(const float* texel, float* linear) const override;
-    EncodedTexels encode(const float* linear, std::size_t count, std::byte* out,
-                         std::size_t pitch) const override;
+    EncodedRange encode(std::size_t level, std::span<const float> linear,
+                        const EncodedTexels& to) const override;
 
 private:
     std::size_t layers_;
@@ -66,8 +78,8 @@ public:
     std::size_t layers() const override { return (lowRank_.weightsOfTexel() + 3) / 4; }
     std::size_t linear() const override { return 4 * layers() + 1; }
     void reduce(const float* texel, float* linear) const override;
-    EncodedTexels encode(const float* linear, std::size_t count, std::byte* out,
-                         std::size_t pitch) const override;
+    EncodedRange encode(std::size_t level, std::span<const float> linear,
+                        const EncodedTexels& to) const override;
     const LowRank& lowRank() const { return lowRank_; }
 
 private:
@@ -75,27 +87,9 @@ private:
     gpu::Number number_;
 };
 
-/// The index of the nearest of some shared materials, found among weights of shared shapes. A texel
-/// has four bytes: the index, low byte first, and its relative error in 1/65535, rounded up.
-class ClusterEncoder final : public TexelEncoder {
-public:
-    static constexpr std::size_t most = 65536;
-    /// centres[centre][channel * rank + r]
-    ClusterEncoder(LowRank lowRank, std::vector<float> centres);
-    std::string form() const override { return "clusters"; }
-    gpu::Number number() const override { return gpu::Number::unorm8; }
-    std::size_t layers() const override { return 1; }
-    std::size_t linear() const override { return lowRank_.weightsOfTexel() + 1; }
-    void reduce(const float* texel, float* linear) const override;
-    EncodedTexels encode(const float* linear, std::size_t count, std::byte* out,
-                         std::size_t pitch) const override;
-    const LowRank& lowRank() const { return lowRank_; }
-    const std::vector<float>& centres() const { return centres_; }
-
-private:
-    LowRank lowRank_;
-    std::vector<float> centres_;
-    NearestPoint nearest_;
-};
+/// The norm of a texel of weights of shared shapes and the norm of what they leave, [weights + 1].
+double normOfReduced(const float* linear, std::size_t weights);
+/// An error relative to such a norm; black is exact.
+float relativeError(double error, double norm);
 
 }  // namespace hshfit::inline material_maps

@@ -5,11 +5,14 @@
 #include <hwy/foreach_target.h>
 
 #include <hshfit/material_maps/texel_kernel.h>
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <vector>
 
 #ifndef HSHFIT_TEXEL_MIXTURE
 #define HSHFIT_TEXEL_MIXTURE
@@ -77,31 +80,102 @@ void mix(const Mixture& m, float* texel) {
     }
 }
 
-HalfRange halfLayers(const float* texels, std::size_t count, std::size_t layers, std::uint16_t* out,
-                     std::size_t pitch) {
-    const hn::CappedTag<float, 4> d;  // one lane where there are no vectors
-    const hn::Rebind<hwy::float16_t, decltype(d)> half;
+/// Floats of one texel as halves, with the largest magnitude and whether all are numbers.
+template <class D>
+std::size_t toHalves(D d, const float* from, std::size_t first, std::size_t count,
+                     std::uint16_t* to, float& most, bool& numbers) {
+    const hn::Rebind<hwy::float16_t, D> half;
     const std::size_t lanes = hn::Lanes(d);
     auto largest = hn::Zero(d);
-    bool good = true;
-    for (std::size_t t = 0; t < count; ++t) {
-        const float* texel = texels + t * layers * 4;
-        auto ordered = hn::Eq(largest, largest);
-        for (std::size_t k = 0; k < layers; ++k) {
-            for (std::size_t lane = 0; lane < 4; lane += lanes) {
-                const auto value = hn::LoadU(d, texel + 4 * k + lane);
-                largest = hn::Max(largest, hn::Abs(value));
-                ordered = hn::And(ordered, hn::Eq(value, value));
-                hn::StoreU(hn::DemoteTo(half, value), half,
-                           reinterpret_cast<hwy::float16_t*>(out + 4 * (k * pitch + t) + lane));
-            }
-        }
-        good = good && hn::AllTrue(d, ordered);
+    auto ordered = hn::Eq(largest, largest);
+    for (; first + lanes <= count; first += lanes) {
+        const auto value = hn::LoadU(d, from + first);
+        largest = hn::Max(largest, hn::Abs(value));
+        ordered = hn::And(ordered, hn::Eq(value, value));
+        hn::StoreU(hn::DemoteTo(half, value), half, reinterpret_cast<hwy::float16_t*>(to + first));
     }
-    float each[4] = {};
-    hn::StoreU(largest, d, each);
-    const float most = *std::max_element(each, each + 4);
-    return {most, good && most <= std::numeric_limits<float>::max()};
+    most = std::max(most, hn::GetLane(hn::MaxOfLanes(d, largest)));
+    numbers = numbers && hn::AllTrue(d, ordered);
+    return first;
+}
+
+/// Four halves of each of `count` texels, `step` apart, one after another. Whole lines of the cache
+/// are written past it: nobody reads them before the disk does.
+void storeLayer(const std::uint16_t* from, std::size_t step, std::size_t count, std::uint16_t* to) {
+    constexpr std::size_t line = 8;
+    if (count != line || reinterpret_cast<std::uintptr_t>(to) % 64 != 0) {
+        for (std::size_t k = 0; k < count; ++k) std::memcpy(to + 4 * k, from + k * step, 8);
+        return;
+    }
+    alignas(64) std::uint64_t texels[line];
+    for (std::size_t k = 0; k < line; ++k) std::memcpy(texels + k, from + k * step, 8);
+    const hn::CappedTag<std::uint64_t, line> d;
+    for (std::size_t k = 0; k < line; k += hn::Lanes(d))
+        hn::Stream(hn::Load(d, texels + k), d, reinterpret_cast<std::uint64_t*>(to) + k);
+}
+
+/// Several texels at a time, so that layers get whole lines of the cache.
+HalfRange halfLayers(const float* texels, std::size_t stride, std::size_t count, std::size_t layers,
+                     std::uint16_t* out, std::size_t pitch) {
+    constexpr std::size_t group = 8;
+    const std::size_t floats = 4 * layers;
+    std::vector<std::uint16_t> halves(group * floats);
+    float most = 0;
+    bool numbers = true;
+    for (std::size_t t = 0; t < count; t += group) {
+        const std::size_t together = std::min(group, count - t);
+        for (std::size_t k = 0; k < together; ++k) {
+            const float* from = texels + (t + k) * stride;
+            std::uint16_t* to = halves.data() + k * floats;
+            const std::size_t done = toHalves(Tag(), from, 0, floats, to, most, numbers);
+            toHalves(hn::CappedTag<float, 4>(), from, done, floats, to, most, numbers);
+        }
+        for (std::size_t layer = 0; layer < layers; ++layer)
+            storeLayer(halves.data() + 4 * layer, floats, together, out + 4 * (layer * pitch + t));
+    }
+    hwy::FlushStream();
+    return {most, numbers && most <= std::numeric_limits<float>::max()};
+}
+
+void means(const float* above, const float* below, std::size_t count, std::size_t step,
+           float* out) {
+    const Tag d;
+    const std::size_t lanes = hn::Lanes(d);
+    const auto share = hn::Set(d, 0.25F);
+    for (std::size_t t = 0; t < count; ++t) {
+        const float* a = above + 2 * t * step;
+        const float* b = below + 2 * t * step;
+        std::size_t k = 0;
+        for (; k + lanes <= step; k += lanes) {
+            auto sum = hn::Add(hn::LoadU(d, a + k), hn::LoadU(d, a + step + k));
+            sum = hn::Add(sum, hn::LoadU(d, b + k));
+            sum = hn::Add(sum, hn::LoadU(d, b + step + k));
+            hn::StoreU(hn::Mul(sum, share), d, out + t * step + k);
+        }
+        for (; k < step; ++k) out[t * step + k] = (a[k] + a[step + k] + b[k] + b[step + k]) * 0.25F;
+    }
+}
+
+float project(const float* directions, std::size_t count, std::size_t length, const float* x,
+              float* y) {
+    const Tag d;
+    const std::size_t lanes = hn::Lanes(d);
+    for (std::size_t r = 0; r < count; ++r) {
+        auto sum = hn::Zero(d);
+        for (std::size_t i = 0; i < length; i += lanes) {
+            sum = hn::MulAdd(hn::LoadU(d, directions + r * length + i), hn::LoadU(d, x + i), sum);
+        }
+        y[r] = hn::GetLane(hn::SumOfLanes(d, sum));
+    }
+    auto square = hn::Zero(d);
+    for (std::size_t i = 0; i < length; i += lanes) {
+        auto left = hn::LoadU(d, x + i);
+        for (std::size_t r = 0; r < count; ++r) {
+            left = hn::NegMulAdd(hn::Set(d, y[r]), hn::LoadU(d, directions + r * length + i), left);
+        }
+        square = hn::MulAdd(left, left, square);
+    }
+    return hn::GetLane(hn::SumOfLanes(d, square));
 }
 
 /// The nearest of points in columns; `count` is a multiple of 16.
@@ -147,6 +221,8 @@ namespace hshfit::inline material_maps {
 HWY_EXPORT(interpolate);
 HWY_EXPORT(mix);
 HWY_EXPORT(halfLayers);
+HWY_EXPORT(means);
+HWY_EXPORT(project);
 HWY_EXPORT(nearestOf);
 
 namespace {
@@ -156,13 +232,14 @@ constexpr std::size_t slack = 16;
 TexelKernel::TexelKernel(const LobeGrid& table, const TexelLayout& layout, bool placesByChannel)
     : table_(table), layout_(layout), placesByChannel_(placesByChannel) {}
 
-void TexelKernel::run(const TexelBlock& block, float* out) const {
+void TexelKernel::run(const TexelBlock& block, std::size_t first, std::size_t count,
+                      float* out) const {
     const std::size_t channels = layout_.channels;
     const std::size_t lobes = table_.lobes(), shape = layout_.shape();
     const std::size_t places = placesByChannel_ ? channels : 1;
     const std::size_t shapesLength = lobes * shape + slack;
     std::vector<float> shapes(places * shapesLength), weights(lobes * channels);
-    std::vector<float> texel(layout_.floats() + slack);
+    std::vector<float> last(layout_.floats() + slack);
     float p[3];
     LobeGrid::Place place;
     const Mixture mixture{.shapes = shapes.data(),
@@ -173,25 +250,37 @@ void TexelKernel::run(const TexelBlock& block, float* out) const {
                           .outgoing = layout_.outgoing.size(),
                           .slots = layout_.slots.size(),
                           .stride = layout_.stride()};
-    for (std::size_t t = 0; t < block.count; ++t) {
+    for (std::size_t t = 0; t < count; ++t) {
         for (std::size_t k = 0; k < weights.size(); ++k)
-            weights[k] = block.weights[k * block.count + t];
+            weights[k] = block.weights[k * block.count + first + t];
         for (std::size_t c = 0; c < places; ++c) {
             for (std::size_t a = 0; a < table_.axes(); ++a)
-                p[a] = block.places[(a * places + c) * block.count + t];
+                p[a] = block.places[(a * places + c) * block.count + first + t];
             table_.find(p, place);
             HWY_DYNAMIC_DISPATCH(interpolate)
             (table_.values().data(), table_.rowStride(), place, lobes * shape,
              shapes.data() + c * shapesLength);
         }
-        HWY_DYNAMIC_DISPATCH(mix)(mixture, texel.data());
-        std::copy_n(texel.data(), layout_.floats(), out + t * layout_.floats());
+        // Vectors write beyond a texel: into the next, or into a copy of the last.
+        float* to = t + 1 < count ? out + t * layout_.floats() : last.data();
+        HWY_DYNAMIC_DISPATCH(mix)(mixture, to);
     }
+    if (count > 0) std::copy_n(last.data(), layout_.floats(), out + (count - 1) * layout_.floats());
 }
 
-HalfRange toHalfLayers(const float* texels, std::size_t count, std::size_t layers,
-                       std::uint16_t* out, std::size_t pitch) {
-    return HWY_DYNAMIC_DISPATCH(halfLayers)(texels, count, layers, out, pitch);
+HalfRange toHalfLayers(const float* texels, std::size_t stride, std::size_t count,
+                       std::size_t layers, std::uint16_t* out, std::size_t pitch) {
+    return HWY_DYNAMIC_DISPATCH(halfLayers)(texels, stride, count, layers, out, pitch);
+}
+
+void meanOfFour(const float* above, const float* below, std::size_t count, std::size_t step,
+                float* out) {
+    HWY_DYNAMIC_DISPATCH(means)(above, below, count, step, out);
+}
+
+float projectOnto(const float* directions, std::size_t count, std::size_t length, const float* x,
+                  float* y) {
+    return HWY_DYNAMIC_DISPATCH(project)(directions, count, length, x, y);
 }
 
 NearestPoint::NearestPoint(std::span<const float> points, std::size_t dimensions)

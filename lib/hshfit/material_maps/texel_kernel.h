@@ -32,8 +32,8 @@ public:
         return table_.axes() * (placesByChannel_ ? layout_.channels : 1);
     }
 
-    /// out[texel][layout.floats()].
-    void run(const TexelBlock& block, float* out) const;
+    /// Texels [first, first + count) of a block: out[texel][layout.floats()].
+    void run(const TexelBlock& block, std::size_t first, std::size_t count, float* out) const;
 
 private:
     const LobeGrid& table_;
@@ -47,10 +47,20 @@ struct HalfRange {
     bool finite = true;
 };
 
-/// Texels in float32, [texel][4 * layers], as float16 (nearest even) in layers:
-/// out[layer][texel] of four, the first texel of layer k at out + 4 * (k * pitch).
-HalfRange toHalfLayers(const float* texels, std::size_t count, std::size_t layers,
-                       std::uint16_t* out, std::size_t pitch);
+/// Texels in float32, each of 4 * layers at a multiple of `stride`, as float16 (nearest even) in
+/// layers: out[layer][texel] of four, the first texel of layer k at out + 4 * (k * pitch).
+HalfRange toHalfLayers(const float* texels, std::size_t stride, std::size_t count,
+                       std::size_t layers, std::uint16_t* out, std::size_t pitch);
+
+/// out[k] = mean of the values of two neighbours, above[2 k], above[2 k + 1], and those below; a
+/// texel has `step` values.
+void meanOfFour(const float* above, const float* below, std::size_t count, std::size_t step,
+                float* out);
+
+/// Parts of points along some directions, all of `length` floats, which is a multiple of 16.
+///     y_r = <B_r, x>,   returns |x - sum_r y_r B_r|^2
+float projectOnto(const float* directions, std::size_t count, std::size_t length, const float* x,
+                  float* y);
 
 /// Index of the nearest of many points, and the square of its distance. Of equally near ones the
 /// first.

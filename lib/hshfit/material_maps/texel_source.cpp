@@ -18,7 +18,7 @@ std::vector<LevelSize> levelSizes(std::size_t width, std::size_t height, bool mi
     return sizes;
 }
 
-std::vector<float> sampleTexels(TexelSource& source, std::size_t most) {
+std::vector<float> sampleTexels(TexelSource& source, std::size_t most, Processes& processes) {
     const std::size_t width = source.width(), height = source.height();
     const double share =
         std::sqrt(std::min(1.0, static_cast<double>(most) /
@@ -30,7 +30,8 @@ std::vector<float> sampleTexels(TexelSource& source, std::size_t most) {
     const std::size_t columns = of(width), rows = of(height);
     const std::size_t floats = source.layout().floats();
     std::vector<float> texels(rows * columns * floats);
-    for (std::size_t r = 0; r < rows; ++r) {
+    const ItemRange mine = processes.share(rows);
+    for (std::size_t r = mine.first; r < mine.last; ++r) {
         const std::size_t row = (2 * r + 1) * height / (2 * rows);
         const auto band = source.band(row, row + 1);
         eachInParallel((columns + 63) / 64, [&](std::size_t part) {
@@ -40,6 +41,7 @@ std::vector<float> sampleTexels(TexelSource& source, std::size_t most) {
             }
         });
     }
+    gatherValues(processes, rows, texels);
     return texels;
 }
 

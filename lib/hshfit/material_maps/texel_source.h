@@ -1,5 +1,6 @@
 #pragma once
 
+#include <hshfit/material_maps/processes.h>
 #include <hshfit/material_maps/texel_layout.h>
 
 #include <cstddef>
@@ -33,7 +34,8 @@ struct LevelSize {
 };
 std::vector<LevelSize> levelSizes(std::size_t width, std::size_t height, bool mips = true);
 
-/// Texels on an even grid over a map, at most `most`: [texel][layout.floats()].
-std::vector<float> sampleTexels(TexelSource& source, std::size_t most);
+/// Texels on an even grid over a map, at most `most`: [texel][layout.floats()]. Shared out among
+/// processes; each has all afterwards.
+std::vector<float> sampleTexels(TexelSource& source, std::size_t most, Processes& processes);
 
 }  // namespace hshfit::inline material_maps

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <new>
+#include <span>
+
+namespace hshfit::inline material_maps {
+
+/// Bytes without initial values that begin on a page, as writes past the page cache need them.
+class PageBuffer {
+public:
+    static constexpr std::size_t page = 4096;
+
+    /// At least so many bytes; what the buffer had is lost where it grows.
+    void reserve(std::size_t bytes) {
+        if (bytes <= size_) return;
+        bytes_.reset();
+        bytes_.reset(static_cast<std::byte*>(::operator new (bytes, std::align_val_t{page})));
+        size_ = bytes;
+    }
+    std::byte* data() { return bytes_.get(); }
+    std::span<const std::byte> first(std::size_t bytes) const { return {bytes_.get(), bytes}; }
+
+private:
+    struct Free {
+        void operator()(std::byte* bytes) const {
+            ::operator delete (bytes, std::align_val_t{page});
+        }
+    };
+    std::unique_ptr<std::byte, Free> bytes_;
+    std::size_t size_ = 0;
+};
+
+}  // namespace hshfit::inline material_maps
