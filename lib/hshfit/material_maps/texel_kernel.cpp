@@ -186,16 +186,40 @@ Nearest nearestOf(const float* columns, std::size_t dimensions, std::size_t coun
     const std::size_t lanes = hn::Lanes(d);
     auto best = hn::Set(d, std::numeric_limits<float>::max());
     auto bestIndex = hn::Zero(whole);
-    for (std::size_t i = 0; i < count; i += lanes) {
+    const auto consider = [&](auto square, std::size_t first) {
+        const auto nearer = hn::Lt(square, best);
+        best = hn::IfThenElse(nearer, square, best);
+        bestIndex = hn::IfThenElse(hn::RebindMask(whole, nearer),
+                                   hn::Set(whole, static_cast<std::uint32_t>(first)), bestIndex);
+    };
+    std::size_t i = 0;
+    // Four sums at a time, none of which waits for another.
+    for (; i + 4 * lanes <= count; i += 4 * lanes) {
+        auto a = hn::Zero(d), b = hn::Zero(d), c = hn::Zero(d), e = hn::Zero(d);
+        for (std::size_t k = 0; k < dimensions; ++k) {
+            const float* from = columns + k * count + i;
+            const auto at = hn::Set(d, point[k]);
+            const auto offA = hn::Sub(hn::LoadU(d, from), at);
+            const auto offB = hn::Sub(hn::LoadU(d, from + lanes), at);
+            const auto offC = hn::Sub(hn::LoadU(d, from + 2 * lanes), at);
+            const auto offE = hn::Sub(hn::LoadU(d, from + 3 * lanes), at);
+            a = hn::MulAdd(offA, offA, a);
+            b = hn::MulAdd(offB, offB, b);
+            c = hn::MulAdd(offC, offC, c);
+            e = hn::MulAdd(offE, offE, e);
+        }
+        consider(a, i);
+        consider(b, i + lanes);
+        consider(c, i + 2 * lanes);
+        consider(e, i + 3 * lanes);
+    }
+    for (; i < count; i += lanes) {
         auto square = hn::Zero(d);
         for (std::size_t k = 0; k < dimensions; ++k) {
             const auto off = hn::Sub(hn::LoadU(d, columns + k * count + i), hn::Set(d, point[k]));
             square = hn::MulAdd(off, off, square);
         }
-        const auto nearer = hn::Lt(square, best);
-        best = hn::IfThenElse(nearer, square, best);
-        bestIndex = hn::IfThenElse(hn::RebindMask(whole, nearer),
-                                   hn::Set(whole, static_cast<std::uint32_t>(i)), bestIndex);
+        consider(square, i);
     }
     float squares[16];
     std::uint32_t starts[16];
