@@ -1,0 +1,99 @@
+#!/bin/sh
+# mpi_svbrdf.sh PROGRAM: `hshfit-mpi svbrdf` with 1, 2 and 4 processes writes the bytes of
+# `hshfit svbrdf`; a process that fails or is killed leaves nothing.
+# Ends with 77, and the reason, where MPI is absent.
+set -eu
+program=$1
+alone=$(dirname "$program")/hshfit
+command -v mpirun >/dev/null || { echo "skipped: mpirun is not installed"; exit 77; }
+[ -x "$program" ] || { echo "skipped: built without -DHSHFIT_MPI=ON"; exit 77; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
+
+fail() { echo "$1" >&2; exit 1; }
+# ranks COUNT ARGUMENT…: hshfit-mpi svbrdf with so many processes, one thread each.
+ranks() {
+    count=$1
+    shift
+    mpirun --oversubscribe -n "$count" "$program" svbrdf "$@" --threads 1 --quiet
+}
+
+# Grey PFM maps of 256 x 256 texels, one of them with a NaN.
+python=$(command -v python3) || { echo "skipped: python3 is not installed"; exit 77; }
+"$python" - "$work" <<'END'
+import json, math, struct, sys
+side, folder = 256, sys.argv[1]
+def write(name, value):
+    with open(f"{folder}/{name}.pfm", "wb") as file:
+        file.write(f"Pf\n{side} {side}\n-1.0\n".encode())
+        for y in reversed(range(side)):
+            file.write(struct.pack(f"<{side}f", *(value(x, y) for x in range(side))))
+write("alpha", lambda x, y: 0.4 + 0.3 * math.sin(x * 0.11) * math.cos(y * 0.07))
+write("kd", lambda x, y: 0.2 + 0.1 * math.sin(x * y * 0.001))
+parameters = {"alpha": {"map": "alpha.pfm"}, "kd": {"map": "kd.pfm"}, "ks": 0.5}
+head = {"format": "hshfit-svbrdf", "version": 1, "model": "ggx"}
+json.dump(head | {"parameters": parameters}, open(f"{folder}/d.json", "w"))
+write("bad", lambda x, y: math.nan if (x, y) == (3, 250) else 0.5)
+json.dump(head | {"parameters": parameters | {"kd": {"map": "bad.pfm"}}},
+          open(f"{folder}/bad.json", "w"))
+END
+
+for form in outgoing low-rank clusters; do
+    "$alone" svbrdf "$work/d.json" -o "$work/alone" --form $form --clusters 32 --force --quiet \
+        >/dev/null
+    for count in 1 2 4; do
+        ranks $count "$work/d.json" -o "$work/shared" --form $form --clusters 32 --force \
+            --json --memory 16 >"$work/said"
+        grep -q "\"processes\": $count," "$work/said" || fail "$count processes do not say so"
+        for file in material.ktx2 material.json errors.png; do
+            cmp "$work/alone/$file" "$work/shared/$file" || fail "$form with $count processes"
+        done
+    done
+done
+
+# One line, the exit code, and nothing on the disk.
+code=0
+ranks 3 "$work/bad.json" -o "$work/bad" >"$work/said" 2>"$work/errors" || code=$?
+[ $code = 3 ] || fail "a broken map ends with $code"
+[ "$(grep -c '^hshfit: ' "$work/errors")" = 1 ] || fail "not one line: $(cat "$work/errors")"
+grep -q 'texel (3, 250): kd is nan' "$work/errors" || fail "$(cat "$work/errors")"
+[ ! -e "$work/bad" ] || fail "a broken map leaves a folder"
+
+# A process that fails in the middle: only one has a limit on the size of files.
+# shellcheck disable=SC2016  # expanded by the inner shell
+limited='[ "$OMPI_COMM_WORLD_RANK" != 1 ] || { trap "" XFSZ; ulimit -f 64; }; exec "$@"'
+code=0
+mpirun --oversubscribe -n 2 sh -c "$limited" sh "$program" svbrdf "$work/d.json" -o "$work/cut" \
+    --threads 1 --writes cached >"$work/said" 2>"$work/errors" || code=$?
+[ $code = 5 ] || fail "a full disk ends with $code: $(cat "$work/errors")"
+[ "$(grep -c '^hshfit: ' "$work/errors")" = 1 ] || fail "not one line: $(cat "$work/errors")"
+grep -q 'process 2 of 2: .*File too large' "$work/errors" || fail "$(cat "$work/errors")"
+[ ! -e "$work/cut" ] || fail "a full disk leaves a folder"
+
+# One that is killed takes the others along, and the file under its temporary name.
+# shellcheck disable=SC2016
+killed='[ "$OMPI_COMM_WORLD_RANK" != 1 ] || { (sleep 0.3; kill -9 $$) & }; exec "$@"'
+for form in outgoing clusters; do
+    if mpirun --oversubscribe -n 2 sh -c "$killed" sh "$program" svbrdf "$work/d.json" \
+        -o "$work/killed" --form $form --checks 4096 --threads 1 >/dev/null 2>&1; then
+        echo "ended before it was killed"
+    fi
+    if [ -e "$work/killed" ] && [ "$(find "$work/killed" -type f | wc -l)" != 3 ]; then
+        fail "a killed process leaves $(ls -A "$work/killed")"
+    fi
+    rm -rf "$work/killed"
+done
+
+# The plain program does not do the work twice, nor does hshfit-mpi with another command.
+code=0
+mpirun --oversubscribe -n 2 "$alone" svbrdf "$work/d.json" -o "$work/twice" 2>"$work/errors" ||
+    code=$?
+[ $code = 2 ] || fail "the plain program ends with $code"
+grep -q 'hshfit-mpi svbrdf' "$work/errors" || fail "$(cat "$work/errors")"
+[ ! -e "$work/twice" ] || fail "the plain program writes under mpirun"
+code=0
+mpirun --oversubscribe -n 2 "$program" info ggx:alpha=0.2 >"$work/said" 2>&1 || code=$?
+[ $code = 2 ] || fail "a command that is not shared ends with $code"
+echo "1, 2 and 4 processes give the same bytes"
