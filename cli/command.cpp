@@ -142,6 +142,13 @@ void occupyStandardStreams() {
     }
 }
 
+void closeOutput() {
+    const int nothing = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (nothing < 0) return;
+    for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(nothing, stream);
+    ::close(nothing);
+}
+
 void note(const Globals& globals, std::string_view message) {
     if (!globals.quiet) writeError(messageLine("hshfit: ", message));
 }

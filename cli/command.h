@@ -62,6 +62,9 @@ void printMessage(std::string_view message) noexcept;
 /// them fails as if they were closed.
 void occupyStandardStreams();
 
+/// Nothing is printed from now on, on standard output or standard error.
+void closeOutput();
+
 /// A progress line on standard error: the task, the share done, the rate and the time left.
 /// Nothing is shown with --quiet or if standard error is no terminal.
 class Progress {

@@ -15,19 +15,7 @@
 #include <string>
 #include <vector>
 
-#include <fcntl.h>
-#include <unistd.h>
-
 namespace {
-
-/// One process speaks for all.
-void silence() {
-    const int nothing = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-    if (nothing < 0) return;
-    ::dup2(nothing, STDOUT_FILENO);
-    ::dup2(nothing, STDERR_FILENO);
-    ::close(nothing);
-}
 
 bool has(const std::vector<std::string>& words, std::string_view option) {
     return std::ranges::any_of(words, [&](const std::string& word) {
@@ -42,7 +30,7 @@ bool isShared(const std::vector<std::string>& words) {
 }
 
 int run(std::vector<std::string> words, hshfit::jobs::MpiProcesses& processes) {
-    if (!processes.isFirst()) silence();
+    if (!processes.isFirst()) hshfit::cli::closeOutput();  // one process speaks for all
     if (processes.count() > 1 && !isShared(words)) {
         hshfit::cli::printMessage(fmt::format(
             "{} is not shared out over MPI, and would be done {} times; start it as hshfit",

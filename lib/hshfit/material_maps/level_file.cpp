@@ -60,7 +60,7 @@ LevelFile::LevelFile(const std::string& path, gpu::Number number, std::size_t la
     descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor_ < 0) throw OutputError(fmt::format("{}: {}", path_, std::strerror(errno)));
 #ifdef O_DIRECT
-    // Some file systems have no such writes, and say so here.
+    // A file system without such writes refuses here.
     if (options.pastPageCache) direct_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC | O_DIRECT);
 #endif
 }

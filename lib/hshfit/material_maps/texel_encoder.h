@@ -10,7 +10,7 @@
 
 namespace hshfit::inline material_maps {
 
-/// Where encoded texels go: layer k of `bytes` begins at k * pitch.
+/// The place of encoded texels: layer k of `bytes` begins at k * pitch.
 struct EncodedTexels {
     std::byte* bytes = nullptr;
     std::size_t pitch = 0;

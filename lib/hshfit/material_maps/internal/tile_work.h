@@ -44,7 +44,7 @@ struct Tile {
     std::size_t column = 0, columns = 0;
 };
 
-/// What tiles of a band write to.
+/// The memory that the tiles of a band fill.
 struct BandTarget {
     std::size_t top = 0;                ///< the band's first row in the map
     std::vector<EncodedLevel>& levels;  ///< that the band completes
