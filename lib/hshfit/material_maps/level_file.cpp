@@ -1,6 +1,7 @@
 #include <hshfit/material_maps/level_file.h>
 
 #include <hshfit/error.h>
+#include <hshfit/material_maps/internal/async_writes.h>
 #include <hshfit/material_maps/internal/page_buffer.h>
 
 #include <fmt/format.h>
@@ -10,7 +11,6 @@
 #include <cstring>
 
 #include <fcntl.h>
-#include <sys/statvfs.h>
 #include <unistd.h>
 
 namespace hshfit::inline material_maps {
@@ -32,7 +32,8 @@ LevelFile::LevelFile(const std::string& path, gpu::Number number, std::size_t la
     : path_(path),
       layers_(layers),
       texelBytes_(4 * gpu::numberBytes(number)),
-      sizes_(std::move(sizes)) {
+      sizes_(std::move(sizes)),
+      writes_(std::make_unique<AsyncWrites>()) {
     gpu::Ktx2Image image{.number = number,
                          .width = sizes_.front().width,
                          .height = sizes_.front().height,
@@ -71,15 +72,19 @@ LevelFile::~LevelFile() {
 }
 
 void LevelFile::begin() {
-    // Room is not taken beforehand: writes into such extents take a fifth longer.
-    struct statvfs disk {};
-    if (::fstatvfs(descriptor_, &disk) == 0 && disk.f_blocks > 0 &&
-        disk.f_bavail < length_ / disk.f_frsize) {
-        throw OutputError(fmt::format("{}: no room for {} bytes; {} are free", path_, length_,
-                                      disk.f_bavail * disk.f_frsize));
+    const auto length = static_cast<off_t>(length_);
+    int failed = ::ftruncate(descriptor_, length) == 0 ? 0 : errno;
+#ifdef FALLOC_FL_KEEP_SIZE
+    // Several writers wait for each other where room has to be found first. Unlike
+    // posix_fallocate, this writes nothing where the file system has no such call.
+    if (failed == 0 && ::fallocate(descriptor_, 0, 0, length) != 0 &&
+        (errno == ENOSPC || errno == EFBIG || errno == EDQUOT))
+        failed = errno;
+#endif
+    if (failed != 0) {
+        throw OutputError(
+            fmt::format("{}: no room for {} bytes: {}", path_, length_, std::strerror(failed)));
     }
-    if (::ftruncate(descriptor_, static_cast<off_t>(length_)) != 0)
-        throw OutputError(fmt::format("{}: {}", path_, std::strerror(errno)));
     put(std::as_bytes(std::span(head_)), 0);
 }
 
@@ -87,10 +92,21 @@ void LevelFile::write(std::size_t level, std::size_t top, std::size_t rows,
                       std::span<const std::byte> texels) {
     const LevelSize& size = sizes_[level];
     const std::size_t row = size.width * texelBytes_;
+    std::vector<FilePiece> pieces, whole;
     for (std::size_t layer = 0; layer < layers_; ++layer) {
-        put(texels.subspan(layer * rows * row, rows * row),
-            offsets_[level] + (layer * size.height + top) * row);
+        const FilePiece piece{texels.subspan(layer * rows * row, rows * row),
+                              offsets_[level] + (layer * size.height + top) * row};
+        const bool past = direct_ >= 0 && isWholePages(piece.bytes, piece.offset);
+        (past ? whole : pieces).push_back(piece);
     }
+    if (!whole.empty()) {
+        const std::lock_guard lock(mutex_);
+        const std::vector<std::size_t> written = writes_->write(direct_, whole);
+        for (std::size_t k = 0; k < whole.size(); ++k) {
+            pieces.push_back({whole[k].bytes.subspan(written[k]), whole[k].offset + written[k]});
+        }
+    }
+    for (const FilePiece& piece : pieces) put(piece.bytes, piece.offset);
 }
 
 void LevelFile::put(std::span<const std::byte> bytes, std::size_t offset) {

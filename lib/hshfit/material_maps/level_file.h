@@ -6,11 +6,15 @@
 
 #include <cstddef>
 #include <map>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace hshfit::inline material_maps {
+
+class AsyncWrites;
 
 /// Settings of a LevelFile.
 struct LevelFileOptions {
@@ -53,6 +57,8 @@ private:
     std::size_t layers_, texelBytes_, length_ = 0;
     std::vector<LevelSize> sizes_;
     std::vector<std::size_t> offsets_;  ///< of levels
+    std::mutex mutex_;                  ///< of writes_
+    std::unique_ptr<AsyncWrites> writes_;
 };
 
 }  // namespace hshfit::inline material_maps
