@@ -38,8 +38,19 @@ def png(path, values):
                      + chunk(b"IDAT", zlib.compress(rows.tobytes(), 1)) + chunk(b"IEND", b""))
 
 
+def pfm(path, values):
+    """The same as floats, of which any rows can be read."""
+    height, width = values.shape[:2]
+    head = f"{'PF' if values.ndim == 3 else 'Pf'}\n{width} {height}\n-1.0\n"
+    path.write_bytes(head.encode() + values[::-1].astype("<f4").tobytes())
+
+
 def make_maps(folder, side):
-    """Maps of a size."""
+    """Maps of a size, in both formats."""
+    def write(name, values):
+        png(folder / f"{name}.png", values)
+        pfm(folder / f"{name}.pfm", values)
+
     random = numpy.random.default_rng(1)
     y, x = numpy.mgrid[0:side, 0:side] / side
 
@@ -47,20 +58,19 @@ def make_maps(folder, side):
         return numpy.clip(wave + random.normal(0, noise, (side, side)), 0, 1)
 
     colour = [noisy(0.4 + 0.3 * numpy.sin(9 * x + k) * numpy.cos(7 * y), 0.05) for k in range(3)]
-    png(folder / "kd.png", 0.8 * numpy.stack(colour, -1))
-    png(folder / "ks.png", 0.6 * noisy(0.3 + 0.2 * numpy.sin(5 * x * y), 0.03))
-    png(folder / "alpha.png",
-        0.1 + 0.8 * noisy(0.4 + 0.3 * numpy.sin(11 * y) * numpy.cos(13 * x), 0.05))
+    write("kd", 0.8 * numpy.stack(colour, -1))
+    write("ks", 0.6 * noisy(0.3 + 0.2 * numpy.sin(5 * x * y), 0.03))
+    write("alpha",
+          0.1 + 0.8 * noisy(0.4 + 0.3 * numpy.sin(11 * y) * numpy.cos(13 * x), 0.05))
 
 
-def describe(folder, side):
+def describe(folder, side, kind):
     """The description of materials with maps of a size. A process of its own makes them: the peak
     memory of a parent counts as its child's."""
     maps = multiprocessing.Process(target=make_maps, args=(folder, side))
     maps.start()
     maps.join()
-    parameters = {"kd": {"map": "kd.png"}, "ks": {"map": "ks.png", "channels": ["Y"]},
-                  "alpha": {"map": "alpha.png", "channels": ["Y"]}}
+    parameters = {name: {"map": f"{name}.{kind}"} for name in ("kd", "ks", "alpha")}
     path = folder / f"d{side}.json"
     path.write_text(json.dumps({"format": "hshfit-svbrdf", "version": 1, "model": "ggx",
                                 "parameters": parameters}))
@@ -85,7 +95,7 @@ def percent(error):
 
 def forms(program, folder, side):
     """Bytes, errors, time and memory of each form."""
-    description = describe(folder, side)
+    description = describe(folder, side, "png")
     for form in FORMS:
         answer, seconds, memory = run([program, "svbrdf", description, "-o", folder / "out",
                                        "--force", "--json", "--form", *form])
@@ -100,9 +110,9 @@ def forms(program, folder, side):
               f"{choice['shared_bytes']}, {percent(choice['error'])}")
 
 
-def ranks(program, folder, side, runs):
-    """One and two processes of one thread; returns seconds of the processor for a texel."""
-    description = describe(folder, side)
+def ranks(program, folder, side, runs, kind):
+    """One and two processes, each on a processor of its own, in turns."""
+    description = describe(folder, side, kind)
     environment = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     os.environ.update(environment)
     for form in FORMS:
@@ -111,7 +121,7 @@ def ranks(program, folder, side, runs):
             walls, parts = {}, {}
             for count in (1, 2):
                 answer, seconds, _ = run(
-                    ["mpirun", "--oversubscribe", "-n", str(count), f"{program}-mpi", "svbrdf",
+                    ["mpirun", "--bind-to", "core", "-n", str(count), f"{program}-mpi", "svbrdf",
                      description, "-o", folder / "out", "--force", "--json", "--threads", "1",
                      "--checks", "0", "--form", *form])
                 walls[count] = answer["seconds"]["writing"]
@@ -119,7 +129,7 @@ def ranks(program, folder, side, runs):
                 times[count].append(seconds)
             ratios.append(walls[1] / walls[2])
             wholes.append(parts[1] / parts[2])
-        print(f"{form[0]}: two processes over one, writing {statistics.median(ratios):.2f} "
+        print(f"{kind}, {form[0]}: two processes over one, writing {statistics.median(ratios):.2f} "
               f"({min(ratios):.2f} to {max(ratios):.2f}), whole {statistics.median(wholes):.2f} "
               f"({min(wholes):.2f} to {max(wholes):.2f}); processor "
               f"{statistics.median(times[1]):.2f} s and {statistics.median(times[2]):.2f} s",
@@ -143,16 +153,17 @@ def main():
     parser.add_argument("--side", type=int, default=4096)
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--only", choices=("forms", "ranks", "estimate"))
-    parser.add_argument("--texel-ns", type=float, default=280, help="processor time of a texel")
-    parser.add_argument("--decode-ns", type=float, default=40, help="of decoding a texel's maps")
-    parser.add_argument("--disk", type=float, default=2.5e9, help="bytes a second of a machine")
+    parser.add_argument("--texel-ns", type=float, default=227, help="processor time of a texel")
+    parser.add_argument("--decode-ns", type=float, default=96, help="of decoding a texel's maps")
+    parser.add_argument("--disk", type=float, default=3e9, help="bytes a second of a machine")
     given = parser.parse_args()
     program = given.folder.resolve() / "hshfit"
     with tempfile.TemporaryDirectory() as name:
         if given.only in (None, "forms"):
             forms(program, Path(name), given.side)
         if given.only in (None, "ranks"):
-            ranks(program, Path(name), 2048, given.runs)
+            for kind in ("pfm", "png"):
+                ranks(program, Path(name), 2048, given.runs, kind)
     if given.only in (None, "estimate"):
         estimate(given.texel_ns * 1e-9, given.decode_ns * 1e-9, given.disk)
 
