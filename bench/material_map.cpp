@@ -117,12 +117,13 @@ void encoded(benchmark::State& state) {
     report(state, total * (side / bandRows));
 }
 
-/// An empty file for a LevelFile.
-std::string emptyFile(const BenchFolder& folder) {
-    std::string path = (folder.path / "map.ktx2").string();
+/// A new file for all levels.
+LevelFile fileOf(const Map& map, const BenchFolder& folder, bool pastPageCache) {
+    const std::string path = (folder.path / "map.ktx2").string();
     std::filesystem::remove(path);
-    std::ofstream file(path);
-    return path;
+    std::ofstream(path).close();
+    return {path, gpu::Number::float16, map.layout.layers(), map.sizes,
+            LevelFileOptions{.pastPageCache = pastPageCache}};
 }
 
 void disk(benchmark::State& state) {
@@ -135,8 +136,7 @@ void disk(benchmark::State& state) {
     std::size_t total = 0;
     for (auto _ : state) {
         state.PauseTiming();
-        LevelFile file(emptyFile(folder), gpu::Number::float16, map.layout.layers(), map.sizes,
-                       {.pastPageCache = state.range(0) == 0});
+        LevelFile file = fileOf(map, folder, state.range(0) == 0);
         state.ResumeTiming();
         file.begin();
         for (std::size_t level = 0; level < map.sizes.size(); ++level) {
@@ -158,8 +158,7 @@ void file(benchmark::State& state) {
     std::size_t total = 0;
     for (auto _ : state) {
         state.PauseTiming();
-        LevelFile file(emptyFile(folder), gpu::Number::float16, map.layout.layers(), map.sizes,
-                       {.pastPageCache = state.range(0) == 0});
+        LevelFile file = fileOf(map, folder, state.range(0) == 0);
         state.ResumeTiming();
         writeMap(map.texels, map.encoder, file, plan, alone);
         total = file.bytes();
