@@ -186,7 +186,7 @@ Nearest nearestOf(const float* columns, std::size_t dimensions, std::size_t coun
     const std::size_t lanes = hn::Lanes(d);
     auto best = hn::Set(d, std::numeric_limits<float>::max());
     auto bestIndex = hn::Zero(whole);
-    const auto consider = [&](auto square, std::size_t first) {
+    const auto consider = [&](auto square, std::size_t first) HWY_ATTR {
         const auto nearer = hn::Lt(square, best);
         best = hn::IfThenElse(nearer, square, best);
         bestIndex = hn::IfThenElse(hn::RebindMask(whole, nearer),
