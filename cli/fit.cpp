@@ -1,5 +1,6 @@
 #include "command.h"
 #include "figure_options.h"
+#include "fit_instrument.h"
 #include "fit_uncertainty.h"
 #include "measured_numbers.h"
 
@@ -57,12 +58,14 @@ std::string text(const jobs::Fitted& fitted, const FitArguments& arguments) {
     const brdfs::FitResult& result = fitted.result;
     std::string lines = headLine(result) + samplesLine(fitted.preset["fit"]);
     for (const brdfs::FittedParameter& p : result.parameters) {
+        if (isScanScale(p)) continue;
         const std::string value = p.standardError ? withError(p.value, *p.standardError)
                                   : !p.bound.empty()
                                       ? fmt::format("{:.6g}, at its {} bound", p.value, p.bound)
                                       : fmt::format("{:.6g}, not determined by the data", p.value);
         lines += fmt::format("  {:<24} {:>2} {}\n", p.name, p.channel, value);
     }
+    lines += instrumentText(result);
     if (fitted.search) {
         for (const brdfs::PartTrial& trial : fitted.search->trials) {
             const std::string name = trial.parts.empty()
@@ -258,6 +261,7 @@ void addFit(CLI::App& command, Globals& globals) {
     command.add_option("--residuals", options.residuals,
                        "CSV file with a row for each value: model, residual, leverage, ...");
     addFigureOptions(command, arguments->figures);
+    addInstrumentOptions(command, options.instrument);
     command.add_flag("--accept", options.accept, "Take a fit that did not converge");
     addRgb(command, options.rgb);
     command.callback([arguments, &globals] { runFit(*arguments, globals); });

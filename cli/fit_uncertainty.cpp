@@ -43,6 +43,8 @@ std::string errorTable(const Document& uncertainty) {
         fmt::format("  {:<27} {:>10} {:>10}{}{}\n", "standard errors", "normal", "sandwich",
                     scans ? "    by scan" : "", bootstrap ? "  bootstrap" : "");
     for (const Document& own : uncertainty["parameters"]) {
+        // Of scans there may be hundreds; FIT.json has them all.
+        if (own["name"].get<std::string>().starts_with("scale ")) continue;
         lines +=
             fmt::format("  {:<24} {:>2} {:>10} {:>10}", own["name"].get<std::string>(),
                         own.value("channel", ""), number(own["normal"]), number(own["sandwich"]));

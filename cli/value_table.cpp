@@ -171,6 +171,16 @@ Words scanWords() {
             {"incidence", "samples of one incident direction"}};
 }
 
+Words fitWords() {
+    return {{"fit", "found by the fit"}};
+}
+
+Words darkWords() {
+    return {{"fit", "found by the fit, over the cosine of the outgoing direction"},
+            {"fit:in", "of the incident direction"},
+            {"fit:both", "of both"}};
+}
+
 Words sigmaWords() {
     return {{"column", "of the file"}};
 }
@@ -194,9 +204,13 @@ constexpr ValueRow table[] = {
     {"export", "--output", nullptr, Syntax::word, Files::folder},
     {"fit", "--all", nullptr, Syntax::word, Files::folder},
     {"fit", "--at", placeWords},
+    {"fit", "--dark", darkWords},
+    {"fit", "--offset", fitWords},
     {"fit", "--residuals", nullptr, Syntax::word, Files::written, ".csv"},
+    {"fit", "--scan-scale", fitWords},
     {"fit", "--scans", scanWords},
     {"fit", "--sigma", sigmaWords, Syntax::word, Files::read, ".csv"},
+    {"fit", "--stray", fitWords},
     {"fit", "--weights", weightWords},
     {"help", "WORD", helpWords},
     {"illuminate", "--output", nullptr, Syntax::word, Files::folder},

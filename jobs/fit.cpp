@@ -37,13 +37,15 @@ brdfs::FitOptions optionsOf(const FitOptions& options, const Brdf& data) {
     fit.seed = options.seed;
     fit.iterations = options.iterations;
     fit.uncertainty.report = !options.sigma.empty() || !options.scans.empty() ||
-                             options.bootstrap > 0 || options.profile || !options.residuals.empty();
+                             options.bootstrap > 0 || options.profile ||
+                             !options.residuals.empty() || options.instrument.any();
     // Of measured samples, figures come with a row for each; a robust kernel has no such study.
     if (options.figures && fit.robust == brdfs::Robust::none &&
         fit.loss != brdfs::Loss::Kind::picture && brdfs::areMeasured(data))
         fit.uncertainty.report = true;
     fit.uncertainty.bootstrap = options.bootstrap;
     fit.uncertainty.profile = options.profile;
+    fit.instrument = brdfs::parseInstrument(options.instrument);
     return fit;
 }
 
@@ -57,6 +59,13 @@ std::optional<Setting> sampleSetting(const FitOptions& options) {
         {options.bootstrap > 0, "FitOptions::bootstrap"},
         {options.profile, "FitOptions::profile"},
         {!options.residuals.empty(), "FitOptions::residuals"},
+        {!options.instrument.source.empty(), "FitOptions::instrument.source"},
+        {!options.instrument.detector.empty(), "FitOptions::instrument.detector"},
+        {!options.instrument.bandwidth.empty(), "FitOptions::instrument.bandwidth"},
+        {!options.instrument.offset.empty(), "FitOptions::instrument.offset"},
+        {!options.instrument.dark.empty(), "FitOptions::instrument.dark"},
+        {!options.instrument.stray.empty(), "FitOptions::instrument.stray"},
+        {!options.instrument.scale.empty(), "FitOptions::instrument.scale"},
     };
     for (const auto& [given, name] : rows)
         if (given) return Setting{name};

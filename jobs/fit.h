@@ -48,6 +48,7 @@ struct FitOptions {
     bool profile = false;        ///< intervals by profile likelihood
     std::string residuals = {};  ///< CSV file, a row for each value; empty: none
     std::optional<FigureOptions> figures = {};  ///< for print; none: not drawn
+    brdfs::InstrumentText instrument = {};      ///< between f and the samples
 };
 
 /// The name of the loss that these options ask for with these data.

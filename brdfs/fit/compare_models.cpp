@@ -74,9 +74,8 @@ bool stated(const FitSamples& samples) {
     return !samples.sigmas.empty() || !samples.scans.empty();
 }
 
-void addSquares(const Brdf& brdf, const FitSamples& held, Loss::Kind loss,
+void addSquares(const std::vector<double>& f, const FitSamples& held, Loss::Kind loss,
                 const std::vector<std::size_t>& fold, HeldOut& result) {
-    const std::vector<double> f = valuesOf(brdf, held);
     for (std::size_t c = 0; c < held.channels.count(); ++c)
         for (std::size_t k = 0; k < held.size(); ++k) {
             const double r = mapValue(loss, f[c * held.size() + k], held.wiZ[k]).value -
@@ -95,7 +94,8 @@ HeldOut heldOutLoss(const FitSamples& samples, const Folds& folds, FitOptions op
     for (const std::vector<std::size_t>& fold : folds) {
         if (fold.empty()) continue;
         FitSamples rest = without(samples, fold);
-        rest.scans.clear();  // errors of parameters are of no use here
+        // Errors of parameters are of no use here.
+        if (!options.instrument.scales) rest.scans.clear();
         const FitResult result = fit(rest, options);
         const FitSamples held = samples.subset(fold);
         double weight = 0;
@@ -104,11 +104,11 @@ HeldOut heldOutLoss(const FitSamples& samples, const Folds& folds, FitOptions op
             for (std::size_t c = 0; !samples.sigmas.empty() && c < samples.channels.count(); ++c)
                 weight += samples.weight(c, k);
         }
-        const auto fitted = openFit(result);
-        const double loss = lossOf(*fitted, held, options.loss);
+        const std::vector<double> predicted = predictedValues(result, held);
+        const double loss = lossOf(predicted, held, options.loss);
         squares += weight * loss * loss;
         weights += weight;
-        if (stated(samples)) addSquares(*fitted, held, options.loss, fold, heldOut);
+        if (stated(samples)) addSquares(predicted, held, options.loss, fold, heldOut);
     }
     heldOut.loss = std::sqrt(squares / weights);
     return heldOut;

@@ -3,10 +3,13 @@
 #include <brdfs/catalog.h>
 #include <brdfs/fit/covariance.h>
 #include <brdfs/fit/distributions.h>
+#include <brdfs/fit/filled_in.h>
 #include <brdfs/fit/fit_search.h>
+#include <brdfs/fit/instrument/instrument_fit.h>
 #include <brdfs/fit/minimum_study.h>
 #include <brdfs/fit/normal_equations.h>
 #include <brdfs/fit/parametric_sum.h>
+#include <brdfs/fit/unseen_lobes.h>
 #include <brdfs/spectrum.h>
 #include <hshfit/error.h>
 
@@ -24,44 +27,6 @@ struct Part {
     std::vector<double> shapes, linear;
     double squares = 0, weights = 0;
 };
-
-/// Shapes of what a linear parameter scales are not determined where that is not told from 0, and
-/// errors by derivatives mean nothing there, its own included (Davies 1977,
-/// 10.1093/biomet/64.2.247).
-void reportUnseenLobes(const FitProblem& problem, const std::vector<double>& x,
-                       const Equations& equations, const std::vector<bool>& fixed,
-                       Covariance& covariance) {
-    const std::size_t shapes = problem.shapeCount(), channels = problem.channels(), n = x.size();
-    for (std::size_t first = shapes; first < n; first += channels) {
-        std::vector<std::size_t> concerned;
-        std::vector<double> without = x;
-        bool seen = false;
-        for (std::size_t i = first; i < first + channels; ++i) {
-            without[i] = 0;
-            if (fixed[i]) {
-                seen = seen || x[i] > 0;
-                continue;
-            }
-            seen =
-                seen || covariance.variance[i] < 0 || x[i] > 2 * std::sqrt(covariance.variance[i]);
-            concerned.push_back(i);
-        }
-        if (seen || shapes == 0) continue;
-        const Equations rest = problem.joint(without, true);
-        const std::size_t linears = concerned.size();
-        for (std::size_t j = 0; j < shapes; ++j)
-            if (!fixed[j] && covariance.variance[j] >= 0 &&
-                rest.hessian[j * n + j] <= 1e-12 * equations.hessian[j * n + j])
-                concerned.push_back(j);
-        if (concerned.size() == linears) continue;
-        for (const std::size_t i : concerned) {
-            covariance.variance[i] = -1;
-            for (std::size_t j = 0; j < n; ++j)
-                covariance.correlations[i * n + j] = covariance.correlations[j * n + i] = 0;
-        }
-        covariance.ambiguous.push_back(std::move(concerned));
-    }
-}
 
 void describe(const FitProblem& problem, const std::vector<double>& x, const FitOptions& options,
               Part& part) {
@@ -113,7 +78,10 @@ void describe(const FitProblem& problem, const std::vector<double>& x, const Fit
         equations.spread = spreadOfScans(problem, x, inverse);
         covariance = covarianceOf(equations, fixed);
     }
-    reportUnseenLobes(problem, x, equations, fixed, covariance);
+    reportUnseenLobes(
+        {shapes, channels, shapes + problem.linearCount()},
+        [&](std::span<const double> at) { return problem.joint(at, true); }, x, equations, fixed,
+        covariance);
     for (std::size_t i = 0; i < x.size(); ++i)
         if (covariance.variance[i] >= 0)
             parameters[i].standardError = std::sqrt(covariance.variance[i]) * slope[i];
@@ -234,26 +202,11 @@ void checkStatements(const FitSamples& samples, const FitOptions& options) {
             "uncertainties are those of a sum of squares; leave out the robust kernel");
 }
 
-std::vector<FittedWavelength> spectrumOf(const ParametricSum& sum,
-                                         const std::vector<std::vector<double>>& shapes,
-                                         const std::vector<double>& linear,
-                                         const std::vector<double>& wavelengths) {
-    std::vector<FittedWavelength> spectrum;
-    const std::size_t channels = wavelengths.size();
-    for (std::size_t c = 0; c < channels; ++c) {
-        std::vector<double> own;
-        for (std::size_t k = 0; k < sum.linears().size(); ++k)
-            own.push_back(linear[k * channels + c]);
-        spectrum.push_back(
-            {wavelengths[c], sum.filledIn({shapes[shapes.size() == 1 ? 0 : c]}, own, 1)});
-    }
-    return spectrum;
-}
-
 }  // namespace
 
 FitResult fit(const FitSamples& samples, const FitOptions& options) {
     checkStatements(samples, options);
+    if (options.instrument.any()) return fitWithInstrument(samples, options);
     const ParametricSum sum(options.model, samples.isotropic);
     const std::size_t channels = samples.channels.count();
     const bool apart = options.perChannel && channels > 1;
@@ -272,10 +225,7 @@ FitResult fit(const FitSamples& samples, const FitOptions& options) {
                 linear[k * channels + c] = parts[c].linear[k];
     }
     result.model = sum.spec();
-    if (samples.channels.kind == Channels::Kind::spectral)
-        result.spectrum = spectrumOf(sum, shapes, linear, samples.channels.wavelengths);
-    else
-        result.spec = sum.filledIn(shapes, linear, channels);
+    fillIn(sum, shapes, linear, samples.channels, result);
     result.startCount = options.starts;
     result.seed = options.seed;
     result.samples = samples.size();
@@ -302,6 +252,11 @@ std::unique_ptr<Brdf> openFit(const FitResult& result) {
     return std::make_unique<Spectrum>(std::move(lines), "fit of " + result.model);
 }
 
+std::vector<double> predictedValues(const FitResult& result, const FitSamples& samples) {
+    if (result.instrument) return readingsOf(result, samples);
+    return valuesOf(*openFit(result), samples);
+}
+
 std::vector<double> valuesOf(const Brdf& brdf, const FitSamples& samples) {
     const std::size_t count = samples.size(), channels = samples.channels.count();
     const std::size_t own = brdf.channels().count();
@@ -321,7 +276,10 @@ std::vector<double> valuesOf(const Brdf& brdf, const FitSamples& samples) {
 }
 
 double lossOf(const Brdf& brdf, const FitSamples& samples, Loss::Kind loss) {
-    const std::vector<double> values = valuesOf(brdf, samples);
+    return lossOf(valuesOf(brdf, samples), samples, loss);
+}
+
+double lossOf(const std::vector<double>& values, const FitSamples& samples, Loss::Kind loss) {
     double squares = 0, weights = 0;
     for (std::size_t c = 0; c < samples.channels.count(); ++c)
         for (std::size_t k = 0; k < samples.size(); ++k) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <brdfs/fit/fit_samples.h>
+#include <brdfs/fit/instrument/fitted_instrument.h>
 #include <brdfs/fit/loss.h>
 #include <brdfs/fit/uncertainty.h>
 
@@ -27,6 +28,9 @@ struct FitOptions {
     int iterations = 200;     ///< of the last search
     std::function<void(std::size_t, std::size_t)> progress = {};
     UncertaintyOptions uncertainty = {};
+    /// Between f and the samples; with it the loss has to be l2 or cosine, without a robust kernel
+    /// or shapes for each channel.
+    Instrument instrument = {};
 };
 
 /// A free parameter after a fit.
@@ -38,6 +42,7 @@ struct FittedParameter {
     /// None at a bound, and where the data do not determine it.
     std::optional<double> standardError = {};
     bool linear = false;
+    bool instrument = false;  ///< of the instrument, not of the material
 };
 
 /// The fit at one wavelength: the specification of a grey BRDF.
@@ -66,6 +71,7 @@ struct FitResult {
     double projectedGradient = 0;  ///< largest component that bounds do not stop, per unit of scale
     double aic = 0, bic = 0;
     std::optional<Uncertainty> uncertainty;  ///< only if asked for
+    std::optional<FittedInstrument> instrument = {};
 };
 
 /// The parameters with the least loss, from several starts.
@@ -85,11 +91,16 @@ struct FitResult {
 /// uncertainties with a robust kernel; NumericError if there are fewer values than parameters.
 FitResult fit(const FitSamples& samples, const FitOptions& options);
 
-/// Opens the fit: `spec` or `spectrum`.
+/// Opens the fit: `spec` or `spectrum`, the material without the instrument.
 std::unique_ptr<Brdf> openFit(const FitResult& result);
 
 /// f of a fitted specification at samples: [channel * size + k].
 std::vector<double> valuesOf(const Brdf& brdf, const FitSamples& samples);
+/// Expected readings of samples by a fit: f, or f as its instrument shows it, with the scales
+/// of scans that fit these samples best. [channel * size + k]
+std::vector<double> predictedValues(const FitResult& result, const FitSamples& samples);
+/// The loss of values, as FitResult::loss.
+double lossOf(const std::vector<double>& values, const FitSamples& samples, Loss::Kind loss);
 /// The loss of any BRDF at samples, as FitResult::loss.
 double lossOf(const Brdf& brdf, const FitSamples& samples, Loss::Kind loss);
 

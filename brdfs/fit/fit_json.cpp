@@ -1,5 +1,6 @@
 #include <brdfs/fit/fit_json.h>
 
+#include <brdfs/fit/instrument/instrument_json.h>
 #include <brdfs/fit/uncertainty_json.h>
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/version.h>
@@ -21,6 +22,7 @@ Json parametersJson(const FitResult& result) {
         json["standard_error"] = parameter.standardError ? Json(*parameter.standardError) : Json();
         if (!parameter.bound.empty()) json["at_bound"] = parameter.bound;
         json["linear"] = parameter.linear;
+        if (parameter.instrument) json["instrument"] = true;
         list.push_back(std::move(json));
     }
     return list;
@@ -39,8 +41,7 @@ Json correlationsJson(const FitResult& result) {
 
 Json metricsJson(const FitReport& report) {
     const FitSamples& samples = *report.ofMetrics;
-    const auto brdf = openFit(report.result);
-    const std::vector<double> own = valuesOf(*brdf, samples);
+    const std::vector<double> own = predictedValues(report.result, samples);
     Json metrics = Json::array();
     for (const MetricValue& value :
          compareSamples(samples.values, own, samples.wiZ, samples.weights)) {
@@ -107,6 +108,7 @@ Json fitPreset(const FitReport& report) {
         {"metrics", metricsJson(report)},
     };
     if (options.robust != Robust::none) fit["robust_scale"] = result.robustScale;
+    if (result.instrument) fit["instrument"] = instrumentJson(*result.instrument);
     if (result.uncertainty) {
         fit["uncertainty"] = uncertaintyJson(report);
         fit["influence"] = influenceJson(samples, *result.uncertainty);

@@ -1,10 +1,8 @@
 #include <brdfs/fit/minimum_study.h>
 
 #include <brdfs/fit/distributions.h>
-#include <hshfit/error.h>
+#include <brdfs/fit/scan_spread.h>
 #include <hshfit/linear_algebra/decompositions.h>
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -53,12 +51,6 @@ std::vector<double> leveragesOf(const WeightedRows& rows, const DenseMatrix& inv
     return leverages;
 }
 
-/// J^T W J and J^T W r of the values of one scan.
-struct ScanSums {
-    DenseMatrix matrix;
-    DenseVector gradient;
-};
-
 std::vector<ScanSums> sumsOfScans(const WeightedRows& rows, const std::vector<std::size_t>& scans,
                                   std::size_t n, std::size_t shapes) {
     const std::size_t count = *std::ranges::max_element(scans) + 1;
@@ -78,19 +70,6 @@ std::vector<ScanSums> sumsOfScans(const WeightedRows& rows, const std::vector<st
     return sums;
 }
 
-/// L with L L^T = inverse, from the eigenvalues of the matrix scaled to a diagonal of 1.
-DenseMatrix rootOf(const DenseMatrix& inverse) {
-    DenseVector scale = inverse.diagonal().cwiseMax(0).cwiseSqrt();
-    DenseMatrix scaled = inverse;
-    for (Eigen::Index i = 0; i < scale.size(); ++i) {
-        const double s = scale(i) > 0 ? 1 / scale(i) : 0;
-        scaled.row(i) *= s, scaled.col(i) *= s;
-    }
-    const Eigen::SelfAdjointEigenSolver<DenseMatrix> eigen(scaled);
-    return scale.asDiagonal() * eigen.eigenvectors() *
-           eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
-}
-
 std::size_t scanCount(const FitSamples& samples) {
     return samples.scans.empty() ? 0 : *std::ranges::max_element(samples.scans) + 1;
 }
@@ -102,27 +81,64 @@ std::vector<double> spreadOfScans(const FitProblem& problem, std::span<const dou
     const std::vector<std::size_t>& scans = problem.samples().scans;
     const std::size_t n = x.size(), shapes = problem.shapeCount();
     const WeightedRows rows = problem.weightedRows(x);
-    const DenseMatrix root = rootOf(unscaledInverse(problem, inverse, n));
-    const std::vector<ScanSums> sums = sumsOfScans(rows, scans, n, shapes);
-    if (sums.size() <= rows.columns)
-        throw NumericError(fmt::format(
-            "{} scans cannot give errors of {} parameters; expected more scans than parameters",
-            sums.size(), rows.columns));
-    // With M = L L^T: (1 - A M)^-1 b = b + A L (1 - L^T A L)^-1 L^T b.
-    DenseMatrix spread = DenseMatrix::Zero(at(n), at(n));
-    for (const ScanSums& scan : sums) {
-        const DenseMatrix own = root.transpose() * scan.matrix * root;
-        const Eigen::SelfAdjointEigenSolver<DenseMatrix> eigen(own);
-        const DenseVector freedom = (1 - eigen.eigenvalues().array()).max(leastFreedom);
-        const DenseVector inner =
-            eigen.eigenvectors() * freedom.cwiseInverse().asDiagonal() *
-            (eigen.eigenvectors().transpose() * (root.transpose() * scan.gradient));
-        const DenseVector left = scan.gradient + scan.matrix * (root * inner);
-        spread += left * left.transpose();
-    }
-    const double count = static_cast<double>(sums.size());
-    spread *= (count - 1) / (count * problem.normalisation() * problem.normalisation());
+    const DenseMatrix own = unscaledInverse(problem, inverse, n);
+    const double square = problem.normalisation() * problem.normalisation();
+    const DenseMatrix spread =
+        scanSpread(sumsOfScans(rows, scans, n, shapes), own, rows.columns) / square;
     return {spread.data(), spread.data() + n * n};
+}
+
+Uncertainty influences(const StudiedValues& values) {
+    Uncertainty result;
+    result.stated = values.stated;
+    result.scans = values.scans;
+    double rank = values.otherRank;
+    result.chiSquare = values.otherSquares;
+    for (std::size_t v = 0; v < values.leverages.size(); ++v) {
+        rank += values.leverages[v];
+        result.chiSquare += values.residuals[v] * values.residuals[v];
+    }
+    const double count = static_cast<double>(values.leverages.size()),
+                 determined = std::round(rank);
+    const double degrees = std::max(0.0, count + values.otherCount - determined);
+    result.degreesOfFreedom = static_cast<std::size_t>(degrees);
+    if (result.stated) result.probability = chiSquareProbability(result.chiSquare, degrees);
+    const double variance = result.reducedChiSquare();
+
+    result.values.resize(values.leverages.size());
+    for (std::size_t v = 0; v < values.leverages.size(); ++v) {
+        const double leverage = values.leverages[v], residual = values.residuals[v];
+        const double freedom = std::max(1 - leverage, leastFreedom);
+        const double own = residual * residual / freedom;
+        ValueInfluence& value = result.values[v];
+        value.model = values.models[v];
+        value.leverage = leverage;
+        if (variance > 0 && determined > 0)
+            value.cook = own * leverage / (freedom * determined * variance);
+        const double others = (result.chiSquare - own) / (degrees - 1);
+        if (degrees > 1 && others > 0) value.studentised = residual / std::sqrt(others * freedom);
+    }
+    constexpr double expected = 0.05;
+    if (degrees > 1) result.outlierBound = studentBound(expected / count, degrees - 1);
+    return result;
+}
+
+void addErrors(std::span<const double> inverse, const std::vector<double>& slope,
+               const Covariance& stated, const Covariance& sandwich, Uncertainty& result) {
+    const std::size_t n = slope.size();
+    const double scale = result.stated ? 1 : result.reducedChiSquare();
+    result.parameters.resize(n);
+    result.covariance.assign(n * n, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+        if (stated.variance[i] < 0) continue;
+        ParameterUncertainty& own = result.parameters[i];
+        for (std::size_t j = 0; j < n; ++j)
+            if (stated.variance[j] >= 0)
+                result.covariance[i * n + j] = scale * inverse[i * n + j] * slope[i] * slope[j];
+        own.normal = std::sqrt(result.covariance[i * n + i]);
+        if (sandwich.variance[i] >= 0) own.sandwich = std::sqrt(sandwich.variance[i]) * slope[i];
+        if (result.scans > 0) own.scans = std::sqrt(stated.variance[i]) * slope[i];
+    }
 }
 
 Uncertainty studied(const StudiedMinimum& minimum) {
@@ -131,52 +147,12 @@ Uncertainty studied(const StudiedMinimum& minimum) {
     const WeightedRows rows = problem.weightedRows(minimum.x);
     const DenseMatrix inverse =
         unscaledInverse(problem, inverseOf(minimum.equations, minimum.fixed), n);
-    const std::vector<double> leverages = leveragesOf(rows, inverse, shapes);
-    Uncertainty result;
-    result.stated = !problem.samples().sigmas.empty();
-    result.scans = scanCount(problem.samples());
-    double rank = 0;
-    for (std::size_t v = 0; v < leverages.size(); ++v) {
-        rank += leverages[v];
-        result.chiSquare += rows.residuals[v] * rows.residuals[v];
-    }
-    const double count = static_cast<double>(leverages.size()), determined = std::round(rank);
-    const double degrees = std::max(0.0, count - determined);
-    result.degreesOfFreedom = static_cast<std::size_t>(degrees);
-    if (result.stated) result.probability = chiSquareProbability(result.chiSquare, degrees);
-    const double variance = result.reducedChiSquare();
-
-    result.values.resize(leverages.size());
-    for (std::size_t v = 0; v < leverages.size(); ++v) {
-        const double freedom = std::max(1 - leverages[v], leastFreedom);
-        const double own = rows.residuals[v] * rows.residuals[v] / freedom;
-        ValueInfluence& value = result.values[v];
-        value.model = rows.values[v];
-        value.leverage = leverages[v];
-        if (variance > 0 && determined > 0)
-            value.cook = own * leverages[v] / (freedom * determined * variance);
-        const double others = (result.chiSquare - own) / (degrees - 1);
-        if (degrees > 1 && others > 0)
-            value.studentised = rows.residuals[v] / std::sqrt(others * freedom);
-    }
-    constexpr double expected = 0.05;
-    if (degrees > 1) result.outlierBound = studentBound(expected / count, degrees - 1);
-
-    const double scale = result.stated ? 1 : variance;
-    result.parameters.resize(n);
-    result.covariance.assign(n * n, 0);
-    for (std::size_t i = 0; i < n; ++i) {
-        if (minimum.stated.variance[i] < 0) continue;
-        ParameterUncertainty& own = result.parameters[i];
-        for (std::size_t j = 0; j < n; ++j)
-            if (minimum.stated.variance[j] >= 0)
-                result.covariance[i * n + j] =
-                    scale * inverse(at(i), at(j)) * minimum.slope[i] * minimum.slope[j];
-        own.normal = std::sqrt(result.covariance[i * n + i]);
-        if (minimum.sandwich.variance[i] >= 0)
-            own.sandwich = std::sqrt(minimum.sandwich.variance[i]) * minimum.slope[i];
-        if (result.scans > 0) own.scans = std::sqrt(minimum.stated.variance[i]) * minimum.slope[i];
-    }
+    Uncertainty result = influences({.residuals = rows.residuals,
+                                     .models = rows.values,
+                                     .leverages = leveragesOf(rows, inverse, shapes),
+                                     .stated = !problem.samples().sigmas.empty(),
+                                     .scans = scanCount(problem.samples())});
+    addErrors({inverse.data(), n * n}, minimum.slope, minimum.stated, minimum.sandwich, result);
     return result;
 }
 

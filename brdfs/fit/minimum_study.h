@@ -1,11 +1,13 @@
 #pragma once
 
 #include <brdfs/fit/covariance.h>
+#include <brdfs/fit/fit_search.h>
 #include <brdfs/fit/normal_equations.h>
 #include <brdfs/fit/uncertainty.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -29,6 +31,25 @@ struct StudiedMinimum {
 std::vector<double> spreadOfScans(const FitProblem& problem, std::span<const double> x,
                                   std::span<const double> inverse);
 
+/// The values of a fit at its minimum.
+struct StudiedValues {
+    std::vector<double> residuals = {};  ///< root(w) (measured - model)
+    std::vector<double> models = {};     ///< 1/sr
+    std::vector<double> leverages = {};
+    bool stated = false;  ///< weights are 1 / sigma^2
+    std::size_t scans = 0;
+    /// Of terms beside the values, such as priors: squares, number, and sum of leverages.
+    double otherSquares = 0, otherCount = 0, otherRank = 0;
+};
+
+/// Chi-square and the influence of each value; no errors of parameters.
+Uncertainty influences(const StudiedValues& values);
+
+/// Adds the errors of parameters: by `inverse`, (J^T W J)^-1 [n * n], by `sandwich`, and, where the
+/// samples have scans, by `stated`.
+void addErrors(std::span<const double> inverse, const std::vector<double>& slope,
+               const Covariance& stated, const Covariance& sandwich, Uncertainty& result);
+
 /// Everything but bootstrap and profile.
 Uncertainty studied(const StudiedMinimum& minimum);
 
@@ -37,10 +58,24 @@ Uncertainty studied(const StudiedMinimum& minimum);
 void addBootstrap(const StudiedMinimum& minimum, const UncertaintyOptions& options,
                   std::uint64_t seed, Uncertainty& result);
 
-/// Adds, for each parameter with an error, the values at which the least chi-square over all
-/// others exceeds the minimum by the square of a normal quantile: 68.27 % and 95 % (Venzon &
-/// Moolgavkar 1988, 10.2307/2347496). Without stated uncertainties, by that of Student's quantile
+/// A sum of squares whose profiles are looked for.
+struct ProfiledProblem {
+    std::function<Equations(std::span<const double>, bool)> joint;
+    Bounds bounds;
+    double normalisation = 1;
+    std::function<double(std::size_t, double)> valueOf;  ///< of a parameter, from its x
+    const std::vector<double>& x;                        ///< at the minimum
+    const Equations& equations;
+    const std::vector<bool>& fixed;
+    const std::vector<double>& slope;
+};
+
+/// Adds, for each parameter of the problem with an error, the values at which the least chi-square
+/// over all others exceeds the minimum by the square of a normal quantile: 68.27 % and 95 % (Venzon
+/// & Moolgavkar 1988, 10.2307/2347496). Without stated uncertainties, by that of Student's quantile
 /// times the variance of residuals.
+void addProfiles(const ProfiledProblem& problem, const UncertaintyOptions& options,
+                 Uncertainty& result);
 void addProfiles(const StudiedMinimum& minimum, const UncertaintyOptions& options,
                  Uncertainty& result);
 

@@ -1,5 +1,4 @@
 #include <brdfs/fit/distributions.h>
-#include <brdfs/fit/fit_search.h>
 #include <brdfs/fit/minimum_study.h>
 #include <hshfit/error.h>
 
@@ -13,31 +12,31 @@ namespace {
 /// The least chi-square with one parameter held, in roots of its excess over the minimum.
 class ProfileOf {
 public:
-    ProfileOf(const StudiedMinimum& minimum, std::size_t parameter, double lowest)
-        : minimum_(minimum),
+    ProfileOf(const ProfiledProblem& problem, std::size_t parameter, double lowest)
+        : problem_(problem),
           parameter_(parameter),
           lowest_(lowest),
-          bounds_(jointBounds(minimum.problem.sum(), minimum.problem.channels())),
-          direction_(directionOf(minimum, parameter)) {}
+          bounds_(problem.bounds),
+          direction_(directionOf(problem, parameter)) {}
 
     double lower() const { return bounds_.lower[parameter_]; }
     double upper() const { return bounds_.upper[parameter_]; }
 
     double rootAt(double held) const {
-        std::vector<double> start = minimum_.x;
-        const double step = held - minimum_.x[parameter_];
+        std::vector<double> start = problem_.x;
+        const double step = held - problem_.x[parameter_];
         for (std::size_t j = 0; j < start.size(); ++j)
             start[j] =
                 std::clamp(start[j] + step * direction_[j], bounds_.lower[j], bounds_.upper[j]);
         const auto equations = [&](std::span<const double> others, bool derivatives) {
             std::vector<double> x(others.begin(), others.end());
             x.insert(x.begin() + static_cast<std::ptrdiff_t>(parameter_), held);
-            return ofOthers(minimum_.problem.joint(x, derivatives), derivatives);
+            return ofOthers(problem_.joint(x, derivatives), derivatives);
         };
         const Minimum found =
             minimise(equations, withoutParameter(start), withoutParameter(bounds_.lower),
                      withoutParameter(bounds_.upper), {.iterations = 50});
-        const double excess = 2 * minimum_.problem.normalisation() * found.cost - lowest_;
+        const double excess = 2 * problem_.normalisation * found.cost - lowest_;
         if (!std::isfinite(excess) || found.cost < 0)
             throw NumericError("profile likelihood: the cost is not finite beside the minimum");
         return std::sqrt(std::max(0.0, excess));
@@ -46,7 +45,7 @@ public:
     /// The value beyond the minimum at which the root reaches `level`, by false position from the
     /// quadratic guess; none where the bound comes first.
     std::optional<double> crossing(double level, double guess) const {
-        const double from = minimum_.x[parameter_];
+        const double from = problem_.x[parameter_];
         const double end = guess < from ? lower() : upper();
         double inner = from, innerRoot = 0;
         double outer = guess < from ? std::max(guess, end) : std::min(guess, end);
@@ -93,52 +92,47 @@ private:
         return result;
     }
     /// The way of the other parameters in the quadratic picture, per unit of this one.
-    static std::vector<double> directionOf(const StudiedMinimum& minimum, std::size_t parameter) {
-        const std::size_t n = minimum.x.size();
-        const std::vector<double> inverse = inverseOf(minimum.equations, minimum.fixed);
+    static std::vector<double> directionOf(const ProfiledProblem& problem, std::size_t parameter) {
+        const std::size_t n = problem.x.size();
+        const std::vector<double> inverse = inverseOf(problem.equations, problem.fixed);
         std::vector<double> direction(n, 0);
         for (std::size_t j = 0; j < n; ++j)
             direction[j] = inverse[parameter * n + j] / inverse[parameter * n + parameter];
         return direction;
     }
 
-    const StudiedMinimum& minimum_;
+    const ProfiledProblem& problem_;
     std::size_t parameter_;
     double lowest_;
     Bounds bounds_;
     std::vector<double> direction_;
 };
 
-double valueOf(const FitProblem& problem, std::size_t i, double x) {
-    return i < problem.shapeCount() ? problem.sum().shapes()[i].toValue(x) : x;
-}
-
 }  // namespace
 
-void addProfiles(const StudiedMinimum& minimum, const UncertaintyOptions& options,
+void addProfiles(const ProfiledProblem& problem, const UncertaintyOptions& options,
                  Uncertainty& result) {
-    const FitProblem& problem = minimum.problem;
     const double scale = result.stated ? 1 : result.reducedChiSquare();
     const double degrees = result.stated ? std::numeric_limits<double>::infinity()
                                          : static_cast<double>(result.degreesOfFreedom);
     const double outside = std::erfc(std::sqrt(0.5));  // of one standard deviation
     const double levels[] = {studentBound(outside, degrees), studentBound(0.05, degrees)};
-    const std::size_t n = minimum.x.size();
+    const std::size_t n = problem.x.size();
     for (std::size_t i = 0; i < n; ++i) {
         if (options.progress) options.progress(i, n);
         ParameterUncertainty& own = result.parameters[i];
         if (!own.normal || !(*own.normal > 0)) continue;
-        const ProfileOf profile(minimum, i, result.chiSquare);
-        const double error = *own.normal / minimum.slope[i],
-                     value = valueOf(problem, i, minimum.x[i]);
+        const ProfileOf profile(problem, i, result.chiSquare);
+        const double error = *own.normal / problem.slope[i],
+                     value = problem.valueOf(i, problem.x[i]);
         ParameterUncertainty::Profile found;
         for (std::size_t k = 0; k < 2; ++k) {
             Interval& interval = k == 0 ? found.within68 : found.within95;
             for (const double side : {-1.0, 1.0}) {
                 const auto end = profile.crossing(levels[k] * std::sqrt(scale),
-                                                  minimum.x[i] + side * levels[k] * error);
+                                                  problem.x[i] + side * levels[k] * error);
                 std::optional<double>& to = side < 0 ? interval.low : interval.high;
-                if (end) to = valueOf(problem, i, *end);
+                if (end) to = problem.valueOf(i, *end);
                 constexpr double agreement = 0.1;
                 const double expected = levels[k] * *own.normal;
                 if (!end || std::abs(std::abs(*to - value) - expected) > agreement * expected)
@@ -148,6 +142,26 @@ void addProfiles(const StudiedMinimum& minimum, const UncertaintyOptions& option
         own.profile = found;
     }
     if (options.progress) options.progress(n, n);
+}
+
+void addProfiles(const StudiedMinimum& minimum, const UncertaintyOptions& options,
+                 Uncertainty& result) {
+    const FitProblem& problem = minimum.problem;
+    const auto joint = [&](std::span<const double> x, bool derivatives) {
+        return problem.joint(x, derivatives);
+    };
+    const auto valueOf = [&](std::size_t i, double x) {
+        return i < problem.shapeCount() ? problem.sum().shapes()[i].toValue(x) : x;
+    };
+    addProfiles({.joint = joint,
+                 .bounds = jointBounds(problem.sum(), problem.channels()),
+                 .normalisation = problem.normalisation(),
+                 .valueOf = valueOf,
+                 .x = minimum.x,
+                 .equations = minimum.equations,
+                 .fixed = minimum.fixed,
+                 .slope = minimum.slope},
+                options, result);
 }
 
 }  // namespace hshfit::brdfs

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <brdfs/fit/fit.h>
+
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// The fit of FitOptions::instrument. A search without the instrument's fitted numbers gives the
+/// start, and is repeated on readings from which what was found of them is taken away. Quadratures
+/// are refined for the material that was found until they keep the tolerance for it, with a new
+/// search each time.
+/// Throws UsageError as checkInstrument, for a loss that is not l2 or cosine, and for shapes for
+/// each channel; NumericError where a quadrature does not reach its tolerance.
+FitResult fitWithInstrument(const FitSamples& samples, const FitOptions& options);
+
+/// predictedValues() of such a fit.
+std::vector<double> readingsOf(const FitResult& result, const FitSamples& samples);
+
+}  // namespace hshfit::brdfs

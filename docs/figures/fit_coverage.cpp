@@ -1,0 +1,98 @@
+// The share of synthetic scans whose truth the stated errors of fits hold:
+//     fit_coverage CSV [REPEATS] [SCANS]
+// fits REPEATS (2000) times SCANS (200) scans of tests/brdfs/instrument_scans.h, with the terms of
+// their instrument and without any, and writes a row per parameter and kind of fit: coverage of
+// intervals of one and of 1.96 errors by scan, sandwich and normal errors, mean deviation from the
+// truth and mean error.
+
+#include <brdfs/instrument_scans.h>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <vector>
+
+namespace {
+
+using namespace hshfit;
+using namespace hshfit::brdfs;
+
+struct Routes {
+    test::Coverage scans, sandwich, normal;
+    void add(double deviation, const ParameterUncertainty& own) {
+        scans.add(deviation, *own.scans);
+        sandwich.add(deviation, *own.sandwich);
+        normal.add(deviation, *own.normal);
+    }
+};
+
+void report(const char* kind, const char* name, double value, const Routes& own,
+            std::ofstream& csv) {
+    const double bias = own.scans.bias(), error = own.scans.error();
+    csv << fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", kind, name, value, own.scans.one(),
+                       own.scans.two(), own.sandwich.one(), own.sandwich.two(), own.normal.one(),
+                       own.normal.two(), bias, error);
+    fmt::print(
+        "{:<12} {:<6} by scan {:.3f} {:.3f}  sandwich {:.3f} {:.3f}  normal {:.3f} {:.3f}  "
+        "off by {:+.2f} % = {:+.1f} errors, scatter {:.2f} errors\n",
+        kind, name, own.scans.one(), own.scans.two(), own.sandwich.one(), own.sandwich.two(),
+        own.normal.one(), own.normal.two(), 100 * bias / value, bias / error,
+        own.scans.deviation() / error);
+}
+
+int run(int argc, char** argv) {
+    if (argc < 2) {
+        fmt::print(stderr, "usage: fit_coverage CSV [REPEATS] [SCANS]\n");
+        return 2;
+    }
+    const auto count = [&](int k, std::size_t otherwise) {
+        return argc > k ? static_cast<std::size_t>(std::atol(argv[k])) : otherwise;
+    };
+    const std::size_t repeats = count(2, 2000), scans = count(3, 200);
+    const test::ScanTruth truth;
+    const FitSamples exact = test::exactScans(truth, scans, 2026);
+    std::vector<FitResult> with(repeats), without(repeats);
+    tbb::parallel_for(std::size_t{0}, repeats, [&](std::size_t r) {
+        std::mt19937_64 random(1000 + r);
+        const FitSamples samples = test::noisyScans(exact, truth, random);
+        with[r] = fit(samples, test::scanFit(truth, true));
+        without[r] = fit(samples, test::scanFit(truth, false));
+        // Only the study of parameters is of interest here.
+        with[r].uncertainty->values.clear();
+        without[r].uncertainty->values.clear();
+    });
+    std::ofstream csv(argv[1]);
+    csv << "fit,parameter,truth,scans_68,scans_95,sandwich_68,sandwich_95,normal_68,normal_95,"
+           "mean_deviation,mean_error\n";
+    const std::pair<const char*, double> values[] = {
+        {"alpha", truth.alpha}, {"kd", truth.kd}, {"ks", truth.ks}, {"dark", truth.dark}};
+    for (const bool terms : {true, false}) {
+        const auto& results = terms ? with : without;
+        for (std::size_t i = 0; i < (terms ? 4u : 3u); ++i) {
+            Routes own;
+            for (const FitResult& result : results)
+                own.add(result.parameters[i].value - values[i].second,
+                        result.uncertainty->parameters[i]);
+            report(terms ? "instrument" : "none", values[i].first, values[i].second, own, csv);
+        }
+        double chiSquare = 0, degrees = 0;
+        for (const FitResult& result : results) {
+            chiSquare += result.uncertainty->chiSquare;
+            degrees += static_cast<double>(result.uncertainty->degreesOfFreedom);
+        }
+        fmt::print("{:<12} chi-square {:.3f} each\n", terms ? "instrument" : "none",
+                   chiSquare / degrees);
+    }
+    csv.close();
+    return csv ? 0 : 5;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try { return run(argc, argv); } catch (const std::exception& e) {
+    fmt::print(stderr, "fit_coverage: {}\n", e.what());
+    return 1;
+}
