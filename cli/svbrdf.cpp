@@ -1,5 +1,6 @@
 #include "command.h"
 #include "documents.h"
+#include "svbrdf_filtered.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
@@ -24,6 +25,8 @@ struct SvbrdfArguments {
     std::string description, output;
     std::string mips = "reflectance", writes = "direct";
     std::size_t memoryMegabytes = 1024;
+    int harmonics = 0;
+    double error = 0;
     jobs::SvbrdfOptions options;
 };
 
@@ -164,13 +167,50 @@ void refuseLaunchers() {
     }
 }
 
-void runSvbrdf(SvbrdfArguments& arguments, const Globals& globals) {
+bool isFilteredForm(const std::string& form) {
+    return form == "ellipse" || form == "harmonics" || form == "filtered";
+}
+
+/// Options that were given, but belong to other forms.
+void refuseOptions(const CLI::App& command, const std::string& form,
+                   std::initializer_list<const char*> options) {
+    for (const char* option : options) {
+        if (command.count(option) > 0)
+            throw UsageError(fmt::format("{} does not belong to --form {}", option, form));
+    }
+}
+
+void runFiltered(const SvbrdfArguments& arguments, const CLI::App& command,
+                 const Globals& globals) {
+    const jobs::SvbrdfOptions& from = arguments.options;
+    if (jobs::processesOfMaps().count() > 1)
+        throw UsageError(fmt::format("--form {} is made by one process", from.form));
+    refuseOptions(command, from.form,
+                  {"--basis", "--order", "--outgoing", "--cosine", "--tolerance", "--rank",
+                   "--clusters", "--memory", "--writes"});
+    if (from.form == "ellipse") refuseOptions(command, from.form, {"--harmonics"});
+    jobs::FilteredMapOptions options{.form = from.form,
+                                     .harmonics = arguments.harmonics,
+                                     .precision = from.precision,
+                                     .mips = from.mips,
+                                     .force = from.force,
+                                     .checks = static_cast<int>(from.checks)};
+    if (command.count("--error") > 0) options.error = arguments.error;
+    runFilteredMap(arguments.description, arguments.output, options, globals);
+}
+
+void runSvbrdf(SvbrdfArguments& arguments, const CLI::App& command, const Globals& globals) {
     jobs::SvbrdfOptions& options = arguments.options;
+    if (options.form.empty())
+        options.form = jobs::turnsTexels(arguments.description) ? "filtered" : "outgoing";
     options.mips = arguments.mips == "reflectance";
     options.memory = arguments.memoryMegabytes << 20;
     options.pastPageCache = arguments.writes == "direct";
     refuseLaunchers();
     if (options.precision == "half") options.precision = "float16";
+    if (isFilteredForm(options.form)) return runFiltered(arguments, command, globals);
+    refuseOptions(command, options.form, {"--harmonics"});
+    if (command.count("--error") > 0) options.error = arguments.error;
     if (options.rank > 0 && options.form == "outgoing")
         throw UsageError("--rank belongs to --form low-rank or clusters");
     const jobs::Svbrdf done =
@@ -184,20 +224,24 @@ void runSvbrdf(SvbrdfArguments& arguments, const Globals& globals) {
 void addSvbrdf(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<SvbrdfArguments>();
     jobs::SvbrdfOptions& options = arguments->options;
+    options.form.clear();  // by the description
     command
         .add_option("DESCRIPTION", arguments->description,
                     "A model and its parameters, numbers or maps, as JSON")
         ->required();
     command
         .add_option("-o,--output", arguments->output,
-                    "Folder for material.ktx2, material.json and errors.png")
+                    "Folder for material.ktx2, material.json, errors.png and, of harmonics, "
+                    "harmonics.ktx2")
         ->required();
     command
         .add_option("--form", options.form,
                     "outgoing: all coefficients; low-rank: weights of shared shapes; clusters: "
-                    "the index of a shared material")
-        ->check(CLI::IsMember({"outgoing", "low-rank", "clusters"}))
-        ->capture_default_str();
+                    "the index of a shared material. Of turned texels: ellipse or harmonics of the "
+                    "normals' distribution; filtered: the cheaper one within --error (default: "
+                    "filtered where the description has normals or directions, else outgoing)")
+        ->check(CLI::IsMember(
+            {"outgoing", "low-rank", "clusters", "ellipse", "harmonics", "filtered"}));
     command.add_option("--basis", options.basis, "Basis over incoming directions")
         ->capture_default_str();
     command.add_option("--order", options.order, "Bands of the basis")
@@ -218,11 +262,16 @@ void addSvbrdf(CLI::App& command, Globals& globals) {
     command.add_option("--rank", options.rank, "Shared shapes (default: by --error)")
         ->check(CLI::Range(1, 4096));
     command
-        .add_option("--error", options.error,
+        .add_option("--error", arguments->error,
                     "With --form low-rank or clusters: the largest relative error that shared "
-                    "shapes may leave in a sampled texel")
-        ->check(CLI::Range(1e-6, 1.0))
-        ->capture_default_str();
+                    "shapes may leave in a sampled texel (default: 0.01); with --form filtered or "
+                    "harmonics: that of a level against samples (default: 0.1)")
+        ->check(CLI::Range(1e-6, 1.0));
+    command
+        .add_option("--harmonics", arguments->harmonics,
+                    "Order of the harmonics of --form harmonics, odd (default: 9, 17 or 33 by "
+                    "--error)")
+        ->check(CLI::Range(3, 101));
     command.add_option("--clusters", options.clusters, "Shared materials of --form clusters")
         ->check(CLI::Range(std::size_t{1}, ClusterEncoder::most))
         ->capture_default_str();
@@ -248,7 +297,7 @@ void addSvbrdf(CLI::App& command, Globals& globals) {
         ->check(CLI::IsMember({"direct", "cached"}))
         ->capture_default_str();
     command.add_flag("--force", options.force, "Replace existing files");
-    command.callback([arguments, &globals] { runSvbrdf(*arguments, globals); });
+    command.callback([arguments, &command, &globals] { runSvbrdf(*arguments, command, globals); });
 }
 
 }  // namespace hshfit::cli

@@ -115,7 +115,7 @@ Words formWords() {
 }
 
 Words mapFormWords() {
-    return {{"outgoing"}, {"low-rank"}, {"clusters"}};
+    return {{"outgoing"}, {"low-rank"}, {"clusters"}, {"ellipse"}, {"harmonics"}, {"filtered"}};
 }
 
 Words mapPrecisionWords() {

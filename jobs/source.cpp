@@ -7,11 +7,14 @@
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
+#include <hshfit/filtered_maps/filtered_sidecar.h>
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/forms/form_files.h>
 #include <hshfit/material_maps/material_map.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/specification/parameters.h>
+
+#include "svbrdf/filtered_texel_brdf.h"
 
 #include <brdfs/catalog.h>
 #include <brdfs/measured/measured_brdf.h>
@@ -32,7 +35,8 @@ std::unique_ptr<Brdf> seenAsRgb(std::unique_ptr<Brdf> brdf, bool rgb) {
 /// A texel of a material map, "FILE:x=3,y=5,level=0"; null where SPEC is none.
 std::unique_ptr<Brdf> openTexel(const std::string& spec) {
     const std::string path(pathIn(spec));
-    if (path.empty() || !isMapSidecar(path)) return nullptr;
+    const bool filtered = !path.empty() && isFilteredSidecar(path);
+    if (path.empty() || !(filtered || isMapSidecar(path))) return nullptr;
     constexpr double most = 1 << 20;
     const Parameter parameters[] = {
         {.name = "x", .help = "column", .fallback = 0, .max = most},
@@ -48,6 +52,7 @@ std::unique_ptr<Brdf> openTexel(const std::string& spec) {
                 fmt::format("{}: {} is {}; it has to be a whole number", path, name, value));
         return static_cast<std::size_t>(value);
     };
+    if (filtered) return openFilteredTexel(path, index("level"), index("x"), index("y"));
     const MaterialMap map(path);
     Coefficients coefficients = map.coefficients(index("level"), index("x"), index("y"));
     map.checkIntact();

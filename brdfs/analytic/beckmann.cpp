@@ -1,5 +1,6 @@
 #include <brdfs/analytic/beckmann.h>
 
+#include <brdfs/analytic/facet_normals.h>
 #include <brdfs/analytic/microfacet.h>
 #include <hshfit/sampling/visible_normals.h>
 
@@ -29,7 +30,7 @@ namespace {
 HWY_EXPORT(evalBeckmann);
 HWY_EXPORT(beckmannColumns);
 
-class Beckmann final : public Microfacet<BeckmannShape<double>> {
+class Beckmann : public Microfacet<BeckmannShape<double>> {
 public:
     using Microfacet::Microfacet;
 
@@ -44,8 +45,10 @@ protected:
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     const Roughness roughness = roughnessOf(beckmannModel(), p);
-    return std::make_unique<Beckmann>(beckmannModel(), p, microfacetLaws(p, roughness),
-                                      BeckmannShape<double>{roughness});
+    return std::make_unique<WithFacetNormals<Beckmann>>(
+        microfacetNormals(beckmannModel(), p, beckmannNormals(roughness.ax, roughness.ay),
+                          roughness),
+        beckmannModel(), p, microfacetLaws(p, roughness), BeckmannShape<double>{roughness});
 }
 
 std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {

@@ -1,5 +1,6 @@
 #include <brdfs/analytic/ggx.h>
 
+#include <brdfs/analytic/facet_normals.h>
 #include <brdfs/analytic/ggx_shape.h>
 #include <brdfs/analytic/microfacet.h>
 #include <hshfit/sampling/visible_normals.h>
@@ -16,7 +17,7 @@ namespace {
 HWY_EXPORT(evalGgx);
 HWY_EXPORT(ggxColumns);
 
-class Ggx final : public Microfacet<GgxShape<double>> {
+class Ggx : public Microfacet<GgxShape<double>> {
 public:
     using Microfacet::Microfacet;
 
@@ -31,8 +32,9 @@ protected:
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     const Roughness roughness = roughnessOf(ggxModel(), p);
-    return std::make_unique<Ggx>(ggxModel(), p, microfacetLaws(p, roughness),
-                                 GgxShape<double>{roughness});
+    return std::make_unique<WithFacetNormals<Ggx>>(
+        microfacetNormals(ggxModel(), p, ggxNormals(roughness.ax, roughness.ay), roughness),
+        ggxModel(), p, microfacetLaws(p, roughness), GgxShape<double>{roughness});
 }
 
 std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {

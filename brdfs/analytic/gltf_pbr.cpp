@@ -1,6 +1,7 @@
 #include <brdfs/analytic/gltf_pbr.h>
 
 #include <brdfs/analytic/charlie_shape.h>
+#include <brdfs/analytic/facet_normals.h>
 #include <brdfs/analytic/ggx_shape.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/sheen_albedo.h>
@@ -72,8 +73,8 @@ double curvatureJump(const double* node) {
     return std::abs(node[-2] - 2 * node[-1] + 2 * node[1] - node[2]);
 }
 
-class GltfPbr final : public ShapedBrdf<GltfPbrShape<double>, evalByVectors,
-                                        evalAll<double, GltfPbrTerms, GltfPbrShape<double>>> {
+class GltfPbr : public ShapedBrdf<GltfPbrShape<double>, evalByVectors,
+                                  evalAll<double, GltfPbrTerms, GltfPbrShape<double>>> {
 public:
     explicit GltfPbr(const Parameters& p)
         : ShapedBrdf(gltfPbrModel(), p, lawsOf(p), channelWeights<GltfPbrFormula>(p), shapeOf(p)) {}
@@ -108,7 +109,18 @@ public:
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
-    return std::make_unique<GltfPbr>(p);
+    const GltfPbrShape<double> shape = shapeOf(p);
+    // A coat is a second lobe, and sheen has a peak of its own.
+    if (shape.clearcoat > 0 || shape.sheen > 0) return std::make_unique<GltfPbr>(p);
+    const RoughnessOf<double>& r = shape.base.r;
+    return std::make_unique<WithFacetNormals<GltfPbr>>(
+        FacetNormals{.density = ggxNormals(r.ax, r.ay),
+                     .widthX = r.ax,
+                     .widthY = r.ay,
+                     .turn = p.number("anisotropyRotation"),
+                     .weights = channelWeights<GltfPbrFormula>(p),
+                     .ofLobe = {false, true, true, false, false}},
+        p);
 }
 
 std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {

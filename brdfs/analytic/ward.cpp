@@ -1,5 +1,6 @@
 #include <brdfs/analytic/ward.h>
 
+#include <brdfs/analytic/facet_normals.h>
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
 #include <hshfit/sampling/visible_normals.h>
@@ -46,8 +47,8 @@ void evalByVectors(const WardShape<double>& shape, const TermBatch& batch) {
     HWY_DYNAMIC_DISPATCH(evalWard)(shape, batch);
 }
 
-class Ward final : public ShapedBrdf<WardShape<double>, evalByVectors,
-                                     evalAll<double, WardTerms, WardShape<double>>> {
+class Ward : public ShapedBrdf<WardShape<double>, evalByVectors,
+                               evalAll<double, WardTerms, WardShape<double>>> {
 public:
     explicit Ward(const Parameters& p)
         : ShapedBrdf(wardModel(), p, lawsOf(p), channelWeights<WardFormula>(p),
@@ -61,7 +62,14 @@ public:
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
-    return std::make_unique<Ward>(p);
+    const double ax = p.number("ax"), ay = p.number("ay");
+    return std::make_unique<WithFacetNormals<Ward>>(
+        FacetNormals{.density = beckmannNormals(ax, ay),
+                     .widthX = ax,
+                     .widthY = ay,
+                     .weights = channelWeights<WardFormula>(p),
+                     .ofLobe = {true}},
+        p);
 }
 
 std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {

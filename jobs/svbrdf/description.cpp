@@ -51,14 +51,84 @@ TransferCurve curveOf(const JsonFields& map) {
     map.fail(fmt::format("unknown curve '{}'; known: {}", name, joined(known)), "curve");
 }
 
+void requireKnown(const JsonFields& map, std::span<const std::string_view> known) {
+    for (const auto& [key, value] : map.json().items()) {
+        if (std::ranges::find(known, key) == known.end())
+            map.fail(fmt::format("unknown; known: {}", fmt::join(known, ", ")), key);
+    }
+}
+
+std::string pathOf(const JsonFields& map, const char* key, const std::string& file) {
+    return (std::filesystem::path(file).parent_path() / map.word(key)).string();
+}
+
+/// One of some words, the first where there is none.
+std::size_t choiceOf(const JsonFields& map, const char* key,
+                     std::span<const std::string_view> words) {
+    if (!map.has(key)) return 0;
+    const std::string word = map.word(key);
+    const auto found = std::ranges::find(words, word);
+    if (found == words.end())
+        map.fail(fmt::format("is '{}'; valid: {}", word, fmt::join(words, ", ")), key);
+    return static_cast<std::size_t>(found - words.begin());
+}
+
+VectorCodes codesOf(const JsonFields& map) {
+    constexpr std::string_view words[] = {"automatic", "unsigned", "signed"};
+    return static_cast<VectorCodes>(choiceOf(map, "encoding", words));
+}
+bool yDownOf(const JsonFields& map) {
+    constexpr std::string_view words[] = {"up", "down"};
+    return choiceOf(map, "y", words) == 1;
+}
+
+NormalReference normalOf(const JsonFields& map, const std::string& file) {
+    constexpr std::string_view known[] = {"map", "channels", "encoding", "y", "scale", "lengths"};
+    constexpr std::string_view lengths[] = {"refuse", "renormalise"};
+    requireKnown(map, known);
+    NormalReference result{.path = pathOf(map, "map", file),
+                           .codes = codesOf(map),
+                           .yDown = yDownOf(map),
+                           .renormalise = choiceOf(map, "lengths", lengths) == 1};
+    if (map.has("channels")) {
+        result.channels = map.words("channels");
+        if (result.channels.size() != 3 && result.channels.size() != 2)
+            map.fail("has to name three channels, or two of which z follows", "channels");
+    }
+    if (map.has("scale")) result.scale = map.number("scale", 0, 1e6);
+    return result;
+}
+
+DirectionReference directionOf(const JsonFields& root, const std::string& file) {
+    constexpr double most = 1e12;
+    if (!root.at("direction").is_object())
+        return {.degrees = root.number("direction", -most, most)};
+    const JsonFields map = root.object("direction");
+    constexpr std::string_view known[] = {"map",   "channels", "unit", "encoding",
+                                          "scale", "offset",   "y"};
+    constexpr std::string_view units[] = {"degrees", "turns", "radians", "vector"};
+    requireKnown(map, known);
+    DirectionReference result{.path = pathOf(map, "map", file),
+                              .unit = static_cast<DirectionUnit>(choiceOf(map, "unit", units)),
+                              .codes = codesOf(map),
+                              .yDown = yDownOf(map)};
+    const bool vector = result.unit == DirectionUnit::vector;
+    if (map.has("channels")) {
+        result.channels = map.words("channels");
+        if (result.channels.size() != (vector ? 2 : 1))
+            map.fail(vector ? "has to name two channels" : "has to name one channel", "channels");
+    }
+    for (const char* key : {"scale", "offset"})
+        if (vector && map.has(key)) map.fail("belongs to an angle", key);
+    if (map.has("scale")) result.scale = map.number("scale", -most, most);
+    if (map.has("offset")) result.offset = map.number("offset", -most, most);
+    return result;
+}
+
 MapReference mapOf(const JsonFields& map, bool colour, const std::string& file) {
     constexpr std::string_view known[] = {"map", "channels", "curve", "scale", "offset", "power"};
-    for (const auto& [key, value] : map.json().items()) {
-        if (std::ranges::find(known, key) == std::end(known))
-            map.fail(fmt::format("unknown; known: {}", joined(known)), key);
-    }
-    MapReference result{.path =
-                            (std::filesystem::path(file).parent_path() / map.word("map")).string()};
+    requireKnown(map, known);
+    MapReference result{.path = pathOf(map, "map", file)};
     if (map.has("channels")) result.channels = map.words("channels");
     const std::size_t count = result.channels.size();
     if (map.has("channels") && count != 1 && !(colour && count == 3))
@@ -103,10 +173,13 @@ MaterialDescription readMaterialDescription(const std::string& file) {
     const JsonFields root(json, "", file);
     if (root.word("format") != "hshfit-svbrdf") root.fail("has to be hshfit-svbrdf", "format");
     if (root.integer("version", 1, 1 << 20) != 1) root.fail("has to be 1", "version");
-    constexpr std::string_view known[] = {"format", "version", "model", "parameters", "source"};
-    for (const auto& [key, value] : json.items()) {
-        if (std::ranges::find(known, key) == std::end(known))
-            root.fail(fmt::format("unknown; known: {}", joined(known)), key);
+    constexpr std::string_view known[] = {"format", "version",   "model",  "parameters",
+                                          "normal", "direction", "texels", "source"};
+    requireKnown(root, known);
+    if (root.has("texels")) {
+        for (const char* key : {"model", "parameters", "normal", "direction"})
+            if (root.has(key)) root.fail("does not go with texels", key);
+        return {.file = file, .model = {}, .texels = pathOf(root, "texels", file)};
     }
     const brdfs::Model& model = modelOf(root);
     MaterialDescription result{.file = file, .model = std::string(model.name)};
@@ -126,6 +199,8 @@ MaterialDescription readMaterialDescription(const std::string& file) {
             result.parameters.push_back({.name = name, .values = valuesOf(parameters, parameter)});
         }
     }
+    if (root.has("normal")) result.normal = normalOf(root.object("normal"), file);
+    if (root.has("direction")) result.direction = directionOf(root, file);
     return result;
 }
 

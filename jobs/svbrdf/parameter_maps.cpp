@@ -13,79 +13,53 @@
 
 namespace hshfit::jobs {
 
-/// One picture and its channels, with the rows that were read last.
+/// One picture and its channels as values of a parameter.
 class ParameterMaps::Map {
 public:
     Map(const MapReference& reference, const Parameter& parameter)
-        : reference_(reference), parameter_(parameter), picture_(reference.path) {
-        const bool colour = parameter.kind == Parameter::Kind::colour;
-        if (!reference.channels.empty()) {
-            for (const std::string& name : reference.channels) indices_.push_back(find(name));
-        } else if (colour && picture_.find("R") >= 0) {
-            for (const char* name : {"R", "G", "B"}) indices_.push_back(find(name));
-        } else {
-            indices_.push_back(0);
-        }
-        first_ = *std::ranges::min_element(indices_);
-        last_ = *std::ranges::max_element(indices_) + 1;
-        if (!picture_.wholeNumbers() && reference.curve != TransferCurve::linear) {
-            picture_.fail(fmt::format("its {} values are linear, not coded by {}",
-                                      picture_.number(), curveName(reference.curve)));
+        : reference_(reference),
+          parameter_(parameter),
+          rows_(reference.path, reference.channels,
+                parameter.kind == Parameter::Kind::colour ? std::vector<std::string>{"R", "G", "B"}
+                                                          : std::vector<std::string>{}) {
+        if (!picture().wholeNumbers() && reference.curve != TransferCurve::linear) {
+            picture().fail(fmt::format("its {} values are linear, not coded by {}",
+                                       picture().number(), curveName(reference.curve)));
         }
     }
 
-    const PictureFile& picture() const { return picture_; }
-    std::size_t channels() const { return indices_.size(); }
+    const PictureFile& picture() const { return rows_.picture(); }
+    std::size_t channels() const { return rows_.channels(); }
 
     /// out[channel][column]
     void row(std::size_t row, float* out) {
-        const auto stride = static_cast<std::size_t>(last_ - first_);
-        const std::size_t width = picture_.width();
-        if (row < top_ || row >= bottom_) {
-            const std::size_t rows = picture_.blockRows(stride);
-            top_ = row / rows * rows;
-            bottom_ = std::min(top_ + rows, picture_.height());
-            block_.resize((bottom_ - top_) * width * stride);
-            picture_.read(top_, bottom_, first_, last_, block_.data());
-        }
-        for (std::size_t c = 0; c < channels(); ++c) {
-            const float* from = block_.data() + (row - top_) * width * stride +
-                                static_cast<std::size_t>(indices_[c] - first_);
-            for (std::size_t x = 0; x < width; ++x) out[c * width + x] = value(from[x * stride]);
-        }
+        rows_.row(row, out);
+        for (std::size_t k = 0; k < channels() * picture().width(); ++k) out[k] = value(out[k]);
     }
 
     /// Reads all rows; the range of the values that occur.
     void check(double& low, double& high, const Listener& listener) {
-        const auto progress = listener.part(fmt::format("checking {}", picture_.path()));
-        const std::size_t width = picture_.width();
+        const auto progress = listener.part(fmt::format("checking {}", picture().path()));
+        const std::size_t width = picture().width();
         std::vector<float> values(width * channels());
-        for (std::size_t y = 0; y < picture_.height(); ++y) {
+        for (std::size_t y = 0; y < picture().height(); ++y) {
             row(y, values.data());
             for (std::size_t k = 0; k < values.size(); ++k) {
                 const auto v = static_cast<double>(values[k]);
                 // Bounds are compared in the precision of the values.
                 if (!(values[k] >= static_cast<float>(parameter_.min) &&
                       values[k] <= static_cast<float>(parameter_.max))) {
-                    picture_.fail(fmt::format("texel ({}, {}): {} is {:g}; valid: {}", k % width, y,
-                                              parameter_.name, v, validValues(parameter_)));
+                    picture().fail(fmt::format("texel ({}, {}): {} is {:g}; valid: {}", k % width,
+                                               y, parameter_.name, v, validValues(parameter_)));
                 }
                 low = std::min(low, v);
                 high = std::max(high, v);
             }
-            if (progress) progress(y + 1, picture_.height());
+            if (progress) progress(y + 1, picture().height());
         }
     }
 
 private:
-    int find(const std::string& name) const {
-        const int index = picture_.find(name);
-        if (index < 0) {
-            picture_.fail(fmt::format("has no channel {}; channels: {}", name,
-                                      fmt::join(picture_.channels(), ", ")));
-        }
-        return index;
-    }
     float value(float stored) const {
         double v = static_cast<double>(stored);
         if (reference_.curve != TransferCurve::linear) v = decoded(reference_.curve, v);
@@ -95,11 +69,7 @@ private:
 
     MapReference reference_;
     const Parameter& parameter_;
-    PictureFile picture_;
-    std::vector<int> indices_;
-    int first_ = 0, last_ = 0;
-    std::size_t top_ = 0, bottom_ = 0;
-    std::vector<float> block_;
+    ChannelRows rows_;
 };
 
 ParameterMaps::ParameterMaps(const MaterialDescription& description, const Listener& listener) {
@@ -111,6 +81,18 @@ ParameterMaps::ParameterMaps(const MaterialDescription& description, const Liste
     };
     for (const auto& [key, word] : description.words) state(key, word);
     std::string firstPath;
+    const auto checkSize = [&](const PictureFile& picture) {
+        if (firstPath.empty()) {
+            firstPath = picture.path();
+            width_ = picture.width();
+            height_ = picture.height();
+        } else if (picture.width() != width_ || picture.height() != height_) {
+            picture.fail(
+                fmt::format("has {} x {} texels, and {} has {} x {}; all maps have to have "
+                            "one size",
+                            picture.width(), picture.height(), firstPath, width_, height_));
+        }
+    };
     for (const DescribedParameter& described : description.parameters) {
         if (described.map.path.empty() && described.values.size() == 1) {
             state(described.name, fmt::format("{}", described.values[0]));
@@ -124,23 +106,14 @@ ParameterMaps::ParameterMaps(const MaterialDescription& description, const Liste
         } else {
             map = std::make_unique<Map>(described.map, *varying.row);
             varying.channels = map->channels();
-            const PictureFile& picture = map->picture();
-            if (firstPath.empty()) {
-                firstPath = picture.path();
-                width_ = picture.width();
-                height_ = picture.height();
-            } else if (picture.width() != width_ || picture.height() != height_) {
-                picture.fail(
-                    fmt::format("has {} x {} texels, and {} has {} x {}; all maps have "
-                                "to have one size",
-                                picture.width(), picture.height(), firstPath, width_, height_));
-            }
+            checkSize(map->picture());
         }
         values_ += varying.channels;
         varying_.push_back(varying);
         constants_.push_back(described.values);
         maps_.push_back(std::move(map));
     }
+    turns_ = std::make_unique<TurnMaps>(description, checkSize);
     if (firstPath.empty()) {
         throw InputError(
             fmt::format("{}: no parameter is a map; state one as {{\"map\": \"FILE\"}}, "
@@ -157,6 +130,7 @@ ParameterMaps::ParameterMaps(const MaterialDescription& description, const Liste
             varying_[k].high = *std::ranges::max_element(constants_[k]);
         }
     }
+    turns_->check(listener);
 }
 
 ParameterMaps::~ParameterMaps() = default;
@@ -180,6 +154,7 @@ void ParameterMaps::checkIntact() const {
     for (const auto& map : maps_) {
         if (map) map->picture().checkIntact();
     }
+    turns_->checkIntact();
 }
 
 }  // namespace hshfit::jobs

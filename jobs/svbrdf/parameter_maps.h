@@ -2,8 +2,8 @@
 
 #include "../listener.h"
 #include "description.h"
+#include "turn_maps.h"
 
-#include <hshfit/picture_files/picture_file.h>
 #include <hshfit/specification/parameters.h>
 
 #include <cstddef>
@@ -38,6 +38,8 @@ public:
 
     /// A row: [parameter][channel][column]. By one thread at a time; best with rising rows.
     std::vector<float> row(std::size_t row);
+    /// The frames of texels.
+    TurnMaps& turns() { return *turns_; }
     void checkIntact() const;
 
 private:
@@ -47,6 +49,7 @@ private:
     std::vector<VaryingParameter> varying_;
     std::vector<std::vector<double>> constants_;  ///< of `varying_`
     std::string common_;
+    std::unique_ptr<TurnMaps> turns_;
 };
 
 }  // namespace hshfit::jobs

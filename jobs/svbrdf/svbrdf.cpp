@@ -54,11 +54,20 @@ TexelLayout layoutFor(const SvbrdfOptions& options, const ModelLobes& lobes, con
     return texelLayout(basis, outgoing, lobes.channels(), laws.mirrorSymmetric);
 }
 
+/// Throws UsageError for a description whose texels turn: coefficients of a common frame do not.
+const MaterialDescription& inOneFrame(const MaterialDescription& described) {
+    if (!described.normal && !described.direction) return described;
+    throw UsageError(
+        fmt::format("{}: turns its texels by \"{}\"; the form has to be filtered, "
+                    "ellipse or harmonics",
+                    described.file, described.normal ? "normal" : "direction"));
+}
+
 /// Everything that texels come from.
 struct Work {
     Work(const std::string& description, const SvbrdfOptions& options, const Listener& listener)
         : described(readMaterialDescription(description)),
-          maps(described, listener),
+          maps(inOneFrame(described), listener),
           lobes(maps, description),
           basis(bases::make(options.basis, options.order)),
           layout(layoutFor(options, lobes, *basis)),

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <hshfit/coefficients/coefficients.h>
-#include <hshfit/files/mapped_file.h>
+#include <hshfit/material_maps/level_texture.h>
 #include <hshfit/material_maps/map_sidecar.h>
 
 #include <cstddef>
@@ -19,7 +19,9 @@ public:
 
     const MapSidecar& sidecar() const { return sidecar_; }
     /// The numbers of a texel as a GPU reads them: [layer * 4 + lane].
-    std::vector<double> numbers(std::size_t level, std::size_t column, std::size_t row) const;
+    std::vector<double> numbers(std::size_t level, std::size_t column, std::size_t row) const {
+        return texture_.numbers(level, column, row);
+    }
     /// Its coefficients. Throws UsageError for a texel or a level that the map does not have.
     Coefficients coefficients(std::size_t level, std::size_t column, std::size_t row) const;
     /// Throws InputError if the texture file was changed since it was opened.
@@ -28,8 +30,7 @@ public:
 private:
     std::string file_;
     MapSidecar sidecar_;
-    MappedFile texture_;
-    std::vector<std::size_t> offsets_;  ///< of levels
+    LevelTexture texture_;
 };
 
 }  // namespace hshfit::inline material_maps

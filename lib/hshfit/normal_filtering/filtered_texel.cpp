@@ -58,6 +58,12 @@ struct NormalMoments {
     }
 };
 
+/// A direction below the horizon, or nearly so, as one just above it.
+Direction aboveHorizon(const Direction& d) {
+    constexpr double least = 1e-3;
+    return d.z >= least ? d : normalised({d.x, d.y, least});
+}
+
 /// E[max(0, X) [Y > 0]]: the probability of Y > 0 times the mean for X given Y > 0, taken as
 /// Gaussian of its own mean and variance.
 double meanOfBothAbove(const NormalMoments& m, const Direction& wi, const Direction& wo) {
@@ -193,7 +199,9 @@ std::array<Direction, 4> FilteredTexel::normalsGiven(const Direction& h) const {
 
 Direction FilteredTexel::tangentAt(const Direction& n) const {
     const double* width = &numbers_[MipLayout::widths];
-    const double angle = 0.5 * std::atan2(2 * width[1], width[0] - width[2]);
+    // The longer axis of the ellipse, which is y where the lobe is narrower along x.
+    const auto [x, y] = table_->widths(lobe_);
+    const double angle = 0.5 * std::atan2(2 * width[1], width[0] - width[2]) + (x < y ? pi / 2 : 0);
     return fromPlaneDirection(toPlane(n), {std::cos(angle), std::sin(angle)});
 }
 
@@ -205,13 +213,18 @@ void FilteredTexel::diffuse(const Direction& wi, const Direction& wo, std::span<
 }
 
 void FilteredTexel::reflect(const MipUse& use, const Rest& rest, const Direction& wi,
-                            const Direction& wo, std::span<double> out) const {
+                            const Direction& wo, std::span<double> out, const Shape& shape) const {
     std::fill(out.begin(), out.end(), 0.0);
     if (layout_.albedos > 0) {
         double diffuse[SurfaceTexel::most];
         this->diffuse(wi, wo, {diffuse, static_cast<std::size_t>(layout_.albedos)});
+        double scale = 1 / pi;
+        if (shape) {
+            const SurfaceFrame frame(normal_, tangentAt(normal_));
+            scale *= shape(*this, aboveHorizon(frame.toLocal(wi)), aboveHorizon(frame.toLocal(wo)));
+        }
         for (std::size_t c = 0; c < out.size(); ++c)
-            out[c] = diffuse[layout_.albedos == 1 ? 0 : c] / pi;
+            out[c] = diffuse[layout_.albedos == 1 ? 0 : c] * scale;
     }
     const Direction sum = wi + wo;
     if (layout_.weights == 0 || !(dot(sum, sum) > 1e-20)) return;

@@ -55,7 +55,8 @@ public:
     /// Gaussians, as four points of equal shares. Where normals or lobes are narrow, n = h or n =
     /// normal().
     std::array<Direction, 4> normalsGiven(const Direction& h) const;
-    /// The axis along which D is wider or narrower on average (x of its frame), as tangent at n.
+    /// The x axis of D on average, as tangent at n: that along which it is wider, or narrower where
+    /// the table has widthX < widthY.
     Direction tangentAt(const Direction& n) const;
 
     /// E[albedo max(0, n.wi) [n.wo > 0]] by channel, from n.wi and n.wo as Gaussian variables.
@@ -66,10 +67,14 @@ public:
     using Rest =
         std::function<void(const FilteredTexel& texel, const Direction& wi, const Direction& wo,
                            std::span<const double> density, std::span<double> out)>;
+    /// The diffuse part of a facet over albedo / pi, where it is not Lambert's: 1 - F, say. Of
+    /// directions in the frame of the facet, both above its horizon.
+    using Shape =
+        std::function<double(const FilteredTexel& texel, const Direction& wi, const Direction& wo)>;
     /// f cos(theta_i) by channel, as many as `out` has: specular by `rest`, diffuse from albedos
-    /// (one for all channels, or one each).
+    /// (one for all channels, or one each), times `shape` at the mean normal.
     void reflect(const MipUse& use, const Rest& rest, const Direction& wi, const Direction& wo,
-                 std::span<double> out) const;
+                 std::span<double> out, const Shape& shape = {}) const;
 
 private:
     /// E[D(h)] by the ellipse, and mean and covariance of the normals given h in the plane.

@@ -4,6 +4,7 @@
 #include <hshfit/brdf/uniform.h>
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
+#include <hshfit/normal_filtering/internal/mip_footprint.h>
 #include <hshfit/normal_filtering/surface_frame.h>
 
 #include <fmt/core.h>
@@ -21,30 +22,19 @@ struct Facet {
     explicit Facet(const SurfaceTexel& t) : texel(t), frame(t.normal, t.tangent) {}
 };
 
-/// The base texels of a mip texel: from, and how many.
-struct Footprint {
-    std::size_t x, y, width, height;
-};
-Footprint footprintOf(const FilteredSurface& s, const MipLevel& level, std::size_t index) {
-    const std::size_t x = index % level.width, y = index / level.width;
-    const std::size_t left = x * s.width / level.width, top = y * s.height / level.height;
-    return {left, top, (x + 1) * s.width / level.width - left,
-            (y + 1) * s.height / level.height - top};
-}
-
-std::vector<Facet> sampled(const FilteredSurface& s, const Footprint& f, int samples,
-                           std::mt19937_64& random) {
-    std::vector<Facet> facets;
+std::vector<SurfaceTexel> sampled(const FilteredSurface& s, const Footprint& f, int samples,
+                                  std::mt19937_64& random) {
+    std::vector<SurfaceTexel> facets;
     if (f.width * f.height <= static_cast<std::size_t>(samples)) {
         for (std::size_t k = 0; k < f.width * f.height; ++k)
-            facets.emplace_back(s.texel(f.x + k % f.width, f.y + k / f.width));
+            facets.push_back(s.texel(f.x + k % f.width, f.y + k / f.width));
         return facets;
     }
     const int side = static_cast<int>(std::sqrt(samples));
     for (int k = 0; k < side * side; ++k) {
         const double x = (k % side + uniform(random)) / side * static_cast<double>(f.width);
         const double y = (k / side + uniform(random)) / side * static_cast<double>(f.height);
-        facets.emplace_back(
+        facets.push_back(
             s.texel(f.x + static_cast<std::size_t>(x), f.y + static_cast<std::size_t>(y)));
     }
     return facets;
@@ -52,20 +42,10 @@ std::vector<Facet> sampled(const FilteredSurface& s, const Footprint& f, int sam
 
 /// The texel of ordinary mips: every parameter averaged by itself.
 SurfaceTexel meanTexel(const FilteredSurface& s, const Footprint& f) {
-    SurfaceTexel mean;
-    mean.normal = mean.tangent = {0, 0, 0};
-    mean.weights = {};
+    SurfaceTexel mean = noTexel();
     const double share = 1 / static_cast<double>(f.width * f.height);
-    for (std::size_t k = 0; k < f.width * f.height; ++k) {
-        const SurfaceTexel t = s.texel(f.x + k % f.width, f.y + k / f.width);
-        mean.normal = mean.normal + share * normalised(t.normal);
-        mean.tangent = mean.tangent + share * t.tangent;
-        for (std::size_t i = 0; i < 2; ++i) mean.lobe[i] += share * t.lobe[i];
-        for (std::size_t i = 0; i < SurfaceTexel::most; ++i) {
-            mean.weights[i] += share * t.weights[i];
-            mean.albedos[i] += share * t.albedos[i];
-        }
-    }
+    for (std::size_t k = 0; k < f.width * f.height; ++k)
+        addToMean(s.texel(f.x + k % f.width, f.y + k / f.width), share, mean);
     if (!(dot(mean.normal, mean.normal) > 1e-12)) mean.normal = {0, 0, 1};
     return mean;
 }
@@ -179,7 +159,7 @@ std::vector<MipError> formsOf(const MipLayout& layout, const MipErrorOptions& op
          .numbers = static_cast<std::size_t>(5 + layout.weights + layout.albedos)},
         {.form = "ellipse", .use = {MipForm::ellipse}, .numbers = ellipse}};
     std::vector<int> orders = options.orders;
-    if (orders.empty()) orders = {layout.order};
+    if (options.harmonics && orders.empty()) orders = {layout.order};
     for (const int order : orders) {
         if (order < 1 || order % 2 == 0 || order > layout.order)
             throw UsageError(
@@ -243,7 +223,7 @@ Values valuesOf(const FilteredSurface& s, const std::vector<Facet>& facets, cons
             if (forms[f].form == "parameters")
                 addReflected(s, mean, pair.wi, pair.wo, out);
             else
-                filtered.reflect(forms[f].use, s.rest, pair.wi, pair.wo, out);
+                filtered.reflect(forms[f].use, s.rest, pair.wi, pair.wo, out, s.shape);
         }
     });
     return v;
@@ -259,6 +239,7 @@ struct Sums {
 void addErrors(const std::vector<Pair>& pairs, const Values& v, std::size_t channels,
                std::size_t incoming, std::vector<MipError>& errors, Sums& sums) {
     double largest = 0, albedo = 0, cosines = 0;
+    const double normBefore = sums.norm;
     std::vector<double> directional(pairs.size() / incoming, 0.0);
     for (std::size_t k = 0; k < v.truth.size(); ++k) {
         const Pair& p = pairs[k / channels];
@@ -274,6 +255,7 @@ void addErrors(const std::vector<Pair>& pairs, const Values& v, std::size_t chan
     sums.albedo += albedo;
     for (std::size_t f = 0; f < errors.size(); ++f) {
         std::vector<double> own(directional.size(), 0.0);
+        const double distanceBefore = sums.distances[f];
         for (std::size_t k = 0; k < v.truth.size(); ++k) {
             const Pair& p = pairs[k / channels];
             const double difference = (v.forms[f][k] - v.truth[k]) * p.wo.z;
@@ -286,6 +268,9 @@ void addErrors(const std::vector<Pair>& pairs, const Values& v, std::size_t chan
                 errors[f].wo = p.wo;
             }
         }
+        const double norm = sums.norm - normBefore;
+        errors[f].texels.push_back(
+            norm > 0 ? std::sqrt(std::max(0.0, sums.distances[f] - distanceBefore) / norm) : 0);
         for (std::size_t o = 0; o < own.size(); ++o)
             errors[f].worstAlbedo = std::max(
                 errors[f].worstAlbedo, std::abs(own[o] - directional[o]) / (albedo / cosines));
@@ -302,38 +287,71 @@ MipErrors measureMipLevel(const FilteredSurface& surface, int level, const MipLe
                                      surface.width, surface.height, mipSize(surface.width, level),
                                      mipSize(surface.height, level), filtered.width,
                                      filtered.height));
+    const std::size_t count = filtered.width * filtered.height;
+    const std::vector<std::size_t> chosen =
+        measuredTexels(filtered.width, filtered.height, options);
+    const auto texel = [&](std::size_t k, std::mt19937_64& random) {
+        // The first number of the generator spreads the texels.
+        if (k == 0) uniform(random);
+        const Footprint footprint =
+            footprintOf(surface.width, surface.height, filtered.width, filtered.height, chosen[k]);
+        MeasuredTexel result;
+        result.base = sampled(surface, footprint, options.samples, random);
+        result.all = result.base.size() == footprint.width * footprint.height;
+        result.mean = meanTexel(surface, footprint);
+        const auto numbers = filtered.texel(chosen[k] % filtered.width, chosen[k] / filtered.width);
+        result.numbers.assign(numbers.begin(), numbers.end());
+        return result;
+    };
+    return measureMipTexels(surface, filtered.layout, std::min(count, chosen.size()), texel, table,
+                            options);
+}
+
+std::vector<std::size_t> measuredTexels(std::size_t width, std::size_t height,
+                                        const MipErrorOptions& options) {
     if (options.samples < 4 || options.texels < 1 || options.outgoing < 1 || options.incoming < 4)
         throw UsageError(
             "errors of mip levels need at least 4 samples, 1 texel, 1 outgoing and 4 "
             "incoming directions");
-    MipErrors result{.forms = formsOf(filtered.layout, options)};
+    std::mt19937_64 random(options.seed);
+    const std::size_t count = width * height;
+    const std::size_t texels = std::min(count, static_cast<std::size_t>(options.texels));
+    double at = uniform(random);
+    std::vector<std::size_t> chosen;
+    for (std::size_t k = 0; k < texels; ++k) {
+        at = std::fmod(at + 0.6180339887498949, 1.0);
+        chosen.push_back(
+            count <= texels ? k : static_cast<std::size_t>(at * static_cast<double>(count)));
+    }
+    return chosen;
+}
+
+MipErrors measureMipTexels(
+    const FilteredSurface& surface, const MipLayout& layout, std::size_t count,
+    const std::function<MeasuredTexel(std::size_t k, std::mt19937_64& random)>& texel,
+    const LobeTable& table, const MipErrorOptions& options) {
+    MipErrors result{.forms = formsOf(layout, options)};
     Sums sums;
     sums.distances = sums.albedos = std::vector<double>(result.forms.size(), 0.0);
     std::mt19937_64 random(options.seed);
-    const std::size_t count = filtered.width * filtered.height;
-    const std::size_t texels = std::min(count, static_cast<std::size_t>(options.texels));
-    const std::shared_ptr<const Basis> basis = bases::makeSh(filtered.layout.order, {});
-    double at = uniform(random);
-    for (std::size_t k = 0; k < texels; ++k) {
-        at = std::fmod(at + 0.6180339887498949, 1.0);
-        const std::size_t index =
-            count <= texels ? k : static_cast<std::size_t>(at * static_cast<double>(count));
-        const Footprint footprint = footprintOf(surface, filtered, index);
-        const std::vector<Facet> facets = sampled(surface, footprint, options.samples, random);
-        const bool all = facets.size() == footprint.width * footprint.height;
-        const auto numbers = filtered.texel(index % filtered.width, index / filtered.width);
-        const std::vector<Pair> pairs = pairsFor(numbers, options, random);
-        const Values values = valuesOf(surface, facets, Facet(meanTexel(surface, footprint)),
-                                       FilteredTexel(filtered.layout, numbers, table, basis),
-                                       result.forms, pairs, all, options.byVisibleArea);
+    const std::shared_ptr<const Basis> basis = bases::makeSh(layout.order, {});
+    for (std::size_t k = 0; k < count; ++k) {
+        const MeasuredTexel measured = texel(k, random);
+        const std::vector<Facet> facets(measured.base.begin(), measured.base.end());
+        const std::vector<Pair> pairs = pairsFor(measured.numbers, options, random);
+        const Values values = valuesOf(surface, facets, Facet(measured.mean),
+                                       FilteredTexel(layout, measured.numbers, table, basis),
+                                       result.forms, pairs, measured.all, options.byVisibleArea);
         addErrors(pairs, values, static_cast<std::size_t>(surface.channels),
                   static_cast<std::size_t>(options.incoming), result.forms, sums);
     }
+    // Black texels have no norm.
     for (std::size_t f = 0; f < result.forms.size(); ++f) {
+        if (!(sums.norm > 0)) continue;
         result.forms[f].relative = std::sqrt(sums.distances[f] / sums.norm);
         result.forms[f].albedo = sums.albedos[f] / sums.albedo;
     }
-    result.noise = std::sqrt(sums.noise / sums.norm);
+    result.noise = sums.norm > 0 ? std::sqrt(sums.noise / sums.norm) : 0;
     return result;
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <random>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@ struct FilteredSurface {
     /// The same without D, see FilteredTexel.
     FilteredTexel::Rest rest;
     int channels = 3;
+    FilteredTexel::Shape shape = {};  ///< of the diffuse part; none: Lambert's
 };
 
 struct MipErrorOptions {
@@ -32,6 +34,7 @@ struct MipErrorOptions {
     int incoming = 64;  ///< half of them about the mirror direction, half over the hemisphere
     std::uint64_t seed = 1;
     std::vector<int> orders = {};  ///< of harmonics; empty: that of the layout
+    bool harmonics = true;         ///< whether forms of harmonics are measured
     bool atMeanNormal = false;     ///< also the forms with M at the mean normal (MipUse::facets)
     /// Whether base texels count by the area that wo sees of them, max(0, n.wo) / n.z, rather than
     /// equally. Forms do not change.
@@ -51,6 +54,7 @@ struct MipError {
     double albedo = 1;  ///< hemispherical albedo over the true one
     /// Largest error of a directional albedo, over the true hemispherical albedo of its mip texel.
     double worstAlbedo = 0;
+    std::vector<double> texels = {};  ///< the relative error of each, in its own norm
 };
 struct MipErrors {
     std::vector<MipError> forms;
@@ -62,6 +66,25 @@ struct MipErrors {
 /// normal renormalised, mean tangent, lobe place, weights and albedos, in `brdf`.
 MipErrors measureMipLevel(const FilteredSurface& surface, int level, const MipLevel& filtered,
                           const LobeTable& table, const MipErrorOptions& options = {});
+
+/// Indices, row * width + column, of the texels of a level that are measured.
+std::vector<std::size_t> measuredTexels(std::size_t width, std::size_t height,
+                                        const MipErrorOptions& options);
+
+/// A mip texel that is measured.
+struct MeasuredTexel {
+    std::vector<SurfaceTexel> base = {};  ///< of its footprint: all, or a sample
+    bool all = true;
+    SurfaceTexel mean = {};  ///< averaged parameters
+    std::vector<double> numbers = {};
+};
+
+/// The same for texels that the caller gathers: texel(k, random) for k = 0 … count - 1, in order,
+/// one at a time. `surface` needs no `texel`, and no size.
+MipErrors measureMipTexels(
+    const FilteredSurface& surface, const MipLayout& layout, std::size_t count,
+    const std::function<MeasuredTexel(std::size_t k, std::mt19937_64& random)>& texel,
+    const LobeTable& table, const MipErrorOptions& options = {});
 
 /// The form with the fewest numbers whose relative error is at most `tolerance`; where there is
 /// none, the one with the least error.

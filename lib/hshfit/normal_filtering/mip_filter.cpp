@@ -320,6 +320,24 @@ void MipFilter::add(std::span<const SurfaceTexel> rows) {
     }
 }
 
+std::vector<double> ellipseNumbers(std::span<const SurfaceTexel> texels, const LobeTable& table,
+                                   const MipLayout& layout) {
+    const auto basis = bases::makeSh(3, {});
+    const std::size_t size = layout.ellipseSize();
+    std::vector<double> out(texels.size() * size, 0.0);
+    eachInParallel((texels.size() + blockTexels - 1) / blockTexels, [&](std::size_t block) {
+        const std::size_t end = std::min(texels.size(), (block + 1) * blockTexels);
+        for (std::size_t k = block * blockTexels; k < end; ++k) {
+            const SurfaceTexel& t = texels[k];
+            const SurfaceFrame frame(t.normal, t.tangent);
+            double y[9];
+            basis->evaluate(frame.z, y);
+            addMoments(t, frame.z, frame, table.widths(t.lobe), layout, y, 1, &out[k * size]);
+        }
+    });
+    return out;
+}
+
 std::vector<MipLevel> filterNormals(std::size_t width, std::size_t height,
                                     std::span<const SurfaceTexel> base,
                                     std::shared_ptr<const LobeTable> table,

@@ -57,6 +57,10 @@ private:
     std::unique_ptr<Work> work_;
 };
 
+/// The numbers of unfiltered texels without harmonics: layout.ellipseSize() of each.
+std::vector<double> ellipseNumbers(std::span<const SurfaceTexel> texels, const LobeTable& table,
+                                   const MipLayout& layout);
+
 /// A level in memory.
 struct MipLevel {
     std::size_t width = 0, height = 0;

@@ -38,16 +38,31 @@ void MipLayout::check(int most) const {
             "order {} of filtered normals: an odd number from 1 to {} is needed", order, most));
 }
 
-void encodeHalf(const MipLayout& layout, std::span<const double> texel,
-                std::span<std::uint16_t> out) {
+std::vector<double> storedNumbers(std::span<const double> texel) {
     std::vector<double> numbers(texel.begin(), texel.end());
-    double* plane = &numbers[MipLayout::plane];
+    const double* plane = &numbers[MipLayout::plane];
     double* squares = &numbers[MipLayout::planeSquares];
     squares[0] -= plane[0] * plane[0];
     squares[1] -= plane[0] * plane[1];
     squares[2] -= plane[1] * plane[1];
     toDeviations(squares);
     toDeviations(&numbers[MipLayout::widths]);
+    return numbers;
+}
+
+void momentsOf(std::span<double> stored) {
+    const double* plane = &stored[MipLayout::plane];
+    double* squares = &stored[MipLayout::planeSquares];
+    toCovariance(squares);
+    toCovariance(&stored[MipLayout::widths]);
+    squares[0] += plane[0] * plane[0];
+    squares[1] += plane[0] * plane[1];
+    squares[2] += plane[1] * plane[1];
+}
+
+void encodeHalf(const MipLayout& layout, std::span<const double> texel,
+                std::span<std::uint16_t> out) {
+    const std::vector<double> numbers = storedNumbers(texel);
     for (std::size_t i = 0; i < layout.size(); ++i) {
         const Imath::half stored(static_cast<float>(numbers[i]));
         if (!stored.isFinite())
@@ -65,13 +80,7 @@ void decodeHalf(const MipLayout& layout, std::span<const std::uint16_t> stored,
         number.setBits(stored[i]);
         texel[i] = static_cast<float>(number);
     }
-    const double* plane = &texel[MipLayout::plane];
-    double* squares = &texel[MipLayout::planeSquares];
-    toCovariance(squares);
-    toCovariance(&texel[MipLayout::widths]);
-    squares[0] += plane[0] * plane[0];
-    squares[1] += plane[0] * plane[1];
-    squares[2] += plane[1] * plane[1];
+    momentsOf(texel);
 }
 
 }  // namespace hshfit::inline normal_filtering

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace hshfit::inline normal_filtering {
 
@@ -21,12 +22,12 @@ constexpr int evenSlotOf(int l, int m) {
 
 /// A texel of the base level, in the frame of the surface: +z its normal, +x its tangent.
 struct SurfaceTexel {
-    static constexpr int most = 4;
+    static constexpr int most = 6;
     Direction normal = {};          ///< any length but 0
     Direction tangent = {1, 0, 0};  ///< used by anisotropic tables; not along the normal
     LobePlace lobe = {0, 0};        ///< of D in the LobeTable
-    std::array<double, most> weights = {1, 1, 1, 1};  ///< factors of D: specular colour, or 1
-    std::array<double, most> albedos = {};            ///< of the diffuse part, by channel
+    std::array<double, most> weights = {1, 1, 1, 1, 1, 1};  ///< factors of D: colours, or 1
+    std::array<double, most> albedos = {};                  ///< of the diffuse part, by channel
 };
 
 /// The numbers of a filtered texel: averages over its footprint, linear in texels, in this order.
@@ -49,13 +50,19 @@ struct MipLayout {
     /// Numbers that the ellipse needs, the first of a texel.
     std::size_t ellipseSize() const { return harmonics(0); }
 
-    /// Throws UsageError unless the counts are 0 … 4 and the order is odd and at most `most`.
+    /// Throws UsageError unless the counts are 0 … 6 and the order is odd and at most `most`.
     void check(int most) const;
 };
 
-/// A texel as binary16, as many numbers as the layout has. In place of second moments, which would
-/// cancel, stand standard deviations along x and y and their correlation; in place of `widths`
-/// their roots and correlation. Throws NumericError for a number beyond 65504.
+/// A texel as it is stored, as many numbers as `texel` has: layout.size(), or layout.ellipseSize()
+/// without harmonics. In place of second moments, which would cancel in few bits, stand standard
+/// deviations along x and y and their correlation; in place of `widths` their roots and
+/// correlation.
+std::vector<double> storedNumbers(std::span<const double> texel);
+/// Moments again, in place.
+void momentsOf(std::span<double> stored);
+
+/// `storedNumbers` as binary16. Throws NumericError for a number beyond 65504.
 void encodeHalf(const MipLayout& layout, std::span<const double> texel,
                 std::span<std::uint16_t> out);
 /// Moments again.

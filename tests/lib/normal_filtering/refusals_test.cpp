@@ -69,7 +69,7 @@ TEST(Refusals, OfSizesOrdersAndDistributions) {
     EXPECT_THROW(filterNormals(0, 4, {}, table, layout), UsageError);
     EXPECT_THROW(filterNormals(4, 3, texels, table, {.order = 5}), UsageError);  // beyond the table
     EXPECT_THROW(filterNormals(4, 3, texels, table, {.order = 2}), UsageError);
-    EXPECT_THROW(filterNormals(4, 3, texels, table, {.weights = 5, .order = 3}), UsageError);
+    EXPECT_THROW(filterNormals(4, 3, texels, table, {.weights = 7, .order = 3}), UsageError);
     const auto make = [](double value) {
         return [value](std::size_t, std::size_t) {
             return NormalDistribution{[value](const Direction&) { return value; }, 0.3, 0.3};

@@ -1,0 +1,131 @@
+#include "svbrdf_filtered.h"
+
+#include "documents.h"
+
+#include <jobs/quality.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+namespace hshfit::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json jsonOf(const jobs::FilteredError& error) {
+    return {{"relative", error.relative},
+            {"mean", error.mean},
+            {"maximum", error.maximum},
+            {"column", error.column},
+            {"row", error.row},
+            {"largest_difference",
+             {{"value", error.largest},
+              {"incoming", directionJson(error.wi)},
+              {"outgoing", directionJson(error.wo)}}},
+            {"albedo", error.albedo},
+            {"worst_albedo", error.worstAlbedo}};
+}
+
+Json jsonOf(const jobs::FilteredLevel& level) {
+    Json json = {{"width", level.size.width}, {"height", level.size.height}};
+    if (level.texels > 0) {
+        json["against_samples"] = {{"texels", level.texels},
+                                   {"noise", level.noise},
+                                   {"stored", jsonOf(level.stored)},
+                                   {"parameters", jsonOf(level.parameters)}};
+    }
+    return json;
+}
+
+Json jsonOf(const jobs::FilteredMapAnswer& done) {
+    Json choices = Json::array(), levels = Json::array();
+    for (const jobs::FilteredChoice& choice : done.choices) {
+        choices.push_back({{"form", choice.form},
+                           {"order", choice.order},
+                           {"numbers", choice.numbers},
+                           {"bytes_per_texel", choice.bytesOfTexel},
+                           {"error", choice.error},
+                           {"level", choice.level}});
+    }
+    for (const jobs::FilteredLevel& level : done.levels) levels.push_back(jsonOf(level));
+    return {{"format", "hshfit-filtered-map-answer"},
+            {"version", 1},
+            {"description", done.description},
+            {"model", done.model},
+            {"width", done.width},
+            {"height", done.height},
+            {"renormalised", done.renormalised},
+            {"parameters", done.parameters},
+            {"nodes", done.nodes},
+            {"form", done.form},
+            {"order", done.order},
+            {"numbers", done.numbers},
+            {"weights", done.weights},
+            {"albedos", done.albedos},
+            {"choices", choices},
+            {"levels", levels},
+            {"bytes", done.bytes},
+            {"seconds", done.seconds},
+            {"texels_per_second", done.rate},
+            {"files", done.files}};
+}
+
+std::string formText(const std::string& form, int order) {
+    return order > 0 ? fmt::format("{} of order {}", form, order) : form;
+}
+
+std::string textOf(const jobs::FilteredLevel& level, std::size_t index) {
+    std::string text =
+        fmt::format("  level {:>2}: {} x {}", index, level.size.width, level.size.height);
+    if (level.texels == 0) return text + "\n";
+    const jobs::FilteredError &stored = level.stored, &parameters = level.parameters;
+    text += fmt::format(
+        "; against samples of the reflectance {}, worst texel {} at ({}, {}), albedo {:.3f} of the "
+        "true one (averaged parameters: {}, worst {}, albedo {:.3f}; {:.1f} x)",
+        jobs::percent(stored.relative, 2), jobs::percent(stored.maximum, 2), stored.column,
+        stored.row, stored.albedo, jobs::percent(parameters.relative, 2),
+        jobs::percent(parameters.maximum, 2), parameters.albedo,
+        stored.relative > 0 ? parameters.relative / stored.relative : 0);
+    if (level.noise > 0)
+        text += fmt::format("; the samples' own error {}", jobs::percent(level.noise, 2));
+    return text + "\n";
+}
+
+std::string textOf(const jobs::FilteredMapAnswer& done) {
+    std::string text = fmt::format(
+        "{}: {} x {} texels of {}; lobe {}, {} factors and {} albedos a texel\n", done.description,
+        done.width, done.height, done.model,
+        done.parameters.empty()
+            ? "the same for all"
+            : fmt::format("by {} at {} nodes", fmt::join(done.parameters, ", "), done.nodes),
+        done.weights, done.albedos);
+    if (!done.choices.empty()) {
+        text += "forms, by the error of their worst level:\n";
+        for (const jobs::FilteredChoice& choice : done.choices) {
+            text +=
+                fmt::format("  {:<24} {:>5} numbers, {:>5g} bytes a texel, error {} (level {})\n",
+                            formText(choice.form, choice.order), choice.numbers,
+                            choice.bytesOfTexel, jobs::percent(choice.error, 2), choice.level);
+        }
+    }
+    text += fmt::format("{}, {:.4g} MB, {:.1f} s ({:.3g} texels a second)\n",
+                        formText(done.form, done.order), static_cast<double>(done.bytes) / 1e6,
+                        done.seconds, done.rate);
+    for (std::size_t level = 0; level < done.levels.size(); ++level)
+        text += textOf(done.levels[level], level);
+    for (const std::string& file : done.files) text += fmt::format("  {}\n", file);
+    return text;
+}
+
+}  // namespace
+
+void runFilteredMap(const std::string& description, const std::string& folder,
+                    const jobs::FilteredMapOptions& options, const Globals& globals) {
+    const jobs::FilteredMapAnswer done =
+        jobs::filteredMap(description, folder, options, listenerFor(globals));
+    if (globals.json) return printJson(jsonOf(done));
+    printText(textOf(done));
+}
+
+}  // namespace hshfit::cli

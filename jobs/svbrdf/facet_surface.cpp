@@ -1,0 +1,346 @@
+#include "facet_surface.h"
+
+#include <hshfit/brdf/uniform.h>
+#include <hshfit/brdf/vectors.h>
+#include <hshfit/error.h>
+#include <hshfit/normal_filtering/surface_frame.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace hshfit::jobs {
+namespace {
+
+constexpr double nodeTolerance = 0.01;  // of D between nodes, relative to its norm
+constexpr std::size_t mostNodes = 65;
+constexpr int nodeOrder = 33;
+
+bool close(double a, double b) {
+    return std::abs(a - b) <= 1e-9 * (std::abs(a) + std::abs(b));
+}
+
+/// The factors of the terms of the lobe, and of the smooth part last, of a grey BRDF.
+std::vector<double> factorsOf(const brdfs::FacetNormals& normals) {
+    std::vector<double> lobe;
+    double smooth = normals.weights.constant[0] * pi;
+    for (std::size_t t = 0; t < normals.ofLobe.size(); ++t) {
+        const double weight = normals.weights.terms[t][0];
+        if (normals.ofLobe[t])
+            lobe.push_back(weight);
+        else if (weight != 0)
+            smooth += weight * pi;
+    }
+    lobe.push_back(smooth);
+    return lobe;
+}
+
+}  // namespace
+
+FacetSurface::FacetSurface(ParameterMaps& maps, const std::string& file, const Listener& listener)
+    : maps_(maps), common_(maps.common()) {
+    try {
+        classify(maps);
+        findCorners();
+        findNodes();
+    } catch (const Error& error) {
+        throw InputError(fmt::format("{}: {}", file, error.what()));
+    }
+    findEqualColumns(listener);
+}
+
+std::string FacetSurface::specification(const std::vector<double>& values) const {
+    std::string spec = common_;
+    for (std::size_t k = 0; k < varying_.size(); ++k) {
+        spec += fmt::format("{}{}={}", spec.find(':') == std::string::npos ? ':' : ',',
+                            varying_[k].name, values[k]);
+    }
+    return spec;
+}
+
+/// Values at which no term vanishes.
+std::vector<double> FacetSurface::middle() const {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < varying_.size(); ++k) {
+        const double share = 0.4 + 0.07 * static_cast<double>(k % 4);
+        values.push_back(varying_[k].low + share * (varying_[k].high - varying_[k].low));
+    }
+    return values;
+}
+
+void FacetSurface::classify(const ParameterMaps& maps) {
+    std::size_t first = 0;
+    for (const VaryingParameter& v : maps.varying()) {
+        varying_.push_back({.name = std::string(v.row->name),
+                            .first = first,
+                            .channels = v.channels,
+                            .low = v.low,
+                            .high = v.high});
+        first += v.channels;
+        channels_ = std::max(channels_, v.channels);
+    }
+    const FacetLobe lobe(specification(middle()));
+    turn_ = lobe.normals().turn;
+    for (std::size_t k = 0; k < varying_.size(); ++k) {
+        Varying& v = varying_[k];
+        const Parameter& row = *maps.varying()[k].row;
+        // A map of one value is judged by others that the model takes.
+        const double low = std::max(row.min, 0.0), high = row.max >= low + 1 ? low + 1 : row.max;
+        const double from = v.high > v.low ? v.low : low + 0.2 * (high - low),
+                     to = v.high > v.low ? v.high : low + 0.8 * (high - low);
+        const bool terms = changesTerms(k, from, to), weights = changesWeights(k, from, to);
+        if (terms && weights) {
+            throw InputError(fmt::format(
+                "{} changes both the lobe and its weight, so that it has to be the same for all "
+                "texels of a filtered map",
+                v.name));
+        }
+        if (!terms) {
+            v.factor = true;
+            v.low = low;
+            v.high = high;
+            factors_.push_back(k);
+            continue;
+        }
+        if (v.channels > 1) {
+            throw InputError(fmt::format(
+                "{} changes the lobe, so that it has to be one number for all channels", v.name));
+        }
+        v.node = nodes_.size();
+        nodes_.push_back({v.name, {}});
+    }
+    if (nodes_.size() > 2) throw InputError("more than two maps change the lobe; two are possible");
+    if (factors_.size() > 8) throw InputError("more than 8 of its maps are factors");
+}
+
+/// Whether terms that count, D, or the axes of D change with parameter k.
+bool FacetSurface::changesTerms(std::size_t k, double low, double high) const {
+    std::vector<double> values = middle();
+    values[k] = low;
+    const FacetLobe a(specification(values));
+    values[k] = high;
+    const FacetLobe b(specification(values));
+    if (!close(a.normals().turn, b.normals().turn)) {
+        throw InputError(fmt::format("{} turns the lobe; state \"direction\" in the description",
+                                     varying_[k].name));
+    }
+    std::mt19937_64 random(1);
+    for (int trial = 0; trial < 24; ++trial) {
+        const auto drawn = [&] {
+            return directionFromAngles(std::acos(0.05 + 0.95 * uniform(random)),
+                                       2 * pi * uniform(random));
+        };
+        const Direction wi = drawn(), wo = drawn();
+        double ta[brdfs::TermBatch::maxTerms] = {}, tb[brdfs::TermBatch::maxTerms] = {};
+        a.facets->terms(wi, wo, ta);
+        b.facets->terms(wi, wo, tb);
+        for (std::size_t t = 0; t < a.normals().ofLobe.size(); ++t)
+            if (!close(ta[t], tb[t])) return true;
+        const Direction h = normalised(wi + wo);
+        if (!close(a.normals().density(h), b.normals().density(h))) return true;
+    }
+    return false;
+}
+
+bool FacetSurface::changesWeights(std::size_t k, double low, double high) const {
+    std::vector<double> values = middle();
+    values[k] = low;
+    const std::vector<double> a = factorsOf(FacetLobe(specification(values)).normals());
+    values[k] = high;
+    const std::vector<double> b = factorsOf(FacetLobe(specification(values)).normals());
+    return !std::ranges::equal(a, b, close);
+}
+
+void FacetSurface::findCorners() {
+    std::vector<double> values = middle();
+    const auto at = [&] { return factorsOf(FacetLobe(specification(values)).normals()); };
+    for (std::size_t corner = 0; corner < std::size_t{1} << factors_.size(); ++corner) {
+        for (std::size_t i = 0; i < factors_.size(); ++i) {
+            const Varying& v = varying_[factors_[i]];
+            values[factors_[i]] = (corner >> i & 1) != 0 ? v.high : v.low;
+        }
+        corners_.push_back(at());
+    }
+    lobeTerms_ = corners_.front().size() - 1;
+    // Affine in each: the corners give the factors at any other place.
+    std::mt19937_64 random(2);
+    std::vector<float> texel(maps_.valuesOfTexel());
+    for (int trial = 0; trial < 8; ++trial) {
+        for (const std::size_t k : factors_) {
+            const Varying& v = varying_[k];
+            // A value that a float has.
+            const auto drawn = static_cast<float>(v.low + uniform(random) * (v.high - v.low));
+            values[k] = static_cast<double>(drawn);
+            for (std::size_t c = 0; c < v.channels; ++c) texel[v.first + c] = drawn;
+        }
+        const std::vector<double> direct = at(), mixed = columns(texel, 1);
+        for (std::size_t t = 0; t < direct.size(); ++t) {
+            if (std::abs(direct[t] - mixed[t * channels_]) > 1e-6 * (1 + std::abs(direct[t])))
+                throw InputError("a map changes the weight of the lobe in no affine way");
+        }
+    }
+}
+
+/// Whether intervals of nodes are too wide: D at the middle is not the mean of the ends.
+std::vector<char> FacetSurface::wideIntervals(const std::string& model, std::size_t node) const {
+    std::vector<LobeNodes> halved = nodes_;
+    std::vector<double>& values = halved[node].values;
+    for (std::size_t i = values.size(); i-- > 1;)
+        values.insert(values.begin() + static_cast<std::ptrdiff_t>(i),
+                      (values[i - 1] + values[i]) / 2);
+    const auto table = FacetLobes(model, halved).table(nodeOrder);
+    const auto slots = static_cast<std::size_t>(nodeOrder * nodeOrder);
+    std::vector<double> low(slots), middle(slots), high(slots);
+    const auto read = [&](std::size_t k, std::vector<double>& out) {
+        LobePlace place{0, 0};
+        place[node] = static_cast<double>(k);
+        table->coefficients(place, out);
+    };
+    std::vector<char> wide;
+    for (std::size_t i = 1; i < values.size(); i += 2) {
+        read(i - 1, low), read(i, middle), read(i + 1, high);
+        double off = 0, whole = 0;
+        for (std::size_t s = 0; s < slots; ++s) {
+            const double difference = middle[s] - (low[s] + high[s]) / 2;
+            off += difference * difference;
+            whole += middle[s] * middle[s];
+        }
+        wide.push_back(off > nodeTolerance * nodeTolerance * whole);
+    }
+    return wide;
+}
+
+/// Intervals are halved where they are too wide.
+void FacetSurface::findNodes() {
+    const std::vector<double> values = middle();
+    std::string model = common_;
+    for (std::size_t k = 0; k < varying_.size(); ++k) {
+        if (!varying_[k].factor) continue;
+        model += fmt::format("{}{}={}", model.find(':') == std::string::npos ? ':' : ',',
+                             varying_[k].name, values[k]);
+    }
+    for (const Varying& v : varying_)
+        if (!v.factor) nodes_[v.node].values = {v.low};
+    for (const Varying& v : varying_) {
+        if (v.factor || !(v.high > v.low)) continue;
+        std::vector<double>& nodes = nodes_[v.node].values;
+        nodes = {v.low, v.high};
+        for (bool more = true; more && nodes.size() < mostNodes;) {
+            const std::vector<char> wide = wideIntervals(model, v.node);
+            more = std::ranges::find(wide, 1) != wide.end();
+            for (std::size_t i = wide.size(); i-- > 0;) {
+                if (wide[i] == 0) continue;
+                nodes.insert(nodes.begin() + static_cast<std::ptrdiff_t>(i + 1),
+                             (nodes[i] + nodes[i + 1]) / 2);
+            }
+        }
+    }
+    lobes_ = std::make_unique<FacetLobes>(model, nodes_);
+}
+
+std::vector<double> FacetSurface::columns(const std::vector<float>& values,
+                                          std::size_t width) const {
+    const std::size_t terms = lobeTerms_ + 1;
+    std::vector<double> out(terms * channels_ * width, 0.0);
+    for (std::size_t c = 0; c < channels_; ++c) {
+        for (std::size_t x = 0; x < width; ++x) {
+            double shares[8];
+            for (std::size_t i = 0; i < factors_.size(); ++i) {
+                const Varying& v = varying_[factors_[i]];
+                const std::size_t at = v.first + (v.channels > 1 ? c : 0);
+                shares[i] =
+                    (static_cast<double>(values[at * width + x]) - v.low) / (v.high - v.low);
+            }
+            for (std::size_t corner = 0; corner < corners_.size(); ++corner) {
+                double share = 1;
+                for (std::size_t i = 0; i < factors_.size(); ++i)
+                    share *= (corner >> i & 1) != 0 ? shares[i] : 1 - shares[i];
+                for (std::size_t t = 0; t < terms; ++t)
+                    out[(t * channels_ + c) * width + x] += share * corners_[corner][t];
+            }
+        }
+    }
+    // Rounding may leave less than 0.
+    for (double& value : out) value = std::abs(value) < 1e-12 ? 0 : value;
+    return out;
+}
+
+/// Columns that are proportional in all texels become one weight.
+void FacetSurface::findEqualColumns(const Listener& listener) {
+    struct Ratio {
+        double value = 0;
+        bool known = false, holds = true;
+    };
+    const std::size_t count = columnCount(), width = maps_.width();
+    std::vector<Ratio> ratios(count * count);
+    std::vector<char> black(count, 1);
+    const auto progress = listener.part("factors of lobes");
+    for (std::size_t y = 0; y < maps_.height(); ++y) {
+        const std::vector<double> all = columns(maps_.row(y), width);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double* a = all.data() + i * width;
+            for (std::size_t x = 0; x < width; ++x) black[i] = black[i] && a[x] == 0;
+            for (std::size_t j = 0; j < i; ++j) {
+                Ratio& ratio = ratios[i * count + j];
+                const double* b = all.data() + j * width;
+                for (std::size_t x = 0; ratio.holds && x < width; ++x) {
+                    if (a[x] == 0 && b[x] == 0) continue;
+                    if (!ratio.known && b[x] != 0) ratio = {a[x] / b[x], true, true};
+                    ratio.holds = b[x] != 0 && std::abs(a[x] - ratio.value * b[x]) <=
+                                                   1e-6 * std::max(std::abs(a[x]), 1e-30);
+                }
+            }
+        }
+        if (progress) progress(y + 1, maps_.height());
+    }
+    terms_.assign(lobeTerms_, std::vector<LobeWeight>(channels_));
+    for (std::size_t i = 0; i < lobeTerms_ * channels_; ++i) {
+        LobeWeight& weight = terms_[i / channels_][i % channels_];
+        if (black[i]) continue;
+        std::size_t k = 0;
+        while (k < columnOfWeight_.size() && !ratios[i * count + columnOfWeight_[k]].holds) ++k;
+        weight = {k, 1};
+        if (k == columnOfWeight_.size())
+            columnOfWeight_.push_back(i);
+        else
+            weight.scale = ratios[i * count + columnOfWeight_[k]].value;
+    }
+    const std::size_t smooth = lobeTerms_ * channels_;
+    bool grey = true, none = true;
+    for (std::size_t c = 0; c < channels_; ++c) {
+        none = none && black[smooth + c];
+        const Ratio& ratio = ratios[(smooth + c) * count + smooth];
+        if (c > 0) grey = grey && ((ratio.known && ratio.holds && ratio.value == 1) || none);
+    }
+    albedos_ = none ? 0 : grey ? 1 : static_cast<int>(channels_);
+}
+
+std::vector<SurfaceTexel> FacetSurface::row(std::size_t row) {
+    const std::size_t width = maps_.width();
+    const std::vector<float> values = maps_.row(row);
+    const std::vector<double> all = columns(values, width);
+    const std::vector<TexelTurn> turns = maps_.turns().row(row, width);
+    std::vector<SurfaceTexel> texels(width);
+    for (std::size_t x = 0; x < width; ++x) {
+        SurfaceTexel& texel = texels[x];
+        texel.normal = turns[x].normal;
+        // The model's x axis is the direction's part in the tangent plane, where the lobe turns.
+        const double azimuth = turns[x].azimuth;
+        const SurfaceFrame frame(texel.normal, {std::cos(azimuth), std::sin(azimuth), 0});
+        texel.tangent = std::cos(turn_) * frame.x + std::sin(turn_) * frame.y;
+        for (const Varying& v : varying_) {
+            if (v.factor) continue;
+            texel.lobe[v.node] =
+                nodes_[v.node].placeOf(static_cast<double>(values[v.first * width + x]));
+        }
+        for (std::size_t k = 0; k < columnOfWeight_.size(); ++k)
+            texel.weights[k] = std::max(0.0, all[columnOfWeight_[k] * width + x]);
+        for (std::size_t c = 0; c < static_cast<std::size_t>(albedos_); ++c)
+            texel.albedos[c] = std::max(0.0, all[(lobeTerms_ * channels_ + c) * width + x]);
+    }
+    return texels;
+}
+
+}  // namespace hshfit::jobs

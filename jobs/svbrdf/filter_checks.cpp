@@ -1,0 +1,197 @@
+#include "filter_checks.h"
+
+#include <hshfit/pictures/rgb_picture.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hshfit::jobs {
+namespace {
+
+constexpr int samples = 1024, pictureSamples = 64;
+constexpr std::size_t pictureSide = 64, pixels = 256;
+
+std::vector<MipPlace> measuredPlaces(const std::vector<LevelSize>& sizes, int texels) {
+    std::vector<MipPlace> places;
+    for (std::size_t level = 1; level < sizes.size() && texels > 0; ++level) {
+        for (const std::size_t index :
+             measuredTexels(sizes[level].width, sizes[level].height, {.texels = texels}))
+            places.push_back({static_cast<int>(level), index});
+    }
+    return places;
+}
+
+std::size_t levelOfPicture(const std::vector<LevelSize>& sizes) {
+    std::size_t level = std::min<std::size_t>(1, sizes.size() - 1);
+    while (level + 1 < sizes.size() &&
+           std::max(sizes[level].width, sizes[level].height) > pictureSide)
+        ++level;
+    return level;
+}
+
+std::vector<MipPlace> picturedPlaces(const std::vector<LevelSize>& sizes, int texels) {
+    const std::size_t level = levelOfPicture(sizes);
+    std::vector<MipPlace> places;
+    if (level == 0 || texels == 0) return places;
+    for (std::size_t k = 0; k < sizes[level].width * sizes[level].height; ++k)
+        places.push_back({static_cast<int>(level), k});
+    return places;
+}
+
+/// The numbers of stored texels; without harmonics where the map has none.
+std::vector<double> storedAt(const FilteredMap& map, const MipPlace& place) {
+    const auto level = static_cast<std::size_t>(place.level);
+    const std::size_t width = map.sidecar().levels[level].width;
+    return map.numbers(level, place.index % width, place.index / width);
+}
+
+MipErrorOptions optionsOf(const FilteredSidecar& sidecar) {
+    MipErrorOptions options{.samples = samples};
+    options.harmonics = sidecar.form == "harmonics";
+    if (options.harmonics) options.orders = {sidecar.layout.order};
+    return options;
+}
+
+const MipError& formIn(const MipErrors& errors, const std::string& form) {
+    return *std::ranges::find(errors.forms, form, &MipError::form);
+}
+
+}  // namespace
+
+FilterChecks::FilterChecks(std::size_t width, std::size_t height,
+                           const std::vector<LevelSize>& sizes, int texels)
+    : sizes_(sizes),
+      ranges_(sizes.size()),
+      pictureLevel_(levelOfPicture(sizes)),
+      measured_(width, height, measuredPlaces(sizes, texels), samples),
+      pictured_(width, height, picturedPlaces(sizes, texels), pictureSamples) {
+    for (std::size_t k = 0; k < measured_.size(); ++k) {
+        const MipPlace& place = measured_.place(k);
+        Range& range = ranges_[static_cast<std::size_t>(place.level)];
+        if (range.count++ == 0) range.first = k;
+        byRow_[{place.level, place.index / sizes[static_cast<std::size_t>(place.level)].width}]
+            .push_back(k);
+    }
+}
+
+void FilterChecks::add(std::span<const SurfaceTexel> row) {
+    measured_.add(row);
+    pictured_.add(row);
+}
+
+void FilterChecks::addFiltered(const MipRow& row, const MipLayout& layout) {
+    const auto found = byRow_.find({row.level, row.y});
+    if (found == byRow_.end()) return;
+    for (const std::size_t k : found->second) {
+        const std::size_t column = measured_.place(k).index % row.width;
+        const auto numbers = row.texels.subspan(column * layout.size(), layout.size());
+        measured_.texel(k).numbers.assign(numbers.begin(), numbers.end());
+    }
+}
+
+MipErrors FilterChecks::measureLevel(const FilteredSurface& surface, const MipLayout& layout,
+                                     const LobeTable& table, const Range& range,
+                                     const MipErrorOptions& options) const {
+    return measureMipTexels(
+        surface, layout, range.count,
+        [&](std::size_t k, std::mt19937_64&) { return measured_.texel(range.first + k); }, table,
+        options);
+}
+
+MipErrors FilterChecks::worst(const FilteredSurface& surface, const MipLayout& layout,
+                              const LobeTable& table, const std::vector<int>& orders,
+                              std::vector<std::size_t>& levels, const Listener& listener) const {
+    MipErrors worst;
+    MipErrorOptions options{.samples = samples, .orders = orders};
+    options.harmonics = !orders.empty();
+    const auto progress = listener.part("choosing the form");
+    for (std::size_t level = 1; level < sizes_.size(); ++level) {
+        const MipErrors own = measureLevel(surface, layout, table, ranges_[level], options);
+        if (worst.forms.empty()) {
+            worst = own;
+            levels.assign(own.forms.size(), level);
+        }
+        for (std::size_t k = 0; k < own.forms.size(); ++k) {
+            if (own.forms[k].relative <= worst.forms[k].relative) continue;
+            worst.forms[k] = own.forms[k];
+            levels[k] = level;
+        }
+        if (progress) progress(level, sizes_.size() - 1);
+    }
+    return worst;
+}
+
+void FilterChecks::measure(const FilteredSurface& surface, const LobeTable& table,
+                           const FilteredMap& map, std::vector<FilteredLevel>& levels,
+                           const Listener& listener) {
+    const FilteredSidecar& sidecar = map.sidecar();
+    const auto progress = listener.part("measuring levels");
+    for (std::size_t level = 1; level < sizes_.size(); ++level) {
+        const Range& range = ranges_[level];
+        for (std::size_t k = 0; k < range.count; ++k)
+            measured_.texel(range.first + k).numbers =
+                storedAt(map, measured_.place(range.first + k));
+        const MipErrors errors =
+            measureLevel(surface, sidecar.layout, table, range, optionsOf(sidecar));
+        levels[level].texels = range.count;
+        levels[level].noise = errors.noise;
+        const auto filled = [&](const MipError& from) {
+            FilteredError to{.relative = from.relative,
+                             .largest = from.maximum,
+                             .wi = from.wi,
+                             .wo = from.wo,
+                             .albedo = from.albedo,
+                             .worstAlbedo = from.worstAlbedo};
+            for (std::size_t k = 0; k < from.texels.size(); ++k) {
+                to.mean += from.texels[k] / static_cast<double>(from.texels.size());
+                if (k > 0 && from.texels[k] <= to.maximum) continue;
+                to.maximum = from.texels[k];
+                to.column = measured_.place(range.first + k).index % sizes_[level].width;
+                to.row = measured_.place(range.first + k).index / sizes_[level].width;
+            }
+            return to;
+        };
+        levels[level].stored = filled(formIn(errors, sidecar.form));
+        levels[level].parameters = filled(formIn(errors, "parameters"));
+        if (progress) progress(level, sizes_.size() - 1);
+    }
+}
+
+std::string FilterChecks::picture(const FilteredSurface& surface, const LobeTable& table,
+                                  const FilteredMap& map) const {
+    MipErrorOptions options = optionsOf(map.sidecar());
+    options.outgoing = 6;
+    options.incoming = 16;
+    const MipErrors errors = measureMipTexels(
+        surface, map.sidecar().layout, pictured_.size(),
+        [&](std::size_t k, std::mt19937_64&) {
+            MeasuredTexel texel = pictured_.texel(k);
+            texel.numbers = storedAt(map, pictured_.place(k));
+            return texel;
+        },
+        table, options);
+    const std::vector<double>& left = formIn(errors, map.sidecar().form).texels;
+    const std::vector<double>& right = formIn(errors, "parameters").texels;
+    const double largest =
+        std::max(*std::ranges::max_element(left), *std::ranges::max_element(right));
+    const auto [width, height] = sizes_[pictureLevel_];
+    const std::size_t scale = std::max<std::size_t>(1, pixels / std::max(width, height));
+    const std::size_t panel = width * scale, gap = 4;
+    RgbPicture picture{static_cast<int>(2 * panel + gap), static_cast<int>(height * scale)};
+    for (std::size_t y = 0; y < height * scale; ++y) {
+        for (std::size_t x = 0; x < 2 * panel + gap; ++x) {
+            float shade = 1;
+            if (x < panel || x >= panel + gap) {
+                const auto& side = x < panel ? left : right;
+                const std::size_t column = (x < panel ? x : x - panel - gap) / scale;
+                const double share = largest > 0 ? side[y / scale * width + column] / largest : 0;
+                shade =
+                    static_cast<float>(std::max(0.0, 1 + std::log10(std::max(share, 1e-3)) / 3));
+            }
+            picture.values.insert(picture.values.end(), 3, shade);
+        }
+    }
+    return rgbPng(picture, 0);
+}
+
+}  // namespace hshfit::jobs
