@@ -71,7 +71,7 @@ Json levelsJson(const jobs::Svbrdf& done) {
 Json jsonOf(const jobs::Svbrdf& done) {
     Json choices = Json::array();
     for (const jobs::MapChoice& choice : done.choices) choices.push_back(jsonOf(choice));
-    return {
+    Json json = {
         {"format", "hshfit-svbrdf-answer"},
         {"version", 1},
         {"description", done.description},
@@ -93,6 +93,14 @@ Json jsonOf(const jobs::Svbrdf& done) {
         {"seconds", {{"preparation", done.tableSeconds}, {"writing", done.seconds}}},
         {"texels_per_second", {{"written", done.rate}, {"kernel", done.kernelRate}}},
         {"files", done.files}};
+    if (done.fit.texels > 0) {
+        json["fit"] = {{"texels", done.fit.texels},
+                       {"mean", done.fit.mean},
+                       {"maximum", done.fit.maximum},
+                       {"column", done.fit.column},
+                       {"row", done.fit.row}};
+    }
+    return json;
 }
 
 std::string textOf(const jobs::MapChoice& choice) {
@@ -126,13 +134,22 @@ std::string levelText(const jobs::Svbrdf& done, std::size_t level) {
 }
 
 std::string textOf(const jobs::Svbrdf& done) {
-    std::string text = fmt::format(
-        "{}: {} x {} texels of {}, {} outgoing directions; lobes {}{}\n", done.description,
-        done.width, done.height, done.model, done.outgoing, fmt::join(done.lobes, ", "),
-        done.axes.empty()
-            ? ""
-            : fmt::format(" at {} nodes over {}, error {}", done.tableNodes,
-                          fmt::join(done.axes, ", "), jobs::percent(done.tableError, 2)));
+    std::string text =
+        fmt::format("{}: {} x {} texels of {}, {} outgoing directions", done.description,
+                    done.width, done.height, done.model, done.outgoing);
+    if (!done.lobes.empty()) text += fmt::format("; lobes {}", fmt::join(done.lobes, ", "));
+    if (!done.axes.empty()) {
+        text += fmt::format(" at {} nodes over {}, error {}", done.tableNodes,
+                            fmt::join(done.axes, ", "), jobs::percent(done.tableError, 2));
+    }
+    text += "\n";
+    if (done.fit.texels > 0) {
+        text += fmt::format(
+            "coefficients are off the samples of {} texels by {} in the mean, {} at most at ({}, "
+            "{})\n",
+            done.fit.texels, jobs::percent(done.fit.mean, 2), jobs::percent(done.fit.maximum, 2),
+            done.fit.column, done.fit.row);
+    }
     if (!done.leastCaptured.empty()) {
         text += fmt::format(
             "the basis captures {} of the energy of {}, the least of all lobes{}\n",

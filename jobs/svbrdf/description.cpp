@@ -173,14 +173,19 @@ MaterialDescription readMaterialDescription(const std::string& file) {
     const JsonFields root(json, "", file);
     if (root.word("format") != "hshfit-svbrdf") root.fail("has to be hshfit-svbrdf", "format");
     if (root.integer("version", 1, 1 << 20) != 1) root.fail("has to be 1", "version");
-    constexpr std::string_view known[] = {"format", "version",   "model",  "parameters",
-                                          "normal", "direction", "texels", "source"};
+    constexpr std::string_view known[] = {"format",     "version",   "model",
+                                          "parameters", "normal",    "direction",
+                                          "texels",     "isotropic", "source"};
     requireKnown(root, known);
     if (root.has("texels")) {
         for (const char* key : {"model", "parameters", "normal", "direction"})
             if (root.has(key)) root.fail("does not go with texels", key);
-        return {.file = file, .model = {}, .texels = pathOf(root, "texels", file)};
+        return {.file = file,
+                .model = "measured",
+                .texels = pathOf(root, "texels", file),
+                .isotropic = root.has("isotropic") && root.flag("isotropic")};
     }
+    if (root.has("isotropic")) root.fail("belongs to texels", "isotropic");
     const brdfs::Model& model = modelOf(root);
     MaterialDescription result{.file = file, .model = std::string(model.name)};
     const JsonFields parameters = root.object("parameters");

@@ -61,6 +61,7 @@ struct MaterialDescription {
     std::optional<DirectionReference> direction = {};
     /// A file of measured texels (docs/svbrdf.md) in place of a model.
     std::string texels = {};
+    bool isotropic = false;  ///< of measured texels
 };
 
 /// Reads {"format": "hshfit-svbrdf", "version": 1, "model": …, "parameters": {…}} (docs/svbrdf.md),

@@ -1,6 +1,7 @@
 #include "svbrdf.h"
 
 #include "level_checks.h"
+#include "measured_texels.h"
 #include "model_lobes.h"
 #include "parameter_maps.h"
 
@@ -21,6 +22,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 namespace hshfit::jobs {
@@ -63,32 +65,61 @@ const MaterialDescription& inOneFrame(const MaterialDescription& described) {
                     described.file, described.normal ? "normal" : "direction"));
 }
 
-/// Everything that texels come from.
-struct Work {
-    Work(const std::string& description, const SvbrdfOptions& options, const Listener& listener)
-        : described(readMaterialDescription(description)),
-          maps(inOneFrame(described), listener),
-          lobes(maps, description),
-          basis(bases::make(options.basis, options.order)),
-          layout(layoutFor(options, lobes, *basis)),
-          table(lobes.function(layout, *basis,
-                               {.quantity = options.cosine ? Quantity::brdfCosine : Quantity::brdf},
-                               least),
+Quantity quantityOf(const SvbrdfOptions& options) {
+    return options.cosine ? Quantity::brdfCosine : Quantity::brdf;
+}
+
+/// Texels of a model with parameter maps.
+struct ModelTexels {
+    ModelTexels(const MaterialDescription& described, const Basis& basis,
+                const SvbrdfOptions& options, const Listener& listener)
+        : maps(inOneFrame(described), listener),
+          lobes(maps, described.file),
+          layout(layoutFor(options, lobes, basis)),
+          table(lobes.function(layout, basis, {.quantity = quantityOf(options)}, least),
                 {.tolerance = options.tolerance, .progress = listener.part("lobes")}),
           rows(maps, lobes),
           texels(rows, table, layout, lobes.axesByChannel()),
           kernel(table, layout, lobes.axesByChannel()) {}
 
-    MaterialDescription described;
     ParameterMaps maps;
     ModelLobes lobes;
-    std::unique_ptr<Basis> basis;
     TexelLayout layout;
     LeastCaptured least = {};
     LobeGrid table;
     ModelRows rows;
     LobeTexels texels;
     TexelKernel kernel;
+};
+
+/// Everything that texels come from: a model, or measured ones.
+struct Work {
+    Work(const std::string& description, const SvbrdfOptions& options, const Listener& listener)
+        : described(readMaterialDescription(description)),
+          basis(bases::make(options.basis, options.order)),
+          model(described.texels.empty()
+                    ? std::make_unique<ModelTexels>(described, *basis, options, listener)
+                    : nullptr),
+          measured(model ? nullptr
+                         : std::make_unique<MeasuredTexels>(
+                               described.texels, *basis,
+                               MeasuredTexels::Options{.outgoing = options.outgoing,
+                                                       .quantity = quantityOf(options),
+                                                       .isotropic = described.isotropic},
+                               listener)),
+          texels(model ? static_cast<TexelSource&>(model->texels) : *measured),
+          layout(texels.layout()),
+          laws(model ? model->lobes.laws() : measured->laws()) {}
+
+    void checkIntact() const { model ? model->maps.checkIntact() : measured->checkIntact(); }
+
+    MaterialDescription described;
+    std::unique_ptr<Basis> basis;
+    std::unique_ptr<ModelTexels> model;
+    std::unique_ptr<MeasuredTexels> measured;
+    TexelSource& texels;
+    const TexelLayout& layout;
+    Laws laws;
 };
 
 gpu::Number numberOf(const SvbrdfOptions& options) {
@@ -183,21 +214,39 @@ std::unique_ptr<TexelEncoder> encoderFor(Work& work, const SvbrdfOptions& option
     return std::make_unique<LowRankEncoder>(lowRank, number);
 }
 
+/// Texels of a row, taken again and again.
+std::function<void(float*)> kernelOf(Work& work, std::size_t texels,
+                                     std::unique_ptr<TexelBand>& band, TexelBlock& block) {
+    const std::size_t row = work.texels.height() / 2;
+    if (work.measured) {
+        band = work.texels.band(row, row + 1);
+        return [&work, &band, texels, row](float* out) {
+            for (std::size_t t = 0; t < texels; ++t)
+                band->texels(row, t % work.texels.width(), 1, out + t * work.layout.floats());
+        };
+    }
+    const TexelBlock parameters = work.model->rows.read(row, row + 1).front();
+    block.count = texels;
+    const auto fill = [&](const std::vector<float>& from, std::vector<float>& to) {
+        for (std::size_t at = 0; at < from.size(); at += parameters.count)
+            for (std::size_t t = 0; t < texels; ++t) to.push_back(from[at + t % parameters.count]);
+    };
+    fill(parameters.weights, block.weights);
+    fill(parameters.places, block.places);
+    return [&work, &block](float* out) { work.model->kernel.run(block, 0, block.count, out); };
+}
+
 /// Texels per second of the kernel alone, on all threads, parameters in memory.
 void measureKernel(Work& work, Svbrdf& result) {
-    constexpr std::size_t texels = std::size_t{1} << 16, chunk = 256;
-    const auto row = work.rows.read(work.maps.height() / 2, work.maps.height() / 2 + 1).front();
-    TexelBlock block{.count = chunk};
-    const auto fill = [&](const std::vector<float>& from, std::vector<float>& to) {
-        for (std::size_t at = 0; at < from.size(); at += row.count)
-            for (std::size_t t = 0; t < chunk; ++t) to.push_back(from[at + t % row.count]);
-    };
-    fill(row.weights, block.weights);
-    fill(row.places, block.places);
+    constexpr std::size_t chunk = 256;
+    const std::size_t texels = std::size_t{1} << (work.measured ? 12 : 16);
+    std::unique_ptr<TexelBand> band;
+    TexelBlock block;
+    const auto kernel = kernelOf(work, chunk, band, block);
     const auto start = Clock::now();
     eachInParallel(texels / chunk, [&](std::size_t) {
         std::vector<float> out(chunk * work.layout.floats());
-        work.kernel.run(block, 0, chunk, out.data());
+        kernel(out.data());
     });
     result.kernelSeconds = secondsSince(start);
     result.kernelRate = static_cast<double>(texels) / result.kernelSeconds;
@@ -212,8 +261,8 @@ MapSidecar sidecarOf(const Work& work, const SvbrdfOptions& options, const Texel
                        .quantity = options.cosine ? Quantity::brdfCosine : Quantity::brdf,
                        .channels = work.layout.channels == 1 ? Channels::grey() : Channels::rgb(),
                        .layout = work.layout,
-                       .isotropic = work.lobes.laws().isotropic,
-                       .bilateral = work.lobes.laws().mirrorSymmetric,
+                       .isotropic = work.laws.isotropic,
+                       .bilateral = work.laws.mirrorSymmetric,
                        .number = encoder.number(),
                        .levels = levels,
                        .source = work.described.file,
@@ -256,15 +305,15 @@ void write(Work& work, TexelEncoder& encoder, const SvbrdfOptions& options, Svbr
         texturePath, encoder.number(), encoder.layers(), result.levels,
         {.pairs = {{"hshfit:form", encoder.form()}}, .pastPageCache = options.pastPageCache});
     const std::size_t texelBytes = texture.bytesOfTexel() + encoder.linear() + sizeof(float);
-    const BandPlan plan = planBands(levelSizes(work.maps.width(), work.maps.height()), texelBytes,
-                                    options.memory / 3);
+    const BandPlan plan = planBands(levelSizes(work.texels.width(), work.texels.height()),
+                                    texelBytes, options.memory / 3);
     const auto start = Clock::now();
     const MapWritten written = writeMap(work.texels, encoder, texture, plan, processes(),
                                         {.progress = listener.part("texels")});
-    work.maps.checkIntact();
+    work.checkIntact();
     processes().meet();
     result.seconds = secondsSince(start);
-    result.rate = static_cast<double>(work.maps.width() * work.maps.height()) / result.seconds;
+    result.rate = static_cast<double>(work.texels.width() * work.texels.height()) / result.seconds;
     result.errors = written.levels;
     result.errors.resize(result.levels.size());  // the others have none
     result.bytes = texture.bytes();
@@ -286,26 +335,30 @@ Svbrdf made(const std::string& description, const std::string& folder, const Svb
     Svbrdf result{.description = description,
                   .model = work.described.model,
                   .folder = folder,
-                  .width = work.maps.width(),
-                  .height = work.maps.height(),
-                  .lobes = work.lobes.names(),
-                  .isotropic = work.lobes.laws().isotropic,
+                  .width = work.texels.width(),
+                  .height = work.texels.height(),
+                  .isotropic = work.laws.isotropic,
                   .outgoing = work.layout.outgoing.spec(),
-                  .tableNodes = work.table.nodes(),
-                  .tableError = work.table.error(),
-                  .captured = work.least.share,
-                  .leastCaptured = work.least.brdf,
-                  .levels = levelSizes(work.maps.width(), work.maps.height(), options.mips),
+                  .levels = levelSizes(work.texels.width(), work.texels.height(), options.mips),
                   .processes = processes().count()};
-    for (const LobeAxis& axis : work.lobes.axes()) result.axes.push_back(axis.name);
+    if (work.measured) {
+        result.fit = work.measured->fitErrors();
+    } else {
+        result.lobes = work.model->lobes.names();
+        result.tableNodes = work.model->table.nodes();
+        result.tableError = work.model->table.error();
+        result.captured = work.model->least.share;
+        result.leastCaptured = work.model->least.brdf;
+        for (const LobeAxis& axis : work.model->lobes.axes()) result.axes.push_back(axis.name);
+    }
     const auto encoder = encoderFor(work, options, result, listener);
     result.tableSeconds = secondsSince(start);
     result.form = encoder->form();
     measureKernel(work, result);
     write(work, *encoder, options, result, listener);
-    if (options.checks > 0 && result.levels.size() > 1) {
+    if (work.model && options.checks > 0 && result.levels.size() > 1) {
         const MaterialMap map((std::filesystem::path(folder) / sidecarName).string());
-        result.checks = checkLevels(map, work.maps, work.lobes, work.kernel,
+        result.checks = checkLevels(map, work.model->maps, work.model->lobes, work.model->kernel,
                                     {options.checks, processes()}, listener);
     }
     return result;

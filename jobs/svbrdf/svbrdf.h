@@ -48,6 +48,14 @@ struct LevelCheck {
     double parameters = 0, parametersMaximum = 0;  ///< of averaged parameters
 };
 
+/// The distance of coefficients from the measured samples that they were made from, relative to
+/// the norm of the samples of a texel.
+struct FitErrors {
+    std::size_t texels = 0;  ///< on an even grid
+    double mean = 0, maximum = 0;
+    std::size_t column = 0, row = 0;  ///< of the maximum
+};
+
 struct Svbrdf {
     std::string description = {}, model = {}, folder = {};
     std::size_t width = 0, height = 0;
@@ -58,6 +66,7 @@ struct Svbrdf {
     double tableError = 0;
     double captured = 1;  ///< the least share of energy that the basis holds at a node of the grid
     std::string leastCaptured = {};  ///< the BRDF there
+    FitErrors fit = {};              ///< of measured texels
     std::string form = {};
     std::size_t count = 0;  ///< shared shapes, or materials
     std::vector<MapChoice> choices = {};

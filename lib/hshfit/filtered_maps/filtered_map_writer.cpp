@@ -26,13 +26,13 @@ FilteredMapWriter::FilteredMapWriter(const FilteredSidecar& sidecar, const std::
                                      const std::string& harmonics)
     : sidecar_(sidecar),
       texture_(texture, sidecar.number, sidecar.layers(), sidecar.levels,
-               {{"hshfit:form", sidecar.form}}) {
+               {.pairs = {{"hshfit:form", sidecar.form}}, .pastPageCache = false}) {
     texture_.begin();
     if (sidecar.form != "harmonics") return;
     harmonics_ = std::make_unique<LevelFile>(
         harmonics, sidecar.number, sidecar.harmonicLayers(),
         std::vector<LevelSize>(sidecar.levels.begin() + 1, sidecar.levels.end()),
-        std::map<std::string, std::string>{{"hshfit:form", "harmonics"}});
+        LevelFileOptions{.pairs = {{"hshfit:form", "harmonics"}}, .pastPageCache = false});
     harmonics_->begin();
 }
 
