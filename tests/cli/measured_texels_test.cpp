@@ -23,7 +23,7 @@ using Json = nlohmann::json;
 
 struct Tensor {
     std::vector<float> incoming, outgoing, reflectance;
-    std::uint64_t width = 4, height = 4, channels = 1;
+    std::uint64_t width = 4, height = 4, channels = 1, columns = 0;
 
     /// Directions on rings; f of texel and cosines of both directions.
     explicit Tensor(auto f) {
@@ -43,13 +43,13 @@ struct Tensor {
                     reflectance.push_back(static_cast<float>(
                         f(texel, static_cast<double>(incoming[i]), static_cast<double>(outgoing[o]),
                           static_cast<double>(incoming[i - 2]))));
+        columns = incoming.size() / 3;
     }
     void write(const std::string& path) const {
         TensorFileWriter writer;
         writer.add("incoming", {incoming.size() / 3, 3}, incoming);
         writer.add("outgoing", {outgoing.size() / 3, 3}, outgoing);
-        writer.add("reflectance",
-                   {height, width, outgoing.size() / 3, incoming.size() / 3, channels},
+        writer.add("reflectance", {height, width, outgoing.size() / 3, columns, channels},
                    reflectance);
         writer.write(path, hshfit::AtomicFile::Existing::replace);
     }
