@@ -190,12 +190,59 @@ TEST(AltaAttack, functionsAreChecked) {
     refused(function, head, {"no #FUNC"});
     refused(function, "#FUNC nonlinear_function_diffuse\nkd 1\n", {"no #DIM"});
     refused(function, "#DIM 6 999999999\n", {"line 1"});
-    refused(function, head + "#FUNC rational_function\n", {"line 3", "rational_function"});
+    refused(function, head + "#FUNC nonlinear_function_lafortune\n", {"line 3", "lafortune"});
     refused(function, head + "#FUNC nonlinear_function_diffuse\n", {"before kd"});
     refused(function, head + "#FUNC nonlinear_function_diffuse\nks 1\n", {"expected kd"});
     refused(function, head + "#FUNC nonlinear_function_diffuse\nkd nan\n", {"kd is nan"});
     refused(function, head + "#FUNC nonlinear_function_blinn\nKs 1\nN 1e9\n", {"N is"});
     refused(function, head + "what 3\n", {"belongs to no #FUNC"});
+    refused(function, head + "#FUNC nonlinear_fresnel_schlick\nR 0.5\n", {"follows the one"});
+    refused(function, head + "#FUNC nonlinear_function_abc\na 1\n", {"expected #PARAM"});
+    refused(function, head + "#FUNC nonlinear_function_abc\n#PARAM CARTESIAN\n", {"no cosine"});
+    refused(function, head + "#FUNC nonlinear_function_spherical_gaussian\nKs 1\nN 1\n",
+            {"--sg-type"});
+}
+
+TEST(AltaAttack, rationalFunctionsAreChecked) {
+    const std::string head = "#ALTA FUNC HEADER\n#DIM 2 1\n#PARAM_IN RUSIN_TH_TD\n";
+    const std::string start = head + "#FUNC rational_function\n#MIN 0 0\n#MAX 1.5 1.5\n";
+    const std::string whole = start + "#NP 2\n#NQ 1\n0 0 1\n1 0 -.5\n0 0 1\n";
+    cutEverywhere(function, whole + "#FUNC nonlinear_function_diffuse\nkd 1\n");
+    refused(function, "#ALTA FUNC HEADER\n#DIM 1 1\n#FUNC rational_function\n",
+            {"line 3", "input=COS_TH"});
+    refused(function, "#ALTA FUNC HEADER\n#DIM 3 1\n#PARAM_IN COS_TH\n#FUNC rational_function\n",
+            {"3 coordinates", "COS_TH has 1"});
+    refused(function, whole + "0 0 1\n", {"more coefficients than those of 1"});
+    refused(function, start + "#NP 2\n#NQ 1\n0 0 1\n1 0 1\n", {"before its last coefficient"});
+    refused(function, start + "#NP 1e9\n", {"#NP"});
+    refused(function, start + "#NP 1.5\n", {"#NP"});
+    refused(function, start + "#NP 1\n#NQ 1\n0 0 nan\n", {"coefficient is nan"});
+    refused(function, start + "#NP 1\n#NQ 1\n0 500 1\n", {"degree 2 is 500"});
+    refused(function, start + "#NP 1\n#NQ 1\n0 1\n", {"2 numbers, expected 2 degrees"});
+    refused(function, start + "#NP 1\n#NQ 1\n0 0 1\n0 0 0\n", {"denominator is 0"});
+    refused(function, start + "0 0 1\n", {"no #MIN, #MAX, #NP and #NQ"});
+    refused(function, start + "#BASIS CHEBYSHEV\n", {"expected LEGENDRE"});
+    refused(function, head + "#FUNC rational_function\n#MIN 0\n", {"#MIN has to have 2"});
+    refused(function, head + "#FUNC rational_function\n#MIN 0 inf\n", {"#MIN has to have 2"});
+    refused(function,
+            head + "#FUNC rational_function\n#MIN 1 0\n#MAX 0 1\n#NP 1\n#NQ 1\n0 0 1\n0 0 1\n",
+            {"#MIN 1 is above"});
+}
+
+// A pole, an overflow and a quotient of two zeros are finite numbers.
+TEST(AltaAttack, rationalFunctionsStayFinite) {
+    const std::string head =
+        "#ALTA FUNC HEADER\n#DIM 1 1\n#PARAM_IN COS_TH\n#FUNC rational_function\n#MIN 0\n#MAX 1\n";
+    for (const char* body :
+         {"#NP 1\n#NQ 1\n0 1\n1 1\n", "#NP 1\n#NQ 1\n1 1\n1 1\n", "#NP 1\n#NQ 1\n0 -1\n1 1\n",
+          "#NP 1\n#NQ 1\n100 1e150\n100 1e-150\n"}) {
+        const auto brdf = readAltaFunction(head + body, "f");
+        for (const double theta : {0.0, 59.0, 60.0, 61.0, 89.99}) {
+            const Direction h = directionFromAngles(radians(theta), 0);
+            const double f = evaluate(*brdf, h, h)[0];
+            EXPECT_TRUE(std::isfinite(f) && f >= 0) << body << theta << " " << f;
+        }
+    }
 }
 
 // On the horizon f cos is 0 whatever f is, and the cosine of 90 degrees may round to either side.

@@ -462,7 +462,7 @@ TEST(Shared, functionsOfAltaLoadOrSayWhyNot) {
     EXPECT_NEAR(f[0], 0.001372370561 + 0.1285394675, 1e-12);
     EXPECT_NEAR(f[2], 0.002848470952 + 0.3648163434, 1e-12);
     test::expectInputError([&] { open(shared("alta/Kirby2.brdf")); },
-                           {"line 7", "rational_function"});
+                           {"UNKNOWN_INPUT", "input=COS_TH"});
 }
 
 TEST(Shared, theFormatIsToldByTheContent) {

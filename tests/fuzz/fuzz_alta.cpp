@@ -12,7 +12,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     try {
         if (text.starts_with("#ALTA FUNC HEADER")) {
+            // With the parametrisation that the file states, and with another.
             test::checkBrdf(*brdfs::readAltaFunction(text, "input"));
+            test::checkBrdf(*brdfs::readAltaFunction(text, "input", "COS_TH_TD"));
         } else {
             test::checkBrdf(brdfs::Scattered(brdfs::readAlta(text, "input"), {}, "input"));
         }

@@ -282,6 +282,13 @@ void scatteredFiles(const std::filesystem::path& folder) {
     write(folder / "fuzz_alta" / "function",
           "#ALTA FUNC HEADER\n#DIM 6 1\n#FUNC nonlinear_function_diffuse\nkd 0.25\n"
           "#FUNC nonlinear_function_blinn\nKs 2\nN 3\n");
+    write(folder / "fuzz_alta" / "rational",
+          "#ALTA FUNC HEADER\n#CMD --sg-type half\n#DIM 2 1\n#PARAM_IN RUSIN_TH_TD\n"
+          "#FUNC rational_function\n#MIN 0 0\n#MAX 1.5 1.5\n#BASIS LEGENDRE\n#NP 2\n#NQ 2\n"
+          "0 0 1\n1 0 -.5\n0 0 1\n0 2 .5\n"
+          "#FUNC nonlinear_function_spherical_gaussian\nKs 1\nN 9\n"
+          "#FUNC nonlinear_fresnel_schlick\nR 0.1\n"
+          "#FUNC nonlinear_function_abc\n#PARAM COS_TH\na 1\nb 2\nc 3\n");
     write(folder / "fuzz_astm" / "spectral",
           "NUM_POINTS 1\nVARS theta_i,phi_i,theta_s,phi_s,400nm\n0.1,0,0.2,0,1\n");
     write(folder / "fuzz_cornell" / "two", "# x\n2\n400 500\n0.1 0 0.2 0.3 1 2\n");

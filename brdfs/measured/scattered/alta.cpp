@@ -1,4 +1,5 @@
 #include <brdfs/measured/scattered/alta.h>
+#include <brdfs/measured/scattered/alta_coordinates.h>
 #include <brdfs/measured/scattered/alta_parameters.h>
 #include <brdfs/measured/scattered/scattered.h>
 #include <brdfs/measured/scattered/text_file.h>
@@ -211,6 +212,13 @@ bool looksLikeAlta(std::span<const unsigned char> head, std::uint64_t) {
     return false;
 }
 
+/// "file" and the names of parametrisations.
+std::vector<std::string_view> inputChoices() {
+    std::vector<std::string_view> choices{"file"};
+    for (const AltaCoordinates& row : allAltaCoordinates()) choices.push_back(row.name);
+    return choices;
+}
+
 }  // namespace
 
 Samples readAlta(std::string_view text, const std::string& where) {
@@ -248,15 +256,26 @@ Samples readAlta(std::string_view text, const std::string& where) {
 const Format& altaFormat() {
     static const Format format{
         .name = "alta",
-        .help = "ALTA samples, text or binary stream, grey or RGB; ALTA's diffuse and Blinn fits",
+        .help =
+            "ALTA samples, text or binary stream, grey or RGB; rational and other functions that "
+            "it fitted",
         .extension = ".alta",
         .recognises = looksLikeAlta,
-        .parameters = scatteredParameters(),
+        .parameters = scatteredParameters(
+            {{.name = "input",
+              .help = "parametrisation of a rational function whose file does not state it",
+              .kind = Parameter::Kind::choice,
+              .choices = inputChoices()}}),
         .open = [](const std::string& path, const Parameters& parameters) -> std::unique_ptr<Brdf> {
             std::unique_ptr<Brdf> function;
+            const std::string input(parameters.choice("input"));
             withTextFile(path, [&](std::string_view text, const std::string& where) {
-                if (text.starts_with(functionMark)) function = readAltaFunction(text, where);
+                if (text.starts_with(functionMark))
+                    function = readAltaFunction(text, where, input == "file" ? "" : input);
             });
+            if (!function && input != "file")
+                throw UsageError(fmt::format(
+                    "{}: input is for fitted functions; this is a file of samples", path));
             return function ? std::move(function) : openScattered(path, parameters, readAlta);
         },
     };
