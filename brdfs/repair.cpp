@@ -12,11 +12,12 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 namespace hshfit::brdfs {
 namespace {
 
-enum Kind : std::size_t { missing, negative, reciprocity, energy, kinds };
+enum Kind : std::size_t { missing, holes, negative, reciprocity, energy, kinds };
 using Chosen = std::array<bool, kinds>;
 
 /// Reciprocal measurements differ by less than this through interpolation alone.
@@ -125,6 +126,7 @@ public:
         : brdf_(std::move(brdf)), chosen_(chosen), laws_(brdf_->laws()) {
         laws_.nonNegative |= chosen[negative];
         laws_.reciprocal |= chosen[reciprocity];
+        if (chosen[holes]) filler_.emplace(*brdf_, progress);
         if (!chosen[energy]) return;
         chosen_[energy] = false;  // the table holds albedos after the other repairs
         scale_ = EnergyScale(*this, progress);
@@ -133,6 +135,7 @@ public:
         evaluated_ = 0;
         for (auto& count : changed_) count = 0;
         for (auto& count : left_) count = 0;
+        for (auto& count : byAngle_) count = 0;
     }
 
     std::string name() const override { return brdf_->name(); }
@@ -150,7 +153,7 @@ public:
     }
     void checkIntact() const override {
         const auto* measured = dynamic_cast<const MeasuredBrdf*>(brdf_.get());
-        if (measured && chosen_[missing]) return measured->checkReadable();
+        if (measured && (chosen_[missing] || chosen_[holes])) return measured->checkReadable();
         brdf_->checkIntact();
     }
 
@@ -161,15 +164,22 @@ public:
         std::vector<RepairCount> result;
         for (std::size_t k = 0; k < kinds; ++k)
             if (chosen_[k]) result.push_back({repairs()[k].name, changed_[k], left_[k]});
+        for (RepairCount& count : result) {
+            if (count.name != repairs()[holes].name) continue;
+            count.check = filler_->check();
+            for (std::size_t i = 0; i < byAngle_.size(); ++i) count.byAngle[i] = byAngle_[i];
+        }
         return result;
     }
 
 private:
     struct Tally {
         std::array<std::uint64_t, kinds> changed{}, left{};
+        std::array<std::uint64_t, 9> byAngle{};
     };
 
     bool covered(const Direction& wi, const Direction& wo) const;
+    std::vector<double> continued(const Direction& wi, const Direction& wo, Tally& tally) const;
     std::vector<double> filled(const Direction& wi, const Direction& wo, bool isCovered,
                                Tally& tally) const;
     void clamp(std::vector<double>& values, Tally& tally) const;
@@ -182,8 +192,10 @@ private:
     Chosen chosen_;
     Laws laws_;
     EnergyScale scale_;
+    std::optional<HoleFiller> filler_;
     mutable std::atomic<std::uint64_t> evaluated_ = 0;
     mutable std::array<std::atomic<std::uint64_t>, kinds> changed_{}, left_{};
+    mutable std::array<std::atomic<std::uint64_t>, 9> byAngle_{};
 };
 
 bool Repaired::covered(const Direction& wi, const Direction& wo) const {
@@ -192,9 +204,25 @@ bool Repaired::covered(const Direction& wi, const Direction& wo) const {
     return result != 0;
 }
 
+/// By the filler, else as the repair `missing` where that is chosen too.
+std::vector<double> Repaired::continued(const Direction& wi, const Direction& wo,
+                                        Tally& tally) const {
+    auto values = filler_->fill(wi, wo);
+    if (!values) {
+        tally.left[holes] += brdf_->channels().count();
+        return {};
+    }
+    tally.changed[holes] += values->size();
+    const double angle = std::max(polarAngle(wi), polarAngle(wo)) / radians(10);
+    tally.byAngle[std::min<std::size_t>(static_cast<std::size_t>(angle), 8)] += values->size();
+    return std::move(*values);
+}
+
 /// f, or that of the nearest covered pair with the same half vector and a smaller theta_d.
 std::vector<double> Repaired::filled(const Direction& wi, const Direction& wo, bool isCovered,
                                      Tally& tally) const {
+    if (!isCovered && chosen_[holes])
+        if (auto values = continued(wi, wo, tally); !values.empty()) return values;
     if (isCovered || !chosen_[missing]) return evaluate(*brdf_, wi, wo);
     const Direction sum{wi.x + wo.x, wi.y + wo.y, wi.z + wo.z};
     const Direction difference{wi.x - wo.x, wi.y - wo.y, wi.z - wo.z};
@@ -278,6 +306,7 @@ void Repaired::eval(const Direction& wo, DirectionBatch wi, double* out) const {
         changed_[r] += tally.changed[r];
         left_[r] += tally.left[r];
     }
+    for (std::size_t i = 0; i < byAngle_.size(); ++i) byAngle_[i] += tally.byAngle[i];
 }
 
 }  // namespace
@@ -285,6 +314,8 @@ void Repaired::eval(const Direction& wo, DirectionBatch wi, double* out) const {
 std::span<const Repair> repairs() {
     static constexpr std::array<Repair, kinds> table{{
         {"missing", "continue f along theta_d to where nothing was measured", missingReason},
+        {"holes", "fill where nothing was measured smoothly from all sides, and check the fills",
+         missingReason},
         {"negative", "raise values below 0 to 0", negativeReason},
         {"reciprocity", "average f over exchanged directions", reciprocityReason},
         {"energy", "scale f down where an albedo is above 1", energyReason},

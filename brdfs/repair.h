@@ -1,11 +1,14 @@
 #pragma once
 
+#include <brdfs/hole_filler.h>
 #include <hshfit/accuracy/health.h>
 #include <hshfit/brdf/brdf.h>
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,6 +32,10 @@ struct RepairCount {
     std::string_view name;
     std::uint64_t changed = 0;  ///< values
     std::uint64_t left = 0;     ///< values that it could not repair
+    /// Of `holes`: the check against covered pairs, and the values that were filled by 10 degrees
+    /// of the larger of both polar angles.
+    std::optional<FillCheck> check = {};
+    std::array<std::uint64_t, 9> byAngle = {};
 };
 
 /// A BRDF with repairs, each of which corrects one defect:
@@ -36,6 +43,8 @@ struct RepairCount {
 /// missing      where nothing was measured, f is that of the pair with the same half vector, phi_d
 ///              and the largest theta_d below (by whole degrees) that is covered; left as it is if
 ///              none is
+/// holes        where nothing was measured, f continues that of covered pairs with the same half
+///              vector smoothly from all sides (hole_filler.h); left as it is if none is near
 /// negative     values below 0 become 0
 /// reciprocity  (f(wi, wo) + f(wo, wi)) / 2; where only one of the two is covered, that one
 /// energy       f min(s(wi), s(wo)) with s(w) = 1 / max(1, albedo(w)) in each channel, so that

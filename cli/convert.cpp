@@ -35,6 +35,18 @@ Json repairsJson(const jobs::Repairs& repairs) {
                         {"values", repairs.evaluated},
                         {"changed", count.changed},
                         {"left", count.left}});
+        if (!count.check) continue;
+        const brdfs::FillCheck& check = *count.check;
+        rows.back()["filled_by_angle"] = count.byAngle;
+        rows.back()["check"] = {
+            {"pairs", check.pairs},
+            {"reach", check.reach},
+            {"noise", check.noise},
+            {"median", check.median},
+            {"percentile_95", check.percentile95},
+            {"largest", check.largest},
+            {"worst",
+             {{"wi", directionJson(check.worstWi)}, {"wo", directionJson(check.worstWo)}}}};
     }
     return rows;
 }
@@ -73,6 +85,15 @@ std::string convertText(const Json& document, const std::optional<jobs::Conversi
         if (row["left"] != 0)
             text += fmt::format(" and left {} as they were", row["left"].get<std::uint64_t>());
         text += "\n";
+        if (!row.contains("check")) continue;
+        const Json& check = row["check"];
+        text += fmt::format(
+            "    held out: {} covered pairs, {} degrees from their neighbours as the holes are, "
+            "come "
+            "back to {:.2g} %, 95 of 100 to {:.2g} %; the source scatters by {:.2g} %\n",
+            check["pairs"].get<std::size_t>(), check["reach"].get<double>(),
+            100 * check["median"].get<double>(), 100 * check["percentile_95"].get<double>(),
+            100 * check["noise"].get<double>());
     }
     if (!loss) return text;
     text += fmt::format("loss, outgoing {}\n", loss->outgoing);

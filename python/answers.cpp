@@ -52,6 +52,18 @@ py::dict convertedDict(const jobs::Converted& done) {
             row["values"] = done.repairs->evaluated;
             row["changed"] = count.changed;
             row["left"] = count.left;
+            if (const auto& check = count.check) {
+                row["filled_by_angle"] =
+                    std::vector<std::uint64_t>(count.byAngle.begin(), count.byAngle.end());
+                py::dict own;
+                own["pairs"] = check->pairs;
+                own["reach"] = check->reach;
+                own["noise"] = check->noise;
+                own["median"] = check->median;
+                own["percentile_95"] = check->percentile95;
+                own["largest"] = check->largest;
+                row["check"] = own;
+            }
             repairs[py::str(std::string(count.name))] = row;
         }
         out["repairs"] = repairs;
