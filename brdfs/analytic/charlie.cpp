@@ -9,8 +9,9 @@
 
 namespace hshfit::brdfs {
 
+template <class N>
 struct CharlieShape {
-    CharlieCurve<double> curve;
+    CharlieCurve<N> curve;
     bool soft;
 };
 
@@ -22,7 +23,10 @@ struct CharlieShape {
 namespace hshfit::brdfs {
 namespace {
 
+using namespace HWY_NAMESPACE;
+
 HWY_EXPORT(evalCharlie);
+HWY_EXPORT(charlieColumns);
 
 constexpr Laws claims{.nonNegative = true, .isotropic = true, .mirrorSymmetric = true};
 
@@ -36,21 +40,16 @@ Laws lawsOf(const Parameters& p) {
     return result;
 }
 
-CharlieShape shapeOf(const Parameters& p) {
-    return {HWY_NAMESPACE::charlieCurve(p.number("r")), isSoft(p)};
-}
-
-void evalByVectors(const CharlieShape& shape, const TermBatch& batch) {
+void evalByVectors(const CharlieShape<double>& shape, const TermBatch& batch) {
     HWY_DYNAMIC_DISPATCH(evalCharlie)(shape, batch);
 }
 
-class Charlie final
-    : public ShapedBrdf<CharlieShape, evalByVectors,
-                        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::CharlieTerms, CharlieShape>> {
+class Charlie final : public ShapedBrdf<CharlieShape<double>, evalByVectors,
+                                        evalAll<double, CharlieTerms, CharlieShape<double>>> {
 public:
     explicit Charlie(const Parameters& p)
-        : ShapedBrdf(charlieModel(), p, lawsOf(p), TermWeights{{0.0}, {p.colour("ks")}},
-                     shapeOf(p)) {}
+        : ShapedBrdf(charlieModel(), p, lawsOf(p), channelWeights<CharlieFormula>(p),
+                     CharlieFormula::shape(Values<double>(p, 0))) {}
 
     /// sin^(1/r) is singular at the normal and nearly constant beyond a slope of 1.
     std::vector<Lobe> lobes(const Direction&) const override {
@@ -65,6 +64,10 @@ public:
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     return std::make_unique<Charlie>(p);
+}
+
+std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(charlieColumns)(request);
 }
 
 /// The uniform hemisphere: the sheen is broad, and bright near the horizon.
@@ -91,6 +94,7 @@ const Model& charlieModel() {
                         .choices = {"fitted", "soft"}}},
         .laws = claims,
         .make = make,
+        .columns = columns,
         .sampling = sampling};
     return model;
 }

@@ -14,30 +14,33 @@
 namespace hshfit::brdfs {
 namespace {
 
+using namespace HWY_NAMESPACE;
+
 HWY_EXPORT(evalEon);
+HWY_EXPORT(eonColumns);
+HWY_EXPORT(openpbrDiffuseColumns);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
 
 /// The polynomial's albedo exceeds kd by up to 1.5e-4 of kd.
-Laws lawsOf(const Colour& kd, const EonSettings& settings) {
+Laws lawsOf(const Colour& kd, const EonSettings<double>& settings) {
     Laws laws = claims;
     laws.energyConserving = settings.exact || largest(kd) <= 0.9998 || settings.roughness == 0;
     return laws;
 }
 
-void evalByVectors(const EonShape& shape, const TermBatch& batch) {
+void evalByVectors(const EonShape<double>& shape, const TermBatch& batch) {
     HWY_DYNAMIC_DISPATCH(evalEon)(shape, batch);
 }
 
-class Eon final
-    : public ShapedBrdf<EonShape, evalByVectors,
-                        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::EonTerms, EonShape>>,
-      public HasKinkCurves {
+class Eon final : public ShapedBrdf<EonShape<double>, evalByVectors,
+                                    evalAll<double, EonTerms, EonShape<double>>>,
+                  public HasKinkCurves {
 public:
-    Eon(const Model& model, const Parameters& p, const Colour& kd, const EonSettings& settings)
-        : ShapedBrdf(model, p, lawsOf(kd, settings),
-                     TermWeights{{0.0}, {overPi(kd), settings.multiple(kd)}}, settings.shape()) {}
+    Eon(const Model& model, const Parameters& p, const Colour& kd,
+        const EonSettings<double>& settings, const TermWeights& weights)
+        : ShapedBrdf(model, p, lawsOf(kd, settings), weights, settings.shape()) {}
 
     /// The kink at equal heights, where max(cos_i, cos_o) changes branches.
     std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
@@ -51,7 +54,8 @@ public:
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     return std::make_unique<Eon>(eonModel(), p, p.colour("kd"),
-                                 EonSettings{p.number("roughness"), p.choice("albedo") == "exact"});
+                                 EonFormula::settings(Values<double>(p, 0)),
+                                 channelWeights<EonFormula>(p));
 }
 
 std::unique_ptr<Brdf> makeOpenpbr(const Parameters& p) {
@@ -59,7 +63,16 @@ std::unique_ptr<Brdf> makeOpenpbr(const Parameters& p) {
     const Colour kd =
         mapped(p.colour("base_color"), [&](double colour) { return weight * colour; });
     return std::make_unique<Eon>(openpbrDiffuseModel(), p, kd,
-                                 EonSettings{p.number("base_diffuse_roughness"), true});
+                                 OpenpbrDiffuseFormula::settings(Values<double>(p, 0)),
+                                 channelWeights<OpenpbrDiffuseFormula>(p));
+}
+
+std::unique_ptr<ModelColumns> eonColumnsOf(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(eonColumns)(request);
+}
+
+std::unique_ptr<ModelColumns> openpbrColumnsOf(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(openpbrDiffuseColumns)(request);
 }
 
 Parameter unitParameter(std::string_view name, std::string_view help, double fallback) {
@@ -84,7 +97,8 @@ const Model& eonModel() {
                         .kind = Parameter::Kind::choice,
                         .choices = {"exact", "approximate"}}},
         .laws = claims,
-        .make = make};
+        .make = make,
+        .columns = eonColumnsOf};
     return model;
 }
 
@@ -108,7 +122,8 @@ const Model& openpbrDiffuseModel() {
                  .isotropic = true,
                  .mirrorSymmetric = true,
                  .energyConserving = true},
-        .make = makeOpenpbr};
+        .make = makeOpenpbr,
+        .columns = openpbrColumnsOf};
     return model;
 }
 

@@ -5,28 +5,11 @@
 
 namespace hshfit::brdfs {
 
+template <class N>
 struct EonShape {
-    double roughness;
+    N roughness;
     bool exact;
-    double single, scale;
-};
-
-/// The roughness of eon.h, with A (`single`) and M (`mean`).
-struct EonSettings {
-    double roughness;
-    bool exact;
-
-    double single() const { return 1 / (1 + (0.5 - 2 / (3 * pi)) * roughness); }
-    double mean() const { return single() * (1 + (2. / 3 - 28 / (15 * pi)) * roughness); }
-    EonShape shape() const {
-        return {roughness, exact, single(), roughness > 0 ? 1 / (1 - mean()) : 0};
-    }
-    /// The weight of multiple scattering between facets: kd' / pi.
-    Colour multiple(const Colour& kd) const {
-        return mapped(kd, [m = mean()](double value) {
-            return value * value * m / (1 - value * (1 - m)) / pi;
-        });
-    }
+    N single, scale;
 };
 
 }  // namespace hshfit::brdfs

@@ -1,7 +1,10 @@
 // Terms of gtr.h. Included by gtr.cpp once for each instruction set.
 
 #include <brdfs/analytic/facet_terms.h>
+#include <brdfs/analytic/table_nodes.h>
 #include <brdfs/lanes/lanes_angles.h>
+
+#include <array>
 
 HWY_BEFORE_NAMESPACE();
 namespace hshfit::brdfs::HWY_NAMESPACE {
@@ -49,16 +52,18 @@ N gtrPeak(const N& alpha, const N& gamma) {
 ///     z Lambda = s integral_{1/t}^inf (q - 1/t) P(q) dq,
 /// P the density of slopes along one axis. Over circles of slope, w^2 = slope^2 - 1/t^2,
 ///     z Lambda = 2 integral_0^inf (s w - z atan(s w/z)) D(slope)/(1 + slope^2)^2 w dw.
-/// In log w the integrand is analytic to Im = pi/2, so that the trapezoid rule converges fast.
+/// In log w the integrand is analytic to Im = pi/2, so that the trapezoid rule converges fast;
+/// where w exceeds 1 and the cotangent by e^12, terms fall by e^-step each.
 template <class X>
 HWY_INLINE X integratedLambda(const X& alpha, const X& gamma, const X& peak, const X& sine,
-                              const X& cosine) {
+                              const X& cosine, double logAlpha) {
     const X squaredCotangent = cosine * cosine / (sine * sine);
     const X scale = hypotenuse(alpha, cosine / sine);
-    constexpr double step = 0.15;
-    X sum = 0.0;
-    for (int i = -60; i <= 240; ++i) {
-        const X w = scale * std::exp(i * step), squared = w * w + squaredCotangent;
+    constexpr double step = 0.25, low = -9, high = 12;
+    const int count = static_cast<int>((high - std::min(logAlpha, 0.0) - low) / step) + 1;
+    X sum = 0.0, term = 0.0;
+    for (int i = 0; i <= count; ++i) {
+        const X w = scale * std::exp(low + i * step), squared = w * w + squaredCotangent;
         const X rise = log1p(squared) - log1p(squared / (alpha * alpha));
         const X slopes = exp(gamma * rise) / ((1.0 + squared) * (1.0 + squared));
         const X sw = sine * w;
@@ -67,58 +72,57 @@ HWY_INLINE X integratedLambda(const X& alpha, const X& gamma, const X& peak, con
         const X excess =
             select(ratio < X(1e-3), sw * ratio * ratio * (1. / 3 - ratio * ratio / 5.0),
                    sw - cosine * angleOf(sw, cosine));
-        sum = sum + slopes * excess * w * w;
+        term = slopes * excess * w * w;
+        sum = sum + term;
     }
-    return 2.0 * peak * sum * step;
+    return 2.0 * peak * (sum + term / std::expm1(step)) * step;
 }
 
-/// The number type in which nodes of a table are computed; a fit computes several at a time.
-template <class N>
-struct Node {
-    using Value = double;
-    using Number = double;
-};
-template <int n>
-struct Node<Slopes<double, n>> {
-    using Value = Lanes;
-    using Number = Slopes<Lanes, n>;
-};
-
-HWY_INLINE void storeNode(double value, std::size_t, double* to) {
-    *to = value;
-}
-template <int n>
-HWY_INLINE void storeNode(const Slopes<Lanes, n>& value, std::size_t size, Slopes<double, n>* to) {
-    double buffer[HWY_MAX_BYTES / sizeof(double)];
-    store(value.value, buffer);
-    for (std::size_t k = 0; k < size; ++k) to[k].value = buffer[k];
-    for (int i = 0; i < n; ++i) {
-        store(value.by[i], buffer);
-        for (std::size_t k = 0; k < size; ++k) to[k].by[i] = buffer[k];
+/// Weights of the nodes -5 to 6 for the polynomial through them at `at`, from 0 to 1.
+HWY_INLINE std::array<double, 12> nodeWeights(double at) {
+    std::array<double, 12> weights{};
+    for (int j = 0; j < 12; ++j) {
+        weights[j] = 1;
+        for (int i = 0; i < 12; ++i)
+            if (i != j) weights[j] *= (at + 5 - i) / (j - i);
     }
+    return weights;
 }
 
+/// By quadrature at every fourth node, with `points` of which the rest is interpolated: to 3e-8 of
+/// the logarithm, which is analytic to Im = pi/2 as well.
 template <class N>
 HWY_ATTR std::shared_ptr<const LambdaTable<N>> lambdaTable(const N& alpha, const N& gamma,
                                                            const N& peak) {
     using X = typename Node<N>::Number;
     using Value = typename Node<N>::Value;
+    constexpr std::size_t stride = 4, points = 12;
     auto table = std::make_shared<LambdaTable<N>>();
+    const double logAlpha = std::log(plain(alpha));
     table->low = log(alpha) - 16;
     constexpr double step = LambdaTable<N>::step, high = LambdaTable<N>::high;
     table->values.resize(std::size_t((high - plain(table->low)) / step) + 2);
-    for (std::size_t k = 0; k < table->values.size(); k += lanesIn<Value>()) {
+    std::vector<N> nodes((table->values.size() - 1) / stride + points);
+    for (std::size_t k = 0; k < nodes.size(); k += lanesIn<Value>()) {
         double numbers[HWY_MAX_BYTES / sizeof(double)];
-        for (std::size_t i = 0; i < lanesIn<Value>(); ++i) numbers[i] = static_cast<double>(k + i);
+        for (std::size_t i = 0; i < lanesIn<Value>(); ++i)
+            numbers[i] = static_cast<double>(stride) * (static_cast<double>(k + i) - 5);
         Value number;
         load(numbers, number);
         const X a(alpha), cotangent = exp(X(table->low) + number * step);
         const X sine = 1.0 / hypotenuse(X(1.0), cotangent), cosine = cotangent * sine;
         const X s = a * a * sine * sine;
         const X ggx = 0.5 * s / (cosine + sqrt(cosine * cosine + s));
-        const X own = integratedLambda(a, X(gamma), X(peak), sine, cosine);
-        storeNode(log(own / ggx), std::min(lanesIn<Value>(), table->values.size() - k),
-                  &table->values[k]);
+        const X own = integratedLambda(a, X(gamma), X(peak), sine, cosine, logAlpha);
+        storeNode(log(own / ggx), std::min(lanesIn<Value>(), nodes.size() - k), &nodes[k]);
+    }
+    for (std::size_t phase = 0; phase < stride; ++phase) {
+        const std::array<double, points> weights = nodeWeights(static_cast<double>(phase) / stride);
+        for (std::size_t k = phase; k < table->values.size(); k += stride) {
+            N sum = 0.0;
+            for (std::size_t j = 0; j < points; ++j) sum = sum + weights[j] * nodes[k / stride + j];
+            table->values[k] = sum;
+        }
     }
     return table;
 }
@@ -191,6 +195,8 @@ void evalGtr(const FacetShape<GtrShape<double>>& shape, const TermBatch& batch) 
     evalLanes<GtrTerms>(shape, batch);
 }
 std::unique_ptr<ModelColumns> gtrColumns(const ColumnRequest& request) {
+    // A pass tabulates its masking: one for all shapes.
+    if (request.shapes.size() > 3) return columnsOf<GtrFormula, 4>(request);
     return columnsOf<GtrFormula, 3>(request);
 }
 

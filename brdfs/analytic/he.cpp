@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace hshfit::brdfs {
 
+template <class N>
 struct HeShape {
-    double ior, height, length, slope;
+    N ior, height, length, slope;
 };
 
 /// The ratio of the factor g^(m - 1) exp(-g) / (m! m) to that of m - 1, without g; and 1 / m.
@@ -36,7 +38,10 @@ constexpr HeFactors heFactors;
 namespace hshfit::brdfs {
 namespace {
 
+using namespace HWY_NAMESPACE;
+
 HWY_EXPORT(evalHe);
+HWY_EXPORT(heColumns);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
@@ -50,11 +55,8 @@ Laws lawsOf(const Parameters& p) {
 class He final : public TermBrdf {
 public:
     explicit He(const Parameters& p)
-        : TermBrdf(heModel(), p, lawsOf(p), overPi(p.colour("kd")), {p.colour("ks")}) {
-        const double height = p.number("sigma") / p.number("wavelength");
-        const double length = p.number("tau") / p.number("wavelength");
-        shape_ = {p.number("ior"), height, length, 2 * height / length};
-    }
+        : TermBrdf(heModel(), p, lawsOf(p), channelWeights<HeFormula>(p)),
+          shape_(HeFormula::shape(Values<double>(p, 0))) {}
 
     /// exp(-(pi tau |h.xy|)^2 / m) with m near 1 + g: Gaussian in the slope.
     std::vector<Lobe> lobes(const Direction& wo) const override {
@@ -68,25 +70,29 @@ protected:
         HWY_DYNAMIC_DISPATCH(evalHe)(shape_, batch);
     }
     void evalBatchScalar(const TermBatch& batch) const override {
-        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::HeTerms>(shape_, batch);
+        evalAll<double, HeTerms>(shape_, batch);
     }
 
 private:
-    HeShape shape_;
+    HeShape<double> shape_;
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     return std::make_unique<He>(p);
 }
 
+std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(heColumns)(request);
+}
+
 }  // namespace
 
 double lambertW(double x) {
-    return HWY_NAMESPACE::lambertWOf(x);
+    return lambertWOf(x);
 }
 
 double heSeries(double g, double b) {
-    return HWY_NAMESPACE::HeSeries<double>(g, b).sum();
+    return HeSeries<double>(g, b).sum();
 }
 
 const Model& heModel() {
@@ -118,7 +124,8 @@ const Model& heModel() {
                         .max = 1000,
                         .fit = {{.low = 1.05, .high = 4, .logarithmic = true}}}},
         .laws = claims,
-        .make = make};
+        .make = make,
+        .columns = columns};
     return model;
 }
 

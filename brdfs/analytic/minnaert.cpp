@@ -8,8 +8,9 @@
 
 namespace hshfit::brdfs {
 
+template <class N>
 struct MinnaertShape {
-    double k;
+    N k;
 };
 
 }  // namespace hshfit::brdfs
@@ -20,7 +21,10 @@ struct MinnaertShape {
 namespace hshfit::brdfs {
 namespace {
 
+using namespace HWY_NAMESPACE;
+
 HWY_EXPORT(evalMinnaert);
+HWY_EXPORT(minnaertColumns);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
@@ -31,22 +35,24 @@ Laws lawsOf(const Parameters& p) {
     return result;
 }
 
-void evalByVectors(const MinnaertShape& shape, const TermBatch& batch) {
+void evalByVectors(const MinnaertShape<double>& shape, const TermBatch& batch) {
     HWY_DYNAMIC_DISPATCH(evalMinnaert)(shape, batch);
 }
 
-class Minnaert final
-    : public ShapedBrdf<
-          MinnaertShape, evalByVectors,
-          HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::MinnaertTerms, MinnaertShape>> {
+class Minnaert final : public ShapedBrdf<MinnaertShape<double>, evalByVectors,
+                                         evalAll<double, MinnaertTerms, MinnaertShape<double>>> {
 public:
     explicit Minnaert(const Parameters& p)
-        : ShapedBrdf(minnaertModel(), p, lawsOf(p), TermWeights{{0.0}, {overPi(p.colour("kd"))}},
-                     MinnaertShape{p.number("k")}) {}
+        : ShapedBrdf(minnaertModel(), p, lawsOf(p), channelWeights<MinnaertFormula>(p),
+                     MinnaertFormula::shape(Values<double>(p, 0))) {}
 };
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     return std::make_unique<Minnaert>(p);
+}
+
+std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(minnaertColumns)(request);
 }
 
 /// Exact: f cos(theta_i) is a power of cos(theta_i).
@@ -69,6 +75,7 @@ const Model& minnaertModel() {
                         .fit = {{.low = 0.1, .high = 3}}}},
         .laws = claims,
         .make = make,
+        .columns = columns,
         .sampling = sampling};
     return model;
 }

@@ -1,6 +1,6 @@
 // Terms of minnaert.h. Included by minnaert.cpp once for each instruction set.
 
-#include <brdfs/analytic/term_batch.h>
+#include <brdfs/analytic/term_columns.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace hshfit::brdfs::HWY_NAMESPACE {
@@ -10,21 +10,37 @@ class MinnaertTerms {
 public:
     static constexpr std::size_t count = 1;
 
-    HWY_INLINE MinnaertTerms(const MinnaertShape& shape, const Direction& wo)
+    HWY_INLINE MinnaertTerms(const MinnaertShape<ParameterOf<T>>& shape, const OutgoingOf<T>& wo)
         : exponent_(shape.k - 1),
-          outgoing_(bounded(0.5 * (shape.k + 1) * pow(T(wo.z), T(exponent_)))) {}
+          outgoing_(bounded(T(0.5 * (shape.k + 1)) * pow(RealOf<T>(wo.z), exponent_))) {}
 
-    HWY_INLINE void operator()(const Incoming<T>& wi, T* term) const {
-        term[0] = outgoing_ * bounded(pow(wi.z, T(exponent_)));
+    HWY_INLINE void operator()(const Incoming<RealOf<T>>& wi, T* term) const {
+        term[0] = outgoing_ * bounded(pow(wi.z, exponent_));
     }
 
 private:
-    double exponent_;
-    T outgoing_;
+    T exponent_, outgoing_;
 };
 
-void evalMinnaert(const MinnaertShape& shape, const TermBatch& batch) {
+struct MinnaertFormula {
+    template <class T>
+    using Terms = MinnaertTerms<T>;
+
+    template <class N>
+    static MinnaertShape<N> shape(const Values<N>& p) {
+        return {p("k")};
+    }
+    template <class N>
+    static Weights<N> weights(const Values<N>& p) {
+        return {N(0.0), {p("kd") / pi}};
+    }
+};
+
+void evalMinnaert(const MinnaertShape<double>& shape, const TermBatch& batch) {
     evalLanes<MinnaertTerms>(shape, batch);
+}
+std::unique_ptr<ModelColumns> minnaertColumns(const ColumnRequest& request) {
+    return columnsOf<MinnaertFormula, 1>(request);
 }
 
 }  // namespace hshfit::brdfs::HWY_NAMESPACE

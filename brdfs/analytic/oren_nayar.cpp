@@ -10,8 +10,9 @@
 namespace hshfit::brdfs {
 
 /// The coefficients that depend on sigma alone.
+template <class N>
 struct OrenNayarShape {
-    double direct, sameSide, across, interreflected;
+    N direct, sameSide, across, interreflected;
 };
 
 }  // namespace hshfit::brdfs
@@ -22,48 +23,41 @@ struct OrenNayarShape {
 namespace hshfit::brdfs {
 namespace {
 
+using namespace HWY_NAMESPACE;
+
 HWY_EXPORT(evalSimplified);
 HWY_EXPORT(evalFull);
+HWY_EXPORT(orenNayarColumns);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
 
-OrenNayarShape shapeOf(const Parameters& p) {
-    const double sigma = radians(p.number("sigma")), s = sigma * sigma;
-    return {.direct = 1 - 0.5 * s / (s + 0.33),
-            .sameSide = 0.45 * s / (s + 0.09),
-            .across = 0.125 * s / (s + 0.09),
-            .interreflected = 0.17 * s / (s + 0.13)};
+OrenNayarShape<double> shapeOf(const Parameters& p) {
+    return orenNayarShape(Values<double>(p, 0));
 }
 
 /// simplified: the integral of cos_i max(0, cos D) sin alpha tan beta is at most pi / 2.
 Laws lawsOf(const Parameters& p) {
     Laws result = claims;
-    const OrenNayarShape r = shapeOf(p);
+    const OrenNayarShape<double> r = shapeOf(p);
     const bool interreflects = p.choice("variant") == "full" && p.number("sigma") > 0;
     result.energyConserving =
         !interreflects && largest(p.colour("kd")) * (r.direct + r.sameSide / 2) <= 1;
     return result;
 }
 
-void evalSimplifiedByVectors(const OrenNayarShape& shape, const TermBatch& batch) {
+void evalSimplifiedByVectors(const OrenNayarShape<double>& shape, const TermBatch& batch) {
     HWY_DYNAMIC_DISPATCH(evalSimplified)(shape, batch);
 }
 
 class Simplified final
-    : public ShapedBrdf<
-          OrenNayarShape, evalSimplifiedByVectors,
-          HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::SimplifiedTerms, OrenNayarShape>>,
+    : public ShapedBrdf<OrenNayarShape<double>, evalSimplifiedByVectors,
+                        evalAll<double, SimplifiedTerms, OrenNayarShape<double>>>,
       public HasKinkCurves {
 public:
     explicit Simplified(const Parameters& p)
-        : ShapedBrdf(
-              orenNayarModel(), p, lawsOf(p),
-              TermWeights{
-                  mapped(p.colour("kd"), [&](double kd) { return kd / pi * shapeOf(p).direct; }),
-                  {mapped(p.colour("kd"),
-                          [&](double kd) { return kd / pi * shapeOf(p).sameSide; })}},
-              shapeOf(p)) {}
+        : ShapedBrdf(orenNayarModel(), p, lawsOf(p), channelWeights<SimplifiedFormula>(p),
+                     shapeOf(p)) {}
 
     /// The kink at equal heights, where alpha and beta exchange the directions.
     std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
@@ -74,21 +68,16 @@ public:
     }
 };
 
-void evalFullByVectors(const OrenNayarShape& shape, const TermBatch& batch) {
+void evalFullByVectors(const OrenNayarShape<double>& shape, const TermBatch& batch) {
     HWY_DYNAMIC_DISPATCH(evalFull)(shape, batch);
 }
 
-class Full final
-    : public ShapedBrdf<OrenNayarShape, evalFullByVectors,
-                        HWY_NAMESPACE::evalAll<double, HWY_NAMESPACE::FullTerms, OrenNayarShape>>,
-      public HasKinkCurves {
+class Full final : public ShapedBrdf<OrenNayarShape<double>, evalFullByVectors,
+                                     evalAll<double, FullTerms, OrenNayarShape<double>>>,
+                   public HasKinkCurves {
 public:
     explicit Full(const Parameters& p)
-        : ShapedBrdf(orenNayarModel(), p, lawsOf(p),
-                     TermWeights{{0.0},
-                                 {overPi(p.colour("kd")),
-                                  mapped(p.colour("kd"), [](double kd) { return kd * kd / pi; })}},
-                     shapeOf(p)) {}
+        : ShapedBrdf(orenNayarModel(), p, lawsOf(p), channelWeights<FullFormula>(p), shapeOf(p)) {}
 
     /// As for the simplified form.
     std::vector<double> kinks(const Direction& wo) const override { return {wo.z}; }
@@ -102,6 +91,10 @@ public:
 std::unique_ptr<Brdf> make(const Parameters& p) {
     if (p.choice("variant") == "full") return std::make_unique<Full>(p);
     return std::make_unique<Simplified>(p);
+}
+
+std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
+    return HWY_DYNAMIC_DISPATCH(orenNayarColumns)(request);
 }
 
 }  // namespace
@@ -125,7 +118,8 @@ const Model& orenNayarModel() {
                         .kind = Parameter::Kind::choice,
                         .choices = {"simplified", "full"}}},
         .laws = claims,
-        .make = make};
+        .make = make,
+        .columns = columns};
     return model;
 }
 

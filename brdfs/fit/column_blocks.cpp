@@ -1,6 +1,6 @@
 #include <brdfs/fit/column_blocks.h>
 
-#include <Eigen/Core>
+#include <brdfs/fit/column_products.h>
 
 #include <algorithm>
 
@@ -82,16 +82,12 @@ void ColumnBlocks::fillPairs(const PairPlaces& pairs, double* out) const {
 
 // Node by node in blocks; sums over the same nodes are a product of matrices.
 void ColumnBlocks::fillSums(std::size_t begin, std::size_t size, double* out) const {
-    using Matrix = Eigen::MatrixXd;
-    using Factors = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const NodeSums& sums = *samples_.sums;
-    Eigen::Map<Matrix> result(out, static_cast<Eigen::Index>(size),
-                              static_cast<Eigen::Index>(count_));
-    result.setZero();
+    std::fill_n(out, size * count_, 0.0);
     const auto rowOf = [&](std::size_t k) -> const NodeSums::Row& {
         return sums.rows[samples_.sumRows[begin + k]];
     };
-    Matrix columns;
+    std::vector<double> columns(blockSize * count_);
     for (std::size_t k = 0; k < size;) {
         // Samples whose nodes fit into one block, or the samples of one range of nodes.
         const std::size_t first = rowOf(k).firstNode;
@@ -103,7 +99,6 @@ void ColumnBlocks::fillSums(std::size_t begin, std::size_t size, double* out) co
         }
         for (std::size_t node = first; node < last; node += blockSize) {
             const std::size_t count = std::min(blockSize, last - node);
-            columns.resize(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count_));
             fillPairs({sums.wiX.data() + node, sums.wiY.data() + node, sums.wiZ.data() + node,
                        sums.wo.data() + node, count},
                       columns.data());
@@ -117,14 +112,11 @@ void ColumnBlocks::fillSums(std::size_t begin, std::size_t size, double* out) co
                 const std::size_t from = std::max(row.firstNode, node),
                                   to = std::min(row.firstNode + row.nodes, node + count);
                 if (from < to) {
-                    const Eigen::Map<const Factors, 0, Eigen::OuterStride<>> factors(
-                        sums.factors.data() + row.firstFactor + (from - row.firstNode),
-                        static_cast<Eigen::Index>(end - s), static_cast<Eigen::Index>(to - from),
-                        Eigen::OuterStride<>(static_cast<Eigen::Index>(row.nodes)));
-                    result.middleRows(static_cast<Eigen::Index>(s),
-                                      static_cast<Eigen::Index>(end - s)) +=
-                        factors * columns.middleRows(static_cast<Eigen::Index>(from - node),
-                                                     static_cast<Eigen::Index>(to - from));
+                    const ColumnSpan factors{
+                        sums.factors.data() + row.firstFactor + (from - row.firstNode), end - s,
+                        row.nodes};
+                    const ColumnSpan values{columns.data() + (from - node), count_, count};
+                    addProducts(factors, values, to - from, out + s, size);
                 }
                 s = end;
             }

@@ -329,6 +329,7 @@ FitSamples FitSamples::channel(std::size_t c) const {
     result.values = own(values);
     result.sigmas = own(sigmas);
     result.rows = own(rows);
+    if (fewer) result.fewer = std::make_shared<const FitSamples>(fewer->channel(c));
     return result;
 }
 

@@ -131,11 +131,51 @@ public:
         return minimum;
     }
 
+    /// Goes on from a minimum, in the variables of the loss: shapes, or all.
+    Minimum from(const Minimum& start, const MinimiseOptions& options) const {
+        if (!linear_) return fromAll(start, options);
+        return eliminated(variables(start), options);
+    }
+
+    /// Second derivatives at a minimum, in the same variables.
+    std::vector<double> curvatures(const Minimum& minimum) const {
+        std::vector<double> linear;
+        const auto equations = [&](std::span<const double> at, bool derivatives) {
+            return linear_ ? problem_.eliminated(at, derivatives, linear)
+                           : problem_.joint(at, derivatives);
+        };
+        const Bounds& bounds = linear_ ? shapes_ : joint_;
+        if (bounds.lower.empty()) return {};
+        return secondDerivatives(equations, variables(minimum), bounds.lower, bounds.upper);
+    }
+
 private:
+    std::vector<double> variables(const Minimum& at) const {
+        const auto shapes = static_cast<std::ptrdiff_t>(problem_.shapeCount());
+        return linear_ ? std::vector<double>(at.x.begin(), at.x.begin() + shapes) : at.x;
+    }
+
     const FitProblem& problem_;
     bool linear_;
     Bounds shapes_, joint_;
 };
+
+/// Goes on from the minimum on fewer samples, whose second derivatives, renewed as the search moves
+/// on, stand for those on all: a few iterations suffice then, for a price of one evaluation each.
+Minimum onMore(const FitProblem& fewer, const FitProblem& more, bool linear, Minimum minimum,
+               const MinimiseOptions& last) {
+    constexpr int renewals = 5, steps = 10;
+    const Search before(fewer, linear), search(more, linear);
+    for (int i = 0; i < renewals; ++i) {
+        const std::vector<double> matrix = before.curvatures(minimum);
+        MinimiseOptions options = last;
+        options.iterations = std::min(steps, last.iterations);
+        options.matrix = matrix;
+        minimum = search.from(minimum, options);
+        if (minimum.converged) return minimum;
+    }
+    return search.from(minimum, last);
+}
 
 /// Minima of the problem on few samples, from the best of many starts, best first.
 std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
@@ -205,30 +245,43 @@ Bounds jointBounds(const ParametricSum& sum, std::size_t channels) {
 
 Minimum refined(const FitProblem& problem, bool linear, const Minimum& start,
                 const MinimiseOptions& options) {
-    const Search search(problem, linear);
-    if (!linear) return search.fromAll(start, options);
-    const auto shapes = static_cast<std::ptrdiff_t>(problem.shapeCount());
-    return search.eliminated({start.x.begin(), start.x.begin() + shapes}, options);
+    return Search(problem, linear).from(start, options);
 }
 
 Fitted searchMinimum(FitProblem& problem, const FitOptions& options) {
     const bool linear = options.loss == Loss::Kind::l2 || options.loss == Loss::Kind::cosine;
     const FitSamples& samples = problem.samples();
-    const bool few = samples.size() <= coarseCount;
-    const FitSamples coarse = samples.drawn(coarseCount, options.seed);
+    const bool few = !samples.fewer && samples.size() <= coarseCount;
+    const FitSamples coarse =
+        samples.fewer ? *samples.fewer : samples.drawn(coarseCount, options.seed);
     const FitProblem small(coarse, problem.sum(), options.loss);
     const std::vector<Minimum> minima = coarseMinima(few ? problem : small, linear, options);
     const Search search(problem, linear);
-    const MinimiseOptions last{.iterations = options.iterations};
+    const MinimiseOptions last{.iterations = options.iterations},
+        part{.costTolerance = 1e-9, .stepTolerance = 1e-8};
     Fitted best;
     int iterations = 0, evaluations = 0;
     const bool many = samples.size() > manySamples;
     const FitSamples middle = samples.drawn(many ? middleCount : 1, options.seed);
     const FitProblem between(middle, problem.sum(), options.loss);
-    for (Minimum start : distinct(minima, many ? 1 : 3)) {
+    std::vector<Minimum> starts = distinct(minima, many ? 1 : 3);
+    if (many || samples.fewer) {
+        for (Minimum& start : starts) start = refined(small, linear, start, part);
+        std::ranges::stable_sort(starts, byCost);
+        // Fewer samples rank minima to some per cent.
+        const double most = 1.05 * starts.front().cost;
+        std::erase_if(starts, [&](const Minimum& start) { return start.cost > most; });
+        starts = distinct(starts, starts.size());
+    }
+    for (const Minimum& start : starts) {
+        Minimum minimum;
         if (many)
-            start = refined(between, linear, start, {.costTolerance = 1e-9, .stepTolerance = 1e-8});
-        Minimum minimum = refined(problem, linear, start, last);
+            minimum =
+                onMore(between, problem, linear, onMore(small, between, linear, start, part), last);
+        else if (samples.fewer)
+            minimum = onMore(small, problem, linear, start, last);
+        else
+            minimum = refined(problem, linear, start, last);
         iterations += minimum.iterations, evaluations += minimum.evaluations;
         if (best.minimum.x.empty() || byCost(minimum, best.minimum))
             best.minimum = std::move(minimum);

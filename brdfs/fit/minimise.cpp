@@ -96,6 +96,8 @@ Function always(const Function& equations) {
 }
 
 constexpr int gaussNewtonIterations = 10;
+/// Of the cost, with a known matrix: what is left falls by a factor of hundreds with each step.
+constexpr double knownTolerance = 1e-10;
 /// Relative fall of the cost, and largest component of the gradient in units of the root of its
 /// curvature and of the cost, in which a search counts as settled.
 constexpr double settledTolerance = 1e-7, settledPull = 1e-3;
@@ -236,18 +238,38 @@ Minimum minimise(const Function& equations, std::vector<double> start,
     }
     for (std::size_t i = 0; i < result.x.size(); ++i)
         result.x[i] = std::clamp(result.x[i], lower[i], upper[i]);
-    const int first = options.curvature ? std::min(options.iterations, gaussNewtonIterations)
-                                        : options.iterations;
+    int left = options.iterations;
+    if (!options.matrix.empty()) {
+        const Function withMatrix = [&](std::span<const double> x, bool) {
+            Equations at = equations(x, true);
+            at.hessian.assign(options.matrix.begin(), options.matrix.end());
+            return at;
+        };
+        const int known = std::min(left, gaussNewtonIterations);
+        MinimiseOptions fast = options;
+        fast.costTolerance = std::max(options.costTolerance, knownTolerance);
+        solve(withMatrix, lower, upper, fast, known, result);
+        left -= known;
+        if (result.converged || left == 0) return result;
+    }
+    const int first = options.curvature ? std::min(left, gaussNewtonIterations) : left;
     solve(always(equations), lower, upper, options, first, result);
-    if (result.converged || first == options.iterations) return result;
+    left -= first;
+    if (result.converged || left == 0) return result;
     // Large residuals: what Gauss-Newton leaves out of the matrix rules its (linear) convergence.
     const Newton newton(equations, lower, upper);
     const Function withCurvature = [&](std::span<const double> x, bool derivatives) {
         return newton.at(x, derivatives);
     };
-    solve(withCurvature, lower, upper, options, options.iterations - first, result);
+    solve(withCurvature, lower, upper, options, left, result);
     result.evaluations += newton.evaluations();
     return result;
+}
+
+std::vector<double> secondDerivatives(const Function& equations, std::span<const double> x,
+                                      std::span<const double> lower,
+                                      std::span<const double> upper) {
+    return Newton(equations, lower, upper).at(x, true).hessian;
 }
 
 }  // namespace hshfit::brdfs

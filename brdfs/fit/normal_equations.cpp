@@ -1,6 +1,7 @@
 #include <brdfs/fit/normal_equations.h>
 
 #include <brdfs/fit/column_blocks.h>
+#include <brdfs/fit/column_products.h>
 
 #include <tbb/parallel_for.h>
 #include <Eigen/Dense>
@@ -40,6 +41,13 @@ Sums sumOverBlocks(std::size_t count, Sums total, const Work& work) {
     return total;
 }
 
+/// Adds columns^T columns to the lower triangle.
+void addGram(const Matrix& columns, Matrix& out) {
+    const auto rows = static_cast<std::size_t>(columns.rows());
+    addGram(ColumnSpan{columns.data(), static_cast<std::size_t>(columns.cols()), rows}, rows,
+            out.data(), static_cast<std::size_t>(out.rows()));
+}
+
 struct Grams {
     std::vector<Matrix> matrices;
     void add(const Grams& other) {
@@ -69,7 +77,7 @@ std::vector<Matrix> gramsOf(const FitSamples& samples, const ColumnBlocks& colum
                         samples.value(i + c, block.begin + static_cast<std::size_t>(k));
             const Eigen::Map<const Vector> root(roots[i].data() + block.begin, size);
             z.array().colwise() *= root.array();
-            result.matrices[i].selfadjointView<Eigen::Lower>().rankUpdate(z.transpose());
+            addGram(z, result.matrices[i]);
         }
         return result;
     };
@@ -243,7 +251,7 @@ Equations FitProblem::joint(std::span<const double> x, bool derivatives,
             rows(k, rows.cols() - 1) = root(k) * r;
         }
         if (derivatives) rows.leftCols(n).array().colwise() *= slope.array();
-        sums.gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+        addGram(rows, sums.gram);
         if (!spread) return;
         Matrix pulled = rows.leftCols(n);
         const std::vector<Eigen::Index> at = placesOf(c);
@@ -253,7 +261,7 @@ Equations FitProblem::joint(std::span<const double> x, bool derivatives,
         constexpr double least = 1e-6;
         const Vector leverage = (pulled * own).cwiseProduct(pulled).rowwise().sum();
         pulled.array().colwise() *= rows.col(n).array() / (1 - leverage.array()).max(least);
-        sums.spread.selfadjointView<Eigen::Lower>().rankUpdate(pulled.transpose());
+        addGram(pulled, sums.spread);
     };
     JointSums sums = sumOverBlocks(samples_.size(), zero, [&](const Block& block) {
         Matrix z(static_cast<Eigen::Index>(block.size), static_cast<Eigen::Index>(columns.count()));

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -128,9 +129,11 @@ std::vector<Pixel> pixelsUnder(const Direction& towards, int points) {
 /// Collects pixels; lights are told apart to expose each of them.
 class Collector {
 public:
-    Collector(const Brdf& data, double grazingCut)
+    Collector(const Brdf& data, const PictureSampleOptions& options)
         : isotropic_(data.laws().isotropic),
-          lowest_(std::max(grazingCut < 90 ? std::cos(radians(grazingCut)) : 0, 1e-6)) {}
+          order_(options.order),
+          lowest_(std::max(options.grazingCut < 90 ? std::cos(radians(options.grazingCut)) : 0,
+                           1e-6)) {}
 
     void addParallel(std::size_t light, const DirectionalLight& from, int points) {
         for (const Pixel& pixel : pixelsUnder(from.towards, points)) {
@@ -153,7 +156,8 @@ public:
         if (wo.z < lowest_) return;
         const std::size_t first = sums_.size();
         std::vector<double> weights;
-        const HemisphereGrid grid = gridFor(data.lobes(wo), wo, {.order = 12, .squeezed = true});
+        const HemisphereGrid grid =
+            gridFor(data.lobes(wo), wo, {.order = order_, .squeezed = true});
         RingPoints points;
         for (const auto& panel : grid.panels) {
             points.start(panel);
@@ -212,6 +216,7 @@ private:
     }
 
     bool isotropic_;
+    int order_;
     double lowest_;
     NodeSums sums_;
     std::vector<std::size_t> lights_;
@@ -288,7 +293,7 @@ std::span<const PictureLightRow> pictureLights() {
 
 FitSamples pictureSamples(const Brdf& data, const PictureSampleOptions& options) {
     const std::vector<OneLight> all = lights();
-    Collector collector(data, options.grazingCut);
+    Collector collector(data, options);
     std::vector<std::pair<std::size_t, OneLight>> extended;
     for (std::size_t light = 0; light < all.size(); ++light) {
         if (!all[light].extended.empty())
@@ -310,7 +315,16 @@ FitSamples pictureSamples(const Brdf& data, const PictureSampleOptions& options)
         else
             for (const Pixel& pixel : pixels) collector.addRing(data, extended, {pixel});
     }
-    return collector.finish(data, all.size());
+    FitSamples samples = collector.finish(data, all.size());
+    if (options.fewer)
+        samples.fewer = std::make_shared<const FitSamples>(
+            pictureSamples(data, {.rings = std::max(options.rings / 3, 3),
+                                  .around = std::max(options.around / 3, 3),
+                                  .points = std::max(options.points / 4, 32),
+                                  .order = std::max(options.order * 2 / 3, 4),
+                                  .grazingCut = options.grazingCut,
+                                  .fewer = false}));
+    return samples;
 }
 
 }  // namespace hshfit::brdfs

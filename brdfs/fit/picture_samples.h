@@ -17,7 +17,9 @@ std::span<const PictureLightRow> pictureLights();
 struct PictureSampleOptions {
     int rings = 12, around = 12;  ///< pixels of lights with an extent
     int points = 512;             ///< pixels of parallel light, each of two kinds
+    int order = 12;               ///< of gridFor, which integrates over lights with an extent
     double grazingCut = 90;       ///< degrees: beyond it there are neither pixels nor light
+    bool fewer = true;            ///< add a ninth of the pixels for the starts of a search
 };
 
 /// The radiance of a sphere of the material in the pixels of an orthographic picture, under each of

@@ -3,9 +3,11 @@
 // fit states, or the fit says what it cannot tell. HSHFIT_DRAWS sets how many of each,
 // HSHFIT_VERBOSE prints them; without, one on fewer samples (docs/fit.md).
 #include <brdfs/catalog.h>
+#include <brdfs/fit/distributions.h>
 #include <brdfs/fit/fit.h>
 #include <brdfs/fit/free_parameters.h>
 #include <brdfs/spec.h>
+#include <hshfit/linear_algebra/decompositions.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -167,19 +169,23 @@ protected:
         const char* text = std::getenv("HSHFIT_DRAWS");
         return text ? std::atoi(text) : usual;
     }
-    static void check(double noise, int count) {
-        if (GetParam().model->name == "gtr" && !GetParam().choice.empty() &&
-            !std::getenv("HSHFIT_DRAWS"))
-            GTEST_SKIP() << "a minute: its masking is an integral, by differences; HSHFIT_DRAWS=1";
-        if (GetParam().model->name == "openpbr" && !std::getenv("HSHFIT_DRAWS"))
-            GTEST_SKIP() << "minutes: every difference tabulates albedos of its layers; "
-                            "HSHFIT_DRAWS=1";
-        // A sum of dozens of terms for each value, or an integral; by differences.
+    /// Models whose masking or albedo is an integral, or whose value is a sum of dozens of terms.
+    static bool isSlow() {
         const std::string_view name = GetParam().model->name;
-        const bool slow =
-            name == "he" || name == "openpbr" || (name == "gtr" && !GetParam().choice.empty());
-        const std::size_t size = slow ? 150 : std::getenv("HSHFIT_DRAWS") ? 1500 : 500;
-        const int starts = slow ? 3 : size < 1500 ? 8 : 16;
+        return name == "he" || name == "openpbr" || name == "gtr";
+    }
+    static std::size_t sizeOf() {
+        return std::getenv("HSHFIT_DRAWS") ? 1500 : isSlow() ? 200 : 500;
+    }
+    static int startsOf() { return std::getenv("HSHFIT_DRAWS") ? 16 : isSlow() ? 4 : 8; }
+    static std::string modelOf() {
+        return fmt::format("{}{}{}", GetParam().model->name, GetParam().choice.empty() ? "" : ":",
+                           GetParam().choice);
+    }
+
+    static void check(double noise, int count) {
+        const std::size_t size = sizeOf();
+        const int starts = startsOf();
         std::mt19937_64 random(11);
         std::normal_distribution<double> normal;
         int outcomes[3] = {};
@@ -189,11 +195,8 @@ protected:
             const Truth truth = draw(GetParam(), random);
             FitSamples samples = gatherSamples(*open(truth.spec), {}).drawn(size, random());
             for (double& value : samples.values) value *= 1 + noise * normal(random);
-            const std::string model =
-                fmt::format("{}{}{}", GetParam().model->name, GetParam().choice.empty() ? "" : ":",
-                            GetParam().choice);
             const Judged judged =
-                judge(truth, samples, fit(samples, {.model = model, .starts = starts}));
+                judge(truth, samples, fit(samples, {.model = modelOf(), .starts = starts}));
             ++outcomes[static_cast<int>(judged.outcome)];
             EXPECT_NE(judged.outcome, Outcome::wrong) << truth.spec << "\n  " << judged.why;
             if (std::getenv("HSHFIT_VERBOSE"))
@@ -215,6 +218,85 @@ TEST_P(CatalogRecovery, WithoutNoise) {
 
 TEST_P(CatalogRecovery, WithNoise) {
     check(0.05, draws(1));
+}
+
+/// The squared deviation of the fit from the truth in units of the covariance that it states, over
+/// the parameters that have errors: chi-square distributed with as many degrees of freedom.
+struct Deviation {
+    double squares = 0;
+    int parameters = 0;
+};
+
+Deviation deviationOf(const Truth& truth, const FitResult& result) {
+    std::vector<Eigen::Index> places;
+    std::vector<double> off;
+    for (std::size_t i = 0; i < truth.values.size(); ++i) {
+        const FreeParameter& p = truth.free[i];
+        const auto found = std::ranges::find_if(
+            result.parameters, [&](const FittedParameter& f) { return f.name == p.keys.front(); });
+        if (found == result.parameters.end()) throw std::logic_error(p.keys.front());
+        if (!found->standardError) continue;
+        places.push_back(found - result.parameters.begin());
+        const double difference = p.logarithmic
+                                      ? std::log(found->value / truth.values[i]) * found->value
+                                      : found->value - truth.values[i];
+        off.push_back(difference / *found->standardError);
+    }
+    if (places.empty()) return {};
+    const auto n = static_cast<Eigen::Index>(result.parameters.size());
+    const Eigen::MatrixXd correlations =
+        Eigen::Map<const Eigen::MatrixXd>(result.correlations.data(), n, n)(places, places);
+    const Eigen::Map<const Eigen::VectorXd> z(off.data(), static_cast<Eigen::Index>(off.size()));
+    const double squares =
+        z.dot(Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(correlations).solve(z));
+    return {squares, static_cast<int>(off.size())};
+}
+
+// With the noise stated, samples weigh by it and no few of them decide: errors are of first order
+// in noise, and squared deviations follow chi-square. Draws in which the data leave something open,
+// or in which a parameter ends at a bound, are not counted; they are the fits that say so.
+TEST_P(CatalogRecovery, DeviationsFollowTheChiSquareOfTheStatedErrors) {
+    constexpr double noise = 0.05;
+    std::mt19937_64 random(23);
+    std::normal_distribution<double> normal;
+    const int count = draws(2);
+    Deviation sum;
+    int counted = 0;
+    for (int trial = 0; trial < count; ++trial) {
+        const Truth truth = draw(GetParam(), random);
+        FitSamples samples = gatherSamples(*open(truth.spec), {}).drawn(sizeOf(), random());
+        std::vector<std::size_t> lit;
+        for (std::size_t k = 0; k < samples.size(); ++k)
+            if (samples.values[k] > 1e-9) lit.push_back(k);
+        samples = samples.subset(lit);
+        std::ranges::fill(samples.weights, 1.0);
+        for (double& value : samples.values) {
+            samples.sigmas.push_back(noise * value);
+            value *= 1 + noise * normal(random);
+        }
+        const FitResult result =
+            fit(samples, {.model = modelOf(), .loss = Loss::Kind::l2, .starts = startsOf()});
+        const bool bound = std::ranges::any_of(
+            result.parameters, [](const FittedParameter& p) { return !p.bound.empty(); });
+        const bool open = !result.converged || !result.ambiguous.empty() || bound;
+        const Deviation own = deviationOf(truth, result);
+        if (std::getenv("HSHFIT_VERBOSE"))
+            fmt::print("{} {}: {:.3g} of {}\n   {}\n", open ? "open" : "counted", truth.spec,
+                       own.squares, own.parameters, result.spec);
+        if (open) continue;
+        sum.squares += own.squares;
+        sum.parameters += own.parameters;
+        ++counted;
+    }
+    const double above = sum.parameters > 0 ? chiSquareProbability(sum.squares, sum.parameters) : 1;
+    fmt::print("{}: {} draws, {} counted, chi-square {:.4g} of {}, probability {:.3g}\n",
+               testing::PrintToString(GetParam()), count, counted, sum.squares, sum.parameters,
+               above);
+    // Of some fifty cases none falls below by chance.
+    if (sum.parameters > 0) {
+        EXPECT_GT(above, 1e-4);
+        EXPECT_LT(above, 1 - 1e-4);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, CatalogRecovery, testing::ValuesIn(casesOf()));

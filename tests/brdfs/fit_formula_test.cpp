@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -45,6 +46,12 @@ TEST_P(Formulas, DerivativesMatchFiniteDifferencesOfCatalogModels) {
         std::vector<double> a(fast.count() * samples.size()), b(a.size());
         fast.fill(0, samples.size(), a.data());
         reference.fill(0, samples.size(), b.data());
+        // Brdf::eval cuts f at 0, a fit does not: the columns are those of what is not cut.
+        std::vector<bool> cut(samples.size());
+        for (std::size_t k = 0; k < samples.size(); ++k)
+            for (std::size_t i = 0; i <= sum.linears().size(); ++i)
+                cut[k] = cut[k] || (i > 0 ? a[k] : 0) + a[i * samples.size() + k] < 0;
+        EXPECT_LT(std::ranges::count(cut, true), static_cast<std::ptrdiff_t>(samples.size() / 2));
         for (std::size_t column = 0; column < fast.count(); ++column) {
             // Differences of u by 1e-5 err by their square and by rounding over it.
             const bool derivative = column > sum.linears().size();
@@ -52,26 +59,34 @@ TEST_P(Formulas, DerivativesMatchFiniteDifferencesOfCatalogModels) {
             // in the hundreds bends within the step.
             const std::string_view model(GetParam());
             const bool table = model.starts_with("gtr"), bent = model.starts_with("lafortune");
-            const double tolerance = !derivative     ? (table ? 1e-6 : 1e-11)
+            // Rounding at the horizon, which the tangent of full Oren-Nayar amplifies.
+            const bool amplified = model == "oren-nayar:variant=full";
+            const double tolerance = !derivative     ? (table       ? 1e-6
+                                                        : amplified ? 1e-8
+                                                                    : 1e-11)
                                      : table || bent ? 1e-4
                                                      : 2e-6;
-            std::size_t wrong = 0;
-            double largest = 0;
+            std::size_t wrong = 0, worstPair = 0;
+            double largest = 0, worst = 0;
             for (std::size_t k = 0; k < samples.size(); ++k)
                 largest = std::max(largest, std::abs(b[column * samples.size() + k]));
             for (std::size_t k = 0; k < samples.size(); ++k) {
+                if (cut[k]) continue;
                 const std::size_t at = column * samples.size() + k;
                 // The reference is a difference of whole values of f.
                 double whole = 0;
                 for (std::size_t i = 0; i <= sum.linears().size(); ++i)
                     whole += std::abs(b[i * samples.size() + k]);
                 const double rounding = 1e-14 * whole / (derivative ? leastStep : 1);
-                wrong += std::abs(a[at] - b[at]) >
-                         tolerance * (std::abs(b[at]) + 1e-3 * largest) + rounding;
+                const double off = std::abs(a[at] - b[at]) /
+                                   (tolerance * (std::abs(b[at]) + 1e-3 * largest) + rounding);
+                wrong += off > 1;
+                if (off > worst) worst = off, worstPair = at;
             }
             // A difference across a kink (masking that sets in) is none of a derivative.
             EXPECT_LE(wrong, derivative ? samples.size() / 100 : 0u)
-                << GetParam() << " trial " << trial << " column " << column;
+                << GetParam() << " trial " << trial << " column " << column << ": " << a[worstPair]
+                << " and " << b[worstPair];
         }
     }
 }
@@ -133,7 +148,11 @@ INSTANTIATE_TEST_SUITE_P(
                     "gltf-pbr:sheenColorFactor=0,clearcoatFactor=0", "beckmann", "beckmann:ks=.7",
                     "beckmann:masking=separable", "cook-torrance",
                     "cook-torrance:norm=4,fresnel=schlick", "cook-torrance:norm=pi2", "abc",
-                    "abc:variant=microfacet", "sgd", "lambert+ggx"));
+                    "abc:variant=microfacet", "sgd", "lambert+ggx", "minnaert", "eon",
+                    "eon:albedo=approximate", "openpbr-diffuse", "oren-nayar",
+                    "oren-nayar:variant=full", "charlie", "charlie:terminator=soft", "he",
+                    "he:kd=.1,ior=1.7", "openpbr", "openpbr:coat_weight=0,fuzz_weight=0",
+                    "openpbr:base_metalness=1", "gtr:fresnel=conductor", "gtr:fresnel=dielectric"));
 
 /// A specification of every model, of what its fits would call free, with three channels.
 std::string colouredSpec(const Model& model) {
