@@ -7,7 +7,6 @@
 #include <brdfs/fit/fit.h>
 #include <brdfs/fit/free_parameters.h>
 #include <brdfs/spec.h>
-#include <hshfit/linear_algebra/decompositions.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -220,48 +219,27 @@ TEST_P(CatalogRecovery, WithNoise) {
     check(0.05, draws(1));
 }
 
-/// The squared deviation of the fit from the truth in units of the covariance that it states, over
-/// the parameters that have errors: chi-square distributed with as many degrees of freedom.
-struct Deviation {
-    double squares = 0;
-    int parameters = 0;
-};
-
-Deviation deviationOf(const Truth& truth, const FitResult& result) {
-    std::vector<Eigen::Index> places;
-    std::vector<double> off;
-    for (std::size_t i = 0; i < truth.values.size(); ++i) {
-        const FreeParameter& p = truth.free[i];
-        const auto found = std::ranges::find_if(
-            result.parameters, [&](const FittedParameter& f) { return f.name == p.keys.front(); });
-        if (found == result.parameters.end()) throw std::logic_error(p.keys.front());
-        if (!found->standardError) continue;
-        places.push_back(found - result.parameters.begin());
-        const double difference = p.logarithmic
-                                      ? std::log(found->value / truth.values[i]) * found->value
-                                      : found->value - truth.values[i];
-        off.push_back(difference / *found->standardError);
-    }
-    if (places.empty()) return {};
-    const auto n = static_cast<Eigen::Index>(result.parameters.size());
-    const Eigen::MatrixXd correlations =
-        Eigen::Map<const Eigen::MatrixXd>(result.correlations.data(), n, n)(places, places);
-    const Eigen::Map<const Eigen::VectorXd> z(off.data(), static_cast<Eigen::Index>(off.size()));
-    const double squares =
-        z.dot(Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(correlations).solve(z));
-    return {squares, static_cast<int>(off.size())};
+double chiSquareOf(const Brdf& brdf, const FitSamples& samples) {
+    const std::vector<double> f = valuesOf(brdf, samples);
+    double sum = 0;
+    for (std::size_t k = 0; k < f.size(); ++k)
+        sum += std::pow((samples.values[k] - f[k]) / samples.sigmas[k], 2);
+    return sum;
 }
 
-// With the noise stated, samples weigh by it and no few of them decide: errors are of first order
-// in noise, and squared deviations follow chi-square. Draws in which the data leave something open,
-// or in which a parameter ends at a bound, are not counted; they are the fits that say so.
-TEST_P(CatalogRecovery, DeviationsFollowTheChiSquareOfTheStatedErrors) {
+// With the noise stated, the chi-square of the truth exceeds that of the fit by a chi-square with
+// as many degrees of freedom as there are parameters (Wilks 1938, 10.1214/aoms/1177732360),
+// whatever the scale of the parameters and their correlation. Draws in which the data leave
+// something open, or in which a parameter ends at a bound, are not counted; they are the fits that
+// say so. Of models with more than eight parameters a few starts may miss the minimum, which is
+// counted.
+TEST_P(CatalogRecovery, TheTruthIsAsFarFromTheFitAsTheNoiseImplies) {
     constexpr double noise = 0.05;
     std::mt19937_64 random(23);
     std::normal_distribution<double> normal;
     const int count = draws(2);
-    Deviation sum;
-    int counted = 0;
+    double squares = 0;
+    int degrees = 0, counted = 0, missed = 0;
     for (int trial = 0; trial < count; ++trial) {
         const Truth truth = draw(GetParam(), random);
         FitSamples samples = gatherSamples(*open(truth.spec), {}).drawn(sizeOf(), random());
@@ -279,21 +257,26 @@ TEST_P(CatalogRecovery, DeviationsFollowTheChiSquareOfTheStatedErrors) {
         const bool bound = std::ranges::any_of(
             result.parameters, [](const FittedParameter& p) { return !p.bound.empty(); });
         const bool open = !result.converged || !result.ambiguous.empty() || bound;
-        const Deviation own = deviationOf(truth, result);
+        const double own =
+            chiSquareOf(*brdfs::open(truth.spec), samples) - chiSquareOf(*openFit(result), samples);
         if (std::getenv("HSHFIT_VERBOSE"))
-            fmt::print("{} {}: {:.3g} of {}\n   {}\n", open ? "open" : "counted", truth.spec,
-                       own.squares, own.parameters, result.spec);
+            fmt::print("{} {}: {:.3g} of {}\n   {}\n", open ? "open" : "counted", truth.spec, own,
+                       result.parameters.size(), result.spec);
+        if (own < -1e-3) {
+            ++missed;
+            EXPECT_GT(result.parameters.size(), 8u) << truth.spec << "\n  " << result.spec;
+            continue;
+        }
         if (open) continue;
-        sum.squares += own.squares;
-        sum.parameters += own.parameters;
+        squares += own;
+        degrees += static_cast<int>(result.parameters.size());
         ++counted;
     }
-    const double above = sum.parameters > 0 ? chiSquareProbability(sum.squares, sum.parameters) : 1;
-    fmt::print("{}: {} draws, {} counted, chi-square {:.4g} of {}, probability {:.3g}\n",
-               testing::PrintToString(GetParam()), count, counted, sum.squares, sum.parameters,
-               above);
+    const double above = degrees > 0 ? chiSquareProbability(squares, degrees) : 1;
+    fmt::print("{}: {} draws, {} counted, {} missed, chi-square {:.4g} of {}, probability {:.3g}\n",
+               testing::PrintToString(GetParam()), count, counted, missed, squares, degrees, above);
     // Of some fifty cases none falls below by chance.
-    if (sum.parameters > 0) {
+    if (degrees > 0) {
         EXPECT_GT(above, 1e-4);
         EXPECT_LT(above, 1 - 1e-4);
     }
