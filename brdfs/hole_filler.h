@@ -10,7 +10,7 @@
 
 namespace hshfit::brdfs {
 
-/// How well fills hold: the covered pairs next to holes are predicted as if they were holes, from
+/// The accuracy of fills: the covered pairs next to holes are predicted as if they were holes, from
 /// neighbours at the same places as those of the hole.
 struct FillCheck {
     std::size_t pairs = 0;  ///< covered pairs that were predicted

@@ -53,13 +53,13 @@ N gtrPeak(const N& alpha, const N& gamma) {
 /// P the density of slopes along one axis. Over circles of slope, w^2 = slope^2 - 1/t^2,
 ///     z Lambda = 2 integral_0^inf (s w - z atan(s w/z)) D(slope)/(1 + slope^2)^2 w dw.
 /// In log w the integrand is analytic to Im = pi/2, so that the trapezoid rule converges fast;
-/// where w exceeds 1 and the cotangent by e^12, terms fall by e^-step each.
+/// where w exceeds 1 and the cotangent by e^14, terms fall by e^-step each.
 template <class X>
 HWY_INLINE X integratedLambda(const X& alpha, const X& gamma, const X& peak, const X& sine,
                               const X& cosine, double logAlpha) {
     const X squaredCotangent = cosine * cosine / (sine * sine);
     const X scale = hypotenuse(alpha, cosine / sine);
-    constexpr double step = 0.25, low = -9, high = 12;
+    constexpr double step = 0.25, low = -9, high = 14;
     const int count = static_cast<int>((high - std::min(logAlpha, 0.0) - low) / step) + 1;
     X sum = 0.0, term = 0.0;
     for (int i = 0; i <= count; ++i) {

@@ -89,6 +89,31 @@ Truth draw(const Case& c, std::mt19937_64& random) {
 
 constexpr double most = 5;  // in standard errors
 
+/// Under a coat OpenPBR's base reflects by this index (openpbr.h), which two values of
+/// specular_ior share: one below that of the coat, one above.
+double indexUnderCoat(double ior, double coatIor, double coatWeight) {
+    const double ratio = ior / coatIor;
+    return ior + coatWeight * (std::max(ratio, 1 / ratio) - ior);
+}
+
+/// The difference of specular_ior that a fit's index under the coat amounts to.
+double offOfIndex(const Truth& truth, const FitResult& result) {
+    const auto ofTruth = [&](std::string_view key) {
+        for (std::size_t i = 0; i < truth.free.size(); ++i)
+            if (truth.free[i].keys.front() == key) return truth.values[i];
+        throw std::logic_error(std::string(key));
+    };
+    const auto ofFit = [&](std::string_view key) {
+        return std::ranges::find(result.parameters, key, &FittedParameter::name)->value;
+    };
+    const double ior = ofFit("specular_ior"), coat = ofFit("coat_ior"), step = 1e-6;
+    const double weight = ofFit("coat_weight"), own = indexUnderCoat(ior, coat, weight);
+    const double slope = (indexUnderCoat(ior + step, coat, weight) - own) / step;
+    const double target =
+        indexUnderCoat(ofTruth("specular_ior"), ofTruth("coat_ior"), ofTruth("coat_weight"));
+    return std::abs((own - target) / slope);
+}
+
 /// `reported`: not converged, or parameters that the fit calls ambiguous, at a bound, or correlated
 /// by more than 0.95, with a loss that is as low as that of the truth.
 enum class Outcome { recovered, reported, wrong };
@@ -128,7 +153,9 @@ Judged judge(const Truth& truth, const FitSamples& samples, const FitResult& res
         if (found == result.parameters.end()) throw std::logic_error(p.keys.front());
         const double error = found->standardError.value_or(0);
         // Errors are of first order: on the scale on which the fit moves the parameter.
-        const double off = p.logarithmic
+        const bool shared = p.keys.front() == "specular_ior";
+        const double off = shared ? offOfIndex(truth, result)
+                           : p.logarithmic
                                ? std::abs(std::log(found->value / truth.values[i])) * found->value
                                : std::abs(found->value - truth.values[i]);
         judged.why += fmt::format("{} {:.4g}: {:.6g} +- {:.2g}{}; ", p.keys.front(),

@@ -14,7 +14,7 @@ class AltaPart {
 public:
     virtual ~AltaPart() = default;
     virtual void eval(const Direction& wi, const Direction& wo, double* values) const = 0;
-    /// What it depends on; null: on the half vector's angles to the normal and the directions.
+    /// The coordinates of which it is a function; null: the half vector's angles.
     virtual const AltaCoordinates* coordinates() const { return nullptr; }
     /// Whether the pair lies where the function was fitted.
     virtual bool covers(const Direction&, const Direction&) const { return true; }
