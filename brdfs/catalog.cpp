@@ -21,6 +21,7 @@
 #include <brdfs/analytic/sg.h>
 #include <brdfs/analytic/sgd.h>
 #include <brdfs/analytic/ward.h>
+#include <brdfs/fit/dispersion_json.h>
 #include <brdfs/fit/gaussian_mixture_json.h>
 #include <brdfs/measured/bsdf_xml/bsdf_xml.h>
 #include <brdfs/measured/bsdf_xml/klems_writer.h>
@@ -40,6 +41,7 @@
 #include <brdfs/measured/scattered/cornell.h>
 #include <brdfs/measured/scattered/nist.h>
 #include <brdfs/measured/scattered/scatmech.h>
+#include <brdfs/metal_spec.h>
 #include <brdfs/preset.h>
 #include <brdfs/preset_collection.h>
 #include <brdfs/spec.h>
@@ -118,6 +120,8 @@ std::unique_ptr<Brdf> openPresetFile(const std::string& path, std::uint64_t size
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (isPresetCollection(text)) return openMaterial(text, path, material);
     if (material.empty() && isGaussianMixture(text)) return openGaussianMixture(text, path);
+    if (constexpr std::string_view key = "nm="; material.starts_with(key))
+        return openDispersed(text, path, material.substr(key.size()));
     if (!material.empty())
         throw UsageError(
             fmt::format("{}: a preset takes no options, '{}' was given", path, material));
@@ -238,6 +242,7 @@ std::unique_ptr<Brdf> openModel(std::string_view spec) {
     if (!model) throw unknownModel(spec.substr(0, colon));
     const std::string_view values =
         colon == std::string_view::npos ? std::string_view() : spec.substr(colon + 1);
+    if (namesMetal(values)) return openMetal(spec);
     return model->make(parseParameters(model->name, model->parameters, values));
 }
 

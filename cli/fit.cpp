@@ -172,10 +172,16 @@ void runFit(FitArguments& arguments, Globals& globals) {
         throw UsageError("fit: give either --model or --compare-models");
     const jobs::FitOptions& options = arguments.options;
     if ((!arguments.all.empty() || !arguments.models.empty()) &&
-        (options.bootstrap > 0 || options.profile || !options.residuals.empty() || options.figures))
+        (options.bootstrap > 0 || options.profile || !options.residuals.empty() ||
+         options.figures || !options.bands.empty()))
         throw UsageError(
-            "fit: --bootstrap, --profile, --residuals and --figures are for one model and one "
-            "DATA");
+            "fit: --bootstrap, --profile, --residuals, --figures and --bands are for one model and "
+            "one DATA");
+    if (options.bands.empty() != options.bandsTo.empty() &&
+        !(globals.json && !options.bands.empty()))
+        throw UsageError(
+            "fit: --bands PAIRS and --bands-to FILE.csv go together; with --json, bands are also "
+            "in the answer");
     if (!arguments.all.empty()) {
         if (arguments.options.model.empty()) throw UsageError("fit --all: takes one --model");
         return runAll(arguments, globals);
@@ -194,6 +200,7 @@ void runFit(FitArguments& arguments, Globals& globals) {
         {"cpu_seconds", static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC}};
     if (!fitted.figures.names.empty())
         fitted.preset["figures"] = figuresJson(fitted.figures, arguments.figures.folder);
+    if (!fitted.bands.is_null()) fitted.preset["bands"] = fitted.bands;
     if (fitted.poor) fitted.preset["poor"] = jobs::poorJson(*fitted.poor);
     printJson(fitted.preset);
 }
@@ -226,6 +233,9 @@ void addFit(CLI::App& command, Globals& globals) {
                     "Residual at which it sets in; 0: from the residuals' spread")
         ->check(CLI::Range(0.0, 1e300));
     command.add_flag("--per-channel", options.perChannel, "Shapes of their own for each channel");
+    command.add_option("--dispersion", options.dispersion,
+                       "Of spectra: PARAMETER=LAW[:N][,...], laws over the wavelength in place of "
+                       "a value at each; cauchy, sellmeier, poly, spline, shared or free");
     command.add_option("--weights", options.weights, "auto, equal or solid-angle")
         ->capture_default_str();
     command
@@ -262,6 +272,10 @@ void addFit(CLI::App& command, Globals& globals) {
                        "CSV file with a row for each value: model, residual, leverage, ...");
     addFigureOptions(command, arguments->figures);
     addInstrumentOptions(command, options.instrument);
+    command.add_option("--bands", options.bands,
+                       "Standard errors and bands of the fitted f at pairs of directions: a CSV "
+                       "with wi_x ... wo_z, or plane:30/60 for planes of incidence");
+    command.add_option("--bands-to", options.bandsTo, "CSV file for the bands");
     command.add_flag("--accept", options.accept, "Take a fit that did not converge");
     addRgb(command, options.rgb);
     command.callback([arguments, &globals] { runFit(*arguments, globals); });

@@ -116,10 +116,31 @@ std::string influenceText(const Document& influence) {
                                places(influence["most_influential"], "cook", unit));
 }
 
+std::string predictionLine(const Document& prediction, const std::string& unit) {
+    const Document& worst = prediction["largest_relative_error"];
+    const std::string channel = worst.value("channel", "");
+    return fmt::format(
+        "  standard error of the fitted f ({}) {:.3g} of f in the root mean square, most at {} "
+        "{}{}: {:.4g} +- {:.2g}\n",
+        prediction["route"] == "scans" ? "by scan" : "sandwich",
+        prediction["rms_relative_error"].get<double>(), unit, worst["row"].get<std::size_t>(),
+        channel.empty() ? "" : " at " + channel, worst["model"].get<double>(),
+        worst["standard_error"].get<double>());
+}
+
+std::string bandsLine(const Document& bands) {
+    return fmt::format(
+        "  bands at {} pairs: 95 % at one of them within {:.4g} standard errors, at all at once "
+        "within {:.4g}\n",
+        bands["count"].get<std::size_t>(), bands["pointwise_95"].get<double>(),
+        bands["simultaneous_95"].get<double>());
+}
+
 }  // namespace
 
 std::string uncertaintyText(const Document& fit) {
-    if (!fit.contains("uncertainty")) return {};
+    const std::string bands = fit.contains("bands") ? bandsLine(fit["bands"]) : "";
+    if (!fit.contains("uncertainty")) return bands;
     const Document& uncertainty = fit["uncertainty"];
     std::string lines = chiSquareLine(uncertainty) + errorTable(uncertainty);
     if (uncertainty.contains("bootstrap")) {
@@ -129,7 +150,9 @@ std::string uncertaintyText(const Document& fit) {
             bootstrap["of"].get<std::string>(), bootstrap["failed"].get<std::size_t>());
     }
     return lines + correlationLine(uncertainty) + profileTable(uncertainty) +
-           influenceText(fit["influence"]);
+           predictionLine(uncertainty["prediction"],
+                          fit["influence"]["rows"] == "lines" ? "line" : "sample") +
+           bands + influenceText(fit["influence"]);
 }
 
 }  // namespace hshfit::cli

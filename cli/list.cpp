@@ -9,6 +9,9 @@
 #include <hshfit/light/catalog.h>
 
 #include <brdfs/catalog.h>
+#include <brdfs/fit/dispersion_law.h>
+#include <brdfs/metal_spec.h>
+#include <brdfs/metals.h>
 #include <brdfs/preset.h>
 #include <brdfs/preset_collection.h>
 #include <brdfs/sum.h>
@@ -194,6 +197,28 @@ Json foundPresetsJson(const std::string& text) {
     throw UsageError(fmt::format("no preset matches '{}'; {}", text, hint));
 }
 
+Json metalsJson() {
+    Json rows = Json::array();
+    for (const brdfs::Metal& metal : brdfs::metals())
+        rows.push_back({{"name", metal.name},
+                        {"help", metal.help},
+                        {"source", metal.source},
+                        {"first", metal.rows.front().nanometres},
+                        {"last", metal.rows.back().nanometres}});
+    return rows;
+}
+
+Json dispersionsJson() {
+    Json rows = Json::array();
+    for (const brdfs::DispersionLaw& law : brdfs::dispersionLaws()) {
+        rows.push_back({{"name", law.name}, {"help", law.help}});
+        if (law.most > 0)
+            rows.back()["number"] = {
+                {"min", law.least}, {"max", law.most}, {"default", law.fallback}};
+    }
+    return rows;
+}
+
 Json targetsJson() {
     Json rows = Json::array();
     for (const gpu::Target& target : gpu::targets()) {
@@ -208,9 +233,12 @@ Json targetsJson() {
 struct Section {
     const char* name;
     Json (*rows)();
-    std::string_view sums = {};  ///< help on sums of the rows
+    std::string_view sums = {};    ///< help on sums of the rows
+    std::string_view metals = {};  ///< help on metals in place of numbers
 };
-constexpr Section sections[] = {{"models", modelsJson, brdfs::sumHelp},
+constexpr Section sections[] = {{"models", modelsJson, brdfs::sumHelp, brdfs::metalHelp},
+                                {"metals", metalsJson},
+                                {"dispersions", dispersionsJson},
                                 {"formats", formatsJson},
                                 {"writers", writersJson},
                                 {"lights", lightsJson, lightSumHelp},
@@ -247,7 +275,8 @@ std::string lawsText(const Json& laws) {
     return text;
 }
 
-void printSection(const char* name, const Json& rows, std::string_view sums = {}) {
+void printSection(const char* name, const Json& rows, std::string_view sums = {},
+                  std::string_view metals = {}) {
     std::string text = fmt::format("{}\n", name);
     if (rows.empty()) text += "  none yet\n";
     for (const Json& row : rows) {
@@ -259,6 +288,10 @@ void printSection(const char* name, const Json& rows, std::string_view sums = {}
         if (row.contains("parts"))
             text += fmt::format("      {:<14} {}\n", "parts",
                                 fmt::join(row["parts"].get<std::vector<std::string>>(), ", "));
+        if (row.contains("number"))
+            text += fmt::format("      {:<14} {} to {}; default {}\n", "number",
+                                row["number"]["min"].get<int>(), row["number"]["max"].get<int>(),
+                                row["number"]["default"].get<int>());
         if (row.contains("example"))
             text += fmt::format("      {:<14} {}\n", "example", row["example"].get<std::string>());
         for (const Json& parameter : row.value("parameters", Json::array())) {
@@ -269,6 +302,7 @@ void printSection(const char* name, const Json& rows, std::string_view sums = {}
         }
     }
     if (!sums.empty()) text += fmt::format("  {:<18} {}\n", "sums", sums);
+    if (!metals.empty()) text += fmt::format("  {:<18} {}\n", "metals", metals);
     printText(text + "\n");
 }
 
@@ -320,7 +354,7 @@ void addList(CLI::App& command, Globals& globals) {
             if (globals.json) {
                 document[s.name] = s.rows();
             } else {
-                printSection(s.name, s.rows(), s.sums);
+                printSection(s.name, s.rows(), s.sums, s.metals);
             }
         }
         if (options->section.empty() || options->section == "presets")

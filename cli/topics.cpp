@@ -7,7 +7,10 @@
 #include <hshfit/light/catalog.h>
 
 #include <brdfs/catalog.h>
+#include <brdfs/fit/dispersion_law.h>
 #include <brdfs/fit/loss.h>
+#include <brdfs/metal_spec.h>
+#include <brdfs/metals.h>
 #include <brdfs/preset.h>
 #include <brdfs/preset_collection.h>
 #include <brdfs/repair.h>
@@ -30,8 +33,12 @@ Page specifications() {
     addRow(page, "MODEL", "an analytic model with its defaults: lambert");
     addRow(page, "MODEL:KEY=VALUE,…",
            "with parameters; colours are one number or r/g/b: ggx:alpha=.2,F0=1/.7/.3");
+    addRow(page, "MODEL:…,metal=NAME", std::string(brdfs::metalHelp));
     addRow(page, "PATH", "a measured file, recognised by its content; a preset; a fit");
     addRow(page, "PATH:KEY=VALUE,…", "a measured file with options of its format");
+    addRow(page, "FIT.json:nm=WAVELENGTHS",
+           "a fit with laws over the wavelength (fit --dispersion), at these: nm=450/550 or "
+           "nm=400:700:10");
     addRow(page, "preset:NAME", "published parameters: preset:ngan-ward/blue-acrylic");
     addRow(page, "SPEC + SPEC", std::string(brdfs::sumHelp));
     addRow(page, "rgb:SPEC", "wavelengths as linear Rec. 709");
@@ -41,6 +48,22 @@ Page specifications() {
     addParagraph(page,
                  "`hshfit list models` has their parameters, ranges and sources. Words of a shell "
                  "end at spaces: a specification with spaces stands in quotes.");
+    return page;
+}
+
+Page dispersions() {
+    Page page;
+    addHeading(page, "Laws of fit --dispersion PARAMETER=LAW[:N][,…]");
+    addRows(page, brdfs::dispersionLaws());
+    addParagraph(page,
+                 "Shapes (roughness, exponents, indices) without a law are shared, scales and "
+                 "albedos free. cauchy and sellmeier are for ior.");
+    addHeading(page, "Metals, in place of ior and k: metal=NAME");
+    addRows(page, brdfs::metals());
+    addHeading(page, "Example");
+    addCommand(page,
+               "hshfit fit ggx:alpha=.3,metal=gold,nm=450:650:25 --model ggx:fresnel=conductor "
+               "--dispersion ior=poly:4,k=poly:4,ks=shared --loss cosine");
     return page;
 }
 
@@ -198,6 +221,7 @@ constexpr Topic table[] = {
     {"presets", "published materials", presets},
     {"metrics", "the distances that compare measures", metrics},
     {"losses", "the distances that fit makes small", losses},
+    {"dispersions", "laws over the wavelength of fit, and metals", dispersions},
     {"targets", "textures, shaders and pages that export writes", targets},
     {"files", "files of the program's own", files},
     {"exit-codes", "the numbers that commands end with", exitCodes},

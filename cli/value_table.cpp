@@ -206,6 +206,8 @@ constexpr ValueRow table[] = {
     {"fit", "--at", placeWords},
     {"fit", "--dark", darkWords},
     {"fit", "--offset", fitWords},
+    {"fit", "--bands", nullptr, Syntax::word, Files::read, ".csv"},
+    {"fit", "--bands-to", nullptr, Syntax::word, Files::written, ".csv"},
     {"fit", "--residuals", nullptr, Syntax::word, Files::written, ".csv"},
     {"fit", "--scan-scale", fitWords},
     {"fit", "--scans", scanWords},

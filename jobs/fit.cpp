@@ -1,5 +1,6 @@
 #include "fit.h"
 
+#include "fit_bands.h"
 #include "source.h"
 
 #include <hshfit/error.h>
@@ -18,6 +19,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -33,6 +35,7 @@ brdfs::FitOptions optionsOf(const FitOptions& options, const Brdf& data) {
     fit.robust = brdfs::findRobust(options.robust);
     fit.robustScale = options.robustScale;
     fit.perChannel = options.perChannel;
+    fit.dispersion = options.dispersion;
     fit.starts = options.starts;
     fit.seed = options.seed;
     fit.iterations = options.iterations;
@@ -66,6 +69,7 @@ std::optional<Setting> sampleSetting(const FitOptions& options) {
         {!options.instrument.dark.empty(), "FitOptions::instrument.dark"},
         {!options.instrument.stray.empty(), "FitOptions::instrument.stray"},
         {!options.instrument.scale.empty(), "FitOptions::instrument.scale"},
+        {!options.bands.empty(), "FitOptions::bands"},
     };
     for (const auto& [given, name] : rows)
         if (given) return Setting{name};
@@ -180,6 +184,7 @@ std::vector<TriedModel> triedModels(const brdfs::FitSamples& samples, brdfs::Fit
     how.iterations = 60;
     how.progress = {};
     how.uncertainty = {};
+    how.dispersion = {};
     std::vector<TriedModel> tried;
     for (const std::string& model : {own + (own.starts_with("ggx") ? "+eon" : "+ggx"),
                                      std::string("lambert+ggx"), std::string("lambert+ggx+ggx")}) {
@@ -254,11 +259,12 @@ namespace {
 
 /// Files that are complete but not yet under their names; null: not asked for.
 struct PreparedFiles {
-    std::unique_ptr<AtomicFile> residuals;
+    std::unique_ptr<AtomicFile> residuals, bands;
     std::unique_ptr<FileSet> figures;
 
     void commit(const Fitted& fitted) const {
         if (residuals) residuals->commit();
+        if (bands) bands->commit();
         if (figures) figures->commit();
         if (fitted.figures.undrawn) throw NoFigures(*fitted.figures.undrawn);
     }
@@ -268,6 +274,8 @@ struct PreparedFiles {
 std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& data,
                                          const FitOptions& options, const Listener& listener) {
     PreparedFiles files;
+    // A wrong list of pairs is known before the fit.
+    if (!options.bands.empty()) bandPairs(options.bands);
     if (options.figures) {
         checkFigures(*options.figures);
         files.figures =
@@ -309,6 +317,7 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
     files.residuals = residualsOf(samples, fitted.result, how.loss, options.residuals);
     if (files.figures)
         fitted.figures = addFitFigures(brdf, report, *options.figures, *files.figures, listener);
+    files.bands = addBands(options, samples.channels, fitted);
     return {std::move(fitted), std::move(files)};
 }
 

@@ -25,13 +25,14 @@ struct FitOptions {
     std::string model;
     /// brdfs::findLoss. Empty: l2 with stated uncertainties; cosine for scattered samples, and
     /// where another option is about single samples (robust, weights, places, scans, bootstrap,
-    /// profile, residuals); else picture, whose spheres look most like those of the data.
+    /// profile, residuals, bands); else picture, whose spheres look most like those of the data.
     std::string loss = {};
     std::string robust = "none";   ///< brdfs::findRobust
     std::string weights = "auto";  ///< brdfs::findSampleWeights
     std::string places = "auto";   ///< brdfs::findSamplePlaces
     double robustScale = 0;        ///< residual at which `robust` sets in; 0: from their spread
     bool perChannel = false;       ///< separate shape parameters for each channel
+    std::string dispersion = {};   ///< laws over the wavelength (brdfs::parseDispersion)
     int starts = 16;               ///< local searches
     int iterations = 200;          ///< at most, in the last search
     std::uint64_t seed = 1;        ///< of starts and drawn samples
@@ -49,6 +50,8 @@ struct FitOptions {
     std::string residuals = {};  ///< CSV file, a row for each value; empty: none
     std::optional<FigureOptions> figures = {};  ///< for print; none: not drawn
     brdfs::InstrumentText instrument = {};      ///< between f and the samples
+    std::string bands = {};    ///< pairs at which f has its error (bandPairs); empty: none
+    std::string bandsTo = {};  ///< CSV file of the bands; empty: in `Fitted::bands` alone
 };
 
 /// The name of the loss that these options ask for with these data.
@@ -68,6 +71,7 @@ struct Fitted {
     double relativeError = 0;
     std::optional<Poor> poor = {};
     FigureFiles figures = {};
+    nlohmann::ordered_json bands = {};  ///< brdfs::bandRowsJson, where they were asked for
 };
 
 /// Whether `output` is a preset file rather than a folder with a preset and a page.

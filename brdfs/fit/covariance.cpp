@@ -58,6 +58,7 @@ Covariance covarianceOf(const Equations& equations, const std::vector<bool>& fix
     Covariance result;
     result.variance.assign(all, -1);
     result.correlations.assign(all * all, 0);
+    result.whole.assign(all * all, 0);
     const Scaled scaled(equations, fixed);
     for (const std::size_t i : scaled.without) result.ambiguous.push_back({i});
     const Eigen::Index n = scaled.count();
@@ -80,8 +81,11 @@ Covariance covarianceOf(const Equations& equations, const std::vector<bool>& fix
     const Eigen::MatrixXd covariance =
         inverse * scaled.of(equations.spread, all) * inverse + 2 * rounding * inverse;
     for (Eigen::Index i = 0; i < n; ++i) {
-        if (undetermined[i]) continue;
         const std::size_t row = scaled.free[i];
+        for (Eigen::Index j = 0; j < n; ++j)
+            result.whole[row * all + scaled.free[j]] =
+                covariance(i, j) / (scaled.scale(i) * scaled.scale(j));
+        if (undetermined[i]) continue;
         result.variance[row] =
             std::max(0.0, covariance(i, i)) / (scaled.scale(i) * scaled.scale(i));
         for (Eigen::Index j = 0; j < n; ++j) {

@@ -11,6 +11,9 @@ namespace hshfit::brdfs {
 struct Covariance {
     std::vector<double> variance;      ///< [n]; negative: fixed or not determined
     std::vector<double> correlations;  ///< [n * n]; 0 where there is no variance
+    /// [n * n]; 0 for what is fixed. Of undetermined parameters too, without the directions that
+    /// have no effect.
+    std::vector<double> whole;
     /// Sets of indices that act together along one direction without any effect.
     std::vector<std::vector<std::size_t>> ambiguous;
 };

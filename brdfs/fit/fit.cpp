@@ -2,9 +2,11 @@
 
 #include <brdfs/catalog.h>
 #include <brdfs/fit/covariance.h>
+#include <brdfs/fit/dispersion.h>
 #include <brdfs/fit/distributions.h>
 #include <brdfs/fit/filled_in.h>
 #include <brdfs/fit/fit_search.h>
+#include <brdfs/fit/fit_statistics.h>
 #include <brdfs/fit/instrument/instrument_fit.h>
 #include <brdfs/fit/minimum_study.h>
 #include <brdfs/fit/normal_equations.h>
@@ -25,6 +27,7 @@ namespace {
 struct Part {
     FitResult result;  ///< without spec
     std::vector<double> shapes, linear;
+    std::vector<double> covariance;  ///< of all values: FittedPoint
     double squares = 0, weights = 0;
 };
 
@@ -78,6 +81,10 @@ void describe(const FitProblem& problem, const std::vector<double>& x, const Fit
         equations.spread = spreadOfScans(problem, x, inverse);
         covariance = covarianceOf(equations, fixed);
     }
+    part.covariance = covariance.whole;
+    for (std::size_t i = 0; i < x.size(); ++i)
+        for (std::size_t j = 0; j < x.size(); ++j)
+            part.covariance[i * x.size() + j] *= slope[i] * slope[j];
     reportUnseenLobes(
         {shapes, channels, shapes + problem.linearCount()},
         [&](std::span<const double> at) { return problem.joint(at, true); }, x, equations, fixed,
@@ -190,6 +197,57 @@ FitResult merged(std::vector<Part>& parts, const std::vector<std::string>& names
     return result;
 }
 
+/// The values of one channel of a part, from a list of all its parameters.
+std::vector<double> valuesOfChannel(const std::vector<double>& all, std::size_t shapes,
+                                    std::size_t channels, std::size_t c) {
+    std::vector<double> values(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(shapes));
+    for (std::size_t i = shapes + c; i < all.size(); i += channels) values.push_back(all[i]);
+    return values;
+}
+
+/// Where predictions are linearised: parts of one channel each, or one of all.
+FittedPoint pointOf(const std::vector<Part>& parts, const ParametricSum& sum,
+                    const FitSamples& samples) {
+    FittedPoint point;
+    point.isotropic = samples.isotropic;
+    const std::size_t shapes = sum.shapes().size();
+    const std::size_t channels = samples.channels.count() / parts.size();
+    std::size_t n = 0, first = 0;
+    for (const Part& part : parts) n += part.result.parameters.size();
+    point.covariance.assign(n * n, 0);
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        const Part& part = parts[p];
+        const std::size_t count = part.result.parameters.size();
+        std::vector<double> all = part.shapes;
+        all.insert(all.end(), part.linear.begin(), part.linear.end());
+        for (std::size_t i = 0; i < count; ++i)
+            for (std::size_t j = 0; j < count; ++j)
+                point.covariance[(first + i) * n + first + j] = part.covariance[i * count + j];
+        for (std::size_t c = 0; c < channels; ++c) {
+            FittedChannel channel{sum.spec(), valuesOfChannel(all, shapes, channels, c), {}};
+            for (std::size_t i = 0; i < channel.values.size(); ++i)
+                channel.slopes.push_back(
+                    {{first + (i < shapes ? i : shapes + (i - shapes) * channels + c), 1}});
+            point.channels.push_back(std::move(channel));
+        }
+        if (part.result.uncertainty) {
+            const auto& draws = part.result.uncertainty->draws;
+            point.draws.resize(std::max(point.draws.size(), draws.size()));
+            for (std::size_t b = 0; b < draws.size(); ++b) {
+                // A draw in which one part did not converge stays empty.
+                if (draws[b].empty() || point.draws[b].size() != p * channels) {
+                    point.draws[b].clear();
+                    continue;
+                }
+                for (std::size_t c = 0; c < channels; ++c)
+                    point.draws[b].push_back(valuesOfChannel(draws[b], shapes, channels, c));
+            }
+        }
+        first += count;
+    }
+    return point;
+}
+
 void checkStatements(const FitSamples& samples, const FitOptions& options) {
     if (!samples.sigmas.empty() && options.loss != Loss::Kind::l2)
         throw UsageError(
@@ -206,7 +264,12 @@ void checkStatements(const FitSamples& samples, const FitOptions& options) {
 
 FitResult fit(const FitSamples& samples, const FitOptions& options) {
     checkStatements(samples, options);
+    const bool dispersed = !options.dispersion.empty() || namesMetals(options.model);
+    if (dispersed && options.instrument.any())
+        throw UsageError(
+            "terms of the instrument are for fits without laws over the wavelength and metals");
     if (options.instrument.any()) return fitWithInstrument(samples, options);
+    if (dispersed) return fitDispersed(samples, options);
     const ParametricSum sum(options.model, samples.isotropic);
     const std::size_t channels = samples.channels.count();
     const bool apart = options.perChannel && channels > 1;
@@ -225,6 +288,7 @@ FitResult fit(const FitSamples& samples, const FitOptions& options) {
                 linear[k * channels + c] = parts[c].linear[k];
     }
     result.model = sum.spec();
+    result.point = pointOf(parts, sum, samples);
     fillIn(sum, shapes, linear, samples.channels, result);
     result.startCount = options.starts;
     result.seed = options.seed;
@@ -232,15 +296,7 @@ FitResult fit(const FitSamples& samples, const FitOptions& options) {
     result.values = samples.size() * channels;
     double squares = 0, weights = 0;
     for (const Part& part : parts) squares += part.squares, weights += part.weights;
-    result.loss = std::sqrt(squares / weights);
-    // The variance of the residuals is a parameter, too, unless it is stated.
-    const bool stated = !samples.sigmas.empty();
-    const double count = static_cast<double>(result.values),
-                 parameters = static_cast<double>(result.parameters.size() + (stated ? 0 : 1));
-    const double likelihood =
-        stated ? squares : count * std::log(std::max(squares / weights, 1e-300));
-    result.aic = likelihood + 2 * parameters;
-    result.bic = likelihood + parameters * std::log(count);
+    addStatistics(squares, weights, !samples.sigmas.empty(), result);
     return result;
 }
 

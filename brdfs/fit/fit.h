@@ -1,6 +1,7 @@
 #pragma once
 
 #include <brdfs/fit/fit_samples.h>
+#include <brdfs/fit/fitted_point.h>
 #include <brdfs/fit/instrument/fitted_instrument.h>
 #include <brdfs/fit/loss.h>
 #include <brdfs/fit/uncertainty.h>
@@ -23,9 +24,12 @@ struct FitOptions {
     /// 10.1080/03610927708827533): 1.345 (Huber) or 2.385 (Cauchy) times 1.4826 median |r|.
     double robustScale = 0;
     bool perChannel = false;  ///< shapes of their own for every channel
-    int starts = 16;          ///< local searches
-    std::uint64_t seed = 1;   ///< of the starts
-    int iterations = 200;     ///< of the last search
+    /// Laws over the wavelength, "ior=cauchy:2,kd=spline:6" (dispersion_law.h); empty: shapes are
+    /// shared, linear parameters free.
+    std::string dispersion = {};
+    int starts = 16;         ///< local searches
+    std::uint64_t seed = 1;  ///< of the starts
+    int iterations = 200;    ///< of the last search
     std::function<void(std::size_t, std::size_t)> progress = {};
     UncertaintyOptions uncertainty = {};
     /// Between f and the samples; with it the loss has to be l2 or cosine, without a robust kernel
@@ -51,10 +55,18 @@ struct FittedWavelength {
     std::string spec;
 };
 
+/// A law over the wavelength with its coefficients (LawCurve).
+struct FittedLaw {
+    std::string parameter;
+    std::string law;  ///< "cauchy:2"
+    std::vector<double> coefficients;
+};
+
 struct FitResult {
     std::string model;  ///< as it was asked for
     std::string spec;   ///< with values filled in: opens the fit; empty for a spectrum
     std::vector<FittedWavelength> spectrum;  ///< of data with wavelengths, in their order
+    std::vector<FittedLaw> laws;             ///< only with FitOptions::dispersion or a metal
     std::vector<FittedParameter> parameters;
     /// Of parameters with a standard error, 0 otherwise: [n * n]. Channels that were fitted apart
     /// do not correlate.
@@ -71,6 +83,7 @@ struct FitResult {
     double projectedGradient = 0;  ///< largest component that bounds do not stop, per unit of scale
     double aic = 0, bic = 0;
     std::optional<Uncertainty> uncertainty;  ///< only if asked for
+    FittedPoint point;                       ///< for predictions (prediction.h)
     std::optional<FittedInstrument> instrument = {};
 };
 
@@ -86,6 +99,8 @@ struct FitResult {
 /// Samples with stated uncertainties are weighted by 1/sigma^2 (the loss has to be l2): the loss is
 /// the root of the weighted mean square of f - measured, and AIC and BIC are chi-square plus their
 /// terms, because the variance is known. With scans, errors and correlations are those by scan.
+///
+/// With laws over the wavelength, or a metal in the model, it is fitDispersed (dispersion.h).
 ///
 /// Throws UsageError for the model, for stated uncertainties with another loss, and for a study of
 /// uncertainties with a robust kernel; NumericError if there are fewer values than parameters.

@@ -1,5 +1,6 @@
 #include <brdfs/fit/fit_json.h>
 
+#include <brdfs/fit/dispersion_json.h>
 #include <brdfs/fit/instrument/instrument_json.h>
 #include <brdfs/fit/uncertainty_json.h>
 #include <hshfit/accuracy/metrics.h>
@@ -107,6 +108,7 @@ Json fitPreset(const FitReport& report) {
         {"ambiguous", result.ambiguous},
         {"metrics", metricsJson(report)},
     };
+    if (!result.laws.empty()) fit["dispersion"] = dispersionJson(result);
     if (options.robust != Robust::none) fit["robust_scale"] = result.robustScale;
     if (result.instrument) fit["instrument"] = instrumentJson(*result.instrument);
     if (result.uncertainty) {

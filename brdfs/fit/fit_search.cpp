@@ -243,6 +243,11 @@ Bounds jointBounds(const ParametricSum& sum, std::size_t channels) {
     return bounds;
 }
 
+double robustScaleOf(Robust robust, std::vector<double> residuals) {
+    const double factor = robust == Robust::huber ? 1.345 : 2.385;
+    return std::max(factor * 1.4826 * medianSize(std::move(residuals)), 1e-12);
+}
+
 Minimum refined(const FitProblem& problem, bool linear, const Minimum& start,
                 const MinimiseOptions& options) {
     return Search(problem, linear).from(start, options);
@@ -288,11 +293,8 @@ Fitted searchMinimum(FitProblem& problem, const FitOptions& options) {
     }
     if (options.robust != Robust::none) {
         best.robustScale = options.robustScale;
-        if (!(best.robustScale > 0)) {
-            const double factor = options.robust == Robust::huber ? 1.345 : 2.385;
-            best.robustScale =
-                std::max(factor * 1.4826 * medianSize(problem.residuals(best.minimum.x)), 1e-12);
-        }
+        if (!(best.robustScale > 0))
+            best.robustScale = robustScaleOf(options.robust, problem.residuals(best.minimum.x));
         problem.setRobust(options.robust, best.robustScale);
         best.minimum = search.fromAll(best.minimum, last);
         iterations += best.minimum.iterations, evaluations += best.minimum.evaluations;

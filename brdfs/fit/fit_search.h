@@ -26,6 +26,9 @@ struct Fitted {
 /// Searches from several starts (FitOptions); sets the robust kernel of the problem.
 Fitted searchMinimum(FitProblem& problem, const FitOptions& options);
 
+/// The scale at which a robust kernel sets in by default: FitOptions::robustScale.
+double robustScaleOf(Robust robust, std::vector<double> residuals);
+
 /// A search that goes on from another one's minimum. `linear`: the loss is linear in f, so that
 /// linear parameters are eliminated.
 Minimum refined(const FitProblem& problem, bool linear, const Minimum& start,

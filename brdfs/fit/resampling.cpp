@@ -26,4 +26,16 @@ std::vector<std::size_t> timesDrawn(const std::vector<std::vector<std::size_t>>&
     return times;
 }
 
+FitSamples redrawn(const FitSamples& samples, std::uint64_t seed, std::size_t draw) {
+    const std::vector<std::size_t> times =
+        timesDrawn(scanMembers(samples), samples.size(), seed, draw);
+    std::vector<std::size_t> chosen;
+    for (std::size_t k = 0; k < samples.size(); ++k)
+        if (times[k] > 0) chosen.push_back(k);
+    FitSamples result = samples.subset(chosen);
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+        result.weights[i] *= static_cast<double>(times[chosen[i]]);
+    return result;
+}
+
 }  // namespace hshfit::brdfs

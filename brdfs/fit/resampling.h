@@ -17,4 +17,7 @@ std::vector<std::vector<std::size_t>> scanMembers(const FitSamples& samples);
 std::vector<std::size_t> timesDrawn(const std::vector<std::vector<std::size_t>>& members,
                                     std::size_t count, std::uint64_t seed, std::size_t draw);
 
+/// The samples of draw `draw`: one that comes several times has that weight.
+FitSamples redrawn(const FitSamples& samples, std::uint64_t seed, std::size_t draw);
+
 }  // namespace hshfit::brdfs

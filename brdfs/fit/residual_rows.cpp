@@ -1,5 +1,7 @@
 #include <brdfs/fit/residual_rows.h>
 
+#include <brdfs/fit/prediction.h>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -46,6 +48,15 @@ std::vector<ValuePlace> outliersOf(const FitSamples& samples, const Uncertainty&
                       [&](std::size_t v) { return std::abs(uncertainty.values[v].studentised); });
 }
 
+std::vector<std::string> columnNames(const Channels& channels) {
+    if (channels.kind == Channels::Kind::grey) return {""};
+    if (channels.kind != Channels::Kind::spectral) return channels.names();
+    std::vector<std::string> names;
+    for (const double nanometres : channels.wavelengths)
+        names.push_back(fmt::format("{}", nanometres));
+    return names;
+}
+
 std::vector<double> standardisedResiduals(const FitSamples& samples,
                                           const std::vector<double>& model, Loss::Kind loss,
                                           std::size_t parameters) {
@@ -74,17 +85,13 @@ double aspecularAngle(const FitSamples& samples, std::size_t k) {
 
 void writeResidualRows(const FitSamples& samples, const FitResult& result, Loss::Kind loss,
                        const std::function<void(std::string_view)>& write) {
-    write(
+    const Prediction prediction = predict(result, samples);
+    write(fmt::format(
         "row,wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,channel,value,sigma,model,residual,studentised,"
-        "leverage,cook,theta_i,theta_o,aspecular,standardised\n");
+        "leverage,cook,theta_i,theta_o,aspecular,standardised,standard_error{}\n",
+        prediction.bootstrap ? ",bootstrap_error" : ""));
     const std::size_t count = samples.size(), channels = samples.channels.count();
-    std::vector<std::string> names(channels);
-    for (std::size_t c = 0; c < channels; ++c) {
-        if (samples.channels.kind == Channels::Kind::spectral)
-            names[c] = fmt::format("{}", samples.channels.wavelengths[c]);
-        else if (channels > 1)
-            names[c] = samples.channels.names()[c];
-    }
+    const std::vector<std::string> names = columnNames(samples.channels);
     std::vector<double> model;
     for (const ValueInfluence& own : result.uncertainty->values) model.push_back(own.model);
     const std::vector<double> standardised =
@@ -98,13 +105,14 @@ void writeResidualRows(const FitSamples& samples, const FitResult& result, Loss:
             const std::size_t v = c * count + k;
             const ValueInfluence& own = result.uncertainty->values[v];
             const double value = samples.values[v];
-            write(fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-                              rowOf(samples, {c, k}), samples.wiX[k], samples.wiY[k],
-                              samples.wiZ[k], samples.wo[k].x, samples.wo[k].y, samples.wo[k].z,
-                              names[c], value,
-                              samples.sigmas.empty() ? "" : fmt::format("{}", samples.sigmas[v]),
-                              own.model, value - own.model, own.studentised, own.leverage, own.cook,
-                              angles, standardised[v]));
+            write(fmt::format(
+                "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}{}\n", rowOf(samples, {c, k}),
+                samples.wiX[k], samples.wiY[k], samples.wiZ[k], samples.wo[k].x, samples.wo[k].y,
+                samples.wo[k].z, names[c], value,
+                samples.sigmas.empty() ? "" : fmt::format("{}", samples.sigmas[v]), own.model,
+                value - own.model, own.studentised, own.leverage, own.cook, angles, standardised[v],
+                prediction.errors[v],
+                prediction.bootstrap ? fmt::format(",{}", prediction.bootstrap->errors[v]) : ""));
         }
     }
 }

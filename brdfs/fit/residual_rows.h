@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,6 +18,8 @@ namespace hshfit::brdfs {
 ///     studentised, leverage, cook      ValueInfluence
 ///     theta_i, theta_o, aspecular      degrees; the last as aspecularAngle
 ///     standardised                     standardisedResiduals
+///     standard_error                   of the model there, 1/sr (prediction.h)
+///     bootstrap_error                  the same by fits to resampled data, where there are any
 /// `loss` is that of the fit. `write` gets the text line by line. The result has to have its
 /// `uncertainty`.
 void writeResidualRows(const FitSamples& samples, const FitResult& result, Loss::Kind loss,
@@ -31,6 +34,9 @@ std::vector<double> standardisedResiduals(const FitSamples& samples,
 /// The angle between the outgoing direction of a sample and the mirror direction of its incoming
 /// one, degrees.
 double aspecularAngle(const FitSamples& samples, std::size_t k);
+
+/// Channels as columns name them: nm, "R", "G", "B"; "" for grey.
+std::vector<std::string> columnNames(const Channels& channels);
 
 /// One value among the samples.
 struct ValuePlace {

@@ -64,6 +64,8 @@ struct Uncertainty {
     /// |studentised| of a value beyond this is expected in 5 of 100 fits (Bonferroni).
     double outlierBound = 0;
     std::size_t bootstrapDraws = 0, bootstrapFailures = 0;
+    /// The parameters' values of each draw; empty for a draw that did not converge.
+    std::vector<std::vector<double>> draws;
 
     double reducedChiSquare() const {
         return degreesOfFreedom > 0 ? chiSquare / static_cast<double>(degreesOfFreedom) : 0;

@@ -1,5 +1,6 @@
 #include <brdfs/fit/uncertainty_json.h>
 
+#include <brdfs/fit/band_rows.h>
 #include <brdfs/fit/residual_rows.h>
 #include <hshfit/files/json_fields.h>
 
@@ -86,6 +87,8 @@ Document uncertaintyJson(const FitReport& report) {
                              {"failed", own.bootstrapFailures},
                              {"of", own.scans > 0 ? "scans" : "samples"},
                              {"seed", report.options.seed}};
+    json["prediction"] = predictionJson(*report.samples, report.result,
+                                        predict(report.result, *report.samples, false));
     json["parameters"] = Document::array();
     const std::size_t n = own.parameters.size();
     for (std::size_t i = 0; i < n; ++i)

@@ -88,7 +88,7 @@ TEST_F(Laboratory, ResidualsAreARowForEachValueAndAddUpToChiSquare) {
     std::getline(rows, line);
     EXPECT_EQ(line,
               "row,wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,channel,value,sigma,model,residual,studentised,"
-              "leverage,cook,theta_i,theta_o,aspecular,standardised");
+              "leverage,cook,theta_i,theta_o,aspecular,standardised,standard_error");
     double chiSquare = 0, leverage = 0;
     std::size_t count = 0;
     std::istringstream file(table.astm);
@@ -98,7 +98,7 @@ TEST_F(Laboratory, ResidualsAreARowForEachValueAndAddUpToChiSquare) {
         std::vector<std::string> cells;
         std::istringstream parts(line);
         for (std::string cell; std::getline(parts, cell, ',');) cells.push_back(cell);
-        ASSERT_EQ(cells.size(), 19u) << line;
+        ASSERT_EQ(cells.size(), 20u) << line;
         EXPECT_NE(lines[std::stoul(cells[0])].find(cells[8]), std::string::npos) << line;
         EXPECT_NEAR(std::stod(cells[8]) - std::stod(cells[10]), std::stod(cells[11]), 1e-15);
         chiSquare += std::pow(std::stod(cells[11]) / std::stod(cells[9]), 2);
@@ -160,6 +160,63 @@ TEST_F(Laboratory, WrongStatementsAreOneLineAndLeaveNothing) {
     refused("lambert:kd=0 --model lambert --sigma 2%", 3, "absolute");
     expectError("fit " + path("plain.astm") + " --compare-models lambert --profile", 2, "--profile",
                 7);
+}
+
+TEST_F(Laboratory, BandsAreARowForEachPairAndAgreeWithTheModelAndTheResiduals) {
+    const Table table;
+    write("own.astm", table.astm);
+    const std::string fitted = path("own.astm") + " --sigma column --model oren-nayar ";
+    ASSERT_EQ(run("fit " + fitted + "--residuals " + path("r.csv") + " -o " + path("f.json")).code,
+              0);
+    // The directions of the residuals as pairs: the same errors there.
+    const Json fit = answer(fitted + "--bands " + path("r.csv") + " --bands-to " + path("b.csv"));
+    EXPECT_EQ(fit["fit"]["bands"]["count"], 96);
+    EXPECT_EQ(fit["bands"].size(), 96u);
+    std::istringstream residuals(read(path("r.csv"))), bands(read(path("b.csv")));
+    const auto next = [](std::istringstream& rows) {
+        std::string line;
+        std::getline(rows, line);
+        std::vector<double> cells;
+        std::istringstream parts(line);
+        for (std::string cell; std::getline(parts, cell, ',');)
+            cells.push_back(std::strtod(cell.c_str(), nullptr));
+        return cells;
+    };
+    next(residuals), next(bands);
+    for (std::size_t k = 0; k < 96; ++k) {
+        const std::vector<double> residual = next(residuals), band = next(bands);
+        ASSERT_EQ(band.size(), 16u);
+        EXPECT_NEAR(band[8], residual[10], 1e-12);
+        EXPECT_NEAR(band[9], residual[19], 1e-9 * residual[19]);
+        EXPECT_NEAR(band[8] + band[9], band[11], 1e-12);
+        EXPECT_GT(band[15], band[13]);
+        EXPECT_EQ(fit["bands"][k]["f"], band[8]);
+    }
+    EXPECT_GT(fit["fit"]["bands"]["simultaneous_95"], fit["fit"]["bands"]["pointwise_95"]);
+    const Json plane = answer(fitted + "--bands plane:0/30.5");
+    EXPECT_EQ(plane["bands"].size(), 2 * 179u);
+    EXPECT_NEAR(plane["bands"][0]["wi"][2].get<double>(), 1, 1e-12);
+}
+
+TEST_F(Laboratory, WrongBandsAreOneLineAndLeaveNothing) {
+    const Table table;
+    write("own.astm", table.astm);
+    write("below.csv", "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,0,0,1\n0,0,1,0,0,-1\n");
+    write("none.csv", "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n");
+    const auto refused = [&](const std::string& arguments, int code, const std::string& part) {
+        expectError(
+            "fit " + path("own.astm") + " --model lambert " + arguments + " -o " + path("f.json"),
+            code, part, 3);
+    };
+    const std::string to = " --bands-to " + path("b.csv");
+    refused("--bands plane:90" + to, 2, "'90'");
+    refused("--bands plane:" + to, 2, "plane:30/60");
+    refused("--bands plane:30/nan" + to, 2, "'nan'");
+    refused("--bands plane:30", 2, "--bands-to");
+    refused(to, 2, "--bands PAIRS");
+    refused("--bands " + path("below.csv") + to, 3, "pair 2");
+    refused("--bands " + path("none.csv") + to, 3, "no pair");
+    refused("--bands " + path("absent.csv") + to, 3, "absent.csv");
 }
 
 TEST_F(Laboratory, EverySampleOfASpectralFileIsInTheAnswer) {

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <brdfs/fit/fit.h>
+
+#include <string_view>
+
+namespace hshfit::brdfs {
+
+/// Whether a term of "a + b" names a metal in place of n and k (metal_spec.h).
+bool namesMetals(std::string_view model);
+
+/// One fit over all wavelengths of a spectrum, whose parameters follow laws over the wavelength
+/// (FitOptions::dispersion, dispersion_law.h); shapes without a law are shared, linear parameters
+/// have a value at each wavelength. Metals named in the model have their tabulated n and k.
+///
+/// Starts are the fits of single wavelengths, put under the laws, and the shapes of the first, the
+/// middle and the last of them for all; the least minimum over all coefficients counts. Errors,
+/// covariance, chi-square and influence are those of fit(), in the coefficients of the laws, and by
+/// the chain rule in the parameters that are reported. Bootstrap draws start at the minimum.
+///
+/// Throws UsageError for data without wavelengths, for laws that the model does not take, and with
+/// perChannel or a profile; NumericError as fit().
+FitResult fitDispersed(const FitSamples& samples, const FitOptions& options);
+
+}  // namespace hshfit::brdfs

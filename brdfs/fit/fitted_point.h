@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// A fit at one channel, as a point about which predictions are linearised (prediction.h).
+struct FittedChannel {
+    std::string model;           ///< of a ParametricSum
+    std::vector<double> values;  ///< of the sum's shapes, then of its linear parameters
+    struct Slope {
+        std::size_t coefficient = 0;
+        double slope = 0;
+    };
+    /// Derivatives of each value by the coefficients of the fit, those that are not 0.
+    std::vector<std::vector<Slope>> slopes;
+};
+
+/// The coefficients of a fit are its parameters, or those of a law over wavelength from which the
+/// values at each channel follow.
+struct FittedPoint {
+    bool isotropic = true;  ///< as the samples were
+    std::vector<FittedChannel> channels;
+    /// Of the coefficients, [n * n]: by scan, or else the sandwich. 0 for what a bound holds;
+    /// without directions in which no sample changes, so that f at the samples has its variance
+    /// also where the data do not tell parameters apart.
+    std::vector<double> covariance;
+    /// Fits to resampled data: [draw][channel] as FittedChannel::values; a draw that did not
+    /// converge is empty.
+    std::vector<std::vector<std::vector<double>>> draws;
+};
+
+}  // namespace hshfit::brdfs

@@ -1,0 +1,205 @@
+#include <brdfs/fit/prediction.h>
+
+#include <brdfs/fit/distributions.h>
+#include <brdfs/fit/normal_equations.h>
+#include <brdfs/fit/parametric_sum.h>
+#include <brdfs/fit/percentiles.h>
+#include <hshfit/each_in_parallel.h>
+#include <hshfit/error.h>
+#include <hshfit/linear_algebra/decompositions.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+namespace hshfit::brdfs {
+namespace {
+
+/// Pairs are taken so many at a time, to bound the memory of derivatives and of draws.
+constexpr std::size_t atOnce = 4096;
+
+FitSamples samplesAt(std::span<const DirectionPair> pairs, bool isotropic) {
+    FitSamples samples;
+    samples.isotropic = isotropic;
+    for (const DirectionPair& pair : pairs) {
+        samples.wiX.push_back(pair.wi.x);
+        samples.wiY.push_back(pair.wi.y);
+        samples.wiZ.push_back(pair.wi.z);
+        samples.wo.push_back(pair.wo);
+    }
+    samples.values.assign(pairs.size(), 0);
+    samples.weights.assign(pairs.size(), 1);
+    return samples;
+}
+
+/// x of FitProblem::joint from values of the parameters.
+std::vector<double> pointOf(const ParametricSum& sum, const std::vector<double>& values) {
+    std::vector<double> x = values;
+    for (std::size_t j = 0; j < sum.shapes().size(); ++j) x[j] = sum.shapes()[j].toScale(values[j]);
+    return x;
+}
+
+/// Derivatives of f by the coefficients at pairs of one channel.
+struct Gradients {
+    std::vector<std::size_t> coefficients;  ///< those of which the channel depends
+    Eigen::MatrixXd slopes;                 ///< [pair, coefficient of these]
+    std::vector<double> values;             ///< f
+};
+
+Gradients gradientsOf(const FittedChannel& channel, const FitSamples& samples) {
+    const ParametricSum sum(channel.model, samples.isotropic);
+    const FitProblem problem(samples, sum, Loss::Kind::l2);
+    const WeightedRows rows = problem.weightedRows(pointOf(sum, channel.values));
+    Gradients result;
+    for (const auto& slopes : channel.slopes)
+        for (const FittedChannel::Slope& own : slopes)
+            result.coefficients.push_back(own.coefficient);
+    std::ranges::sort(result.coefficients);
+    const auto repeated = std::ranges::unique(result.coefficients);
+    result.coefficients.erase(repeated.begin(), repeated.end());
+    Eigen::MatrixXd byCoefficient =
+        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.columns),
+                              static_cast<Eigen::Index>(result.coefficients.size()));
+    for (std::size_t i = 0; i < rows.columns; ++i) {
+        // Rows hold derivatives by x, of which shapes are functions.
+        const double byX = i < sum.shapes().size() ? sum.shapes()[i].slope(channel.values[i]) : 1.0;
+        for (const FittedChannel::Slope& own : channel.slopes[i]) {
+            const auto at = std::ranges::lower_bound(result.coefficients, own.coefficient);
+            byCoefficient(static_cast<Eigen::Index>(i), at - result.coefficients.begin()) +=
+                own.slope / byX;
+        }
+    }
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const Eigen::Map<const Rows> slopes(rows.slopes.data(),
+                                        static_cast<Eigen::Index>(samples.size()),
+                                        static_cast<Eigen::Index>(rows.columns));
+    result.slopes = slopes * byCoefficient;
+    result.values = rows.values;
+    return result;
+}
+
+Eigen::MatrixXd partOf(const std::vector<double>& covariance,
+                       const std::vector<std::size_t>& coefficients) {
+    const auto n = static_cast<std::size_t>(std::llround(std::sqrt(covariance.size())));
+    const auto size = static_cast<Eigen::Index>(coefficients.size());
+    Eigen::MatrixXd part(size, size);
+    for (Eigen::Index i = 0; i < size; ++i)
+        for (Eigen::Index j = 0; j < size; ++j)
+            part(i, j) = covariance[coefficients[static_cast<std::size_t>(i)] * n +
+                                    coefficients[static_cast<std::size_t>(j)]];
+    return part;
+}
+
+void addBootstrapBands(const FitResult& fit, const FitSamples& samples, std::size_t first,
+                       Prediction& result) {
+    Prediction::Bootstrap& bands = *result.bootstrap;
+    std::vector<std::vector<double>> f;
+    for (std::size_t c = 0; c < result.channels; ++c) {
+        const ParametricSum sum(fit.point.channels[c].model, samples.isotropic);
+        const FitProblem problem(samples, sum, Loss::Kind::l2);
+        f.clear();
+        for (const auto& draw : fit.point.draws)
+            if (!draw.empty()) f.push_back(problem.values(pointOf(sum, draw[c])));
+        eachInParallel(samples.size(), [&](std::size_t k) {
+            std::vector<double> values;
+            for (const std::vector<double>& own : f) values.push_back(own[k]);
+            const ParameterUncertainty::Bootstrap summary = summarised(std::move(values));
+            const std::size_t v = c * result.pairs + first + k;
+            bands.errors[v] = summary.error;
+            bands.within68[v] = summary.within68;
+            bands.within95[v] = summary.within95;
+        });
+    }
+}
+
+std::size_t drawsOf(const FitResult& fit) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(fit.point.draws, [](const auto& draw) { return !draw.empty(); }));
+}
+
+}  // namespace
+
+double Prediction::pointwise(double probability) {
+    return studentBound(1 - probability, std::numeric_limits<double>::infinity());
+}
+
+Prediction predict(const FitResult& fit, std::span<const DirectionPair> pairs, bool bootstrap) {
+    Prediction result;
+    result.pairs = pairs.size();
+    result.channels = fit.point.channels.size();
+    const std::size_t count = result.pairs * result.channels;
+    result.values.resize(count);
+    result.errors.resize(count);
+    if (bootstrap && drawsOf(fit) > 1)
+        result.bootstrap = {std::vector<double>(count), std::vector<Interval>(count),
+                            std::vector<Interval>(count)};
+    for (std::size_t first = 0; first < pairs.size(); first += atOnce) {
+        const FitSamples samples = samplesAt(
+            pairs.subspan(first, std::min(atOnce, pairs.size() - first)), fit.point.isotropic);
+        for (std::size_t c = 0; c < result.channels; ++c) {
+            const Gradients g = gradientsOf(fit.point.channels[c], samples);
+            const Eigen::MatrixXd covariance = partOf(fit.point.covariance, g.coefficients);
+            const Eigen::VectorXd variance =
+                (g.slopes * covariance).cwiseProduct(g.slopes).rowwise().sum();
+            for (std::size_t k = 0; k < samples.size(); ++k) {
+                const std::size_t v = c * result.pairs + first + k;
+                result.values[v] = g.values[k];
+                result.errors[v] = std::sqrt(std::max(0.0, variance(static_cast<Eigen::Index>(k))));
+            }
+        }
+        if (result.bootstrap) addBootstrapBands(fit, samples, first, result);
+    }
+    return result;
+}
+
+Prediction predict(const FitResult& fit, const FitSamples& samples, bool bootstrap) {
+    if (samples.sums)
+        throw UsageError("predictions are those of f at pairs of directions, not of its sums");
+    std::vector<DirectionPair> pairs;
+    for (std::size_t k = 0; k < samples.size(); ++k)
+        pairs.push_back({{samples.wiX[k], samples.wiY[k], samples.wiZ[k]}, samples.wo[k]});
+    return predict(fit, pairs, bootstrap);
+}
+
+double simultaneousFactor(const FitResult& fit, std::span<const DirectionPair> pairs,
+                          double probability, std::uint64_t seed, std::size_t draws) {
+    const auto n = static_cast<Eigen::Index>(std::llround(std::sqrt(fit.point.covariance.size())));
+    const Eigen::Map<const Eigen::MatrixXd> covariance(fit.point.covariance.data(), n, n);
+    // Of correlations, so that coefficients of any unit keep their digits.
+    Eigen::VectorXd scale = covariance.diagonal().cwiseMax(0).cwiseSqrt();
+    Eigen::VectorXd inverse = scale;
+    for (double& s : inverse) s = s > 0 ? 1 / s : 0;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * covariance *
+                                                               inverse.asDiagonal());
+    const Eigen::MatrixXd root = scale.asDiagonal() * eigen.eigenvectors() *
+                                 eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+    Eigen::MatrixXd normal(n, static_cast<Eigen::Index>(draws));
+    std::mt19937_64 random(seed);
+    const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+    for (double& z : normal.reshaped())
+        z = std::sqrt(-2 * std::log(1 - uniform())) * std::cos(2 * std::numbers::pi * uniform());
+    const Eigen::MatrixXd changes = root * normal;
+    Eigen::VectorXd most = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(draws));
+    constexpr std::size_t few = 256;
+    for (std::size_t first = 0; first < pairs.size(); first += few) {
+        const FitSamples samples = samplesAt(
+            pairs.subspan(first, std::min(few, pairs.size() - first)), fit.point.isotropic);
+        for (const FittedChannel& channel : fit.point.channels) {
+            const Gradients g = gradientsOf(channel, samples);
+            const Eigen::MatrixXd own = partOf(fit.point.covariance, g.coefficients);
+            Eigen::VectorXd error =
+                (g.slopes * own).cwiseProduct(g.slopes).rowwise().sum().cwiseMax(0).cwiseSqrt();
+            for (double& e : error) e = e > 0 ? 1 / e : 0;
+            std::vector<Eigen::Index> rows(g.coefficients.begin(), g.coefficients.end());
+            const Eigen::MatrixXd z = error.asDiagonal() * g.slopes * changes(rows, Eigen::all);
+            most = most.cwiseMax(z.cwiseAbs().colwise().maxCoeff().transpose());
+        }
+    }
+    std::vector<double> sorted(most.begin(), most.end());
+    std::ranges::sort(sorted);
+    return percentile(sorted, probability);
+}
+
+}  // namespace hshfit::brdfs

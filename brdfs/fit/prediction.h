@@ -1,0 +1,48 @@
+#pragma once
+
+#include <brdfs/fit/fit.h>
+#include <hshfit/brdf/brdf.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hshfit::brdfs {
+
+/// f of a fit at pairs of directions with its standard error, 1/sr: [channel * pairs + pair].
+struct Prediction {
+    std::size_t pairs = 0, channels = 0;
+    std::vector<double> values;
+    /// sqrt(g^T C g), g the derivatives of f by the coefficients of the fit and C their covariance
+    /// (delta method; Seber & Wild 1989, 10.1002/0471725315, section 5.1).
+    std::vector<double> errors;
+    /// Of fits to resampled data, where the fit has them: their standard deviation and percentiles.
+    struct Bootstrap {
+        std::vector<double> errors;
+        std::vector<Interval> within68, within95;
+    };
+    std::optional<Bootstrap> bootstrap;
+
+    /// The factor of `errors` with which bands hold the true f at one pair and channel with this
+    /// probability, for a true model and normal errors: 1 for 0.6827.
+    static double pointwise(double probability);
+};
+
+/// Predicts f at pairs that need not have been fitted. Both directions above the horizon. The error
+/// is that of the fitted curve; a further measurement has its own noise in addition. It does not
+/// hold the misfit of a wrong model. Coefficients at a bound count as known. `bootstrap`: evaluates
+/// the fits to resampled data too, where there are any.
+Prediction predict(const FitResult& fit, std::span<const DirectionPair> pairs,
+                   bool bootstrap = true);
+/// The same at the samples of a fit; of sums of f (FitSamples::sums) it throws UsageError.
+Prediction predict(const FitResult& fit, const FitSamples& samples, bool bootstrap = true);
+
+/// The factor of the errors with which bands hold the true f at all these pairs and channels at
+/// once with this probability: the quantile, over `draws` normal draws of the coefficients, of the
+/// largest |change of f| / error (Scheffe's bands hold for all pairs there are, and are wider). The
+/// same for the same seed.
+double simultaneousFactor(const FitResult& fit, std::span<const DirectionPair> pairs,
+                          double probability, std::uint64_t seed = 1, std::size_t draws = 4000);
+
+}  // namespace hshfit::brdfs

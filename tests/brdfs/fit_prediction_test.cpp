@@ -1,0 +1,215 @@
+// Errors of the fitted f: against leave-one-out fits by GSL, against fits to resampled data, and by
+// their coverage of a known truth.
+
+#include <brdfs/catalog.h>
+#include <brdfs/fit/fit.h>
+#include <brdfs/fit/prediction.h>
+
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_multifit.h>
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace hshfit::brdfs {
+namespace {
+
+double uniform(std::mt19937_64& random) {
+    return static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+double normal(std::mt19937_64& random) {
+    return std::sqrt(-2 * std::log(1 - uniform(random))) * std::cos(2 * pi * uniform(random));
+}
+
+DirectionPair pairFrom(std::mt19937_64& random) {
+    const Direction wi = directionFromAngles(1.3 * uniform(random), 2 * pi * uniform(random));
+    return {wi, directionFromAngles(1.3 * uniform(random), azimuth(wi) + pi + normal(random))};
+}
+
+FitSamples samplesOf(const std::string& spec, std::size_t count, std::mt19937_64& random) {
+    FitSamples samples;
+    samples.isotropic = true;
+    samples.origin = SampleOrigin::measured;
+    for (std::size_t k = 0; k < count; ++k) {
+        const auto [wi, wo] = pairFrom(random);
+        samples.wiX.push_back(wi.x);
+        samples.wiY.push_back(wi.y);
+        samples.wiZ.push_back(wi.z);
+        samples.wo.push_back(wo);
+        samples.weights.push_back(1);
+    }
+    samples.values = valuesOf(*open(spec), samples);
+    return samples;
+}
+
+/// Noise of unequal size, stated wrongly as equal: the sandwich does not mind.
+void addNoise(FitSamples& samples, std::mt19937_64& random) {
+    for (double& value : samples.values) value += (0.004 + 0.03 * value) * normal(random);
+}
+
+std::vector<DirectionPair> pairsOf(std::size_t count, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::vector<DirectionPair> pairs;
+    for (std::size_t k = 0; k < count; ++k) pairs.push_back(pairFrom(random));
+    return pairs;
+}
+
+const std::string linearModel = "lambert + ggx:F0=.5,alpha=.3",
+                  linearTruth = "lambert:kd=.4 + ggx:ks=.3,F0=.5,alpha=.3";
+
+/// kd and ks by GSL without one sample; `without` beyond the samples: of all.
+std::vector<double> linearFit(const FitSamples& samples, std::size_t without) {
+    const std::vector<double> diffuse = valuesOf(*open("lambert:kd=1"), samples),
+                              lobe = valuesOf(*open("ggx:ks=1,F0=.5,alpha=.3"), samples);
+    const std::size_t rows = samples.size() - (without < samples.size() ? 1 : 0);
+    gsl_matrix *x = gsl_matrix_alloc(rows, 2), *covariance = gsl_matrix_alloc(2, 2);
+    gsl_vector *y = gsl_vector_alloc(rows), *c = gsl_vector_alloc(2);
+    std::size_t row = 0;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        if (k == without) continue;
+        gsl_matrix_set(x, row, 0, diffuse[k]);
+        gsl_matrix_set(x, row, 1, lobe[k]);
+        gsl_vector_set(y, row++, samples.values[k]);
+    }
+    gsl_multifit_linear_workspace* work = gsl_multifit_linear_alloc(rows, 2);
+    double squares = 0;
+    gsl_multifit_linear(x, y, c, covariance, &squares, work);
+    std::vector<double> result{gsl_vector_get(c, 0), gsl_vector_get(c, 1)};
+    gsl_multifit_linear_free(work);
+    gsl_matrix_free(x), gsl_matrix_free(covariance), gsl_vector_free(y), gsl_vector_free(c);
+    return result;
+}
+
+// f without sample i differs from f by g (X^T X)^-1 x_i r_i / (1 - h_i), so that HC3's variance of
+// a linear fit is the sum of squares of these differences.
+TEST(Prediction, ErrorsOfLinearFitsAreThoseOfLeaveOneOutFits) {
+    std::mt19937_64 random(3);
+    FitSamples samples = samplesOf(linearTruth, 60, random);
+    addNoise(samples, random);
+    const FitResult result = fit(samples, {.model = linearModel, .loss = Loss::Kind::l2});
+    const std::vector<DirectionPair> pairs = pairsOf(7, 9);
+    const Prediction prediction = predict(result, pairs);
+    ASSERT_EQ(prediction.channels, 1u);
+    const std::vector<double> all = linearFit(samples, samples.size());
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        const double diffuse = evaluate(*open("lambert:kd=1"), pairs[k].wi, pairs[k].wo)[0];
+        const double lobe = evaluate(*open("ggx:ks=1,F0=.5,alpha=.3"), pairs[k].wi, pairs[k].wo)[0];
+        EXPECT_NEAR(prediction.values[k], all[0] * diffuse + all[1] * lobe, 1e-9);
+        double variance = 0;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const std::vector<double> one = linearFit(samples, i);
+            variance += std::pow((one[0] - all[0]) * diffuse + (one[1] - all[1]) * lobe, 2);
+        }
+        EXPECT_NEAR(prediction.errors[k], std::sqrt(variance), 1e-6 * std::sqrt(variance));
+    }
+}
+
+// The parameters of both terms have no error, and f has that of one term alone.
+TEST(Prediction, HasAnErrorWhereTheDataDoNotTellParametersApart) {
+    std::mt19937_64 random(5);
+    FitSamples samples = samplesOf("lambert:kd=.5", 80, random);
+    addNoise(samples, random);
+    const FitResult two = fit(samples, {.model = "lambert + lambert", .loss = Loss::Kind::l2}),
+                    one = fit(samples, {.model = "lambert", .loss = Loss::Kind::l2});
+    ASSERT_FALSE(two.ambiguous.empty());
+    const std::vector<DirectionPair> pairs = pairsOf(3, 2);
+    const Prediction a = predict(two, pairs), b = predict(one, pairs);
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        EXPECT_GT(b.errors[k], 0);
+        EXPECT_NEAR(a.errors[k], b.errors[k], 1e-6 * b.errors[k]);
+    }
+}
+
+TEST(Prediction, BootstrapAndLinearisedErrorsAgree) {
+    std::mt19937_64 random(8);
+    FitSamples samples = samplesOf("lambert:kd=.3 + ggx:ks=.4,F0=.5,alpha=.25", 400, random);
+    samples.channels = Channels::spectral({500, 600});
+    const std::vector<double> first = samples.values;
+    samples.values.insert(samples.values.end(), first.begin(), first.end());
+    addNoise(samples, random);
+    for (const bool perChannel : {false, true}) {
+        FitOptions options{.model = "lambert + ggx:F0=.5",
+                           .loss = Loss::Kind::l2,
+                           .perChannel = perChannel,
+                           .starts = 4};
+        options.uncertainty.report = true;
+        options.uncertainty.bootstrap = 400;
+        const FitResult result = fit(samples, options);
+        const std::vector<DirectionPair> pairs = pairsOf(12, 4);
+        const Prediction prediction = predict(result, pairs);
+        ASSERT_TRUE(prediction.bootstrap);
+        ASSERT_EQ(prediction.channels, 2u);
+        for (std::size_t v = 0; v < prediction.values.size(); ++v) {
+            // 400 draws give a standard deviation to 1 / sqrt(800), 3.5 %.
+            const double ratio = prediction.bootstrap->errors[v] / prediction.errors[v];
+            EXPECT_NEAR(ratio, 1, 0.2) << v << " " << perChannel;
+            EXPECT_LT(*prediction.bootstrap->within95[v].low, prediction.values[v]);
+            EXPECT_GT(*prediction.bootstrap->within95[v].high, prediction.values[v]);
+        }
+    }
+}
+
+// With one coefficient all pairs change together; with two, Scheffe's factor is that for all
+// pairs that there are.
+TEST(Prediction, SimultaneousFactorLiesBetweenThatOfOnePairAndScheffes) {
+    std::mt19937_64 random(6);
+    FitSamples samples = samplesOf(linearTruth, 100, random);
+    addNoise(samples, random);
+    const std::vector<DirectionPair> pairs = pairsOf(200, 4);
+    const double normalFactor = gsl_cdf_ugaussian_Pinv(0.975),
+                 scheffe = std::sqrt(gsl_cdf_chisq_Pinv(0.95, 2));
+    EXPECT_NEAR(Prediction::pointwise(0.95), normalFactor, 1e-12);
+    const FitResult one =
+        fit(samples, {.model = "lambert + ggx:F0=.5,alpha=.3,ks=.3", .loss = Loss::Kind::l2});
+    const double ofOne = simultaneousFactor(one, pairs, 0.95, 1, 40000);
+    EXPECT_NEAR(ofOne, normalFactor, 0.03);
+    const FitResult two = fit(samples, {.model = linearModel, .loss = Loss::Kind::l2});
+    const double ofTwo = simultaneousFactor(two, pairs, 0.95, 1, 40000);
+    EXPECT_GT(ofTwo, normalFactor + 0.1);
+    EXPECT_LT(ofTwo, scheffe + 0.03);
+}
+
+// 1,500 data sets with known truth. Binomial errors of the shares are at most those of 1,500
+// independent values, 0.012 and 0.006: those at the pairs of one set are correlated.
+TEST(PredictionCoverage, BandsHoldTheTruthAtTheirStatedRates) {
+    const std::string truth = "lambert:kd=.3 + ggx:ks=.4,F0=.5,alpha=.25";
+    constexpr std::size_t draws = 1500, count = 16;
+    const std::vector<DirectionPair> pairs = pairsOf(count, 12);
+    std::vector<double> expected;
+    for (const DirectionPair& pair : pairs)
+        expected.push_back(evaluate(*open(truth), pair.wi, pair.wo)[0]);
+    std::atomic<std::size_t> within68 = 0, within95 = 0, all95 = 0;
+    tbb::parallel_for(std::size_t{0}, draws, [&](std::size_t d) {
+        std::mt19937_64 random(d + 100);
+        FitSamples samples = samplesOf(truth, 1000, random);
+        addNoise(samples, random);
+        const FitResult result =
+            fit(samples, {.model = "lambert + ggx:F0=.5", .loss = Loss::Kind::l2, .starts = 1});
+        const Prediction prediction = predict(result, pairs);
+        const double factor = simultaneousFactor(result, pairs, 0.95, 1, 1000);
+        double most = 0;
+        for (std::size_t k = 0; k < count; ++k) {
+            const double z = std::abs(prediction.values[k] - expected[k]) / prediction.errors[k];
+            within68 += z < 1;
+            within95 += z < Prediction::pointwise(0.95);
+            most = std::max(most, z);
+        }
+        all95 += most < factor;
+    });
+    const double values = static_cast<double>(draws * count);
+    RecordProperty("within68", std::to_string(static_cast<double>(within68) / values));
+    RecordProperty("within95", std::to_string(static_cast<double>(within95) / values));
+    RecordProperty("all95", std::to_string(static_cast<double>(all95) / draws));
+    EXPECT_NEAR(static_cast<double>(within68) / values, 0.68, 0.02);
+    EXPECT_NEAR(static_cast<double>(within95) / values, 0.95, 0.01);
+    EXPECT_NEAR(static_cast<double>(all95) / draws, 0.95, 0.015);
+}
+
+}  // namespace
+}  // namespace hshfit::brdfs
