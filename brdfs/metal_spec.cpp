@@ -58,10 +58,12 @@ MetalSpec partsOf(std::string_view text) {
                                                 : nullptr;
         if (own && !own->empty())
             throw UsageError(fmt::format("{}: {} is given twice", spec.model, key));
-        if (own)
+        if (own) {
             *own = value;
-        else if (part != "fresnel=conductor")
-            spec.others += (spec.others.empty() ? "" : ",") + std::string(part);
+        } else if (part != "fresnel=conductor") {
+            if (!spec.others.empty()) spec.others += ',';
+            spec.others += part;
+        }
         if (!own) keys.push_back(key);
         first = last + 1;
     }

@@ -9,7 +9,7 @@
 
 namespace hshfit::brdfs {
 
-/// How a metal is named in place of n and k, for listings.
+/// Help on metals in place of n and k, for listings.
 inline constexpr std::string_view metalHelp =
     "metal=NAME in place of fresnel, ior and k: tabulated n and k (list metals), seen as RGB under "
     "D65; with nm=450/550/650 or nm=FIRST:LAST:STEP a spectral BRDF";

@@ -62,7 +62,7 @@ std::vector<std::vector<double>> singleFits(DispersedProblem& problem, const Fit
         result.iterations += found.iterations;
         result.evaluations += found.evaluations;
         points.push_back(found.x);
-        if (options.progress) options.progress(c + 1, count + 4);
+        if (options.progress) options.progress(c + 1, count + 2);
     }
     return points;
 }
@@ -84,17 +84,23 @@ std::vector<std::vector<double>> withShapesOf(DispersedProblem& problem,
 
 Minimum search(DispersedProblem& problem, const FitOptions& options, FitResult& result) {
     const auto single = singleFits(problem, options, result);
-    std::vector<std::vector<double>> starts{problem.model().nearest(single)};
-    for (const std::size_t leader : {std::size_t{0}, single.size() / 2, single.size() - 1})
-        starts.push_back(problem.model().nearest(withShapesOf(problem, single[leader])));
+    std::vector<Minimum> starts(1);
+    starts[0].x = problem.model().nearest(single);
+    for (const std::size_t leader : {std::size_t{0}, single.size() / 2, single.size() - 1}) {
+        starts.emplace_back();
+        starts.back().x = problem.model().nearest(withShapesOf(problem, single[leader]));
+    }
+    for (Minimum& start : starts) start.cost = problem.joint(start.x, false).cost;
+    std::ranges::stable_sort(starts, {}, &Minimum::cost);
+    // A search takes many times as long as its start is worth beyond the best two.
+    constexpr std::size_t searched = 2;
     Minimum best;
-    for (std::size_t i = 0; i < starts.size(); ++i) {
-        Minimum found = minimum(problem, starts[i], {.iterations = options.iterations});
+    for (std::size_t i = 0; i < searched; ++i) {
+        Minimum found = minimum(problem, starts[i].x, {.iterations = options.iterations});
         result.iterations += found.iterations;
         result.evaluations += found.evaluations;
         if (best.x.empty() || found.cost < best.cost) best = std::move(found);
-        if (options.progress)
-            options.progress(single.size() + i + 1, single.size() + starts.size());
+        if (options.progress) options.progress(single.size() + i + 1, single.size() + searched);
     }
     if (options.robust == Robust::none) return best;
     result.robustScale = options.robustScale;
@@ -107,7 +113,7 @@ Minimum search(DispersedProblem& problem, const FitOptions& options, FitResult& 
     return best;
 }
 
-/// What the report states of the coefficients: one parameter for each.
+/// The parameters that a report states, one for each coefficient.
 struct Report {
     std::vector<FittedParameter> parameters;
     Matrix slopes;  ///< of the parameters by the coefficients
@@ -147,7 +153,7 @@ Report reportOf(const DispersedModel& model, const std::vector<double>& coeffici
     return report;
 }
 
-/// Which coefficients a bound holds; names it where a parameter is that coefficient.
+/// The coefficients that a bound holds; names it where a parameter is that coefficient.
 std::vector<bool> heldBy(const DispersedModel& model, const std::vector<double>& x,
                          const Equations& equations, Report& report, double& projected) {
     std::vector<bool> fixed;

@@ -14,9 +14,10 @@ bool namesMetals(std::string_view model);
 /// have a value at each wavelength. Metals named in the model have their tabulated n and k.
 ///
 /// Starts are the fits of single wavelengths, put under the laws, and the shapes of the first, the
-/// middle and the last of them for all; the least minimum over all coefficients counts. Errors,
-/// covariance, chi-square and influence are those of fit(), in the coefficients of the laws, and by
-/// the chain rule in the parameters that are reported. Bootstrap draws start at the minimum.
+/// middle and the last of them for all; the better two are searched from, over all
+/// coefficients. Errors, covariance, chi-square and influence are those of fit(), in the
+/// coefficients of the laws, and by the chain rule in the parameters that are reported. Bootstrap
+/// draws start at the minimum.
 ///
 /// Throws UsageError for data without wavelengths, for laws that the model does not take, and with
 /// perChannel or a profile; NumericError as fit().
