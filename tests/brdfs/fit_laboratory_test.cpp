@@ -240,6 +240,33 @@ TEST_F(Laboratory, EverySampleOfASpectralFileIsInTheAnswer) {
     EXPECT_EQ(outliers[0]["row"], 1451);
 }
 
+TEST_F(Laboratory, PtfeFollowsLawsOverTheWavelengthAndOpensBetweenThem) {
+    const std::string file = shared("nist_ptfe/PTFE.data.csv");
+    if (!fs::exists(file)) GTEST_SKIP() << "no shared data";
+    const Json preset = answer(file +
+                               " --model lambert+ggx:fresnel=dielectric,ks=1 --sigma 0.7% "
+                               "--dispersion ior=cauchy:2,kd=poly:2 -o " +
+                               path("f.json"));
+    EXPECT_EQ(preset["fit"]["samples"], 1824);
+    EXPECT_EQ(preset["fit"]["dispersion"]["laws"][0]["law"], "cauchy:2");
+    EXPECT_EQ(preset["fit"]["uncertainty"]["degrees_of_freedom"], 4 * 1824 - 6);
+    EXPECT_TRUE(keepsSchema(read(path("f.json")), "preset"));
+    const Answer at = run("eval " + path("f.json") + ":nm=400/900 --wi 30,0 --wo 40,180");
+    EXPECT_EQ(at.code, 0) << at.err;
+    EXPECT_EQ(at.out.substr(0, 5), "400nm");
+    const auto refused = [&](const std::string& arguments, int code, const std::string& part) {
+        expectError(arguments, code, part, 1);
+    };
+    refused("eval " + path("f.json") + ":nm=350 --wi 30,0 --wo 40,180", 2, "351 to 1064 nm");
+    const std::string fit = "fit " + file + " --model lambert --dispersion ";
+    refused(fit + "kd=cauchy", 2, "index of refraction");
+    refused(fit + "ior=cauchy", 2, "no free parameter");
+    refused(fit + "kd=spline:5", 2, "4 wavelengths");
+    refused(fit + "kd=poly:1 --per-channel", 2, "free");
+    refused("fit lambert --model lambert --dispersion kd=poly:1", 2, "wavelengths");
+    refused("fit lambert --model ggx:metal=gold", 2, "wavelengths");
+}
+
 TEST_F(Laboratory, AGreyFileHasOneAnswerWithAndWithoutThePrefix) {
     const std::string file = shared("alta/retro-gray-tape.dat");
     if (!fs::exists(file)) GTEST_SKIP() << "no shared data";
