@@ -1,5 +1,6 @@
 #include <brdfs/fit/dispersed_problem.h>
 
+#include <brdfs/fit/split_models.h>
 #include <brdfs/metal_spec.h>
 #include <brdfs/spec.h>
 #include <hshfit/each_in_parallel.h>

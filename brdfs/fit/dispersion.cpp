@@ -6,6 +6,7 @@
 #include <brdfs/fit/fit_statistics.h>
 #include <brdfs/fit/minimum_study.h>
 #include <brdfs/fit/percentiles.h>
+#include <brdfs/fit/split_models.h>
 #include <brdfs/metal_spec.h>
 #include <hshfit/error.h>
 

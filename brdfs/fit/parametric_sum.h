@@ -12,10 +12,6 @@
 
 namespace hshfit::brdfs {
 
-/// The terms of "a + b", without spaces: split at every '+' before a letter, because that of a
-/// number stands before a digit.
-std::vector<std::string> splitModels(std::string_view spec);
-
 /// A free parameter that f is not linear in. A fit moves `u` = value, or ln(value + offset) if
 /// logarithmic.
 struct ShapeParameter {
