@@ -150,8 +150,10 @@ std::string uncertaintyText(const Document& fit) {
             bootstrap["of"].get<std::string>(), bootstrap["failed"].get<std::size_t>());
     }
     return lines + correlationLine(uncertainty) + profileTable(uncertainty) +
-           predictionLine(uncertainty["prediction"],
-                          fit["influence"]["rows"] == "lines" ? "line" : "sample") +
+           (uncertainty.contains("prediction")
+                ? predictionLine(uncertainty["prediction"],
+                                 fit["influence"]["rows"] == "lines" ? "line" : "sample")
+                : "") +
            bands + influenceText(fit["influence"]);
 }
 

@@ -6,6 +6,8 @@
 #include <brdfs/fit/fit_statistics.h>
 #include <brdfs/fit/minimum_study.h>
 #include <brdfs/fit/percentiles.h>
+#include <brdfs/fit/resampling.h>
+#include <brdfs/fit/scan_spread.h>
 #include <brdfs/fit/split_models.h>
 #include <brdfs/metal_spec.h>
 #include <hshfit/error.h>
@@ -298,6 +300,30 @@ void addErrors(const Report& report, const Covariance& independent, const Covari
     }
 }
 
+using Slopes = Eigen::Map<const Eigen::VectorXd>;
+
+std::vector<double> leveragesOf(const WeightedRows& rows, const Matrix& inverse) {
+    std::vector<double> leverages;
+    for (std::size_t v = 0; v < rows.samples; ++v) {
+        const Slopes slopes(rows.slopes.data() + v * rows.columns, at(rows.columns));
+        leverages.push_back(slopes.dot(inverse * slopes));
+    }
+    return leverages;
+}
+
+std::vector<ScanSums> sumsOfScans(const WeightedRows& rows, const std::vector<std::size_t>& scans,
+                                  std::size_t n) {
+    const std::size_t count = *std::ranges::max_element(scans) + 1;
+    std::vector<ScanSums> sums(count, {Matrix::Zero(at(n), at(n)), Eigen::VectorXd::Zero(at(n))});
+    for (std::size_t v = 0; v < rows.samples; ++v) {
+        const Slopes slopes(rows.slopes.data() + v * rows.columns, at(n));
+        ScanSums& scan = sums[scans[v % scans.size()]];
+        scan.gradient += rows.residuals[v] * slopes;
+        scan.matrix += slopes * slopes.transpose();
+    }
+    return sums;
+}
+
 void describe(const DispersedProblem& problem, const Minimum& found, const FitOptions& options,
               FitResult& result) {
     const DispersedModel& model = problem.model();
@@ -312,24 +338,25 @@ void describe(const DispersedProblem& problem, const Minimum& found, const FitOp
     equations.spread = problem.joint(found.x, true, inverse).spread;
     Covariance covariance = covarianceOf(equations, fixed);
     const Covariance independent = covariance;
-    std::vector<std::size_t> scans;
-    for (std::size_t c = 0; c < samples.channels.count(); ++c)
-        scans.insert(scans.end(), samples.scans.begin(), samples.scans.end());
-    const bool rows = options.uncertainty.report || !scans.empty();
-    const WeightedRows weighted = rows ? problem.weightedRows(found.x) : WeightedRows{};
-    const StudiedRows study{weighted,
-                            n,
-                            n,
-                            problem.normalisation(),
-                            inverse,
-                            scans,
-                            !samples.sigmas.empty(),
-                            model.parameterCount()};
-    if (!scans.empty()) {
-        equations.spread = spreadOfScans(study);
+    const bool byScan = !samples.scans.empty();
+    const Matrix unscaled = mapped(inverse, n) / problem.normalisation();
+    const WeightedRows rows =
+        options.uncertainty.report || byScan ? problem.weightedRows(found.x) : WeightedRows{};
+    if (byScan) {
+        const double square = problem.normalisation() * problem.normalisation();
+        const Matrix spread =
+            scanSpread(sumsOfScans(rows, samples.scans, n), unscaled, model.parameterCount()) /
+            square;
+        equations.spread.assign(spread.data(), spread.data() + spread.size());
         covariance = covarianceOf(equations, fixed);
     }
-    if (options.uncertainty.report) result.uncertainty = influenceOf(study);
+    if (options.uncertainty.report)
+        result.uncertainty =
+            influences({.residuals = rows.residuals,
+                        .models = rows.values,
+                        .leverages = leveragesOf(rows, unscaled),
+                        .stated = !samples.sigmas.empty(),
+                        .scans = byScan ? *std::ranges::max_element(samples.scans) + 1 : 0});
     std::vector<double> normal = inverse;
     for (double& value : normal) value /= problem.normalisation();
     addErrors(report, independent, covariance, normal, fixed, result);

@@ -85,7 +85,9 @@ double aspecularAngle(const FitSamples& samples, std::size_t k) {
 
 void writeResidualRows(const FitSamples& samples, const FitResult& result, Loss::Kind loss,
                        const std::function<void(std::string_view)>& write) {
-    const Prediction prediction = predict(result, samples);
+    // Fits with terms of the instrument have none.
+    const bool predicted = !result.point.channels.empty();
+    const Prediction prediction = predicted ? predict(result, samples) : Prediction{};
     write(fmt::format(
         "row,wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,channel,value,sigma,model,residual,studentised,"
         "leverage,cook,theta_i,theta_o,aspecular,standardised,standard_error{}\n",
@@ -111,7 +113,7 @@ void writeResidualRows(const FitSamples& samples, const FitResult& result, Loss:
                 samples.wo[k].z, names[c], value,
                 samples.sigmas.empty() ? "" : fmt::format("{}", samples.sigmas[v]), own.model,
                 value - own.model, own.studentised, own.leverage, own.cook, angles, standardised[v],
-                prediction.errors[v],
+                predicted ? fmt::format("{}", prediction.errors[v]) : "",
                 prediction.bootstrap ? fmt::format(",{}", prediction.bootstrap->errors[v]) : ""));
         }
     }

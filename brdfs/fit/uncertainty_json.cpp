@@ -87,7 +87,8 @@ Document uncertaintyJson(const FitReport& report) {
                              {"failed", own.bootstrapFailures},
                              {"of", own.scans > 0 ? "scans" : "samples"},
                              {"seed", report.options.seed}};
-    json["prediction"] = predictionJson(*report.samples, report.result,
+    if (!report.result.point.channels.empty())
+        json["prediction"] = predictionJson(*report.samples, report.result,
                                         predict(report.result, *report.samples, false));
     json["parameters"] = Document::array();
     const std::size_t n = own.parameters.size();
