@@ -4,6 +4,7 @@
 
 #include <brdfs/fit/fit_figures.h>
 #include <brdfs/fit/latex_table.h>
+#include <brdfs/fit/prediction.h>
 #include <brdfs/fit/residual_rows.h>
 
 #include <iterator>
@@ -22,6 +23,14 @@ std::vector<PrintFigure> ofSamples(const brdfs::PlottedModel& model, const Figur
     result.panels = cuts.cuts.size();
     for (const brdfs::SampleCut& cut : cuts.cuts) result.samples += cut.samples.size();
     return brdfs::sampleFigures(model, cuts, options.style);
+}
+
+/// Of the band that holds the true f with 95 % at each pair.
+std::vector<double> halfWidths(const brdfs::FitResult& result,
+                               std::span<const DirectionPair> pairs) {
+    std::vector<double> widths = brdfs::predict(result, pairs, false).errors;
+    for (double& width : widths) width *= brdfs::Prediction::pointwise(0.95);
+    return widths;
 }
 
 void append(std::vector<PrintFigure> more, std::vector<PrintFigure>& figures) {
@@ -66,6 +75,10 @@ FigureFiles addFitFigures(const Brdf& data, const brdfs::FitReport& report,
                 brdfs::writeResidualRows(samples, report.result, report.options.loss,
                                          [&](std::string_view row) { file.write(row); });
             });
+        model.band = [&](std::span<const DirectionPair> pairs) {
+            return halfWidths(report.result, pairs);
+        };
+        model.bandName = "95 %";
         figures = ofSamples(model, options, result);
     } else {
         ComparisonOptions how;

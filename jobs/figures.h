@@ -37,10 +37,10 @@ struct FigureFiles {
     std::optional<std::string> undrawn = {};
 };
 
-/// The figures of a fit, under temporary names in `files` until it is committed: cuts, polar,
-/// residuals and spectrum of measured samples (fit_figures.h), with samples.csv, their residuals
-/// (residual_rows.h) unless the kernel is robust; of other data the plots of a comparison with the
-/// fit, and residuals at its samples. parameters.tex is its table.
+/// The figures of a fit, with bands of 95 %, under temporary names in `files` until it is
+/// committed: cuts, polar, residuals and spectrum of measured samples (fit_figures.h), with
+/// samples.csv, their residuals (residual_rows.h) unless the kernel is robust; of other data the
+/// plots of a comparison with the fit, and residuals at its samples. parameters.tex is its table.
 FigureFiles addFitFigures(const Brdf& data, const brdfs::FitReport& report,
                           const FigureOptions& options, FileSet& files,
                           const Listener& listener = {});

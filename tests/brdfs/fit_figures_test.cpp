@@ -162,6 +162,24 @@ TEST_F(FitFigures, CutsStandAtTheirMeasuredAngles) {
                     (-1.4 + 0.175 * k) * 180 / std::acos(-1.0), 1e-4);
 }
 
+// A Lambert fit has one value, and one error, at all directions.
+TEST_F(FitFigures, BandsAre1_96StandardErrorsOfF) {
+    const Answer got =
+        run("fit --json " + path("scans.astm") + " --model lambert --figures " + path("figures"));
+    ASSERT_EQ(got.code, 0) << got.err;
+    const Json parameter = Json::parse(got.out)["fit"]["parameters"][0];
+    const double pi = std::acos(-1.0), f = parameter["value"].get<double>() / pi,
+                 error = parameter["standard_error"].get<double>() / pi;
+    int rows = 0;
+    for (const auto& row : rowsOf(read(path("figures/cuts.csv")))) {
+        if (row[2] != "95 %") continue;
+        ++rows;
+        EXPECT_NEAR(std::stod(row[5]), f - 1.959964 * error, 1e-6 * f);
+        EXPECT_NEAR(std::stod(row[6]), f + 1.959964 * error, 1e-6 * f);
+    }
+    EXPECT_GT(rows, 100);
+}
+
 TEST_F(FitFigures, AxisOfFIsAsAsked) {
     fitted("--axis log");
     EXPECT_NE(read(path("figures/figures.gp")).find("set logscale y"), std::string::npos);
