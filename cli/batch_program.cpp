@@ -138,7 +138,10 @@ jobs::BatchProgram batchProgram() {
             .words = wordsOf,
             .mistake = [check = std::make_shared<Check>()](
                            const std::vector<std::string>& words) { return check->mistake(words); },
-            .run = runWords};
+            .run =
+                [](const std::vector<std::string>& words) {
+                    return runWords(words, Outputs::replaced);
+                }};
 }
 
 }  // namespace hshfit::cli

@@ -1,4 +1,5 @@
 #include "cache_options.h"
+#include "within.h"
 
 #include <hshfit/error.h>
 
@@ -42,7 +43,7 @@ void addCacheOptions(CLI::App& command, CacheArguments& arguments) {
             .add_option("--loss", options.choice.loss,
                         "Share of the energy of f cos(theta) that a material may lose; it gets the "
                         "lowest order within, and is sampled if there is none")
-            ->check(CLI::Range(0.0, 1.0))
+            ->check(within(jobs::bounds::cacheLoss))
             ->capture_default_str());
     add(command
             .add_option("--choose-by", arguments.choice,
@@ -51,7 +52,7 @@ void addCacheOptions(CLI::App& command, CacheArguments& arguments) {
             ->check(CLI::IsMember({"cost", "loss"}))
             ->capture_default_str());
     add(command.add_option("--rays", options.rays, "Rays of a record, at most")
-            ->check(CLI::Range(4, 1 << 24))
+            ->check(within(jobs::bounds::cacheRays))
             ->capture_default_str());
     add(command.add_option("--accuracy", options.accuracy, "Reach of records: a of Eq. 23")
             ->capture_default_str());

@@ -2,6 +2,8 @@
 
 #include <hshfit/transport/radiance_cache/cache.h>
 
+#include <jobs/illuminate.h>
+
 #include <CLI/CLI.hpp>
 
 #include <string>
@@ -14,7 +16,7 @@ struct CacheArguments {
     CacheOptions options = {};
     std::string direct = "sampled", gradient = "strata", choice = "cost";
     std::vector<std::string> without = {};
-    double megabytes = 256;
+    double megabytes = 1e-6 * static_cast<double>(jobs::defaultCacheBytes);
     bool published = false;
     std::vector<CLI::Option*> all = {};
 };

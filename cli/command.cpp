@@ -2,7 +2,9 @@
 
 #include "command_table.h"
 #include "option_values.h"
+#include "outputs.h"
 #include "standard_files.h"
+#include "within.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
@@ -34,6 +36,7 @@ void addCommand(CLI::App& app, Globals& globals, const Command& row) {
     command.add_option("--threads", globals.threads, "Threads to use; 0: all cores")
         ->check(CLI::Range(0, 4096));
     row.add(command, globals);
+    addForce(command, globals);
     stateRanges(command);
     acceptStandardStreams(command);
 }
@@ -47,11 +50,11 @@ void addQuadrature(CLI::App& command, double& tolerance, double& maxEvaluations)
     command
         .add_option("--tolerance", tolerance,
                     "Relative error of the quadrature to refine to (default: 1e-6, tables 3e-3)")
-        ->check(CLI::Range(1e-13, 1.0));
+        ->check(within(jobs::bounds::tolerance));
     command
         .add_option("--max-evaluations", maxEvaluations,
                     "BRDF evaluations per outgoing direction before giving up")
-        ->check(CLI::Range(1e3, 1e12))
+        ->check(within(jobs::bounds::evaluations))
         ->capture_default_str();
 }
 

@@ -27,7 +27,8 @@ struct Command;
 struct Globals {
     bool json = false;
     bool quiet = false;
-    int threads = 0;  ///< 0: all cores
+    bool force = false;  ///< of commands that write files
+    int threads = 0;     ///< 0: all cores
     int exitCode = 0;
 };
 

@@ -1,15 +1,22 @@
 #include "command.h"
 #include "documents.h"
 #include "figure_options.h"
+#include "measured_numbers.h"
 
 #include <hshfit/error.h>
 #include <hshfit/pages/pair_summary_json.h>
 
 #include <jobs/compare.h>
+#include <jobs/kept_outputs.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 namespace hshfit::cli {
 namespace {
@@ -17,7 +24,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct CompareArguments {
-    std::string a, b, output;
+    std::string a, output;
+    std::vector<std::string> others;
     FigureArguments figures;
     jobs::CompareOptions options;
 };
@@ -38,7 +46,7 @@ Json answer(const jobs::Compared& compared, const CompareArguments& arguments) {
 }
 
 std::string text(const jobs::Compared& compared, const CompareArguments& arguments) {
-    std::string out = fmt::format("{} against {}, outgoing {}\n", arguments.b, arguments.a,
+    std::string out = fmt::format("{} against {}, outgoing {}\n", arguments.others[0], arguments.a,
                                   compared.outgoing.spec());
     for (const MetricValue& result : compared.metrics) out += metricText(result);
     if (compared.pairs) out += "  " + indented(textOf(*compared.pairs));
@@ -48,30 +56,104 @@ std::string text(const jobs::Compared& compared, const CompareArguments& argumen
     return out + figuresText(compared.figures, arguments.figures);
 }
 
-void runCompare(CompareArguments& arguments, Globals& globals) {
-    arguments.options.figures = arguments.figures.parsed();
-    if (!arguments.options.sigma.empty() && arguments.figures.folder.empty())
-        throw UsageError("compare: --sigma is for the bars of figures; give --figures DIR");
-    const jobs::Compared compared = jobs::compare(arguments.a, arguments.b, arguments.output,
-                                                  arguments.options, listenerFor(globals));
+/// A metric without a value is an error if it was named, and a row of the table otherwise.
+void requireNamed(const jobs::Compared& compared, const CompareArguments& arguments,
+                  Globals& globals) {
+    if (arguments.options.metrics == "all") return;
+    for (const MetricValue& result : compared.metrics)
+        if (!result.value) globals.exitCode = static_cast<int>(ExitCode::numeric);
+}
+
+void compareTwo(const CompareArguments& arguments, Globals& globals) {
+    const jobs::Compared compared =
+        jobs::compare(arguments.a, arguments.others[0], arguments.output, arguments.options,
+                      listenerFor(globals));
     if (globals.json)
         printJson(answer(compared, arguments));
     else
         printText(text(compared, arguments));
     noteFont(compared.figures, arguments.figures, globals);
-    // A metric without a value is an error if it was named, and a row of the table otherwise.
-    const bool named = arguments.options.metrics != "all";
-    for (const MetricValue& result : compared.metrics) {
-        if (named && !result.value) globals.exitCode = static_cast<int>(ExitCode::numeric);
+    requireNamed(compared, arguments, globals);
+}
+
+/// The columns of the table on a terminal: where each is the largest, so that no mean hides one.
+std::string tableText(const jobs::ManyCompared& many) {
+    std::size_t width = 4;
+    for (const std::string& name : many.names) width = std::max(width, name.size());
+    std::string text = fmt::format("{:<{}}  {:>22}  {:>22}  {:>10}  {:>22}\n", "name", width,
+                                   "relative L2 of f c", "energy left", "largest", "albedo");
+    for (std::size_t i = 0; i < many.names.size(); ++i) {
+        if (!many.results[i]) continue;
+        const auto& pairs = many.results[i]->pairs;
+        if (!pairs) {
+            text += fmt::format("{:<{}}  no errors over pairs of directions: --json says why\n",
+                                many.names[i], width);
+            continue;
+        }
+        text += fmt::format("{:<{}}  {:>22}  {:>22}  {:>10.4g}  {:>22}\n", many.names[i], width,
+                            withError(pairs->relativeL2.value, pairs->relativeL2.error),
+                            withError(pairs->energyLeft.value, pairs->energyLeft.error),
+                            pairs->maximum, withError(pairs->albedo.value, pairs->albedo.error));
     }
+    return text;
+}
+
+void compareMany(const CompareArguments& arguments, Globals& globals) {
+    const jobs::ManyCompared many = jobs::compareMany(
+        arguments.a, arguments.others, arguments.output, arguments.options, listenerFor(globals));
+    Json documents = Json::array();
+    for (std::size_t i = 0; i < many.results.size(); ++i) {
+        if (!many.results[i]) continue;
+        CompareArguments ofPair = arguments;
+        ofPair.output = many.folders.empty() ? "" : many.folders[i];
+        documents.push_back(answer(*many.results[i], ofPair));
+        requireNamed(*many.results[i], arguments, globals);
+    }
+    if (!arguments.output.empty())
+        writeComparisonTable(
+            many, (std::filesystem::path(arguments.output) / "comparisons.csv").string());
+    if (globals.json) {
+        printJson({{"format", "hshfit-compares"},
+                   {"version", 1},
+                   {"comparisons", documents},
+                   {"kept", many.kept},
+                   {"failures", failuresJson(many.failures)}});
+    } else {
+        std::string text;
+        for (const std::string& kept : many.kept) text += jobs::keptLine(kept) + "\n";
+        text += tableText(many);
+        if (!arguments.output.empty())
+            text += fmt::format("written to {}: comparisons.csv and a folder for each pair\n",
+                                arguments.output);
+        printText(text);
+    }
+    reportFailures(many.failures, many.names.size(), globals);
+}
+
+void runCompare(CompareArguments& arguments, Globals& globals) {
+    arguments.options.figures = arguments.figures.parsed();
+    if (!arguments.options.sigma.empty() && arguments.figures.folder.empty())
+        throw UsageError("compare: --sigma is for the bars of figures; give --figures DIR");
+    // Two specifications, neither of them a folder or a pattern, have an answer of their own.
+    const bool many = arguments.others.size() > 1 || jobs::areMany({arguments.a}) ||
+                      jobs::areMany(arguments.others);
+    if (many && arguments.options.figures)
+        throw UsageError("compare: --figures is for one A and one B");
+    many ? compareMany(arguments, globals) : compareTwo(arguments, globals);
 }
 
 }  // namespace
 
 void addCompare(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<CompareArguments>();
-    command.add_option("A", arguments->a, "Reference: BRDF or coefficient file")->required();
-    command.add_option("B", arguments->b, "Approximation: BRDF or coefficient file")->required();
+    command
+        .add_option("A", arguments->a,
+                    "Reference: BRDF or coefficient file; a folder or pattern for pairs by name")
+        ->required();
+    command
+        .add_option("B", arguments->others,
+                    "Approximation: BRDF or coefficient file; several, a folder or a pattern")
+        ->required();
     command
         .add_option("--metrics", arguments->options.metrics,
                     "all, or names from hshfit list metrics")
@@ -79,8 +161,10 @@ void addCompare(CLI::App& command, Globals& globals) {
     command.add_option("--outgoing", arguments->options.outgoing,
                        "WxH, N or THETA,PHI (default: those of the coefficient file; else 16, or "
                        "16x16 if anisotropic)");
-    command.add_option("-o,--output", arguments->output,
-                       "Folder for a page with figures and spheres, made if absent");
+    command.add_option(
+        "-o,--output", arguments->output,
+        "Folder for a page with figures and spheres, made if absent; of several, for "
+        "a table and a folder each");
     addFigureOptions(command, arguments->figures);
     command.add_option("--sigma", arguments->options.sigma,
                        "Standard uncertainty of measured samples of A, for bars in the figures: "

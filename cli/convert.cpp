@@ -124,6 +124,7 @@ void convertMany(const ConvertArguments& arguments, Globals& globals) {
         jobs::convertMany(inputs, arguments.folder, arguments.options, listenerFor(globals));
     Json documents = Json::array();
     std::string text;
+    for (const std::string& kept : many.kept) text += jobs::keptLine(kept) + "\n";
     for (std::size_t i = 0; i < many.results.size(); ++i) {
         const auto& converted = many.results[i];
         if (!converted) continue;
@@ -135,10 +136,11 @@ void convertMany(const ConvertArguments& arguments, Globals& globals) {
         printJson({{"format", "hshfit-converts"},
                    {"version", 1},
                    {"conversions", documents},
+                   {"kept", many.kept},
                    {"failures", failuresJson(many.failures)}});
     else
         printText(text);
-    reportFailures(many.failures, many.specs.size(), globals);
+    reportFailures(many.failures, many.specs.size() + many.kept.size(), globals);
 }
 
 void runConvert(const ConvertArguments& arguments, Globals& globals) {

@@ -256,6 +256,7 @@ void exportMany(const ExportArguments& arguments, Globals& globals) {
         });
     Json documents = Json::array();
     std::string lines;
+    for (const std::string& kept : many.kept) lines += jobs::keptLine(kept) + "\n";
     for (const auto& answer : many.results) {
         if (!answer) continue;
         documents.push_back(*answer);
@@ -265,10 +266,11 @@ void exportMany(const ExportArguments& arguments, Globals& globals) {
         printJson({{"format", "hshfit-exports"},
                    {"version", 1},
                    {"exports", documents},
+                   {"kept", many.kept},
                    {"failures", failuresJson(many.failures)}});
     else
         printText(lines);
-    reportFailures(many.failures, many.specs.size(), globals);
+    reportFailures(many.failures, many.specs.size() + many.kept.size(), globals);
 }
 
 void runExport(ExportArguments& arguments, const CLI::App& command, Globals& globals) {

@@ -3,6 +3,7 @@
 #include "fit_instrument.h"
 #include "fit_uncertainty.h"
 #include "measured_numbers.h"
+#include "within.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
@@ -99,8 +100,8 @@ void runAll(const FitArguments& arguments, Globals& globals) {
     const jobs::BatchOutcome outcome =
         jobs::fitAll(arguments.all, arguments.output, arguments.options, listenerFor(globals));
     Json failures = Json::array();
-    std::string lines = fmt::format("{} fitted, {} were there, {} failed\n", outcome.fitted,
-                                    outcome.kept, outcome.failures.size());
+    std::string lines = fmt::format("{} fitted, {} kept, {} failed\n", outcome.fitted, outcome.kept,
+                                    outcome.failures.size());
     for (const auto& [file, reason] : outcome.failures) {
         failures.push_back({{"file", file}, {"reason", reason}});
         lines += reason.starts_with(file) ? fmt::format("  {}\n", reason)
@@ -213,8 +214,8 @@ void addFit(CLI::App& command, Globals& globals) {
     command.add_option("DATA", arguments->data, "BRDF or coefficient file");
     command.add_option(
         "--all", arguments->all,
-        "Fit every file of a folder; -o DIR takes one result each; what stands there "
-        "is not fitted again");
+        "Fit every file of a folder; -o DIR takes one result each; what stands there and "
+        "is valid is not fitted again");
     command.add_option("--model", options.model,
                        "MODEL[:key=value,...][+MODEL...]: what is given is not fitted");
     command.add_option("--extensions", options.parts,
@@ -231,7 +232,7 @@ void addFit(CLI::App& command, Globals& globals) {
     command
         .add_option("--robust-scale", options.robustScale,
                     "Residual at which it sets in; 0: from the residuals' spread")
-        ->check(CLI::Range(0.0, 1e300));
+        ->check(within(jobs::bounds::robustScale));
     command.add_flag("--per-channel", options.perChannel, "Shapes of their own for each channel");
     command.add_option("--dispersion", options.dispersion,
                        "Of spectra: PARAMETER=LAW[:N][,...], laws over the wavelength in place of "
@@ -246,13 +247,13 @@ void addFit(CLI::App& command, Globals& globals) {
     command
         .add_option("--grazing-cut", options.grazingCut,
                     "Leave out samples with a polar angle above this, degrees")
-        ->check(CLI::Range(0.0, 90.0));
+        ->check(within(jobs::bounds::grazingCut));
     command.add_option("--samples", options.samples, "Draw so many samples; 0: all");
     command.add_option("--starts", options.starts, "Local searches")
-        ->check(CLI::Range(1, 10000))
+        ->check(within(jobs::bounds::starts))
         ->capture_default_str();
     command.add_option("--iterations", options.iterations, "At most so many in the last search")
-        ->check(CLI::Range(1, 100000))
+        ->check(within(jobs::bounds::iterations))
         ->capture_default_str();
     command.add_option("--seed", options.seed, "Of starts and drawn samples")
         ->capture_default_str();

@@ -1,9 +1,8 @@
 #include "cache_options.h"
 #include "command.h"
-#include "documents.h"
+#include "within.h"
 
 #include <hshfit/error.h>
-#include <hshfit/files/json_fields.h>
 
 #include <jobs/illuminate.h>
 #include <jobs/quality.h>
@@ -15,47 +14,12 @@
 namespace hshfit::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct IlluminateArguments {
     std::string scene, output, method = "path";
     double stops = 0;
     jobs::IlluminateOptions options;
     CacheArguments cache;
 };
-
-const char* nameOf(LightWay way) {
-    if (way == LightWay::irradiance) return "irradiance";
-    return way == LightWay::coefficients ? "coefficients" : "sampled";
-}
-
-Json orNull(const std::optional<std::size_t>& count) {
-    return count ? Json(*count) : Json(nullptr);
-}
-
-Json materialJson(const jobs::LitMaterial& material) {
-    Json json = {{"name", material.name}, {"way", nameOf(material.way)}};
-    if (material.way == LightWay::irradiance) return json;
-    json["order"] = material.order;
-    json["loss"] = material.loss;
-    if (!material.reason.empty()) json["reason"] = material.reason;
-    if (material.way == LightWay::sampled) json["walks"] = material.walks;
-    if (!material.cost) return json;
-    const MaterialCost& cost = *material.cost;
-    json["predicted"] = {{"pixels", cost.pixels},
-                         {"error", cost.error},
-                         {"cache",
-                          {{"records", cost.records},
-                           {"record_seconds", cost.recordSeconds},
-                           {"look_up_seconds", cost.lookUpSeconds},
-                           {"cpu_seconds", cost.cacheSeconds}}},
-                         {"sampling",
-                          {{"variance", cost.variance},
-                           {"walks", cost.walks},
-                           {"walk_seconds", cost.walkSeconds},
-                           {"cpu_seconds", cost.samplingSeconds}}}};
-    return json;
-}
 
 std::string textOf(const jobs::LitMaterial& material) {
     if (material.way == LightWay::irradiance)
@@ -76,36 +40,6 @@ std::string textOf(const jobs::LitMaterial& material) {
                       "{} walks a line of sight\n",
                       material.cost->cacheSeconds, material.cost->samplingSeconds,
                       material.cost->walks);
-}
-
-Json cameraJson(const jobs::IlluminatedCamera& camera) {
-    Json json = {{"camera", camera.name},
-                 {"width", camera.width},
-                 {"height", camera.height},
-                 {"seconds", camera.seconds},
-                 {"cpu_seconds", camera.cpuSeconds},
-                 {"rays", camera.rays},
-                 {"records", orNull(camera.records)},
-                 {"new_records", orNull(camera.made)},
-                 {"bytes", orNull(camera.bytes)},
-                 {"uncovered", camera.uncovered},
-                 {"mean", camera.mean},
-                 {"standard_error", finiteOrNull(camera.standardError)},
-                 {"largest_error",
-                  {{"relative", finiteOrNull(camera.largestError)},
-                   {"column", camera.errorColumn},
-                   {"row", camera.errorRow}}},
-                 {"cut", camera.cut},
-                 {"resumed_rows", camera.resumedRows},
-                 {"exposure", camera.stops},
-                 {"files", camera.files}};
-    if (camera.reference) {
-        json["relative_mse"] = camera.reference->relativeMse;
-        json["maximum"] = {{"relative_square", camera.reference->maximum},
-                           {"column", camera.reference->column},
-                           {"row", camera.reference->row}};
-    }
-    return json;
 }
 
 std::string errorText(const jobs::IlluminatedCamera& camera) {
@@ -141,24 +75,7 @@ std::string textOf(const jobs::IlluminatedCamera& camera) {
 void runIlluminate(IlluminateArguments& arguments, const Globals& globals) {
     const jobs::Illuminated done = jobs::illuminate(arguments.scene, arguments.output,
                                                     arguments.options, listenerFor(globals));
-    if (globals.json) {
-        Json materials = Json::array();
-        for (const jobs::LitMaterial& material : done.materials)
-            materials.push_back(materialJson(material));
-        Json cameras = Json::array();
-        for (const jobs::IlluminatedCamera& camera : done.cameras)
-            cameras.push_back(cameraJson(camera));
-        return printJson({{"format", "hshfit-illuminate"},
-                          {"version", 1},
-                          {"scene", done.scene},
-                          {"method", arguments.method},
-                          {"triangles", done.triangles},
-                          {"degenerate", done.degenerate},
-                          {"preparation_seconds", done.preparationSeconds},
-                          {"cache_cpu_seconds", done.cacheCpuSeconds},
-                          {"materials", materials},
-                          {"cameras", cameras}});
-    }
+    if (globals.json) return printJson(jobs::illuminateJson(done, arguments.method));
     std::string text = fmt::format(
         "{}: {} triangles{}, prepared in {:.1f} s\n", done.scene, done.triangles,
         done.degenerate > 0 ? fmt::format(" and {} without area, left out", done.degenerate) : "",
@@ -203,15 +120,15 @@ void addIlluminate(CLI::App& command, Globals& globals) {
                 "--samples", options.path.samples,
                 "Paths, or lines of sight, through each pixel (default: 64; radiance-cache: "
                 "16)")
-            ->check(CLI::Range(1, 1 << 24));
+            ->check(within(jobs::bounds::pathSamples));
     command.add_option("--bounces", options.path.mostBounces, "Reflections after which paths end")
-        ->check(CLI::Range(0, 1000000))
+        ->check(within(jobs::bounds::mostBounces))
         ->capture_default_str();
     command
         .add_option("--from-bounce", options.path.fewestBounces,
                     "Leave out light of fewer reflections: 1 what is seen directly, 2 direct light "
                     "too")
-        ->check(CLI::Range(0, 1000))
+        ->check(within(jobs::bounds::fewestBounces))
         ->capture_default_str();
     command.add_option("--seed", options.path.seed, "Seed of the random numbers")
         ->capture_default_str();

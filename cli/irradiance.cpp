@@ -1,5 +1,6 @@
 #include "command.h"
 #include "documents.h"
+#include "within.h"
 
 #include <jobs/irradiance.h>
 
@@ -130,7 +131,7 @@ void addIrradiance(CLI::App& command, Globals& globals) {
                     "three, unity, filament, godot, unreal or all")
         ->capture_default_str();
     command.add_option("--order", options.order, "Bands of the irradiance")
-        ->check(CLI::Range(1, 100))
+        ->check(within(jobs::bounds::irradianceOrder))
         ->capture_default_str();
     command
         .add_option("--window", options.window,
@@ -138,7 +139,7 @@ void addIrradiance(CLI::App& command, Globals& globals) {
         ->check(CLI::IsMember({"none", "hann", "lanczos", "least-negative"}))
         ->capture_default_str();
     command.add_option("--normals", options.normals, "Normals at which the error is taken")
-        ->check(CLI::Range(16, 1000000))
+        ->check(within(jobs::bounds::normals))
         ->capture_default_str();
     command.add_option("--by-normal", options.byNormal,
                        "CSV of direct and approximate irradiance at each of them");

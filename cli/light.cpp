@@ -1,4 +1,5 @@
 #include "command.h"
+#include "within.h"
 
 #include <hshfit/coefficients/light_coefficients.h>
 #include <hshfit/error.h>
@@ -148,7 +149,7 @@ void addLight(CLI::App& command, Globals& globals) {
     command.add_option("--basis", options.basis, "sh; with --normal any of hshfit list bases")
         ->capture_default_str();
     command.add_option("--order", options.order, "Number of bands: l = 0 .. order-1")
-        ->check(CLI::Range(1, 1000))
+        ->check(within(jobs::bounds::lightOrder))
         ->capture_default_str();
     command.add_option("--normal", arguments->normal,
                        "THETA,PHI in degrees: the hemisphere about it, in its own frame "
@@ -160,7 +161,7 @@ void addLight(CLI::App& command, Globals& globals) {
     command
         .add_option("--tolerance", options.tolerance,
                     "Relative error that quadrature is refined to, where light has no closed form")
-        ->check(CLI::Range(1e-13, 1.0))
+        ->check(within(jobs::bounds::tolerance))
         ->capture_default_str();
     command.callback([arguments, &globals] { runLight(*arguments, globals); });
 }

@@ -1,5 +1,7 @@
 #include "command.h"
 #include "documents.h"
+#include "page.h"
+#include "terminal.h"
 
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/bases/catalog.h>
@@ -246,9 +248,21 @@ constexpr Section sections[] = {{"models", modelsJson, brdfs::sumHelp, brdfs::me
                                 {"metrics", metricsJson},
                                 {"targets", targetsJson}};
 
-std::string parameterText(const Json& parameter) {
-    std::string text = fmt::format("      {:<14} {}", parameter["name"].get<std::string>(),
-                                   parameter["help"].get<std::string>());
+/// A row of a table: a term, and its explanation in lines as wide as the terminal.
+std::string rowText(std::size_t indent, std::size_t termWidth, const std::string& term,
+                    const std::string& text) {
+    const std::string begin = fmt::format("{:{}}{:<{}} ", "", indent, term, termWidth);
+    const auto width = tableColumns();
+    return begin +
+           (width ? wrapped(text, *width, indent + termWidth + 1, columnsOf(begin)) : text) + "\n";
+}
+
+std::string detailText(const std::string& term, const std::string& text) {
+    return rowText(6, 14, term, text);
+}
+
+std::string parameterHelp(const Json& parameter) {
+    std::string text = parameter["help"].get<std::string>();
     if (parameter["kind"] == "text")
         return text + fmt::format(" (such as {})", parameter["choices"][0].get<std::string>());
     if (parameter["kind"] == "choice") {
@@ -277,32 +291,29 @@ std::string lawsText(const Json& laws) {
 
 void printSection(const char* name, const Json& rows, std::string_view sums = {},
                   std::string_view metals = {}) {
+    constexpr std::size_t indent = 2, term = 18;
     std::string text = fmt::format("{}\n", name);
     if (rows.empty()) text += "  none yet\n";
     for (const Json& row : rows) {
-        text += fmt::format("  {:<18} {}\n", row["name"].get<std::string>(),
-                            row["help"].get<std::string>());
-        if (const std::string source = row.value("source", ""); !source.empty()) {
-            text += fmt::format("      {:<14} {}\n", "source", source);
-        }
+        text += rowText(indent, term, row["name"], row["help"]);
+        if (const std::string source = row.value("source", ""); !source.empty())
+            text += detailText("source", source);
         if (row.contains("parts"))
-            text += fmt::format("      {:<14} {}\n", "parts",
-                                fmt::join(row["parts"].get<std::vector<std::string>>(), ", "));
+            text += detailText(
+                "parts",
+                fmt::format("{}", fmt::join(row["parts"].get<std::vector<std::string>>(), ", ")));
         if (row.contains("number"))
-            text += fmt::format("      {:<14} {} to {}; default {}\n", "number",
-                                row["number"]["min"].get<int>(), row["number"]["max"].get<int>(),
-                                row["number"]["default"].get<int>());
-        if (row.contains("example"))
-            text += fmt::format("      {:<14} {}\n", "example", row["example"].get<std::string>());
-        for (const Json& parameter : row.value("parameters", Json::array())) {
-            text += parameterText(parameter) + "\n";
-        }
-        if (row.contains("laws")) {
-            text += fmt::format("      {:<14} {}\n", "laws", lawsText(row["laws"]));
-        }
+            text += detailText("number", fmt::format("{} to {}; default {}",
+                                                     row["number"]["min"].get<int>(),
+                                                     row["number"]["max"].get<int>(),
+                                                     row["number"]["default"].get<int>()));
+        if (row.contains("example")) text += detailText("example", row["example"]);
+        for (const Json& parameter : row.value("parameters", Json::array()))
+            text += detailText(parameter["name"], parameterHelp(parameter));
+        if (row.contains("laws")) text += detailText("laws", lawsText(row["laws"]));
     }
-    if (!sums.empty()) text += fmt::format("  {:<18} {}\n", "sums", sums);
-    if (!metals.empty()) text += fmt::format("  {:<18} {}\n", "metals", metals);
+    if (!sums.empty()) text += rowText(indent, term, "sums", std::string(sums));
+    if (!metals.empty()) text += rowText(indent, term, "metals", std::string(metals));
     printText(text + "\n");
 }
 
@@ -326,8 +337,10 @@ void listPresets(const std::string& text, bool all, bool json, Json& document) {
     printSection("presets", rows);
     std::string lines = "preset collections (list presets TEXT searches their materials)\n";
     for (const Json& row : collectionsJson())
-        lines += fmt::format("  {:<25} {:>3} materials  {}\n", row["name"].get<std::string>(),
-                             row["materials"].get<int>(), row["help"].get<std::string>());
+        lines += rowText(2, 40,
+                         fmt::format("{:<25} {:>3} materials", row["name"].get<std::string>(),
+                                     row["materials"].get<int>()),
+                         row["help"]);
     printText(lines);
 }
 

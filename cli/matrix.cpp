@@ -1,5 +1,6 @@
 #include "command.h"
 #include "rotation_options.h"
+#include "within.h"
 
 #include <jobs/rotate.h>
 
@@ -63,11 +64,11 @@ void addMatrix(CLI::App& command, Globals& globals) {
         ->required();
     command.add_option("TO", arguments->to, "Basis of the rows")->required();
     command.add_option("--order", arguments->order, "Bands of TO")
-        ->check(CLI::Range(1, 2048))
+        ->check(within(jobs::bounds::matrixOrder))
         ->capture_default_str();
     command
         .add_option("--from-order", arguments->fromOrder, "Bands of FROM (default: those of TO)")
-        ->check(CLI::Range(1, 2048));
+        ->check(within(jobs::bounds::matrixOrder));
     command.add_option("--euler", arguments->euler,
                        "A,B,C in degrees: of the rotated function, R_z(A) R_y(B) R_z(C)");
     command.add_flag("--condon-shortley", arguments->condonShortley,

@@ -1,4 +1,5 @@
 #include "command.h"
+#include "within.h"
 
 #include <hshfit/error.h>
 #include <hshfit/plan/plan_files.h>
@@ -70,7 +71,7 @@ void addPlan(CLI::App& command, Globals& globals) {
         ->delimiter(',')
         ->capture_default_str();
     command.add_option("--max-order", arguments->options.maxOrder, "Bands to try")
-        ->check(CLI::Range(1, 32))
+        ->check(within(jobs::bounds::planOrder))
         ->capture_default_str();
     command.add_flag("--by-time", arguments->options.byTime,
                      "Of the forms within the budget, the fastest instead of the smallest; what is "

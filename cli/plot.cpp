@@ -1,4 +1,5 @@
 #include "command.h"
+#include "within.h"
 
 #include <jobs/plot.h>
 
@@ -40,7 +41,7 @@ void addPlot(CLI::App& command, Globals& globals) {
     command.add_option("-o,--output", arguments->output, "Figure to write: .png, .svg or .pdf")
         ->required();
     command.add_option("--order", arguments->options.order, "Bands to draw")
-        ->check(CLI::Range(1, 8))
+        ->check(within(jobs::bounds::plotOrder))
         ->capture_default_str();
     command.add_flag("--sphere", arguments->sphere,
                      "The whole sphere, for sh and esh (default: the hemisphere)");

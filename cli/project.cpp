@@ -1,10 +1,12 @@
 #include "command.h"
 #include "documents.h"
 #include "form_options.h"
+#include "within.h"
 
 #include <hshfit/error.h>
 #include <hshfit/pages/pair_summary_json.h>
 
+#include <jobs/kept_outputs.h>
 #include <jobs/project.h>
 
 #include <fmt/format.h>
@@ -114,6 +116,7 @@ void projectMany(const ProjectArguments& arguments, Globals& globals) {
                           arguments.options, listenerFor(globals));
     Json documents = Json::array();
     std::string text;
+    for (const std::string& kept : many.kept) text += jobs::keptLine(kept) + "\n";
     for (const auto& result : many.results) {
         if (!result) continue;
         noteQuality(*result, result->projection.coefficients.source + ": ", globals);
@@ -124,10 +127,11 @@ void projectMany(const ProjectArguments& arguments, Globals& globals) {
         printJson({{"format", "hshfit-projects"},
                    {"version", 1},
                    {"projections", documents},
+                   {"kept", many.kept},
                    {"failures", failuresJson(many.failures)}});
     else
         printText(text);
-    reportFailures(many.failures, many.specs.size(), globals);
+    reportFailures(many.failures, many.specs.size() + many.kept.size(), globals);
 }
 
 void runProject(ProjectArguments& arguments, Globals& globals) {
@@ -172,12 +176,12 @@ void addProject(CLI::App& command, Globals& globals) {
     command
         .add_option("--regularise", options.regularise,
                     "With --least-squares: Tikhonov weight, relative to the system's own scale")
-        ->check(CLI::Range(0.0, 1e3))
+        ->check(within(jobs::bounds::regularise))
         ->capture_default_str();
     command
         .add_option("--kernel", options.kernel,
                     "With --least-squares: degrees about an outgoing direction that count at most")
-        ->check(CLI::Range(0.1, 180.0))
+        ->check(within(jobs::bounds::kernel))
         ->capture_default_str();
     arguments->form.addTo(command);
     command.callback([arguments, &globals] { runProject(*arguments, globals); });

@@ -1,9 +1,10 @@
 #include "command.h"
-#include "documents.h"
+#include "within.h"
 
 #include <hshfit/error.h>
 
 #include <jobs/render.h>
+#include <jobs/render_json.h>
 #include <jobs/spheres.h>
 
 #include <fmt/format.h>
@@ -17,7 +18,6 @@
 namespace hshfit::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using By = jobs::RenderOptions::By;
 using Kind = jobs::RenderedPicture::Kind;
 
@@ -92,43 +92,7 @@ std::vector<double> parseView(const std::string& text) {
     return angles;
 }
 
-Json pointLightsJson(const SphereRig& rig) {
-    Json lights = Json::array();
-    for (const SphereLight& light : rig.lights) {
-        Json json = directionJson(light.towards);
-        json["strength"] = light.strength;
-        lights.push_back(json);
-    }
-    return lights;
-}
-
-Json startDocument(const RenderArguments& arguments, int samples) {
-    return {{"format", "hshfit-render"},
-            {"version", 1},
-            {"output", arguments.output},
-            {"size", arguments.size},
-            {"samples", samples}};
-}
-
 // --- spheres under point lights ---------------------------------------------------------------
-
-Json sphereJson(const jobs::SphereSheet::Sphere& sphere) {
-    return {{"brdf", sphere.brdf},
-            {"column", sphere.column},
-            {"colours", sphere.colours},
-            {"not_finite", sphere.notFinite}};
-}
-
-Json spheresDocument(const RenderArguments& arguments, const jobs::SphereSheetOptions& options,
-                     const jobs::SphereSheet& sheet) {
-    Json document = startDocument(arguments, options.samples);
-    document["lights"] = pointLightsJson(options.rig);
-    document["dome"] = options.rig.dome;
-    document["exposure"] = {{"automatic", !options.stops}, {"stops", sheet.stops}};
-    document["spheres"] = Json::array();
-    for (const auto& sphere : sheet.spheres) document["spheres"].push_back(sphereJson(sphere));
-    return document;
-}
 
 void runSpheres(const RenderArguments& arguments, const Globals& globals) {
     jobs::SphereSheetOptions options;
@@ -141,7 +105,7 @@ void runSpheres(const RenderArguments& arguments, const Globals& globals) {
     const jobs::SphereSheet sheet =
         jobs::renderSpheres(arguments.specs, arguments.output, options, listenerFor(globals));
     if (globals.json) {
-        printJson(spheresDocument(arguments, options, sheet));
+        printJson(jobs::spheresJson(sheet, options, arguments.output));
     } else {
         printText(fmt::format("{}: {} sphere{} of {} x {} pixels, exposure {:+.1f} stops\n",
                               arguments.output, sheet.spheres.size(),
@@ -186,55 +150,6 @@ jobs::RenderOptions optionsOf(const RenderArguments& arguments) {
     return options;
 }
 
-Json pictureJson(const jobs::RenderedPicture& picture) {
-    Json json = {{"brdf", picture.brdf},         {"by", jobs::kindName(picture.kind)},
-                 {"row", picture.row},           {"column", picture.column},
-                 {"exposure", picture.exposure}, {"not_finite", picture.notFinite}};
-    if (picture.kind != Kind::integration) {
-        json["basis"] = picture.basis;
-        json["order"] = picture.order;
-    }
-    if (picture.kind == Kind::difference) json["amplification"] = picture.amplification;
-    if (picture.kind != Kind::difference) json["error"] = picture.error;
-    if (picture.kind == Kind::integration) {
-        json["cut_points"] = picture.cut;
-        return json;
-    }
-    json["missed"] = picture.missed ? Json(*picture.missed) : Json();
-    json["relative_l2"] = json["maximum"] = nullptr;
-    if (!picture.difference) return json;
-    json["relative_l2"] = picture.difference->relativeL2;
-    json["maximum"] = picture.difference->maximum;
-    json["maximum_at"] = {{"column", picture.difference->column}, {"row", picture.difference->row}};
-    json["mean_radiance"] = picture.difference->meanRadiance;
-    return json;
-}
-
-Json surfaceDocument(const RenderArguments& arguments, const jobs::RenderOptions& options,
-                     const jobs::Rendered& rendered) {
-    Json document = startDocument(arguments, options.samples);
-    document["lights"] = pointLightsJson(options.rig);
-    for (const std::string& light : options.lights) document["lights"].push_back(light);
-    document["dome"] = options.rig.dome;
-    document["view"] = {{"theta", options.viewTheta}, {"phi", options.viewPhi}};
-    document["field_of_view"] = options.fieldOfView;
-    document["mesh"] = nullptr;
-    if (!rendered.mesh.empty()) {
-        document["mesh"] = {{"file", rendered.mesh},
-                            {"triangles", rendered.triangles},
-                            {"degenerate", rendered.degenerate}};
-    }
-    document["points"] = rendered.points;
-    document["quantity"] = options.cosine ? "brdf_cosine" : "brdf";
-    document["light_coefficients"] = "from samples about each normal";
-    document["exposure"] = {{"automatic", !options.stops}, {"stops", rendered.stops}};
-    document["pictures"] = Json::array();
-    for (const auto& picture : rendered.pictures) {
-        document["pictures"].push_back(pictureJson(picture));
-    }
-    return document;
-}
-
 std::string surfaceText(const RenderArguments& arguments, const jobs::Rendered& rendered) {
     std::string text = fmt::format("{}: {} picture{} of {} x {} pixels, exposure {:+.1f} stops\n",
                                    arguments.output, rendered.pictures.size(),
@@ -264,7 +179,7 @@ void runSurface(const RenderArguments& arguments, Globals& globals) {
     const jobs::Rendered rendered =
         jobs::render(arguments.specs, arguments.output, options, listenerFor(globals));
     if (globals.json)
-        printJson(surfaceDocument(arguments, options, rendered));
+        printJson(jobs::renderJson(rendered, options, arguments.output));
     else
         printText(surfaceText(arguments, rendered));
 }
@@ -293,7 +208,7 @@ void addSurfaceOptions(CLI::App& command, RenderArguments& arguments) {
         .add_option("--field-of-view", arguments.fieldOfView,
                     "Degrees from edge to edge of a perspective picture (default: lines of sight "
                     "are parallel)")
-        ->check(CLI::Range(0.1, 170.0))
+        ->check(within(jobs::bounds::fieldOfView))
         ->each(given);
     command.add_option("--by", arguments.by, "The way in which light and material meet")
         ->check(CLI::IsMember({"coefficients", "integration", "both"}))
@@ -317,7 +232,7 @@ void addSurfaceOptions(CLI::App& command, RenderArguments& arguments) {
         ->delimiter(',')
         ->each(given);
     command.add_option("--tolerance", arguments.tolerance, "Bound of the integration's error")
-        ->check(CLI::Range(1e-6, 0.5))
+        ->check(within(jobs::bounds::pictureTolerance))
         ->capture_default_str();
 }
 
@@ -325,17 +240,19 @@ void addSurfaceOptions(CLI::App& command, RenderArguments& arguments) {
 
 void addRender(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<RenderArguments>();
-    command.add_option("SPEC", arguments->specs, "One or more BRDFs or coefficient files")
+    command
+        .add_option("SPEC", arguments->specs,
+                    "One or more BRDFs or coefficient files; of a folder, those in it")
         ->required();
     command.add_option("-o,--output", arguments->output, "Picture to write, .png or .exr")
         ->required();
     command.add_option("--size", arguments->size, "Pixels along a picture's square")
-        ->check(CLI::Range(8, 4096))
+        ->check(within(jobs::bounds::pictureSize))
         ->capture_default_str();
     command
         .add_option("--samples", arguments->samples,
                     "N: N x N samples a pixel (default: 3; 2 under other than point lights)")
-        ->check(CLI::Range(1, 16));
+        ->check(within(jobs::bounds::pictureSamples));
     command
         .add_option("--light", arguments->lights,
                     "A light, sky or picture, added up with '+'; or THETA,PHI[,STRENGTH] in "
@@ -345,7 +262,7 @@ void addRender(CLI::App& command, Globals& globals) {
     command
         .add_option("--dome", arguments->dome,
                     "Radiance from all around (default: 0.1 with point lights, else 0)")
-        ->check(CLI::Range(0.0, 1e6))
+        ->check(within(jobs::bounds::dome))
         ->each([arguments](auto&&...) { arguments->domeGiven = true; });
     command.add_option("--exposure", arguments->exposure, "auto or stops; for .png only")
         ->capture_default_str();

@@ -1,7 +1,9 @@
 #include "command.h"
 #include "measured_numbers.h"
+#include "within.h"
 
 #include <hshfit/error.h>
+#include <hshfit/files/output_rule.h>
 #include <hshfit/pages/report.h>
 
 #include <jobs/report.h>
@@ -63,6 +65,8 @@ void runReport(ReportArguments& arguments, Globals& globals) {
         note(globals, fmt::format("{}: {}", entry.brdf, entry.energy.reason));
     }
     const bool any = !report.reports.empty();
+    stateExitCode(reported.failures.empty() ? globals.exitCode
+                                            : static_cast<int>(jobs::codeOf(reported.failures)));
     if (any && !arguments.output.empty()) writeReport(report, arguments.output);
     if (any && globals.json) {
         printText(reportJson(report));
@@ -93,7 +97,7 @@ void addReport(CLI::App& command, Globals& globals) {
     command.add_option("--bases", options.bases, "all, or names from hshfit list bases")
         ->capture_default_str();
     command.add_option("--max-order", options.maxOrder, "Orders 1 to this one")
-        ->check(CLI::Range(1, 1000))
+        ->check(within(jobs::bounds::curveOrders))
         ->capture_default_str();
     command.add_option("--outgoing", options.outgoing,
                        "WxH, N or THETA,PHI in degrees (default: 16, or 16x16 if anisotropic)");

@@ -1,5 +1,6 @@
 #include "command.h"
 #include "rotation_options.h"
+#include "within.h"
 
 #include <hshfit/error.h>
 
@@ -94,10 +95,10 @@ void addRotate(CLI::App& command, Globals& globals) {
                     "exact, through-sh, table or paper-shift (which is wrong but at the pole)")
         ->capture_default_str();
     command.add_option("--tolerance", arguments->tolerance, "Of through-sh: relative change")
-        ->check(CLI::Range(1e-12, 1.0))
+        ->check(within(jobs::bounds::rotationTolerance))
         ->capture_default_str();
     command.add_option("--tables", arguments->tables, "Of table: matrices from 0 to 180 degrees")
-        ->check(CLI::Range(2, 10001))
+        ->check(within(jobs::bounds::rotationTables))
         ->capture_default_str();
     command.callback([arguments, &globals] { runRotate(*arguments, globals); });
 }

@@ -4,11 +4,13 @@
 #include "command_table.h"
 #include "help_pages.h"
 #include "option_values.h"
+#include "outputs.h"
 #include "standard_files.h"
 #include "usage_errors.h"
 
 #include <brdfs/fit/solver_log.h>
 #include <hshfit/error.h>
+#include <hshfit/files/output_rule.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>
@@ -23,8 +25,11 @@
 namespace hshfit::cli {
 namespace {
 
+/// Ends the parsing of a command whose files stand and are valid.
+struct NothingToDo {};
+
 /// Usage errors of ours and of CLI11 alike end in exit code 2 with one line.
-int run(const std::vector<std::string>& words) {
+int run(const std::vector<std::string>& words, Outputs outputs) {
     if (words.empty()) {
         printHelp(textOf(overviewPage(), columns(), hasColour(Stream::error)), Stream::error);
         return static_cast<int>(ExitCode::usage);
@@ -43,12 +48,19 @@ int run(const std::vector<std::string>& words) {
         if (globals.threads > 0) {
             threads.emplace(tbb::global_control::max_allowed_parallelism, globals.threads);
         }
+        setOutputRule({});
+        takeKeptFiles();
+        if (outputs == Outputs::kept)
+            for (const CLI::App* command : app.get_subcommands())
+                if (areOutputsKept(*command, globals)) throw NothingToDo();
     });
     for (const Command& row : commands()) addCommand(app, globals, row);
 
     refuseSpacedLists(app, words);
     try {
         app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    } catch (const NothingToDo&) {
+        return globals.exitCode;
     } catch (const CLI::Success& success) {
         std::ostringstream text;
         const int code = app.exit(success, text, text);
@@ -57,14 +69,15 @@ int run(const std::vector<std::string>& words) {
     } catch (const CLI::ParseError& error) {
         throw UsageError(usageMessage(app, error, words));
     }
+    noteKeptFiles(globals);
     return globals.exitCode;
 }
 
 }  // namespace
 
-int runWords(const std::vector<std::string>& words) noexcept {
+int runWords(const std::vector<std::string>& words, Outputs outputs) noexcept {
     try {
-        return run(words);
+        return run(words, outputs);
     } catch (const UsageError& error) {
         printMessage(withHelp(error.what(), words));
         return static_cast<int>(error.code());

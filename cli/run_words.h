@@ -6,7 +6,9 @@
 namespace hshfit::cli {
 
 /// Runs a command line, `words` after the name of the program: the answer on standard output, one
-/// line for an error on standard error. Returns the exit code and throws nothing.
-int runWords(const std::vector<std::string>& words) noexcept;
+/// line for an error on standard error. Returns the exit code and throws nothing. Files that stand
+/// are kept or refused (outputs.h); with `Outputs::replaced` they are replaced.
+enum class Outputs { kept, replaced };
+int runWords(const std::vector<std::string>& words, Outputs outputs = Outputs::kept) noexcept;
 
 }  // namespace hshfit::cli

@@ -1,5 +1,6 @@
 #include "command.h"
 #include "documents.h"
+#include "within.h"
 
 #include <jobs/sample.h>
 
@@ -111,7 +112,7 @@ void addSample(CLI::App& command, Globals& globals) {
     command.add_option("--outgoing", arguments->outgoing, "Outgoing direction THETA,PHI, degrees")
         ->capture_default_str();
     command.add_option("--count", options.count, "Directions to draw")
-        ->check(CLI::Range(0, 10000000))
+        ->check(within(jobs::bounds::sampleCount))
         ->capture_default_str();
     command.add_option("-o,--output", arguments->output,
                        "CSV of the directions, densities and weights");

@@ -11,6 +11,8 @@
 namespace hshfit::cli {
 namespace {
 
+constexpr std::size_t least = 40;
+
 std::string_view variable(const char* name) {
     const char* value = std::getenv(name);
     return value ? value : "";
@@ -33,10 +35,16 @@ std::size_t terminalColumns() {
 }  // namespace
 
 std::size_t columns() {
-    constexpr std::size_t least = 40, usual = 80, most = 100;
+    constexpr std::size_t usual = 80, most = 100;
     std::size_t count = statedColumns();
     if (count == 0) count = terminalColumns();
     return count == 0 ? usual : std::clamp(count, least, most);
+}
+
+std::optional<std::size_t> tableColumns() {
+    std::size_t count = statedColumns();
+    if (count == 0) count = terminalColumns();
+    return count == 0 ? std::nullopt : std::optional(std::max(count, least));
 }
 
 bool hasColour(Stream stream) {

@@ -1,12 +1,17 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 namespace hshfit::cli {
 
 /// Columns that help takes: those that COLUMNS states, else those of the terminal that is standard
 /// output, else 80; at least 40 and at most 100, beyond which lines are hard to read.
 std::size_t columns();
+
+/// The same for tables, none where lines are to stay whole: standard output is no terminal and
+/// COLUMNS states nothing, so that other programs get a line for each row. No upper bound.
+std::optional<std::size_t> tableColumns();
 
 enum class Stream { output, error };
 

@@ -1,5 +1,6 @@
 #include "command.h"
 #include "trade_lighting.h"
+#include "within.h"
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
@@ -123,9 +124,10 @@ void addSweep(CLI::App& command, TradeoffArguments& arguments) {
     };
     list("--forms", arguments.forms, "Of outgoing, basis, halfway (default: all)");
     list("--bases", arguments.bases, "all, or names from hshfit list bases (default: three)");
-    list("--orders", arguments.orders, "Orders (default: 3,5,7,10)")->check(CLI::Range(1, 1000));
+    list("--orders", arguments.orders, "Orders (default: 3,5,7,10)")
+        ->check(within(jobs::bounds::tradeOrders));
     list("--ranks", arguments.ranks, "Ranks of factors, 0 for none (default: 0,2,4)")
-        ->check(CLI::Range(0, 1000));
+        ->check(within(jobs::bounds::tradeRanks));
     list("--precisions", arguments.precisions,
          "Of float64, float32, half, unorm16, unorm8 (default: all but float64)");
     list("--keep", arguments.keep, "Numbers of each array to keep, 0 for all (default: 0)");
@@ -175,7 +177,7 @@ void addTradeoff(CLI::App& command, Globals& globals) {
     command
         .add_option("--pair-count", arguments->options.pairCount,
                     "Pairs of directions on which errors are measured, about")
-        ->check(CLI::Range(256, 1 << 24))
+        ->check(within(jobs::bounds::pairCount))
         ->capture_default_str();
     command.add_option("--pairs", arguments->options.pairs,
                        "CSV of the pairs to measure on instead: columns wi_x … wo_z, and weight");

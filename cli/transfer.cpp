@@ -1,4 +1,5 @@
 #include "command.h"
+#include "within.h"
 
 #include <jobs/quality.h>
 #include <jobs/transfer.h>
@@ -14,9 +15,8 @@
 namespace hshfit::cli {
 namespace {
 
-/// Names in the order of the enumerations TransferKind and Sides.
-const std::vector<std::string> kindNames{"unshadowed", "shadowed", "interreflected"};
-const std::vector<std::string> sidesNames{"automatic", "front", "both"};
+const std::vector<std::string> kindNames(jobs::transferKinds.begin(), jobs::transferKinds.end());
+const std::vector<std::string> sidesNames(jobs::transferSides.begin(), jobs::transferSides.end());
 
 template <class Enumeration>
 Enumeration numbered(const std::vector<std::string>& names, const std::string& name) {
@@ -25,7 +25,7 @@ Enumeration numbered(const std::vector<std::string>& names, const std::string& n
 
 struct TransferArguments {
     std::string scene, output, kind = "interreflected", sides = "automatic";
-    double edge = 0, memory = 4096;
+    double edge = 0, memory = 1e-6 * static_cast<double>(jobs::defaultTransferMemory);
     jobs::TransferOptions options;
 };
 
@@ -93,10 +93,10 @@ void addCompression(CLI::App& command, jobs::TransferOptions& options) {
         .add_option("--clusters", options.clusters,
                     "Numbers of clusters to try for the matrices; 0: they are not compressed")
         ->delimiter(',')
-        ->check(CLI::Range(0, 4096))
+        ->check(within(jobs::bounds::clusters))
         ->capture_default_str();
     command.add_option("--components", options.components, "The most components of a cluster")
-        ->check(CLI::Range(0, 64))
+        ->check(within(jobs::bounds::components))
         ->capture_default_str();
     command
         .add_option("--error", options.error,
@@ -125,19 +125,19 @@ void addTransfer(CLI::App& command, Globals& globals) {
         ->check(CLI::IsMember(kindNames))
         ->capture_default_str();
     command.add_option("--passes", options.passes, "Reflections at other surfaces")
-        ->check(CLI::Range(0, 100000))
+        ->check(within(jobs::bounds::passes))
         ->capture_default_str();
     command.add_option("--rays", options.rays, "Rays of each vertex")
-        ->check(CLI::Range(1, 1 << 24))
+        ->check(within(jobs::bounds::transferRays))
         ->capture_default_str();
     command.add_option("--order", options.order, "Bands of light")
-        ->check(CLI::Range(1, 16))
+        ->check(within(jobs::bounds::transferOrder))
         ->capture_default_str();
     command
         .add_option("--local-order", options.localOrder,
                     "Bands of hemispherical harmonics above each vertex: matrices, for glossy "
                     "materials; 0: vectors alone")
-        ->check(CLI::Range(0, 16))
+        ->check(within(jobs::bounds::localOrder))
         ->capture_default_str();
     addCompression(command, options);
     addMesh(command, arguments);
@@ -151,7 +151,7 @@ void addTransfer(CLI::App& command, Globals& globals) {
         .add_option("--reference-samples", options.referenceSamples,
                     "Pictures by transfer and by this many paths a pixel, and their difference by "
                     "order; 0: none")
-        ->check(CLI::Range(0, 1 << 20))
+        ->check(within(jobs::bounds::referenceSamples))
         ->capture_default_str();
     command.add_option("--material", options.swaps,
                        "BRDFs that the page can put in the place of the scene's");

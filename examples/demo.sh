@@ -26,15 +26,15 @@ ward=ward:ax=0.2,ay=0.5
 ggx=ggx:alpha=0.3
 
 echo "1. Coefficients: hemispherical harmonics of order 7 at 32 elevations or 32 x 32 directions."
-show project $phong -o out/phong.json
-show project $phong --cosine -o out/phong_cosine.json
-show project $ward --cosine -o out/ward_cosine.json
+show project $phong -o out/phong.json --force
+show project $phong --cosine -o out/phong_cosine.json --force
+show project $ward --cosine -o out/ward_cosine.json --force
 
 echo
 echo "2. A measured material: a MERL-layout file that the program writes itself."
 show convert $ggx out/ggx.binary --force
 show info out/ggx.binary
-show project out/ggx.binary --cosine -o out/ggx_cosine.exr
+show project out/ggx.binary --cosine -o out/ggx_cosine.exr --force
 
 echo
 echo "3. From format to format: what it costs, and a published fit of a real material."
@@ -50,29 +50,30 @@ show export out/phong.json -o out/lighting --lighting split-sum,coefficients --n
 
 echo
 echo "5. Accuracy reports: the energy that each basis captures, by order (Eq. 15)."
-show report $phong -o out/report_phong
-show report $phong $ward out/ggx.binary --cosine -o out/report_cosine
+show report $phong -o out/report_phong --force
+show report $phong $ward out/ggx.binary --cosine -o out/report_cosine --force
 finding "f of the Ward BRDF grows as 1/sqrt(cos theta) towards the horizon, so that the
   integral of its square does not exist; f cos, above, is fine." \
-    report $ward -o out/report_ward
+    report $ward -o out/report_ward --force
 
 echo
 echo "6. A model fitted to the measured file, with errors and a page that compares the two."
-show fit out/ggx.binary --model lambert+beckmann --samples 20000 -o out/fit_beckmann
+show fit out/ggx.binary --model lambert+beckmann --samples 20000 -o out/fit_beckmann --force
 
 echo
 echo "7. The least that a scene needs: matte materials under one sky; a mirror has no plan."
-finding "no form of this order holds a mirror." plan examples/scenes/matte_room.json -o out/plan
+finding "no form of this order holds a mirror." \
+    plan examples/scenes/matte_room.json -o out/plan --force
 
 echo
 echo "8. Light: a sky as coefficients, turned, and as the nine numbers that engines take."
-show light sky:type=12,elevation=40,radiance=1 -o out/sky.json
-show rotate out/sky.json -o out/sky_turned.json --axis 0,1,0,30
+show light sky:type=12,elevation=40,radiance=1 -o out/sky.json --force
+show rotate out/sky.json -o out/sky_turned.json --axis 0,1,0,30 --force
 show irradiance sky:type=12,elevation=40,radiance=1 --convention three
 
 echo
 echo "9. Directions drawn after a material, with the efficiency by elevation, and a scene by them."
-show sample ggx:alpha=.2,F0=.9 --outgoing 45,0 --count 1000 -o out/samples.csv
+show sample ggx:alpha=.2,F0=.9 --outgoing 45,0 --count 1000 -o out/samples.csv --force
 show export out/phong.json -o out/path_tracer --target bin,glsl --no-error --force
 show sample out/path_tracer/phong.hsh.json --method stored --count 0
 show illuminate examples/scenes/box.json -o out/box --samples 16 --force

@@ -6,6 +6,7 @@
 
 #include <brdfs/catalog.h>
 #include <brdfs/spec.h>
+#include <brdfs/sum.h>
 
 #include <fmt/format.h>
 #include <glob.h>
@@ -79,8 +80,7 @@ std::vector<std::string> filesIn(const std::string& folder, Members members) {
 /// The files that match a pattern, sorted; none for any other specification.
 std::vector<std::string> filesMatching(const std::string& spec) {
     std::vector<std::string> files;
-    if (spec.find_first_of("*?[") == std::string::npos || !brdfs::pathIn(spec).empty())
-        return files;
+    if (!isPattern(spec)) return files;
     glob_t found{};
     if (::glob(spec.c_str(), 0, nullptr, &found) == 0)
         files.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
@@ -150,6 +150,27 @@ std::string nameOf(const std::string& spec) {
         if (!plain) c = '_';
     }
     return name;
+}
+
+bool isPattern(const std::string& spec) {
+    constexpr const char* wildcards = "*?[";
+    if (spec.find_first_of(wildcards) == std::string::npos || !brdfs::pathIn(spec).empty())
+        return false;
+    const auto isPath = [](std::string_view text) { return !brdfs::pathIn(text).empty(); };
+    std::vector<brdfs::WeightedSpec> terms;
+    try {
+        terms = brdfs::splitSum(spec, isPath);
+    } catch (const Error&) {
+        return false;  // a sum with a mistake, which is named where it is opened
+    }
+    return std::ranges::any_of(terms, [&](const brdfs::WeightedSpec& term) {
+        // "0.5*ggx", a weight without the spaces that it needs, is no pattern either.
+        const std::size_t number = term.spec.find_first_not_of("0123456789.eE+- ");
+        const bool weight = number != 0 && number != std::string::npos && term.spec[number] == '*';
+        const std::string_view rest =
+            std::string_view(term.spec).substr(weight ? number + 1 : std::size_t{0});
+        return rest.find_first_of(wildcards) != std::string_view::npos && !isPath(rest);
+    });
 }
 
 bool areMany(const std::vector<std::string>& specs) {

@@ -20,6 +20,11 @@ enum class Members { measured, coefficients, both };
 std::vector<std::string> expandInputs(const std::vector<std::string>& specs,
                                       Members members = Members::measured);
 
+/// Whether a SPEC can only be meant as a pattern of paths: it has `*`, `?` or `[`, names no file,
+/// and is no specification of models, presets or a scaled sum of these ("0.5*lambert +
+/// ggx:alpha=.2").
+bool isPattern(const std::string& spec);
+
 /// Whether SPECs give many results: there are several of them, or one is a folder or a pattern that
 /// matches.
 bool areMany(const std::vector<std::string>& specs);

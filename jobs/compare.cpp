@@ -4,10 +4,12 @@
 
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
+#include <hshfit/files/output_rule.h>
 #include <hshfit/pages/comparison.h>
 #include <hshfit/pages/gnuplot.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -85,6 +87,9 @@ Compared compareBrdfs(const Brdf& a, const Brdf& b, const std::string& output,
     result.metrics =
         hshfit::compare(a, b, result.outgoing, metrics, {.progress = listener.part("compare")});
     result.pairs = overPairs(a, b);
+    const auto hasValue = [](const MetricValue& metric) { return metric.value.has_value(); };
+    if (options.metrics != "all" && !std::ranges::all_of(result.metrics, hasValue))
+        stateExitCode(static_cast<int>(ExitCode::numeric));
     if (!output.empty() || options.figures) writeFiles(a, b, output, options, listener, result);
     return result;
 }

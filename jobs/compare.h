@@ -1,5 +1,6 @@
 #pragma once
 
+#include "batch.h"
 #include "figures.h"
 #include "listener.h"
 
@@ -38,6 +39,26 @@ struct Compared {
 /// reason. Throws UsageError, InputError and OutputError.
 Compared compare(const std::string& a, const std::string& b, const std::string& output,
                  const CompareOptions& options, const Listener& listener = {});
+
+/// The comparisons of several, in the order of their names.
+struct ManyCompared {
+    std::vector<std::string> names = {};                ///< nameOf the approximation
+    std::vector<std::string> folders = {};              ///< of their pages; empty: none
+    std::vector<std::optional<Compared>> results = {};  ///< none where one failed
+    std::vector<InputFailure> failures = {};            ///< those without a partner among them
+    std::vector<std::string> kept = {};                 ///< folders whose page stands and is valid
+};
+
+/// One reference against each of `others`, or, where `a` is a folder or a pattern, its files
+/// against those of the same name in the only one of `others`. Folders stand for their measured
+/// files and coefficient files. Pages go to OUTPUT/NAME. A failure does not stop the rest. Throws
+/// UsageError, also for names that come twice, InputError where no names agree, and OutputError.
+ManyCompared compareMany(const std::string& a, const std::vector<std::string>& others,
+                         const std::string& output, const CompareOptions& options,
+                         const Listener& listener = {});
+/// Writes the table of all as CSV: a row for each pair, with the value and the error of each
+/// metric. An earlier table is replaced, any other file is not. Throws OutputError.
+void writeComparisonTable(const ManyCompared& many, const std::string& path);
 
 /// The same of BRDFs that are open; `rgb` is not used.
 Compared compareBrdfs(const Brdf& a, const Brdf& b, const std::string& output,

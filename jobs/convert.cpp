@@ -5,6 +5,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
+#include <hshfit/files/output_rule.h>
 #include <hshfit/files/standard_streams.h>
 #include <hshfit/spelling.h>
 #include <hshfit/wording.h>
@@ -14,7 +15,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -147,6 +150,38 @@ Converted convert(const std::string& input, const std::string& output,
     return result;
 }
 
+namespace {
+
+/// Under a rule that refuses, formats of other programs are told by their bytes. Converts the
+/// inputs of which a file stands, which throws where bytes differ, before any file is written, and
+/// takes them out.
+std::vector<std::string> requireEqual(std::vector<std::string>& inputs,
+                                      std::vector<std::string>& outputs,
+                                      const ConvertOptions& options, const Listener& listener) {
+    std::vector<std::string> kept, leftInputs, leftOutputs;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        std::error_code error;
+        bool isKept = false;
+        try {
+            if (std::filesystem::exists(outputs[i], error)) {
+                convert(inputs[i], outputs[i], options, listener);
+                isKept = true;
+            }
+        } catch (const OutputError&) {
+            throw;
+        } catch (const Error&) {
+            // Its failure is reported with those of the others.
+        }
+        (isKept ? kept : leftOutputs).push_back(outputs[i]);
+        if (!isKept) leftInputs.push_back(inputs[i]);
+    }
+    inputs = std::move(leftInputs);
+    outputs = std::move(leftOutputs);
+    return kept;
+}
+
+}  // namespace
+
 Many<Converted> convertMany(const std::vector<std::string>& specs, const std::string& folder,
                             const ConvertOptions& options, const Listener& listener) {
     if (options.format.empty())
@@ -158,14 +193,19 @@ Many<Converted> convertMany(const std::vector<std::string>& specs, const std::st
     std::vector<std::string> outputs = outputPaths(inputs, folder, std::string(writer.extension));
     requireFolder(folder);
     FileSet made(folder, options.force);  // the folder, which goes again if it stays empty
-    for (const std::string& output : outputs)
-        made.requireFree(std::filesystem::path(output).filename().string());
+    std::vector<std::string> kept;
+    if (outputRule().replace)
+        for (const std::string& output : outputs)
+            made.requireFree(std::filesystem::path(output).filename().string());
+    else
+        kept = requireEqual(inputs, outputs, options, listener);
     auto many = makeMany<Converted>(
         std::move(inputs), std::move(outputs), "convert", listener,
         [&](const std::string& input, const std::string& output, const Listener& each) {
             return convert(input, output, options, each);
         });
     made.commit();
+    std::ranges::move(kept, std::back_inserter(many.kept));
     return many;
 }
 

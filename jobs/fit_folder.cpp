@@ -1,5 +1,7 @@
 #include "fit_folder.h"
 
+#include "kept_outputs.h"
+
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -23,22 +25,24 @@ BatchOutcome fitFolder(const std::string& folder, const std::string& results,
     std::ranges::sort(files);
     fs::create_directories(results, error);
     if (error) throw OutputError(fmt::format("{}: {}", results, error.message()));
+    std::vector<std::string> data, outputs;
+    for (const fs::path& file : files) {
+        data.push_back(file.string());
+        outputs.push_back((fs::path(results) / (file.filename().string() + ".json")).string());
+    }
     BatchOutcome outcome;
-    for (std::size_t i = 0; i < files.size(); ++i) {
-        const fs::path result = fs::path(results) / (files[i].filename().string() + ".json");
-        if (fs::exists(result, error)) {
-            ++outcome.kept;
-        } else {
-            try {
-                fitOne(files[i].string(), result.string());
-                ++outcome.fitted;
-            } catch (const OutputError&) {
-                throw;
-            } catch (const Error& failure) {
-                outcome.failures.push_back({files[i].string(), failure.what()});
-            }
+    outcome.kept = takeKept(data, outputs).size();
+    for (std::size_t i = 0; i < data.size(); ++i) {
+        try {
+            const OutputKey key(keyOf({data[i]}));
+            fitOne(data[i], outputs[i]);
+            ++outcome.fitted;
+        } catch (const OutputError&) {
+            throw;
+        } catch (const Error& failure) {
+            outcome.failures.push_back({data[i], failure.what()});
         }
-        if (progress) progress(i + 1, files.size());
+        if (progress) progress(outcome.kept + i + 1, files.size());
     }
     return outcome;
 }

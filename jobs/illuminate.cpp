@@ -143,7 +143,7 @@ CacheOptions cacheOptionsOf(const IlluminateOptions& options, const Listener& li
 
 /// Replaces the file if there is one: what it held is among the records.
 void writeKept(const RadianceCache& cache, const std::string& path, const std::string& key) {
-    AtomicFile file(path);
+    AtomicFile file(path, AtomicFile::Existing::always);
     writeRecords(cache.stored(key), file);
     file.commit();
 }

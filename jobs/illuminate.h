@@ -5,12 +5,17 @@
 #include <hshfit/transport/path_tracer.h>
 #include <hshfit/transport/radiance_cache/cost_prediction.h>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace hshfit::jobs {
+
+/// Of the records of a radiance cache, unless told otherwise: 256 MB.
+inline constexpr std::size_t defaultCacheBytes = 256'000'000;
 
 struct IlluminateOptions {
     std::string camera = {};  ///< the one to take; empty: all of the scene
@@ -83,5 +88,9 @@ struct Illuminated {
 /// OutputError.
 Illuminated illuminate(const std::string& scene, const std::string& folder,
                        const IlluminateOptions& options, const Listener& listener = {});
+
+/// The answer of `illuminate` (docs/schemas/illuminate.schema.json); `method` is "path" or
+/// "radiance-cache".
+nlohmann::ordered_json illuminateJson(const Illuminated& done, const std::string& method);
 
 }  // namespace hshfit::jobs

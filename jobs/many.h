@@ -1,6 +1,7 @@
 #pragma once
 
 #include "batch.h"
+#include "kept_outputs.h"
 #include "listener.h"
 
 #include <cstddef>
@@ -19,14 +20,17 @@ struct Many {
     /// In the order of `specs`; none where one failed.
     std::vector<std::optional<Result>> results = {};
     std::vector<InputFailure> failures = {};
+    std::vector<std::string> kept = {};  ///< outputs that stand and are valid; not in `outputs`
 };
 
 /// Calls `make(spec, output, listener)` for every input as forEachInput does. Without `outputs`,
-/// `output` is empty. Remarks begin with the input; progress counts inputs.
+/// `output` is empty. Outputs that stand: kept_outputs.h. Remarks begin with the input; progress
+/// counts inputs.
 template <class Result, class Make>
 Many<Result> makeMany(std::vector<std::string> specs, std::vector<std::string> outputs,
                       const std::string& part, const Listener& listener, const Make& make) {
     Many<Result> many{.specs = std::move(specs), .outputs = std::move(outputs)};
+    if (!many.outputs.empty()) many.kept = takeKept(many.specs, many.outputs);
     many.results.resize(many.specs.size());
     many.failures =
         forEachInput(many.specs, listener, part, [&](std::size_t i, const ProgressCall& progress) {
@@ -36,6 +40,7 @@ Many<Result> makeMany(std::vector<std::string> specs, std::vector<std::string> o
             const Listener each{.note = [&](const std::string& said) {
                 listener.say(said.find(spec) == std::string::npos ? spec + ": " + said : said);
             }};
+            const OutputKey key(keyOf({spec}));
             many.results[i] = make(spec, output, each);
             progress(1, 1);
         });

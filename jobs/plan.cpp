@@ -3,10 +3,14 @@
 #include "scene_surfaces.h"
 #include "source.h"
 
+#include <hshfit/error.h>
+#include <hshfit/files/output_rule.h>
 #include <hshfit/plan/plan_files.h>
 #include <hshfit/wording.h>
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace hshfit::jobs {
 namespace {
@@ -34,6 +38,9 @@ plan::Plan planScene(const std::string& path, const std::string& output,
     how.progress = listener.part("plan");
     plan::Plan result = plan::planScene(
         read, [](const std::string& spec) { return openBrdf(spec); }, how);
+    const auto hasPlan = [](const plan::MaterialPlan& each) { return each.accepted.has_value(); };
+    if (!std::ranges::all_of(result.materials, hasPlan))
+        stateExitCode(static_cast<int>(ExitCode::numeric));
     plan::writePlan(result, output);
     return result;
 }

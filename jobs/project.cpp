@@ -1,5 +1,6 @@
 #include "project.h"
 
+#include "kept_outputs.h"
 #include "named_errors.h"
 #include "source.h"
 
@@ -147,13 +148,15 @@ ManyProjected projectMany(const std::vector<std::string>& specs, const std::stri
     const Projector projector(options);
     ManyProjected many;
     many.specs = expandInputs(specs);
-    const std::vector<std::string> outputs = outputPaths(many.specs, folder, extension);
+    std::vector<std::string> outputs = outputPaths(many.specs, folder, extension);
     requireFolder(folder);
+    many.kept = takeKept(many.specs, outputs);
     FileSet files(folder, true);
     many.results.resize(many.specs.size());
     many.failures = forEachInput(
         many.specs, listener, "project", [&](std::size_t i, const ProgressCall& progress) {
             Projected result = projector.run(many.specs[i], outputs[i], progress);
+            const OutputKey key(keyOf({many.specs[i]}));
             files.write(std::filesystem::path(outputs[i]).filename().string(),
                         [&](AtomicFile& file) { Projector::write(result, file); });
             result.projection.coefficients.values = {};  // the values are in the file

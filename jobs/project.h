@@ -63,10 +63,12 @@ struct ManyProjected {
     /// In the order of `specs`; none where one failed. Coefficients are in the files alone.
     std::vector<std::optional<Projected>> results;
     std::vector<InputFailure> failures;
+    std::vector<std::string> kept = {};  ///< files that stand and are valid; not in `specs`
 };
 
 /// Projects several BRDFs and folders, each to FOLDER/NAME.json or .exr (`extension`, with the
-/// dot). The folder is created if it is absent. A failed BRDF does not stop the others.
+/// dot). The folder is created if it is absent. A failed BRDF does not stop the others. Files that
+/// stand: kept_outputs.h.
 ManyProjected projectMany(const std::vector<std::string>& specs, const std::string& folder,
                           const std::string& extension, const ProjectOptions& options,
                           const Listener& listener = {});

@@ -282,7 +282,7 @@ Rendered render(const std::vector<std::string>& specs, const std::string& output
     checkSpheresPath(output);
     Rendered result;
     Renderer renderer(options, listener, result);
-    renderer.open(specs);
+    renderer.open(expandInputs(specs, Members::both));
     AtomicFile file(output);
     renderer.light();
     result.stops = options.stops ? *options.stops : renderer.automaticStops();

@@ -67,8 +67,9 @@ std::string kindName(RenderedPicture::Kind kind);
 
 /// Pictures of materials under any light, a row for each: by integration, then for each basis,
 /// order and exposure by coefficients and, with both ways, their difference from integration.
-/// `output`: .png or .exr; differences are amplified magnitudes in a .png and signed in an .exr.
-/// Throws UsageError, InputError, NumericError and OutputError.
+/// Folders stand for their measured and coefficient files. `output`: .png or .exr; differences are
+/// amplified magnitudes in a .png and signed in an .exr. Throws UsageError, InputError,
+/// NumericError and OutputError.
 Rendered render(const std::vector<std::string>& specs, const std::string& output,
                 const RenderOptions& options, const Listener& listener = {});
 

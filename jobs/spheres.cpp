@@ -1,5 +1,6 @@
 #include "spheres.h"
 
+#include "batch.h"
 #include "source.h"
 
 #include <hshfit/pictures/sphere_picture.h>
@@ -16,7 +17,7 @@ SphereSheet renderSpheres(const std::vector<std::string>& sources, const std::st
     SphereSheet result;
     std::vector<SpherePicture> pictures;
     std::map<std::string, std::string> attributes;
-    for (const std::string& source : sources) {
+    for (const std::string& source : expandInputs(sources, Members::both)) {
         const auto brdf = openSource(source);
         const std::string name = brdf->name();
         const SpherePicture& picture =

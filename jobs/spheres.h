@@ -29,7 +29,8 @@ struct SphereSheet {
 };
 
 /// Spheres of materials under point lights and a dome (renderSphere), side by side in `output`,
-/// .png or .exr. Throws UsageError, InputError and OutputError.
+/// .png or .exr. Folders stand for their measured files and coefficient files. Throws UsageError,
+/// InputError and OutputError.
 SphereSheet renderSpheres(const std::vector<std::string>& sources, const std::string& output,
                           const SphereSheetOptions& options, const Listener& listener = {});
 

@@ -167,8 +167,8 @@ void requireWithin(const char* name, double value, double low, double high) {
 }
 
 void requireQuadrature(double tolerance, double maxEvaluations) {
-    if (tolerance != 0) requireWithin("tolerance", tolerance, 1e-13, 1);
-    requireWithin("max_evaluations", maxEvaluations, 1e3, 1e12);
+    if (tolerance != 0) requireWithin("tolerance", tolerance, jobs::bounds::tolerance);
+    requireWithin("max_evaluations", maxEvaluations, jobs::bounds::evaluations);
 }
 
 double orNaN(const std::optional<double>& value) {

@@ -6,6 +6,7 @@
 
 #include <hshfit/brdf/directions.h>
 
+#include <jobs/bounds.h>
 #include <jobs/eval.h>
 
 #include <pybind11/numpy.h>
@@ -59,8 +60,14 @@ std::string pathOf(const py::object& path, const char* name);
 std::string outgoingText(const py::object& outgoing);
 /// Names as a list with commas: a string as it is, or a sequence of strings.
 std::string listText(const py::object& names);
-/// Throws UsageError with `name` unless low <= value <= high. The bounds are those of the program.
+/// Throws UsageError with `name` unless low <= value <= high.
 void requireWithin(const char* name, double value, double low, double high);
+/// The same of an option that the program has too.
+template <class Value, class Number>
+void requireWithin(const char* name, Value value, const jobs::Bounds<Number>& bounds) {
+    requireWithin(name, static_cast<double>(value), static_cast<double>(bounds.least),
+                  static_cast<double>(bounds.most));
+}
 /// Of a projection: the tolerance, where 0 is the BRDF's own, and the most evaluations.
 void requireQuadrature(double tolerance, double maxEvaluations);
 /// An optional number, NaN where there is none.

@@ -59,7 +59,7 @@ py::dict plotted(const std::string& basis, const py::object& path, int order,
                  const std::string& domain, bool condonShortley) {
     if (domain != "hemisphere" && domain != "sphere")
         throw UsageError("domain: 'hemisphere' or 'sphere', not '" + domain + "'");
-    requireWithin("order", order, 1, 8);
+    requireWithin("order", order, jobs::bounds::plotOrder);
     const std::string output = pathOf(path, "path");
     jobs::Plotted done;
     {

@@ -170,7 +170,7 @@ py::dict described(const py::object& spec, bool rgb, const py::object& progress)
 
 py::dict sampled(const py::object& spec, const py::object& outgoing, std::size_t count,
                  std::uint64_t seed, const std::string& method) {
-    requireWithin("count", static_cast<double>(count), 0, 1e7);
+    requireWithin("count", count, jobs::bounds::sampleCount);
     const std::string source = pathOf(spec, "spec");
     const std::vector<Direction> wo = directionsIn(vectorsOf(outgoing, "wo"), "wo");
     if (wo.size() != 1) throw UsageError("wo: one direction, of shape (3,)");

@@ -59,10 +59,10 @@ jobs::FitOptions optionsFrom(const std::string& model, const std::string& loss,
                              const std::string& weights, bool perChannel, double grazingCut,
                              std::size_t samples, int starts, int iterations, std::uint64_t seed,
                              bool accept, const py::object& parts) {
-    requireWithin("starts", starts, 1, 10000);
-    requireWithin("iterations", iterations, 1, 100000);
-    requireWithin("grazing_cut", grazingCut, 0, 90);
-    requireWithin("robust_scale", robustScale, 0, 1e300);
+    requireWithin("starts", starts, jobs::bounds::starts);
+    requireWithin("iterations", iterations, jobs::bounds::iterations);
+    requireWithin("grazing_cut", grazingCut, jobs::bounds::grazingCut);
+    requireWithin("robust_scale", robustScale, jobs::bounds::robustScale);
     jobs::FitOptions options;
     options.model = model;
     options.loss = loss;
@@ -103,7 +103,7 @@ std::shared_ptr<jobs::Fitted> fitted(const py::object& data, const std::string& 
 py::list ranked(const py::object& data, const std::vector<std::string>& models,
                 const std::string& loss, int starts, std::size_t samples, std::uint64_t seed,
                 bool rgb) {
-    requireWithin("starts", starts, 1, 10000);
+    requireWithin("starts", starts, jobs::bounds::starts);
     jobs::FitOptions options;
     options.loss = loss;
     options.starts = starts;

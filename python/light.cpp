@@ -73,8 +73,8 @@ std::vector<std::string> specificationsOf(const py::object& specs) {
 std::shared_ptr<Lit> projected(const py::object& specs, const std::string& basis, int order,
                                const py::object& normal, bool condonShortley, double tolerance,
                                bool wavelets) {
-    requireWithin("order", order, 1, 1000);
-    requireWithin("tolerance", tolerance, 1e-13, 1);
+    requireWithin("order", order, jobs::bounds::lightOrder);
+    requireWithin("tolerance", tolerance, jobs::bounds::tolerance);
     jobs::LightOptions options;
     options.basis = basis;
     options.order = order;
@@ -182,8 +182,8 @@ py::dict errorsDict(const IrradianceErrors& errors) {
 
 py::dict irradianceOfSpecs(const py::object& specs, int order, const std::string& window,
                            std::size_t normals, const std::string& convention) {
-    requireWithin("order", order, 1, 100);
-    requireWithin("normals", static_cast<double>(normals), 16, 1e6);
+    requireWithin("order", order, jobs::bounds::irradianceOrder);
+    requireWithin("normals", normals, jobs::bounds::normals);
     const std::vector<std::string> texts = specificationsOf(specs);
     const auto chosen =
         convention.empty() ? std::vector<const Convention*>{} : selectConventions(convention);

@@ -55,6 +55,9 @@ PYBIND11_MODULE(_hshfit, module) {
     bindStudies(module);
     bindFit(module);
     bindLight(module);
+    bindPictures(module);
+    bindScenes(module);
+    bindTrades(module);
     bindFiles(module);
     bindCatalog(module);
 }

@@ -19,7 +19,10 @@ void bindProjection(py::module_& module);
 void bindStudies(py::module_& module);
 void bindFit(py::module_& module);
 void bindLight(py::module_& module);
+void bindPictures(py::module_& module);
 void bindRotation(py::module_& module);
+void bindScenes(py::module_& module);
+void bindTrades(py::module_& module);
 void bindFiles(py::module_& module);
 void bindCatalog(py::module_& module);
 

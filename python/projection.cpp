@@ -87,8 +87,8 @@ std::shared_ptr<Result> projected(
     bool nonNegative, bool energyPreserving, int rank, double rankError, bool nonNegativeFactors,
     std::size_t keep, const std::string& precision, const py::object& progress) {
     requireQuadrature(tolerance, maxEvaluations);
-    requireWithin("regularise", regularise, 0, 1e3);
-    requireWithin("kernel", kernel, 0.1, 180);
+    requireWithin("regularise", regularise, jobs::bounds::regularise);
+    requireWithin("kernel", kernel, jobs::bounds::kernel);
     const FormWords words{.form = form,
                           .halfway = halfway.is_none() ? "" : listText(halfway),
                           .split = split,
@@ -125,7 +125,7 @@ std::shared_ptr<Result> projected(
 py::dict projectedAll(const py::object& brdf, const py::object& names, int order,
                       const py::object& outgoing, bool cosine, bool condonShortley, bool rgb,
                       double tolerance, const py::object& progress) {
-    if (tolerance != 0) requireWithin("tolerance", tolerance, 1e-13, 1);
+    if (tolerance != 0) requireWithin("tolerance", tolerance, jobs::bounds::tolerance);
     std::vector<std::unique_ptr<Basis>> made;
     std::vector<const Basis*> pointers;
     for (const bases::Entry* entry : bases::select(listText(names))) {

@@ -60,8 +60,8 @@ py::array_t<double> turned(const Rotation& rotation, const py::object& vectors) 
 
 py::array_t<double> matrixOf(const std::string& from, const std::string& to, int fromOrder,
                              int order, const py::object& rotation, bool condonShortley) {
-    requireWithin("order", order, 1, 2048);
-    requireWithin("from_order", fromOrder, 0, 2048);
+    requireWithin("order", order, jobs::bounds::matrixOrder);
+    if (fromOrder != 0) requireWithin("from_order", fromOrder, jobs::bounds::matrixOrder);
     jobs::MatrixOptions options;
     options.from = from;
     options.to = to;
@@ -83,8 +83,8 @@ py::array_t<double> matrixOf(const std::string& from, const std::string& to, int
 
 jobs::RotateOptions rotateOptions(const Rotation& rotation, const std::string& method,
                                   double tolerance, int tables) {
-    requireWithin("tolerance", tolerance, 1e-12, 1);
-    requireWithin("tables", tables, 2, 10001);
+    requireWithin("tolerance", tolerance, jobs::bounds::rotationTolerance);
+    requireWithin("tables", tables, jobs::bounds::rotationTables);
     return {.rotation = rotation,
             .way = {.method = hemisphereMethod(method), .tolerance = tolerance, .tables = tables}};
 }

@@ -40,7 +40,7 @@ std::shared_ptr<Report> curvesOf(const py::object& brdf, const py::object& bases
                                  double tolerance, double maxEvaluations,
                                  const py::object& progress) {
     requireQuadrature(tolerance, maxEvaluations);
-    requireWithin("max_order", maxOrder, 1, 1000);
+    requireWithin("max_order", maxOrder, jobs::bounds::curveOrders);
     jobs::ReportOptions options;
     options.bases = listText(bases);
     options.maxOrder = maxOrder;

@@ -78,7 +78,8 @@ class Run:
     def __init__(self, program, words, folder):
         self.folder = Path(folder)
         (self.folder / "out").mkdir()
-        self.words = [program] + words.split()
+        # Earlier files are replaced: by their bytes they are somebody else's.
+        self.words = [program] + words.split() + ([] if "--force" in words else ["--force"])
 
     def start(self, limit=None):
         def narrow():

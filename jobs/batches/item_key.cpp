@@ -1,5 +1,6 @@
 #include "item_key.h"
 
+#include "../named_files.h"
 #include "manifest.h"
 #include "program.h"
 
@@ -7,7 +8,6 @@
 #include <hshfit/files/checksum.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/files/mapped_file.h>
-#include <hshfit/specification/parameters.h>
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -31,32 +31,9 @@ bool haveSameTimes(const InputStamp& a, const InputStamp& b) {
     return a.bytes == b.bytes && a.modified == b.modified && a.changed == b.changed;
 }
 
-/// The file that a specification names, or those of the parts of a sum or a list.
-void addFiles(std::string_view text, std::set<std::string>& files) {
-    const auto add = [&](std::string_view part) {
-        const std::string_view path = pathIn(part);
-        std::error_code error;
-        if (!path.empty() && fs::is_regular_file(path, error)) files.emplace(path);
-        return !path.empty();
-    };
-    if (text.empty() || add(text)) return;
-    for (std::size_t begin = 0; begin < text.size();) {
-        const std::size_t end = std::min(text.find_first_of("+,", begin), text.size());
-        std::string_view part = text.substr(begin, end - begin);
-        while (part.starts_with(' ')) part.remove_prefix(1);
-        // A prefix that changes what is read, "grey:FILE", leaves the file.
-        while (!part.empty() && !add(part)) {
-            const std::size_t colon = part.find(':');
-            if (colon == std::string_view::npos) break;
-            part.remove_prefix(colon + 1);
-        }
-        begin = end + 1;
-    }
-}
-
 void addFiles(const nlohmann::json& value, std::set<std::string>& files) {
     if (value.is_string())
-        addFiles(std::string_view(value.get_ref<const std::string&>()), files);
+        addNamedFiles(value.get_ref<const std::string&>(), files);
     else if (value.is_structured())
         for (const auto& each : value) addFiles(each, files);
 }
@@ -79,16 +56,20 @@ InputStamp FileSums::stamp(const std::string& path, const std::vector<InputStamp
         const auto found = stamps_.find(path);
         if (found != stamps_.end() && haveSameTimes(found->second, now)) return found->second;
     }
-    const MappedFile file(path);
-    now.sha256 = sha256(std::as_bytes(file.bytes()));
-    file.checkIntact();
+    if (now.bytes == 0) {
+        now.sha256 = sha256(std::string_view());
+    } else {
+        const MappedFile file(path);
+        now.sha256 = sha256(std::as_bytes(file.bytes()));
+        file.checkIntact();
+    }
     const std::lock_guard lock(mutex_);
     return stamps_[path] = now;
 }
 
 std::vector<std::string> filesOf(const BatchItem& item) {
     std::set<std::string> files;
-    for (const std::string& input : item.inputs) addFiles(std::string_view(input), files);
+    for (const std::string& input : item.inputs) addNamedFiles(input, files);
     addFiles(*item.options, files);
     return {files.begin(), files.end()};
 }

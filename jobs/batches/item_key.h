@@ -26,7 +26,8 @@ private:
     std::unordered_map<std::string, InputStamp> stamps_;
 };
 
-/// The files among an item's inputs and its options' values, each once, sorted by name.
+/// The files that an item's inputs and its options' values name, and those that these name in turn
+/// (named_files.h), each once, sorted by name.
 std::vector<std::string> filesOf(const BatchItem& item);
 
 /// SHA-256 of all that an item's result depends on: the version of the program, the words of the

@@ -10,7 +10,6 @@
 #include <hshfit/spelling.h>
 
 #include <fmt/format.h>
-#include <glob.h>
 
 #include <algorithm>
 #include <array>
@@ -48,22 +47,12 @@ void requireKnownKeys(const json& object, std::span<const std::string_view> know
             throw InputError(where + ": " + spelling::unknown("key", key, known).what());
 }
 
-bool hasWildcards(const std::string& spec) {
-    return spec.find_first_of("*?[") != std::string::npos;
-}
-
-/// The files that a pattern stands for, sorted by name; the specification itself if it is none.
+/// The files of a folder or a pattern; the specification itself if it is neither. A specification
+/// is taken for a pattern where it has the characters of one and is no model or sum of models.
 std::vector<std::string> filesOfInput(const std::string& spec) {
-    std::error_code error;
-    if (fs::is_directory(spec, error)) return expandInputs({spec});
-    if (!pathIn(spec).empty() || !hasWildcards(spec)) return {spec};
-    glob_t found{};
-    const int failure = ::glob(spec.c_str(), 0, nullptr, &found);
-    std::vector<std::string> files;
-    if (failure == 0) files.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
-    ::globfree(&found);
-    std::erase_if(files, [](const std::string& file) { return fs::is_directory(file); });
-    if (files.empty()) throw InputError(fmt::format("no file matches '{}'", spec));
+    std::vector<std::string> files = expandInputs({spec});
+    const bool itself = files.size() == 1 && files[0] == spec;
+    if (itself && isPattern(spec)) throw InputError(fmt::format("no file matches '{}'", spec));
     return files;
 }
 

@@ -16,8 +16,8 @@ from ._hshfit import (
     Basis, Brdf, Coefficients, Comparison, Curve, Curves, Error, Fit, FittedParameter, Form,
     InputError, Light, NumericError, Outgoing, OutputError, Projection, Rotation, UsageError,
     __version__, catalog, compare, convert, curves, describe, direction, export, fit, function,
-    import_coefficients, irradiance, light, matrix, open, plot, project, project_all, rank_models,
-    read, sample, set_threads, threads)
+    illuminate, import_coefficients, irradiance, light, matrix, open, plan, plot, project,
+    project_all, rank_models, read, render, sample, set_threads, threads, tradeoff, transfer)
 from . import _html
 
 _html.attach()
@@ -26,6 +26,6 @@ __all__ = [
     "Basis", "Brdf", "Coefficients", "Comparison", "Curve", "Curves", "Error", "Fit",
     "FittedParameter", "Form", "InputError", "Light", "NumericError", "Outgoing", "OutputError",
     "Projection", "Rotation", "UsageError", "catalog", "compare", "convert", "curves", "describe",
-    "direction", "export", "fit", "function", "import_coefficients", "irradiance", "light",
-    "matrix", "open", "plot", "project", "project_all", "rank_models", "read", "sample",
-    "set_threads", "threads"]
+    "direction", "export", "fit", "function", "illuminate", "import_coefficients", "irradiance",
+    "light", "matrix", "open", "plan", "plot", "project", "project_all", "rank_models", "read",
+    "render", "sample", "set_threads", "threads", "tradeoff", "transfer"]

@@ -1,6 +1,7 @@
 // `batch`: what is done again and what is kept, failures, mistakes, shards, kills.
 
 #include "program.h"
+#include "unstated.h"
 
 #include <hshfit/files/checksum.h>
 
@@ -58,6 +59,45 @@ protected:
     }
 };
 
+/// The star of a weight is no pattern, and a pattern in a folder with a plus is one.
+TEST_F(Batch, SumsAreNoPatterns) {
+    fs::create_directory(path("a + b"));
+    ASSERT_EQ(run("convert lambert '" + path("a + b/x.alta") + "' --to alta:theta=4,phi=8").code,
+              0);
+    manifest(
+        R"({"defaults": {"command": "info", "name": "{stem}"}}
+{"input": ["0.5 * lambert", "lambert:kd=.1 + 0.5 * ggx:alpha=.3"]}
+{"input": "a + b/*.alta"}
+)");
+    const Answer answer = batch();
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(fs::exists(item("x")));
+    EXPECT_EQ(std::distance(fs::directory_iterator(path("out/items")), {}), 3);
+}
+
+/// A change of a file that an input names, however deep, makes the item stale.
+TEST_F(Batch, FilesThatInputsNameAreInputs) {
+    ASSERT_EQ(run("convert lambert:kd=.5 " + path("data.alta") + " --to alta:theta=4,phi=8").code,
+              0);
+    ASSERT_EQ(
+        run("project " + path("data.alta") + " --order 2 --outgoing 4 --form outgoing --split " +
+            "diffuse -o " + path("c.json"))
+            .code,
+        0);
+    manifest("{\"command\": \"info\", \"input\": \"" + path("c.json") + "\"}\n");
+    EXPECT_EQ(answerOf()["done"], 1);
+    EXPECT_EQ(answerOf()["kept"], 1);
+    const auto inputs = record("c-info")["inputs"];
+    bool named = false;
+    for (const auto& input : inputs) named = named || input["path"] == path("data.alta");
+    EXPECT_TRUE(named) << inputs;
+    ASSERT_EQ(
+        run("convert lambert:kd=.25 " + path("data.alta") + " --to alta:theta=4,phi=8 --force")
+            .code,
+        0);
+    EXPECT_EQ(answerOf()["kept"], 0);
+}
+
 TEST_F(Batch, ItemsAreWhatTheCommandsWrite) {
     ASSERT_EQ(run("convert ggx:alpha=.4 " + path("one.binary")).code, 0);
     manifest(R"({"defaults": {"command": "project", "options": {"order": 4, "outgoing": "6"}}}
@@ -76,7 +116,7 @@ TEST_F(Batch, ItemsAreWhatTheCommandsWrite) {
     const auto same = [&](const std::string& words, const std::string& name) {
         const std::string quiet = " >/dev/null 2>&1";
         ASSERT_EQ(std::system((by + " " + words + " alone" + quiet).c_str()), 0) << words;
-        EXPECT_EQ(sha256(read(item(name))), sha256(read(path("alone")))) << name;
+        EXPECT_EQ(sha256(read(item(name))), sha256(unstated(read(path("alone"))))) << name;
     };
     same("project one.binary --order 4 --outgoing 6 -o alone.json && mv alone.json",
          "one-project/coefficients.json");

@@ -141,17 +141,17 @@ TEST_F(Cli, JsonAnswersKeepTheirSchemas) {
         {"list", "list --json"},
         {"info", "info ggx:alpha=.4 --json"},
         {"help", "help losses --json"},
-        {"manual", "manual --json -o " + path("man")},
+        {"manual", "manual --json --force -o " + path("man")},
         {"completion", "completion bash --json"},
         {"completion", "completion bash --json -- hshfit pro"},
         {"eval", "eval lambert --wi 0,0 --wo 0,0 --json"},
-        {"project", "project lambert --outgoing 4 --json -o " + path("x.json")},
+        {"project", "project lambert --outgoing 4 --json --force -o " + path("x.json")},
         {"report", "report phong:exponent=5 --outgoing 20,0 --max-order 4 --json"},
         {"stress", "stress lambert --max-order 8 --json"},
         {"compare", "compare lambert phong:exponent=2 --outgoing 4 --json"},
-        {"light", "light sky:type=3 --order 4 --json -o " + path("l.json")},
-        {"light",
-         "light directional:elevation=40 --normal 30,0 --basis hsh --json -o " + path("d.json")},
+        {"light", "light sky:type=3 --order 4 --json --force -o " + path("l.json")},
+        {"light", "light directional:elevation=40 --normal 30,0 --basis hsh --json --force -o " +
+                      path("d.json")},
         {"irradiance", "irradiance sky:type=3 --normals 100 --window hann --json"},
         {"convert", "convert lambert --json --repair all --report-loss " + path("x.binary")}};
     for (const auto& [name, arguments] : answers) {

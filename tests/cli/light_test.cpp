@@ -160,7 +160,8 @@ TEST_F(Lights, FilesOfCoefficientsAreLights) {
     EXPECT_EQ(document["kind"], "light");
     EXPECT_EQ(document["lights"][0]["kind"], "coefficients");
     EXPECT_EQ(document["lights"][0]["order"], 4);
-    ASSERT_EQ(run("rotate " + file + " -o " + path("turned.json") + " --euler 20,0,0").code, 0);
+    ASSERT_EQ(run("rotate " + file + " --force -o " + path("turned.json") + " --euler 20,0,0").code,
+              0);
     EXPECT_EQ(info(path("turned.json"))["lights"][0]["domain"], "sphere");
 
     // The nine coefficients are those of the file, turned or not.
@@ -183,7 +184,7 @@ TEST_F(Lights, FilesOfCoefficientsAreLights) {
 
     const Answer rendered =
         run("render lambert --size 16 --samples 1 --orders 2 --cosine --light " + file +
-            " --json -o " + path("a.exr"));
+            " --json --force -o " + path("a.exr"));
     ASSERT_EQ(rendered.code, 0) << rendered.err;
     EXPECT_LT(Json::parse(rendered.out)["pictures"][1]["relative_l2"], 1e-3);
 }

@@ -63,5 +63,31 @@ TEST_F(Cli, ListsOfPresetsKeepTheirSchema) {
     }
 }
 
+std::string words(const std::string& text) {
+    std::istringstream in(text);
+    std::string all;
+    for (std::string word; in >> word;) all += word + " ";
+    return all;
+}
+
+TEST_F(Cli, TablesWrapToTheTerminalAndStayWholeForOtherPrograms) {
+    for (const char* section : {"models", "lights", "metrics", "presets"}) {
+        const std::string list = std::string("list ") + section;
+        ::unsetenv("COLUMNS");
+        const std::string whole = run(list).out;
+        ::setenv("COLUMNS", "60", 1);
+        const std::string wrapped = run(list).out;
+        ::unsetenv("COLUMNS");
+        EXPECT_EQ(words(wrapped), words(whole)) << section;
+        EXPECT_GT(lines(wrapped), lines(whole)) << section;
+        std::istringstream in(wrapped);
+        for (std::string line; std::getline(in, line);) {
+            // Only a word that does not fit beside its indentation is longer.
+            const std::size_t word = line.find_last_of(' ');
+            if (line.size() > 60) EXPECT_GT(line.size() - word, 60u - 43u) << line;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace hshfit::test

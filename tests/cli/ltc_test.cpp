@@ -9,8 +9,8 @@ namespace {
 using Json = nlohmann::json;
 
 TEST_F(Cli, LtcWritesEveryForm) {
-    const Answer answer = run("ltc ggx --size 4 --json -o " + path("t.dds") + " -o " +
-                              path("t.exr") + " -o " + path("t.json"));
+    const Answer answer = run("ltc ggx --size 4 --json --force -o " + path("t.dds") +
+                              " --force -o " + path("t.exr") + " --force -o " + path("t.json"));
     ASSERT_EQ(answer.code, 0) << answer.err;
     const Json json = Json::parse(answer.out);
     EXPECT_EQ(json["size"], 4);

@@ -220,5 +220,57 @@ TEST_F(ManyFiles, APatternStandsForTheFilesThatMatch) {
     EXPECT_TRUE(fs::is_regular_file(path("sum.json")));
 }
 
+TEST_F(ManyFiles, CompareTakesPairsOfOneNameFromTwoFolders) {
+    fs::create_directory(path("fits"));
+    ASSERT_EQ(run("convert lambert " + path("fits/one.alta")).code, 0);
+    ASSERT_EQ(run("convert lambert:kd=.5 " + path("fits/three.alta")).code, 0);
+    const std::string job = "compare " + path("in") + " " + path("fits") + " --outgoing 4 ";
+    const Answer answer = run(job + "--json");
+    EXPECT_EQ(answer.code, 3);  // two and three have no partner
+    EXPECT_EQ(lines(answer.err), 3) << answer.err;
+    EXPECT_NE(answer.err.find("three.alta"), std::string::npos) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "compares"));
+    const auto document = nlohmann::json::parse(answer.out);
+    ASSERT_EQ(document["comparisons"].size(), 1u);
+    EXPECT_EQ(document["failures"].size(), 2u);
+    const Answer alone = run("compare " + path("in/one.alta") + " " + path("fits/one.alta") +
+                             " --outgoing 4 --json");
+    EXPECT_EQ(document["comparisons"][0], nlohmann::json::parse(alone.out));
+}
+
+TEST_F(ManyFiles, CompareTakesManyAgainstOneReference) {
+    const std::string job = "compare lambert lambert:kd=.5 " + path("in") + " --outgoing 4 ";
+    const Answer answer = run(job + "-o " + path("out"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    for (const char* name : {"lambert_kd=.5", "one", "two"}) {
+        EXPECT_NE(answer.out.find(name), std::string::npos) << answer.out;
+        EXPECT_TRUE(fs::exists(path("out") + "/" + name + "/comparison.html")) << name;
+    }
+    // kd = 0.5 has half of the reference: a relative L2 error of 0.5 in each metric of values.
+    const std::string table = read(path("out/comparisons.csv"));
+    EXPECT_EQ(lines(table), 4) << table;
+    EXPECT_TRUE(table.starts_with("name,a,b,outgoing,")) << table;
+    const auto document = nlohmann::json::parse(run(job + "--json").out);
+    EXPECT_NEAR(document["comparisons"][0]["pairs"]["relative_l2"]["value"].get<double>(), 0.5,
+                1e-9);
+    const Answer again = run(job + "-o " + path("out"));
+    EXPECT_EQ(again.code, 0) << again.err;
+    EXPECT_NE(again.out.find("kept " + path("out/one")), std::string::npos) << again.out;
+    expectError("compare " + path("in") + " lambert lambert:kd=.5", 2, "one reference", 2);
+}
+
+TEST_F(ManyFiles, RenderTakesFolders) {
+    const Answer answer =
+        run("render " + path("in") + " lambert --size 8 --json -o " + path("a.png"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_EQ(nlohmann::json::parse(answer.out)["spheres"].size(), 3u);
+    const Answer lit = run("render " + path("in") +
+                           " --light uniform: --by integration --size 8 "
+                           "--samples 1 --json -o " +
+                           path("b.png"));
+    ASSERT_EQ(lit.code, 0) << lit.err;
+    EXPECT_EQ(nlohmann::json::parse(lit.out)["pictures"].size(), 2u);
+}
+
 }  // namespace
 }  // namespace hshfit::test

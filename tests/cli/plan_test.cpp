@@ -220,7 +220,7 @@ TEST_F(PlanCommand, CamerasGiveOrientationsAndViews) {
                         {"budget", {{"error", 0.1}}}};
     write("scene.json", scene.dump());
     const Answer answer =
-        run("plan " + path("scene.json") + " -o " + path("out") + " --max-order 3 --json");
+        run("plan " + path("scene.json") + " --force -o " + path("out") + " --max-order 3 --json");
     ASSERT_EQ(answer.code, 0) << answer.err;
     EXPECT_TRUE(keepsSchema(answer.out, "plan"));
     const Json materials = Json::parse(answer.out)["materials"];
@@ -235,7 +235,7 @@ TEST_F(PlanCommand, CamerasGiveOrientationsAndViews) {
     EXPECT_GT(seen["views"]["theta"][1], 10);
     EXPECT_EQ(materials[1]["seen"]["hits"], 0);
     EXPECT_FALSE(materials[1]["seen"].contains("views"));
-    EXPECT_NE(run("plan " + path("scene.json") + " -o " + path("out") + " --max-order 3")
+    EXPECT_NE(run("plan " + path("scene.json") + " --force -o " + path("out") + " --max-order 3")
                   .out.find("no camera sees it"),
               std::string::npos);
 }

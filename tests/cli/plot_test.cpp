@@ -29,20 +29,21 @@ TEST_F(Cli, PlotRefusesInOneLine) {
 TEST_F(Cli, PlotDrawsWholeFiguresInEachFormat) {
     if (!hshfit::test::hasGnuplot()) GTEST_SKIP() << hshfit::test::noGnuplot;
     for (const char* name : {"hsh.png", "hsh.svg", "hsh.pdf"}) {
-        const Answer answer = run("plot hsh --order 2 --json -o " + path(name));
+        const Answer answer = run("plot hsh --order 2 --json --force -o " + path(name));
         ASSERT_EQ(answer.code, 0) << answer.err;
         EXPECT_TRUE(keepsSchema(answer.out, "plot"));
         EXPECT_EQ(Json::parse(answer.out)["functions"], 4);
         EXPECT_TRUE(hshfit::figureIsComplete(path(name))) << name;
     }
-    EXPECT_EQ(Json::parse(run("plot esh --json -o " + path("esh.svg")).out)["functions"], 10);
+    EXPECT_EQ(Json::parse(run("plot esh --json --force -o " + path("esh.svg")).out)["functions"],
+              10);
 }
 
 /// Both signs are drawn exactly where a function has both: Y_0^0 > 0, Y_1^m changes its sign.
 TEST_F(Cli, PlotColoursSignsApart) {
     if (!hshfit::test::hasGnuplot()) GTEST_SKIP() << hshfit::test::noGnuplot;
     const auto hues = [&](const std::string& arguments) {
-        EXPECT_EQ(run("plot " + arguments + " -o " + path("a.svg")).code, 0);
+        EXPECT_EQ(run("plot " + arguments + " --force -o " + path("a.svg")).code, 0);
         const std::string svg = read(path("a.svg"));
         std::set<bool> warm;
         const std::regex colour("rgb\\( *([0-9]+), *([0-9]+), *([0-9]+)\\)");

@@ -37,14 +37,14 @@ protected:
 };
 
 TEST_F(Quality, OutgoingDirectionsAreElevationsForIsotropicInput) {
-    const std::string to = " --order 2 -o " + path("x.json");
+    const std::string to = " --order 2 --force -o " + path("x.json");
     EXPECT_EQ(answerOf("project lambert" + to, false)["outgoing"], "32");
     EXPECT_EQ(answerOf("project lambert --precision half" + to, false)["outgoing"], "32");
     EXPECT_EQ(answerOf("project lambert --outgoing 4x4" + to, false)["outgoing"], "4x4");
     EXPECT_EQ(answerOf("project ward:kd=1,ks=.001,ax=.5,ay=.6" + to, false)["outgoing"], "32x32");
     // Each of several inputs by its own symmetry.
     const Json both = Json::parse(run("project lambert ward:kd=1,ks=.001,ax=.5,ay=.6 --order 2 "
-                                      "--json -o " +
+                                      "--json --force -o " +
                                       path("folder"))
                                       .out)["projections"];
     EXPECT_EQ(both[0]["outgoing"], "32");
@@ -52,7 +52,7 @@ TEST_F(Quality, OutgoingDirectionsAreElevationsForIsotropicInput) {
 }
 
 TEST_F(Quality, ALittleEnergyCapturedIsCalledPoor) {
-    const std::string to = " --order 4 -o " + path("x.json");
+    const std::string to = " --order 4 --force -o " + path("x.json");
     const Json narrow = answerOf("project ggx:alpha=.02 --outgoing 4" + to, true);
     EXPECT_LT(narrow["accuracy"], 0.9);
     EXPECT_TRUE(keepsSchema(narrow.dump(), "project"));
@@ -101,7 +101,7 @@ TEST_F(Quality, EveryBasisHasAVerdictAndASuggestionThatDoesBetter) {
         for (const std::string form : {"", " --precision half"}) {
             SCOPED_TRACE(name + form);
             const Json poor = answerOf("project phong:exponent=60 --order 3 --outgoing 4 --basis " +
-                                           name + form + " -o " + path("x.json"),
+                                           name + form + " --force -o " + path("x.json"),
                                        true);
             EXPECT_TRUE(keepsSchema(poor.dump(), "project"));
             EXPECT_LT(poor["accuracy"], 0.9);
@@ -109,7 +109,7 @@ TEST_F(Quality, EveryBasisHasAVerdictAndASuggestionThatDoesBetter) {
         }
         answerOf(
             "project oren-nayar:kd=1,sigma=20 --order 3 --outgoing 8 --precision half --basis " +
-                name + " -o " + path("x.json"),
+                name + " --force -o " + path("x.json"),
             false);
     }
 }
@@ -131,7 +131,7 @@ TEST_F(Quality, EveryFormHasAVerdictAndASuggestionThatDoesBetter) {
              "ward:kd=0,ks=1,ax=.2,ay=.2,variant=1992 --order 3 --outgoing 8",
          }) {
         SCOPED_TRACE(job);
-        const Json poor = answerOf("project " + job + " -o " + path("x.json"), true);
+        const Json poor = answerOf("project " + job + " --force -o " + path("x.json"), true);
         EXPECT_TRUE(keepsSchema(poor.dump(), "project"));
         ASSERT_TRUE(poor["accuracy"].is_number());
         EXPECT_GT(betterThan(poor)["accuracy"], poor["accuracy"].get<double>() + 0.05);
@@ -139,36 +139,38 @@ TEST_F(Quality, EveryFormHasAVerdictAndASuggestionThatDoesBetter) {
     for (const std::string job : {"lambert --form basis --order 3",
                                   "oren-nayar:kd=1,sigma=20 --form halfway --halfway 4,2,2",
                                   "lambert --order 2 --outgoing 8 --split diffuse"})
-        answerOf("project " + job + " -o " + path("x.json"), false);
+        answerOf("project " + job + " --force -o " + path("x.json"), false);
 }
 
 TEST_F(Quality, AStepThatChangesMuchIsCalledPoor) {
-    const std::string job = "project ggx:alpha=.6 --outgoing 8 -o " + path("x.json");
+    const std::string job = "project ggx:alpha=.6 --outgoing 8 --force -o " + path("x.json");
     const Json few = answerOf(job + " --keep 9", true);
     EXPECT_NE(few["poor"]["reason"].get<std::string>().find("keep 9"), std::string::npos);
     EXPECT_FALSE(betterThan(few).contains("representation"));
     answerOf(job + " --precision half", false);
     // Rounded coefficients capture what plain ones do.
-    const std::string narrow = " phong:exponent=400 --order 4 --outgoing 4 -o " + path("x.json");
+    const std::string narrow =
+        " phong:exponent=400 --order 4 --outgoing 4 --force -o " + path("x.json");
     const Json plain = answerOf("project" + narrow, true);
     EXPECT_EQ(answerOf("project --precision half" + narrow, true)["poor"], plain["poor"]);
 }
 
 TEST_F(Quality, ExportsNameTheLargestCauseOfAPoorError) {
-    answerOf("project phong:exponent=400 --order 4 --outgoing 8 -o " + path("x.json"), true);
-    const Json document = answerOf("export " + path("x.json") + " -o " + path("out"), true);
+    answerOf("project phong:exponent=400 --order 4 --outgoing 8 --force -o " + path("x.json"),
+             true);
+    const Json document = answerOf("export " + path("x.json") + " --force -o " + path("out"), true);
     EXPECT_TRUE(keepsSchema(document.dump(), "export"));
     const std::string reason = document["poor"]["reason"];
     EXPECT_NE(reason.find("most of it truncation"), std::string::npos) << reason;
     EXPECT_EQ(betterThan(document)["order"], 8);
-    answerOf("project lambert --order 2 --outgoing 8 -o " + path("x.json"), false);
+    answerOf("project lambert --order 2 --outgoing 8 --force -o " + path("x.json"), false);
     answerOf("export " + path("x.json") + " --force -o " + path("out"), false);
 }
 
 // The share of a window is the same share that plain coefficients lack.
 TEST_F(Quality, AWindowIsNoInterpolation) {
     const auto errorOf = [&](const std::string& options) {
-        EXPECT_EQ(run("project phong:exponent=20,kd=.2 --order 6 --outgoing 16 -o " +
+        EXPECT_EQ(run("project phong:exponent=20,kd=.2 --order 6 --outgoing 16 --force -o " +
                       path("x.json") + options)
                       .code,
                   0);
@@ -242,8 +244,8 @@ TEST_F(Quality, ValuesWhoseSquaresOverflowAreRefused) {
     write("huge.brdf",
           "2\n500 600\n.1 0 .2 0 4e297 .1\n.3 0 .5 1 .1 .1\n.8 0 .9 2 .1 .2\n1.2 0 1 3 .2 .1\n");
     for (const char* how : {" --outgoing 4", " --outgoing 4 --cosine", " --form halfway"}) {
-        const Answer answer =
-            run("project " + path("huge.brdf") + " --order 3" + how + " -o " + path("x.json"));
+        const Answer answer = run("project " + path("huge.brdf") + " --order 3" + how +
+                                  " --force -o " + path("x.json"));
         EXPECT_EQ(answer.code, 4) << how;
         EXPECT_NE(answer.err.find("square"), std::string::npos) << answer.err;
         EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1) << answer.err;

@@ -62,7 +62,7 @@ TEST_F(Cli, RenderRefusesInOneLine) {
 TEST_F(Cli, RenderComparesCoefficientsWithIntegration) {
     const std::string job =
         "render lambert:kd=.5 phong:exponent=8,ks=.5 --size 16 --samples 1 --light uniform "
-        "--light 40,60,.5 --orders 2,6 --json -o " +
+        "--light 40,60,.5 --orders 2,6 --json --force -o " +
         path("s.exr");
     const Answer answer = run(job);
     ASSERT_EQ(answer.code, 0) << answer.err;
@@ -106,7 +106,7 @@ TEST_F(Cli, RenderIsWithinOnePercentAtTheOrderThatTheReportCallsEnough) {
         for (const char* light : {"uniform", "sun:elevation=40,azimuth=20", "panel:elevation=50"}) {
             const Answer answer = run(std::string("render ") + material + " --cosine --order " +
                                       std::to_string(order) + " --light " + light +
-                                      " --size 24 --samples 1 --json -o " + path("a.exr"));
+                                      " --size 24 --samples 1 --json --force -o " + path("a.exr"));
             ASSERT_EQ(answer.code, 0) << answer.err;
             EXPECT_LT(Json::parse(answer.out)["pictures"][1]["relative_l2"], 0.01)
                 << material << " under " << light;
@@ -184,7 +184,7 @@ TEST_F(Cli, RenderGivesTheSameBytesWhateverTheThreads) {
 TEST_F(Cli, CompareWritesAPage) {
     if (!hshfit::test::hasGnuplot()) GTEST_SKIP() << hshfit::test::noGnuplot;
     const Answer answer =
-        run("compare ggx:alpha=.4 phong:exponent=9 --outgoing 4 --json -o " + path("page"));
+        run("compare ggx:alpha=.4 phong:exponent=9 --outgoing 4 --json --force -o " + path("page"));
     ASSERT_EQ(answer.code, 0) << answer.err;
     EXPECT_TRUE(keepsSchema(answer.out, "compare"));
     EXPECT_TRUE(keepsSchema(read(path("page/comparison.json")), "comparison"));
@@ -194,10 +194,10 @@ TEST_F(Cli, CompareWritesAPage) {
         EXPECT_TRUE(fs::exists(path("page/") + file.get<std::string>())) << file;
     }
     // The page has every metric, whichever were asked for on the command line.
-    ASSERT_EQ(
-        run("compare ggx:alpha=.4 phong:exponent=9 --outgoing 4 --metrics log -o " + path("page"))
-            .code,
-        0);
+    ASSERT_EQ(run("compare ggx:alpha=.4 phong:exponent=9 --outgoing 4 --metrics log --force -o " +
+                  path("page"))
+                  .code,
+              0);
     EXPECT_EQ(printed["metrics"], Json::parse(read(path("page/comparison.json")))["metrics"]);
 }
 

@@ -34,7 +34,7 @@ TEST_F(Cli, SampleStatesTheAlbedoOfAWhiteFurnace) {
 
 /// The rows of the file give the albedo once more.
 TEST_F(Cli, SampleWritesDirectionsWithWeights) {
-    const Answer answer = run("sample lambert:kd=.8/.4/.2 --outgoing 20,0 --count 50 -o " +
+    const Answer answer = run("sample lambert:kd=.8/.4/.2 --outgoing 20,0 --count 50 --force -o " +
                               path("s.csv") + " --elevations 0 --trials 10");
     ASSERT_EQ(answer.code, 0) << answer.err;
     EXPECT_NE(answer.out.find("\n    20.0 "), std::string::npos) << answer.out;
@@ -80,9 +80,10 @@ TEST_F(Cli, SampleSaysWhereNothingIsReflected) {
 
 /// An export with shaders keeps a proposal, from which `stored` draws; others keep one on request.
 TEST_F(Cli, SampleDrawsFromTheProposalOfAnExport) {
-    ASSERT_EQ(
-        run("project ggx:alpha=.3,F0=.8 --form halfway --halfway 6,3,2 -o " + path("g.json")).code,
-        0);
+    ASSERT_EQ(run("project ggx:alpha=.3,F0=.8 --form halfway --halfway 6,3,2 --force -o " +
+                  path("g.json"))
+                  .code,
+              0);
     const std::string job = "export " + path("g.json") + " --json --no-error -o ";
     const Answer with = run(job + path("with") + " --target bin,glsl");
     ASSERT_EQ(with.code, 0) << with.err;
@@ -102,7 +103,7 @@ TEST_F(Cli, SampleDrawsFromTheProposalOfAnExport) {
     EXPECT_EQ(Json::parse(stored.out)["stored"], true);
     EXPECT_EQ(Json::parse(run("sample " + path("g.json") + few).out)["stored"], false);
     const Answer again =
-        run("import " + path("with/g.hsh.json") + " -o " + path("h.json") + " --json");
+        run("import " + path("with/g.hsh.json") + " --force -o " + path("h.json") + " --json");
     EXPECT_TRUE(keepsSchema(again.out, "import"));
     EXPECT_EQ(Json::parse(again.out)["proposal"]["rows"], 16);
 

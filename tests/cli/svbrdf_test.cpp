@@ -83,7 +83,7 @@ TEST_P(SvbrdfModels, TexelsAreTheProjectionsOfTheirBrdfs) {
         parameters[test.parameters[k]] = {{"map", test.parameters[k] + ".pfm"}};
     }
     describe(test.model, parameters);
-    const Answer answer = made("-o " + path("out") +
+    const Answer answer = made("--force -o " + path("out") +
                                " --precision float32 --tolerance 1e-4 --outgoing " + test.outgoing);
     ASSERT_EQ(answer.code, 0) << answer.err;
     EXPECT_TRUE(keepsSchema(answer.out, "svbrdf"));
@@ -96,8 +96,8 @@ TEST_P(SvbrdfModels, TexelsAreTheProjectionsOfTheirBrdfs) {
             spec += fmt::format("{}{}={:.9g}", k == 0 ? ':' : ',', test.parameters[k],
                                 static_cast<double>(valueAt(k, x, y)));
         }
-        ASSERT_EQ(run("project '" + spec + "' -o " + path("p.json") + " --order 4 --outgoing " +
-                      test.outgoing)
+        ASSERT_EQ(run("project '" + spec + "' --force -o " + path("p.json") +
+                      " --order 4 --outgoing " + test.outgoing)
                       .code,
                   0);
         const std::vector<double> texel =
@@ -131,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_F(Svbrdf, LevelsAreMeansOfReflectance) {
     writeMap("alpha.pfm", 4, 2, [](int x, int y) { return (x + y) % 2 == 0 ? 0.1F : 0.7F; });
     describe("ggx", {{"alpha", {{"map", "alpha.pfm"}}}, {"ks", {0.9, 0.5, 0.1}}});
-    const Answer answer = made("-o " + path("out") + " --precision float32");
+    const Answer answer = made("--force -o " + path("out") + " --precision float32");
     ASSERT_EQ(answer.code, 0) << answer.err;
     const Json levels = Json::parse(answer.out)["levels"];
     ASSERT_EQ(levels.size(), 3);
@@ -170,9 +170,9 @@ TEST_F(Svbrdf, StatedErrorsAreThoseOfTheTexels) {
     writeMap("alpha.pfm", 6, 6,
              [](int x, int y) { return 0.1F + 0.02F * static_cast<float>(x + 6 * y); });
     describe("ggx", {{"alpha", {{"map", "alpha.pfm"}}}});
-    ASSERT_EQ(made("-o " + path("plain") + " --precision float32").code, 0);
+    ASSERT_EQ(made("--force -o " + path("plain") + " --precision float32").code, 0);
     const Answer answer =
-        made("-o " + path("low") + " --form low-rank --rank 2 --precision float32");
+        made("--force -o " + path("low") + " --form low-rank --rank 2 --precision float32");
     ASSERT_EQ(answer.code, 0) << answer.err;
     const Json level = Json::parse(answer.out)["levels"][0]["error"];
     const double stated = level["maximum"];

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "unstated.h"
+
 #include <cli/program.h>
 
 #include <map>
@@ -16,6 +18,9 @@ protected:
         EXPECT_EQ(answer.code, 0) << arguments << "\n" << answer.err;
         return answer.out;
     }
+
+    /// Bytes of a file without the key that the program states in it.
+    static std::string read(const std::string& file) { return unstated(Cli::read(file)); }
 
     /// Name -> bytes of every file below a folder.
     std::map<std::string, std::string> filesIn(const std::string& folder) const {

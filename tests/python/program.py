@@ -1,6 +1,7 @@
 """What the tests of the Python package share: the program, run in a folder that goes away."""
 import json
 import os
+import re
 import subprocess
 import tempfile
 import unittest
@@ -27,6 +28,13 @@ class InFolder(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
 
+    def bytes_from(self, *words, extension):
+        """The file that the program would write, by way of standard output: without a key."""
+        done = subprocess.run([PROGRAM, *words, "-o", f"{extension}:-", "--quiet"], check=False,
+                              capture_output=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
     def json_of(self, *words):
         return json.loads(self.run_program(*words, "--json"))
 
@@ -38,8 +46,11 @@ class InFolder(unittest.TestCase):
         return done.returncode, done.stderr.strip().removeprefix("hshfit: ")
 
     def bytes_of(self, path):
+        """Of a file, without the key that the program states at the end of JSON (docs/files.md)."""
         with open(path, "rb") as file:
-            return file.read()
+            content = file.read()
+        return re.sub(rb',(\s*)"made_from": ?\{[^{}]*\}\s*\}\n\Z',
+                      lambda found: b"\n}\n" if found[1] else b"}\n", content)
 
 
 def main():

@@ -1,6 +1,8 @@
 """The package gives the numbers of the program, bit for bit."""
 import csv
 import json
+import os
+import subprocess
 
 import numpy as np
 
@@ -59,9 +61,9 @@ class SameNumbers(program.InFolder):
                     continue  # a form that only JSON can hold
                 with self.subTest(spec=spec, options=options, extension=extension):
                     hshfit.project(spec, **options).save(f"ours.{extension}")
-                    self.run_program("project", spec, "-o", f"theirs.{extension}", *words)
-                    self.assertEqual(self.bytes_of(f"ours.{extension}"),
-                                     self.bytes_of(f"theirs.{extension}"))
+                    self.assertEqual(
+                        self.bytes_of(f"ours.{extension}"),
+                        self.bytes_from("project", spec, *words, extension=extension))
 
     def test_values_of_a_projection_are_those_in_the_file(self):
         found = hshfit.project("ggx:alpha=0.4", outgoing=8)
@@ -153,6 +155,93 @@ class SameNumbers(program.InFolder):
         hshfit.open("phong:exponent=9").write("ours.bsdf", format="rgl")
         self.run_program("convert", "phong:exponent=9", "theirs.bsdf")
         self.assertEqual(self.bytes_of("ours.bsdf"), self.bytes_of("theirs.bsdf"))
+
+    def test_pictures_are_those_of_the_program(self):
+        hshfit.render(["lambert", "ggx:alpha=0.3"], "ours.png", size=24, light=[(30, 90, 2)])
+        self.assertEqual(self.bytes_of("ours.png"),
+                         self.bytes_from("render", "lambert", "ggx:alpha=0.3", "--size", "24",
+                                         "--light", "30,90,2", extension="png"))
+        options = ["render", "ggx:alpha=0.5", "--light", "uniform:", "--size", "8",
+                   "--samples", "1", "--orders", "2,4", "--view", "60,10"]
+        done = hshfit.render("ggx:alpha=0.5", "ours.exr", light="uniform:", size=8, samples=1,
+                             orders=[2, 4], view=(60, 10))
+        self.assertEqual(self.bytes_of("ours.exr"), self.bytes_from(*options, extension="exr"))
+        expected = self.json_of(*options, "-o", "theirs.exr")
+        expected["output"] = "ours.exr"
+        self.assertEqual(done, expected)
+
+    def scene(self, name):
+        return os.path.join(os.environ["HSHFIT_SOURCE"], "examples", "scenes", name)
+
+    def assert_same_but_times(self, ours, theirs, times):
+        """Two answers, without the keys that say how long something took."""
+        def without(value):
+            if isinstance(value, dict):
+                return {key: without(each) for key, each in value.items() if key not in times}
+            return [without(each) for each in value] if isinstance(value, list) else value
+        self.assertEqual(without(ours), without(theirs))
+
+    def test_illuminated_scenes_are_those_of_the_program(self):
+        times = {"seconds", "cpu_seconds", "preparation_seconds", "cache_cpu_seconds"}
+        for method, options, words in [
+                ("path", {"samples": 1, "bounces": 2}, ["--samples", "1", "--bounces", "2"]),
+                ("radiance-cache", {"samples": 1, "rays": 64, "choose_by": "loss"},
+                 ["--samples", "1", "--rays", "64", "--choose-by", "loss"])]:
+            ours = hshfit.illuminate(self.scene("box.json"), "ours", method=method, force=True,
+                                     **options)
+            theirs = self.json_of("illuminate", self.scene("box.json"), "-o", "theirs", "--method",
+                                  method, "--force", *words)
+            for document in ours, theirs:
+                for camera in document["cameras"]:
+                    camera["files"] = [os.path.basename(file) for file in camera["files"]]
+            with self.subTest(method=method):
+                self.assert_same_but_times(ours, theirs, times)
+
+    def test_transfer_is_that_of_the_program(self):
+        scene = self.scene("ball_and_wall.json")
+        ours = hshfit.transfer(scene, "ours", rays=16, edge=0, passes=1, order=3)
+        theirs = self.json_of("transfer", scene, "-o", "theirs", "--rays", "16", "--edge", "0",
+                              "--passes", "1", "--order", "3")
+        self.assertEqual(self.bytes_of("ours/transfer.tensor"),
+                         self.bytes_of("theirs/transfer.tensor"))
+        self.assertEqual(ours["energy"], theirs["energy"])
+        self.assertEqual(ours["vertices"], theirs["vertices"])
+
+    def test_plans_are_those_of_the_program(self):
+        ours = hshfit.plan(self.scene("car_paint.json"), "ours", bases=["hsh"], max_order=4)
+        with open("ours/plan.json", encoding="utf-8") as file:
+            self.assertEqual(json.load(file), ours)
+        done = subprocess.run([program.PROGRAM, "plan", self.scene("car_paint.json"), "-o",
+                               "theirs", "--bases", "hsh", "--max-order", "4", "--json",
+                               "--quiet"], check=False, capture_output=True, text=True)
+        self.assertEqual(ours, json.loads(done.stdout))
+
+    def test_trades_are_those_of_the_program(self):
+        ours = hshfit.tradeoff("ggx:alpha=0.5", bases=["hsh"], orders=[3], forms=["outgoing"],
+                               ranks=[0, 2], precisions=["half"], outgoing=["8"], timing=False,
+                               pair_count=256)
+        theirs = self.json_of("tradeoff", "ggx:alpha=0.5", "--bases", "hsh", "--orders", "3",
+                              "--forms", "outgoing", "--ranks", "0,2", "--precisions", "half",
+                              "--outgoing", "8", "--no-timing", "--pair-count", "256")
+        self.assertEqual(ours, theirs)
+
+    def test_arguments_are_refused_where_the_program_refuses_them(self):
+        for work in [lambda: hshfit.render("lambert", "x.png", size=4),
+                     lambda: hshfit.render("lambert", "x.png", light=[(200, 0)]),
+                     lambda: hshfit.render("lambert", "x.png", by="paint"),
+                     lambda: hshfit.illuminate("s.json", "x", method="guess"),
+                     lambda: hshfit.illuminate("s.json", "x", samples=0),
+                     lambda: hshfit.transfer("s.json", "x", kind="most"),
+                     lambda: hshfit.transfer("s.json", "x", order=17),
+                     lambda: hshfit.plan("s.json", "x", max_order=33),
+                     lambda: hshfit.tradeoff("lambert", orders=[0])]:
+            with self.assertRaises(hshfit.UsageError):
+                work()
+        for work in [lambda: hshfit.illuminate("absent.json", "x"),
+                     lambda: hshfit.transfer("absent.json", "x"),
+                     lambda: hshfit.plan("absent.json", "x")]:
+            with self.assertRaises(hshfit.InputError):
+                work()
 
     def test_files_come_back_as_what_they_are(self):
         plain = hshfit.project("ggx:alpha=0.5", outgoing=4)

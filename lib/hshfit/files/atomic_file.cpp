@@ -1,11 +1,15 @@
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
+#include <hshfit/files/made_from.h>
 #include <hshfit/files/standard_streams.h>
 #include <hshfit/wording.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 
 #include <fcntl.h>
@@ -38,10 +42,26 @@ std::string endOfLinks(const std::string& path) {
     return path;
 }
 
+bool haveSameBytes(const std::string& a, const std::string& b) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(a, error);
+    if (error || std::filesystem::file_size(b, error) != size || error) return false;
+    std::ifstream first(a, std::ios::binary), second(b, std::ios::binary);
+    std::array<char, std::size_t{1} << 16> left{}, right{};
+    while (first && second) {
+        first.read(left.data(), left.size());
+        second.read(right.data(), right.size());
+        const auto count = static_cast<std::size_t>(first.gcount());
+        if (!std::equal(left.begin(), left.begin() + count, right.begin())) return false;
+    }
+    return first.eof() && second.eof();
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(std::string path, Existing existing)
     : path_(std::move(path)), target_(path_), existing_(existing) {
+    isRuled_ = !outputRule().replace && existing != Existing::always;
     if (path_.empty()) throw OutputError("cannot write to an empty file name");
     if (isStandardOutput(path_)) {
         temporary_ = openOutputBuffer();
@@ -55,7 +75,7 @@ AtomicFile::AtomicFile(std::string path, Existing existing)
     if (!stands || S_ISREG(status.st_mode)) target_ = endOfLinks(path_);
     if (stands) {
         if (S_ISDIR(status.st_mode)) fail(EISDIR);
-        if (existing_ == Existing::refuse) {
+        if (existing_ == Existing::refuse && !isRuled_) {
             throw OutputError(fmt::format("'{}' exists; nothing is written without {}", path_,
                                           Setting{"FileSet::force"}));
         }
@@ -157,21 +177,56 @@ void AtomicFile::finish() {
     finished_ = true;
 }
 
-void AtomicFile::commit() {
+void AtomicFile::state(const std::vector<std::string>& files) {
     finish();
-    finished_ = false;
-    int error = 0;
-    if (isStandardOutput(path_)) {
-        error = sendOutputBuffer();
-    } else if (temporary_ != target_) {
-        // link() refuses an existing name, rename() replaces it; both in one step.
-        const bool moved = existing_ == Existing::refuse
-                               ? ::link(temporary_.c_str(), target_.c_str()) == 0
-                               : ::rename(temporary_.c_str(), target_.c_str()) == 0;
-        if (!moved) error = errno;
+    if (stated_ || key_.empty() || temporary_ == target_ || isStandardOutput(path_)) return;
+    stated_ = true;
+    if (canStateMadeFrom(target_))
+        addMadeFrom(temporary_, {.command = outputRule().command,
+                                 .key = key_,
+                                 .exitCode = statedExitCode(),
+                                 .files = files});
+}
+
+void AtomicFile::requirePlace() {
+    finish();
+    if (!isRuled_ || temporary_ == target_ || isStandardOutput(path_)) return;
+    std::error_code error;
+    if (!std::filesystem::exists(target_, error)) return;
+    standsAlready_ = haveSameBytes(temporary_, target_);
+    if (standsAlready_) return;
+    const auto made = madeFromOf(target_);
+    if (made && !key_.empty() && made->key == key_) return;
+    throw OutputError(
+        fmt::format("'{}' exists and differs from what would be written; nothing is "
+                    "written without {}",
+                    path_, Setting{"FileSet::force"}));
+}
+
+/// Gives the file its name. Returns the system's error, 0 for none.
+int AtomicFile::move() {
+    if (isStandardOutput(path_)) return sendOutputBuffer();
+    if (temporary_ == target_ || standsAlready_) return 0;
+    // link() refuses an existing name, rename() replaces it; both in one step.
+    const bool moved = existing_ == Existing::refuse && !isRuled_
+                           ? ::link(temporary_.c_str(), target_.c_str()) == 0
+                           : ::rename(temporary_.c_str(), target_.c_str()) == 0;
+    return moved ? 0 : errno;
+}
+
+void AtomicFile::commit() {
+    try {
+        state({});
+        requirePlace();
+    } catch (...) {
+        discard();
+        throw;
     }
+    finished_ = false;
+    const int error = move();
     discard();
     if (error != 0) fail(error);
+    if (standsAlready_) addKeptFile(path_);
 }
 
 void writeFile(const std::string& path, std::string_view text) {

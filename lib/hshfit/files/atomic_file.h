@@ -1,12 +1,14 @@
 #pragma once
 
 #include <hshfit/files/interruption.h>
+#include <hshfit/files/output_rule.h>
 
 #include <cstddef>
 #include <cstdio>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 struct stat;
 
@@ -21,10 +23,15 @@ namespace hshfit::inline files {
 /// another has the other's permissions, and its owner where the system allows it. The file is not
 /// synced to the disk: a power cut may lose it.
 ///
+/// Where the process has a rule that refuses (OutputRule), `replace` and `refuse` alike come down
+/// to it: a file that stands is kept if it has the same bytes, or states the same key, else
+/// refused.
+///
 /// Every member but the destructor throws OutputError, with the path and the system's reason.
 class AtomicFile {
 public:
-    enum class Existing { replace, refuse };
+    /// `always`: replaced whatever the rule, for files that go on from run to run.
+    enum class Existing { replace, refuse, always };
 
     explicit AtomicFile(std::string path, Existing existing = Existing::replace);
     ~AtomicFile();
@@ -43,15 +50,25 @@ public:
     /// The place of the file: `path` with its links resolved.
     const std::string& target() const { return target_; }
 
-    /// Flushes and closes: every byte is in the temporary, or this throws. Only commit() may
-    /// follow.
+    /// Flushes and closes: every byte is in the temporary, or this throws. Only the members below
+    /// may follow.
     void finish();
-    /// finish(), unless that was called, and the rename.
+    /// The key that the file would state.
+    const std::string& key() const { return key_; }
+    /// finish(), and the statement of the key with the `files` written beside this one, where there
+    /// is a key and a place for it; once.
+    void state(const std::vector<std::string>& files);
+    /// The same without the statement.
+    void leaveUnstated() { key_.clear(); }
+    /// finish(), and the rule: throws for a file that stands and is not to be replaced.
+    void requirePlace();
+    /// All of these, unless they were called, and the rename.
     void commit();
 
 private:
     [[noreturn]] void fail(int error) const;
     void openTemporary(const struct stat* replaced);
+    int move();
     void discard() noexcept;
 
     std::string path_;       ///< as given, for messages
@@ -60,7 +77,9 @@ private:
     Existing existing_;
     std::FILE* stream_ = nullptr;
     Trace trace_;
-    bool finished_ = false;
+    std::string key_ = OutputKey::current();
+    bool finished_ = false, stated_ = false, standsAlready_ = false;
+    bool isRuled_ = false;  ///< the rule of the process decides on what stands
 };
 
 /// Writes `text` to `path` through an AtomicFile.

@@ -121,9 +121,30 @@ void FileSet::takeBack() noexcept {
     madeTraces_.clear();
 }
 
+/// The JSON files of a set state its key and name the others; pictures do where there is no JSON,
+/// since JSON may hold their checksums. A file with a key of its own stands for itself.
+void FileSet::stateKeys() {
+    const auto isJson = [](const auto& member) { return member->path.extension() == ".json"; };
+    const bool anyJson = std::ranges::any_of(members_, isJson);
+    std::vector<std::string> names;
+    for (const auto& member : members_)
+        if (member->file.key() == key_)
+            names.push_back(member->path.lexically_relative(folder_).string());
+    for (const auto& member : members_) {
+        if (member->file.key() != key_)
+            member->file.state({});
+        else if (anyJson && !isJson(member))
+            member->file.leaveUnstated();
+        else
+            member->file.state(names);
+    }
+}
+
 void FileSet::commit() {
     if (members_.empty()) return takeBack();
     for (const auto& member : members_) member->file.finish();
+    stateKeys();
+    for (const auto& member : members_) member->file.requirePlace();
     const Uninterrupted renames;
     try {
         for (const auto& member : members_) {

@@ -28,7 +28,8 @@ public:
     enum class Above { make, require };
 
     /// Makes the folder, and those above it unless they are required to stand, if absent; they go
-    /// again if nothing is committed. Without `force`, a file that stands is refused.
+    /// again if nothing is committed. Without `force`, a file that stands is refused; with it, the
+    /// rule of the process decides (OutputRule).
     FileSet(std::filesystem::path folder, bool force, Above above = Above::make);
     ~FileSet();
     FileSet(const FileSet&) = delete;
@@ -62,10 +63,12 @@ private:
     };
     std::filesystem::path placeOf(const std::string& name) const;
     static void keepWhatStands(Member& member);
+    void stateKeys();
     void takeBack() noexcept;
 
     std::filesystem::path folder_;
     bool force_;
+    std::string key_ = OutputKey::current();
     std::vector<std::filesystem::path> made_;  ///< folders, the outermost first
     std::deque<Trace> madeTraces_;
     std::mutex mutex_;  ///< of members_

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hshfit::inline files {
+
+/// The origin of a file, as the file itself states it, so that a later run can tell whether the
+/// file is still valid.
+struct MadeFrom {
+    std::string command = {};  ///< that wrote it
+    std::string key = {};      ///< of inputs, options and version: OutputRule
+    /// Of the run, where that is not 0: what it found out lies in its files all the same.
+    int exitCode = 0;
+    std::vector<std::string> files = {};  ///< written with it, by names in the same folder
+};
+
+/// Whether a file of this name has a place for it: .json, .exr and .png.
+bool canStateMadeFrom(const std::string& path);
+
+/// Adds the statement to a complete file: to the JSON object at the root the last member
+/// "made_from", to PNG a text chunk "made_from" (PNG 11.3.4.3), to OpenEXR of one part the string
+/// attribute "hshfit:made_from". The rest of the content stays as it was. False, and the file is
+/// as it was, for content of any other kind. Throws OutputError if it cannot be written.
+bool addMadeFrom(const std::string& path, const MadeFrom& made);
+
+/// The statement in a file; none where there is no file or no statement.
+std::optional<MadeFrom> madeFromOf(const std::string& path);
+
+}  // namespace hshfit::inline files

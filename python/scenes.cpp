@@ -1,0 +1,223 @@
+#include "arrays.h"
+#include "watched.h"
+
+#include <hshfit/error.h>
+#include <hshfit/plan/plan_files.h>
+
+#include <jobs/illuminate.h>
+#include <jobs/plan.h>
+#include <jobs/transfer.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <pybind11/stl.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::python {
+namespace {
+
+namespace bounds = jobs::bounds;
+
+/// The place of a name among those of an enumeration.
+template <class Enumeration>
+Enumeration numbered(const char* argument, std::span<const std::string_view> names,
+                     const std::string& name) {
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end())
+        throw UsageError(
+            fmt::format("{}: '{}' is none of {}", argument, name, fmt::join(names, ", ")));
+    return static_cast<Enumeration>(found - names.begin());
+}
+
+std::string pathOrNone(const py::object& path, const char* name) {
+    return path.is_none() ? std::string() : pathOf(path, name);
+}
+
+py::object illuminated(const py::object& scene, const py::object& folder, const std::string& method,
+                       const std::string& camera, const py::object& samples, int bounces,
+                       int fromBounce, std::uint64_t seed, const py::object& reference,
+                       const py::object& exposure, const std::string& basis, int order, double loss,
+                       int rays, double accuracy, const std::string& chooseBy,
+                       const py::object& records, bool resume, bool force,
+                       const py::object& progress) {
+    const bool cached = method == "radiance-cache";
+    if (!cached && method != "path")
+        throw UsageError(fmt::format("method: '{}' is none of path, radiance-cache", method));
+    if (chooseBy != "cost" && chooseBy != "loss")
+        throw UsageError(fmt::format("choose_by: '{}' is none of cost, loss", chooseBy));
+    if (cached && resume)
+        throw UsageError("resume is for the method path; records are kept by records");
+    if (!cached && !records.is_none())
+        throw UsageError("records is for the method radiance-cache, not path");
+    jobs::IlluminateOptions options{.camera = camera, .force = force, .resume = resume};
+    options.path.samples =
+        samples.is_none() ? (cached ? 16 : options.path.samples) : samples.cast<int>();
+    requireWithin("samples", options.path.samples, bounds::pathSamples);
+    requireWithin("bounces", bounces, bounds::mostBounces);
+    requireWithin("from_bounce", fromBounce, bounds::fewestBounces);
+    options.path.mostBounces = bounces;
+    options.path.fewestBounces = fromBounce;
+    options.path.seed = seed;
+    options.reference = pathOrNone(reference, "reference");
+    options.records = pathOrNone(records, "records");
+    if (!exposure.is_none()) options.stops = exposure.cast<double>();
+    if (cached) {
+        requireWithin("loss", loss, bounds::cacheLoss);
+        requireWithin("rays", rays, bounds::cacheRays);
+        CacheOptions cache{.rays = rays, .accuracy = accuracy};
+        cache.choice.basis = basis;
+        cache.choice.order = order;
+        cache.choice.loss = loss;
+        cache.mostBytes = jobs::defaultCacheBytes;
+        options.cache = cache;
+        options.chooseByCost = chooseBy == "cost";
+    }
+    const std::string path = pathOf(scene, "scene"), output = pathOf(folder, "folder");
+    nlohmann::ordered_json answer;
+    watched(progress, {}, [&](const jobs::Listener& listener) {
+        answer = jobs::illuminateJson(jobs::illuminate(path, output, options, listener), method);
+    });
+    return fromJson(answer);
+}
+
+py::object transferred(const py::object& scene, const py::object& folder, const std::string& kind,
+                       int passes, std::size_t rays, int order, int localOrder,
+                       const std::vector<std::size_t>& clusters, std::size_t components,
+                       double error, const py::object& bytes, const py::object& edge,
+                       const std::string& sides, std::uint64_t seed, double memory,
+                       const std::vector<std::string>& lights,
+                       const std::vector<std::string>& materials, int referenceSamples,
+                       const std::string& camera, bool resume, bool force,
+                       const py::object& progress) {
+    jobs::TransferOptions options;
+    options.kind = numbered<jobs::TransferKind>("kind", jobs::transferKinds, kind);
+    options.mesh.sides = numbered<Sides>("sides", jobs::transferSides, sides);
+    if (!edge.is_none()) options.mesh.edge = edge.cast<double>();
+    requireWithin("passes", passes, bounds::passes);
+    requireWithin("rays", rays, bounds::transferRays);
+    requireWithin("order", order, bounds::transferOrder);
+    requireWithin("local_order", localOrder, bounds::localOrder);
+    requireWithin("components", components, bounds::components);
+    requireWithin("reference_samples", referenceSamples, bounds::referenceSamples);
+    for (const std::size_t count : clusters) requireWithin("clusters", count, bounds::clusters);
+    if (!(error > 0) || !(memory > 0)) throw UsageError("error and memory: give numbers above 0");
+    options.passes = passes;
+    options.rays = rays;
+    options.order = order;
+    options.localOrder = localOrder;
+    options.clusters = clusters;
+    std::erase(options.clusters, 0U);
+    options.components = components;
+    options.error = error;
+    if (!bytes.is_none()) options.bytes = bytes.cast<std::size_t>();
+    options.seed = seed;
+    options.memory = static_cast<std::size_t>(memory * 1e6);
+    options.lights = lights;
+    options.swaps = materials;
+    options.referenceSamples = referenceSamples;
+    options.camera = camera;
+    options.resume = resume;
+    options.force = force;
+    const std::string path = pathOf(scene, "scene"), output = pathOf(folder, "folder");
+    nlohmann::ordered_json answer;
+    watched(progress, {}, [&](const jobs::Listener& listener) {
+        answer = jobs::transferJson(jobs::transfer(path, output, options, listener), true);
+    });
+    return fromJson(answer);
+}
+
+py::object planned(const py::object& scene, const py::object& folder,
+                   const std::vector<std::string>& bases, int maxOrder, bool byTime,
+                   const py::object& progress) {
+    requireWithin("max_order", maxOrder, bounds::planOrder);
+    const plan::PlanOptions options{.bases = bases, .maxOrder = maxOrder, .byTime = byTime};
+    const std::string path = pathOf(scene, "scene"), output = pathOf(folder, "folder");
+    nlohmann::ordered_json answer;
+    watched(progress, {}, [&](const jobs::Listener& listener) {
+        answer = nlohmann::ordered_json::parse(
+            plan::planJson(jobs::planScene(path, output, options, listener)));
+    });
+    return fromJson(answer);
+}
+
+void bindIlluminate(py::module_& module) {
+    const jobs::IlluminateOptions options;
+    const CacheOptions cache;
+    module.def(
+        "illuminate", illuminated, py::arg("scene"), py::arg("folder"), py::kw_only(),
+        py::arg("method") = "path", py::arg("camera") = options.camera,
+        py::arg("samples") = py::none(), py::arg("bounces") = options.path.mostBounces,
+        py::arg("from_bounce") = options.path.fewestBounces, py::arg("seed") = options.path.seed,
+        py::arg("reference") = py::none(), py::arg("exposure") = py::none(),
+        py::arg("basis") = cache.choice.basis, py::arg("order") = cache.choice.order,
+        py::arg("loss") = cache.choice.loss, py::arg("rays") = cache.rays,
+        py::arg("accuracy") = cache.accuracy, py::arg("choose_by") = "cost",
+        py::arg("records") = py::none(), py::arg("resume") = options.resume,
+        py::arg("force") = options.force, py::arg("progress") = py::none(),
+        R"(Pictures of a scene with global illumination: CAMERA.exr with standard errors, CAMERA.png.
+
+scene    a scene file (JSON: materials, objects, lights, cameras)
+method   "path": path tracing; "radiance-cache": records of incident light as coefficients
+         (Krivanek et al. 2005), of `basis`, at most `order`, `rays` a record; materials that lose
+         more than `loss` of their energy are sampled
+samples  paths through a pixel; None: 64, with records 16. records: a file of them to go on from
+bounces, from_bounce: the range of reflections that count
+
+Radiance is in W/(m^2 sr) for lights so given. Returns the answer of the command: of each camera
+seconds, rays, records, mean and its standard errors; relative_mse against `reference` (an EXR).)");
+}
+
+void bindTransfer(py::module_& module) {
+    const jobs::TransferOptions options;
+    module.def(
+        "transfer", transferred, py::arg("scene"), py::arg("folder"), py::kw_only(),
+        py::arg("kind") = "interreflected", py::arg("passes") = options.passes,
+        py::arg("rays") = options.rays, py::arg("order") = options.order,
+        py::arg("local_order") = options.localOrder, py::arg("clusters") = options.clusters,
+        py::arg("components") = options.components, py::arg("error") = options.error,
+        py::arg("bytes") = py::none(), py::arg("edge") = py::none(), py::arg("sides") = "automatic",
+        py::arg("seed") = options.seed,
+        py::arg("memory") = 1e-6 * static_cast<double>(jobs::defaultTransferMemory),
+        py::arg("lights") = options.lights, py::arg("materials") = options.swaps,
+        py::arg("reference_samples") = options.referenceSamples, py::arg("camera") = options.camera,
+        py::arg("resume") = options.resume, py::arg("force") = options.force,
+        py::arg("progress") = py::none(),
+        R"(Precomputed transfer of a scene (Sloan et al. 2002): how light from all around reaches each
+vertex.
+
+kind         "unshadowed", "shadowed" or "interreflected", with `passes` of reflection
+order        bands of light; local_order: bands of HSH above each vertex, 0 for vectors alone
+rays         of each vertex; memory: the most that may be needed, MB
+clusters     numbers to try for compressed matrices, of at most `components`; written is the
+             smallest within the relative L2 `error`, or the best within `bytes`
+
+Writes transfer.tensor, transfer.json and a page. Returns the answer of the command: vertices, rays,
+energy by pass, bytes, errors.)");
+}
+
+}  // namespace
+
+void bindScenes(py::module_& module) {
+    bindIlluminate(module);
+    bindTransfer(module);
+    const plan::PlanOptions options;
+    module.def(
+        "plan", planned, py::arg("scene"), py::arg("folder"), py::kw_only(),
+        py::arg("bases") = options.bases, py::arg("max_order") = options.maxOrder,
+        py::arg("by_time") = options.byTime, py::arg("progress") = py::none(),
+        R"(The cheapest coefficient file for each material of a scene, checked in its own light.
+
+scene  a scene file with lights and a budget; bases: orthonormal ones to try, up to max_order
+by_time: of the forms within the budget the fastest instead of the smallest
+
+Writes the files and plan.json, plan.csv and plan.html to folder. Returns the answer of the command:
+of each material its form, bytes, error and verified error, or why it has no plan.)");
+}
+
+}  // namespace hshfit::python

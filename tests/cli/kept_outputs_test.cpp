@@ -1,0 +1,266 @@
+// The rule for files that stand, over the table of commands: what is valid is kept and said so,
+// what is not is refused unless --force replaces it.
+
+#include "program.h"
+
+#include <cli/command_table.h>
+
+#include <nlohmann/json.hpp>
+
+#include <map>
+#include <ostream>
+#include <set>
+#include <string_view>
+
+#include <sys/stat.h>
+
+namespace hshfit::test {
+namespace {
+
+struct Row {
+    std::string_view command;
+    const char *words, *more, *others;  ///< more: options of the first run; others: in their place
+    const char* output;
+    bool byBytes = false;  ///< the format has no place for a key
+};
+
+void PrintTo(const Row& row, std::ostream* out) {
+    *out << row.command << " to " << row.output;
+}
+
+constexpr Row rows[] = {
+    {"project", "phong:exponent=5 --outgoing 4", "--order 3", "--order 4", "a.json"},
+    {"project", "phong:exponent=5 --outgoing 4", "--order 3", "--order 4", "a.exr"},
+    {"report", "phong:exponent=5 --bases hsh --outgoing 20,0", "--max-order 3", "--max-order 4",
+     "report"},
+    {"compare", "lambert lambert:kd=.5", "--outgoing 4", "--outgoing 5", "page"},
+    {"convert", "lambert", "--to alta:theta=4,phi=8", "--to alta:theta=5,phi=8", "OUT a.alta",
+     true},
+    {"export", "in.json --target bin --no-error", "--number float16", "--number float32", "out"},
+    {"fit", "ggx:alpha=.4 --model ggx --starts 1 --samples 200 --loss l2", "--seed 1", "--seed 2",
+     "fit.json"},
+    {"render", "lambert", "--size 16", "--size 24", "a.png"},
+    {"render", "lambert --light uniform: --order 2 --size 8", "--samples 1", "--samples 2",
+     "a.exr"},
+    {"plot", "hsh", "--order 2", "--order 3", "a.svg", true},
+    {"ltc", "ggx", "--size 2", "--size 3", "a.json"},
+    {"gaussians", "lambert --lobes 1 --outgoing 2", "--kind sg", "--kind asg", "a.json"},
+    {"import", "exported/in.hsh.json", "", "", "a.json"},
+    {"rotate", "in.json", "--euler 0,30,0", "--euler 0,40,0", "a.json"},
+    {"light", "uniform:radiance=1", "--order 3", "--order 4", "a.json"},
+    {"eval", "lambert --pairs pairs.csv", "", "--cosine", "a.csv", true},
+    {"sample", "lambert --outgoing 45,0 --count 3", "--seed 1", "--seed 2", "a.csv", true},
+    {"completion", "", "bash", "fish", "a.sh", true},
+};
+
+class KeptOutputs : public Cli, public testing::WithParamInterface<Row> {
+protected:
+    void SetUp() override {
+        Cli::SetUp();
+        write("pairs.csv", "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0.6,0,0.8,0,0,1\n");
+        ASSERT_EQ(runHere("project phong:exponent=5 --outgoing 4 --order 3 -o in.json").code, 0);
+        if (GetParam().command != "import") return;
+        ASSERT_EQ(runHere("export in.json -o exported --target bin --no-error").code, 0);
+    }
+    Answer runHere(const std::string& words) const {
+        const std::string program = test::program(), err = path("stderr");
+        const std::string line = "cd " + folder_.string() + " && " + program + " " + words + " >" +
+                                 path("stdout") + " 2>" + err;
+        const int code = WEXITSTATUS(std::system(line.c_str()));
+        return {code, read(path("stdout")), read(err)};
+    }
+    Answer runRow(const Row& row, const char* options, const std::string& more = "") const {
+        const std::string output(row.output);
+        const bool byPlace = output.starts_with("OUT ");
+        const std::string words = std::string(row.command) + " " + row.words + " ";
+        return runHere(byPlace ? words + output.substr(4) + " " + options + " " + more
+                               : words + options + " -o " + output + " " + more);
+    }
+    /// The output: contents and times of files, by name.
+    std::map<std::string, std::string> outputs(const Row& row) const {
+        const std::string output(row.output);
+        const fs::path place = folder_ / (output.starts_with("OUT ") ? output.substr(4) : output);
+        std::map<std::string, std::string> found;
+        const auto add = [&](const fs::path& file) {
+            struct stat facts {};
+            ::stat(file.c_str(), &facts);
+            found[file.string()] = read(file) + std::to_string(facts.st_ino) + " " +
+                                   std::to_string(facts.st_mtim.tv_nsec);
+        };
+        if (!fs::is_directory(place)) {
+            add(place);
+            return found;
+        }
+        for (const auto& entry : fs::recursive_directory_iterator(place))
+            if (entry.is_regular_file()) add(entry.path());
+        return found;
+    }
+};
+
+TEST_P(KeptOutputs, WhatIsValidIsKeptAndAnythingElseIsRefusedWithoutForce) {
+    const Row& row = GetParam();
+    const Answer first = runRow(row, row.more);
+    ASSERT_EQ(first.code, 0) << first.err;
+    const auto written = outputs(row);
+    ASSERT_FALSE(written.empty());
+
+    const Answer again = runRow(row, row.more);
+    EXPECT_EQ(again.code, 0) << again.err;
+    const std::string& said = row.byBytes ? again.err : again.out;
+    EXPECT_NE(said.find("kept "), std::string::npos) << again.out << again.err;
+    EXPECT_EQ(outputs(row), written);
+
+    if (std::string_view(row.others) == row.more) return;
+    const Answer other = runRow(row, row.others);
+    EXPECT_EQ(other.code, 5) << other.out << other.err;
+    EXPECT_EQ(std::count(other.err.begin(), other.err.end(), '\n'), 1) << other.err;
+    EXPECT_NE(other.err.find("exists"), std::string::npos) << other.err;
+    EXPECT_NE(other.err.find("--force"), std::string::npos) << other.err;
+    EXPECT_EQ(outputs(row), written);
+
+    const Answer forced = runRow(row, row.others, "--force");
+    EXPECT_EQ(forced.code, 0) << forced.err;
+    EXPECT_NE(outputs(row), written);
+    EXPECT_EQ(runRow(row, row.others).code, 0);
+}
+
+TEST_P(KeptOutputs, AFileOfSomebodyElseIsRefused) {
+    const Row& row = GetParam();
+    const std::string output(row.output);
+    const std::string name = output.starts_with("OUT ") ? output.substr(4) : output;
+    if (!fs::path(name).has_extension()) return;  // a folder: its files are tried below
+    write(name, "mine");
+    const Answer refused = runRow(row, row.more);
+    EXPECT_EQ(refused.code, 5) << refused.out << refused.err;
+    EXPECT_NE(refused.err.find("--force"), std::string::npos) << refused.err;
+    EXPECT_EQ(read(path(name)), "mine");
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, KeptOutputs, testing::ValuesIn(rows), [](const auto& row) {
+    std::string name(row.param.command);
+    for (const char c : std::string_view(row.param.output))
+        if (std::isalpha(static_cast<unsigned char>(c)) != 0) name += c;
+    return name;
+});
+
+/// Commands whose results take long have their own tests, of the same rule.
+TEST_F(Cli, EveryCommandThatWritesTakesForceAndHasARowOrAReason) {
+    const std::set<std::string_view> reasons{"batch",  "manual",     "tradeoff", "plan",
+                                             "stress", "illuminate", "transfer", "svbrdf"};
+    std::set<std::string_view> tried;
+    for (const Row& row : rows) tried.insert(row.command);
+    for (const cli::Command& command : cli::commands()) {
+        const std::string help = run(std::string(command.name) + " --help").out;
+        const bool writes = help.find("--output") != std::string::npos;
+        EXPECT_EQ(writes, help.find("--force") != std::string::npos) << command.name;
+        EXPECT_EQ(writes, tried.contains(command.name) || reasons.contains(command.name))
+            << command.name;
+    }
+}
+
+using KeptFiles = Cli;
+
+TEST_F(KeptFiles, OtherBytesOfTheInputAreOtherInput) {
+    ASSERT_EQ(run("convert lambert " + path("a.alta") + " --to alta:theta=4,phi=8").code, 0);
+    const std::string job =
+        "project " + path("a.alta") + " --order 2 --outgoing 4 -o " + path("c.json");
+    ASSERT_EQ(run(job).code, 0);
+    const std::string before = read(path("c.json"));
+    ASSERT_EQ(
+        run("convert lambert:kd=.25 " + path("a.alta") + " --to alta:theta=4,phi=8 --force").code,
+        0);
+    const Answer refused = run(job);
+    EXPECT_EQ(refused.code, 5) << refused.out;
+    EXPECT_NE(refused.err.find("other input, options or version"), std::string::npos)
+        << refused.err;
+    EXPECT_EQ(read(path("c.json")), before);
+}
+
+TEST_F(KeptFiles, AnInputElsewhereWithTheSameBytesIsTheSameInput) {
+    ASSERT_EQ(run("convert lambert " + path("a.alta") + " --to alta:theta=4,phi=8").code, 0);
+    const std::string job = " --order 2 --outgoing 4 -o " + path("c.json");
+    ASSERT_EQ(run("project " + path("a.alta") + job).code, 0);
+    fs::create_directory(path("moved"));
+    fs::rename(path("a.alta"), path("moved/a.alta"));
+    EXPECT_NE(run("project " + path("moved/a.alta") + job).out.find("kept "), std::string::npos);
+}
+
+TEST_F(KeptFiles, TheAnswerOfAKeptFileIsADocument) {
+    const std::string job = "project lambert --order 2 --outgoing 4 --json -o " + path("c.json");
+    ASSERT_EQ(run(job).code, 0);
+    const Answer again = run(job);
+    EXPECT_EQ(again.code, 0);
+    EXPECT_TRUE(keepsSchema(again.out, "kept"));
+    EXPECT_EQ(nlohmann::json::parse(again.out)["kept"][0], path("c.json"));
+    EXPECT_TRUE(keepsSchema(read(path("c.json")), "coefficients"));
+}
+
+TEST_F(KeptFiles, ThreadsAndWordsOfTheAnswerAreNoOptionsOfTheResult) {
+    const std::string job = "project lambert --order 2 --outgoing 4 -o " + path("c.json");
+    ASSERT_EQ(run(job + " --threads 1 --quiet").code, 0);
+    EXPECT_NE(run(job + " --threads 2").out.find("kept "), std::string::npos);
+    EXPECT_NE(run(job + " --basis hsh").out.find("kept "), std::string::npos);  // the default
+}
+
+TEST_F(KeptFiles, OfManyInputsThoseThatAreValidAreKept) {
+    const std::string job = "project lambert phong:exponent=5 --order 2 --outgoing 4 ";
+    ASSERT_EQ(run(job + "-o " + path("out")).code, 0);
+    fs::remove(path("out/lambert.json"));
+    const Answer again = run(job + "--json -o " + path("out"));
+    EXPECT_EQ(again.code, 0) << again.err;
+    EXPECT_TRUE(keepsSchema(again.out, "projects"));
+    const auto document = nlohmann::json::parse(again.out);
+    EXPECT_EQ(document["projections"].size(), 1u);
+    ASSERT_EQ(document["kept"].size(), 1u);
+    EXPECT_EQ(document["kept"][0], path("out/phong_exponent=5.json"));
+    // One file that is not valid stops all, before any is written.
+    fs::remove(path("out/lambert.json"));
+    const Answer other = run(job + "--cosine -o " + path("out"));
+    EXPECT_EQ(other.code, 5) << other.out;
+    EXPECT_FALSE(fs::exists(path("out/lambert.json")));
+}
+
+TEST_F(KeptFiles, AReportThatLacksAFileIsMadeAgain) {
+    const std::string job =
+        "report lambert --bases hsh --max-order 2 --outgoing 20,0 -o " + path("out");
+    ASSERT_EQ(run(job).code, 0);
+    const std::string report = read(path("out/report.html"));
+    fs::remove(path("out/report.html"));
+    const Answer again = run(job);
+    EXPECT_EQ(again.code, 0) << again.err;
+    EXPECT_EQ(read(path("out/report.html")), report);
+}
+
+TEST_F(KeptFiles, AReportWithoutNumbersKeepsItsExitCode) {
+    const std::string job =
+        "report ward:ax=.2,ay=.5,variant=duer --bases hsh --max-order 2 "
+        "--outgoing 30,0 -o " +
+        path("out");
+    ASSERT_EQ(run(job).code, 4);
+    const Answer again = run(job);
+    EXPECT_EQ(again.code, 4) << again.out << again.err;
+    EXPECT_NE(again.out.find("kept "), std::string::npos) << again.out;
+}
+
+TEST_F(KeptFiles, FilesThatStateTheirKeyAreReadAsBefore) {
+    ASSERT_EQ(run("project ggx:alpha=.4 --order 3 --outgoing 4 -o " + path("a.json")).code, 0);
+    ASSERT_EQ(run("project ggx:alpha=.4 --order 3 --outgoing 4 -o " + path("a.exr")).code, 0);
+    EXPECT_NE(read(path("a.json")).find("\"made_from\""), std::string::npos);
+    EXPECT_NE(read(path("a.exr")).find("hshfit:made_from"), std::string::npos);
+    const Answer same = run("compare " + path("a.json") + " " + path("a.exr") +
+                            " --metrics relative-l2-cosine --json");
+    ASSERT_EQ(same.code, 0) << same.err;
+    const auto value = nlohmann::json::parse(same.out)["metrics"][0]["value"];
+    EXPECT_LT(value.get<double>(), 1e-6);  // EXR holds float32
+    ASSERT_EQ(run("render lambert --size 16 -o " + path("a.png")).code, 0);
+    EXPECT_EQ(
+        std::system(("python3 -c \"import struct,zlib,sys;b=open('" + path("a.png") +
+                     "','rb').read();p=8\nwhile p<len(b):\n n=struct.unpack('>I',b[p:p+4])[0]\n"
+                     " assert struct.unpack('>I',b[p+8+n:p+12+n])[0]==zlib.crc32(b[p+4:p+8+n])\n"
+                     " p+=12+n\n\"")
+                        .c_str()),
+        0);
+}
+
+}  // namespace
+}  // namespace hshfit::test
