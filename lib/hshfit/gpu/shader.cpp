@@ -14,7 +14,7 @@
 
 namespace hshfit::embedded {
 extern const std::string_view shader_basis, shader_clamp, shader_ends, shader_eval, shader_header,
-    shader_shade, shader_shade_world, shader_turn, shader_uv;
+    shader_light, shader_shade, shader_shade_world, shader_turn, shader_uv;
 extern const std::string_view shader_glsl, shader_glsl_es, shader_glsl_functions, shader_hlsl,
     shader_metal, shader_osl, shader_wgsl;
 }  // namespace hshfit::embedded
@@ -132,6 +132,8 @@ void checkPayload(Language language, const Payload& payload) {
     }
 }
 
+}  // namespace
+
 void setMap(const OutgoingSet& set, data& page) {
     page.set("single", set.map == OutgoingSet::Map::direction);
     page.set("elevations", false);
@@ -148,6 +150,8 @@ void setMap(const OutgoingSet& set, data& page) {
         page.set("elevations", map);
     }
 }
+
+namespace {
 
 void setLanguageWords(const Words& words, const std::string& prefix, data& page) {
     page.set("let", words.let);
@@ -211,6 +215,8 @@ void setCost(const std::string& name, const ShaderCost& cost, data& page) {
     page.set(name + "Products", std::to_string(cost.products));
 }
 
+}  // namespace
+
 void setPartials(data& page) {
     const std::pair<const char*, std::string_view> parts[] = {
         {"header", embedded::shader_header},
@@ -221,6 +227,7 @@ void setPartials(data& page) {
         {"evalBody", embedded::shader_eval},
         {"clampBody", embedded::shader_clamp},
         {"shadeBody", embedded::shader_shade},
+        {"lightBody", embedded::shader_light},
         {"worldBody", embedded::shader_shade_world},
         {"glslFunctions", embedded::shader_glsl_functions},
     };
@@ -232,7 +239,11 @@ void setPartials(data& page) {
     }
 }
 
-}  // namespace
+std::string rendered(std::string_view text, const data& page) {
+    mustache snippet{std::string(text)};
+    snippet.set_custom_escape([](const std::string& s) { return s; });
+    return withoutGaps(snippet.render(page));
+}
 
 std::span<const LanguageEntry> languages() {
     return table;
@@ -240,6 +251,10 @@ std::span<const LanguageEntry> languages() {
 
 void setLanguageWords(Language language, const std::string& prefix, data& page) {
     setLanguageWords(wordsOf(language, prefix), prefix, page);
+}
+
+void setWords(Language language, const Payload& payload, const std::string& prefix, data& page) {
+    setWords(wordsOf(language, prefix), payload, prefix, page);
 }
 
 std::string shaderSource(Language language, const Payload& payload, const ShaderOptions& options) {
@@ -264,9 +279,7 @@ std::string shaderSource(Language language, const Payload& payload, const Shader
     setCost("shade", shade, page);
     setCost("world", world, page);
     setPartials(page);
-    mustache text{std::string(words.text)};
-    text.set_custom_escape([](const std::string& s) { return s; });
-    return withoutGaps(text.render(page));
+    return rendered(words.text, page);
 }
 
 }  // namespace hshfit::gpu

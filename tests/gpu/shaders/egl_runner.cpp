@@ -121,12 +121,20 @@ GLuint newTexture(GLenum unit, GLenum target, GLint filter) {
     return texture;
 }
 
-void upload(GLenum unit, const gpu::Texels& texels) {
+void upload(GLenum unit, const gpu::Texels& first, const std::vector<gpu::Texels>& levels = {}) {
     newTexture(unit, GL_TEXTURE_2D_ARRAY, GL_LINEAR);
-    const auto [internal, type] = formatOf(texels.number);
-    GL(PFNGLTEXIMAGE3DPROC, glTexImage3D)
-    (GL_TEXTURE_2D_ARRAY, 0, internal, texels.width, texels.height,
-     static_cast<GLsizei>(texels.layers), 0, GL_RGBA, type, texels.bytes.data());
+    const auto [internal, type] = formatOf(first.number);
+    std::vector<const gpu::Texels*> all{&first};
+    for (const gpu::Texels& level : levels) all.push_back(&level);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        GL(PFNGLTEXIMAGE3DPROC, glTexImage3D)
+        (GL_TEXTURE_2D_ARRAY, static_cast<GLint>(k), internal, all[k]->width, all[k]->height,
+         static_cast<GLsizei>(all[k]->layers), 0, GL_RGBA, type, all[k]->bytes.data());
+    }
+    if (levels.empty()) return;
+    const auto set = GL(PFNGLTEXPARAMETERIPROC, glTexParameteri);
+    set(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    set(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAX_LEVEL, static_cast<GLint>(levels.size()));
 }
 
 /// A 2-D texture of numbers, 3 or 1 of them a texel, to be fetched exactly.
@@ -187,7 +195,7 @@ std::vector<float> components(const std::vector<Direction>& directions) {
 std::vector<float> runOpenGl(const ShaderJob& job, const std::string& source) {
     const Context context(false);
     uploadBlock(link({compile(GL_COMPUTE_SHADER, source)}), job);
-    upload(0, job.payload.coefficients);
+    upload(0, job.payload.coefficients, job.levels);
     if (job.payload.basisTexels) upload(2, *job.payload.basisTexels);
     const std::vector<float> inputs = inputNumbers(job);
     std::vector<float> outputs(job.pairs.wo.size() * job.outputs());
@@ -210,11 +218,11 @@ std::vector<float> runOpenGlEs(const ShaderJob& job, const std::string& source) 
         "float(gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0); }\n";
     const GLuint program =
         link({compile(GL_VERTEX_SHADER, corners), compile(GL_FRAGMENT_SHADER, source)});
-    upload(0, job.payload.coefficients);
+    upload(0, job.payload.coefficients, job.levels);
     uploadBlock(program, job);
-    setSampler(program, "hsh_coefficients", 0);
+    setSampler(program, job.places.empty() ? "hsh_coefficients" : "hsh_map", 0);
     if (job.payload.basisTexels) upload(1, *job.payload.basisTexels);
-    setSampler(program, "hsh_basis", 1);
+    setSampler(program, job.places.empty() ? "hsh_basis" : "hsh_shared", 1);
     uploadNumbers(2, side, side, components(job.pairs.wo));
     setSampler(program, "wos", 2);
     uploadNumbers(3, side, side, components(job.pairs.wi));
@@ -226,6 +234,9 @@ std::vector<float> runOpenGlEs(const ShaderJob& job, const std::string& source) 
             lights.push_back(static_cast<float>(job.environment.values[j * job.lights() + i]));
     if (!lights.empty()) uploadNumbers(4, slots, static_cast<int>(job.lights()), lights);
     setSampler(program, "lights", 4);
+    const std::vector<float> places(job.places.begin(), job.places.end());
+    if (!places.empty()) uploadNumbers(6, side, side, places);
+    setSampler(program, "places", 6);
 
     GLuint frame = 0;
     GL(PFNGLGENFRAMEBUFFERSPROC, glGenFramebuffers)(1, &frame);

@@ -47,6 +47,11 @@ struct ShaderJob {
     std::string form = {};
     /// Three uniform numbers in place of wi; outputs are those of tests/gpu/proposals.
     bool sampling = false;
+    /// Of a map of materials: its levels after the first, which is in `payload` with what the
+    /// texels share as its basis texels, and u, v and level of each pair, which snippets take
+    /// before wo.
+    std::vector<gpu::Texels> levels = {};
+    std::vector<double> places = {};
     std::vector<std::uint32_t> cells = {};  ///< the block of a form whose numbers are in a "table"
 
     std::size_t channels() const { return payload.head.channels.count(); }

@@ -83,13 +83,19 @@ void append(std::string& bytes, const T* values, std::size_t count) {
 }
 
 /// The texels that the GPU samples: decoded, but neither scaled nor offset.
-void appendArray(std::string& bytes, gpu::Texels texels) {
-    for (gpu::LaneScale& scale : texels.scales) scale = {};
-    const std::vector<double> values = gpu::decode(texels);
-    const std::vector<float> singles(values.begin(), values.end());
-    const int size[] = {texels.width, texels.height, static_cast<int>(texels.layers)};
-    append(bytes, size, 3);
-    append(bytes, singles.data(), singles.size());
+void appendArray(std::string& bytes, const gpu::Texels& first,
+                 const std::vector<gpu::Texels>& levels = {}) {
+    const int size[] = {first.width, first.height, static_cast<int>(first.layers),
+                        1 + static_cast<int>(levels.size())};
+    append(bytes, size, 4);
+    std::vector<gpu::Texels> all{first};
+    all.insert(all.end(), levels.begin(), levels.end());
+    for (gpu::Texels& texels : all) {
+        for (gpu::LaneScale& scale : texels.scales) scale = {};
+        const std::vector<double> values = gpu::decode(texels);
+        const std::vector<float> singles(values.begin(), values.end());
+        append(bytes, singles.data(), singles.size());
+    }
 }
 
 const char* wrapperOf(gpu::Language language) {
@@ -138,6 +144,7 @@ std::vector<float> inputNumbers(const ShaderJob& job) {
             for (const double v : {d.x, d.y, d.z}) numbers.push_back(static_cast<float>(v));
     }
     for (const double v : job.environment.values) numbers.push_back(static_cast<float>(v));
+    for (const double v : job.places) numbers.push_back(static_cast<float>(v));
     return numbers;
 }
 
@@ -165,7 +172,7 @@ std::string wrapped(gpu::Language language, const ShaderJob& job, const std::str
     page.set("spectral", spectral);
     page.set("v", spectral ? ".v" : "");
     page.set("of", spectral ? ".v[i]" : grey ? "" : "[i]");
-    page.set("tabulated", job.payload.basisTexels.has_value());
+    page.set("tabulated", job.payload.basisTexels.has_value() && job.places.empty());
     page.set("world", job.world);
     const bool wgsl = language == gpu::Language::wgsl;
     data words;
@@ -187,6 +194,16 @@ std::string wrapped(gpu::Language language, const ShaderJob& job, const std::str
     page.set("table", job.form == "table" && !job.cells.empty());
     number("environment", job.form.empty() ? job.environment.values.size() / job.lights() : 0);
     number("first", 6 * job.pairs.wo.size());
+    const bool map = !job.places.empty();
+    number("firstPlace", 6 * job.pairs.wo.size() + job.environment.values.size());
+    page.set("map", map);
+    // Of a map without a sampler, texels are indices.
+    const bool sharing = map && job.payload.basisTexels;
+    const bool indices = map && isNormalised(job.payload.coefficients.number);
+    page.set("sharing", sharing);
+    page.set("metalPass",
+             fmt::format("map, {}{}", indices ? "" : "mapSampler, ", sharing ? "numbers, " : ""));
+    page.set("at", map ? "uv, lod, " : "");
     kainjow::mustache::mustache wrapper(textOf(here / "wrappers" / wrapperOf(language)));
     wrapper.set_custom_escape([](const std::string& s) { return s; });
     return wrapper.render(page);
@@ -241,7 +258,7 @@ std::vector<float> runStub(const ShaderJob& job, const std::string& source) {
     accept(fmt::format("g++ -std=c++20 -O1 -fsingle-precision-constant -I'{}' '{}' -o '{}'",
                        (here / "stubs").string(), folder.file("stub.cpp"), folder.file("stub")));
     std::string bytes;
-    appendArray(bytes, job.payload.coefficients);
+    appendArray(bytes, job.payload.coefficients, job.levels);
     appendArray(bytes, job.payload.basisTexels.value_or(gpu::Texels{}));
     const std::vector<float> block = blockNumbers(job);
     const int length = static_cast<int>(block.size());

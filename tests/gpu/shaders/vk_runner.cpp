@@ -32,7 +32,10 @@ std::vector<float> runVulkan(const ShaderJob& job, const std::vector<std::uint32
     };
     const std::vector<float> block = blockNumbers(job);
     if (block.empty())
-        resources.push_back({.binding = 0, .kind = texture, .texels = job.payload.coefficients});
+        resources.push_back({.binding = 0,
+                             .kind = texture,
+                             .texels = job.payload.coefficients,
+                             .levels = job.levels});
     else
         resources.push_back({.binding = 0, .kind = Kind::uniforms, .numbers = block});
     if (!combined) resources.push_back({.binding = 1, .kind = Kind::sampler});

@@ -184,60 +184,73 @@ struct Buffer {
     void put(const void* from, std::size_t count) const { std::memcpy(data, from, count); }
 };
 
-/// A texture array, uploaded, ready to be sampled.
+/// A texture array with its levels, uploaded, ready to be sampled.
 struct Image {
     vk::raii::Image image;
     vk::raii::DeviceMemory memory;
     vk::raii::ImageView view;
 
-    Image(const ComputeDevice::Parts& parts, const Texels& texels)
-        : image(parts.device, infoOf(texels)),
+    Image(const ComputeDevice::Parts& parts, const ComputeResource& resource)
+        : image(parts.device, infoOf(resource)),
           memory(parts.memoryFor(image, {})),
-          view(bound(parts, texels)) {
-        upload(parts, texels);
+          view(bound(parts, resource)) {
+        upload(parts, resource);
     }
 
 private:
+    static std::uint32_t levelsOf(const ComputeResource& resource) {
+        return 1 + static_cast<std::uint32_t>(resource.levels.size());
+    }
     static vk::Extent3D extentOf(const Texels& texels) {
         return {static_cast<std::uint32_t>(texels.width), static_cast<std::uint32_t>(texels.height),
                 1};
     }
-    static vk::ImageSubresourceRange rangeOf(const Texels& texels) {
-        return {vk::ImageAspectFlagBits::eColor, 0, 1, 0,
-                static_cast<std::uint32_t>(texels.layers)};
+    static vk::ImageSubresourceRange rangeOf(const ComputeResource& resource) {
+        return {vk::ImageAspectFlagBits::eColor, 0, levelsOf(resource), 0,
+                static_cast<std::uint32_t>(resource.texels.layers)};
     }
-    static vk::ImageCreateInfo infoOf(const Texels& texels) {
+    static vk::ImageCreateInfo infoOf(const ComputeResource& resource) {
         return {{},
                 vk::ImageType::e2D,
-                formatOf(texels.number),
-                extentOf(texels),
-                1,
-                static_cast<std::uint32_t>(texels.layers),
+                formatOf(resource.texels.number),
+                extentOf(resource.texels),
+                levelsOf(resource),
+                static_cast<std::uint32_t>(resource.texels.layers),
                 vk::SampleCountFlagBits::e1,
                 vk::ImageTiling::eOptimal,
                 vk::ImageUsageFlagBits::eSampled | vk::ImageUsageFlagBits::eTransferDst};
     }
-    vk::raii::ImageView bound(const ComputeDevice::Parts& parts, const Texels& texels) const {
+    vk::raii::ImageView bound(const ComputeDevice::Parts& parts,
+                              const ComputeResource& resource) const {
         image.bindMemory(*memory, 0);
         return {parts.device,
                 vk::ImageViewCreateInfo({}, *image, vk::ImageViewType::e2DArray,
-                                        formatOf(texels.number), {}, rangeOf(texels))};
+                                        formatOf(resource.texels.number), {}, rangeOf(resource))};
     }
-    void upload(const ComputeDevice::Parts& parts, const Texels& texels) const {
-        const Buffer staging(parts, texels.bytes.size(), vk::BufferUsageFlagBits::eTransferSrc);
-        staging.put(texels.bytes.data(), texels.bytes.size());
+    void upload(const ComputeDevice::Parts& parts, const ComputeResource& resource) const {
+        std::vector<std::byte> bytes;
+        std::vector<vk::BufferImageCopy> copies;
+        const auto add = [&](const Texels& texels) {
+            const vk::ImageSubresourceLayers layers(vk::ImageAspectFlagBits::eColor,
+                                                    static_cast<std::uint32_t>(copies.size()), 0,
+                                                    static_cast<std::uint32_t>(texels.layers));
+            copies.emplace_back(bytes.size(), 0, 0, layers, vk::Offset3D{}, extentOf(texels));
+            bytes.insert(bytes.end(), texels.bytes.begin(), texels.bytes.end());
+        };
+        add(resource.texels);
+        for (const Texels& level : resource.levels) add(level);
+        const Buffer staging(parts, bytes.size(), vk::BufferUsageFlagBits::eTransferSrc);
+        staging.put(bytes.data(), bytes.size());
         using Stage = vk::PipelineStageFlagBits;
         using Access = vk::AccessFlagBits;
         using Layout = vk::ImageLayout;
         vk::ImageMemoryBarrier barrier({}, Access::eTransferWrite, Layout::eUndefined,
                                        Layout::eTransferDstOptimal, VK_QUEUE_FAMILY_IGNORED,
-                                       VK_QUEUE_FAMILY_IGNORED, *image, rangeOf(texels));
-        const vk::ImageSubresourceLayers layers(vk::ImageAspectFlagBits::eColor, 0, 0,
-                                                static_cast<std::uint32_t>(texels.layers));
+                                       VK_QUEUE_FAMILY_IGNORED, *image, rangeOf(resource));
         parts.submit([&](const vk::raii::CommandBuffer& commands) {
             commands.pipelineBarrier(Stage::eTopOfPipe, Stage::eTransfer, {}, {}, {}, barrier);
             commands.copyBufferToImage(*staging.buffer, *image, Layout::eTransferDstOptimal,
-                                       vk::BufferImageCopy(0, 0, 0, layers, {}, extentOf(texels)));
+                                       copies);
             barrier.setOldLayout(Layout::eTransferDstOptimal)
                 .setNewLayout(Layout::eShaderReadOnlyOptimal)
                 .setSrcAccessMask(Access::eTransferWrite)
@@ -265,9 +278,20 @@ vk::DescriptorType typeOf(ComputeResource::Kind kind) {
 
 vk::SamplerCreateInfo linearSampler() {
     constexpr auto edge = vk::SamplerAddressMode::eClampToEdge;
-    return {
-        {},  vk::Filter::eLinear, vk::Filter::eLinear, vk::SamplerMipmapMode::eNearest, edge, edge,
-        edge};
+    return {{},
+            vk::Filter::eLinear,
+            vk::Filter::eLinear,
+            vk::SamplerMipmapMode::eLinear,
+            edge,
+            edge,
+            edge,
+            0,
+            {},
+            {},
+            {},
+            {},
+            0,
+            VK_LOD_CLAMP_NONE};
 }
 
 }  // namespace
@@ -329,7 +353,7 @@ struct ComputeProgram::Parts {
         vk::DescriptorImageInfo pictured(*sampler, {}, vk::ImageLayout::eShaderReadOnlyOptimal);
         vk::DescriptorBufferInfo held({}, 0, VK_WHOLE_SIZE);
         if (resource.kind == Kind::sampledTexture || resource.kind == Kind::texture) {
-            image.emplace(device, resource.texels);
+            image.emplace(device, resource);
             pictured.imageView = *image->view;
         } else if (resource.kind != Kind::sampler) {
             const std::size_t count = std::max(resource.count, resource.numbers.size());

@@ -51,13 +51,14 @@ struct ComputeResource {
     enum class Kind {
         sampledTexture,  ///< a texture array with its sampler: sampler2DArray
         texture,         ///< the texture array alone
-        sampler,         ///< linear, clamped to the edge
+        sampler,         ///< linear, between levels too, clamped to the edge
         uniforms,        ///< a uniform block of `numbers`
         buffer,          ///< a storage buffer that begins with `numbers`
     };
     std::uint32_t binding = 0;
     Kind kind = Kind::buffer;
     Texels texels = {};
+    std::vector<Texels> levels = {};  ///< of a texture, after its first: half as wide and high
     std::vector<float> numbers = {};
     std::size_t count = 0;  ///< floats of a storage buffer; at least those of `numbers`
 };

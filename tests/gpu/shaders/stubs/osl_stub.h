@@ -60,25 +60,51 @@ inline vector exp(vector a) {
 inline vector exp2(vector a) {
     return {exp2(a.x), exp2(a.y), exp2(a.z)};
 }
+inline float log2(float a) {
+    return __builtin_log2f(a);
+}
+inline float clamp(float a, float low, float high) {
+    return min(max(a, low), high);
+}
 inline float floor(float a) {
     return __builtin_floorf(a);
 }
 
+/// The level that OpenImageIO takes for a filter of a share of the picture: of the first level
+/// where it is w <= 1 texels of the shorter side, 2 w - 1, and the rest of the finer one.
+/// osl_texture_test finds the same with the real one.
+inline float levelOf(const stub::Array* map, float width) {
+    for (int k = 0; k < map->levels; ++k) {
+        const stub::Array& level = map->finest[k];
+        const int side = level.width < level.height ? level.width : level.height;
+        const float w = width * static_cast<float>(side);
+        if (w > 1) continue;
+        return k == 0 ? 0.0f : static_cast<float>(k - 1) + max(2.0f * w - 1.0f, 0.0f);
+    }
+    return static_cast<float>(map->levels - 1);
+}
+
 /// Keys and modes are those of OSL (stdlib.md, "Texture"); OSL itself ignores an unknown mode.
-inline color texture(string map, float u, float v, float, float, float, float, const char* key,
-                     int subimage, const char* interp, const char* mode, const char* wrap,
-                     const char* wrapMode, const char* rest, float& alpha) {
+inline color texture(string map, float u, float v, float width, float, float, float,
+                     const char* key, int subimage, const char* interp, const char* mode,
+                     const char* wrap, const char* wrapMode, const char* rest, float& alpha) {
     const bool closest = __builtin_strcmp(mode, "closest") == 0;
     const char* found[] = {key, interp, closest ? "linear" : mode, wrap, wrapMode, rest};
     const char* wanted[] = {"subimage", "interp", "linear", "wrap", "clamp", "alpha"};
     for (int i = 0; i < 6; ++i)
         if (__builtin_strcmp(found[i], wanted[i]) != 0) exit(4);
-    if (closest) {
-        const int x = static_cast<int>(u * map->width), y = static_cast<int>(v * map->height);
-        alpha = map->at(x, y, subimage, 3);
-        return {map->at(x, y, subimage, 0), map->at(x, y, subimage, 1), map->at(x, y, subimage, 2)};
+    const float lod = levelOf(map, width);
+    float lanes[4];
+    for (int lane = 0; lane < 4; ++lane) {
+        if (closest) {
+            const stub::Array& level = map->finest[static_cast<int>(lod + 0.5f)];
+            lanes[lane] =
+                level.at(static_cast<int>(u * static_cast<float>(level.width)),
+                         static_cast<int>(v * static_cast<float>(level.height)), subimage, lane);
+        } else {
+            lanes[lane] = map->sample(u, v, subimage, lane, lod);
+        }
     }
-    alpha = map->sample(u, v, subimage, 3);
-    return {map->sample(u, v, subimage, 0), map->sample(u, v, subimage, 1),
-            map->sample(u, v, subimage, 2)};
+    alpha = lanes[3];
+    return {lanes[0], lanes[1], lanes[2]};
 }

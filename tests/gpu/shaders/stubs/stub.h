@@ -14,8 +14,20 @@ inline float root(float a) {
 }
 
 struct Array {
-    int width, height, layers;
-    float* texels;
+    int width, height, layers, levels;
+    float* texels;  ///< of this level
+    Array* finest;  ///< the levels, this one among them
+
+    /// Between two levels.
+    float sample(float u, float v, int layer, int lane, float lod) const {
+        const float last = static_cast<float>(levels - 1);
+        const float level = lod < 0 ? 0 : lod > last ? last : lod;
+        const int finer = static_cast<int>(level);
+        const float share = level - static_cast<float>(finer);
+        const float a = finest[finer].sample(u, v, layer, lane);
+        return share == 0 ? a
+                          : (1 - share) * a + share * finest[finer + 1].sample(u, v, layer, lane);
+    }
 
     float at(int x, int y, int layer, int lane) const {
         x = x < 0 ? 0 : x < width ? x : width - 1;
@@ -50,9 +62,18 @@ inline void readArray(FILE* file, Array& array) {
     read(file, &array.width, 1);
     read(file, &array.height, 1);
     read(file, &array.layers, 1);
-    const int count = array.width * array.height * array.layers * 4;
-    array.texels = new float[static_cast<size_t>(count)];
-    read(file, array.texels, count);
+    read(file, &array.levels, 1);
+    array.finest = new Array[static_cast<size_t>(array.levels)];
+    for (int k = 0; k < array.levels; ++k) {
+        Array& level = array.finest[k];
+        level = array;
+        level.width = array.width >> k > 1 ? array.width >> k : 1;
+        level.height = array.height >> k > 1 ? array.height >> k : 1;
+        const int count = level.width * level.height * level.layers * 4;
+        level.texels = new float[static_cast<size_t>(count)];
+        read(file, level.texels, count);
+    }
+    array.texels = array.finest[0].texels;
 }
 
 /// evaluate(k, out) for every pair, of the job in `from`; results to `to`. Allocations stay to the
