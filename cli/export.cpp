@@ -1,5 +1,6 @@
 #include "command.h"
 #include "export_lighting.h"
+#include "export_map.h"
 #include "export_material.h"
 
 #include <hshfit/gpu/error_split.h>
@@ -28,6 +29,7 @@ struct ExportArguments {
     bool chroma = false, noError = false, sampling = false, noSampling = false;
     jobs::ExportOptions options;
     jobs::MaterialExportOptions material;
+    std::string wrap = "clamp";  ///< of maps of materials
 };
 
 Json describe(const gpu::Payload& payload) {
@@ -209,6 +211,41 @@ void requireOptions(const CLI::App& command, bool materials) {
     }
 }
 
+/// Refuses options that maps of materials do not have, and those that they alone have.
+void requireMapOptions(const CLI::App& command, const std::vector<std::string>& inputs) {
+    constexpr std::string_view those[] = {
+        "COEFFS",  "--output", "--target",  "--name",   "--force", "--json",
+        "--quiet", "--help",   "--threads", "--prefix", "--light", "--environment-order",
+        "--wrap"};
+    const auto map = std::ranges::find_if(inputs, isMapSidecar);
+    if (map == inputs.end()) {
+        if (command.get_option("--wrap")->count() > 0)
+            throw UsageError("export: --wrap is for maps of materials");
+        return;
+    }
+    for (const CLI::Option* option : command.get_options()) {
+        const std::string name =
+            option->get_lnames().empty() ? option->get_name() : "--" + option->get_lnames().front();
+        if (option->count() > 0 && std::ranges::find(those, name) == std::end(those)) {
+            throw UsageError(fmt::format("export: {} is for coefficients; {} is a map of materials",
+                                         name, *map));
+        }
+    }
+}
+
+/// The options of textures that maps share.
+jobs::MapExportOptions mapOptions(const ExportArguments& arguments) {
+    const jobs::ExportOptions& shared = arguments.options;
+    jobs::MapExportOptions options{.name = shared.name,
+                                   .prefix = shared.shader.prefix,
+                                   .environmentOrder = shared.shader.environmentOrder,
+                                   .wrap = arguments.wrap,
+                                   .lights = shared.lights,
+                                   .force = shared.force};
+    if (shared.targets != jobs::ExportOptions().targets) options.targets = shared.targets;
+    return options;
+}
+
 /// The options of textures that lighting shares.
 void runLighting(const ExportArguments& arguments, const Globals& globals) {
     const jobs::ExportOptions& shared = arguments.options;
@@ -229,14 +266,24 @@ void runLighting(const ExportArguments& arguments, const Globals& globals) {
 }
 
 std::string answerText(const Json& answer) {
+    if (isMapDocument(answer)) return mapDocumentText(answer);
     return text(answer) + (answer.contains("proposal") ? proposalText(answer["proposal"]) : "");
 }
 
+/// The answer for a coefficient file or a map of materials.
+Json exported(const ExportArguments& arguments, const std::string& input, const std::string& folder,
+              const jobs::Listener& listener) {
+    if (isMapSidecar(input))
+        return mapDocument(jobs::exportMap(input, folder, mapOptions(arguments), listener), folder);
+    const jobs::Exported made =
+        jobs::exportCoefficients(input, folder, arguments.options, listener);
+    if (made.poor) listener.say(made.poor->line());
+    return document(made, folder);
+}
+
 void exportOne(const ExportArguments& arguments, const Globals& globals) {
-    const jobs::Exported exported = jobs::exportCoefficients(
-        arguments.coefficients[0], arguments.output, arguments.options, listenerFor(globals));
-    if (exported.poor) note(globals, exported.poor->line());
-    const Json answer = document(exported, arguments.output);
+    const Json answer =
+        exported(arguments, arguments.coefficients[0], arguments.output, listenerFor(globals));
     if (globals.json)
         printJson(answer);
     else
@@ -249,10 +296,7 @@ void exportMany(const ExportArguments& arguments, Globals& globals) {
     const auto many = jobs::makeMany<Json>(
         std::move(places.inputs), std::move(places.folders), "export", listenerFor(globals),
         [&](const std::string& input, const std::string& folder, const jobs::Listener& each) {
-            const jobs::Exported exported =
-                jobs::exportCoefficients(input, folder, arguments.options, each);
-            if (exported.poor) each.say(exported.poor->line());
-            return document(exported, folder);
+            return exported(arguments, input, folder, each);
         });
     Json documents = Json::array();
     std::string lines;
@@ -277,6 +321,7 @@ void runExport(ExportArguments& arguments, const CLI::App& command, Globals& glo
     jobs::ExportOptions& options = arguments.options;
     const bool materials = jobs::areMaterials(options.targets);
     requireOptions(command, materials);
+    requireMapOptions(command, arguments.coefficients);
     const bool many = jobs::areMany(arguments.coefficients);
     if (many && (materials || !arguments.lighting.empty()))
         throw UsageError("export: the targets gltf and materialx and --lighting take one input");
@@ -306,8 +351,8 @@ void addExport(CLI::App& command, Globals& globals) {
     command
         .add_option(
             "COEFFS", arguments->coefficients,
-            "Coefficient file of hshfit project, one or more, or a folder of them; for gltf and "
-            "materialx a BRDF too")
+            "Coefficient file of hshfit project, one or more, or a folder of them; material.json "
+            "of hshfit svbrdf; for gltf and materialx a BRDF too")
         ->required();
     command
         .add_option("-o,--output", arguments->output,
@@ -376,6 +421,11 @@ void addExport(CLI::App& command, Globals& globals) {
                                       "Fit a proposal for path tracing: in the sidecar, and as "
                                       "sample() and pdf() in shaders (default: with shaders)");
     command.add_flag("--no-sampling", arguments->noSampling, "No proposal")->excludes(sampling);
+    command
+        .add_option("--wrap", arguments->wrap,
+                    "Of a map of materials: what lies beyond its edge, clamp or repeat")
+        ->check(CLI::IsMember({"clamp", "repeat"}))
+        ->capture_default_str();
     command.add_flag("--zstd", options.zstd, "Compress KTX2 with Zstandard");
     command.add_flag("--force", options.force, "Replace files that are there");
     command.add_option("--mesh", arguments->material.mesh,

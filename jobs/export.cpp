@@ -19,8 +19,6 @@
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/wording.h>
 
-#include <brdfs/catalog.h>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -44,9 +42,9 @@ struct Source {
 };
 
 Source openSourceOf(const ExportOptions& options, const CoefficientHead& coefficients) {
-    if (!options.source.empty()) return {brdfs::open(options.source), {}};
+    if (!options.source.empty()) return {openBrdf(options.source), {}};
     try {
-        return {brdfs::open(coefficients.source), {}};
+        return {openBrdf(coefficients.source), {}};
     } catch (const Error& error) {
         return {nullptr, fmt::format("the source does not open ({}); name it with {}", error.what(),
                                      Setting{"ExportOptions::source"})};

@@ -62,6 +62,7 @@ std::unique_ptr<Brdf> openTexel(const std::string& spec) {
 }  // namespace
 
 std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb) {
+    if (auto texel = openTexel(spec)) return texel;
     if (isLightFile(spec))
         throw InputError(fmt::format(
             "{}: has coefficients of light, where a BRDF or coefficients of one belong", spec));

@@ -9,12 +9,13 @@
 
 namespace hshfit::jobs {
 
-/// Opens a BRDF specification (docs/brdfs.md). `rgb` converts a spectral BRDF to linear Rec.
+/// Opens a BRDF specification (docs/brdfs.md) or a texel of a material map
+/// (FILE:x=3,y=5,level=0). `rgb` converts a spectral BRDF to linear Rec.
 /// 709 and leaves others unchanged.
 std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb = false);
 
-/// Opens a BRDF specification, a coefficient file, a file of an export (a sidecar or a container
-/// with one) or a texel of a material map (FILE:x=3,y=5,level=0) as a BRDF; `rgb` as above.
+/// Opens what openBrdf does, a coefficient file or a file of an export (a sidecar or a container
+/// with one) as a BRDF; `rgb` as above.
 std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb = false);
 
 /// `openSource` as the opener of BRDFs that representations add.

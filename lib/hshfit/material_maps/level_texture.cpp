@@ -58,6 +58,16 @@ LevelTexture::LevelTexture(const std::string& path, std::vector<LevelSize> level
     }
 }
 
+std::span<const std::byte> LevelTexture::file() const {
+    return std::as_bytes(std::span(texture_.data(), texture_.size()));
+}
+
+std::span<const std::byte> LevelTexture::level(std::size_t level) const {
+    const LevelSize& size = levels_.at(level);
+    return file().subspan(offsets_[level],
+                          size.width * size.height * layers_ * 4 * gpu::numberBytes(number_));
+}
+
 std::vector<double> LevelTexture::numbers(std::size_t level, std::size_t column,
                                           std::size_t row) const {
     if (level >= levels_.size()) {

@@ -5,6 +5,7 @@
 #include <hshfit/material_maps/texel_source.h>
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,10 @@ public:
     /// The numbers of a texel as a GPU reads them: [layer * 4 + lane]. Throws UsageError for a
     /// texel or a level that there is not.
     std::vector<double> numbers(std::size_t level, std::size_t column, std::size_t row) const;
+    /// A level as the file has it: [layer][row][column] of texels of four numbers.
+    std::span<const std::byte> level(std::size_t level) const;
+    /// All bytes of the file.
+    std::span<const std::byte> file() const;
     const std::string& path() const { return texture_.path(); }
     /// Throws InputError if the file was changed since it was opened.
     void checkIntact() const { texture_.checkIntact(); }

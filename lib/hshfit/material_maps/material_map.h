@@ -5,6 +5,7 @@
 #include <hshfit/material_maps/map_sidecar.h>
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,10 @@ public:
     }
     /// Its coefficients. Throws UsageError for a texel or a level that the map does not have.
     Coefficients coefficients(std::size_t level, std::size_t column, std::size_t row) const;
+    /// LevelTexture::level.
+    std::span<const std::byte> level(std::size_t level) const { return texture_.level(level); }
+    /// LevelTexture::file.
+    std::span<const std::byte> file() const { return texture_.file(); }
     /// Throws InputError if the texture file was changed since it was opened.
     void checkIntact() const { texture_.checkIntact(); }
 

@@ -1,0 +1,66 @@
+#include "export_map.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace hshfit::cli {
+
+using Json = nlohmann::ordered_json;
+
+Json mapDocument(const jobs::ExportedMap& exported, const std::string& folder) {
+    const MapSidecar& map = exported.map;
+    Json files = Json::array({{{"role", "sidecar"}, {"path", exported.sidecar}},
+                              {{"role", "test"}, {"path", exported.test}}});
+    for (const MapTextureFile& file : exported.textures) {
+        files.push_back({{"role", file.role},
+                         {"target", file.container},
+                         {"path", file.path},
+                         {"bytes", file.bytes},
+                         {"sha256", file.sha256}});
+    }
+    for (const jobs::ExportedMapText& file : exported.texts)
+        files.push_back({{"role", file.role}, {"target", file.target}, {"path", file.path}});
+    Json document = {{"format", "hshfit-export-map"},
+                     {"version", 1},
+                     {"folder", folder},
+                     {"name", exported.name},
+                     {"source", map.source},
+                     {"form", map.form},
+                     {"width", map.levels.front().width},
+                     {"height", map.levels.front().height},
+                     {"levels", map.levels.size()},
+                     {"layers", map.layers()},
+                     {"number", gpu::numberName(map.number)},
+                     {"basis", map.basis},
+                     {"order", map.order},
+                     {"outgoing", map.layout.outgoing.spec()},
+                     {"files", files}};
+    for (const gpu::ViewerLight& light : exported.lights) {
+        document["lights"].push_back(
+            {{"light", light.name},
+             {"bands", light.coefficients.order},
+             {"captured", std::isfinite(light.captured) ? Json(light.captured) : Json()}});
+    }
+    return document;
+}
+
+bool isMapDocument(const Json& document) {
+    return document["format"] == "hshfit-export-map";
+}
+
+std::string mapDocumentText(const Json& document) {
+    std::string out = fmt::format(
+        "{}: map of {} x {} materials in {} levels, form {}, {} order {}, {} layers of {}\n",
+        document["folder"].get<std::string>(), document["width"].get<std::size_t>(),
+        document["height"].get<std::size_t>(), document["levels"].get<std::size_t>(),
+        document["form"].get<std::string>(), document["basis"].get<std::string>(),
+        document["order"].get<int>(), document["layers"].get<std::size_t>(),
+        document["number"].get<std::string>());
+    for (const Json& file : document["files"])
+        out += fmt::format("  {}\n", file["path"].get<std::string>());
+    return out;
+}
+
+}  // namespace hshfit::cli

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <hshfit/gpu/texels.h>
+#include <hshfit/material_maps/map_sidecar.h>
+
+#include <cstddef>
+#include <string>
+
+namespace hshfit::inline material_maps::inline exports {
+
+/// Numbers that the texels of a map share, as a second texture of float32: quadruple n is texel
+/// (n % width, n / width) of one layer. Shapes come first, those of outgoing direction o in
+/// quadruples o G to (o + 1) G, number rank * slots + slot, G = ceil(rank slots / 4); then, of the
+/// form clusters, the materials, M = ceil(channels rank / 4) quadruples each, number channel * rank
+/// + r.
+struct SharedNumbers {
+    static constexpr int width = 1024, mostRows = 2048;  ///< rows: those that WebGL 2 promises
+    std::size_t groupsOfShapes = 0;                      ///< G
+    std::size_t groupsOfMaterial = 0;                    ///< M
+    std::size_t firstMaterial = 0;                       ///< quadruple
+    gpu::Texels texels = {};
+};
+
+/// Throws UsageError for a map of the form outgoing, which has none, and for more numbers than a
+/// texture of that width and height has.
+SharedNumbers sharedNumbers(const MapSidecar& map);
+
+}  // namespace hshfit::inline material_maps::inline exports
