@@ -303,10 +303,10 @@ void printSection(const char* name, const Json& rows, std::string_view sums = {}
                 "parts",
                 fmt::format("{}", fmt::join(row["parts"].get<std::vector<std::string>>(), ", ")));
         if (row.contains("number"))
-            text += detailText("number", fmt::format("{} to {}; default {}",
-                                                     row["number"]["min"].get<int>(),
-                                                     row["number"]["max"].get<int>(),
-                                                     row["number"]["default"].get<int>()));
+            text += detailText(
+                "number",
+                fmt::format("{} to {}; default {}", row["number"]["min"].get<int>(),
+                            row["number"]["max"].get<int>(), row["number"]["default"].get<int>()));
         if (row.contains("example")) text += detailText("example", row["example"]);
         for (const Json& parameter : row.value("parameters", Json::array()))
             text += detailText(parameter["name"], parameterHelp(parameter));

@@ -160,7 +160,7 @@ void bindIlluminate(py::module_& module) {
         py::arg("accuracy") = cache.accuracy, py::arg("choose_by") = "cost",
         py::arg("records") = py::none(), py::arg("resume") = options.resume,
         py::arg("force") = options.force, py::arg("progress") = py::none(),
-        R"(Pictures of a scene with global illumination: CAMERA.exr with standard errors, CAMERA.png.
+        R"(Pictures with global illumination: CAMERA.exr with standard errors, and CAMERA.png.
 
 scene    a scene file (JSON: materials, objects, lights, cameras)
 method   "path": path tracing; "radiance-cache": records of incident light as coefficients
@@ -188,8 +188,8 @@ void bindTransfer(py::module_& module) {
         py::arg("reference_samples") = options.referenceSamples, py::arg("camera") = options.camera,
         py::arg("resume") = options.resume, py::arg("force") = options.force,
         py::arg("progress") = py::none(),
-        R"(Precomputed transfer of a scene (Sloan et al. 2002): how light from all around reaches each
-vertex.
+        R"(Precomputed transfer of a scene (Sloan et al. 2002): how light from all around reaches
+each vertex.
 
 kind         "unshadowed", "shadowed" or "interreflected", with `passes` of reflection
 order        bands of light; local_order: bands of HSH above each vertex, 0 for vectors alone

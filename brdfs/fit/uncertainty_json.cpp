@@ -89,7 +89,7 @@ Document uncertaintyJson(const FitReport& report) {
                              {"seed", report.options.seed}};
     if (!report.result.point.channels.empty())
         json["prediction"] = predictionJson(*report.samples, report.result,
-                                        predict(report.result, *report.samples, false));
+                                            predict(report.result, *report.samples, false));
     json["parameters"] = Document::array();
     const std::size_t n = own.parameters.size();
     for (std::size_t i = 0; i < n; ++i)

@@ -84,7 +84,9 @@ TEST_F(Cli, TablesWrapToTheTerminalAndStayWholeForOtherPrograms) {
         for (std::string line; std::getline(in, line);) {
             // Only a word that does not fit beside its indentation is longer.
             const std::size_t word = line.find_last_of(' ');
-            if (line.size() > 60) EXPECT_GT(line.size() - word, 60u - 43u) << line;
+            if (line.size() > 60) {
+                EXPECT_GT(line.size() - word, 60u - 43u) << line;
+            }
         }
     }
 }

@@ -90,7 +90,8 @@ TEST(MadeFrom, IsAnAttributeOfExrThatLeavesThePixels) {
     const Folder folder;
     for (const std::size_t height : {1u, 15u, 16u, 17u, 70u}) {
         hshfit::ExrPicture picture{.width = 5, .height = height, .channels = {"B", "G", "R"}};
-        for (std::size_t i = 0; i < 15 * height; ++i) picture.values.push_back(0.5F * static_cast<float>(i));
+        for (std::size_t i = 0; i < 15 * height; ++i)
+            picture.values.push_back(0.5F * static_cast<float>(i));
         AtomicFile file(folder / "x.exr");
         writeExrPicture(picture, hshfit::ExrPixels::single, file);
         file.commit();
