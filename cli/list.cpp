@@ -335,7 +335,7 @@ void listPresets(const std::string& text, bool all, bool json, Json& document) {
         return;
     }
     printSection("presets", rows);
-    std::string lines = "preset collections (list presets TEXT searches their materials)\n";
+    std::string lines = "preset collections (list presets TEXT searches them)\n";
     for (const Json& row : collectionsJson())
         lines += rowText(2, 40,
                          fmt::format("{:<25} {:>3} materials", row["name"].get<std::string>(),

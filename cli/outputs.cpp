@@ -49,7 +49,7 @@ bool isOutput(const CLI::App& command, const CLI::Option& option) {
 /// Whether results do not depend on the option.
 bool isAside(std::string_view name) {
     return isAnyOf(name, {"--json", "--quiet", "--threads", "--force", "--help", "--records",
-                          "--progress", "--all"});
+                          "--progress", "--all", "--memory", "--writes"});
 }
 
 struct Words {

@@ -135,6 +135,12 @@ std::string optionsOf(const Call& call) {
     return text;
 }
 
+/// The output of a command that follows one with the same output. OUT.json stands for a file that
+/// the reader names.
+std::string again(const std::string& output) {
+    return " -o " + forShell(output) + (output.starts_with("OUT.") ? "" : " --force");
+}
+
 struct CommandRow {
     std::string_view function;
     std::string (*command)(const Call& call);
@@ -144,8 +150,7 @@ const CommandRow commandsOfFunctions[] = {
     {"asRgb", [](const Call&) -> std::string { return "--rgb"; }},
     {"exportCoefficients",
      [](const Call& call) {
-         return "hshfit export " + forShell(call.subject) + optionsOf(call) + " -o " +
-                forShell(call.output);
+         return "hshfit export " + forShell(call.subject) + optionsOf(call) + again(call.output);
      }},
     {"fit",
      [](const Call& call) {
@@ -157,12 +162,12 @@ const CommandRow commandsOfFunctions[] = {
     {"metricCatalog", [](const Call&) -> std::string { return "hshfit list metrics"; }},
     {"represent",
      [](const Call& call) {
-         return "hshfit project " + quoted(call.subject) + optionsOf(call) + " -o " + call.output;
+         return "hshfit project " + quoted(call.subject) + optionsOf(call) + again(call.output);
      }},
     {"writers", [](const Call&) -> std::string { return "hshfit list writers"; }},
     {"writeRepresentation",
      [](const Call& call) {
-         return "hshfit project " + forShell(call.subject) + " -o " + call.output + optionsOf(call);
+         return "hshfit project " + forShell(call.subject) + again(call.output) + optionsOf(call);
      }},
 };
 

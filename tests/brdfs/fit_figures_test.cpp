@@ -98,7 +98,7 @@ protected:
 
     Json fitted(const std::string& options) {
         const Answer got = run("fit --json " + path("scans.astm") + " --model lambert+phong " +
-                               "--figures " + path("figures") + " " + options);
+                               "--force --figures " + path("figures") + " " + options);
         EXPECT_EQ(got.code, 0) << got.err;
         if (got.code != 0) return {};
         EXPECT_TRUE(keepsSchema(got.out, "fit"));
@@ -164,8 +164,8 @@ TEST_F(FitFigures, CutsStandAtTheirMeasuredAngles) {
 
 // A Lambert fit has one value, and one error, at all directions.
 TEST_F(FitFigures, BandsAre1_96StandardErrorsOfF) {
-    const Answer got =
-        run("fit --json " + path("scans.astm") + " --model lambert --figures " + path("figures"));
+    const Answer got = run("fit --json " + path("scans.astm") +
+                           " --model lambert --sigma column --figures " + path("figures"));
     ASSERT_EQ(got.code, 0) << got.err;
     const Json parameter = Json::parse(got.out)["fit"]["parameters"][0];
     const double pi = std::acos(-1.0), f = parameter["value"].get<double>() / pi,
@@ -330,8 +330,8 @@ TEST_F(FitFigures, SpectraHaveTheirParametersOverTheWavelength) {
             text += "\n";
         }
     write("paint.brdf", text);
-    const Answer got =
-        run("fit --json " + path("paint.brdf") + " --model lambert --figures " + path("figures"));
+    const Answer got = run("fit --json " + path("paint.brdf") +
+                           " --model lambert --sigma column --figures " + path("figures"));
     ASSERT_EQ(got.code, 0) << got.err;
     const auto rows = rowsOf(read(path("figures/spectrum.csv")));
     std::map<double, double> kd;

@@ -41,7 +41,8 @@ std::vector<std::string> materials() {
 class Agreement : public Cli {
 protected:
     Json answerOf(const std::string& arguments) const {
-        const Answer answer = run(arguments + " --json");
+        const bool writes = arguments.find(" -o ") != std::string::npos;
+        const Answer answer = run(arguments + (writes ? " --force --json" : " --json"));
         EXPECT_EQ(answer.code, 0) << arguments << "\n" << answer.err;
         return answer.code == 0 ? Json::parse(answer.out) : Json();
     }

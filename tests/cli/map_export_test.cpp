@@ -116,11 +116,14 @@ TEST_F(MapExport, DefaultIsTheTextureAndAShaderForBrowsers) {
         names.insert(entry.path().filename().string());
     EXPECT_EQ(names, (std::set<std::string>{"material.hsh.json", "material_test.json",
                                             "material.map.ktx2", "material_hsh.es.glsl"}));
-    // Files that stand are kept, and --force replaces it by the same bytes.
+    // What is valid is kept, other options are refused, and --force makes the same bytes again.
     const std::string before = read(path("out/material.hsh.json"));
     const Answer again = run("export " + map + " -o " + path("out"));
-    EXPECT_EQ(again.code, 5);
-    EXPECT_NE(again.err.find("--force"), std::string::npos) << again.err;
+    EXPECT_EQ(again.code, 0);
+    EXPECT_NE(again.err.find("kept "), std::string::npos) << again.err;
+    const Answer other = run("export " + map + " --target ktx2,wgsl -o " + path("out"));
+    EXPECT_EQ(other.code, 5);
+    EXPECT_NE(other.err.find("--force"), std::string::npos) << other.err;
     EXPECT_EQ(run("export " + map + " -o " + path("out") + " --force").code, 0);
     EXPECT_EQ(read(path("out/material.hsh.json")), before);
 }

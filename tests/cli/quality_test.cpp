@@ -82,7 +82,7 @@ TEST_F(Quality, AReportNamesTheCallThatCapturesMore) {
         EXPECT_LT(entry["curves"][0]["points"].back()["accuracy"], 0.9);
         std::string command = entry["better"];
         command.replace(command.find("OUT.json"), 8, path("better.json"));
-        const Answer answer = run(command.substr(7) + " --json");
+        const Answer answer = run(command.substr(7) + " --force --json");
         ASSERT_EQ(answer.code, 0) << command << "\n" << answer.err;
         EXPECT_GT(Json::parse(answer.out)["accuracy"], 0.9) << command;
     }

@@ -101,7 +101,7 @@ TEST_F(Cli, RotateHasFourWaysAndOrdersThemByTheirErrors) {
               0);
     const auto errorOf = [&](const std::string& options) {
         const Answer answer = run("rotate " + path("a.json") + " -o " + path("b.json") +
-                                  " --json --quiet " + options);
+                                  " --force --json --quiet " + options);
         EXPECT_EQ(answer.code, 0) << answer.err;
         EXPECT_TRUE(keepsSchema(answer.out, "rotate"));
         return Json::parse(answer.out)["error"].get<double>();

@@ -104,7 +104,7 @@ TEST_F(TradeoffCommand, NamesCommandsThatMakeItsForms) {
         std::string command = point["command"];
         ASSERT_EQ(command.rfind("hshfit ", 0), 0u);
         command.replace(command.find("OUT.json"), 8, path("form.json"));
-        const Answer made = run(command.substr(7));
+        const Answer made = run(command.substr(7) + " --force");
         ASSERT_EQ(made.code, 0) << command << "\n" << made.err;
         const Answer evaluated = run("eval " + path("form.json") + " --pairs " + path("pairs.csv"));
         ASSERT_EQ(evaluated.code, 0) << evaluated.err;

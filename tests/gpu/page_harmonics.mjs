@@ -52,7 +52,7 @@ try {
       [170, 180, 25],
       [-120, 3, 95],
     ]) {
-      run('rotate', 'light.json', '-o', 'turned.json', `--euler=${a},${b},${c}`);
+      run('rotate', 'light.json', '-o', 'turned.json', '--force', `--euler=${a},${b},${c}`);
       const matrix = multiplied(aboutZ(a), multiplied(aboutY(b), aboutZ(c)));
       close(`order ${order}, Euler ${a}, ${b}, ${c}`, rotated(order, matrix, given),
         coefficientsOf('turned.json'));

@@ -60,7 +60,8 @@ examples)
     cd "$work/examples"
     "$prefix"/bin/hshfit convert phong:kd=0.1,exponent=8 phong.bsdf --force --quiet
     ./quick_start_example phong.bsdf library.json
-    "$prefix"/bin/hshfit project phong.bsdf --cosine --outgoing 32x32 -o program.json --quiet
+    "$prefix"/bin/hshfit project phong.bsdf --cosine --outgoing 32x32 --quiet -o - \
+        >program.json
     cmp library.json program.json
     ./project_example phong:exponent=22 phong.json >/dev/null
     # Without its module beside it the program says where that belongs; cli_install_test has it.

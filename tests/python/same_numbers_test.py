@@ -23,6 +23,14 @@ def directions(count, seed):
     return np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=-1)
 
 
+def without_calls(document):
+    """Without the calls that make a form again, which Python and the program word differently."""
+    if isinstance(document, dict):
+        return {key: without_calls(value) for key, value in document.items()
+                if key not in ("command", "options")}
+    return [without_calls(value) for value in document] if isinstance(document, list) else document
+
+
 class SameNumbers(program.InFolder):
     def eval_by_program(self, spec, wi, wo, *words):
         with open("in.csv", "w", newline="", encoding="ascii") as file:
@@ -214,7 +222,7 @@ class SameNumbers(program.InFolder):
         done = subprocess.run([program.PROGRAM, "plan", self.scene("car_paint.json"), "-o",
                                "theirs", "--bases", "hsh", "--max-order", "4", "--json",
                                "--quiet"], check=False, capture_output=True, text=True)
-        self.assertEqual(ours, json.loads(done.stdout))
+        self.assertEqual(without_calls(ours), without_calls(json.loads(done.stdout)))
 
     def test_trades_are_those_of_the_program(self):
         ours = hshfit.tradeoff("ggx:alpha=0.5", bases=["hsh"], orders=[3], forms=["outgoing"],
@@ -223,7 +231,7 @@ class SameNumbers(program.InFolder):
         theirs = self.json_of("tradeoff", "ggx:alpha=0.5", "--bases", "hsh", "--orders", "3",
                               "--forms", "outgoing", "--ranks", "0,2", "--precisions", "half",
                               "--outgoing", "8", "--no-timing", "--pair-count", "256")
-        self.assertEqual(ours, theirs)
+        self.assertEqual(without_calls(ours), without_calls(theirs))
 
     def test_arguments_are_refused_where_the_program_refuses_them(self):
         for work in [lambda: hshfit.render("lambert", "x.png", size=4),

@@ -27,8 +27,9 @@ struct MapWritten {
     std::vector<float> pictureErrors = {};
 };
 
+/// The picture of errors, and who hears of progress.
 struct MapWriterOptions {
-    std::size_t pictureSide = 512;
+    std::size_t pictureSide = 512;  ///< of the longer side, at most, pixels
     std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
