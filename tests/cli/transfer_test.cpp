@@ -125,7 +125,7 @@ TEST_F(Transfer, LeavesNothingBehindWithResume) {
     const std::string once = read(path("out/transfer.tensor"));
     const Answer again = transferred(corner(), options);
     EXPECT_EQ(again.code, 0);
-    EXPECT_NE(again.err.find("kept "), std::string::npos) << again.err;
+    EXPECT_NE(again.out.find("kept "), std::string::npos) << again.out;
     const Answer other = transferred(corner(), options + "--seed 9 ");
     EXPECT_EQ(other.code, 5);
     EXPECT_NE(other.err.find("--force"), std::string::npos) << other.err;

@@ -24,8 +24,8 @@ class InFolder(unittest.TestCase):
     def run_program(self, *words):
         """Standard output of the program, which has to succeed. A file that exists is replaced."""
         force = ["--force"] if "-o" in words else []
-        done = subprocess.run([PROGRAM, *words, *force, "--quiet"], check=False, capture_output=True,
-                              text=True)
+        done = subprocess.run([PROGRAM, *words, *force, "--quiet"], check=False,
+                              capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
 
