@@ -330,8 +330,8 @@ TEST_F(FitFigures, SpectraHaveTheirParametersOverTheWavelength) {
             text += "\n";
         }
     write("paint.brdf", text);
-    const Answer got = run("fit --json " + path("paint.brdf") +
-                           " --model lambert --sigma column --figures " + path("figures"));
+    const Answer got =
+        run("fit --json " + path("paint.brdf") + " --model lambert --figures " + path("figures"));
     ASSERT_EQ(got.code, 0) << got.err;
     const auto rows = rowsOf(read(path("figures/spectrum.csv")));
     std::map<double, double> kd;
