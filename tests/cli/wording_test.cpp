@@ -74,7 +74,7 @@ TEST(Wording, ValuesAreQuotedForAShell) {
                             .subject = "it's",
                             .settings = {{"Form::rank", "3"}},
                             .output = "o.json"}),
-              "hshfit project 'it'\\''s' --rank 3 -o o.json");
+              "hshfit project 'it'\\''s' --rank 3 -o o.json --force");
     EXPECT_EQ(wording.call({.function = "writeRepresentation",
                             .subject = "ggx:alpha=.2",
                             .settings = {{"Form::rank", "3"}},
