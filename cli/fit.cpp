@@ -59,7 +59,7 @@ std::string text(const jobs::Fitted& fitted, const FitArguments& arguments) {
     const brdfs::FitResult& result = fitted.result;
     std::string lines = headLine(result) + samplesLine(fitted.preset["fit"]);
     for (const brdfs::FittedParameter& p : result.parameters) {
-        if (isScanScale(p)) continue;
+        if (p.isScanScale()) continue;
         const std::string value = p.standardError ? withError(p.value, *p.standardError)
                                   : !p.bound.empty()
                                       ? fmt::format("{:.6g}, at its {} bound", p.value, p.bound)

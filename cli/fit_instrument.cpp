@@ -35,10 +35,6 @@ void addInstrumentOptions(CLI::App& command, brdfs::InstrumentText& instrument) 
                        "expected (2%), or fit, relative to the first");
 }
 
-bool isScanScale(const brdfs::FittedParameter& parameter) {
-    return parameter.instrument && parameter.name.starts_with("scale ");
-}
-
 std::string instrumentText(const brdfs::FitResult& result) {
     if (!result.instrument) return {};
     const brdfs::FittedInstrument& fitted = *result.instrument;

@@ -13,9 +13,6 @@ namespace hshfit::cli {
 /// The options of `fit` about the instrument that took the samples.
 void addInstrumentOptions(CLI::App& command, brdfs::InstrumentText& instrument);
 
-/// Whether a parameter is the scale of a scan, of which there may be hundreds.
-bool isScanScale(const brdfs::FittedParameter& parameter);
-
 /// The quadratures over apertures and the scales of scans, in lines; empty without an instrument.
 std::string instrumentText(const brdfs::FitResult& result);
 

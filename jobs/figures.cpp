@@ -66,7 +66,7 @@ FigureFiles addFitFigures(const Brdf& data, const brdfs::FitReport& report,
     brdfs::PlottedModel model{
         .samples = samples, .brdf = *fitted, .name = "fit", .terms = termsOf(report.result)};
     model.residuals = brdfs::standardisedResiduals(
-        samples, brdfs::valuesOf(*fitted, samples),
+        samples, brdfs::predictedValues(report.result, samples),
         pixels ? brdfs::Loss::Kind::cosine : report.options.loss, report.result.parameters.size());
     std::vector<PrintFigure> figures;
     if (samples.origin == brdfs::SampleOrigin::measured) {
@@ -75,10 +75,13 @@ FigureFiles addFitFigures(const Brdf& data, const brdfs::FitReport& report,
                 brdfs::writeResidualRows(samples, report.result, report.options.loss,
                                          [&](std::string_view row) { file.write(row); });
             });
-        model.band = [&](std::span<const DirectionPair> pairs) {
-            return halfWidths(report.result, pairs);
-        };
-        model.bandName = "95 %";
+        // Fits with terms of the instrument predict no f.
+        if (!report.result.point.channels.empty()) {
+            model.band = [&](std::span<const DirectionPair> pairs) {
+                return halfWidths(report.result, pairs);
+            };
+            model.bandName = "95 %";
+        }
         figures = ofSamples(model, options, result);
     } else {
         ComparisonOptions how;

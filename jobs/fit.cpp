@@ -274,6 +274,9 @@ struct PreparedFiles {
 std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& data,
                                          const FitOptions& options, const Listener& listener) {
     PreparedFiles files;
+    if (!options.bands.empty() && options.instrument.any())
+        throw UsageError(fmt::format("{} is for fits without terms of the instrument",
+                                     Setting{"FitOptions::bands"}));
     // A wrong list of pairs is known before the fit.
     if (!options.bands.empty()) bandPairs(options.bands);
     if (options.figures) {

@@ -83,8 +83,8 @@ bool isPresetPath(const std::string& output);
 Fitted fit(const std::string& data, const std::string& output, const FitOptions& options,
            const Listener& listener = {});
 
-/// The same of a BRDF that is open, called `name` in messages and in the preset; no file but that
-/// of residuals.
+/// The same of a BRDF that is open, called `name` in messages and in the preset; no file but those
+/// of residuals, bands and figures.
 Fitted fitBrdf(const Brdf& data, const std::string& name, const FitOptions& options,
                const Listener& listener = {});
 

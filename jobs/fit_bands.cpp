@@ -60,9 +60,6 @@ std::vector<DirectionPair> bandPairs(const std::string& text) {
 std::unique_ptr<AtomicFile> addBands(const FitOptions& options, const Channels& channels,
                                      Fitted& fitted) {
     if (options.bands.empty()) return nullptr;
-    if (fitted.result.point.channels.empty())
-        throw UsageError(fmt::format("{} is for fits without terms of the instrument",
-                                     Setting{"FitOptions::bands"}));
     const std::vector<DirectionPair> pairs = bandPairs(options.bands);
     const brdfs::Prediction prediction = brdfs::predict(fitted.result, pairs);
     constexpr double probability = 0.95;

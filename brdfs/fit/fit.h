@@ -47,6 +47,9 @@ struct FittedParameter {
     std::optional<double> standardError = {};
     bool linear = false;
     bool instrument = false;  ///< of the instrument, not of the material
+
+    /// Whether it is the scale of a scan, of which there may be hundreds.
+    bool isScanScale() const { return instrument && name.starts_with("scale "); }
 };
 
 /// The fit at one wavelength: the specification of a grey BRDF.

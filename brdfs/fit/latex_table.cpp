@@ -71,6 +71,12 @@ std::string unitOf(const FitResult& result, const std::string& parameter) {
     return "1";
 }
 
+/// Of the instrument, an offset and a dark signal are in the unit of f, the others are shares.
+std::string unitOf(const FitResult& result, const FittedParameter& parameter) {
+    if (!parameter.instrument) return unitOf(result, parameter.name);
+    return parameter.name == "offset" || parameter.name == "dark" ? "sr$^{-1}$" : "1";
+}
+
 /// The rows of a tabular with their columns.
 class Tabular {
 public:
@@ -119,8 +125,8 @@ private:
         tabular.rule("midrule");
         bool any = false;
         for (const FittedParameter& p : result_.parameters) {
-            if (!p.channel.empty()) continue;
-            tabular.row({latexText(p.name), valueOf(p), unitOf(result_, p.name)});
+            if (!p.channel.empty() || p.isScanScale()) continue;
+            tabular.row({latexText(p.name), valueOf(p), unitOf(result_, p)});
             any = true;
         }
         tabular.rule("bottomrule");

@@ -1,4 +1,6 @@
 // `hshfit fit` with terms of the instrument, as a laboratory meets it.
+#include "places.h"
+
 #include <cli/program.h>
 
 #include <nlohmann/json.hpp>
@@ -105,6 +107,21 @@ TEST_F(Instruments, ABandwidthIsTakenOutOfTheSpectrum) {
               (Json{{"shape", "triangle"}, {"width", 10.0}}));
     ASSERT_EQ(with["spectrum"].size(), 4u);
     EXPECT_NE(with["spectrum"], without["spectrum"]);
+}
+
+// The errors of f without the fitted terms would be those of another material.
+TEST_F(Instruments, NoErrorOfFIsStatedAndResidualsAreThoseOfReadings) {
+    write("scans.astm", table(false, true));
+    const std::string end = path("scans.astm") + model + "--dark fit ";
+    expectError("fit " + end + "--bands plane:30 --bands-to " + path("bands.csv"), 2,
+                "without terms of the instrument", 1);
+    const Json fit = answer(end);
+    EXPECT_FALSE(fit["fit"].contains("prediction"));
+    if (!hshfit::test::hasGnuplot()) GTEST_SKIP() << hshfit::test::noGnuplot;
+    answer(end + "--figures " + path("figures"));
+    EXPECT_EQ(read(path("figures/cuts.csv")).find("95 %"), std::string::npos);
+    // Readings have a dark signal that f does not; the table of samples allows for it.
+    EXPECT_NE(read(path("figures/parameters.tex")).find("sr$^{-1}$"), std::string::npos);
 }
 
 TEST_F(Instruments, AnEntryThatDoesNotFitIsOneLineAndLeavesNothing) {

@@ -212,6 +212,7 @@ FitResult fitWithInstrument(const FitSamples& samples, const FitOptions& options
                                 overCosines(instrument.darkOver, samples.wiZ[k], samples.wo[k].z);
     }
     FitResult result = searchMaterial(stated, options);
+    result.point = {};  // of the material without the fitted terms: it predicts nothing here
     std::vector<double> x = materialOf(result, sum, samples.channels.count());
     refine(*openFit(result), samples, instrument, quadratures);
     constexpr int most = 8;
