@@ -68,6 +68,7 @@ Stood standingOf(const std::string& path, const std::string& key) {
     if (!canStateMadeFrom(path)) return {Standing::unknown};
     const auto made = madeFromOf(path);
     if (!made) refuse(path, "does not say that it was made from this input with these options");
+    if (made->changed) refuse(path, "was changed after it was made");
     if (made->key != key) refuse(path, "was made from other input, options or version");
     return stoodAs(*made, fs::path(path).parent_path());
 }
@@ -83,6 +84,7 @@ Stood standingOfFolder(const fs::path& folder, const std::string& key) {
     for (const fs::path& path : paths) {
         const auto made = madeFromOf(path.string());
         if (!made || made->command != outputRule().command) continue;
+        if (made->changed) refuse(path.string(), "was changed after it was made");
         if (made->key == key) return stoodAs(*made, folder);
         other = path.string();
     }

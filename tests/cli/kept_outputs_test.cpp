@@ -176,6 +176,27 @@ TEST_F(KeptFiles, OtherBytesOfTheInputAreOtherInput) {
     EXPECT_EQ(read(path("c.json")), before);
 }
 
+TEST_F(KeptFiles, AFileThatWasChangedIsRefused) {
+    for (const std::string name : {"x.json", "x.exr", "x.png"}) {
+        const std::string made = name == "x.png" ? "render lambert --size 16 --light uniform: -o "
+                                                 : "project lambert --order 3 --outgoing 4 -o ";
+        ASSERT_EQ(run(made + path(name)).code, 0) << name;
+        EXPECT_NE(run(made + path(name)).out.find("kept "), std::string::npos) << name;
+        std::string bytes = read(path(name));
+        // A digit of a coefficient, a byte of the pixels.
+        const std::size_t at = name == "x.json"
+                                   ? bytes.find_first_of("123456789", bytes.find("coefficients\":"))
+                               : name == "x.exr" ? bytes.size() - 1
+                                                 : bytes.find("IDAT") + 12;
+        bytes[at] = static_cast<char>(bytes[at] ^ 1);
+        write(name, bytes);
+        const Answer again = run(made + path(name));
+        EXPECT_EQ(again.code, 5) << name;
+        EXPECT_NE(again.err.find("was changed after it was made"), std::string::npos) << again.err;
+        EXPECT_EQ(read(path(name)), bytes) << name;
+    }
+}
+
 TEST_F(KeptFiles, AnInputElsewhereWithTheSameBytesIsTheSameInput) {
     ASSERT_EQ(run("convert lambert " + path("a.alta") + " --to alta:theta=4,phi=8").code, 0);
     const std::string job = " --order 2 --outgoing 4 -o " + path("c.json");

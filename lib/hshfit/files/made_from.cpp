@@ -1,5 +1,6 @@
 #include <hshfit/byte_cursor.h>
 #include <hshfit/error.h>
+#include <hshfit/files/checksum.h>
 #include <hshfit/files/exr_header.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/files/made_from.h>
@@ -13,7 +14,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -30,8 +30,9 @@ constexpr std::size_t pngEnd = 12;                  // the chunk IEND
 constexpr std::size_t most = std::size_t{1} << 20;  // bytes of a statement
 constexpr int deepest = 4;
 
-std::string textOf(const MadeFrom& made) {
-    ordered_json json = {{"command", made.command}, {"key", made.key}};
+std::string textOf(const MadeFrom& made, std::string_view content) {
+    ordered_json json = {
+        {"command", made.command}, {"key", made.key}, {"content", sha256(content)}};
     if (made.exitCode != 0) json["exit_code"] = made.exitCode;
     if (!made.files.empty()) json["files"] = made.files;
     return jsonText(json);
@@ -42,6 +43,7 @@ std::optional<MadeFrom> parsed(std::string_view text, const std::string& path) {
         const nlohmann::json json = parseJson(text, path, deepest);
         MadeFrom made{.command = json.at("command"), .key = json.at("key")};
         made.exitCode = json.value("exit_code", 0);
+        made.content = json.value("content", "");
         if (json.contains("files")) made.files = json["files"].get<std::vector<std::string>>();
         return made;
     } catch (const Error&) {
@@ -98,7 +100,7 @@ private:
 
 // --- JSON: the last member of the root object ---------------------------------------------------
 
-bool addToJson(const std::string& path, std::uint64_t size, const std::string& text) {
+bool addToJson(const std::string& path, std::uint64_t size, const MadeFrom& made) {
     Changed file(path);
     constexpr std::size_t tail = 64;
     const std::uint64_t from = size - std::min<std::uint64_t>(size, tail);
@@ -108,6 +110,7 @@ bool addToJson(const std::string& path, std::uint64_t size, const std::string& t
     const std::size_t last = end.find_last_not_of(" \t\r\n", brace - 1);
     if (last == std::string::npos || end[last] == '{') return false;
     const bool lines = end.find('\n', last) < brace;  // an indented document stays so
+    const std::string text = textOf(made, bytesAt(file.in(), 0, from + last + 1));
     file.write(from + last + 1, lines ? fmt::format(",\n  \"{}\": {}\n}}\n", member, text)
                                       : fmt::format(",\"{}\":{}}}\n", member, text));
     return true;
@@ -125,21 +128,26 @@ std::optional<MadeFrom> fromJson(std::istream& file, std::uint64_t size, const s
         const std::size_t brace = end.rfind('}');
         const std::size_t begin = at + member.size() + 3;
         if (brace == std::string::npos || brace <= begin) return std::nullopt;
-        return parsed(std::string_view(end).substr(begin, brace - begin), path);
+        auto made = parsed(std::string_view(end).substr(begin, brace - begin), path);
+        // The comma that the statement brought stands before its name.
+        const std::size_t comma = end.rfind(',', at);
+        if (made && comma != std::string::npos)
+            made->changed = sha256(bytesAt(file, 0, from + comma)) != made->content;
+        return made;
     }
     return std::nullopt;
 }
 
 // --- PNG: a text chunk before the last ----------------------------------------------------------
 
-bool addToPng(const std::string& path, std::uint64_t size, const std::string& text) {
+bool addToPng(const std::string& path, std::uint64_t size, const MadeFrom& made) {
     Changed file(path);
     const std::string end = bytesAt(file.in(), size - pngEnd, pngEnd);
     if (end.substr(4, 4) != "IEND") return false;
     std::string content("tEXt");
     content += member;
     content += '\0';
-    content += text;
+    content += textOf(made, bytesAt(file.in(), 0, size - pngEnd));
     std::string chunk;
     appendBigEndian(chunk, static_cast<std::uint32_t>(content.size() - 4));
     chunk += content;
@@ -157,8 +165,11 @@ std::optional<MadeFrom> fromPng(std::istream& file, std::uint64_t size, const st
         const std::uint32_t length = bigEndian(head);
         if (head.substr(4) == "tEXt" && length > member.size() && length < most) {
             const std::string content = bytesAt(file, at + 8, length);
-            if (content.starts_with(member) && content[member.size()] == '\0')
-                return parsed(std::string_view(content).substr(member.size() + 1), path);
+            if (content.starts_with(member) && content[member.size()] == '\0') {
+                auto made = parsed(std::string_view(content).substr(member.size() + 1), path);
+                if (made) made->changed = sha256(bytesAt(file, 0, at)) != made->content;
+                return made;
+            }
         }
         at += pngEnd + length;
     }
@@ -205,7 +216,19 @@ std::optional<ExrPlace> placeIn(std::istream& file, std::uint64_t size) {
     }
 }
 
-bool addToExr(const std::string& path, std::uint64_t size, const std::string& text) {
+/// Chunks lie behind the table of their offsets, whose least ends it; 0 where it does not hold.
+std::size_t firstChunk(std::string_view bytes, std::size_t table) {
+    std::uint64_t end = bytes.size();
+    for (std::size_t at = table; at + 8 <= end; at += 8) {
+        std::uint64_t offset = 0;
+        std::memcpy(&offset, bytes.data() + at, sizeof offset);
+        if (offset < at + 8 || offset >= bytes.size()) return 0;
+        end = std::min(end, offset);
+    }
+    return end == bytes.size() ? 0 : static_cast<std::size_t>(end);
+}
+
+bool addToExr(const std::string& path, std::uint64_t size, const MadeFrom& made) {
     std::ifstream file(path, std::ios::binary);
     const auto place = placeIn(file, size);
     if (!place || place->made) return false;
@@ -214,21 +237,18 @@ bool addToExr(const std::string& path, std::uint64_t size, const std::string& te
     added += '\0';
     added += "string";
     added += '\0';
+    const std::size_t table = place->end + 1, end = firstChunk(bytes, table);
+    if (end == 0) return false;
+    const std::string text = textOf(made, std::string_view(bytes).substr(end));
     const auto length = static_cast<std::int32_t>(text.size());
     added.append(reinterpret_cast<const char*>(&length), sizeof length);
     added += text;
-    // Chunks lie behind the table of their offsets: the least of these ends it.
-    const std::size_t table = place->end + 1;
-    std::uint64_t end = std::numeric_limits<std::uint64_t>::max();
-    for (std::size_t at = table; at + 8 <= std::min<std::uint64_t>(end, bytes.size()); at += 8) {
+    for (std::size_t at = table; at + 8 <= end; at += 8) {
         std::uint64_t offset = 0;
         std::memcpy(&offset, bytes.data() + at, sizeof offset);
-        if (offset < at + 8 || offset >= bytes.size()) return false;
-        end = std::min(end, offset);
         offset += added.size();
         std::memcpy(bytes.data() + at, &offset, sizeof offset);
     }
-    if (end > bytes.size()) return false;
     bytes.insert(place->end, added);
     Changed(path).write(0, bytes);
     return true;
@@ -237,7 +257,11 @@ bool addToExr(const std::string& path, std::uint64_t size, const std::string& te
 std::optional<MadeFrom> fromExr(std::istream& file, std::uint64_t size, const std::string& path) {
     const auto place = placeIn(file, size);
     if (!place || !place->made) return std::nullopt;
-    return parsed(*place->made, path);
+    auto made = parsed(*place->made, path);
+    const std::string bytes = bytesAt(file, 0, size);
+    const std::size_t pixels = firstChunk(bytes, place->end + 1);
+    if (made) made->changed = sha256(std::string_view(bytes).substr(pixels)) != made->content;
+    return made;
 }
 
 enum class Kind { other, json, png, exr };
@@ -268,11 +292,11 @@ bool addMadeFrom(const std::string& path, const MadeFrom& made) {
     if (error || !file) return false;
     switch (kindOf(file, size)) {
         case Kind::json:
-            return addToJson(path, size, textOf(made));
+            return addToJson(path, size, made);
         case Kind::png:
-            return addToPng(path, size, textOf(made));
+            return addToPng(path, size, made);
         case Kind::exr:
-            return addToExr(path, size, textOf(made));
+            return addToExr(path, size, made);
         case Kind::other:
             return false;
     }

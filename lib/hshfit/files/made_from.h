@@ -14,6 +14,10 @@ struct MadeFrom {
     /// Of the run, where that is not 0: what it found out lies in its files all the same.
     int exitCode = 0;
     std::vector<std::string> files = {};  ///< written with it, by names in the same folder
+    /// SHA-256 of the bytes that the statement leaves where they are: before it, in OpenEXR the
+    /// pixels. Computed when the statement is added.
+    std::string content = {};
+    bool changed = false;  ///< read back: `content` is no longer that of the file
 };
 
 /// Whether a file of this name has a place for it: .json, .exr and .png.
