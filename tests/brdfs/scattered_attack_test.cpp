@@ -191,6 +191,14 @@ TEST(AltaAttack, functionsAreChecked) {
     refused(function, "#FUNC nonlinear_function_diffuse\nkd 1\n", {"no #DIM"});
     refused(function, "#DIM 6 999999999\n", {"line 1"});
     refused(function, head + "#FUNC nonlinear_function_lafortune\n", {"line 3", "lafortune"});
+    refused(function,
+            "#ALTA FUNC HEADER\n#DIM 1 1\n#PARAM_IN COS_TH\n#FUNC rational_function\n#NP 1\n",
+            {"last coefficient"});
+    refused(function,
+            head +
+                "#FUNC nonlinear_function_diffuse\nkd 1\n#DIM 1 3\n#FUNC "
+                "nonlinear_function_diffuse\nkd 1 1 1\n",
+            {"#DIM"});
     refused(function, head + "#FUNC nonlinear_function_diffuse\n", {"before kd"});
     refused(function, head + "#FUNC nonlinear_function_diffuse\nks 1\n", {"expected kd"});
     refused(function, head + "#FUNC nonlinear_function_diffuse\nkd nan\n", {"kd is nan"});

@@ -156,6 +156,8 @@ private:
             double in = 0, out = 0;
             if (!reader_.takeNumber(in) || !reader_.takeNumber(out) || (out != 1 && out != 3))
                 throw reader_.error("#DIM has to end in 1 (grey) or 3 (R, G, B)");
+            if (!products_.empty() && static_cast<std::size_t>(out) != channels_)
+                throw reader_.error("#DIM changes the number of channels after a #FUNC");
             dimension_ = in;
             channels_ = static_cast<std::size_t>(out);
         } else if (key == "#PARAM_IN") {
@@ -355,7 +357,7 @@ private:
             }
         }
         const AltaQuotient& last = channels.back();
-        if (channels.size() != channels_ || np == 0 || last.denominator.size() != nq)
+        if (channels.size() != channels_ || np == 0 || nq == 0 || last.denominator.size() != nq)
             throw reader_.error("the function ends before its last coefficient");
         for (std::size_t k = 0; k < input.count; ++k) {
             // ALTA widens the range of a coordinate that has one value.
