@@ -118,6 +118,7 @@ DirectionReference directionOf(const JsonFields& root, const std::string& file) 
         if (result.channels.size() != (vector ? 2 : 1))
             map.fail(vector ? "has to name two channels" : "has to name one channel", "channels");
     }
+    if (!vector && map.has("encoding")) map.fail("belongs to a vector", "encoding");
     for (const char* key : {"scale", "offset"})
         if (vector && map.has(key)) map.fail("belongs to an angle", key);
     if (map.has("scale")) result.scale = map.number("scale", -most, most);

@@ -75,10 +75,14 @@ void chooseForm(const FacetSurface& surface, const LobeTable& table, const MipLa
     for (std::size_t k = 0; k < worst.forms.size(); ++k) {
         const MipError& form = worst.forms[k];
         if (form.form == "parameters") continue;
+        // Each of the two textures has layers of four numbers.
+        const auto padded = [](std::size_t count) { return (count + 3) / 4 * 4; };
+        const std::size_t ellipse = std::min(form.numbers, layout.ellipseSize());
+        const std::size_t stored = padded(ellipse) + padded(form.numbers - ellipse);
         answer.choices.push_back({.form = form.form,
                                   .order = form.use.order,
                                   .numbers = form.numbers,
-                                  .bytesOfTexel = bytes * static_cast<double>(form.numbers),
+                                  .bytesOfTexel = bytes * static_cast<double>(stored),
                                   .error = form.relative,
                                   .level = levels[k]});
         if (options.form == "filtered" || options.form == form.form) possible.forms.push_back(form);
@@ -141,17 +145,18 @@ FilteredMapAnswer filteredMap(const std::string& description, const std::string&
     ParameterMaps maps(described, listener);
     FacetSurface surface(maps, description, listener);
     const std::vector<LevelSize> sizes = sizesOf(maps.width(), maps.height(), options.mips);
-    FilteredMapAnswer answer{
-        .description = description,
-        .model = described.model,
-        .folder = folder,
-        .width = maps.width(),
-        .height = maps.height(),
-        .renormalised = maps.turns().renormalised(),
-        .form = options.form == "harmonics" && sizes.size() > 1 ? "harmonics" : "ellipse",
-        .order = options.form == "harmonics" ? options.harmonics : 0,
-        .weights = static_cast<std::size_t>(surface.weights()),
-        .albedos = static_cast<std::size_t>(surface.albedos())};
+    if (options.form == "harmonics" && sizes.size() == 1)
+        throw UsageError("harmonics begin at level 1; a map of one level is an ellipse");
+    FilteredMapAnswer answer{.description = description,
+                             .model = described.model,
+                             .folder = folder,
+                             .width = maps.width(),
+                             .height = maps.height(),
+                             .renormalised = maps.turns().renormalised(),
+                             .form = options.form == "harmonics" ? "harmonics" : "ellipse",
+                             .order = options.form == "harmonics" ? options.harmonics : 0,
+                             .weights = static_cast<std::size_t>(surface.weights()),
+                             .albedos = static_cast<std::size_t>(surface.albedos())};
     if (answer.renormalised > 0) {
         listener.say(
             fmt::format("{} normals of {} had a length that is off by more than 5 % and "

@@ -331,6 +331,10 @@ void write(Work& work, TexelEncoder& encoder, const SvbrdfOptions& options, Svbr
 Svbrdf made(const std::string& description, const std::string& folder, const SvbrdfOptions& options,
             const Listener& listener) {
     const auto start = Clock::now();
+    if (processes().isFirst()) {
+        FileSet files(folder, options.force);  // the folder, which goes again if it stays empty
+        for (const char* name : {textureName, sidecarName, pictureName}) files.requireFree(name);
+    }
     Work work(description, options, listener);
     Svbrdf result{.description = description,
                   .model = work.described.model,

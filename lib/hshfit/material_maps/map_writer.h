@@ -27,16 +27,15 @@ struct MapWritten {
     std::vector<float> pictureErrors = {};
 };
 
-/// The picture of errors, and who hears of progress.
+/// The size of the picture of errors, and a function that is told of progress.
 struct MapWriterOptions {
     std::size_t pictureSide = 512;  ///< of the longer side, at most, pixels
     std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
-/// Bands of a map of these levels: rows that end up in whole rows of as many levels as can be, up
-/// to
-/// 7. A band has at most 64 rows, `memory` permitting: enough for writes of a megabyte, and no more
-/// memory than needed, which a system hands out slowly.
+/// Bands of a map of these levels: rows that end up in whole rows of as many levels as can be, at
+/// most 7. A band has at most 64 rows, `memory` permitting: enough for writes of a megabyte. More
+/// memory would only take the system time to provide.
 struct BandPlan {
     std::size_t rows = 1;    ///< of a band, but the last
     std::size_t count = 1;   ///< bands

@@ -47,7 +47,8 @@ std::vector<std::size_t> AsyncWrites::write(int descriptor, std::span<const File
         if (room > 0 && !refused) {
             const long taken = ::syscall(SYS_io_submit, context_, room, pointers.data() + begun);
             if (taken > 0) begun += static_cast<std::size_t>(taken);
-            refused = taken <= 0 && errno != EAGAIN && errno != EINTR;
+            // With nothing under way, trying again would have nothing to wait for.
+            refused = taken <= 0 && (begun == ended || (errno != EAGAIN && errno != EINTR));
         }
         if (begun == ended) continue;
         io_event events[most];
