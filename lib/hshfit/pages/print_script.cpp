@@ -271,8 +271,11 @@ std::string figuresScript(const std::vector<PrintFigure>& figures, const FigureS
 }
 
 std::string figureCsv(const PrintFigure& figure) {
-    std::string text = fmt::format("panel,title,series,{0},{1},{1}_low,{1}_high\n",
-                                   figure.columns[0], figure.columns[1]);
+    // Maps have a value at two coordinates; the place of the high end stays empty.
+    const bool map = figure.kind == PrintFigure::Kind::map;
+    std::string text =
+        fmt::format("panel,title,series,{0},{1},", figure.columns[0], figure.columns[1]) +
+        (map ? "value,\n" : fmt::format("{0}_low,{0}_high\n", figure.columns[1]));
     for (std::size_t p = 0; p < figure.panels.size(); ++p)
         for (const PrintSeries& series : figure.panels[p].series)
             for (std::size_t k = 0; k < series.x.size(); ++k) {
