@@ -124,7 +124,6 @@ void convertMany(const ConvertArguments& arguments, Globals& globals) {
         jobs::convertMany(inputs, arguments.folder, arguments.options, listenerFor(globals));
     Json documents = Json::array();
     std::string text;
-    for (const std::string& kept : many.kept) text += jobs::keptLine(kept) + "\n";
     for (std::size_t i = 0; i < many.results.size(); ++i) {
         const auto& converted = many.results[i];
         if (!converted) continue;

@@ -8,6 +8,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/json_fields.h>
+#include <hshfit/files/output_rule.h>
 
 #include <jobs/fit.h>
 
@@ -158,6 +159,7 @@ void runCompareModels(const FitArguments& arguments, Globals& globals) {
                            {"data", arguments.data},
                            {"loss", loss},
                            {"models", list}};
+    stateExitCode(globals.exitCode);
     if (!arguments.output.empty()) writeFile(arguments.output, jsonText(document, 2) + "\n");
     if (globals.json)
         printJson(document);

@@ -47,9 +47,11 @@ bool isOutput(const CLI::App& command, const CLI::Option& option) {
 }
 
 /// Whether results do not depend on the option.
-bool isAside(std::string_view name) {
+bool isAside(const CLI::App& command, std::string_view name) {
+    // A bound of memory lets a cache of radiance forget records.
+    if (name == "--memory") return command.get_name() != "illuminate";
     return isAnyOf(name, {"--json", "--quiet", "--threads", "--force", "--help", "--records",
-                          "--progress", "--all", "--memory", "--writes"});
+                          "--progress", "--all", "--writes"});
 }
 
 struct Words {
@@ -70,7 +72,9 @@ Words wordsOf(const CLI::App& command) {
                 if (!isStandardOutput(path)) words.outputs.push_back(path);
         } else if (option->get_positional()) {
             words.inputs.insert(words.inputs.end(), given.begin(), given.end());
-        } else if (!isAside(name)) {
+        } else if (name == "--records" && !given.empty()) {
+            words.options[name] = true;  // they were handed on
+        } else if (!isAside(command, name)) {
             Json values = Json::array();
             for (const std::string& value : given)
                 values.push_back(jobs::namesFile(value) ? jobs::contentOf(value) : value);
@@ -157,6 +161,8 @@ bool areOutputsKept(const CLI::App& command, Globals& globals) {
     if (words.outputs.empty()) return false;
     const std::string key = stateKey(rule, words);
     if (isItemwise(command, words)) return false;
+    // Records are added to even where the pictures are valid.
+    if (words.options.contains("--records")) return false;
     const auto [found, exitCode] = jobs::findOutputs(words.outputs, key);
     switch (found) {
         case jobs::Found::valid:

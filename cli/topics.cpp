@@ -179,8 +179,9 @@ Page files() {
     addHeading(page, "How they are written");
     addParagraph(page,
                  "A file appears under its name once it is complete. Files of one command "
-                 "appear together or not at all. Commands with --force refuse to replace a "
-                 "file without it.");
+                 "appear together or not at all. A file that exists is kept if it was made from "
+                 "the same input, options and version, and refused otherwise; --force "
+                 "replaces it.");
     return page;
 }
 

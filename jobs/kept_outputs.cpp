@@ -11,6 +11,7 @@
 #include <hshfit/wording.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -37,17 +38,6 @@ std::string sumOf(const std::string& path) {
     const std::string sum = sha256(std::as_bytes(file.bytes()));
     file.checkIntact();
     return sum;
-}
-
-/// The word with the folders of its paths left out: results do not depend on where a file lies.
-std::string withoutFolders(const std::string& word) {
-    std::string text = word;
-    for (std::size_t slash = text.find('/'); slash != std::string::npos; slash = text.find('/')) {
-        const std::size_t before = text.find_last_of(":+, =", slash);
-        const std::size_t begin = before == std::string::npos ? 0 : before + 1;
-        text.erase(begin, slash + 1 - begin);
-    }
-    return text;
 }
 
 [[noreturn]] void refuse(const std::string& path, std::string_view why) {
@@ -104,22 +94,32 @@ Stood standingAt(const std::string& output, const std::string& key) {
 }  // namespace
 
 std::string contentOf(const std::string& word) {
-    std::string facts = withoutFolders(word);
+    std::string facts = word;
     std::error_code error;
     std::vector<std::string> words{word};
     if (fs::is_directory(word, error)) {
         facts = "folder";
-        words.clear();
-        for (const auto& entry : fs::directory_iterator(word, error))
-            if (entry.is_regular_file(error)) words.push_back(entry.path().string());
+        words = expandInputs({word}, Members::both);
+    } else if (pathIn(word).empty()) {
+        words = expandInputs(words);  // a pattern
     }
-    if (words.size() == 1 && pathIn(word).empty()) words = expandInputs(words);  // a pattern
-    std::ranges::sort(words);
     std::set<std::string> files;
     for (const std::string& each : words) addNamedFiles(each, files);
-    for (const std::string& file : files)
-        facts += fmt::format("\n{} {}", fs::path(file).filename().string(), sumOf(file));
-    return sha256(facts);
+    // Names instead of paths: results do not depend on where a file lies. Long paths first, since
+    // one may begin another.
+    std::vector<std::string> paths(files.begin(), files.end());
+    std::ranges::stable_sort(paths, std::ranges::greater{}, &std::string::size);
+    std::vector<std::string> sums;
+    for (const std::string& path : paths) {
+        const std::string sum =
+            fmt::format("{} {}", fs::path(path).filename().string(), sumOf(path));
+        std::size_t at = facts.find(path);
+        if (at == std::string::npos) sums.push_back(sum);
+        for (; at != std::string::npos; at = facts.find(path, at + sum.size()))
+            facts.replace(at, path.size(), sum);
+    }
+    std::ranges::sort(sums);
+    return sha256(fmt::format("{}\n{}", facts, fmt::join(sums, "\n")));
 }
 
 bool namesFile(const std::string& word) {
@@ -143,7 +143,7 @@ FoundOutputs findOutputs(const std::vector<std::string>& outputs, const std::str
     for (const std::string& output : outputs) {
         const auto [standing, exitCode] = standingAt(output, key);
         any = any || standing == Standing::kept;
-        all = all && (standing == Standing::kept || standing == Standing::unknown);
+        all = all && standing == Standing::kept;
         incomplete = incomplete || standing == Standing::incomplete;
         found.exitCode = std::max(found.exitCode, exitCode);
     }

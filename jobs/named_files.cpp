@@ -1,5 +1,6 @@
 #include "named_files.h"
 
+#include <hshfit/gpu/containers/sidecar.h>
 #include <hshfit/specification/parameters.h>
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Names stand at the beginning and at the end of long files, whose middle is numbers.
-constexpr std::uintmax_t whole = std::uintmax_t{1} << 20, edge = std::uintmax_t{1} << 16;
+constexpr std::uintmax_t whole = std::uintmax_t{1} << 24, edge = std::uintmax_t{1} << 16;
 
 std::string piece(std::ifstream& file, std::uintmax_t from, std::uintmax_t count) {
     std::string text(count, '\0');
@@ -40,10 +41,15 @@ void addAt(std::string_view text, const fs::path& folder, std::set<std::string>&
 
 void addFile(const std::string& path, std::set<std::string>& files) {
     if (!files.insert(path).second) return;
+    std::error_code error;
+    const fs::path sidecar = gpu::sidecarBeside(path);
+    if (fs::is_regular_file(sidecar, error)) addFile(sidecar.string(), files);
     const std::string text = textOfJson(path);
     const fs::path folder = fs::path(path).parent_path();
     for (std::size_t begin = text.find('"'); begin != std::string::npos;) {
-        const std::size_t end = text.find_first_of("\"\n", begin + 1);
+        std::size_t end = text.find_first_of("\"\n", begin + 1);
+        while (end != std::string::npos && text[end] == '"' && text[end - 1] == '\\')
+            end = text.find_first_of("\"\n", end + 1);
         if (end == std::string::npos) break;
         const std::string_view word(text.data() + begin + 1, end - begin - 1);
         constexpr std::size_t longest = 4096;
@@ -72,11 +78,13 @@ void addAt(std::string_view text, const fs::path& folder, std::set<std::string>&
         std::string_view part = text.substr(begin, end - begin);
         while (part.starts_with(' ')) part.remove_prefix(1);
         while (part.ends_with(' ')) part.remove_suffix(1);
-        // A prefix that changes what is read, "grey:FILE", leaves the file.
+        // The file is left by a prefix that changes what is read, "grey:FILE", and by a weight,
+        // "0.5 * FILE".
         while (!part.empty() && !addSpecification(part, folder, files)) {
-            const std::size_t colon = part.find(':');
-            if (colon == std::string_view::npos) break;
-            part.remove_prefix(colon + 1);
+            const std::size_t mark = part.find_first_of(":*");
+            if (mark == std::string_view::npos) break;
+            part.remove_prefix(mark + 1);
+            while (part.starts_with(' ')) part.remove_prefix(1);
         }
         begin = end + 1;
     }

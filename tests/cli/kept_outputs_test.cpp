@@ -176,6 +176,44 @@ TEST_F(KeptFiles, OtherBytesOfTheInputAreOtherInput) {
     EXPECT_EQ(read(path("c.json")), before);
 }
 
+TEST_F(KeptFiles, ColoursWeightsAndSidecarsArePartOfTheInput) {
+    const auto isOther = [&](const std::string& before, const std::string& after,
+                             const std::string& name) {
+        ASSERT_EQ(run(before + path(name)).code, 0) << before;
+        const Answer other = run(after + path(name));
+        EXPECT_EQ(other.code, 5) << after << other.out;
+    };
+    const std::string project = "project ", few = " --order 2 --outgoing 4 -o ";
+    isOther(project + "lambert:kd=0.5/0.2/0.1" + few, project + "lambert:kd=0.9/0.9/0.1" + few,
+            "kd.json");
+    isOther(project + "ggx:alpha=.5,metal=gold,nm=450/550/650" + few,
+            project + "ggx:alpha=.5,metal=gold,nm=400/500/650" + few, "nm.json");
+    const std::string table = path("b.alta"), grid = " --to alta:theta=4,phi=8 --force";
+    ASSERT_EQ(run("convert lambert " + table + grid).code, 0);
+    const std::string sum = project + "'0.5 * " + table + " + lambert:kd=0.1'" + few;
+    ASSERT_EQ(run(sum + path("sum.json")).code, 0);
+    ASSERT_EQ(run("convert lambert:kd=.25 " + table + grid).code, 0);
+    EXPECT_EQ(run(sum + path("sum.json")).code, 5);
+    ASSERT_EQ(run(project + "lambert" + few + path("m.json")).code, 0);
+    ASSERT_EQ(run("export " + path("m.json") + " --target bin -o " + path("e")).code, 0);
+    const std::string import = "import " + path("e/m.coef.f16.bin") + " -o " + path("i.json");
+    ASSERT_EQ(run(import).code, 0);
+    EXPECT_NE(run(import).out.find("kept "), std::string::npos);
+    std::string sidecar = read(path("e/m.hsh.json"));
+    write("e/m.hsh.json", sidecar + " ");
+    EXPECT_EQ(run(import).code, 5);
+}
+
+// The bytes of a format that states no key decide, whatever stands beside it.
+TEST_F(KeptFiles, ATableBesideAValidFileIsNotTakenForValid) {
+    const std::string fit = "fit ggx:alpha=.3 --model ggx --starts 1 --samples 200 ";
+    ASSERT_EQ(run(fit + "-o " + path("a.json")).code, 0);
+    write("r.csv", "somebody else's\n");
+    const Answer refused = run(fit + "-o " + path("a.json") + " --residuals " + path("r.csv"));
+    EXPECT_EQ(refused.code, 5) << refused.out;
+    EXPECT_EQ(read(path("r.csv")), "somebody else's\n");
+}
+
 TEST_F(KeptFiles, AFileThatWasChangedIsRefused) {
     for (const std::string name : {"x.json", "x.exr", "x.png"}) {
         const std::string made = name == "x.png" ? "render lambert --size 16 --light uniform: -o "

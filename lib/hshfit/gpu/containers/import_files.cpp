@@ -39,14 +39,6 @@ bool isSidecar(std::string_view bytes) {
            bytes.substr(0, 1 << 16).find("\"hshfit-gpu\"") != bytes.npos;
 }
 
-/// NAME.hsh.json for NAME.coef.…; empty for other names.
-fs::path sidecarBeside(const fs::path& path) {
-    const std::string name = path.filename().string();
-    const auto at = std::min(name.find(".coef."), name.find(".basis."));
-    if (at == std::string::npos) return {};
-    return path.parent_path() / (name.substr(0, at) + std::string(sidecarSuffix));
-}
-
 void checkSum(std::span<const std::byte> bytes, const std::string& wanted,
               const std::string& file) {
     const std::string found = sha256(bytes);
@@ -175,6 +167,13 @@ LoadedTexels fromContainer(std::string_view bytes, const Container& container,
 }
 
 }  // namespace
+
+fs::path sidecarBeside(const fs::path& path) {
+    const std::string name = path.filename().string();
+    const auto at = std::min(name.find(".coef."), name.find(".basis."));
+    if (at == std::string::npos) return {};
+    return path.parent_path() / (name.substr(0, at) + std::string(sidecarSuffix));
+}
 
 ImportedPayload readTexelFile(std::string_view bytes, const Container& container,
                               const std::string& path) {

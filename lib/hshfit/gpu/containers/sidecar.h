@@ -3,6 +3,7 @@
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/containers/test_triples.h>
 
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -52,6 +53,9 @@ inline constexpr int payloadSidecarVersion = 1;
 /// The version of sidecars with a form other than coefficients per outgoing direction, which has
 /// the name of the form in the key "form" (gpu/forms).
 inline constexpr int formSidecarVersion = 2;
+
+/// NAME.hsh.json for NAME.coef.… and NAME.basis.…, whose import reads it; empty for other names.
+std::filesystem::path sidecarBeside(const std::filesystem::path& path);
 
 /// The first step of reading, which allocates nothing by the stated sizes. Throws InputError
 /// that starts with `file` and names the field.
