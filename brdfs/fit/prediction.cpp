@@ -57,8 +57,8 @@ Gradients gradientsOf(const FittedChannel& channel, const FitSamples& samples) {
         for (const FittedChannel::Slope& own : slopes)
             result.coefficients.push_back(own.coefficient);
     std::ranges::sort(result.coefficients);
-    const auto repeated = std::ranges::unique(result.coefficients);
-    result.coefficients.erase(repeated.begin(), repeated.end());
+    result.coefficients.erase(std::unique(result.coefficients.begin(), result.coefficients.end()),
+                              result.coefficients.end());
     Eigen::MatrixXd byCoefficient =
         Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.columns),
                               static_cast<Eigen::Index>(result.coefficients.size()));

@@ -186,7 +186,7 @@ TEST(DispersionLaw, WrongStatementsNameWhatWouldBeRight) {
                                                           {"kd=free:2", "no number"},
                                                           {"ior=sellmeier:4", "1 to 3"},
                                                           {"kd=poly:2,", "PARAMETER=LAW"}})
-        refused([&] { parseDispersion(text); }, part);
+        refused([&laws = text] { parseDispersion(laws); }, part);
     const auto model = [](const std::string& laws) {
         DispersedModel("lambert + ggx:fresnel=dielectric", true, range(400, 700, 5),
                        parseDispersion(laws));

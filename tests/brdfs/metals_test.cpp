@@ -154,8 +154,8 @@ TEST(Metals, ColoursAreThosePublished) {
         {"chromium", {0.549, 0.556, 0.554}}, {"nickel", {0.660, 0.609, 0.526}},
         {"titanium", {0.542, 0.497, 0.449}}, {"iron", {0.562, 0.565, 0.578}}};
     for (const auto& [name, colour] : published) {
-        const std::vector<double> rgb =
-            rgbOf([&](double nm) { return tabulatedReflectance(findMetal(name), nm); });
+        const std::vector<double> rgb = rgbOf(
+            [&metal = findMetal(name)](double nm) { return tabulatedReflectance(metal, nm); });
         for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(rgb[c], colour[c], 0.1) << name << c;
     }
 }

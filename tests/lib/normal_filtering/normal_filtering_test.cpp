@@ -81,13 +81,15 @@ double meanDensity(std::span<const SurfaceTexel> texels, std::size_t weight, con
 class FilteredCoefficients : public testing::TestWithParam<std::pair<double, double>> {};
 
 TEST_P(FilteredCoefficients, EqualQuadratureOfTheAveragedDistribution) {
-    const auto [ax, ay] = GetParam();
+    const double ax = GetParam().first, ay = GetParam().second;
     constexpr int order = 9;
     std::vector<SurfaceTexel> texels = randomTexels(4, 7);
     const MipLayout layout{.weights = 2, .albedos = 0, .order = order};
     const MipLevel top = filterNormals(2, 2, texels, ggxTable(order, ax, ay), layout).back();
     const auto basis = bases::makeSh(order, {});
-    for (const auto& [l, m] : {std::pair{0, 0}, {2, -2}, {2, 1}, {4, 0}, {4, 3}, {8, -7}, {8, 8}})
+    for (const std::pair<int, int>& each :
+         {std::pair{0, 0}, {2, -2}, {2, 1}, {4, 0}, {4, 3}, {8, -7}, {8, 8}}) {
+        const int l = each.first, m = each.second;
         for (int k = 0; k < 2; ++k) {
             const double expected = overSphere(200, [&](const Direction& h) {
                 std::vector<double> y(order * order);
@@ -100,6 +102,7 @@ TEST_P(FilteredCoefficients, EqualQuadratureOfTheAveragedDistribution) {
                 expected, 1e-9)
                 << l << " " << m;
         }
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Lobes, FilteredCoefficients,
