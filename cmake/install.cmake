@@ -1,5 +1,5 @@
-# Installation: components `program`, `pictures` (its module), `development`, `documentation`, and
-# `python` (python/CMakeLists.txt).
+# Installation: components `program`, `pictures` (its module), `mpi` (hshfit-mpi), `development`,
+# `documentation`, and `python` (python/CMakeLists.txt).
 # Headers are those outside internal/ without the PRIVATE_HEADERS of their room; docs/library.md
 # lists them.
 include(GNUInstallDirs)

@@ -3,7 +3,6 @@
 set(HSHFIT_MAINTAINER "hshfit authors <hshfit@users.noreply.github.com>" CACHE STRING
     "Maintainer of the Debian packages, with an address")
 set(HSHFIT_DEBIAN_REVISION 1)
-set(HSHFIT_DEBIAN_PACKAGES hshfit hshfit-pictures libhshfit-dev hshfit-doc)
 
 # The changelog of Debian has one entry, dated by the last commit, so that the packages of one
 # commit are the same.
@@ -76,7 +75,14 @@ if(HSHFIT_PYTHON)
     "python3 (>= 3.${Python_VERSION_MINOR}~), python3 (<< 3.${next}~), python3-numpy"
     "gnuplot-nox" "hshfit-doc, hshfit-pictures ${same}"
     "${about}\n.\nThis package has the module hshfit for Python, which works on arrays of NumPy.")
-  list(APPEND HSHFIT_DEBIAN_PACKAGES python3-hshfit)
+endif()
+
+if(HSHFIT_MPI AND HSHFIT_PARTS STREQUAL "all")
+  # Open MPI starts its processes by a program, which the library alone does not bring.
+  hshfit_package(mpi hshfit-mpi science
+    "BRDFs as coefficients of hemispherical harmonics, over MPI"
+    "openmpi-bin" "hshfit-pictures ${same}" "hshfit, hshfit-doc"
+    "${about}\n.\nThis package has hshfit-mpi, whose processes share the work on a map.")
 endif()
 
 set(CPACK_GENERATOR DEB)
@@ -84,17 +90,23 @@ set(CPACK_COMPONENTS_ALL program pictures development documentation)
 if(HSHFIT_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
+if(HSHFIT_MPI AND HSHFIT_PARTS STREQUAL "all")
+  list(APPEND CPACK_COMPONENTS_ALL mpi)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_PACKAGE_NAME hshfit)
 set(CPACK_PACKAGE_CONTACT "${HSHFIT_MAINTAINER}")
 set(CPACK_STRIP_FILES ON)
+set(CPACK_PRE_BUILD_SCRIPTS
+    ${PROJECT_SOURCE_DIR}/packaging/debian/compress_manual.cmake)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE ${HSHFIT_DEBIAN_REVISION})
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PICTURES_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_MPI_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS

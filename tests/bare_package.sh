@@ -1,10 +1,10 @@
 #!/bin/sh
 # Tries the packages of `./run package` in a minimal Debian 12 that never saw the project: installs
 # hshfit with what it depends on, runs it and the commands of the tutorial as they are printed,
-# installs the other packages, builds an outside project against libhshfit-dev and uses the Python
-# package, uninstalls all of them, and compares the files with those before. The relocatable archive
-# is unpacked into a root without a single package more, and run. Needs root, debootstrap, Python
-# and an apt mirror.
+# installs the other packages, builds an outside project against libhshfit-dev, uses the Python
+# package, makes a map by two processes of hshfit-mpi, uninstalls all of them, and compares the
+# files with those before. The relocatable archive is unpacked into a root without a single package
+# more, and run. Needs root, debootstrap, Python and an apt mirror.
 #   tests/bare_package.sh [FOLDER]    default: out/packages
 # With BARE_ROOT=FOLDER a minimal root that is there already is copied, and made there if it is not.
 set -eu
@@ -32,6 +32,7 @@ inside() {
         shift
         mount -t proc proc "$root/proc"
         mount --rbind /dev "$root/dev"
+        mount --rbind /sys "$root/sys"
         exec chroot "$root" /usr/bin/env -i HOME=/root LANG=C.UTF-8 \
             DEBIAN_FRONTEND=noninteractive \
             PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin "$@"
@@ -59,9 +60,9 @@ echo "bare_package: the archive runs from a folder that it was moved to"
 
 # 2. The packages. Every file of the root counts, except for apt's and dpkg's own records.
 list() {
-    (cd "$work/root" && find . -xdev \( -path ./proc -o -path ./dev -o -path ./var/lib/apt \
-        -o -path ./var/lib/dpkg -o -path ./var/cache/apt -o -path ./var/log -o -path ./tmp \) \
-        -prune -o -print | sort)
+    (cd "$work/root" && find . -xdev \( -path ./proc -o -path ./dev -o -path ./sys -o -path ./tmp \
+        -o -path ./var/lib/apt -o -path ./var/lib/dpkg -o -path ./var/cache/apt -o -path ./var/log \
+        \) -prune -o -print | sort)
 }
 apt update
 dependencies() {
@@ -103,6 +104,7 @@ echo "bare_package: installed $(find "$packages" -name '*.deb' | wc -l) packages
 [ "$(list | wc -l)" -gt "$(wc -l <"$work/before")" ] ||
     { echo "bare_package: the packages installed no file" >&2; exit 1; }
 cp -r tests/install/outside "$work/root/tmp/outside"
+# shellcheck disable=SC2016  # expanded by the shell of the root
 inside "$work/root" sh -ec '
     cd /tmp
     cmake -S outside -B outside/build >/dev/null
@@ -117,7 +119,14 @@ inside "$work/root" sh -ec '
     cd /
     PYTHONDONTWRITEBYTECODE=1 python3 -c "
 import hshfit
-assert hshfit.project(\"phong:exponent=22\").accuracy > 0.5"'
+assert hshfit.project(\"phong:exponent=22\").accuracy > 0.5"
+    cd /tmp
+    map=/usr/share/doc/hshfit/examples/maps/coin.json
+    hshfit svbrdf "$map" -o one --form low-rank --quiet >/dev/null
+    mpirun --allow-run-as-root --oversubscribe -n 2 \
+        hshfit-mpi svbrdf "$map" -o two --form low-rank --quiet >/dev/null
+    cmp one/material.ktx2 two/material.ktx2'
+echo "bare_package: two processes of hshfit-mpi write the texels of hshfit"
 # shellcheck disable=SC2046  # a list of words
 inside "$work/root" dpkg --purge $(installed) \
     >"$work/log" 2>&1 || { tail -n 20 "$work/log" >&2; exit 1; }
