@@ -39,7 +39,7 @@ class Hshfit(ConanFile):
             self.requires(package)
         if self.options.parts == "files":
             for package in ("openexr/3.2.1", "nlohmann_json/3.11.2", "libpng/1.6.40",
-                            "zlib/1.3.1", "openimageio/2.4.7.1", "nettle/3.6",
+                            "zlib/1.3.1", "openimageio/2.4.7.1", "nettle/3.8.1",
                             "kainjow-mustache/4.1"):
                 self.requires(package)
 
