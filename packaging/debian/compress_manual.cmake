@@ -1,8 +1,7 @@
 # Run by CPack on the files of the packages: Debian has manual pages compressed, without a date.
-file(GLOB_RECURSE pages ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/*.[1-8])
-list(FILTER pages INCLUDE REGEX /share/man/man)
-if(NOT pages)
-  message(FATAL_ERROR "no manual page below ${CPACK_TEMPORARY_INSTALL_DIRECTORY}")
-endif()
+find_program(find find REQUIRED)
 find_program(gzip gzip REQUIRED)
-execute_process(COMMAND ${gzip} -9n ${pages} COMMAND_ERROR_IS_FATAL ANY)
+execute_process(
+  COMMAND ${find} ${CPACK_TEMPORARY_INSTALL_DIRECTORY} -path */share/man/man?/* -type f
+          -exec ${gzip} -9n {} +
+  COMMAND_ERROR_IS_FATAL ANY)
