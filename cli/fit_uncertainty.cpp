@@ -41,14 +41,21 @@ std::string errorTable(const Document& uncertainty) {
     const bool scans = uncertainty.contains("scans"), bootstrap = uncertainty.contains("bootstrap");
     std::string lines =
         fmt::format("  {:<27} {:>10} {:>10}{}{}\n", "standard errors", "normal", "sandwich",
-                    scans ? "    by scan" : "", bootstrap ? "  bootstrap" : "");
+                    scans ? "    by scan   df" : "", bootstrap ? "  bootstrap" : "");
     for (const Document& own : uncertainty["parameters"]) {
         // Of scans there may be hundreds; FIT.json has them all.
         if (own["name"].get<std::string>().starts_with("scale ")) continue;
         lines +=
             fmt::format("  {:<24} {:>2} {:>10} {:>10}", own["name"].get<std::string>(),
                         own.value("channel", ""), number(own["normal"]), number(own["sandwich"]));
-        if (scans) lines += fmt::format(" {:>10}", number(own["scans"]));
+        if (scans) {
+            const auto student = own.find("scans_student");
+            lines += fmt::format(
+                " {:>10} {:>4}", number(own["scans"]),
+                student == own.end()
+                    ? std::string("-")
+                    : fmt::format("{:.0f}", (*student)["degrees_of_freedom"].get<double>()));
+        }
         if (own.contains("bootstrap"))
             lines += fmt::format(" {:>10}", number(own["bootstrap"]["standard_error"]));
         lines += '\n';

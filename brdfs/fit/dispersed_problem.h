@@ -31,6 +31,8 @@ public:
     std::size_t parameterCount() const { return curves_.size(); }
     const LawStatement& law(std::size_t i) const { return laws_[i]; }
     const LawCurve& curve(std::size_t i) const { return curves_[i]; }
+    /// Whether the law of parameter i gives an index of refraction and not u (ShapeParameter).
+    bool ofIndex(std::size_t i) const;
     /// The first coefficient of parameter i.
     std::size_t first(std::size_t i) const { return first_[i]; }
     std::size_t count() const { return lower_.size(); }
@@ -48,7 +50,6 @@ public:
     std::string specAt(double nanometres, std::span<const double> coefficients) const;
 
 private:
-    bool ofIndex(std::size_t i) const;
     double scaled(std::size_t i, double curveValue, const ParametricSum& sum, double* slope) const;
 
     std::string spec_;

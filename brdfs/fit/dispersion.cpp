@@ -2,6 +2,7 @@
 
 #include <brdfs/fit/covariance.h>
 #include <brdfs/fit/dispersed_problem.h>
+#include <brdfs/fit/dispersed_profile.h>
 #include <brdfs/fit/fit_search.h>
 #include <brdfs/fit/fit_statistics.h>
 #include <brdfs/fit/minimum_study.h>
@@ -36,10 +37,6 @@ void check(const FitSamples& samples, const FitOptions& options) {
         throw UsageError(
             "with laws over the wavelength, free is the law of a shape of its own at each; leave "
             "out the shapes per channel");
-    if (options.uncertainty.profile)
-        throw UsageError(
-            "intervals by profile likelihood are for fits without laws over the wavelength; the "
-            "bootstrap gives intervals for these");
 }
 
 Minimum minimum(const DispersedProblem& problem, std::vector<double> start,
@@ -134,8 +131,7 @@ Report reportOf(const DispersedModel& model, const std::vector<double>& coeffici
         const std::size_t first = model.first(i);
         const auto own = curve.reported({coefficients.data() + first, curve.count()});
         const bool shape = i < sum.shapes().size();
-        const bool index =
-            law.kind == DispersionLaw::Kind::cauchy || law.kind == DispersionLaw::Kind::sellmeier;
+        const bool index = model.ofIndex(i);
         for (std::size_t k = 0; k < curve.count(); ++k) {
             FittedParameter parameter;
             parameter.name = law.parameter + own.names[k];
@@ -267,8 +263,8 @@ void addDraws(const DispersedProblem& problem, const Minimum& found, const FitOp
 
 /// Errors of the parameters by all routes but the bootstrap.
 void addErrors(const Report& report, const Covariance& independent, const Covariance& covariance,
-               const std::vector<double>& normal, const std::vector<bool>& fixed,
-               FitResult& result) {
+               const std::vector<double>& normal, const std::vector<double>& degrees,
+               const std::vector<bool>& fixed, FitResult& result) {
     const std::size_t n = fixed.size();
     const std::vector<bool> known = determined(report, covariance, fixed);
     const Matrix whole = report.slopes * mapped(covariance.whole, n) * report.slopes.transpose();
@@ -296,7 +292,9 @@ void addErrors(const Report& report, const Covariance& independent, const Covari
             if (known[j]) uncertainty.covariance[i * n + j] = stated(at(i), at(j));
         own.normal = std::sqrt(std::max(0.0, stated(at(i), at(i))));
         own.sandwich = std::sqrt(std::max(0.0, sandwich(at(i), at(i))));
-        if (uncertainty.scans > 0) own.scans = *result.parameters[i].standardError;
+        if (uncertainty.scans == 0) continue;
+        own.scans = *result.parameters[i].standardError;
+        if (degrees[i] > 0) own.scanDegrees = degrees[i];
     }
 }
 
@@ -342,11 +340,12 @@ void describe(const DispersedProblem& problem, const Minimum& found, const FitOp
     const Matrix unscaled = mapped(inverse, n) / problem.normalisation();
     const WeightedRows rows =
         options.uncertainty.report || byScan ? problem.weightedRows(found.x) : WeightedRows{};
+    std::vector<double> degrees;
     if (byScan) {
         const double square = problem.normalisation() * problem.normalisation();
-        const Matrix spread =
-            scanSpread(sumsOfScans(rows, samples.scans, n), unscaled, model.parameterCount()) /
-            square;
+        const std::vector<ScanSums> sums = sumsOfScans(rows, samples.scans, n);
+        const Matrix spread = scanSpread(sums, unscaled, model.parameterCount()) / square;
+        degrees = scanDegrees(sums, unscaled, report.slopes);
         equations.spread.assign(spread.data(), spread.data() + spread.size());
         covariance = covarianceOf(equations, fixed);
     }
@@ -359,7 +358,7 @@ void describe(const DispersedProblem& problem, const Minimum& found, const FitOp
                         .scans = byScan ? *std::ranges::max_element(samples.scans) + 1 : 0});
     std::vector<double> normal = inverse;
     for (double& value : normal) value /= problem.normalisation();
-    addErrors(report, independent, covariance, normal, fixed, result);
+    addErrors(report, independent, covariance, normal, degrees, fixed, result);
     for (const auto& set : covariance.ambiguous) {
         result.ambiguous.emplace_back();
         for (const std::size_t i : set) {
@@ -372,6 +371,8 @@ void describe(const DispersedProblem& problem, const Minimum& found, const FitOp
     result.point.covariance = covariance.whole;
     valuesAt(model, found.x, &result.point);
     if (options.uncertainty.bootstrap > 0) addDraws(problem, found, options, result);
+    if (options.uncertainty.profile)
+        addProfiles(problem, found.x, fixed, options.uncertainty, *result.uncertainty);
 }
 
 }  // namespace

@@ -124,7 +124,8 @@ Uncertainty influences(const StudiedValues& values) {
 }
 
 void addErrors(std::span<const double> inverse, const std::vector<double>& slope,
-               const Covariance& stated, const Covariance& sandwich, Uncertainty& result) {
+               const Covariance& stated, const Covariance& sandwich,
+               const std::vector<double>& scanDegrees, Uncertainty& result) {
     const std::size_t n = slope.size();
     const double scale = result.stated ? 1 : result.reducedChiSquare();
     result.parameters.resize(n);
@@ -137,7 +138,9 @@ void addErrors(std::span<const double> inverse, const std::vector<double>& slope
                 result.covariance[i * n + j] = scale * inverse[i * n + j] * slope[i] * slope[j];
         own.normal = std::sqrt(result.covariance[i * n + i]);
         if (sandwich.variance[i] >= 0) own.sandwich = std::sqrt(sandwich.variance[i]) * slope[i];
-        if (result.scans > 0) own.scans = std::sqrt(stated.variance[i]) * slope[i];
+        if (result.scans == 0) continue;
+        own.scans = std::sqrt(stated.variance[i]) * slope[i];
+        if (i < scanDegrees.size() && scanDegrees[i] > 0) own.scanDegrees = scanDegrees[i];
     }
 }
 
@@ -152,7 +155,12 @@ Uncertainty studied(const StudiedMinimum& minimum) {
                                      .leverages = leveragesOf(rows, inverse, shapes),
                                      .stated = !problem.samples().sigmas.empty(),
                                      .scans = scanCount(problem.samples())});
-    addErrors({inverse.data(), n * n}, minimum.slope, minimum.stated, minimum.sandwich, result);
+    std::vector<double> degrees;
+    if (result.scans > 0)
+        degrees = scanDegrees(sumsOfScans(rows, problem.samples().scans, n, shapes), inverse,
+                              DenseMatrix::Identity(at(n), at(n)));
+    addErrors({inverse.data(), n * n}, minimum.slope, minimum.stated, minimum.sandwich, degrees,
+              result);
     return result;
 }
 

@@ -46,9 +46,10 @@ struct StudiedValues {
 Uncertainty influences(const StudiedValues& values);
 
 /// Adds the errors of parameters: by `inverse`, (J^T W J)^-1 [n * n], by `sandwich`, and, where the
-/// samples have scans, by `stated`.
+/// samples have scans, by `stated`, with the degrees of freedom of the first parameters.
 void addErrors(std::span<const double> inverse, const std::vector<double>& slope,
-               const Covariance& stated, const Covariance& sandwich, Uncertainty& result);
+               const Covariance& stated, const Covariance& sandwich,
+               const std::vector<double>& scanDegrees, Uncertainty& result);
 
 /// Everything but bootstrap and profile.
 Uncertainty studied(const StudiedMinimum& minimum);
@@ -68,12 +69,17 @@ struct ProfiledProblem {
     const Equations& equations;
     const std::vector<bool>& fixed;
     const std::vector<double>& slope;
+    bool constrained = false;  ///< an infinite cost says that x is not feasible
 };
 
-/// Adds, for each parameter of the problem with an error, the values at which the least chi-square
-/// over all others exceeds the minimum by the square of a normal quantile: 68.27 % and 95 % (Venzon
-/// & Moolgavkar 1988, 10.2307/2347496). Without stated uncertainties, by that of Student's quantile
-/// times the variance of residuals.
+/// The values of parameter i at which the least chi-square over all others exceeds the minimum by
+/// the square of a normal quantile: 68.27 % and 95 % (Venzon & Moolgavkar 1988, 10.2307/2347496).
+/// Without stated uncertainties, by that of Student's quantile times the variance of residuals.
+/// `normal`: the parameter's error by that route.
+ParameterUncertainty::Profile profileOf(const ProfiledProblem& problem, std::size_t i,
+                                        double normal, const Uncertainty& study);
+
+/// Adds profiles of each parameter of the problem with an error.
 void addProfiles(const ProfiledProblem& problem, const UncertaintyOptions& options,
                  Uncertainty& result);
 void addProfiles(const StudiedMinimum& minimum, const UncertaintyOptions& options,

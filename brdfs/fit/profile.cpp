@@ -37,13 +37,15 @@ public:
             minimise(equations, withoutParameter(start), withoutParameter(bounds_.lower),
                      withoutParameter(bounds_.upper), {.iterations = 50});
         const double excess = 2 * problem_.normalisation * found.cost - lowest_;
+        if (problem_.constrained && (!std::isfinite(excess) || found.cost < 0))
+            return std::numeric_limits<double>::infinity();
         if (!std::isfinite(excess) || found.cost < 0)
             throw NumericError("profile likelihood: the cost is not finite beside the minimum");
         return std::sqrt(std::max(0.0, excess));
     }
 
     /// The value beyond the minimum at which the root reaches `level`, by false position from the
-    /// quadratic guess; none where the bound comes first.
+    /// quadratic guess; none where the bound, or the end of what is feasible, comes first.
     std::optional<double> crossing(double level, double guess) const {
         const double from = problem_.x[parameter_];
         const double end = guess < from ? lower() : upper();
@@ -70,6 +72,7 @@ public:
             (root < level ? inner : outer) = at;
             (root < level ? innerRoot : outerRoot) = root;
         }
+        if (!std::isfinite(outerRoot)) return std::nullopt;
         return at;
     }
 
@@ -80,7 +83,7 @@ private:
     }
     /// The equations of the other parameters.
     Equations ofOthers(Equations all, bool derivatives) const {
-        if (!derivatives) return all;
+        if (!derivatives || all.gradient.empty()) return all;
         const std::size_t n = all.gradient.size();
         Equations result;
         result.cost = all.cost;
@@ -110,36 +113,39 @@ private:
 
 }  // namespace
 
-void addProfiles(const ProfiledProblem& problem, const UncertaintyOptions& options,
-                 Uncertainty& result) {
-    const double scale = result.stated ? 1 : result.reducedChiSquare();
-    const double degrees = result.stated ? std::numeric_limits<double>::infinity()
-                                         : static_cast<double>(result.degreesOfFreedom);
+ParameterUncertainty::Profile profileOf(const ProfiledProblem& problem, std::size_t i,
+                                        double normal, const Uncertainty& study) {
+    const double scale = study.stated ? 1 : study.reducedChiSquare();
+    const double degrees = study.stated ? std::numeric_limits<double>::infinity()
+                                        : static_cast<double>(study.degreesOfFreedom);
     const double outside = std::erfc(std::sqrt(0.5));  // of one standard deviation
     const double levels[] = {studentBound(outside, degrees), studentBound(0.05, degrees)};
+    const ProfileOf profile(problem, i, study.chiSquare);
+    const double error = normal / problem.slope[i], value = problem.valueOf(i, problem.x[i]);
+    ParameterUncertainty::Profile found;
+    for (std::size_t k = 0; k < 2; ++k) {
+        Interval& interval = k == 0 ? found.within68 : found.within95;
+        for (const double side : {-1.0, 1.0}) {
+            const auto end = profile.crossing(levels[k] * std::sqrt(scale),
+                                              problem.x[i] + side * levels[k] * error);
+            std::optional<double>& to = side < 0 ? interval.low : interval.high;
+            if (end) to = problem.valueOf(i, *end);
+            constexpr double agreement = 0.1;
+            const double expected = levels[k] * normal;
+            if (!end || std::abs(std::abs(*to - value) - expected) > agreement * expected)
+                found.quadratic = false;
+        }
+    }
+    return found;
+}
+
+void addProfiles(const ProfiledProblem& problem, const UncertaintyOptions& options,
+                 Uncertainty& result) {
     const std::size_t n = problem.x.size();
     for (std::size_t i = 0; i < n; ++i) {
         if (options.progress) options.progress(i, n);
         ParameterUncertainty& own = result.parameters[i];
-        if (!own.normal || !(*own.normal > 0)) continue;
-        const ProfileOf profile(problem, i, result.chiSquare);
-        const double error = *own.normal / problem.slope[i],
-                     value = problem.valueOf(i, problem.x[i]);
-        ParameterUncertainty::Profile found;
-        for (std::size_t k = 0; k < 2; ++k) {
-            Interval& interval = k == 0 ? found.within68 : found.within95;
-            for (const double side : {-1.0, 1.0}) {
-                const auto end = profile.crossing(levels[k] * std::sqrt(scale),
-                                                  problem.x[i] + side * levels[k] * error);
-                std::optional<double>& to = side < 0 ? interval.low : interval.high;
-                if (end) to = problem.valueOf(i, *end);
-                constexpr double agreement = 0.1;
-                const double expected = levels[k] * *own.normal;
-                if (!end || std::abs(std::abs(*to - value) - expected) > agreement * expected)
-                    found.quadratic = false;
-            }
-        }
-        own.profile = found;
+        if (own.normal && *own.normal > 0) own.profile = profileOf(problem, i, *own.normal, result);
     }
     if (options.progress) options.progress(n, n);
 }

@@ -8,6 +8,9 @@
 namespace hshfit::brdfs {
 namespace {
 
+/// Rounding leaves some of 1 - leverage where a scan alone decides.
+constexpr double leastFreedom = 1e-6;
+
 /// L with L L^T = inverse, from the eigenvalues of the matrix scaled to a diagonal of 1.
 Eigen::MatrixXd rootOf(const Eigen::MatrixXd& inverse) {
     Eigen::VectorXd scale = inverse.diagonal().cwiseMax(0).cwiseSqrt();
@@ -23,14 +26,50 @@ Eigen::MatrixXd rootOf(const Eigen::MatrixXd& inverse) {
 
 }  // namespace
 
+// With M = L L^T, q = L^T A L of a scan and b = L^T c, the variance of c is that of the terms
+// v^T L^T g, v = (1 - q)^-1 b. Their covariance among scans is diag(v^T q v) - Y^T Y, with columns
+// y = q v of Y.
+std::vector<double> scanDegrees(const std::vector<ScanSums>& scans, const Eigen::MatrixXd& inverse,
+                                const Eigen::MatrixXd& of) {
+    const Eigen::MatrixXd root = rootOf(inverse);
+    const Eigen::MatrixXd b = (of * root).transpose();
+    const Eigen::Index count = b.cols();
+    struct Sums {
+        double trace = 0, squares = 0;
+        Eigen::MatrixXd outer;
+    };
+    std::vector<Sums> sums(static_cast<std::size_t>(count),
+                           {0, 0, Eigen::MatrixXd::Zero(b.rows(), b.rows())});
+    for (const ScanSums& scan : scans) {
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(root.transpose() * scan.matrix *
+                                                                   root);
+        const Eigen::VectorXd shares = eigen.eigenvalues().cwiseMax(0);
+        const Eigen::VectorXd freedom = (1 - shares.array()).max(leastFreedom);
+        const Eigen::MatrixXd inner = eigen.eigenvectors().transpose() * b;
+        for (Eigen::Index i = 0; i < count; ++i) {
+            const Eigen::VectorXd v = inner.col(i).cwiseQuotient(freedom);
+            const Eigen::VectorXd y = eigen.eigenvectors() * shares.cwiseProduct(v);
+            const double own = v.dot(shares.cwiseProduct(v)), less = y.squaredNorm();
+            Sums& sum = sums[static_cast<std::size_t>(i)];
+            sum.trace += own - less;
+            sum.squares += own * (own - 2 * less);
+            sum.outer.noalias() += y * y.transpose();
+        }
+    }
+    std::vector<double> degrees;
+    for (const Sums& sum : sums) {
+        const double squares = sum.squares + sum.outer.squaredNorm();
+        degrees.push_back(sum.trace > 0 && squares > 0 ? sum.trace * sum.trace / squares : 0);
+    }
+    return degrees;
+}
+
 Eigen::MatrixXd scanSpread(const std::vector<ScanSums>& scans, const Eigen::MatrixXd& inverse,
                            std::size_t parameters) {
     if (scans.size() <= parameters)
         throw NumericError(fmt::format(
             "{} scans cannot give errors of {} parameters; expected more scans than parameters",
             scans.size(), parameters));
-    // Rounding leaves some of 1 - leverage where a scan alone decides.
-    constexpr double leastFreedom = 1e-6;
     const Eigen::MatrixXd root = rootOf(inverse);
     // With M = L L^T: (1 - A M)^-1 b = b + A L (1 - L^T A L)^-1 L^T b.
     Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(inverse.rows(), inverse.cols());

@@ -28,6 +28,9 @@ struct ParameterUncertainty {
     std::optional<double> normal;
     std::optional<double> sandwich;  ///< HC3, samples independent
     std::optional<double> scans;     ///< likewise by scan: its samples may be correlated (CR3)
+    /// Of `scans`: degrees of freedom of its variance (scanDegrees), which are those of the scans
+    /// that determine the parameter; none for the scale of a scan.
+    std::optional<double> scanDegrees;
     /// Standard deviation and percentiles of fits to resampled data.
     struct Bootstrap {
         double error = 0;

@@ -1,6 +1,7 @@
 #include <brdfs/fit/uncertainty_json.h>
 
 #include <brdfs/fit/band_rows.h>
+#include <brdfs/fit/distributions.h>
 #include <brdfs/fit/residual_rows.h>
 #include <hshfit/files/json_fields.h>
 
@@ -24,6 +25,15 @@ Document errorsJson(const FittedParameter& parameter, const ParameterUncertainty
     json["normal"] = finiteOrNull(own.normal);
     json["sandwich"] = finiteOrNull(own.sandwich);
     if (byScan) json["scans"] = finiteOrNull(own.scans);
+    if (own.scanDegrees) {
+        const auto within = [&](double outside) {
+            const double half = studentBound(outside, *own.scanDegrees) * *own.scans;
+            return Document::array({parameter.value - half, parameter.value + half});
+        };
+        json["scans_student"] = {{"degrees_of_freedom", *own.scanDegrees},
+                                 {"interval_68", within(std::erfc(std::sqrt(0.5)))},
+                                 {"interval_95", within(0.05)}};
+    }
     if (own.bootstrap)
         json["bootstrap"] = {{"standard_error", own.bootstrap->error},
                              {"interval_68", intervalJson(own.bootstrap->within68)},

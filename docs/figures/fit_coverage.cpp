@@ -2,14 +2,16 @@
 //     fit_coverage CSV [REPEATS] [SCANS]
 // fits REPEATS (2000) times SCANS (200) scans of tests/brdfs/instrument_scans.h, with the terms of
 // their instrument and without any, and writes a row per parameter and kind of fit: coverage of
-// intervals of one and of 1.96 errors by scan, sandwich and normal errors, mean deviation from the
-// truth and mean error.
+// intervals of one and of 1.96 errors by scan, sandwich and normal errors, and of Student's
+// intervals by scan (scans_student of FIT.json), mean deviation from the truth and mean error.
 
+#include <brdfs/fit/distributions.h>
 #include <brdfs/instrument_scans.h>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
@@ -22,8 +24,19 @@ using namespace hshfit::brdfs;
 
 struct Routes {
     test::Coverage scans, sandwich, normal;
+    std::size_t student68 = 0, student95 = 0;  ///< intervals by scan that hold the truth
+    double degrees = 0;
+    double share(std::size_t holding) const {
+        return static_cast<double>(holding) / static_cast<double>(scans.count);
+    }
     void add(double deviation, const ParameterUncertainty& own) {
         scans.add(deviation, *own.scans);
+        degrees += *own.scanDegrees;
+        const auto holds = [&](double outside) {
+            return std::abs(deviation) < studentBound(outside, *own.scanDegrees) * *own.scans;
+        };
+        student68 += holds(std::erfc(std::sqrt(0.5)));
+        student95 += holds(0.05);
         sandwich.add(deviation, *own.sandwich);
         normal.add(deviation, *own.normal);
     }
@@ -32,15 +45,19 @@ struct Routes {
 void report(const char* kind, const char* name, double value, const Routes& own,
             std::ofstream& csv) {
     const double bias = own.scans.bias(), error = own.scans.error();
-    csv << fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", kind, name, value, own.scans.one(),
-                       own.scans.two(), own.sandwich.one(), own.sandwich.two(), own.normal.one(),
-                       own.normal.two(), bias, error);
+    csv << fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", kind, name, value,
+                       own.scans.one(), own.scans.two(), own.sandwich.one(), own.sandwich.two(),
+                       own.normal.one(), own.normal.two(), bias, error, own.share(own.student68),
+                       own.share(own.student95),
+                       own.degrees / static_cast<double>(own.scans.count));
     fmt::print(
-        "{:<12} {:<6} by scan {:.3f} {:.3f}  sandwich {:.3f} {:.3f}  normal {:.3f} {:.3f}  "
+        "{:<12} {:<6} Student {:.3f} {:.3f} ({:.0f} degrees)  by scan {:.3f} {:.3f}  sandwich "
+        "{:.3f} {:.3f}  normal {:.3f} {:.3f}  "
         "off by {:+.2f} % = {:+.1f} errors, scatter {:.2f} errors\n",
-        kind, name, own.scans.one(), own.scans.two(), own.sandwich.one(), own.sandwich.two(),
-        own.normal.one(), own.normal.two(), 100 * bias / value, bias / error,
-        own.scans.deviation() / error);
+        kind, name, own.share(own.student68), own.share(own.student95),
+        own.degrees / static_cast<double>(own.scans.count), own.scans.one(), own.scans.two(),
+        own.sandwich.one(), own.sandwich.two(), own.normal.one(), own.normal.two(),
+        100 * bias / value, bias / error, own.scans.deviation() / error);
 }
 
 int run(int argc, char** argv) {
@@ -66,7 +83,7 @@ int run(int argc, char** argv) {
     });
     std::ofstream csv(argv[1]);
     csv << "fit,parameter,truth,scans_68,scans_95,sandwich_68,sandwich_95,normal_68,normal_95,"
-           "mean_deviation,mean_error\n";
+           "mean_deviation,mean_error,student_68,student_95,degrees\n";
     const std::pair<const char*, double> values[] = {
         {"alpha", truth.alpha}, {"kd", truth.kd}, {"ks", truth.ks}, {"dark", truth.dark}};
     for (const bool terms : {true, false}) {

@@ -13,6 +13,7 @@
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
+#include <gsl/gsl_cdf.h>
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 #include <nlohmann/json.hpp>
@@ -334,6 +335,47 @@ TEST(DispersedFit, CauchysTermsAreRecoveredAtTheStatedRate) {
             mean += squares[i * draws + d] / static_cast<double>(draws);
         // The mean of 120 squares of normal variables: 1 +- 0.13.
         EXPECT_NEAR(mean, 1, 0.45) << i;
+    }
+}
+
+// The ends of profiles, with the parameter held there by the specification of the model.
+TEST(DispersedFit, ProfilesEndWhereChiSquareHasRisen) {
+    const FitSamples samples = spectralSamples(150, 8);
+    FitOptions options = optionsOf("ior=cauchy:1,kd=poly:1");
+    options.uncertainty.profile = true;
+    const FitResult result = fit(samples, options);
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < result.parameters.size(); ++i) {
+        const std::string& name = result.parameters[i].name;
+        if (name != "ggx.ior.A" && name != "ggx.alpha") continue;
+        ASSERT_TRUE(result.uncertainty->parameters[i].profile) << name;
+        const auto& profile = *result.uncertainty->parameters[i].profile;
+        for (const auto& [end, rise] : {std::pair{profile.within68.low, 1.0},
+                                        {profile.within95.high, gsl_cdf_chisq_Qinv(0.05, 1)}}) {
+            ASSERT_TRUE(end) << name;
+            FitOptions held =
+                optionsOf(name == "ggx.alpha" ? "ior=cauchy:1,kd=poly:1" : "kd=poly:1");
+            held.model += fmt::format(",{}={:.12g}", name == "ggx.alpha" ? "alpha" : "ior", *end);
+            const double chiSquare = fit(samples, held).uncertainty->chiSquare;
+            EXPECT_NEAR(chiSquare - result.uncertainty->chiSquare, rise, 2e-3 * rise) << name;
+            ++compared;
+        }
+    }
+    EXPECT_EQ(compared, 4u);
+}
+
+// With noise this small the fit is as good as linear, in terms that several coefficients share too.
+TEST(DispersedFit, ProfilesOfCauchysTermsAreTheNormalIntervals) {
+    FitOptions options = optionsOf("ior=cauchy:2,kd=poly:1");
+    options.uncertainty.profile = true;
+    const FitResult result = fit(spectralSamples(150, 9), options);
+    for (std::size_t i = 0; i < result.parameters.size(); ++i) {
+        const ParameterUncertainty& own = result.uncertainty->parameters[i];
+        ASSERT_TRUE(own.profile && own.profile->within95.low && own.profile->within95.high);
+        const double value = result.parameters[i].value,
+                     half = gsl_cdf_ugaussian_Qinv(0.025) * *own.normal;
+        EXPECT_NEAR(*own.profile->within95.high - value, half, 0.05 * half);
+        EXPECT_NEAR(value - *own.profile->within95.low, half, 0.05 * half);
     }
 }
 

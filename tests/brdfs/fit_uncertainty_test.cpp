@@ -6,7 +6,7 @@
 #include <brdfs/fit/fit.h>
 #include <brdfs/fit/fit_samples.h>
 #include <brdfs/fit/residual_rows.h>
-#include <brdfs/random_draws.h>
+#include <brdfs/fit/scan_spread.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -14,6 +14,7 @@
 #include <gsl/gsl_multifit.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
+#include <Eigen/Dense>
 
 #include <cmath>
 #include <memory>
@@ -26,7 +27,13 @@ namespace {
 
 constexpr std::size_t scanLength = 6;
 
-using test::directionBelow, test::normal, test::uniform;
+double uniform(std::mt19937_64& random) {
+    return static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+double normal(std::mt19937_64& random) {
+    return std::sqrt(-2 * std::log(1 - uniform(random))) * std::cos(2 * pi * uniform(random));
+}
 
 /// Scans of outgoing directions through the lobe, each at an incident direction of its own. Values
 /// are those of `spec`.
@@ -35,7 +42,7 @@ FitSamples scansOf(const std::string& spec, std::size_t scans, std::mt19937_64& 
     samples.isotropic = true;
     samples.origin = SampleOrigin::measured;
     for (std::size_t s = 0; s < scans; ++s) {
-        const Direction wi = directionBelow(1.2, random);
+        const Direction wi = directionFromAngles(1.2 * uniform(random), 2 * pi * uniform(random));
         const double turn = azimuth(wi) + pi + 0.4 * normal(random);
         for (std::size_t k = 0; k < scanLength; ++k) {
             samples.wiX.push_back(wi.x);
@@ -212,6 +219,50 @@ TEST_F(LinearFit, ProfilesAreTheNormalIntervals) {
             EXPECT_NEAR((reference->values[i] - *interval.low) / error, quantile, 1e-3);
         }
     }
+}
+
+// Of S equal scans the variance of a mean has S - 1 degrees of freedom (Gosset 1908).
+TEST(ScanDegrees, OfTheMeanOfEqualScansAreOneLessThanTheScans) {
+    constexpr int scans = 7;
+    const Eigen::MatrixXd one = Eigen::MatrixXd::Constant(1, 1, 1);
+    const std::vector<ScanSums> sums(scans, {3 * one, Eigen::VectorXd::Zero(1)});
+    EXPECT_NEAR(scanDegrees(sums, one / (3 * scans), one).front(), scans - 1, 1e-9);
+}
+
+// A chi-square with n degrees of freedom has a mean of n and a variance of 2 n.
+TEST(ScanDegrees, AreThoseOfTheVariancesOfDrawnLines) {
+    constexpr std::size_t scans = 12, perScan = 3;
+    const auto place = [](std::size_t v) {
+        const double x = static_cast<double>(v) / (scans * perScan);
+        return 4 * x * x * x;  // the last scans decide the slope
+    };
+    Eigen::MatrixXd rows(scans * perScan, 2);
+    for (std::size_t v = 0; v < scans * perScan; ++v)
+        rows.row(static_cast<Eigen::Index>(v)) << 1, place(v);
+    const Eigen::MatrixXd inverse = (rows.transpose() * rows).inverse();
+    const auto part = [&](const auto& of, std::size_t s) {
+        return of.middleRows(static_cast<Eigen::Index>(s * perScan), perScan);
+    };
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> error;
+    constexpr int draws = 20000;
+    double mean = 0, square = 0;
+    std::vector<ScanSums> sums(scans);
+    for (int d = 0; d < draws; ++d) {
+        Eigen::VectorXd y(rows.rows());
+        for (double& value : y) value = error(random);
+        const Eigen::VectorXd residual = y - rows * (inverse * (rows.transpose() * y));
+        for (std::size_t s = 0; s < scans; ++s)
+            sums[s] = {part(rows, s).transpose() * part(rows, s),
+                       part(rows, s).transpose() * part(residual, s)};
+        const double variance = (inverse * scanSpread(sums, inverse, 2) * inverse)(1, 1);
+        mean += variance / draws;
+        square += variance * variance / draws;
+    }
+    const double degrees = scanDegrees(sums, inverse, Eigen::MatrixXd::Identity(2, 2))[1];
+    EXPECT_LT(degrees, scans / 2.0);
+    // The ratio of 20000 draws is known to some 3 %.
+    EXPECT_NEAR(2 * mean * mean / (square - mean * mean), degrees, 0.1 * degrees);
 }
 
 // The ends of a profile, with the parameter held there by the specification of the model.

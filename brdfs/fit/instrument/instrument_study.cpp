@@ -215,6 +215,17 @@ Covariance covarianceByScan(const InstrumentProblem& problem, const WholeSystem&
     return result;
 }
 
+/// Of the errors of x by scan.
+std::vector<double> degreesByScan(const InstrumentProblem& problem, const WholeSystem& system,
+                                  const Equations& reduced, const std::vector<bool>& fixed) {
+    const Eigen::Index count = at(problem.count());
+    const std::vector<double> inverse = inverseOf(reduced, fixed);
+    return scanDegrees(
+        system.scanSums(),
+        Eigen::Map<const Matrix>(inverse.data(), count, count) / problem.normalisation(),
+        Matrix::Identity(count, count));
+}
+
 /// Names and values of x, then of the free scales; where a bound holds them.
 struct Described {
     std::vector<FittedParameter> parameters;
@@ -387,7 +398,9 @@ void describeReadings(const InstrumentProblem& problem, const std::vector<double
     result.projectedGradient = described.projectedGradient;
     if (options.uncertainty.report) {
         addErrors({inverse.data(), fixed.size() * fixed.size()}, described.slope, covariance,
-                  sandwich, study);
+                  sandwich,
+                  byScan ? degreesByScan(problem, system, reduced, fixedX) : std::vector<double>(),
+                  study);
         if (options.uncertainty.bootstrap > 0) addBootstrapOfReadings(problem, x, options, study);
         if (options.uncertainty.profile) {
             const std::vector<double> slopeX(
