@@ -3,6 +3,7 @@
 #include <hshfit/pages/comparison_print.h>
 
 #include <brdfs/fit/fit_figures.h>
+#include <brdfs/fit/instrument/instrument_fit.h>
 #include <brdfs/fit/latex_table.h>
 #include <brdfs/fit/prediction.h>
 #include <brdfs/fit/residual_rows.h>
@@ -82,6 +83,10 @@ FigureFiles addFitFigures(const Brdf& data, const brdfs::FitReport& report,
             };
             model.bandName = "95 %";
         }
+        if (report.result.instrument)
+            model.readings = [&](std::span<const DirectionPair> pairs) {
+                return brdfs::readingsAt(report.result, samples.channels, samples.isotropic, pairs);
+            };
         figures = ofSamples(model, options, result);
     } else {
         ComparisonOptions how;

@@ -145,13 +145,28 @@ private:
                                     .dash = 1 + t % 3,
                                     .x = curves.angles(),
                                     .y = curves.of(drawn_.size() + t)});
+        const std::vector<double> readings = readingsOf(curves, cut);
         for (std::size_t i = 0; i < drawn_.size(); ++i) {
-            panel.series.push_back({.label = single ? model_.name : channelName(i),
-                                    .ink = inkOf(i),
-                                    .dash = i,
-                                    .x = curves.angles(),
-                                    .y = curves.of(i)});
-            addValues(curves, i);
+            PrintSeries own{.label = single ? model_.name : channelName(i),
+                            .ink = inkOf(i),
+                            .dash = i,
+                            .x = curves.angles(),
+                            .y = curves.of(i)};
+            if (model_.readings) {
+                addValues(own);
+                panel.series.push_back({.label = fmt::format("f of the {}", model_.name),
+                                        .ink = inkOf(i),
+                                        .dash = 3,
+                                        .width = 0.6,
+                                        .x = own.x,
+                                        .y = own.y});
+                const auto first = readings.begin() +
+                                   static_cast<std::ptrdiff_t>(drawn_[i] * curves.angles().size());
+                own.y.assign(first, first + static_cast<std::ptrdiff_t>(curves.angles().size()));
+                if (single) own.label += " as the instrument reads it";
+            }
+            panel.series.push_back(std::move(own));
+            addValues(panel.series.back());
         }
         for (std::size_t i = 0; i < drawn_.size(); ++i) {
             panel.series.push_back(pointsOf(cut, drawn_[i]));
@@ -170,16 +185,25 @@ private:
     }
 
     /// Values of curves that the axis has to hold: f may grow without limit towards the horizon.
-    void addValues(const Curves& curves, std::size_t i) {
+    void addValues(const PrintSeries& curve) {
         constexpr double steepest = 85;
-        for (std::size_t k = 0; k < curves.angles().size(); ++k)
-            if (std::abs(curves.angles()[k]) <= steepest) values_.push_back(curves.of(i)[k]);
+        for (std::size_t k = 0; k < curve.x.size(); ++k)
+            if (std::abs(curve.x[k]) <= steepest) values_.push_back(curve.y[k]);
+    }
+
+    std::vector<DirectionPair> pairsOf(const Curves& curves, const SampleCut& cut) const {
+        std::vector<DirectionPair> pairs;
+        for (const double angle : curves.angles()) pairs.push_back(cuts_.pairAt(cut, angle));
+        return pairs;
+    }
+    std::vector<double> readingsOf(const Curves& curves, const SampleCut& cut) const {
+        if (!model_.readings) return {};
+        return model_.readings(pairsOf(curves, cut));
     }
 
     void addBands(const Curves& curves, const SampleCut& cut, PrintPanel& panel) const {
         if (!model_.band) return;
-        std::vector<DirectionPair> pairs;
-        for (const double angle : curves.angles()) pairs.push_back(cuts_.pairAt(cut, angle));
+        const std::vector<DirectionPair> pairs = pairsOf(curves, cut);
         const std::vector<double> widths = model_.band(pairs);
         for (std::size_t i = 0; i < drawn_.size(); ++i) {
             PrintSeries band{.kind = Kind::band, .label = model_.bandName, .x = curves.angles()};

@@ -31,6 +31,9 @@ struct PlottedModel {
     /// none: no band.
     std::function<std::vector<double>(std::span<const DirectionPair>)> band = {};
     std::string bandName = {};
+    /// The readings of an instrument of the model at pairs of directions, likewise: drawn in place
+    /// of its f, which is then a second, thin curve; none: f itself.
+    std::function<std::vector<double>(std::span<const DirectionPair>)> readings = {};
 };
 
 /// The terms of a fit to grey data, or to one wavelength; none otherwise, and of a single model.
@@ -38,7 +41,8 @@ std::vector<NamedBrdf> termsOf(const FitResult& result);
 
 /// The figures of samples for print:
 ///     cuts, polar     f at the measured directions, with bars of one sigma where stated, over the
-///                     model's curve; a panel for each cut; none without a cut
+///                     model's curve, or what its instrument reads; a panel for each cut; none
+///                     without a cut
 ///     residuals       against theta_i, theta_o and the angle between wo and the mirror direction
 ///                     of wi, and against normal quantiles; at most 3000 values of each channel
 /// Channels as drawnChannels chooses them. Curves are refined until straight lines are within half

@@ -59,15 +59,31 @@ std::string unitOf(const std::string& term, const std::string& key) {
     return row->help.find("radians") != row->help.npos ? "rad" : "1";
 }
 
+/// Of a coefficient of a law over the wavelength in micrometres, "ior.B" or "ior.C1"; none of other
+/// parameters.
+std::optional<std::string> unitOfLaw(const FitResult& result, const std::string& parameter) {
+    for (const FittedLaw& law : result.laws) {
+        if (!parameter.starts_with(law.parameter + ".")) continue;
+        const std::string term = parameter.substr(law.parameter.size() + 1);
+        const int power = 2 * (term.front() - 'A');
+        if (law.law.starts_with("sellmeier")) return term.front() == 'C' ? "$\\mu$m$^2$" : "1";
+        if (law.law.starts_with("cauchy"))
+            return power == 0 ? "1" : fmt::format("$\\mu$m$^{{{}}}$", power);
+    }
+    return std::nullopt;
+}
+
 /// "ggx.alpha" of "lambert+ggx": the term, whose number follows its name where there are several,
 /// and the key.
-std::string unitOf(const FitResult& result, const std::string& parameter) {
+std::string unitOf(const FitResult& result, const std::string& name) {
+    if (const auto unit = unitOfLaw(result, name)) return *unit;
+    const std::string parameter = name.substr(0, name.find('@'));  // of a coefficient of a spline
     const std::vector<std::string> terms = splitModels(result.model);
     const std::size_t dot = parameter.find('.');
     if (dot == parameter.npos) return unitOf(terms.front(), parameter);
-    const std::string name = parameter.substr(0, dot), key = parameter.substr(dot + 1);
+    const std::string model = parameter.substr(0, dot), key = parameter.substr(dot + 1);
     for (const std::string& term : terms)
-        if (name.starts_with(term.substr(0, term.find(':')))) return unitOf(term, key);
+        if (model.starts_with(term.substr(0, term.find(':')))) return unitOf(term, key);
     return "1";
 }
 

@@ -317,6 +317,55 @@ TEST_F(FitFigures, NamesOfAnyKindMakeATableAndFigures) {
     EXPECT_GT(markersIn(read(path(folder) + "/cuts.svg")), 0);
 }
 
+// A Lambertian surface is read as f + dark / cos(theta_o).
+TEST_F(FitFigures, CurvesOfAnInstrumentAreItsReadingsBesideF) {
+    const Answer got =
+        run("fit --json " + path("scans.astm") +
+            " --model lambert --sigma column --dark fit --figures " + path("figures"));
+    ASSERT_EQ(got.code, 0) << got.err;
+    double dark = 0, kd = 0;
+    const Json answer = Json::parse(got.out);
+    for (const Json& own : answer["fit"]["parameters"])
+        (own["name"] == "dark" ? dark : kd) = own["value"];
+    ASSERT_NE(dark, 0);
+    const double pi = std::acos(-1.0), f = kd / pi;
+    int bare = 0, drawn = 0;
+    for (const auto& row : rowsOf(read(path("figures/cuts.csv")))) {
+        if (row[2] == "f of the fit") {
+            EXPECT_NEAR(std::stod(row[4]), f, 1e-6);
+            ++bare;
+        }
+        if (row[2] != "fit as the instrument reads it") continue;
+        const double angle = std::stod(row[3]) * pi / 180;
+        EXPECT_NEAR(std::stod(row[4]), f + dark / std::cos(angle),
+                    1e-4 * std::abs(std::stod(row[4])));
+        ++drawn;
+    }
+    EXPECT_GT(drawn, 100);
+    EXPECT_EQ(bare, drawn);
+}
+
+TEST_F(FitFigures, UnitsOfLawsAreThoseOfTheirCoefficients) {
+    std::string text = "# Test\n3\n400 500 600\n";
+    for (int i = 0; i < 5; ++i)
+        for (int k = 0; k < 12; ++k)
+            text += std::to_string(0.3 * i) + " 0 " + std::to_string(0.12 * k) + " 3.14159265 " +
+                    std::to_string(0.1 + 0.3 * std::exp(-5 * std::pow(0.3 * i - 0.12 * k, 2))) +
+                    " 0.2 0.3\n";
+    write("paint.brdf", text);
+    const Answer got = run("fit " + path("paint.brdf") +
+                           " --model lambert+ggx:fresnel=dielectric,ks=1 --accept --dispersion "
+                           "ior=cauchy:2,kd=poly:1 --figures " +
+                           path("figures"));
+    ASSERT_EQ(got.code, 0) << got.err;
+    std::map<std::string, std::string> units;
+    for (const auto& row : cellsOf(read(path("figures/parameters.tex"))))
+        if (row.size() == 3) units[row[0]] = row[2];
+    EXPECT_EQ(units["ggx.ior.A"], "1");
+    EXPECT_EQ(units["ggx.ior.B"], "$\\mu$m$^{2}$");
+    EXPECT_EQ(units["lambert.kd@400nm"], "1");
+}
+
 TEST_F(FitFigures, SpectraHaveTheirParametersOverTheWavelength) {
     std::string text = "# Test\n3\n400 500 600\n";
     std::mt19937 random(4);

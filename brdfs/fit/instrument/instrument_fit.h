@@ -2,6 +2,7 @@
 
 #include <brdfs/fit/fit.h>
 
+#include <span>
 #include <vector>
 
 namespace hshfit::brdfs {
@@ -16,5 +17,10 @@ FitResult fitWithInstrument(const FitSamples& samples, const FitOptions& options
 
 /// predictedValues() of such a fit.
 std::vector<double> readingsOf(const FitResult& result, const FitSamples& samples);
+
+/// Readings by its instrument of the fitted material at pairs of directions, in a scan of scale 1:
+/// [channel * pairs + pair], 1/sr. Throws as fitWithInstrument.
+std::vector<double> readingsAt(const FitResult& result, const Channels& channels, bool isotropic,
+                               std::span<const DirectionPair> pairs);
 
 }  // namespace hshfit::brdfs
