@@ -213,12 +213,17 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
     return candidates;
 }
 
+/// Differences of costs that searches on few samples leave undecided, relative. Along a level
+/// valley those of pixels end up to 3e-4 apart, and each would be followed to the same end.
+constexpr double undecided = 1e-4, undecidedOfPixels = 1e-3;
+
 /// The first few that differ by more than a search leaves undecided.
-std::vector<Minimum> distinct(const std::vector<Minimum>& minima, std::size_t most) {
+std::vector<Minimum> distinct(const std::vector<Minimum>& minima, std::size_t most,
+                              double difference) {
     std::vector<Minimum> chosen;
     for (const Minimum& minimum : minima) {
         if (chosen.size() >= most) break;
-        if (chosen.empty() || minimum.cost > chosen.back().cost * (1 + 1e-4))
+        if (chosen.empty() || minimum.cost > chosen.back().cost * (1 + difference))
             chosen.push_back(minimum);
     }
     return chosen;
@@ -269,14 +274,15 @@ Fitted searchMinimum(FitProblem& problem, const FitOptions& options) {
     const bool many = samples.size() > manySamples;
     const FitSamples middle = samples.drawn(many ? middleCount : 1, options.seed);
     const FitProblem between(middle, problem.sum(), options.loss);
-    std::vector<Minimum> starts = distinct(minima, many ? 1 : 3);
+    const double difference = samples.fewer ? undecidedOfPixels : undecided;
+    std::vector<Minimum> starts = distinct(minima, many ? 1 : 3, difference);
     if (many || samples.fewer) {
         for (Minimum& start : starts) start = refined(small, linear, start, part);
         std::ranges::stable_sort(starts, byCost);
         // Fewer samples rank minima to some per cent.
         const double most = 1.05 * starts.front().cost;
         std::erase_if(starts, [&](const Minimum& start) { return start.cost > most; });
-        starts = distinct(starts, starts.size());
+        starts = distinct(starts, starts.size(), difference);
     }
     for (const Minimum& start : starts) {
         Minimum minimum;

@@ -1,13 +1,16 @@
 // Errors of fits by their losses:
 //     fit_losses CSV DATA… [--model MODEL] [--size PIXELS] [--light SPEC]… [--loss NAME]…
-//                [--picture PNG] [--spheres PNG]
+//                [--picture PNG] [--spheres PNG] [--metrics no]
+//     fit_losses --of CSV…
 // fits MODEL (lambert+ggx) to each DATA with every loss, at nodes or at the pixels of `picture`,
 // and as fits were by default before (`former`): the loss cosine, at nodes in half and difference
 // angles, or at the cells of a slice. It writes a row per DATA and loss to CSV: each loss' own
 // metric as compare measures it, and of spheres under the lights of `picture` (or those given) mean
-// FLIP and relative L2, with the largest FLIP of a pixel. Means over DATA go to stdout. --loss
-// leaves out other losses. --spheres writes a row for each DATA: for each light the source, the fit
-// by the first loss, and the former fit, exposed for the source.
+// FLIP and relative L2, with the largest FLIP of a pixel. For each loss, means over DATA, the worst
+// of them, and the share of DATA on which it is the best go to stdout; --of prints this of the rows
+// of several CSV. --loss leaves out other losses, --metrics no the metrics of compare. --spheres
+// writes a row for each DATA: for each light the source, the fit by the first loss, and the former
+// fit, exposed for the source.
 
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit.h>
@@ -29,7 +32,9 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
@@ -41,6 +46,7 @@ struct Arguments {
     std::string csv, picture, spheres, model = "lambert+ggx";
     std::vector<std::string> data, lights, losses;
     int size = 96;
+    bool metrics = true;
 };
 
 Arguments argumentsOf(int argc, char** argv) {
@@ -50,6 +56,7 @@ Arguments argumentsOf(int argc, char** argv) {
         if (word.starts_with("--") && k + 1 < argc) {
             const std::string value = argv[++k];
             if (word == "--model") result.model = value;
+            if (word == "--metrics") result.metrics = value != "no";
             if (word == "--size") result.size = std::atoi(value.c_str());
             if (word == "--light") result.lights.push_back(value);
             if (word == "--loss") result.losses.push_back(value);
@@ -114,8 +121,30 @@ RgbPicture shown(const SpherePicture& sphere, double stops) {
     return result;
 }
 
+/// f with lobes that are stated no narrower than pictures of some tens of pixels show. Tables state
+/// those of their finest cells, for which a panel light would get 10^5 nodes at every pixel.
+class SeenInPixels final : public Brdf {
+public:
+    explicit SeenInPixels(const Brdf& brdf) : brdf_(brdf) {}
+    std::string name() const override { return brdf_.name(); }
+    const Channels& channels() const override { return brdf_.channels(); }
+    const Laws& laws() const override { return brdf_.laws(); }
+    void eval(const Direction& wo, DirectionBatch wi, double* out) const override {
+        brdf_.eval(wo, wi, out);
+    }
+    std::vector<Lobe> lobes(const Direction& wo) const override {
+        std::vector<Lobe> lobes = brdf_.lobes(wo);
+        for (Lobe& lobe : lobes) lobe.width = std::max(lobe.width, 0.01);
+        return lobes;
+    }
+
+private:
+    const Brdf& brdf_;
+};
+
 /// Pictures of a material under each light.
-std::vector<SpherePicture> spheresOf(const Brdf& brdf, const Arguments& arguments) {
+std::vector<SpherePicture> spheresOf(const Brdf& exact, const Arguments& arguments) {
+    const SeenInPixels brdf(exact);
     const View view(radians(75), 0);
     const SurfacePoints points = spherePoints(view, arguments.size, 1);
     std::vector<SpherePicture> result;
@@ -173,10 +202,10 @@ std::vector<Row> rowsOf(const std::string& path, const Arguments& arguments,
                      former = formerSamples(*data);
     std::vector<Row> rows;
     const auto add = [&](const FitSamples& samples, Loss::Kind kind, std::string name) {
-        Row row{.data = std::filesystem::path(path).stem().string(), .loss = std::move(name)};
+        Row row{.data = std::filesystem::path(path).filename().string(), .loss = std::move(name)};
         row.fit = fit(samples, {.model = arguments.model, .loss = kind});
         const auto fitted = openFit(row.fit);
-        row.metrics = compare(*data, *fitted, outgoing, metrics);
+        if (arguments.metrics) row.metrics = compare(*data, *fitted, outgoing, metrics);
         pictures.push_back(spheresOf(*fitted, arguments));
         row.errors = errorsOf(reference, pictures.back());
         fmt::print(stderr, "{} {}: FLIP {:.4f} L2 {:.4f} {} samples {}\n", row.data, row.loss,
@@ -214,13 +243,91 @@ void writeCompared(const std::vector<std::vector<SpherePicture>>& pictures, std:
     out.commit();
 }
 
+/// The errors of one fit.
+struct Judged {
+    std::string data, loss;
+    PictureErrors errors = {};
+};
+
+/// Of each loss: the mean of an error, the largest and of which data, and the number of data that
+/// it describes best.
+struct Summary {
+    double mean = 0, worst = -1;
+    std::string worstData;
+    std::size_t best = 0;
+};
+std::map<std::string, Summary> summaries(const std::vector<Judged>& all,
+                                         double PictureErrors::*error) {
+    std::map<std::string, std::vector<const Judged*>> byData;
+    std::map<std::string, Summary> result;
+    for (const Judged& own : all) byData[own.data].push_back(&own);
+    for (const Judged& own : all) {
+        Summary& summary = result[own.loss];
+        const double value = own.errors.*error;
+        summary.mean += value / static_cast<double>(byData.size());
+        if (!(value > summary.worst)) continue;
+        summary.worst = value;
+        summary.worstData = own.data;
+    }
+    for (const auto& [data, rivals] : byData) {
+        const auto best = std::ranges::min_element(
+            rivals, {}, [&](const Judged* own) { return own->errors.*error; });
+        ++result[(*best)->loss].best;
+    }
+    return result;
+}
+
+void printSummaries(const std::vector<Judged>& all) {
+    const auto flip = summaries(all, &PictureErrors::flip),
+               l2 = summaries(all, &PictureErrors::relativeL2);
+    std::size_t count = 0;
+    double pixel = 0;
+    for (const auto& [loss, own] : flip) count += own.best;
+    fmt::print(
+        "{} data\n| loss | mean FLIP | worst material | best of all | relative L2 | worst material "
+        "| best of all | largest of a pixel |\n|---|---|---|---|---|---|---|---|\n",
+        count);
+    for (const auto& [loss, own] : flip) {
+        const Summary& other = l2.at(loss);
+        pixel = 0;
+        for (const Judged& one : all)
+            if (one.loss == loss) pixel = std::max(pixel, one.errors.largest);
+        fmt::print("| `{}` | {:.3f} | {:.3f} {} | {} | {:.3f} | {:.3f} {} | {} | {:.3f} |\n", loss,
+                   own.mean, own.worst, own.worstData, own.best, other.mean, other.worst,
+                   other.worstData, other.best, pixel);
+    }
+}
+
+/// The rows of a file that `run` wrote.
+void readRows(const std::string& path, std::vector<Judged>& all) {
+    std::ifstream file(path);
+    std::string line;
+    std::getline(file, line);
+    while (std::getline(file, line)) {
+        line.resize(line.find(",\"") == line.npos ? line.size() : line.find(",\""));
+        std::vector<std::string> cells;
+        for (std::size_t first = 0; first <= line.size();) {
+            const std::size_t last = std::min(line.find(',', first), line.size());
+            cells.push_back(line.substr(first, last - first));
+            first = last + 1;
+        }
+        if (cells.size() < 5) throw std::runtime_error(fmt::format("{}: '{}'", path, line));
+        const std::size_t n = cells.size();
+        all.push_back({cells[0],
+                       cells[1],
+                       {.flip = std::stod(cells[n - 3]),
+                        .largest = std::stod(cells[n - 2]),
+                        .relativeL2 = std::stod(cells[n - 1])}});
+    }
+}
+
 void run(const Arguments& arguments) {
     std::ofstream file(arguments.csv);
-    std::map<std::string, std::vector<PictureErrors>> byLoss;
+    std::vector<Judged> judged;
     std::vector<std::vector<SpherePicture>> pictures;
     for (const std::string& path : arguments.data) {
         for (const Row& row : rowsOf(path, arguments, pictures)) {
-            if (byLoss.empty()) {
+            if (judged.empty()) {
                 file << "data,loss";
                 for (const MetricValue& value : row.metrics) file << "," << value.metric->name;
                 file << ",flip,largest,l2,spec\n";
@@ -231,24 +338,10 @@ void run(const Arguments& arguments) {
             file << fmt::format(",{:.5f},{:.5f},{:.5f},\"{}\"\n", row.errors.flip,
                                 row.errors.largest, row.errors.relativeL2, row.fit.spec);
             file.flush();
-            byLoss[row.loss].push_back(row.errors);
+            judged.push_back({row.data, row.loss, row.errors});
         }
     }
-    fmt::print(
-        "| loss | mean FLIP | of the worst material | largest of a pixel | relative L2 |\n"
-        "|---|---|---|---|---|\n");
-    for (const auto& [loss, all] : byLoss) {
-        PictureErrors mean;
-        double worst = 0;
-        for (const PictureErrors& own : all) {
-            mean.flip += own.flip / static_cast<double>(all.size());
-            mean.relativeL2 += own.relativeL2 / static_cast<double>(all.size());
-            mean.largest = std::max(mean.largest, own.largest);
-            worst = std::max(worst, own.flip);
-        }
-        fmt::print("| `{}` | {:.4f} | {:.4f} | {:.3f} | {:.3f} |\n", loss, mean.flip, worst,
-                   mean.largest, mean.relativeL2);
-    }
+    printSummaries(judged);
     if (!arguments.spheres.empty())
         writeCompared(pictures, arguments.data.size(), arguments.spheres);
     if (arguments.picture.empty()) return;
@@ -262,6 +355,12 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+    if (argc > 2 && std::string_view(argv[1]) == "--of") {
+        std::vector<Judged> all;
+        for (int k = 2; k < argc; ++k) readRows(argv[k], all);
+        printSummaries(all);
+        return 0;
+    }
     const Arguments arguments = argumentsOf(argc, argv);
     if (arguments.data.empty()) return 2;
     run(arguments);
