@@ -190,7 +190,7 @@ Words splitWords() {
 }
 
 // A row for one command stands before the row for all.
-constexpr ValueRow table[] = {
+constexpr ValueRow valueRows[] = {
     {"batch", "MANIFEST", nullptr, Syntax::word, Files::read, ""},
     {"batch", "--output", nullptr, Syntax::word, Files::folder},
     {"batch", "--costs", nullptr, Syntax::word, Files::read},
@@ -292,17 +292,17 @@ constexpr ValueRow table[] = {
 }  // namespace
 
 std::span<const ValueRow> valueTable() {
-    return table;
+    return valueRows;
 }
 
 const ValueRow* findValues(const CLI::App& command, const CLI::Option& option) {
-    const auto row = std::ranges::find_if(table, [&](const ValueRow& each) {
+    const auto row = std::ranges::find_if(valueRows, [&](const ValueRow& each) {
         return (each.command.empty() || each.command == command.get_name()) &&
                (each.option.starts_with("--")
                     ? option.check_lname(std::string(each.option.substr(2)))
                     : option.get_positional() && option.get_name(true, false) == each.option);
     });
-    return row == std::end(table) ? nullptr : row;
+    return row == std::end(valueRows) ? nullptr : row;
 }
 
 std::vector<std::string> choicesOf(const CLI::Option& option) {

@@ -27,7 +27,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr int deepest = 12;
+constexpr int deepestAnswer = 12;
 constexpr std::string_view answerName = "answer.json", recordName = "record.json",
                            messagesName = ".messages";
 constexpr std::string_view memoryWords = "not enough memory";
@@ -163,7 +163,7 @@ std::string makeItem(const std::string& text, const BatchProgram& program) {
 }
 
 ItemRecord madeItem(const std::string& text) {
-    return recordFromJson(parseJson(text, "a process of the batch", deepest),
+    return recordFromJson(parseJson(text, "a process of the batch", deepestAnswer),
                           "a process of the batch");
 }
 

@@ -28,7 +28,7 @@ using nlohmann::json;
 namespace {
 
 constexpr std::size_t longestLine = 1 << 20, longestName = 200;
-constexpr int deepest = 8;
+constexpr int deepestLine = 8;
 
 /// The defaults of all lines, and mistakes of parts that lines share.
 struct Reading {
@@ -255,7 +255,7 @@ void readLine(Reading& reading, const std::string& text, std::size_t number,
     if (text.find_first_not_of(" \t\r") == std::string::npos) return;
     if (text.size() > longestLine)
         throw InputError(fmt::format("{}: the line is longer than {} bytes", where, longestLine));
-    json line = parseJson(text, where, deepest);
+    json line = parseJson(text, where, deepestLine);
     if (!line.is_object()) throw InputError(where + ": give an object on each line");
     if (line.contains("defaults"))
         readDefaults(reading, line, where);

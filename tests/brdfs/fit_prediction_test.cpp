@@ -4,6 +4,7 @@
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit.h>
 #include <brdfs/fit/prediction.h>
+#include <brdfs/random_draws.h>
 
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_multifit.h>
@@ -19,17 +20,12 @@
 namespace hshfit::brdfs {
 namespace {
 
-double uniform(std::mt19937_64& random) {
-    return static_cast<double>(random() >> 11) * 0x1p-53;
-}
-
-double normal(std::mt19937_64& random) {
-    return std::sqrt(-2 * std::log(1 - uniform(random))) * std::cos(2 * pi * uniform(random));
-}
+using test::directionBelow, test::normal, test::uniform;
 
 DirectionPair pairFrom(std::mt19937_64& random) {
-    const Direction wi = directionFromAngles(1.3 * uniform(random), 2 * pi * uniform(random));
-    return {wi, directionFromAngles(1.3 * uniform(random), azimuth(wi) + pi + normal(random))};
+    const Direction wi = directionBelow(1.3, random);
+    const double turn = azimuth(wi) + pi + normal(random);
+    return {wi, directionFromAngles(1.3 * uniform(random), turn)};
 }
 
 FitSamples samplesOf(const std::string& spec, std::size_t count, std::mt19937_64& random) {

@@ -7,6 +7,7 @@
 #include <brdfs/fit/fit_samples.h>
 #include <brdfs/fit/residual_rows.h>
 #include <brdfs/fit/scan_spread.h>
+#include <brdfs/random_draws.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -27,13 +28,7 @@ namespace {
 
 constexpr std::size_t scanLength = 6;
 
-double uniform(std::mt19937_64& random) {
-    return static_cast<double>(random() >> 11) * 0x1p-53;
-}
-
-double normal(std::mt19937_64& random) {
-    return std::sqrt(-2 * std::log(1 - uniform(random))) * std::cos(2 * pi * uniform(random));
-}
+using test::directionBelow, test::normal, test::uniform;
 
 /// Scans of outgoing directions through the lobe, each at an incident direction of its own. Values
 /// are those of `spec`.
@@ -42,7 +37,7 @@ FitSamples scansOf(const std::string& spec, std::size_t scans, std::mt19937_64& 
     samples.isotropic = true;
     samples.origin = SampleOrigin::measured;
     for (std::size_t s = 0; s < scans; ++s) {
-        const Direction wi = directionFromAngles(1.2 * uniform(random), 2 * pi * uniform(random));
+        const Direction wi = directionBelow(1.2, random);
         const double turn = azimuth(wi) + pi + 0.4 * normal(random);
         for (std::size_t k = 0; k < scanLength; ++k) {
             samples.wiX.push_back(wi.x);
@@ -244,13 +239,12 @@ TEST(ScanDegrees, AreThoseOfTheVariancesOfDrawnLines) {
         return of.middleRows(static_cast<Eigen::Index>(s * perScan), perScan);
     };
     std::mt19937_64 random(5);
-    std::normal_distribution<double> error;
     constexpr int draws = 20000;
     double mean = 0, square = 0;
     std::vector<ScanSums> sums(scans);
     for (int d = 0; d < draws; ++d) {
         Eigen::VectorXd y(rows.rows());
-        for (double& value : y) value = error(random);
+        for (double& value : y) value = normal(random);
         const Eigen::VectorXd residual = y - rows * (inverse * (rows.transpose() * y));
         for (std::size_t s = 0; s < scans; ++s)
             sums[s] = {part(rows, s).transpose() * part(rows, s),

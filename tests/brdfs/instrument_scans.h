@@ -6,6 +6,7 @@
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit.h>
 #include <brdfs/fit/instrument/patch_sums.h>
+#include <brdfs/random_draws.h>
 
 #include <cmath>
 #include <cstddef>
@@ -14,14 +15,6 @@
 #include <vector>
 
 namespace hshfit::test {
-
-inline double uniform(std::mt19937_64& random) {
-    return static_cast<double>(random() >> 11) * 0x1p-53;
-}
-
-inline double normal(std::mt19937_64& random) {
-    return std::sqrt(-2 * std::log(1 - uniform(random))) * std::cos(2 * pi * uniform(random));
-}
 
 /// The truth, and what its instrument does.
 struct ScanTruth {
