@@ -235,6 +235,16 @@ void requireFormOptions(const ExportOptions& options) {
     }
 }
 
+/// OSL has no uniform blocks, and the pages bind none for this.
+gpu::Storage storageOf(const gpu::FormPayload& form, const Targets& chosen,
+                       const ExportOptions& options) {
+    const bool blocks = std::ranges::none_of(chosen, [](const Target* target) {
+        return target->kind == Target::Kind::viewer || target->kind == Target::Kind::module ||
+               target->name == "osl";
+    });
+    return gpu::storageFor(form, options.storage, blocks);
+}
+
 /// A form with a shader of its own, as it is.
 void exportForm(const Representation& stored, const std::string& path, const std::string& folder,
                 const Targets& chosen, const std::vector<LightSpecification>& lights,
@@ -242,7 +252,7 @@ void exportForm(const Representation& stored, const std::string& path, const std
     requireFormOptions(options);
     exported.form = gpu::packForm(stored, options.number);
     exported.form->constant = constantOf(stored);
-    exported.storage = gpu::storageFor(*exported.form, options.storage);
+    exported.storage = storageOf(*exported.form, chosen, options);
     FileSet files(folder, options.force);
     refuseToReplace(folder, exported.sidecar, options.force);
     const Source source = openSourceOf(options, stored.head);

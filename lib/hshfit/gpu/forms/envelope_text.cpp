@@ -33,25 +33,26 @@ void setAxis(const char* name, std::size_t nodes, FormText& text) {
     text.page.set(name, axis);
 }
 
-/// The nodes about a place that the grid has, with their weights, and their texels.
+/// Of the corners of a cell, those that the grid has.
+bool isThere(const HalfwayEnvelope& envelope, std::size_t corner) {
+    return (corner % 2 == 0 || envelope.nodesAlongA() > 1) &&
+           (corner / 2 == 0 || envelope.nodesAlongB() > 1);
+}
+
+/// The texels of the nodes about a place, with their weights.
 void setCorners(const HalfwayEnvelope& envelope, std::size_t first, data& part, FormText& text) {
     const std::size_t alongA = envelope.nodesAlongA(), alongB = envelope.nodesAlongB();
     const std::size_t parts = (text.channels() + 3) / 4;
     data corners{data::type::list};
     for (std::size_t corner = 0; corner < 4; ++corner) {
+        if (!isThere(envelope, corner)) continue;
         const bool right = corner % 2 == 1, up = corner / 2 == 1;
-        const bool there = !(right && alongA < 2) && !(up && alongB < 2);
-        if (!there && !text.constants) continue;
         data row, fetches{data::type::list};
         row.set("corner", std::to_string(corner));
         const std::string across = alongA < 2 ? "" : right ? "ex" : "(1.0 - ex)";
         const std::string upward = alongB < 2 ? "" : up ? "ey" : "(1.0 - ey)";
-        row.set("weight", !there                             ? "0.0"
-                          : across.empty() && upward.empty() ? "1.0"
-                          : across.empty()                   ? upward
-                          : upward.empty()                   ? across
-                                                             : across + " * " + upward);
-        for (std::size_t p = 0; p < parts && !text.constants; ++p) {
+        row.set("weight", across + (across.empty() || upward.empty() ? "" : " * ") + upward);
+        for (std::size_t p = 0; p < parts; ++p) {
             data fetch;
             fetch.set("part", std::to_string(p));
             fetch.set("place", std::to_string(first / 4 +
@@ -67,43 +68,93 @@ void setCorners(const HalfwayEnvelope& envelope, std::size_t first, data& part, 
     part.set("parts", std::to_string(parts));
 }
 
-/// ln E, or its logarithm to base 2 where numbers are constants, from the sum of the corners.
+std::string wordOf(const FormText& text, const char* name) {
+    return text.page.get(name)->string_value();
+}
+
+std::string vectorOf(const std::string& type, const std::vector<std::string>& lanes) {
+    return lanes.size() == 1 ? lanes[0] : fmt::format("{}({})", type, fmt::join(lanes, ", "));
+}
+
+/// The stored numbers of channels from `first` on, between the corners of a cell: of words where
+/// the numbers are constants, else of texels.
+std::string betweenCorners(const HalfwayEnvelope& envelope, std::size_t first, FormText& text) {
+    const std::size_t parts = (text.channels() + 3) / 4;
+    const auto lanesOf = [&](auto lane) {
+        std::vector<std::string> lanes;
+        for (std::size_t c = first; c < first + text.together(); ++c) lanes.push_back(lane(c));
+        return lanes;
+    };
+    if (!text.constants) {
+        std::vector<std::string> terms;
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            if (!isThere(envelope, corner)) continue;
+            const auto lane = [&](std::size_t c) {
+                return fmt::format("n{}_{}.{}", corner, c / 4, laneNames[c % 4]);
+            };
+            terms.push_back(
+                fmt::format("w{} * {}", corner, vectorOf(wordOf(text, "vec3"), lanesOf(lane))));
+        }
+        return fmt::format("({})", fmt::join(terms, " + "));
+    }
+    const std::string prefix = wordOf(text, "prefix");
+    const auto corners = [&](const std::string& word) {
+        return fmt::format("{}_corners({}, {}, {})", prefix, word,
+                           envelope.nodesAlongA() > 1 ? "ex" : "0.0",
+                           envelope.nodesAlongB() > 1 ? "ey" : "0.0");
+    };
+    text.cost.products += 3 * text.together();
+    if (text.page.get("flat")->is_true()) {
+        const auto lane = [&](std::size_t c) {
+            return corners(fmt::format("{}_cell(node * {} + {})", prefix, 4 * parts, c));
+        };
+        return vectorOf(wordOf(text, "vec3"), lanesOf(lane));
+    }
+    const auto lane = [&](std::size_t c) {
+        return parts == 1 ? fmt::format("{}_cells[node].{}", prefix, laneNames[c])
+                          : fmt::format("{}_cells[node * {} + {}].{}", prefix, parts, c / 4,
+                                        laneNames[c % 4]);
+    };
+    return corners(vectorOf(wordOf(text, "words3"), lanesOf(lane)));
+}
+
+/// The scale and the offset of a channel's stored numbers, for ln E, or for its logarithm to base 2
+/// where numbers are constants.
+LaneScale scaleOf(const HalfwayEnvelope& envelope, std::size_t first, std::size_t channel,
+                  const FormText& text) {
+    const StoredArray& logs = text.payload.form.as<HalfwayArray>()->envelope->logs;
+    LaneScale lane;
+    if (envelope.logs().size() == text.channels()) {
+        lane = {0, envelope.logs()[channel]};
+    } else if (text.constants) {
+        const std::size_t group = channel / logs.groupColumns();
+        lane = {logs.scales[group] / 255.0, logs.offsets[group]};
+    } else {
+        lane = text.payload.scaleOf(text.payload.stream[first + channel]);
+    }
+    const double unit = text.constants ? std::numbers::log2e : 1;
+    return {lane.scale * unit, lane.offset * unit};
+}
+
+/// ln E, or its logarithm to base 2, of the channels of each output.
 data valuesOf(const HalfwayEnvelope& envelope, std::size_t first, FormText& text) {
     data values{data::type::list};
-    const double unit = text.constants ? std::numbers::log2e : 1;
-    const StoredArray& logs = text.payload.form.as<HalfwayArray>()->envelope->logs;
     const bool one = envelope.logs().size() == text.channels();
-    for (std::size_t c = 0; c < text.channels(); ++c) {
-        LaneScale lane;
-        if (one) {
-            lane = {0, envelope.logs()[c]};
-        } else if (text.constants) {
-            const std::size_t group = c / logs.groupColumns();
-            lane = {logs.scales[group] / 255.0, logs.offsets[group]};
-        } else {
-            lane = text.payload.scaleOf(text.payload.stream[first + c]);
+    const std::string type = wordOf(text, "vec3");
+    for (std::size_t c = 0; c < text.channels(); c += text.together()) {
+        std::vector<std::string> scales, offsets;
+        for (std::size_t k = c; k < c + text.together(); ++k) {
+            const LaneScale lane = scaleOf(envelope, first, k, text);
+            scales.push_back(shaderNumber(lane.scale));
+            offsets.push_back(shaderNumber(lane.offset));
         }
         data value;
         value.set("i", std::to_string(c));
-        value.set("one", one);
-        value.set("scale", shaderNumber(lane.scale * unit));
-        value.set("offset", shaderNumber(lane.offset * unit));
-        value.set("part", std::to_string(c / 4));
-        value.set("lane", laneNames[c % 4]);
-        value.set("number", std::to_string(c));
-        data terms{data::type::list};
-        bool any = false;
-        for (std::size_t corner = 0; corner < 4; ++corner) {
-            if ((corner % 2 == 1 && envelope.nodesAlongA() < 2) ||
-                (corner / 2 == 1 && envelope.nodesAlongB() < 2))
-                continue;
-            data term;
-            term.set("first", !any);
-            term.set("corner", std::to_string(corner));
-            terms.push_back(term);
-            any = true;
-        }
-        value.set("terms", terms);
+        value.set("vector", text.together() > 1);
+        value.set("scale", vectorOf(type, scales));
+        value.set("offset", vectorOf(type, offsets));
+        value.set("between", one ? data(false) : data(betweenCorners(envelope, c, text)));
+        text.cost.products += one ? 0 : text.together();
         values.push_back(value);
     }
     return values;
@@ -132,6 +183,13 @@ void setCells(FormText& text) {
 }
 
 }  // namespace
+
+bool hasEnvelopeCells(const Representation& form) {
+    const auto* content = form.as<HalfwayArray>();
+    if (!content || !content->envelope) return false;
+    const StoredArray& logs = content->envelope->logs;
+    return logs.shape[0] * logs.shape[1] > 1 && logs.precision == Precision::unorm8;
+}
 
 std::vector<std::uint32_t> envelopeCells(const Representation& form) {
     const auto* content = form.as<HalfwayArray>();
@@ -176,7 +234,7 @@ void setEnvelope(std::size_t first, FormText& text) {
     data part;
     part.set("lookup", alongA * alongB > 1);
     part.set("values", valuesOf(envelope, first, text));
-    if (alongA * alongB > 1) setCorners(envelope, first, part, text);
+    if (alongA * alongB > 1 && !text.constants) setCorners(envelope, first, part, text);
     part.set("row",
              shaderNumber(static_cast<double>(text.constants ? cellsAlong(alongA) : alongA)));
     part.set("ridge", shaderNumber(envelope.ridge()));

@@ -32,26 +32,27 @@ constexpr std::array storages{std::pair{Storage::automatic, std::string_view("au
                               std::pair{Storage::texture, std::string_view("texture")}};
 
 /// The words that forms need of a language beyond setLanguageWords: its template, a declaration of
-/// a whole number, a conversion to one, and a declaration of a vector that changes.
+/// a whole number, a conversion to one, a declaration of a vector that changes, and a vector of
+/// whole numbers.
 struct FormLanguage {
-    std::string_view text, letInt, toInt, varVector;
+    std::string_view text, letInt, toInt, varVector, words3;
 };
 FormLanguage formLanguage(Language language) {
     switch (language) {
         case Language::glslEs:
-            return {embedded::form_glsl_es, "int", "int", "vec3"};
+            return {embedded::form_glsl_es, "int", "int", "vec3", "uvec3"};
         case Language::glsl:
-            return {embedded::form_glsl, "int", "int", "vec3"};
+            return {embedded::form_glsl, "int", "int", "vec3", "uvec3"};
         case Language::hlsl:
-            return {embedded::form_hlsl, "int", "int", "float3"};
+            return {embedded::form_hlsl, "int", "int", "float3", "uint3"};
         case Language::metal:
-            return {embedded::form_metal, "int", "int", "float3"};
+            return {embedded::form_metal, "int", "int", "float3", "uint3"};
         case Language::wgsl:
-            return {embedded::form_wgsl, "let", "i32", "var"};
+            return {embedded::form_wgsl, "let", "i32", "var", "vec3<u32>"};
         case Language::osl:
             break;
     }
-    return {embedded::form_osl, "int", "(int)", "vector"};
+    return {embedded::form_osl, "int", "(int)", "vector", ""};
 }
 
 void checkLanguage(Language language, const FormPayload& payload, Storage storage) {
@@ -158,9 +159,11 @@ std::vector<std::uint32_t> tableWords(const FormPayload& payload) {
     return envelopeCells(payload.form);
 }
 
-Storage storageFor(const FormPayload& payload, Storage asked) {
+Storage storageFor(const FormPayload& payload, Storage asked, bool blocks) {
     if (asked != Storage::automatic) return asked;
-    return payload.stream.size() <= mostConstants ? Storage::constants : Storage::texture;
+    if (payload.stream.size() > mostConstants) return Storage::texture;
+    if (!blocks || !hasEnvelopeCells(payload.form)) return Storage::constants;
+    return tableWords(payload).size() <= mostConstants ? Storage::table : Storage::constants;
 }
 
 std::string formShaderSource(Language language, const FormPayload& payload,
@@ -180,6 +183,7 @@ std::string formShaderSource(Language language, const FormPayload& payload,
     page.set("letInt", std::string(words.letInt));
     page.set("toInt", std::string(words.toInt));
     page.set("varVector", std::string(words.varVector));
+    page.set("words3", std::string(words.words3));
     page.set("flat", language == Language::osl);
     setStorage(payload, storage, page);
     setChannels(payload.form.head.channels, options.prefix, language, page);

@@ -12,7 +12,7 @@ namespace hshfit::gpu::inline forms {
 
 /// The place of the numbers of a form in a shader.
 enum class Storage {
-    automatic,  ///< constants up to `mostConstants` numbers, else texture
+    automatic,  ///< of storageFor
     constants,  ///< in its text, rounded to single precision: no texture, no uniform
     table,      ///< likewise, but what is looked up by computed places in one uniform block
     block,      ///< one uniform block of float32 vectors: the texels as a sampler returns them
@@ -24,8 +24,10 @@ constexpr std::size_t mostConstants = 4096;
 std::string_view storageName(Storage storage);  ///< "auto", "constants", "table", …
 /// Throws UsageError with the names.
 Storage parseStorage(std::string_view name);
-/// The storage that `automatic` stands for with this payload.
-Storage storageFor(const FormPayload& payload, Storage asked);
+/// The storage that `automatic` stands for with this payload: above `mostConstants` numbers
+/// texture; table where `blocks` says that the caller binds uniform blocks and an envelope is
+/// looked up that fits one; else constants.
+Storage storageFor(const FormPayload& payload, Storage asked, bool blocks = false);
 
 /// The uniform block of Storage::table: the cells of the envelope of the form halfway, each with a
 /// vector of four whole numbers for every four channels, 8 bits for each corner of a channel. Empty

@@ -17,6 +17,9 @@ using color = vector;
 inline vector operator*(float a, vector b) {
     return {a * b.x, a * b.y, a * b.z};
 }
+inline vector operator*(vector a, vector b) {
+    return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
 inline vector operator+(vector a, vector b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
@@ -43,6 +46,9 @@ inline vector max(vector a, vector b) {
 }
 inline vector min(vector a, vector b) {
     return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)};
+}
+inline float mix(float a, float b, float t) {
+    return a * (1 - t) + b * t;
 }
 inline float sqrt(float a) {
     return stub::root(a);

@@ -14,6 +14,9 @@ namespace hshfit::gpu::inline forms {
 /// is one node or none. Throws UsageError for an envelope whose numbers are not `unorm8`.
 std::vector<std::uint32_t> envelopeCells(const Representation& form);
 
+/// Whether there are any.
+bool hasEnvelopeCells(const Representation& form);
+
 /// The bilinear lookup of ln E, and the constants where there is one node: in cells where the
 /// numbers are constants, else in the nodes from number `first` of the stream on.
 void setEnvelope(std::size_t first, FormText& text);
