@@ -74,34 +74,50 @@ public:
         : path_((std::filesystem::temp_directory_path() /
                  fmt::format("hshfit-trial-{}{}", ::getpid(), extension))
                     .string()) {}
-    ~TemporaryPath() {
-        std::error_code error;
-        std::filesystem::remove(path_, error);
-    }
+    ~TemporaryPath() { clear(); }
     TemporaryPath(const TemporaryPath&) = delete;
     TemporaryPath& operator=(const TemporaryPath&) = delete;
     const std::string& text() const { return path_; }
+    void clear() const {
+        std::error_code error;
+        std::filesystem::remove(path_, error);
+    }
 
 private:
     std::string path_;
 };
 
+/// A table and the command that writes it.
+struct Table {
+    std::shared_ptr<const Brdf> brdf;
+    std::string file, command;
+};
+
 /// A table of a random model, opened from a file that is then removed. Mapped bytes stay readable.
-std::shared_ptr<const Brdf> randomTable(const Writer& writer, Draws& draws) {
+Table randomTable(const Writer& writer, Draws& draws, std::size_t number) {
     const TemporaryPath path(std::string(writer.extension));
+    const std::string file = fmt::format("{}-{}{}", writer.name, number + 1, writer.extension);
+    const std::string_view chosen = smallOptions(writer.name);
     constexpr int attempts = 100;
+    std::string reason;
     for (int k = 0; k < attempts; ++k) {
         const Model& model = models()[draws.below(models().size())];
         const std::string spec = randomSpec(model, draws, DrawFrom::typical);
         try {
-            const Parameters options =
-                parseParameters(writer.name, writer.parameters, smallOptions(writer.name));
+            const Parameters options = parseParameters(writer.name, writer.parameters, chosen);
+            path.clear();  // one that did not open: rules for files that exist would keep it
             writer.write(*open(spec), path.text(), options, {.force = true});
-            return open(path.text());
-        } catch (const Error&) {  // a format cannot hold every model
+            return {open(path.text()), file,
+                    fmt::format("hshfit convert {} {} --to {}{}{}", spec, file, writer.name,
+                                chosen.empty() ? "" : ":", chosen)};
+        } catch (const OutputError&) {
+            throw;
+        } catch (const Error& error) {  // a format cannot hold every model
+            reason = error.what();
         }
     }
-    throw NumericError(fmt::format("{}: no model could be written", writer.name));
+    throw NumericError(
+        fmt::format("{}: none of {} models could be written: {}", writer.name, attempts, reason));
 }
 
 }  // namespace
@@ -145,8 +161,11 @@ std::vector<stability::ErrorTrial> randomCases(const RandomCasesOptions& options
     for (const std::string& name : options.only)
         if (std::ranges::find(names, name) == names.end())
             throw spelling::unknown("model or format with random cases", name, names);
+    const auto isWanted = [&](std::string_view group) {
+        return options.only.empty() || std::ranges::find(options.only, group) != options.only.end();
+    };
     // Written when they are first used, each from draws of its own.
-    std::vector<std::shared_ptr<const Brdf>> tables(formats.size() * options.tablesPerFormat);
+    std::vector<Table> tables(formats.size() * options.tablesPerFormat);
     const std::size_t groups = models().size() + formats.size();
     std::vector<stability::ErrorTrial> cases;
     for (std::size_t k = 0; k < options.count; ++k) {
@@ -158,14 +177,17 @@ std::vector<stability::ErrorTrial> randomCases(const RandomCasesOptions& options
             trial.brdf = openModel(randomSpec(model, draws));
         } else {
             const std::size_t format = group - models().size();
-            const std::size_t number =
-                format * options.tablesPerFormat + draws.below(options.tablesPerFormat);
-            if (!tables[number]) {
-                Draws own(options.seed + 1 + number);
-                tables[number] = randomTable(*formats[format], own);
-            }
+            const std::size_t drawn = draws.below(options.tablesPerFormat);
+            const std::size_t number = format * options.tablesPerFormat + drawn;
             trial.group = formats[format]->name;
-            trial.brdf = tables[number];
+            Table& table = tables[number];
+            if (!table.brdf && isWanted(trial.group)) {
+                Draws own(options.seed + 1 + number);
+                table = randomTable(*formats[format], own, drawn);
+            }
+            trial.brdf = table.brdf;
+            trial.file = table.file;
+            trial.writtenBy = table.command;
         }
         const bases::Entry& entry = bases::catalog()[draws.below(bases::catalog().size())];
         trial.basis = entry.name;
@@ -174,9 +196,7 @@ std::vector<stability::ErrorTrial> randomCases(const RandomCasesOptions& options
         trial.thetaDegrees = draws.between(0, 89);
         trial.phiDegrees = draws.between(0, 360);
         trial.quantity = draws.oneIn(2) ? Quantity::brdfCosine : Quantity::brdf;
-        const bool wanted = options.only.empty() ||
-                            std::ranges::find(options.only, trial.group) != options.only.end();
-        if (wanted) cases.push_back(std::move(trial));
+        if (isWanted(trial.group)) cases.push_back(std::move(trial));
     }
     return cases;
 }

@@ -43,8 +43,9 @@ struct RandomCasesOptions {
 
 /// Projections over the whole catalog, one of each model and of each format that can be written and
 /// read back in turn: random parameters, elevation to 89 degrees, azimuth, basis, order and
-/// quantity. Tables are written from typical models into files that are gone once this returns.
-/// Throws UsageError for a name among `only` that no model or format with cases has.
+/// quantity. Tables are written from typical models into files that are gone once this returns;
+/// each case states the command that writes its own again. Throws UsageError for a name among
+/// `only` that no model or format with cases has, OutputError where a table cannot be written.
 std::vector<stability::ErrorTrial> randomCases(const RandomCasesOptions& options);
 
 }  // namespace hshfit::brdfs

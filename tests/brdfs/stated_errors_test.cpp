@@ -5,18 +5,25 @@
 #include <hshfit/error.h>
 #include <hshfit/projection/projection.h>
 #include <hshfit/stability/error_trials.h>
+#include <hshfit/stability/stress.h>
 
 #include <brdfs/analytic/sheen_albedo.h>
 #include <brdfs/catalog.h>
 #include <brdfs/random_cases.h>
+#include <brdfs/spec.h>
 
 #include <gsl/gsl_integration.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
+#include <temporary_file.h>
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -275,6 +282,61 @@ TEST(RandomCases, AreThoseOfTheSeed) {
         different += a[k].brdf->name() != other[k].brdf->name();
     }
     EXPECT_GE(different, 30U);
+}
+
+/// The command of a case, "hshfit convert SPEC FILE --to WRITER", writes its table again.
+TEST(RandomCases, OfTablesStateTheCommandThatWritesThem) {
+    const auto cases =
+        brdfs::randomCases({.count = 120, .seed = 5, .only = {"slices", "alta", "ggx"}});
+    std::map<std::string, int> tables;
+    for (const auto& trial : cases) {
+        if (trial.group == "ggx") {
+            EXPECT_TRUE(trial.writtenBy.empty());
+            EXPECT_EQ(trial.spec(), trial.brdf->name());
+            continue;
+        }
+        if (tables[trial.file]++ > 0) continue;
+        std::istringstream words(trial.writtenBy);
+        std::string program, command, spec, file, to, writer;
+        words >> program >> command >> spec >> file >> to >> writer;
+        EXPECT_EQ(program + command + to, "hshfitconvert--to");
+        EXPECT_EQ(file, trial.spec());
+        const std::string name = writer.substr(0, writer.find(':'));
+        EXPECT_EQ(name, trial.group);
+        const auto& known = *std::ranges::find(brdfs::writers(), name, &brdfs::Writer::name);
+        const test::TemporaryFile again({}, std::string(known.extension));
+        known.write(*brdfs::open(spec), again.path(),
+                    brdfs::parseParameters(name, known.parameters,
+                                           writer == name ? "" : writer.substr(name.size() + 1)),
+                    {.force = true});
+        const auto brdf = brdfs::open(again.path());
+        for (const double theta : {5.0, 33.0, 71.0}) {
+            const Direction wi = directionFromAngles(radians(theta), 0.3);
+            const Direction wo = directionFromAngles(radians(trial.thetaDegrees),
+                                                     trial.brdf->laws().isotropic ? 2.7 : 0.9);
+            EXPECT_EQ(evaluate(*brdf, wi, wo), evaluate(*trial.brdf, wi, wo)) << trial.writtenBy;
+        }
+    }
+    EXPECT_GE(tables.size(), 4U);
+}
+
+TEST(StatedErrors, TablesAmongTheExceptionsAreNamedByWhatWritesThem) {
+    using Result = stability::ErrorTrialResult;
+    const std::vector<Result> results = {{.trial = {.group = "merl",
+                                                    .brdf = brdfs::open("lambert"),
+                                                    .file = "merl-2.binary",
+                                                    .writtenBy = "hshfit convert x merl-2.binary"},
+                                          .stated = 1e-6,
+                                          .coefficients = 2e-6}};
+    stability::StressReport report;
+    report.statedErrors = stability::summarise(results);
+    const std::string text = stability::stressMarkdown(report);
+    EXPECT_NE(text.find("| `merl-2.binary` |"), std::string::npos) << text;
+    EXPECT_NE(text.find("\n    hshfit convert x merl-2.binary\n"), std::string::npos) << text;
+    const auto json = nlohmann::json::parse(stability::stressJson(report));
+    const auto& exception = json["stated_errors"][0]["exceptions"][0];
+    EXPECT_EQ(exception["brdf"], "merl-2.binary");
+    EXPECT_EQ(exception["written_by"], "hshfit convert x merl-2.binary");
 }
 
 /// On a curve that a model names, the directional derivative across it has a step, or f^(exponent)

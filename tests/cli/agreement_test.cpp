@@ -12,8 +12,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hshfit::test {
@@ -161,6 +164,71 @@ TEST_F(Agreement, OfAPlanWithTheFileThatItWrites) {
     EXPECT_EQ(answerOf("compare ggx:alpha=.15 " +
                        path("plan/" + choice["file"].get<std::string>()))["pairs"],
               choice["pairs"]);
+}
+
+/// The options of a choice of `plan` as those of `tradeoff`, which are lists.
+std::string asSweep(const std::string& options) {
+    std::string sweep = " ";
+    std::istringstream words(options);
+    bool isForm = false;
+    for (std::string word; words >> word;) {
+        if (word == "--reciprocal") continue;
+        for (const auto& [one, many] : {std::pair{"--basis", "--bases"},
+                                        {"--order", "--orders"},
+                                        {"--rank", "--ranks"},
+                                        {"--form", "--forms"},
+                                        {"--precision", "--precisions"}})
+            if (word == one) word = many;
+        isForm |= word == "--forms";
+        sweep += word + " ";
+    }
+    return sweep + (isForm ? "" : "--forms outgoing ") + "--no-timing";
+}
+
+/// Measured materials from a scene to every command that states the errors of their forms: the
+/// command of the plan is run, its file compared, and its options swept with pairs of its own.
+TEST_F(Agreement, OfPlanProjectCompareAndTradeoffOnMeasuredMaterials) {
+    const std::string data = test::sharedFolder() + "/data/";
+    if (!fs::exists(data + "rgl")) GTEST_SKIP() << data << " is absent";
+    Json materials = Json::array();
+    for (const char* file : {"rgl/paper_white_rgb.bsdf", "rgl/satin_rosaline_rgb.bsdf",
+                             "merl_slices/red-plastic.slice"})
+        materials.push_back({{"name", fs::path(file).stem().string()}, {"brdf", data + file}});
+    const Json scene = {
+        {"format", "hshfit-scene"},
+        {"version", 1},
+        {"materials", materials},
+        {"lights",
+         {{{"kind", "disc"}, {"theta", 30}, {"angular_diameter", 10}, {"irradiance", 3}}}},
+        {"budget", {{"metric", "log"}, {"error", 0.05}}}};
+    write("scene.json", scene.dump());
+    const Json plan = answerOf("plan " + path("scene.json") + " -o " + path("plan"));
+    ASSERT_EQ(plan["materials"].size(), 3U);
+    for (const Json& material : plan["materials"]) {
+        const Json& choice = material["choice"];
+        const std::string spec = choice["brdf"], options = choice["options"];
+        SCOPED_TRACE(spec + " " + options);
+        const Json planned = choice["pairs"];
+        EXPECT_EQ(answerOf("compare " + spec + " " +
+                           path("plan/" + choice["file"].get<std::string>()))["pairs"],
+                  planned);
+        const std::string command = choice["command"], file = path("again.json");
+        const std::size_t from = std::string("hshfit ").size(), to = command.find(" -o ");
+        const Json projected = answerOf(command.substr(from, to - from) + " -o " + file);
+        if (projected.contains("pairs")) {
+            EXPECT_EQ(projected["pairs"], planned);
+        }
+        EXPECT_EQ(answerOf("compare " + spec + " " + file)["pairs"], planned);
+        const Json swept = answerOf("tradeoff " + spec + asSweep(options) +
+                                    " --pair-count 20000")["tradeoffs"][0]["forms"];
+        const auto same = std::ranges::find_if(
+            swept, [&](const Json& form) { return form["bytes"] == choice["bytes"]; });
+        ASSERT_NE(same, swept.end()) << swept;
+        const Json other = (*same)["pairs"];
+        EXPECT_NE(other["count"], planned["count"]);
+        for (const char* key : {"mean_log", "relative_l2", "energy_left", "horizon", "mirror"})
+            expectAgreement(planned[key], other[key], other[key]["error"], key);
+    }
 }
 
 }  // namespace

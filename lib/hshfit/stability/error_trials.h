@@ -20,6 +20,12 @@ struct ErrorTrial {
     std::string basis = "hsh";
     int order = 7;
     Quantity quantity = Quantity::brdf;
+    /// Of a table, whose file need not exist any more: the name of a file, and the command that
+    /// writes it. Empty: the name of `brdf` is its specification.
+    std::string file = {}, writtenBy = {};
+
+    /// The BRDF as it is given to `hshfit project`.
+    std::string spec() const { return file.empty() ? brdf->name() : file; }
 };
 
 /// True errors of a projection at its default tolerance, against the same projection at a

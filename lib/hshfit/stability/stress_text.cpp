@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
 
 namespace hshfit::stability {
 namespace {
@@ -124,12 +126,17 @@ std::string exceptionsTable(const std::vector<ErrorTrialResult>& exceptions) {
     for (const ErrorTrialResult& row : exceptions) {
         const ErrorTrial& trial = row.trial;
         text +=
-            fmt::format("| `{}` | {:.17g},{:.17g} | {} {} | {} | {:.2g} | {:.2g} |",
-                        trial.brdf->name(), trial.thetaDegrees, trial.phiDegrees, trial.basis,
-                        trial.order, quantityName(trial.quantity), row.stated, row.coefficients);
+            fmt::format("| `{}` | {:.17g},{:.17g} | {} {} | {} | {:.2g} | {:.2g} |", trial.spec(),
+                        trial.thetaDegrees, trial.phiDegrees, trial.basis, trial.order,
+                        quantityName(trial.quantity), row.stated, row.coefficients);
         text += row.hasEnergy ? fmt::format(" {:.2g} | {:.2g} |\n", row.statedEnergy, row.energy)
                               : " | |\n";
     }
+    std::set<std::string> commands;
+    for (const ErrorTrialResult& row : exceptions)
+        if (!row.trial.writtenBy.empty()) commands.insert(row.trial.writtenBy);
+    if (!commands.empty()) text += "\nThe tables among them are written by:\n\n";
+    for (const std::string& command : commands) text += "    " + command + "\n";
     return text;
 }
 
@@ -137,7 +144,7 @@ Json exceptionsJson(const std::vector<ErrorTrialResult>& exceptions) {
     Json list = Json::array();
     for (const ErrorTrialResult& row : exceptions) {
         const ErrorTrial& trial = row.trial;
-        list.push_back({{"brdf", trial.brdf->name()},
+        list.push_back({{"brdf", trial.spec()},
                         {"theta_o", trial.thetaDegrees},
                         {"phi_o", trial.phiDegrees},
                         {"basis", trial.basis},
@@ -145,6 +152,7 @@ Json exceptionsJson(const std::vector<ErrorTrialResult>& exceptions) {
                         {"quantity", quantityName(trial.quantity)},
                         {"stated", row.stated},
                         {"true", finiteOrNull(row.coefficients)}});
+        if (!trial.writtenBy.empty()) list.back()["written_by"] = trial.writtenBy;
         if (!row.hasEnergy) continue;
         list.back()["stated_energy"] = row.statedEnergy;
         list.back()["true_energy"] = finiteOrNull(row.energy);

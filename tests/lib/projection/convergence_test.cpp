@@ -97,5 +97,36 @@ TEST(Convergence, AccidentsOfKinksAreCovered) {
     EXPECT_GE(missedByLast, trials / 20);
 }
 
+/// One change of a table may be an accident, and refinement does not wait for a second one.
+TEST(Convergence, OneChangeOfATableIsCoveredInEveryPhaseOfAKink) {
+    constexpr double ratio = 0.43;
+    int trials = 0, missed = 0, missedByOfTables = 0;
+    for (int a = 0; a < 40; ++a) {
+        for (int b = 1; b < 40; ++b) {
+            const auto error = [&](int k) {
+                return std::pow(ratio, k) * std::cos(0.1571 * a + 0.1571 * b * k);
+            };
+            const PanelError found = estimate(error, 2, false);
+            EXPECT_EQ(found.expected, std::abs(error(1) - error(0)));
+            missed += found.stated < std::abs(error(1));
+            missedByOfTables += 3 * found.expected < std::abs(error(1));
+            ++trials;
+        }
+    }
+    EXPECT_LE(missed, trials / 50);
+    EXPECT_GE(missedByOfTables, 2 * missed);
+}
+
+/// Refinement goes by the last change, which is less than what changes that go down slowly leave.
+TEST(Convergence, OfATableTheLastChangeIsHeldToTheToleranceAndTheRestIsStated) {
+    const auto error = [](int k) { return std::pow(0.7, k); };
+    for (int levels = 3; levels < 9; ++levels) {
+        const PanelError found = estimate(error, levels, false);
+        EXPECT_DOUBLE_EQ(found.expected, std::abs(error(levels - 1) - error(levels - 2)));
+        EXPECT_GE(found.stated, error(levels - 1));
+        EXPECT_GT(found.stated, estimate(error, levels).stated);
+    }
+}
+
 }  // namespace
 }  // namespace hshfit

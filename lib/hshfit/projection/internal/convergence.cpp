@@ -58,13 +58,13 @@ double roughError(const Changes& changes) {
 }  // namespace
 
 PanelError panelError(const Changes& given, bool mayBeSmooth) {
-    constexpr double ofTables = 3;
+    constexpr double ofTables = 3, ofOneChange = 10;
     Changes changes = given;
     auto& [last, before, earlier] = changes.values;
     if (last == infinity) return {infinity, infinity};
     last = withoutAccident(changes);
     const double rough = before == infinity ? last : roughError(changes);
-    if (!mayBeSmooth) return {rough, ofTables * rough};
+    if (!mayBeSmooth) return {last, (before == infinity ? ofOneChange : ofTables) * rough};
     if (before == infinity) return {rough, rough};
     const double factor = smoothFactor(changes);
     const double error = factor < 1 ? std::min(rough, factor * last) : rough;

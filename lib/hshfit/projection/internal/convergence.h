@@ -34,8 +34,10 @@ struct PanelError {
 /// one times its ratio to the one before. Otherwise changes go down by a ratio q of 0.4 to 0.7 with
 /// accidents, and the error is about the last change times q / (1 - q), or what is left of an
 /// earlier change that was larger. A last change of less than 3 % of the one that the two before
-/// lead to is raised to that. `mayBeSmooth`: whether the first is possible at all; if not, as
-/// with interpolated tables, three times as much is stated.
+/// lead to is raised to that. `mayBeSmooth`: whether the first is possible at all. If not, as with
+/// interpolated tables, whose next level costs more than all before it, refinement goes by the last
+/// change alone, and three times that error is stated, ten times where there is one change.
+/// Factors from trials over tables of all formats (docs/stability.md).
 PanelError panelError(const Changes& changes, bool mayBeSmooth);
 
 }  // namespace hshfit::inline projection

@@ -25,8 +25,8 @@ constexpr double rounding = 1e-14, accuracyOfValues = 1e-12;
 /// Tolerances from here on are those of interpolated tables (Brdf::defaultTolerance).
 constexpr double interpolated = 1e-4;
 /// Levels that a panel has to reach before its changes are believed: a small one, or two, may be an
-/// accident. Interpolated tables state three times their error, which covers such accidents.
-constexpr int leastLevel = 3, leastLevelOfTables = 2;
+/// accident. Interpolated tables state a multiple of their error, which covers such accidents.
+constexpr int leastLevel = 3;
 /// The share of the totals below which a panel is believed sooner.
 constexpr double negligible = 0.1;
 
@@ -234,8 +234,7 @@ private:
 
     /// Whether a panel has as many changes as are needed to see how it converges.
     bool hasShownItself(const Panel& panel) const {
-        const int least = mayBeSmooth_ ? leastLevel : leastLevelOfTables;
-        return panel.level >= least || panel.share < negligible;
+        return !mayBeSmooth_ || panel.level >= leastLevel || panel.share < negligible;
     }
 
     /// By how much the solution of a Gram system enlarges the last changes, relative to the
