@@ -40,9 +40,10 @@ public:
             const Direction d = vectors.at(first + k);
             x[k] = d.x, y[k] = d.y, z[k] = d.z;
         }
+        for (std::size_t k = 0; k < count; ++k) lengths[k] = lengthOf(x[k], y[k], z[k]);
         for (std::size_t k = 0; k < count; ++k) {
-            lengths[k] = lengthOf(x[k], y[k], z[k]);
-            x[k] /= lengths[k], y[k] /= lengths[k], z[k] /= lengths[k];
+            const double scale = 1 / lengths[k];
+            x[k] *= scale, y[k] *= scale, z[k] *= scale;
         }
         const bool all = std::all_of(lengths.begin(), lengths.begin() + count, isUnit);
         for (std::size_t k = 0; k < count && !all; ++k)

@@ -31,9 +31,10 @@ Direction unitDirection(const Direction& d, const std::function<std::string()>& 
     const double length = lengthOf(d.x, d.y, d.z);
     if (!isUnit(length)) {
         throw InputError(fmt::format("{}: the direction {}, {}, {} has length {:.4g}, not 1",
-                                     where(), d.x, d.y, d.z, length));
+                                     where(), d.x, d.y, d.z, std::hypot(d.x, d.y, d.z)));
     }
-    return {d.x / length, d.y / length, d.z / length};
+    const double scale = 1 / length;  // one division for all three, as in blocks of directions
+    return {d.x * scale, d.y * scale, d.z * scale};
 }
 
 void readPairs(const std::string& path, const std::function<void(const PairRow&)>& take) {

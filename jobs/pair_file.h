@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 
@@ -20,12 +19,10 @@ struct PairRow {
     std::optional<double> weight = {};
 };
 
-/// The length of a vector, by the formula of std::hypot, which compilers do not vectorise.
+/// The length of a vector whose length is near 1. Squares of others may overflow or vanish: their
+/// length is then infinite or 0, and isUnit refuses it too.
 inline double lengthOf(double x, double y, double z) {
-    constexpr double least = std::numeric_limits<double>::min();  // 0 has the length 0
-    const double most = std::max(std::max(std::abs(x), least), std::max(std::abs(y), std::abs(z)));
-    const double a = x / most, b = y / most, c = z / most;
-    return most * std::sqrt(a * a + b * b + c * c);
+    return std::sqrt(x * x + y * y + z * z);
 }
 /// Whether it may stand for 1. Not NaN.
 inline bool isUnit(double length) {
