@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <limits>
 
@@ -15,23 +16,31 @@ namespace {
 constexpr std::string_view plus = " + ", times = " * ";
 constexpr double mostWeight = 1e6;
 
-/// "0.5 * SPEC" in its parts; `number` is empty if it does not begin with a number and " * ".
+/// "0.5 * SPEC" in its parts, with or without spaces; `number` is empty if it does not begin with a
+/// number and '*'. Without spaces the rest begins with a letter, a digit or '/', unlike that of the
+/// pattern "2*.binary".
 struct Factors {
     std::string_view number, rest;
     double weight = 1;
     std::errc error = {};
 
     explicit Factors(std::string_view term) : rest(term) {
-        const std::size_t star = term.find(times);
+        const std::size_t star = term.find('*');
         if (star == std::string_view::npos) return;
-        const char* const last = term.data() + star;
-        const auto parsed = std::from_chars(term.data(), last, weight);
-        if (parsed.ptr != last || star == 0) {
+        const std::string_view before = withoutSpaces(term.substr(0, star));
+        const std::string_view after = withoutSpaces(term.substr(star + 1));
+        const char* const last = before.data() + before.size();
+        const auto parsed = std::from_chars(before.data(), last, weight);
+        const bool spaced = term.substr(star).starts_with("* ") && before.size() < star;
+        const bool begins =
+            !after.empty() &&
+            (after[0] == '/' || std::isalnum(static_cast<unsigned char>(after[0])) != 0);
+        if (before.empty() || parsed.ptr != last || !(spaced || begins)) {
             weight = 1;
             return;
         }
-        number = term.substr(0, star);
-        rest = term.substr(star + times.size());
+        number = before;
+        rest = after;
         error = parsed.ec;
     }
 };

@@ -103,7 +103,7 @@ void writeOutput(std::string_view text) {
 
 void printText(std::string_view given) {
     const std::string text = printableLines(given);
-    isOutputTaken() ? writeError(text) : writeOutput(text);
+    isOutputTaken() ? writeError(withoutPathOfOutput(text)) : writeOutput(text);
 }
 
 void printJson(const nlohmann::ordered_json& document) {

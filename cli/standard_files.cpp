@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <regex>
 
 namespace hshfit::cli {
 namespace {
@@ -33,6 +34,13 @@ std::string folderPath(const std::string& text, const std::string& option) {
     return text;
 }
 
+std::string readPath(const std::string& text, const std::string& option) {
+    if (text == "-")
+        throw UsageError(fmt::format(
+            "{} -: the file is read by its name, or names others beside it; give a path", option));
+    return text;
+}
+
 }  // namespace
 
 void acceptStandardStreams(CLI::App& command) {
@@ -45,6 +53,9 @@ void acceptStandardStreams(CLI::App& command) {
         } else if (row->dash && row->files == Files::read) {
             option->transform(
                 [](const std::string& text) { return text == "-" ? standardInput() : text; });
+        } else if (row->files == Files::read && row->syntax == Syntax::word) {
+            const std::string name = option->get_name();
+            option->transform([name](const std::string& text) { return readPath(text, name); });
         } else if (row->dash) {
             const std::string extension = row->dash;
             option->transform(
@@ -55,6 +66,11 @@ void acceptStandardStreams(CLI::App& command) {
 
 bool isOutputTaken() {
     return outputTaken;
+}
+
+std::string withoutPathOfOutput(const std::string& text) {
+    static const std::regex path("/dev/stdout(\\.[a-z0-9]+)?");
+    return std::regex_replace(text, path, "standard output");
 }
 
 }  // namespace hshfit::cli

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 namespace CLI {
 class App;
 }
@@ -13,5 +15,8 @@ void acceptStandardStreams(CLI::App& command);
 
 /// Whether an option has taken standard output for a file: answers go to standard error then.
 bool isOutputTaken();
+
+/// A text in which the path that stands for standard output has its name.
+std::string withoutPathOfOutput(const std::string& text);
 
 }  // namespace hshfit::cli

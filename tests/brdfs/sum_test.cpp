@@ -59,11 +59,13 @@ TEST(Sum, NameIsItsCanonicalSpecification) {
               "1e-07 * lambert + ward:ax=0.2,ay=0.5");
 }
 
-TEST(Sum, SpacesAroundPlusAreOptionalAndNumbersKeepTheirs) {
+TEST(Sum, SpacesAroundSignsAreOptionalAndNumbersKeepTheirs) {
     const std::string name = open("lambert:kd=.1 + 0.5 * ggx:alpha=.2")->name();
     for (const std::string spec :
-         {"lambert:kd=.1+0.5 * ggx:alpha=.2", "lambert:kd=.1 +0.5 * ggx:alpha=.2",
-          "lambert:kd=.1+  0.5 * ggx:alpha=.2", "lambert:kd=1e-1+5e-1 * ggx:alpha=2.e-1"})
+         {"lambert:kd=.1+0.5*ggx:alpha=.2", "lambert:kd=.1 + 0.5* ggx:alpha=.2",
+          "1*lambert:kd=.1 + .5 *ggx:alpha=.2", "lambert:kd=.1+0.5 * ggx:alpha=.2",
+          "lambert:kd=.1 +0.5 * ggx:alpha=.2", "lambert:kd=.1+  0.5 * ggx:alpha=.2",
+          "lambert:kd=1e-1+5e-1 * ggx:alpha=2.e-1"})
         EXPECT_EQ(open(spec)->name(), name) << spec;
     EXPECT_EQ(open("phong:exponent=1e+2")->name(), open("phong:exponent=100")->name());
     EXPECT_EQ(open("phong:exponent=1e+2+lambert")->name(), "phong:exponent=100 + lambert");

@@ -28,13 +28,25 @@ TEST_F(Streams, CoefficientsGoThroughAPipe) {
     ASSERT_EQ(piped.code, 0) << piped.err;
     EXPECT_EQ(piped.out, unstated(read(path("file.json"))));
     // The answer goes to standard error, since the file has standard output.
-    EXPECT_NE(piped.err.find("hsh order 3"), std::string::npos) << piped.err;
+    EXPECT_EQ(piped.err.find("standard output: hsh order 3"), 0U) << piped.err;
     const Answer info = shell("hshfit " + job + "-o - 2>/dev/null | hshfit info - --json");
     ASSERT_EQ(info.code, 0) << info.err;
     EXPECT_EQ(Json::parse(info.out)["facts"]["order"], 3);
     const Answer exr = shell("hshfit " + job + "-o exr:- 2>/dev/null | hshfit info - --json");
     ASSERT_EQ(exr.code, 0) << exr.err;
     EXPECT_EQ(Json::parse(exr.out)["facts"]["order"], 3);
+}
+
+TEST_F(Streams, FilesWithOthersBesideThemAreNotReadFromStandardInput) {
+    for (const std::string line :
+         {"illuminate - -o out", "plan - -o out", "transfer - -o out",
+          "render lambert -o out.png --mesh -", "batch list.jsonl -o out --costs -"}) {
+        const Answer answer = shell("echo '{}' | hshfit " + line);
+        EXPECT_EQ(answer.code, 2) << line << answer.err;
+        EXPECT_NE(answer.err.find(" -: "), std::string::npos) << answer.err;
+        EXPECT_NE(answer.err.find("give a path; see hshfit help "), std::string::npos)
+            << answer.err;
+    }
 }
 
 TEST_F(Streams, PairsPresetsAndMeasuredFilesAreReadByTheirContent) {
