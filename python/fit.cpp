@@ -1,17 +1,19 @@
 #include "answers.h"
 #include "arrays.h"
+#include "figure_arguments.h"
 #include "watched.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 
-#include <brdfs/catalog.h>
+#include <brdfs/fit/prediction.h>
 
 #include <jobs/fit.h>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -42,7 +44,7 @@ py::array_t<double> covarianceOf(const jobs::Fitted& fitted) {
 }
 
 std::shared_ptr<Brdf> brdfOf(const jobs::Fitted& fitted) {
-    return brdfs::open(fitted.result.spec);
+    return brdfs::openFit(fitted.result);
 }
 
 void saveFit(const jobs::Fitted& fitted, const py::object& path) {
@@ -52,6 +54,77 @@ void saveFit(const jobs::Fitted& fitted, const py::object& path) {
             fmt::format("{}: a fit is a preset; give a name that ends with .json", output));
     const py::gil_scoped_release released;
     writeFile(output, jobs::presetText(fitted));
+}
+
+/// f at pairs with its errors: a dict of arrays (..., channels) and of factors.
+py::dict predicted(const jobs::Fitted& fitted, const py::object& wi, const py::object& wo,
+                   double probability, std::uint64_t seed) {
+    if (!(probability > 0 && probability < 1))
+        throw UsageError(fmt::format("probability: {} is not between 0 and 1", probability));
+    if (fitted.result.instrument)
+        throw UsageError(
+            "predict is for fits without terms of the instrument, whose errors are those of "
+            "readings");
+    const auto [in, out] = broadcast(wi, "wi", wo, "wo");
+    const std::vector<Direction> from = directionsIn(in, "wi"), to = directionsIn(out, "wo");
+    std::vector<DirectionPair> pairs;
+    for (std::size_t k = 0; k < from.size(); ++k) {
+        if (!(from[k].z > 0 && to[k].z > 0))
+            throw InputError(fmt::format(
+                "pair {} has a direction below the horizon, where a fit predicts nothing", k));
+        pairs.push_back({from[k], to[k]});
+    }
+    Shape shape = in.shape;
+    brdfs::Prediction found;
+    double simultaneous = 0;
+    {
+        const py::gil_scoped_release released;
+        found = brdfs::predict(fitted.result, pairs);
+        simultaneous = brdfs::simultaneousFactor(fitted.result, pairs, probability, seed);
+    }
+    shape.push_back(static_cast<py::ssize_t>(found.channels));
+    const auto byPair = [&](const std::vector<double>& values) {
+        std::vector<double> turned(values.size());
+        for (std::size_t c = 0; c < found.channels; ++c)
+            for (std::size_t k = 0; k < found.pairs; ++k)
+                turned[k * found.channels + c] = values[c * found.pairs + k];
+        return arrayOf(std::move(turned), shape);
+    };
+    py::dict answer;
+    answer["f"] = byPair(found.values);
+    answer["standard_error"] = byPair(found.errors);
+    answer["pointwise"] = brdfs::Prediction::pointwise(probability);
+    answer["simultaneous"] = simultaneous;
+    if (found.bootstrap) answer["bootstrap_error"] = byPair(found.bootstrap->errors);
+    return answer;
+}
+
+/// The instrument of a dict whose keys are the program's options with underscores.
+brdfs::InstrumentText instrumentFrom(const py::dict& given) {
+    using Text = brdfs::InstrumentText;
+    constexpr std::pair<const char*, std::string Text::*> keys[] = {
+        {"source_aperture", &Text::source},
+        {"detector_aperture", &Text::detector},
+        {"bandwidth", &Text::bandwidth},
+        {"offset", &Text::offset},
+        {"dark", &Text::dark},
+        {"stray", &Text::stray},
+        {"scan_scale", &Text::scale}};
+    Text text;
+    for (const auto& [name, value] : given) {
+        const auto key = py::str(name).cast<std::string>();
+        const auto* row = std::ranges::find_if(keys, [&](const auto& k) { return key == k.first; });
+        if (row != std::end(keys))
+            text.*(row->second) = py::str(value).cast<std::string>();
+        else if (key == "aperture_tolerance")
+            text.tolerance = value.cast<double>();
+        else
+            throw UsageError(
+                fmt::format("instrument: '{}' is none of source_aperture, detector_aperture, "
+                            "aperture_tolerance, bandwidth, offset, dark, stray, scan_scale",
+                            key));
+    }
+    return text;
 }
 
 jobs::FitOptions optionsFrom(const std::string& model, const std::string& loss,
@@ -80,16 +153,36 @@ jobs::FitOptions optionsFrom(const std::string& model, const std::string& loss,
     return options;
 }
 
-std::shared_ptr<jobs::Fitted> fitted(const py::object& data, const std::string& model,
-                                     const std::string& loss, const std::string& robust,
-                                     double robustScale, const std::string& weights,
-                                     bool perChannel, double grazingCut, std::size_t samples,
-                                     int starts, int iterations, std::uint64_t seed, bool accept,
-                                     const py::object& parts, bool rgb,
-                                     const py::object& progress) {
-    const jobs::FitOptions options =
+std::shared_ptr<jobs::Fitted> fitted(
+    const py::object& data, const std::string& model, const std::string& loss,
+    const std::string& robust, double robustScale, const std::string& weights, bool perChannel,
+    double grazingCut, std::size_t samples, int starts, int iterations, std::uint64_t seed,
+    bool accept, const py::object& parts, bool rgb, const std::string& places,
+    const std::string& dispersion, const std::string& sigma, const py::object& scans,
+    std::size_t bootstrap, bool profile, const py::object& residuals, const py::dict& instrument,
+    const py::object& bands, const py::object& bandsTo, const py::object& figures,
+    const std::string& width, const std::string& font, double fontSize, const std::string& axis,
+    const std::string& panels, const py::object& progress) {
+    jobs::FitOptions options =
         optionsFrom(model, loss, robust, robustScale, weights, perChannel, grazingCut, samples,
                     starts, iterations, seed, accept, parts);
+    if (bootstrap != 0) requireWithin("bootstrap", static_cast<double>(bootstrap), 2, 1e6);
+    if (bands.is_none() && !bandsTo.is_none())
+        throw UsageError("bands_to is the file of bands; give bands, their pairs, too");
+    const auto fileOrNone = [](const py::object& path, const char* name) {
+        return path.is_none() ? std::string() : pathOf(path, name);
+    };
+    options.places = places;
+    options.dispersion = dispersion;
+    options.sigma = sigma;
+    options.scans = scans.is_none() ? "" : py::str(scans).cast<std::string>();
+    options.bootstrap = bootstrap;
+    options.profile = profile;
+    options.residuals = fileOrNone(residuals, "residuals");
+    options.instrument = instrumentFrom(instrument);
+    options.bands = fileOrNone(bands, "bands");
+    options.bandsTo = fileOrNone(bandsTo, "bands_to");
+    options.figures = figuresFrom(figures, width, font, fontSize, axis, panels);
     Source source(data, rgb, "data");
     std::shared_ptr<jobs::Fitted> result;
     Source* const sources[] = {&source};
@@ -186,6 +279,25 @@ void bindResult(py::module_& module) {
         .def_property_readonly(
             "preset", [](const Fitted& f) { return fromJson(f.preset); },
             "The document of the command fit (docs/schemas/fit.schema.json).")
+        .def_property_readonly(
+            "bands",
+            [](const Fitted& f) {
+                return f.bands.is_null() ? py::list() : py::list(fromJson(f.bands));
+            },
+            "Rows of the bands that fit(bands=...) asked for: f, its standard error, pointwise "
+            "and\n"
+            "simultaneous bands; else empty.")
+        .def_property_readonly(
+            "figures", [](const Fitted& f) { return f.figures.names; },
+            "Files of fit(figures=...), in its folder.")
+        .def("predict", predicted, py::arg("wi"), py::arg("wo"), py::kw_only(),
+             py::arg("probability") = 0.95, py::arg("seed") = 1,
+             R"(f of the fit at pairs of directions above the horizon, unit vectors (..., 3), with
+its errors by the delta method (Seber & Wild 1989, 5.1): a dict of "f" and "standard_error",
+(..., channels) in 1/sr, and of the factors of the errors with which bands hold f with
+`probability`, "pointwise" at one pair and "simultaneous" at all of these. "bootstrap_error" where
+the fit has draws. Errors are those of the fitted curve for a true model; readings have noise in
+addition.)")
         .def("brdf", brdfOf, "The fit as a Brdf.")
         .def("save", saveFit, py::arg("path"), "Write the preset, .json, that open() takes.")
         .def("__repr__",
@@ -205,7 +317,15 @@ void bindFit(py::module_& module) {
                py::arg("starts") = options.starts, py::arg("iterations") = options.iterations,
                py::arg("seed") = options.seed, py::arg("accept") = options.accept,
                py::arg("parts") = py::none(), py::arg("rgb") = options.rgb,
-               py::arg("progress") = py::none(),
+               py::arg("at") = options.places, py::arg("dispersion") = options.dispersion,
+               py::arg("sigma") = options.sigma, py::arg("scans") = py::none(),
+               py::arg("bootstrap") = options.bootstrap, py::arg("profile") = options.profile,
+               py::arg("residuals") = py::none(), py::arg("instrument") = py::dict(),
+               py::arg("bands") = py::none(), py::arg("bands_to") = py::none(),
+               py::arg("figures") = py::none(), py::arg("figure_width") = figureWidth,
+               py::arg("font") = std::string(defaultFigureFont),
+               py::arg("font_size") = FigureStyle{}.fontSize, py::arg("axis") = figureAxis,
+               py::arg("panels") = jobs::FigureOptions{}.panels, py::arg("progress") = py::none(),
                R"(Fit a model to a Brdf, or to a specification or path.
 
 model     "MODEL[:key=value,...][+MODEL...]": parameters with a value are held fixed
@@ -217,6 +337,15 @@ samples   to draw; 0: all
 starts, iterations, seed  of the search
 accept    take a fit that did not converge, which raises NumericError otherwise
 parts     of models with optional parts: "auto", "none", "all" or names
+at        places of samples: "auto", "cells" or "nodes"
+dispersion  of spectra: "PARAMETER=LAW[:N],..." with cauchy, sellmeier, poly, spline, shared, free
+sigma     standard uncertainty of samples: "2%+0.001", "column" or a CSV; scans: of correlated ones
+bootstrap, profile  errors by so many resampled fits; intervals by profile likelihood
+instrument  between f and samples: {"source_aperture": "cone:2", "bandwidth": "gauss:5", "offset":
+          "fit", ...} with detector_aperture, aperture_tolerance, dark, stray, scan_scale
+bands     pairs for errors of f: "plane:30/60" (degrees) or a CSV; bands_to, residuals: CSV files
+figures   a folder for PDF and SVG, of figure_width ("column", "page", "120mm"), font, font_size
+          (points), axis ("auto", "linear", "log") and panels
 
 Returns a Fit. The same numbers as by the command fit.)");
     module.def(

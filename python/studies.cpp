@@ -1,7 +1,9 @@
 #include "answers.h"
 #include "arrays.h"
+#include "figure_arguments.h"
 #include "watched.h"
 
+#include <hshfit/error.h>
 #include <hshfit/pages/pair_summary_json.h>
 #include <hshfit/pages/report.h>
 
@@ -153,8 +155,15 @@ isotropic BRDF, else 16x16. wavelets adds the best n^2 terms of SOHO wavelets. R
 std::shared_ptr<jobs::Compared> compared(const py::object& a, const py::object& b,
                                          const py::object& metrics, const py::object& outgoing,
                                          bool rgb, const py::object& folder,
-                                         const py::object& progress) {
+                                         const std::string& sigma, const py::object& figures,
+                                         const std::string& width, const std::string& font,
+                                         double fontSize, const std::string& axis,
+                                         const std::string& panels, const py::object& progress) {
+    if (!sigma.empty() && figures.is_none())
+        throw UsageError("sigma is for the bars of figures; give figures, their folder");
     jobs::CompareOptions options;
+    options.sigma = sigma;
+    options.figures = figuresFrom(figures, width, font, fontSize, axis, panels);
     options.metrics = listText(metrics);
     options.outgoing = outgoingText(outgoing);
     const auto specified = [](const py::object& source) { return !py::isinstance<Brdf>(source); };
@@ -188,6 +197,9 @@ void bindCompare(py::module_& module) {
             },
             "Errors over both hemispheres, by zones; None where there are none.")
         .def_readonly("files", &jobs::Compared::files, "Of the page, where a folder was given.")
+        .def_property_readonly(
+            "figures", [](const jobs::Compared& c) { return c.figures.names; },
+            "Files of compare(figures=...), in its folder.")
         .def(
             "__getitem__",
             [](const jobs::Compared& c, const std::string& name) {
@@ -204,12 +216,17 @@ void bindCompare(py::module_& module) {
         "compare", compared, py::arg("a"), py::arg("b"), py::kw_only(),
         py::arg("metrics") = options.metrics, py::arg("outgoing") = py::none(),
         py::arg("rgb") = options.rgb, py::arg("folder") = py::none(),
-        py::arg("progress") = py::none(),
+        py::arg("sigma") = options.sigma, py::arg("figures") = py::none(),
+        py::arg("figure_width") = figureWidth, py::arg("font") = std::string(defaultFigureFont),
+        py::arg("font_size") = FigureStyle{}.fontSize, py::arg("axis") = figureAxis,
+        py::arg("panels") = jobs::FigureOptions{}.panels, py::arg("progress") = py::none(),
         R"(Errors of the approximation b against the reference a, each a Brdf, Coefficients, a
 Form, a Projection, a Fit, or a specification or path.
 
 metrics: "all", names with commas, or a sequence. outgoing: None is that of the coefficients, else
-16 elevations or 16x16. folder takes a page with figures and spheres. Returns a Comparison.)");
+16 elevations or 16x16. folder takes a page with figures and spheres; figures a folder of PDF and
+SVG for print, whose look is that of fit(); sigma the uncertainty of measured samples of a, "2%" or
+"column", for their bars. Returns a Comparison.)");
 }
 
 }  // namespace

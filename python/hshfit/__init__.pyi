@@ -1,6 +1,6 @@
 """Types of hshfit. The docstrings of the module have shapes, units and sources."""
 import os
-from typing import Any, Callable, Dict, Iterator, List, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
@@ -231,6 +231,8 @@ class Comparison:
     def pairs(self) -> Optional[Row]: ...
     @property
     def files(self) -> List[str]: ...
+    @property
+    def figures(self) -> List[str]: ...
     def __getitem__(self, metric: str) -> float: ...
     def _repr_html_(self) -> str: ...
 
@@ -279,6 +281,13 @@ class Fit:
     def poor(self) -> Optional[Row]: ...
     @property
     def preset(self) -> Row: ...
+    @property
+    def bands(self) -> List[Row]: ...
+    @property
+    def figures(self) -> List[str]: ...
+    def predict(
+        self, wi: ArrayLike, wo: ArrayLike, *, probability: float = ..., seed: int = ...
+    ) -> Row: ...
     def brdf(self) -> Brdf: ...
     def save(self, path: Path) -> None: ...
     def _repr_html_(self) -> str: ...
@@ -412,6 +421,13 @@ def compare(
     outgoing: OutgoingLike = ...,
     rgb: bool = ...,
     folder: Optional[Path] = ...,
+    sigma: str = ...,
+    figures: Optional[Path] = ...,
+    figure_width: str = ...,
+    font: str = ...,
+    font_size: float = ...,
+    axis: str = ...,
+    panels: str = ...,
     progress: Progress = ...,
 ) -> Comparison: ...
 def fit(
@@ -431,6 +447,22 @@ def fit(
     accept: bool = ...,
     parts: Optional[Names] = ...,
     rgb: bool = ...,
+    at: str = ...,
+    dispersion: str = ...,
+    sigma: str = ...,
+    scans: Optional[Union[str, int]] = ...,
+    bootstrap: int = ...,
+    profile: bool = ...,
+    residuals: Optional[Path] = ...,
+    instrument: Mapping[str, Union[str, float]] = ...,
+    bands: Optional[Path] = ...,
+    bands_to: Optional[Path] = ...,
+    figures: Optional[Path] = ...,
+    figure_width: str = ...,
+    font: str = ...,
+    font_size: float = ...,
+    axis: str = ...,
+    panels: str = ...,
     progress: Progress = ...,
 ) -> Fit: ...
 def rank_models(
@@ -539,12 +571,12 @@ def illuminate(
     seed: int = ...,
     reference: Optional[Path] = ...,
     exposure: Optional[float] = ...,
-    basis: str = ...,
-    order: int = ...,
-    loss: float = ...,
-    rays: int = ...,
-    accuracy: float = ...,
-    choose_by: str = ...,
+    basis: Optional[str] = ...,
+    order: Optional[int] = ...,
+    loss: Optional[float] = ...,
+    rays: Optional[int] = ...,
+    accuracy: Optional[float] = ...,
+    choose_by: Optional[str] = ...,
     records: Optional[Path] = ...,
     resume: bool = ...,
     force: bool = ...,

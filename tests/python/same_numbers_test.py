@@ -98,6 +98,75 @@ class SameNumbers(program.InFolder):
                              "-o", "theirs.json", *words)
             self.assertEqual(self.bytes_of("ours.json"), self.bytes_of("theirs.json"))
 
+    def test_errors_of_fits_are_those_of_the_program(self):
+        cases = [({"bands": "plane:30", "bands_to": "bands.csv", "residuals": "rows.csv"},
+                  ["--bands", "plane:30", "--bands-to", "bands.csv", "--residuals", "rows.csv"]),
+                 ({"at": "nodes", "sigma": "2%+0.001", "bootstrap": 5, "bands": "plane:30",
+                   "bands_to": "bands.csv", "residuals": "rows.csv"},
+                  ["--at", "nodes", "--sigma", "2%+0.001", "--bootstrap", "5", "--bands",
+                   "plane:30", "--bands-to", "bands.csv", "--residuals", "rows.csv"])]
+        for options, words in cases:
+            with self.subTest(options=options):
+                found = hshfit.fit("beckmann:alpha=0.3", "ggx", starts=2, **options)
+                files = [self.bytes_of("bands.csv"), self.bytes_of("rows.csv")]
+                for name in ("bands.csv", "rows.csv"):
+                    os.remove(name)
+                expected = self.json_of("fit", "beckmann:alpha=0.3", "--model", "ggx",
+                                        "--starts", "2", *words)
+                self.assertEqual(files, [self.bytes_of("bands.csv"), self.bytes_of("rows.csv")])
+                self.assertEqual(found.bands, expected["bands"])
+                self.assertEqual(found.preset["fit"], expected["fit"])
+                with open("bands.csv", encoding="ascii") as file:
+                    rows = list(csv.DictReader(file))
+                wi, wo = (np.array([[float(row[f"{side}_{axis}"]) for axis in "xyz"]
+                                    for row in rows]) for side in ("wi", "wo"))
+                at = found.predict(wi, wo)
+                self.assertEqual(at["f"].shape, (len(wi), 1))
+                np.testing.assert_allclose(at["f"][:, 0], [row["f"] for row in found.bands],
+                                           rtol=1e-12)
+                np.testing.assert_allclose(at["standard_error"][:, 0],
+                                           [row["standard_error"] for row in found.bands],
+                                           rtol=1e-9)
+
+    def test_figures_are_files_of_the_program(self):
+        found = hshfit.compare("ggx:alpha=0.4", "beckmann:alpha=0.4", outgoing=4, figures="ours",
+                               font_size=7)
+        expected = self.json_of("compare", "ggx:alpha=0.4", "beckmann:alpha=0.4", "--outgoing",
+                                "4", "--figures", "theirs", "--font-size", "7")["figures"]
+        self.assertEqual(found.figures, expected["files"])
+        self.assertEqual(sorted(os.listdir("ours")), sorted(os.listdir("theirs")))
+
+    def write_scans(self, columns):
+        """Scans of a lobe with a dark signal, as ASTM E1392."""
+        with open("scans.astm", "w", encoding="ascii") as file:
+            file.write("VARS theta_i,phi_i,theta_s,phi_s," + ",".join(columns) + "\n")
+            for incident in np.linspace(0.1, 0.9, 14):
+                for out in np.linspace(0.05, 1.25, 9):
+                    f = 0.1 + 0.4 * np.cos(out - incident) ** 20 + 0.003 / np.cos(out)
+                    cells = ",".join(f"{f + 0.01 * k:.6f}" for k in range(len(columns)))
+                    file.write(f"{incident:.6f},0,{out:.6f},3.14159265,{cells}\n")
+
+    def test_instruments_and_laws_of_fits_are_those_of_the_program(self):
+        cases = [(["BRDF"], {"sigma": "1%+0.001", "instrument": {"source_aperture": "cone:0.5",
+                                                                 "dark": "fit"}},
+                  ["--sigma", "1%+0.001", "--source-aperture", "cone:0.5", "--dark", "fit"]),
+                 (["400nm", "410nm", "420nm", "430nm"],
+                  {"loss": "l2", "dispersion": "kd=poly:1,ks=shared,exponent=shared"},
+                  ["--loss", "l2", "--dispersion", "kd=poly:1,ks=shared,exponent=shared"])]
+        for columns, options, words in cases:
+            with self.subTest(options=options):
+                self.write_scans(columns)
+                found = hshfit.fit("scans.astm", "phong", starts=2, **options)
+                found.save("ours.json")
+                self.run_program("fit", "scans.astm", "--model", "phong", "--starts", "2", "-o",
+                                 "theirs.json", *words)
+                self.assertEqual(self.bytes_of("ours.json"), self.bytes_of("theirs.json"))
+                self.assertEqual(found.brdf().channels, hshfit.open("ours.json").channels)
+        with self.assertRaisesRegex(hshfit.UsageError, "instrument"):
+            self.write_scans(["BRDF"])
+            hshfit.fit("scans.astm", "phong", starts=2, sigma="1%+0.001",
+                       instrument={"dark": "fit"}).predict([0, 0, 1], [0, 0, 1])
+
     def test_curves_are_those_of_the_program(self):
         found = hshfit.curves("ward:ax=0.2,ay=0.3", max_order=5, outgoing=(40, 10), cosine=True)
         expected = self.run_program("report", "ward:ax=0.2,ay=0.3", "--max-order", "5",
@@ -245,6 +314,16 @@ class SameNumbers(program.InFolder):
                      lambda: hshfit.tradeoff("lambert", orders=[0])]:
             with self.assertRaises(hshfit.UsageError):
                 work()
+        for option in [{"basis": "hsh"}, {"order": 4}, {"loss": 0.1}, {"rays": 64},
+                       {"accuracy": 0.2}, {"choose_by": "loss"}, {"records": "r.bin"}]:
+            with self.assertRaisesRegex(hshfit.UsageError, "is for the method radiance-cache"):
+                hshfit.illuminate("s.json", "x", **option)
+        for option in [{"instrument": {"slit": 1}}, {"bands_to": "b.csv"}, {"bootstrap": 1},
+                       {"figures": "f", "figure_width": "wide"}]:
+            with self.assertRaises(hshfit.UsageError):
+                hshfit.fit("lambert", "lambert", **option)
+        with self.assertRaises(hshfit.UsageError):
+            hshfit.compare("lambert", "lambert", sigma="2%")
         for work in [lambda: hshfit.illuminate("absent.json", "x"),
                      lambda: hshfit.transfer("absent.json", "x"),
                      lambda: hshfit.plan("absent.json", "x")]:
