@@ -103,8 +103,9 @@ std::string reference(const std::string& name, int section) {
 }
 
 /// The folders share/man/man1 and share/man/man7 below `folder`. Returns the number of files.
-std::size_t writeManual(const CLI::App& program, const std::filesystem::path& folder, bool force) {
-    FileSet first(folder / "man1", force), seventh(folder / "man7", force);
+/// Whether files that exist are replaced is up to the rule of the process.
+std::size_t writeManual(const CLI::App& program, const std::filesystem::path& folder) {
+    FileSet first(folder / "man1", true), seventh(folder / "man7", true);
     first.write("hshfit.1", programManual(program));
     for (const Command& row : commands())
         first.write(fmt::format("hshfit-{}.1", row.name),
@@ -143,26 +144,21 @@ std::string topicManual(const Topic& topic) {
 }
 
 void addManual(CLI::App& command, Globals& globals) {
-    struct Options {
-        std::string output;
-        bool force = false;
-    };
-    auto options = std::make_shared<Options>();
+    auto output = std::make_shared<std::string>();
     command
-        .add_option("-o,--output", options->output,
+        .add_option("-o,--output", *output,
                     "Folder for man1 and man7, such as ~/.local/share/man; made if absent")
         ->required();
-    command.add_flag("--force", options->force, "Replace existing files");
     const CLI::App* const program = command.get_parent();
-    command.callback([options, program, &globals] {
-        const std::size_t pages = writeManual(*program, options->output, options->force);
+    command.callback([output, program, &globals] {
+        const std::size_t pages = writeManual(*program, *output);
         if (globals.json)
             printJson({{"format", "hshfit-manual"},
                        {"version", 1},
-                       {"output", options->output},
+                       {"output", *output},
                        {"pages", pages}});
         else
-            note(globals, fmt::format("{}: {} pages in man1 and man7", options->output, pages));
+            note(globals, fmt::format("{}: {} pages in man1 and man7", *output, pages));
     });
 }
 

@@ -4,7 +4,9 @@
 
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
+#include <hshfit/files/output_rule.h>
 #include <hshfit/material_maps/cluster_encoder.h>
+#include <hshfit/representation/forms/form.h>
 
 #include <jobs/quality.h>
 #include <jobs/svbrdf/svbrdf.h>
@@ -23,7 +25,7 @@ using Json = nlohmann::ordered_json;
 
 struct SvbrdfArguments {
     std::string description, output;
-    std::string mips = "reflectance", writes = "direct";
+    std::string mips = "reflectance", writes = "direct", halfway = "8,4,3";
     std::size_t memoryMegabytes = 1024;
     int harmonics = 0;
     double error = 0;
@@ -34,15 +36,40 @@ double megabytes(std::size_t bytes) {
     return static_cast<double>(bytes) / 1e6;
 }
 
+Json jsonOf(const jobs::TexelPairErrors& errors) {
+    return {{"texels", errors.texels},
+            {"log_error",
+             {{"mean", errors.meanLog},
+              {"uncertainty", errors.uncertainty},
+              {"mirror", errors.mirror},
+              {"maximum", errors.worstLog},
+              {"column", errors.worstAt.column},
+              {"row", errors.worstAt.row}}},
+            {"largest_difference",
+             {{"value", errors.largest},
+              {"incoming", directionJson(errors.pair.wi)},
+              {"outgoing", directionJson(errors.pair.wo)},
+              {"column", errors.largestAt.column},
+              {"row", errors.largestAt.row}}},
+            {"albedo",
+             {{"error", errors.albedo},
+              {"uncertainty", errors.albedoUncertainty},
+              {"column", errors.albedoAt.column},
+              {"row", errors.albedoAt.row}}}};
+}
+
 Json jsonOf(const jobs::MapChoice& choice) {
-    return {{"form", choice.form},
-            {"count", choice.count},
-            {"bytes_per_texel", choice.bytesOfTexel},
-            {"shared_bytes", choice.sharedBytes},
-            {"error",
-             {{"mean", choice.errors.mean},
-              {"percentile_99", choice.errors.percentile99},
-              {"maximum", choice.errors.maximum}}}};
+    Json json = {{"form", choice.form},
+                 {"count", choice.count},
+                 {"bytes_per_texel", choice.bytesOfTexel},
+                 {"shared_bytes", choice.sharedBytes}};
+    if (choice.errors) {
+        json["error"] = {{"mean", choice.errors->mean},
+                         {"percentile_99", choice.errors->percentile99},
+                         {"maximum", choice.errors->maximum}};
+    }
+    if (choice.pairs) json["against_brdfs"] = jsonOf(*choice.pairs);
+    return json;
 }
 
 Json levelsJson(const jobs::Svbrdf& done) {
@@ -63,9 +90,18 @@ Json levelsJson(const jobs::Svbrdf& done) {
                 {"stored", {{"mean", check.stored}, {"maximum", check.storedMaximum}}},
                 {"parameters", {{"mean", check.parameters}, {"maximum", check.parametersMaximum}}}};
         }
+        if (!done.levelPairs.empty()) json["against_brdfs"] = jsonOf(done.levelPairs[level]);
         levels.push_back(std::move(json));
     }
     return levels;
+}
+
+/// The call that captures more of the poorest lobe; empty if none is known.
+std::string betterCall(const jobs::Svbrdf& done) {
+    const std::string call =
+        fmt::format("hshfit svbrdf {} -o {} --force", done.description, done.folder);
+    if (done.betterOrder) return fmt::format("{} --order {}", call, *done.betterOrder);
+    return done.halfwayIsBetter ? call + " --form halfway" : "";
 }
 
 Json jsonOf(const jobs::Svbrdf& done) {
@@ -93,6 +129,8 @@ Json jsonOf(const jobs::Svbrdf& done) {
         {"seconds", {{"preparation", done.tableSeconds}, {"writing", done.seconds}}},
         {"texels_per_second", {{"written", done.rate}, {"kernel", done.kernelRate}}},
         {"files", done.files}};
+    if (const std::string better = betterCall(done); !better.empty())
+        json["captured"]["better"] = better;
     if (done.fit.texels > 0) {
         json["fit"] = {{"texels", done.fit.texels},
                        {"mean", done.fit.mean},
@@ -104,13 +142,32 @@ Json jsonOf(const jobs::Svbrdf& done) {
 }
 
 std::string textOf(const jobs::MapChoice& choice) {
-    return fmt::format(
-        "  {:<10} {:>6}  {:>8.4g} bytes a texel{}, error {} mean, {} of 99 %, {} at "
-        "most\n",
-        choice.form, choice.count, choice.bytesOfTexel,
-        choice.sharedBytes > 0 ? fmt::format(" and {:.3g} MB", megabytes(choice.sharedBytes)) : "",
-        jobs::percent(choice.errors.mean, 2), jobs::percent(choice.errors.percentile99, 2),
-        jobs::percent(choice.errors.maximum, 2));
+    std::string text = fmt::format(
+        "  {:<10} {:>6}  {:>8.4g} bytes a texel{}", choice.form, choice.count, choice.bytesOfTexel,
+        choice.sharedBytes > 0 ? fmt::format(" and {:.3g} MB", megabytes(choice.sharedBytes)) : "");
+    if (choice.errors) {
+        text += fmt::format(", error {} mean, {} of 99 %, {} at most",
+                            jobs::percent(choice.errors->mean, 2),
+                            jobs::percent(choice.errors->percentile99, 2),
+                            jobs::percent(choice.errors->maximum, 2));
+    }
+    if (choice.pairs) {
+        const jobs::TexelPairErrors& pairs = *choice.pairs;
+        text += fmt::format("; log error {:.2g}, {:.2g} at most, albedo off by {:.2g} at most",
+                            pairs.meanLog, pairs.worstLog, pairs.albedo);
+    }
+    return text + "\n";
+}
+
+std::string choicesText(const std::vector<jobs::MapChoice>& choices) {
+    std::string text = "forms; errors over sampled texels are relative to the norm of a texel";
+    if (const auto& pairs = choices.front().pairs) {
+        text += fmt::format("; log errors are against the BRDFs of {} texels, +- {:.1g}",
+                            pairs->texels, pairs->uncertainty);
+    }
+    text += ":\n";
+    for (const jobs::MapChoice& choice : choices) text += textOf(choice);
+    return text;
 }
 
 std::string levelText(const jobs::Svbrdf& done, std::size_t level) {
@@ -129,6 +186,11 @@ std::string levelText(const jobs::Svbrdf& done, std::size_t level) {
             "{})",
             jobs::percent(check.stored, 2), jobs::percent(check.storedMaximum, 2),
             jobs::percent(check.parameters, 2), jobs::percent(check.parametersMaximum, 2));
+    }
+    if (!done.levelPairs.empty()) {
+        const jobs::TexelPairErrors& pairs = done.levelPairs[level];
+        text += fmt::format("; materials: log error {:.2g}, {:.2g} at most at ({}, {})",
+                            pairs.meanLog, pairs.worstLog, pairs.worstAt.column, pairs.worstAt.row);
     }
     return text + "\n";
 }
@@ -151,21 +213,26 @@ std::string textOf(const jobs::Svbrdf& done) {
             done.fit.column, done.fit.row);
     }
     if (!done.leastCaptured.empty()) {
+        const std::string better = betterCall(done);
         text += fmt::format(
-            "the basis captures {} of the energy of {}, the least of all lobes{}\n",
+            "the basis captures {} of the energy of {}, the least of all lobes{}{}\n",
             jobs::percent(done.captured, 2), done.leastCaptured,
-            done.captured < jobs::leastCaptured ? ": poor; a higher --order captures more" : "");
+            done.captured < jobs::leastCaptured && done.form != "halfway" ? ": poor" : "",
+            better.empty() ? "" : "; better: " + better);
     }
-    if (done.choices.size() > 1) {
-        text += "forms, relative to the norm of a texel, over sampled texels:\n";
-        for (const jobs::MapChoice& choice : done.choices) text += textOf(choice);
-    }
+    if (done.choices.size() > 1 || done.choices.front().pairs) text += choicesText(done.choices);
     text +=
         fmt::format("{}{}, {:.4g} MB, {:.1f} s ({:.3g} texels a second; the bare kernel {:.3g})\n",
                     done.form, done.count > 0 ? fmt::format(" {}", done.count) : "",
                     megabytes(done.bytes), done.seconds, done.rate, done.kernelRate);
     for (std::size_t level = 0; level < done.levels.size(); ++level) text += levelText(done, level);
-    for (const std::string& file : done.files) text += fmt::format("  {}\n", file);
+    std::size_t materials = 0;
+    for (const std::string& file : done.files) {
+        // Of the materials of the form halfway the first stands for all.
+        if (file.find("/material_") != std::string::npos && ++materials > 1) continue;
+        text += fmt::format("  {}\n", file);
+    }
+    if (materials > 1) text += fmt::format("  … {} materials in all\n", materials);
     return text;
 }
 
@@ -204,7 +271,7 @@ void runFiltered(const SvbrdfArguments& arguments, const CLI::App& command,
         throw UsageError(fmt::format("--form {} is made by one process", from.form));
     refuseOptions(command, from.form,
                   {"--basis", "--order", "--outgoing", "--cosine", "--tolerance", "--rank",
-                   "--clusters", "--memory", "--writes"});
+                   "--clusters", "--halfway", "--memory", "--writes"});
     if (from.form == "ellipse") refuseOptions(command, from.form, {"--harmonics"});
     jobs::FilteredMapOptions options{.form = from.form,
                                      .harmonics = arguments.harmonics,
@@ -223,13 +290,17 @@ void runSvbrdf(SvbrdfArguments& arguments, const CLI::App& command, const Global
     options.mips = arguments.mips == "reflectance";
     options.memory = arguments.memoryMegabytes << 20;
     options.pastPageCache = arguments.writes == "direct";
+    options.halfway = parseHalfway(arguments.halfway);
+    // Also where a file of a valid set was taken away.
+    options.force = outputRule().replace;
     refuseLaunchers();
     if (options.precision == "half") options.precision = "float16";
     if (isFilteredForm(options.form)) return runFiltered(arguments, command, globals);
     refuseOptions(command, options.form, {"--harmonics"});
+    if (options.form != "halfway") refuseOptions(command, options.form, {"--halfway"});
     if (command.count("--error") > 0) options.error = arguments.error;
     if (options.rank > 0 && options.form == "outgoing")
-        throw UsageError("--rank belongs to --form low-rank or clusters");
+        throw UsageError("--rank belongs to --form low-rank, clusters or halfway");
     const jobs::Svbrdf done =
         jobs::svbrdf(arguments.description, arguments.output, options, listenerFor(globals));
     if (globals.json) return printJson(jsonOf(done));
@@ -249,16 +320,17 @@ void addSvbrdf(CLI::App& command, Globals& globals) {
     command
         .add_option("-o,--output", arguments->output,
                     "Folder for material.ktx2, material.json, errors.png and, of harmonics, "
-                    "harmonics.ktx2")
+                    "harmonics.ktx2, of halfway, the materials")
         ->required();
     command
         .add_option("--form", options.form,
                     "outgoing: all coefficients; low-rank: weights of shared shapes; clusters: "
-                    "the index of a shared material. Of turned texels: ellipse or harmonics of the "
+                    "the index of a shared material; halfway: likewise, of a material in the "
+                    "halfway form. Of turned texels: ellipse or harmonics of the "
                     "normals' distribution; filtered: the cheaper one within --error (default: "
                     "filtered where the description has normals or directions, else outgoing)")
         ->check(CLI::IsMember(
-            {"outgoing", "low-rank", "clusters", "ellipse", "harmonics", "filtered"}));
+            {"outgoing", "low-rank", "clusters", "halfway", "ellipse", "harmonics", "filtered"}));
     command.add_option("--basis", options.basis, "Basis over incoming directions")
         ->capture_default_str();
     command.add_option("--order", options.order, "Bands of the basis")
@@ -289,7 +361,14 @@ void addSvbrdf(CLI::App& command, Globals& globals) {
                     "Order of the harmonics of --form harmonics, odd (default: 9, 17 or 33 by "
                     "--error)")
         ->check(CLI::Range(3, 101));
-    command.add_option("--clusters", options.clusters, "Shared materials of --form clusters")
+    command
+        .add_option("--halfway", arguments->halfway,
+                    "Functions along each axis of the materials of --form halfway, as of hshfit "
+                    "project")
+        ->capture_default_str();
+    command
+        .add_option("--clusters", options.clusters,
+                    "Shared materials of --form clusters or halfway, of each level")
         ->check(CLI::Range(std::size_t{1}, ClusterEncoder::most))
         ->capture_default_str();
     command

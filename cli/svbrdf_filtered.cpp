@@ -46,7 +46,12 @@ Json jsonOf(const jobs::FilteredMapAnswer& done) {
                            {"numbers", choice.numbers},
                            {"bytes_per_texel", choice.bytesOfTexel},
                            {"error", choice.error},
-                           {"level", choice.level}});
+                           {"level", choice.level},
+                           {"maximum",
+                            {{"error", choice.maximum},
+                             {"level", choice.maximumLevel},
+                             {"column", choice.column},
+                             {"row", choice.row}}}});
     }
     for (const jobs::FilteredLevel& level : done.levels) levels.push_back(jsonOf(level));
     return {{"format", "hshfit-filtered-map-answer"},
@@ -58,6 +63,7 @@ Json jsonOf(const jobs::FilteredMapAnswer& done) {
             {"renormalised", done.renormalised},
             {"parameters", done.parameters},
             {"nodes", done.nodes},
+            {"node_error", done.nodeError},
             {"form", done.form},
             {"order", done.order},
             {"numbers", done.numbers},
@@ -96,17 +102,20 @@ std::string textOf(const jobs::FilteredMapAnswer& done) {
     std::string text = fmt::format(
         "{}: {} x {} texels of {}; lobe {}, {} factors and {} albedos a texel\n", done.description,
         done.width, done.height, done.model,
-        done.parameters.empty()
-            ? "the same for all"
-            : fmt::format("by {} at {} nodes", fmt::join(done.parameters, ", "), done.nodes),
+        done.parameters.empty() ? "the same for all"
+                                : fmt::format("by {} at {} nodes, off by {} at most between them",
+                                              fmt::join(done.parameters, ", "), done.nodes,
+                                              jobs::percent(done.nodeError, 2)),
         done.weights, done.albedos);
     if (!done.choices.empty()) {
         text += "forms, by the error of their worst level:\n";
         for (const jobs::FilteredChoice& choice : done.choices) {
-            text +=
-                fmt::format("  {:<24} {:>5} numbers, {:>5g} bytes a texel, error {} (level {})\n",
-                            formText(choice.form, choice.order), choice.numbers,
-                            choice.bytesOfTexel, jobs::percent(choice.error, 2), choice.level);
+            text += fmt::format(
+                "  {:<24} {:>5} numbers, {:>5g} bytes a texel, error {} (level {}), "
+                "worst texel {} at ({}, {}) of level {}\n",
+                formText(choice.form, choice.order), choice.numbers, choice.bytesOfTexel,
+                jobs::percent(choice.error, 2), choice.level, jobs::percent(choice.maximum, 2),
+                choice.column, choice.row, choice.maximumLevel);
         }
     }
     text += fmt::format("{}, {:.4g} MB, {:.1f} s ({:.3g} texels a second)\n",

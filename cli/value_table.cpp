@@ -115,7 +115,8 @@ Words formWords() {
 }
 
 Words mapFormWords() {
-    return {{"outgoing"}, {"low-rank"}, {"clusters"}, {"ellipse"}, {"harmonics"}, {"filtered"}};
+    return {{"outgoing"}, {"low-rank"},  {"clusters"}, {"halfway"},
+            {"ellipse"},  {"harmonics"}, {"filtered"}};
 }
 
 Words mapPrecisionWords() {

@@ -29,6 +29,13 @@ public:
           lights_(lightsOf()),
           map_(path),
           files_(folder, options.force) {
+        if (map_.sidecar().form == "halfway") {
+            throw UsageError(
+                fmt::format("{}: the form halfway of maps has no shader; its materials are "
+                            "exported one by one, "
+                            "as {} is, or the map in another form, as clusters",
+                            path, materialOf(map_.sidecar())));
+        }
         result_.name =
             options.name.empty() ? std::filesystem::path(path).stem().string() : options.name;
         result_.sidecar = result_.name + ".hsh.json";
@@ -59,6 +66,12 @@ public:
     }
 
 private:
+    /// The file of a material of the form halfway.
+    static std::string materialOf(const MapSidecar& map) {
+        const auto first =
+            std::ranges::find_if(map.files, [](const auto& f) { return !f.empty(); });
+        return first == map.files.end() ? std::string() : *first;
+    }
     bool hasViewer() const {
         return std::ranges::any_of(
             chosen_, [](const Target* target) { return target->kind == Target::Kind::viewer; });

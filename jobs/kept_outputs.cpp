@@ -48,6 +48,14 @@ std::string sumOf(const std::string& path) {
 /// Of files that state the key.
 Stood stoodAs(const MadeFrom& made, const fs::path& folder) {
     std::error_code error;
+    for (std::size_t k = 0; k < made.files.size(); ++k) {
+        const std::string path = (folder / made.files[k]).string();
+        if (!fs::exists(path, error)) continue;
+        const std::string sum = k < made.sums.size() ? made.sums[k] : "";
+        const auto own = sum.empty() && canStateMadeFrom(path) ? madeFromOf(path) : std::nullopt;
+        if (sum.empty() ? own && own->changed : sumOfPart(path) != sum)
+            refuse(path, "was changed after it was made");
+    }
     const bool whole = std::ranges::all_of(
         made.files, [&](const std::string& name) { return fs::exists(folder / name, error); });
     const bool failed = made.exitCode == static_cast<int>(ExitCode::input);

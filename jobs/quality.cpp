@@ -80,44 +80,6 @@ OutgoingSet fewOf(const CoefficientHead& head) {
     return OutgoingSet::parabolic(trialTexels, trialTexels);
 }
 
-/// The least order that captures enough; none up to `trialOrder`.
-std::optional<int> sufficientOrder(const Brdf& source, const CoefficientHead& head) {
-    const bool nested = !head.basis.empty() && bases::find(head.basis).nested &&
-                        bases::find(head.basis).maxOrder >= trialOrder;
-    try {
-        const auto basis = bases::make(nested ? head.basis : "hsh", trialOrder);
-        const Basis* const one[] = {basis.get()};
-        const Projection trial = std::move(hshfit::project(
-            source, one, fewOf(head), {.quantity = head.quantity, .tolerance = trialTolerance})[0]);
-        const Energy& energy = trial.coefficients.energy;
-        if (!energy.finite || !(energy.value > 0)) return std::nullopt;
-        const auto enough = std::ranges::find_if(
-            trial.captured, [&](double c) { return c >= trialCaptured * energy.value; });
-        if (enough == trial.captured.end()) return std::nullopt;
-        return 1 + static_cast<int>(enough - trial.captured.begin());
-    } catch (const NumericError&) {
-        return std::nullopt;
-    }
-}
-
-/// Whether most of the energy of f cos cos has its half vector within 20 degrees of the normal: the
-/// halfway form resolves lobes there, and no others.
-bool isAboutTheMirror(const Brdf& source) {
-    const double within = std::cos(radians(20));
-    const PairSample pairs = spreadPairs({.replicates = 2});
-    const std::vector<double> f = evaluateOn(source, pairs);
-    double near = 0, all = 0;
-    for (std::size_t k = 0; k < f.size(); ++k) {
-        const std::size_t p = k % pairs.size();
-        const Direction wi = pairs.incoming(p), wo = pairs.outgoing(p);
-        const double energy = pairs.weights[p] * std::pow(f[k] * wi.z * wo.z, 2);
-        all += energy;
-        const double half = (wi.z + wo.z) / std::hypot(wi.x + wo.x, wi.y + wo.y, wi.z + wo.z);
-        if (half > within) near += energy;
-    }
-    return 2 * near > all;
-}
-
 std::string textOf(const HalfwayOrders& o) {
     return fmt::format("{},{},{}", o.half, o.difference, o.azimuth);
 }
@@ -193,6 +155,41 @@ std::optional<double> measuredShare(const Brdf& source, const Brdf& result, cons
 }
 
 }  // namespace
+
+std::optional<int> sufficientOrder(const Brdf& source, const CoefficientHead& head) {
+    const bool nested = !head.basis.empty() && bases::find(head.basis).nested &&
+                        bases::find(head.basis).maxOrder >= trialOrder;
+    try {
+        const auto basis = bases::make(nested ? head.basis : "hsh", trialOrder);
+        const Basis* const one[] = {basis.get()};
+        const Projection trial = std::move(hshfit::project(
+            source, one, fewOf(head), {.quantity = head.quantity, .tolerance = trialTolerance})[0]);
+        const Energy& energy = trial.coefficients.energy;
+        if (!energy.finite || !(energy.value > 0)) return std::nullopt;
+        const auto enough = std::ranges::find_if(
+            trial.captured, [&](double c) { return c >= trialCaptured * energy.value; });
+        if (enough == trial.captured.end()) return std::nullopt;
+        return 1 + static_cast<int>(enough - trial.captured.begin());
+    } catch (const NumericError&) {
+        return std::nullopt;
+    }
+}
+
+bool isAboutTheMirror(const Brdf& source) {
+    const double within = std::cos(radians(20));
+    const PairSample pairs = spreadPairs({.replicates = 2});
+    const std::vector<double> f = evaluateOn(source, pairs);
+    double near = 0, all = 0;
+    for (std::size_t k = 0; k < f.size(); ++k) {
+        const std::size_t p = k % pairs.size();
+        const Direction wi = pairs.incoming(p), wo = pairs.outgoing(p);
+        const double energy = pairs.weights[p] * std::pow(f[k] * wi.z * wo.z, 2);
+        all += energy;
+        const double half = (wi.z + wo.z) / std::hypot(wi.x + wo.x, wi.y + wo.y, wi.z + wo.z);
+        if (half > within) near += energy;
+    }
+    return 2 * near > all;
+}
 
 std::string percent(double share, int digits) {
     const double value = 100 * share;

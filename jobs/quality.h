@@ -52,6 +52,12 @@ std::optional<Poor> judge(const Projection& projection, std::optional<double> ca
 /// The call that captures more than coefficients with this head, by the same trial; empty if it
 /// finds neither an order nor that the halfway form is made for this BRDF.
 std::string betterCall(const CoefficientHead& head, const Brdf& source, const std::string& output);
+/// The least order, up to 24, that captures enough of a BRDF at a few outgoing directions; none
+/// where there is none. `head` says the basis, the quantity and the outgoing directions.
+std::optional<int> sufficientOrder(const Brdf& source, const CoefficientHead& head);
+/// Whether most of the energy of f cos cos has its half vector within 20 degrees of the normal: the
+/// halfway form resolves lobes there, and no others.
+bool isAboutTheMirror(const Brdf& source);
 /// A form: the step that changed it most, or the share that it captures.
 std::optional<Poor> judge(const Representation& kept, std::optional<double> captured,
                           const std::optional<PairSummary>& pairs, const Brdf& source,

@@ -54,6 +54,11 @@ std::unique_ptr<Brdf> openTexel(const std::string& spec) {
     };
     if (filtered) return openFilteredTexel(path, index("level"), index("x"), index("y"));
     const MaterialMap map(path);
+    if (map.sidecar().form == "halfway") {
+        const std::size_t material = map.material(index("level"), index("x"), index("y"));
+        map.checkIntact();
+        return reconstruct(readRepresentation(map.sidecar().files[material]), {});
+    }
     Coefficients coefficients = map.coefficients(index("level"), index("x"), index("y"));
     map.checkIntact();
     return std::make_unique<Reconstruction>(std::move(coefficients));

@@ -48,6 +48,12 @@ FacetSurface::FacetSurface(ParameterMaps& maps, const std::string& file, const L
     } catch (const Error& error) {
         throw InputError(fmt::format("{}: {}", file, error.what()));
     }
+    if (nodeError_ > nodeTolerance) {
+        listener.say(fmt::format(
+            "{}: the lobe varies so much that D between its {} nodes is off by up to {:.2g} of its "
+            "norm (asked: {})",
+            file, mostNodes, nodeError_, nodeTolerance));
+    }
     findEqualColumns(listener);
 }
 
@@ -183,36 +189,47 @@ void FacetSurface::findCorners() {
     }
 }
 
-/// Whether intervals of nodes are too wide: D at the middle is not the mean of the ends.
-std::vector<char> FacetSurface::wideIntervals(const std::string& model, std::size_t node) const {
+/// Of each interval of nodes the distance of D at its middle from the mean of its ends, relative to
+/// its norm: the largest at the ends and the middle of the other parameter.
+std::vector<double> FacetSurface::intervalErrors(const std::string& model, std::size_t node) const {
     std::vector<LobeNodes> halved = nodes_;
     std::vector<double>& values = halved[node].values;
     for (std::size_t i = values.size(); i-- > 1;)
         values.insert(values.begin() + static_cast<std::ptrdiff_t>(i),
                       (values[i - 1] + values[i]) / 2);
+    if (nodes_.size() > 1) {
+        std::vector<double>& other = halved[1 - node].values;
+        if (other.size() > 3) other = {other.front(), other[other.size() / 2], other.back()};
+    }
+    const std::size_t others = nodes_.size() > 1 ? halved[1 - node].values.size() : 1;
     const auto table = FacetLobes(model, halved).table(nodeOrder);
     const auto slots = static_cast<std::size_t>(nodeOrder * nodeOrder);
     std::vector<double> low(slots), middle(slots), high(slots);
-    const auto read = [&](std::size_t k, std::vector<double>& out) {
-        LobePlace place{0, 0};
-        place[node] = static_cast<double>(k);
-        table->coefficients(place, out);
-    };
-    std::vector<char> wide;
+    std::vector<double> errors;
     for (std::size_t i = 1; i < values.size(); i += 2) {
-        read(i - 1, low), read(i, middle), read(i + 1, high);
-        double off = 0, whole = 0;
-        for (std::size_t s = 0; s < slots; ++s) {
-            const double difference = middle[s] - (low[s] + high[s]) / 2;
-            off += difference * difference;
-            whole += middle[s] * middle[s];
+        double largest = 0;
+        for (std::size_t other = 0; other < others; ++other) {
+            const auto read = [&](std::size_t k, std::vector<double>& out) {
+                LobePlace place{0, 0};
+                place[1 - node] = static_cast<double>(other);
+                place[node] = static_cast<double>(k);
+                table->coefficients(place, out);
+            };
+            read(i - 1, low), read(i, middle), read(i + 1, high);
+            double off = 0, whole = 0;
+            for (std::size_t s = 0; s < slots; ++s) {
+                const double difference = middle[s] - (low[s] + high[s]) / 2;
+                off += difference * difference;
+                whole += middle[s] * middle[s];
+            }
+            largest = std::max(largest, std::sqrt(off / whole));
         }
-        wide.push_back(off > nodeTolerance * nodeTolerance * whole);
+        errors.push_back(largest);
     }
-    return wide;
+    return errors;
 }
 
-/// Intervals are halved where they are too wide.
+/// Intervals are halved where they are too wide, of one parameter and the other in turns.
 void FacetSurface::findNodes() {
     const std::vector<double> values = middle();
     std::string model = common_;
@@ -221,17 +238,22 @@ void FacetSurface::findNodes() {
         model += fmt::format("{}{}={}", model.find(':') == std::string::npos ? ':' : ',',
                              varying_[k].name, values[k]);
     }
-    for (const Varying& v : varying_)
-        if (!v.factor) nodes_[v.node].values = {v.low};
     for (const Varying& v : varying_) {
-        if (v.factor || !(v.high > v.low)) continue;
-        std::vector<double>& nodes = nodes_[v.node].values;
-        nodes = {v.low, v.high};
-        for (bool more = true; more && nodes.size() < mostNodes;) {
-            const std::vector<char> wide = wideIntervals(model, v.node);
-            more = std::ranges::find(wide, 1) != wide.end();
-            for (std::size_t i = wide.size(); i-- > 0;) {
-                if (wide[i] == 0) continue;
+        if (v.factor) continue;
+        nodes_[v.node].values = {v.low};
+        if (v.high > v.low) nodes_[v.node].values.push_back(v.high);
+    }
+    for (bool more = true; more;) {
+        more = false;
+        nodeError_ = 0;
+        for (std::size_t node = 0; node < nodes_.size(); ++node) {
+            std::vector<double>& nodes = nodes_[node].values;
+            const std::vector<double> errors = intervalErrors(model, node);
+            for (const double error : errors) nodeError_ = std::max(nodeError_, error);
+            if (nodes.size() >= mostNodes) continue;
+            for (std::size_t i = errors.size(); i-- > 0;) {
+                if (errors[i] <= nodeTolerance) continue;
+                more = true;
                 nodes.insert(nodes.begin() + static_cast<std::ptrdiff_t>(i + 1),
                              (nodes[i] + nodes[i + 1]) / 2);
             }

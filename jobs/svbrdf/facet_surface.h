@@ -26,6 +26,8 @@ public:
     int weights() const { return static_cast<int>(columnOfWeight_.size()); }
     int albedos() const { return albedos_; }
     /// f of texels, its parts, and nothing of the map.
+    /// The largest relative distance of D from its interpolation, at the middle of intervals.
+    double nodeError() const { return nodeError_; }
     FilteredSurface reflectance() const { return lobes_->surface(terms_, channels_, albedos_); }
 
     std::vector<SurfaceTexel> row(std::size_t row);
@@ -44,7 +46,7 @@ private:
     bool changesTerms(std::size_t k, double low, double high) const;
     bool changesWeights(std::size_t k, double low, double high) const;
     void findCorners();
-    std::vector<char> wideIntervals(const std::string& model, std::size_t node) const;
+    std::vector<double> intervalErrors(const std::string& model, std::size_t node) const;
     void findNodes();
     /// Factors of terms [term of the lobe, then the smooth part][channel][column].
     std::vector<double> columns(const std::vector<float>& values, std::size_t width) const;
@@ -56,6 +58,7 @@ private:
     std::vector<Varying> varying_;
     std::vector<std::size_t> factors_;  ///< indices into `varying_`
     std::vector<LobeNodes> nodes_;
+    double nodeError_ = 0;
     std::size_t channels_ = 1, lobeTerms_ = 0;
     double turn_ = 0;                           ///< of the lobe's axes in the model's
     std::vector<std::vector<double>> corners_;  ///< [corner][term of the lobe, then smooth]

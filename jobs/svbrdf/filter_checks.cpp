@@ -100,7 +100,7 @@ MipErrors FilterChecks::measureLevel(const FilteredSurface& surface, const MipLa
 
 MipErrors FilterChecks::worst(const FilteredSurface& surface, const MipLayout& layout,
                               const LobeTable& table, const std::vector<int>& orders,
-                              std::vector<std::size_t>& levels, const Listener& listener) const {
+                              std::vector<WorstOfForm>& places, const Listener& listener) const {
     MipErrors worst;
     MipErrorOptions options{.samples = samples, .orders = orders};
     options.harmonics = !orders.empty();
@@ -109,12 +109,22 @@ MipErrors FilterChecks::worst(const FilteredSurface& surface, const MipLayout& l
         const MipErrors own = measureLevel(surface, layout, table, ranges_[level], options);
         if (worst.forms.empty()) {
             worst = own;
-            levels.assign(own.forms.size(), level);
+            places.assign(own.forms.size(), {.level = level});
         }
         for (std::size_t k = 0; k < own.forms.size(); ++k) {
+            WorstOfForm& place = places[k];
+            const std::vector<double>& texels = own.forms[k].texels;
+            for (std::size_t t = 0; t < texels.size(); ++t) {
+                if (place.texelLevel > 0 && texels[t] <= place.texel) continue;
+                const std::size_t index = measured_.place(ranges_[level].first + t).index;
+                place.texel = texels[t];
+                place.texelLevel = level;
+                place.column = index % sizes_[level].width;
+                place.row = index / sizes_[level].width;
+            }
             if (own.forms[k].relative <= worst.forms[k].relative) continue;
             worst.forms[k] = own.forms[k];
-            levels[k] = level;
+            place.level = level;
         }
         if (progress) progress(level, sizes_.size() - 1);
     }

@@ -12,6 +12,13 @@
 
 namespace hshfit::jobs {
 
+/// The worst of a form over all levels.
+struct WorstOfForm {
+    std::size_t level = 0;  ///< with the largest error
+    double texel = 0;       ///< of the worst texel of any level, in its own norm, and its place
+    std::size_t texelLevel = 0, column = 0, row = 0;
+};
+
 /// Measures texels of the levels of a filtered map against texels of level 0, which are gathered
 /// while rows stream by.
 class FilterChecks {
@@ -26,9 +33,9 @@ public:
     /// A row of a level, of which the numbers of measured texels are kept.
     void addFiltered(const MipRow& row, const MipLayout& layout);
 
-    /// Every form by the error of its worst level, after `addFiltered` of all; levels[form].
+    /// Every form by the error of its worst level, after `addFiltered` of all; places[form].
     MipErrors worst(const FilteredSurface& surface, const MipLayout& layout, const LobeTable& table,
-                    const std::vector<int>& orders, std::vector<std::size_t>& levels,
+                    const std::vector<int>& orders, std::vector<WorstOfForm>& places,
                     const Listener& listener) const;
     /// Fills in the levels of the answer from the written map.
     void measure(const FilteredSurface& surface, const LobeTable& table, const FilteredMap& map,

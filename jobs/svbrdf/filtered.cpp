@@ -68,9 +68,9 @@ void chooseForm(const FacetSurface& surface, const LobeTable& table, const MipLa
                 const FilteredMapOptions& options, const FilterChecks& checks,
                 FilteredMapAnswer& answer, const Listener& listener) {
     const double bytes = options.precision == "float32" ? 4 : 2;
-    std::vector<std::size_t> levels;
+    std::vector<WorstOfForm> places;
     const MipErrors worst =
-        checks.worst(surface.reflectance(), layout, table, ordersFor(options), levels, listener);
+        checks.worst(surface.reflectance(), layout, table, ordersFor(options), places, listener);
     MipErrors possible;
     for (std::size_t k = 0; k < worst.forms.size(); ++k) {
         const MipError& form = worst.forms[k];
@@ -84,7 +84,11 @@ void chooseForm(const FacetSurface& surface, const LobeTable& table, const MipLa
                                   .numbers = form.numbers,
                                   .bytesOfTexel = bytes * static_cast<double>(stored),
                                   .error = form.relative,
-                                  .level = levels[k]});
+                                  .level = places[k].level,
+                                  .maximum = places[k].texel,
+                                  .maximumLevel = places[k].texelLevel,
+                                  .column = places[k].column,
+                                  .row = places[k].row});
         if (options.form == "filtered" || options.form == form.form) possible.forms.push_back(form);
     }
     const MipError& chosen = cheapestForm(possible, options.error);
@@ -142,7 +146,8 @@ FilteredMapAnswer filteredMap(const std::string& description, const std::string&
     if (options.harmonics > 0 && options.harmonics % 2 == 0)
         throw UsageError("the order of harmonics has to be odd: D is even");
     const MaterialDescription described = readMaterialDescription(description);
-    ParameterMaps maps(described, listener);
+    Processes alone;
+    ParameterMaps maps(described, alone, listener);
     FacetSurface surface(maps, description, listener);
     const std::vector<LevelSize> sizes = sizesOf(maps.width(), maps.height(), options.mips);
     if (options.form == "harmonics" && sizes.size() == 1)
@@ -163,6 +168,7 @@ FilteredMapAnswer filteredMap(const std::string& description, const std::string&
                         "were renormalised",
                         answer.renormalised, maps.width() * maps.height()));
     }
+    answer.nodeError = surface.nodeError();
     for (const LobeNodes& nodes : surface.lobes().nodes()) {
         answer.parameters.push_back(nodes.name);
         answer.nodes *= nodes.values.size();
@@ -185,6 +191,7 @@ FilteredMapAnswer filteredMap(const std::string& description, const std::string&
     }
 
     FileSet files(folder, options.force);
+    files.removeOthers();
     for (const char* name : {textureName, harmonicsName, sidecarName, pictureName})
         if (name != harmonicsName || answer.form == "harmonics") files.requireFree(name);
     const FilteredSidecar sidecar =

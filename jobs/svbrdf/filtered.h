@@ -50,6 +50,8 @@ struct FilteredChoice {
     double bytesOfTexel = 0;
     double error = 0;
     std::size_t level = 0;
+    double maximum = 0;  ///< of the worst texel of any level, in its own norm, and its place
+    std::size_t maximumLevel = 0, column = 0, row = 0;
 };
 
 struct FilteredMapAnswer {
@@ -58,6 +60,7 @@ struct FilteredMapAnswer {
     std::size_t renormalised = 0;              ///< normals whose length was off by more than 5 %
     std::vector<std::string> parameters = {};  ///< of the lobe
     std::size_t nodes = 1;
+    double nodeError = 0;  ///< of D between them, relative to its norm, at most
     std::string form = {};
     int order = 0;  ///< of harmonics
     std::size_t numbers = 0, weights = 0, albedos = 0;

@@ -37,12 +37,12 @@ public:
         for (std::size_t k = 0; k < channels() * picture().width(); ++k) out[k] = value(out[k]);
     }
 
-    /// Reads all rows; the range of the values that occur.
-    void check(double& low, double& high, const Listener& listener) {
+    /// Reads some rows; the range of the values that occur.
+    void check(const ItemRange& rows, double& low, double& high, const Listener& listener) {
         const auto progress = listener.part(fmt::format("checking {}", picture().path()));
         const std::size_t width = picture().width();
         std::vector<float> values(width * channels());
-        for (std::size_t y = 0; y < picture().height(); ++y) {
+        for (std::size_t y = rows.first; y < rows.last; ++y) {
             row(y, values.data());
             for (std::size_t k = 0; k < values.size(); ++k) {
                 const auto v = static_cast<double>(values[k]);
@@ -55,7 +55,7 @@ public:
                 low = std::min(low, v);
                 high = std::max(high, v);
             }
-            if (progress) progress(y + 1, picture().height());
+            if (progress) progress(y + 1 - rows.first, rows.last - rows.first);
         }
     }
 
@@ -72,7 +72,8 @@ private:
     ChannelRows rows_;
 };
 
-ParameterMaps::ParameterMaps(const MaterialDescription& description, const Listener& listener) {
+ParameterMaps::ParameterMaps(const MaterialDescription& description, Processes& processes,
+                             const Listener& listener) {
     const auto model = std::ranges::find(brdfs::models(), description.model, &brdfs::Model::name);
     common_ = description.model;
     auto state = [&, first = true](const std::string& key, const std::string& value) mutable {
@@ -120,17 +121,34 @@ ParameterMaps::ParameterMaps(const MaterialDescription& description, const Liste
                         "or project one material",
                         description.file));
     }
+    check(processes, listener);
+    turns_->check(listener);
+}
+
+/// Rows are shared out among processes.
+void ParameterMaps::check(Processes& processes, const Listener& listener) {
+    const std::size_t count = processes.count(), stride = 2 * varying_.size();
+    std::vector<double> ranges(count * stride);
+    double* own = ranges.data() + processes.number() * stride;
+    const ItemRange rows = processes.share(height_);
     for (std::size_t k = 0; k < varying_.size(); ++k) {
-        varying_[k].low = INFINITY;
-        varying_[k].high = -INFINITY;
+        double &low = own[2 * k] = INFINITY, &high = own[2 * k + 1] = -INFINITY;
         if (maps_[k]) {
-            maps_[k]->check(varying_[k].low, varying_[k].high, listener);
+            maps_[k]->check(rows, low, high, listener);
         } else {
-            varying_[k].low = *std::ranges::min_element(constants_[k]);
-            varying_[k].high = *std::ranges::max_element(constants_[k]);
+            low = *std::ranges::min_element(constants_[k]);
+            high = *std::ranges::max_element(constants_[k]);
         }
     }
-    turns_->check(listener);
+    if (stride > 0) gatherValues(processes, count, ranges);
+    for (std::size_t k = 0; k < varying_.size(); ++k) {
+        varying_[k].low = ranges[2 * k];
+        varying_[k].high = ranges[2 * k + 1];
+        for (std::size_t p = 1; p < count; ++p) {
+            varying_[k].low = std::min(varying_[k].low, ranges[p * stride + 2 * k]);
+            varying_[k].high = std::max(varying_[k].high, ranges[p * stride + 2 * k + 1]);
+        }
+    }
 }
 
 ParameterMaps::~ParameterMaps() = default;

@@ -4,6 +4,7 @@
 #include "description.h"
 #include "turn_maps.h"
 
+#include <hshfit/material_maps/processes.h>
 #include <hshfit/specification/parameters.h>
 
 #include <cstddef>
@@ -20,12 +21,13 @@ struct VaryingParameter {
     double low = 0, high = 0;  ///< that occur
 };
 
-/// The pictures of a description, opened and read once: all sizes agree, every value is finite and
-/// one that the model takes.
+/// The pictures of a description, opened and read once, by all processes together: all sizes agree,
+/// every value is finite and one that the model takes.
 class ParameterMaps {
 public:
     /// Throws InputError that names the file, the texel and the valid values.
-    ParameterMaps(const MaterialDescription& description, const Listener& listener);
+    ParameterMaps(const MaterialDescription& description, Processes& processes,
+                  const Listener& listener);
     ~ParameterMaps();
 
     std::size_t width() const { return width_; }
@@ -44,6 +46,8 @@ public:
 
 private:
     class Map;
+    void check(Processes& processes, const Listener& listener);
+
     std::size_t width_ = 0, height_ = 0, values_ = 0;
     std::vector<std::unique_ptr<Map>> maps_;  ///< of `varying_`; null where values are constant
     std::vector<VaryingParameter> varying_;

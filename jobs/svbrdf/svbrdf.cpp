@@ -1,20 +1,19 @@
 #include "svbrdf.h"
 
+#include "../quality.h"
+#include "halfway_materials.h"
 #include "level_checks.h"
-#include "measured_texels.h"
-#include "model_lobes.h"
-#include "parameter_maps.h"
+#include "map_forms.h"
+#include "map_work.h"
 
-#include <hshfit/bases/catalog.h>
 #include <hshfit/each_in_parallel.h>
-#include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/material_maps/cluster_encoder.h>
-#include <hshfit/material_maps/lobe_texels.h>
-#include <hshfit/material_maps/map_sidecar.h>
-#include <hshfit/material_maps/texel_encoder.h>
+#include <hshfit/material_maps/material_map.h>
 #include <hshfit/pictures/rgb_picture.h>
-#include <hshfit/version.h>
+#include <hshfit/representation/forms/represented_brdf.h>
+
+#include <brdfs/catalog.h>
 
 #include <fmt/format.h>
 
@@ -29,9 +28,6 @@ namespace hshfit::jobs {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr const char* textureName = "material.ktx2";
-constexpr const char* sidecarName = "material.json";
-constexpr const char* pictureName = "errors.png";
 
 Processes* sharing = nullptr;
 
@@ -44,178 +40,8 @@ double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-TexelLayout layoutFor(const SvbrdfOptions& options, const ModelLobes& lobes, const Basis& basis) {
-    const Laws& laws = lobes.laws();
-    OutgoingSet outgoing = !options.outgoing.empty() ? OutgoingSet::parse(options.outgoing)
-                           : laws.isotropic          ? OutgoingSet::elevations(8)
-                                                     : OutgoingSet::parabolic(8, 8);
-    if (outgoing.map == OutgoingSet::Map::elevations && !laws.isotropic) {
-        throw UsageError(
-            "the texels are anisotropic; their outgoing directions need a map, such as 8x8");
-    }
-    return texelLayout(basis, outgoing, lobes.channels(), laws.mirrorSymmetric);
-}
-
-/// Throws UsageError for a description whose texels turn: coefficients of a common frame do not.
-const MaterialDescription& inOneFrame(const MaterialDescription& described) {
-    if (!described.normal && !described.direction) return described;
-    throw UsageError(
-        fmt::format("{}: turns its texels by \"{}\"; the form has to be filtered, "
-                    "ellipse or harmonics",
-                    described.file, described.normal ? "normal" : "direction"));
-}
-
-Quantity quantityOf(const SvbrdfOptions& options) {
-    return options.cosine ? Quantity::brdfCosine : Quantity::brdf;
-}
-
-/// Texels of a model with parameter maps.
-struct ModelTexels {
-    ModelTexels(const MaterialDescription& described, const Basis& basis,
-                const SvbrdfOptions& options, const Listener& listener)
-        : maps(inOneFrame(described), listener),
-          lobes(maps, described.file),
-          layout(layoutFor(options, lobes, basis)),
-          table(lobes.function(layout, basis, {.quantity = quantityOf(options)}, least),
-                {.tolerance = options.tolerance, .progress = listener.part("lobes")}),
-          rows(maps, lobes),
-          texels(rows, table, layout, lobes.axesByChannel()),
-          kernel(table, layout, lobes.axesByChannel()) {}
-
-    ParameterMaps maps;
-    ModelLobes lobes;
-    TexelLayout layout;
-    LeastCaptured least = {};
-    LobeGrid table;
-    ModelRows rows;
-    LobeTexels texels;
-    TexelKernel kernel;
-};
-
-/// Everything that texels come from: a model, or measured ones.
-struct Work {
-    Work(const std::string& description, const SvbrdfOptions& options, const Listener& listener)
-        : described(readMaterialDescription(description)),
-          basis(bases::make(options.basis, options.order)),
-          model(described.texels.empty()
-                    ? std::make_unique<ModelTexels>(described, *basis, options, listener)
-                    : nullptr),
-          measured(model ? nullptr
-                         : std::make_unique<MeasuredTexels>(
-                               described.texels, *basis,
-                               MeasuredTexels::Options{.outgoing = options.outgoing,
-                                                       .quantity = quantityOf(options),
-                                                       .isotropic = described.isotropic},
-                               listener)),
-          texels(model ? static_cast<TexelSource&>(model->texels) : *measured),
-          layout(texels.layout()),
-          laws(model ? model->lobes.laws() : measured->laws()) {}
-
-    void checkIntact() const { model ? model->maps.checkIntact() : measured->checkIntact(); }
-
-    MaterialDescription described;
-    std::unique_ptr<Basis> basis;
-    std::unique_ptr<ModelTexels> model;
-    std::unique_ptr<MeasuredTexels> measured;
-    TexelSource& texels;
-    const TexelLayout& layout;
-    Laws laws;
-};
-
-gpu::Number numberOf(const SvbrdfOptions& options) {
-    const gpu::Number number = gpu::parseNumber(options.precision);
-    if (gpu::isNormalised(number))
-        throw UsageError("coefficients of maps are stored as float16 or float32");
-    return number;
-}
-
-/// Of level 0.
-TexelErrors errorsOfEncoder(const TexelEncoder& encoder, const std::vector<float>& linear) {
-    const std::size_t n = encoder.linear(), count = linear.size() / n;
-    std::vector<float> errors(count);
-    eachInParallel(count, [&](std::size_t t) {
-        std::vector<std::byte> bytes(encoder.layers() * 16);
-        encoder.encode(0, {linear.data() + t * n, n}, {bytes.data(), 16, &errors[t]});
-    });
-    return errorsOf(errors);
-}
-
-std::size_t rankFor(const std::vector<TexelErrors>& errors, double error) {
-    const auto good =
-        std::ranges::find_if(errors, [&](const auto& e) { return e.maximum <= error; });
-    return std::min<std::size_t>(static_cast<std::size_t>(good - errors.begin()) + 1,
-                                 errors.size());
-}
-
-/// The encoder of clusters; lists other numbers of them.
-std::unique_ptr<TexelEncoder> clustersFor(Work& work, const SvbrdfOptions& options,
-                                          const LowRank& lowRank, const std::vector<float>& samples,
-                                          Svbrdf& result, const Listener& listener) {
-    constexpr std::size_t blocks = 512;
-    const std::size_t floats = work.layout.floats();
-    const LevelSamples levels =
-        sampleLevels(work.texels, lowRank, samples, result.levels, blocks, processes());
-    std::vector<std::size_t> counts{16, 64, 256, 1024};
-    if (std::ranges::find(counts, options.clusters) == counts.end())
-        counts.push_back(options.clusters);
-    std::unique_ptr<TexelEncoder> chosen;
-    for (const std::size_t clusters : counts) {
-        if (clusters > std::max<std::size_t>(1024, options.clusters)) continue;
-        const bool isAsked = clusters == options.clusters;
-        const ClusterEncoder::Options asked{.clusters = clusters,
-                                            .levels = isAsked ? result.levels.size() : 1,
-                                            .progress = listener.part("clusters")};
-        auto encoder = std::make_unique<ClusterEncoder>(
-            lowRank, isAsked ? levels : LevelSamples{levels.front()}, asked, processes());
-        const std::size_t count = encoder->count(0);
-        result.choices.push_back({.form = "clusters",
-                                  .count = count,
-                                  .bytesOfTexel = 4,
-                                  .sharedBytes = count * floats * sizeof(float),
-                                  .errors = errorsOfEncoder(*encoder, levels.front())});
-        if (!isAsked) continue;
-        result.count = count;
-        chosen = std::move(encoder);
-    }
-    return chosen;
-}
-
-/// The encoder that the options ask for; forms with shared shapes list their choices.
-std::unique_ptr<TexelEncoder> encoderFor(Work& work, const SvbrdfOptions& options, Svbrdf& result,
-                                         const Listener& listener) {
-    const gpu::Number number = numberOf(options);
-    const TexelLayout& layout = work.layout;
-    const double numberBytes = static_cast<double>(gpu::numberBytes(number));
-    result.choices.push_back({.form = "outgoing",
-                              .count = layout.shape(),
-                              .bytesOfTexel = numberBytes * static_cast<double>(layout.floats())});
-    if (options.form == "outgoing") return std::make_unique<PlainEncoder>(layout, number);
-    if (options.form != "low-rank" && options.form != "clusters")
-        throw UsageError(
-            fmt::format("unknown form '{}'; known: outgoing, low-rank, clusters", options.form));
-    const std::vector<float> samples = sampleTexels(work.texels, options.samples, processes());
-    const PrincipalShapes principal(layout, samples, processes());
-    const std::vector<TexelErrors> errors = principal.errors(samples, processes());
-    for (std::size_t rank = 1; rank <= principal.most(); rank *= 2) {
-        const LowRankEncoder encoder(principal.lowRank(rank), number);
-        result.choices.push_back(
-            {.form = "low-rank",
-             .count = rank,
-             .bytesOfTexel = 4 * numberBytes * static_cast<double>(encoder.layers()),
-             .sharedBytes = rank * layout.shape() * sizeof(float),
-             .errors = errors[rank - 1]});
-    }
-    const std::size_t rank = options.rank > 0 ? std::min(options.rank, principal.most())
-                                              : rankFor(errors, options.error);
-    const LowRank lowRank = principal.lowRank(rank);
-    if (options.form == "clusters")
-        return clustersFor(work, options, lowRank, samples, result, listener);
-    result.count = rank;
-    return std::make_unique<LowRankEncoder>(lowRank, number);
-}
-
 /// Texels of a row, taken again and again.
-std::function<void(float*)> kernelOf(Work& work, std::size_t texels,
+std::function<void(float*)> kernelOf(MapWork& work, std::size_t texels,
                                      std::unique_ptr<TexelBand>& band, TexelBlock& block) {
     const std::size_t row = work.texels.height() / 2;
     if (work.measured) {
@@ -237,7 +63,7 @@ std::function<void(float*)> kernelOf(Work& work, std::size_t texels,
 }
 
 /// Texels per second of the kernel alone, on all threads, parameters in memory.
-void measureKernel(Work& work, Svbrdf& result) {
+void measureKernel(MapWork& work, Svbrdf& result) {
     constexpr std::size_t chunk = 256;
     const std::size_t texels = std::size_t{1} << (work.measured ? 12 : 16);
     std::unique_ptr<TexelBand> band;
@@ -252,26 +78,25 @@ void measureKernel(Work& work, Svbrdf& result) {
     result.kernelRate = static_cast<double>(texels) / result.kernelSeconds;
 }
 
-MapSidecar sidecarOf(const Work& work, const SvbrdfOptions& options, const TexelEncoder& encoder,
+/// The file of a shared material of the form halfway.
+std::string materialName(std::size_t k) {
+    return fmt::format("material_{:04}.json", k);
+}
+
+MapSidecar sidecarOf(const MapWork& work, const SvbrdfOptions& options, const TexelEncoder& encoder,
                      const std::vector<LevelSize>& levels) {
-    MapSidecar sidecar{.form = encoder.form(),
-                       .texture = textureName,
-                       .basis = options.basis,
-                       .order = options.order,
-                       .quantity = options.cosine ? Quantity::brdfCosine : Quantity::brdf,
-                       .channels = work.layout.channels == 1 ? Channels::grey() : Channels::rgb(),
-                       .layout = work.layout,
-                       .isotropic = work.laws.isotropic,
-                       .bilateral = work.laws.mirrorSymmetric,
-                       .number = encoder.number(),
-                       .levels = levels,
-                       .source = work.described.file,
-                       .generator = std::string("hshfit ") + version};
+    MapSidecar sidecar = work.head(options, levels);
+    sidecar.form = options.form;
+    sidecar.number = encoder.number();
     if (const auto* lowRank = dynamic_cast<const LowRankEncoder*>(&encoder))
         sidecar.shapes = lowRank->lowRank().shapes();
     if (const auto* clusters = dynamic_cast<const ClusterEncoder*>(&encoder)) {
         sidecar.shapes = clusters->lowRank().shapes();
         sidecar.centres = clusters->centres();
+    }
+    if (options.form == "halfway") {
+        for (std::size_t k = 0; k < sidecar.materials(); ++k)
+            sidecar.files.push_back(materialName(k));
     }
     return sidecar;
 }
@@ -290,26 +115,55 @@ std::string errorPicture(const MapWritten& written) {
     return rgbPng(picture, 0);
 }
 
-/// Writes the files; the first process has them under temporary names until all are complete.
-void write(Work& work, TexelEncoder& encoder, const SvbrdfOptions& options, Svbrdf& result,
-           const Listener& listener) {
-    std::optional<FileSet> files;
-    std::string texturePath;
-    if (processes().isFirst()) {
-        files.emplace(result.folder, options.force);
-        for (const char* name : {textureName, sidecarName, pictureName}) files->requireFree(name);
-        texturePath = std::filesystem::absolute(files->add(textureName).temporaryPath()).string();
+/// The files of a map: the first process has them under temporary names until all are complete.
+class MapFiles {
+public:
+    MapFiles(const std::string& folder, bool force) {
+        if (!processes().isFirst()) return;
+        files_.emplace(folder, force);
+        files_->removeOthers();
+        for (const char* name : {textureName, sidecarName, pictureName}) files_->requireFree(name);
+        texture_ = std::filesystem::absolute(files_->add(textureName).temporaryPath()).string();
     }
-    processes().broadcast(texturePath);
+
+    /// The path of the texture until it is complete, after `share`.
+    const std::string& texture() const { return texture_; }
+    void share() { processes().broadcast(texture_); }
+    void write(const std::string& name, std::string_view text) {
+        if (files_) files_->write(name, text);
+        names_.push_back(name);
+    }
+    /// One of many, which the sidecar names: it would not name them all itself.
+    void writePart(const std::string& name, std::string_view text) {
+        if (files_) files_->writePart(name, text);
+        names_.push_back(name);
+    }
+    /// Puts all in place; their names are returned.
+    std::vector<std::string> commit() {
+        if (files_) files_->commit();
+        processes().meet();
+        names_.insert(names_.begin(), textureName);
+        return names_;
+    }
+
+private:
+    std::optional<FileSet> files_;
+    std::string texture_;
+    std::vector<std::string> names_;
+};
+
+/// Writes the texture under its temporary name.
+MapWritten writeTexture(MapWork& work, TexelEncoder& encoder, const SvbrdfOptions& options,
+                        const std::string& path, Svbrdf& result, const Listener& listener) {
     LevelFile texture(
-        texturePath, encoder.number(), encoder.layers(), result.levels,
-        {.pairs = {{"hshfit:form", encoder.form()}}, .pastPageCache = options.pastPageCache});
+        path, encoder.number(), encoder.layers(), result.levels,
+        {.pairs = {{"hshfit:form", options.form}}, .pastPageCache = options.pastPageCache});
     const std::size_t texelBytes = texture.bytesOfTexel() + encoder.linear() + sizeof(float);
     const BandPlan plan = planBands(levelSizes(work.texels.width(), work.texels.height()),
                                     texelBytes, options.memory / 3);
     const auto start = Clock::now();
-    const MapWritten written = writeMap(work.texels, encoder, texture, plan, processes(),
-                                        {.progress = listener.part("texels")});
+    MapWritten written = writeMap(work.texels, encoder, texture, plan, processes(),
+                                  {.progress = listener.part("texels")});
     work.checkIntact();
     processes().meet();
     result.seconds = secondsSince(start);
@@ -318,14 +172,91 @@ void write(Work& work, TexelEncoder& encoder, const SvbrdfOptions& options, Svbr
     result.errors.resize(result.levels.size());  // the others have none
     result.bytes = texture.bytes();
     result.pastPageCache = texture.isPastPageCache();
-    if (files) {
-        files->write(sidecarName, toText(sidecarOf(work, options, encoder, result.levels)));
-        files->write(pictureName, errorPicture(written));
-        files->commit();
+    return written;
+}
+
+/// The materials of the form halfway, with their errors at texels of every level.
+void addHalfway(MapWork& work, const MapForm& form, const SvbrdfOptions& options,
+                const MaterialMap& map, MapFiles& files, MapSidecar& sidecar, Svbrdf& result,
+                const Listener& listener) {
+    const HalfwayMaterials halfway =
+        halfwayMaterials(map, work.model->maps, options.halfway, processes(), listener);
+    for (std::size_t k = 0; k < halfway.texts.size(); ++k) {
+        if (halfway.texts[k].empty())
+            sidecar.files[k].clear();
+        else
+            files.writePart(sidecar.files[k], halfway.texts[k]);
     }
-    processes().meet();
-    for (const char* name : {textureName, sidecarName, pictureName})
+    const auto opened = [&](const TexelPlace& place) -> std::unique_ptr<Brdf> {
+        return reconstruct(halfway.forms[map.material(place.level, place.column, place.row)], {});
+    };
+    result.choices.push_back({.form = "halfway",
+                              .count = result.count,
+                              .bytesOfTexel = 4,
+                              .sharedBytes = halfway.bytes(0, result.count)});
+    if (!form.checks) return;
+    result.choices.back().pairs = form.checks->of(opened);
+    result.levelPairs.push_back(*result.choices.back().pairs);
+    for (std::size_t level = 1; level < result.levels.size(); ++level) {
+        constexpr std::size_t most = 4;  // each is a mean of many
+        const PairChecks checks(work.model->maps, result.levels,
+                                spreadPlaces(result.levels, level, std::min(options.checks, most)),
+                                processes());
+        result.levelPairs.push_back(
+            checks.errorsOf([&](std::size_t k) { return opened(checks.places()[k]); }));
+    }
+}
+
+/// Measures what was written, and puts the files in place.
+void write(MapWork& work, const MapForm& form, const SvbrdfOptions& options, Svbrdf& result,
+           const Listener& listener) {
+    MapFiles files(result.folder, options.force);
+    files.share();
+    const MapWritten written =
+        writeTexture(work, *form.encoder, options, files.texture(), result, listener);
+    // Materials of the last levels are known to the first process alone.
+    std::string text;
+    if (processes().isFirst())
+        text = toText(sidecarOf(work, options, *form.encoder, result.levels));
+    processes().broadcast(text);
+    MapSidecar sidecar = parseMapSidecar(text, sidecarName);
+    sidecar.texture = files.texture();
+    const MaterialMap map(sidecar, (std::filesystem::path(result.folder) / sidecarName).string());
+    if (options.form == "halfway") {
+        addHalfway(work, form, options, map, files, sidecar, result, listener);
+        sidecar.texture = textureName;
+        text = toText(sidecar);
+    }
+    files.write(sidecarName, text);
+    files.write(pictureName, processes().isFirst() ? errorPicture(written) : "");
+    if (work.model && options.checks > 0 && result.levels.size() > 1) {
+        result.checks = checkLevels(map, work.model->maps, work.model->lobes, work.model->kernel,
+                                    {options.checks, processes()}, listener);
+    }
+    map.checkIntact();
+    for (const std::string& name : files.commit())
         result.files.push_back((std::filesystem::path(result.folder) / name).string());
+}
+
+/// The share that the basis captures, and the order or form that captures more where it is poor.
+void judgeBasis(const MapWork& work, const SvbrdfOptions& options, Svbrdf& result) {
+    const ModelTexels& model = *work.model;
+    result.captured = model.least.share;
+    result.leastCaptured = model.least.brdf;
+    if (result.captured >= leastCaptured || options.form == "halfway" || !processes().isFirst())
+        return;
+    const auto brdf = brdfs::openModel(model.least.brdf);
+    CoefficientHead head;
+    head.basis = options.basis;
+    head.order = options.order;
+    head.quantity = options.cosine ? Quantity::brdfCosine : Quantity::brdf;
+    head.outgoing = work.layout.outgoing;
+    head.isotropic = work.laws.isotropic;
+    const auto order = sufficientOrder(*brdf, head);
+    if (order && *order > options.order)
+        result.betterOrder = *order;
+    else
+        result.halfwayIsBetter = !options.cosine && isAboutTheMirror(*brdf);
 }
 
 Svbrdf made(const std::string& description, const std::string& folder, const SvbrdfOptions& options,
@@ -335,7 +266,7 @@ Svbrdf made(const std::string& description, const std::string& folder, const Svb
         FileSet files(folder, options.force);  // the folder, which goes again if it stays empty
         for (const char* name : {textureName, sidecarName, pictureName}) files.requireFree(name);
     }
-    Work work(description, options, listener);
+    MapWork work(description, options, processes(), listener);
     Svbrdf result{.description = description,
                   .model = work.described.model,
                   .folder = folder,
@@ -343,6 +274,7 @@ Svbrdf made(const std::string& description, const std::string& folder, const Svb
                   .height = work.texels.height(),
                   .isotropic = work.laws.isotropic,
                   .outgoing = work.layout.outgoing.spec(),
+                  .form = options.form,
                   .levels = levelSizes(work.texels.width(), work.texels.height(), options.mips),
                   .processes = processes().count()};
     if (work.measured) {
@@ -351,20 +283,13 @@ Svbrdf made(const std::string& description, const std::string& folder, const Svb
         result.lobes = work.model->lobes.names();
         result.tableNodes = work.model->table.nodes();
         result.tableError = work.model->table.error();
-        result.captured = work.model->least.share;
-        result.leastCaptured = work.model->least.brdf;
+        judgeBasis(work, options, result);
         for (const LobeAxis& axis : work.model->lobes.axes()) result.axes.push_back(axis.name);
     }
-    const auto encoder = encoderFor(work, options, result, listener);
+    const MapForm form = formFor(work, options, result, processes(), listener);
     result.tableSeconds = secondsSince(start);
-    result.form = encoder->form();
     measureKernel(work, result);
-    write(work, *encoder, options, result, listener);
-    if (work.model && options.checks > 0 && result.levels.size() > 1) {
-        const MaterialMap map((std::filesystem::path(folder) / sidecarName).string());
-        result.checks = checkLevels(map, work.model->maps, work.model->lobes, work.model->kernel,
-                                    {options.checks, processes()}, listener);
-    }
+    write(work, form, options, result, listener);
     return result;
 }
 

@@ -14,6 +14,8 @@
 #include <fstream>
 #include <numbers>
 
+#include <sys/resource.h>
+
 namespace {
 
 using hshfit::test::Answer;
@@ -175,6 +177,13 @@ TEST_F(FilteredMap, TheCheapestFormWithinTheErrorIsTaken) {
         ASSERT_EQ(answer.code, 0) << answer.err;
         const Json json = Json::parse(answer.out);
         ASSERT_EQ(json["choices"].size(), 4);
+        for (const Json& choice : json["choices"]) {
+            // The error of a level is a mean of its texels' by their energy.
+            const Json& worst = choice["maximum"];
+            EXPECT_GE(worst["error"].get<double>(), choice["error"].get<double>() - 1e-12);
+            EXPECT_LT(worst["column"], 16 >> worst["level"].get<int>());
+            EXPECT_LT(worst["row"], 16 >> worst["level"].get<int>());
+        }
         const Json* best = nullptr;
         for (const Json& choice : json["choices"]) {
             const bool good = choice["error"] <= error;
@@ -191,6 +200,56 @@ TEST_F(FilteredMap, TheCheapestFormWithinTheErrorIsTaken) {
         EXPECT_EQ(json["form"], (*best)["form"]);
         EXPECT_EQ(json["order"], (*best)["order"]);
     }
+}
+
+/// Nodes of the lobe end where D is interpolated within 1 %, of both parameters; the answer and a
+/// note say so where they cannot.
+TEST_F(FilteredMap, NodesOfTheLobeStateTheirError) {
+    const auto grey = [](double low, double high) {
+        return [=](int x, int y) {
+            const double value = low + (high - low) * ((x + 2 * y) % 4) / 3.0;
+            return Vector{value, value, value};
+        };
+    };
+    writeVectors("n.pfm", 4, 4, [](int, int) { return Vector{0, 0, 1}; });
+    writeVectors("ax.pfm", 4, 4, grey(0.3, 0.5));
+    writeVectors("ay.pfm", 4, 4, grey(0.2, 0.6));
+    const Json normal{{"normal", {{"map", "n.pfm"}}}};
+    describe("ward", {{"ax", {{"map", "ax.pfm"}}}, {"ay", {{"map", "ay.pfm"}}}}, normal);
+    const Answer both = made("-o " + path("a") + " --form ellipse --checks 0");
+    ASSERT_EQ(both.code, 0) << both.err;
+    const Json json = Json::parse(both.out);
+    EXPECT_TRUE(keepsSchema(both.out, "svbrdf-filtered"));
+    EXPECT_GT(json["node_error"], 0);
+    EXPECT_LE(json["node_error"], 0.01);
+    EXPECT_EQ(both.err.find("asked"), std::string::npos);
+
+    writeVectors("alpha.pfm", 4, 4, grey(0.0002, 1));
+    describe("ggx", {{"alpha", {{"map", "alpha.pfm"}}}}, normal);
+    const Answer wide = made("-o " + path("b") + " --form ellipse --checks 0");
+    ASSERT_EQ(wide.code, 0) << wide.err;
+    EXPECT_GT(Json::parse(wide.out)["node_error"], 0.01);
+    EXPECT_NE(wide.err.find("asked: 0.01"), std::string::npos) << wide.err;
+}
+
+/// Sixteen times the texels take no more memory than their rows: in memory the texels of the larger
+/// map would take 128 MiB (16 numbers each).
+TEST_F(FilteredMap, MemoryDoesNotGrowWithTheMap) {
+    long peaks[2];
+    for (const int k : {0, 1}) {
+        const int side = k == 0 ? 256 : 1024;
+        writeVectors("n.pfm", side, side, [](int x, int y) {
+            return unit({0.3 * std::sin(x * 1.7), 0.2 * std::cos(y * 1.3), 1});
+        });
+        describe("ggx", {{"alpha", 0.4}}, {{"normal", {{"map", "n.pfm"}}}});
+        const Answer answer =
+            made(fmt::format("-o {} --form ellipse --checks 0", path(std::to_string(side))));
+        ASSERT_EQ(answer.code, 0) << answer.err;
+        rusage usage{};
+        ::getrusage(RUSAGE_CHILDREN, &usage);
+        peaks[k] = usage.ru_maxrss;  // KiB, the most of any child so far
+    }
+    EXPECT_LT(peaks[1] - peaks[0], 64 << 10);
 }
 
 TEST_F(FilteredMap, YDownMirrorsAndScaleFlattens) {

@@ -8,9 +8,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 namespace {
 
@@ -219,6 +221,144 @@ TEST_F(Svbrdf, KtxParseFindsTheLevels) {
     const Answer answer =
         run("eval " + path("out/material.json:x=3,y=1,level=1") + " --wi 0,0 --wo 0,0 --json");
     EXPECT_NEAR(Json::parse(answer.out)["values"][0], f, 1e-6);
+}
+
+/// Two materials: each texel is the halfway form that `project` gives for its own, which has the
+/// narrow lobe that four bands have not, and a level's that of the mean of both.
+TEST_F(Svbrdf, HalfwayMaterialsAreThoseOfTheTexels) {
+    writeMap("alpha.pfm", 4, 2, [](int x, int) { return x % 2 == 0 ? 0.1F : 0.5F; });
+    describe("ggx", {{"alpha", {{"map", "alpha.pfm"}}}, {"kd", 0.2}, {"ks", 0.5}});
+    const Answer answer =
+        made("-o " + path("out") + " --form halfway --clusters 2 --halfway 6,3,2");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "svbrdf"));
+    const Json said = Json::parse(answer.out), choices = said["choices"];
+    const auto logOf = [](const Json& choice) -> double {
+        return choice["against_brdfs"]["log_error"]["mean"];
+    };
+    EXPECT_EQ(choices.back()["form"], "halfway");
+    EXPECT_LT(logOf(choices.back()), 0.5 * logOf(choices.front()));
+    EXPECT_LT(logOf(said["levels"][2]), 0.5 * logOf(choices.front()));
+    const std::string narrow = "ggx:kd=0.2,ks=0.5,alpha=0.1", wide = "ggx:kd=0.2,ks=0.5,alpha=0.5";
+    const std::pair<std::string, std::string> texels[] = {
+        {narrow, ":x=2,y=1"},
+        {wide, ":x=1,y=1"},
+        {fmt::format("0.5 * {} + 0.5 * {}", narrow, wide), ":x=1,y=0,level=1"}};
+    for (const auto& [spec, place] : texels) {
+        ASSERT_EQ(run(fmt::format("project '{}' -o {} --force --form halfway --halfway 6,3,2 "
+                                  "--precision half --reciprocal",
+                                  spec, path("p.json")))
+                      .code,
+                  0);
+        const auto texel = values(path("out/material.json") + place);
+        const auto exact = values(path("p.json"));
+        ASSERT_EQ(texel.size(), exact.size());
+        for (std::size_t k = 0; k < exact.size(); ++k)
+            EXPECT_NEAR(texel[k], exact[k], 1e-3 * (1 + exact[k])) << place;
+    }
+}
+
+TEST_F(Svbrdf, HalfwayMapsAreRefusedWhereTheyHaveNoForm) {
+    writeMap("alpha.pfm", 2, 2, [](int x, int) { return x == 0 ? 0.2F : 0.5F; });
+    describe("ggx", {{"alpha", {{"map", "alpha.pfm"}}}});
+    EXPECT_EQ(made("-o " + path("c") + " --form halfway --cosine").code, 2);
+    EXPECT_EQ(made("-o " + path("c") + " --form clusters --halfway 3,2,1").code, 2);
+    ASSERT_EQ(made("-o " + path("out") + " --form halfway --clusters 2 --halfway 3,2,1").code, 0);
+    const Answer refused = run("export " + path("out/material.json") + " -o " + path("e"));
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.err.find("material_0000.json"), std::string::npos) << refused.err;
+    EXPECT_FALSE(std::filesystem::exists(path("e")));
+    EXPECT_EQ(run("export " + path("out/material_0000.json") + " -o " + path("e") +
+                  " --target glsl --no-error")
+                  .code,
+              0);
+    std::filesystem::remove(path("out/material_0001.json"));
+    int gone = 0;
+    for (const int x : {0, 1})
+        gone += run("eval " + path("out/material.json") + fmt::format(":x={} --wi 0,0 --wo 0,0", x))
+                    .code == 3;
+    EXPECT_EQ(gone, 1);
+}
+
+TEST_F(Svbrdf, TheBetterCallNamesAnOrderThatCapturesEnough) {
+    writeMap("ks.pfm", 2, 2, [](int x, int) { return x == 0 ? 0.2F : 0.5F; });
+    describe("phong", {{"exponent", 12}, {"ks", {{"map", "ks.pfm"}}}});
+    const Answer poor = made("-o " + path("out") + " --order 3");
+    ASSERT_EQ(poor.code, 0) << poor.err;
+    const Json captured = Json::parse(poor.out)["captured"];
+    ASSERT_LT(captured["least"], 0.9);
+    const std::string better = captured["better"];
+    ASSERT_TRUE(better.starts_with("hshfit svbrdf ")) << better;
+    const Answer good = run(better.substr(7) + " --json");
+    ASSERT_EQ(good.code, 0) << good.err;
+    EXPECT_GE(Json::parse(good.out)["captured"]["least"], 0.9) << better;
+    EXPECT_FALSE(Json::parse(good.out)["captured"].contains("better"));
+}
+
+/// The files of a map are one set: none stays of a set that is replaced, one that was taken away is
+/// made again, and one that was changed is no longer valid.
+TEST_F(Svbrdf, FilesOfAMapAreOneSet) {
+    writeMap("kd.pfm", 2, 2, [](int x, int) { return x == 0 ? 0.2F : 0.5F; });
+    describe("lambert", {{"kd", {{"map", "kd.pfm"}}}});
+    const std::string halfway =
+        "-o " + path("out") + " --form halfway --clusters 2 --halfway 3,2,1";
+    ASSERT_EQ(made(halfway).code, 0);
+    ASSERT_TRUE(std::filesystem::exists(path("out/material_0001.json")));
+    const Answer kept = made(halfway);
+    EXPECT_EQ(kept.code, 0);
+    EXPECT_TRUE(keepsSchema(kept.out, "kept")) << kept.out;
+
+    const std::string picture = bytes("out/errors.png");
+    std::filesystem::remove(path("out/errors.png"));
+    EXPECT_EQ(made(halfway).code, 0);
+    EXPECT_EQ(bytes("out/errors.png"), picture);
+
+    for (const char* name : {"out/material.ktx2", "out/material_0000.json"}) {
+        const std::string whole = bytes(name);
+        std::ofstream(path(name), std::ios::binary) << whole.substr(0, whole.size() - 1) << '?';
+        const Answer refused = made(halfway);
+        EXPECT_EQ(refused.code, 5) << refused.out;
+        EXPECT_NE(refused.err.find("was changed after it was made"), std::string::npos);
+        EXPECT_EQ(made(halfway + " --force").code, 0);
+        EXPECT_EQ(bytes(name), whole);
+    }
+
+    EXPECT_EQ(made("-o " + path("out")).code, 5);
+    ASSERT_EQ(made("--force -o " + path("out")).code, 0);
+    std::set<std::string> names;
+    for (const auto& file : std::filesystem::directory_iterator(path("out")))
+        names.insert(file.path().filename());
+    EXPECT_EQ(names, (std::set<std::string>{"errors.png", "material.json", "material.ktx2"}));
+}
+
+/// Two diffuse texels share the material b = (1/.2 + 1/.6) / (1/.2^2 + 1/.6^2) = 0.24, the mean in
+/// relative squares. Over wi the mean of ln(1 + u cos) is ((1 + u) ln(1 + u) - u) / u, u = albedo /
+/// pi; albedos differ by 0.36 at most and f cos by that over pi.
+TEST_F(Svbrdf, ErrorsAgainstBrdfsHaveTheirClosedForm) {
+    writeMap("kd.pfm", 2, 1, [](int x, int) { return x == 0 ? 0.2F : 0.6F; });
+    describe("lambert", {{"kd", {{"map", "kd.pfm"}}}});
+    const Answer answer = made("-o " + path("out") + " --form clusters --clusters 1 --mips none");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const Json answered = Json::parse(answer.out);
+    const Json choices = answered["choices"];
+    const auto one = std::ranges::find_if(
+        choices, [](const Json& c) { return c["form"] == "clusters" && c["count"] == 1; });
+    ASSERT_NE(one, choices.end());
+    const Json found = (*one)["against_brdfs"];
+    const auto mean = [](double albedo) {
+        const double u = albedo / M_PI;
+        return ((1 + u) * std::log1p(u) - u) / u;
+    };
+    const double low = mean(0.24) - mean(0.2), high = mean(0.6) - mean(0.24);
+    EXPECT_EQ(found["texels"], 2);
+    EXPECT_NEAR(found["log_error"]["mean"], (low + high) / 2, 0.01 * high);
+    EXPECT_NEAR(found["log_error"]["maximum"], high, 0.01 * high);
+    EXPECT_EQ(found["log_error"]["column"], 1);
+    EXPECT_NEAR(found["albedo"]["error"], 0.36, 0.01);
+    EXPECT_EQ(found["albedo"]["column"], 1);
+    EXPECT_NEAR(found["largest_difference"]["value"], 0.36 / M_PI, 0.002);
+    ASSERT_EQ(choices.front()["form"], "outgoing");
+    EXPECT_LT(choices.front()["against_brdfs"]["log_error"]["maximum"], 1e-5);
 }
 
 TEST_F(Svbrdf, BrokenMapsEndBeforeAnyWork) {

@@ -177,7 +177,8 @@ void AtomicFile::finish() {
     finished_ = true;
 }
 
-void AtomicFile::state(const std::vector<std::string>& files) {
+void AtomicFile::state(const std::vector<std::string>& files,
+                       const std::vector<std::string>& sums) {
     finish();
     if (stated_ || key_.empty() || temporary_ == target_ || isStandardOutput(path_)) return;
     stated_ = true;
@@ -185,7 +186,8 @@ void AtomicFile::state(const std::vector<std::string>& files) {
         addMadeFrom(temporary_, {.command = outputRule().command,
                                  .key = key_,
                                  .exitCode = statedExitCode(),
-                                 .files = files});
+                                 .files = files,
+                                 .sums = sums});
 }
 
 void AtomicFile::requirePlace() {

@@ -55,9 +55,9 @@ public:
     void finish();
     /// The key that the file would state.
     const std::string& key() const { return key_; }
-    /// finish(), and the statement of the key with the `files` written beside this one, where there
-    /// is a key and a place for it; once.
-    void state(const std::vector<std::string>& files);
+    /// finish(), and the statement of the key with the `files` written beside this one and their
+    /// `sums`, where there is a key and a place for it; once.
+    void state(const std::vector<std::string>& files, const std::vector<std::string>& sums = {});
     /// The same without the statement.
     void leaveUnstated() { key_.clear(); }
     /// finish(), and the rule: throws for a file that stands and is not to be replaced.

@@ -1,5 +1,6 @@
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
+#include <hshfit/files/made_from.h>
 #include <hshfit/wording.h>
 
 #include <algorithm>
@@ -83,6 +84,14 @@ const AtomicFile& FileSet::write(const std::string& name,
     }
 }
 
+void FileSet::writePart(const std::string& name, std::string_view text) {
+    write(name, text);
+    const std::lock_guard lock(mutex_);
+    const auto member =
+        std::ranges::find(members_, placeOf(name), [](const auto& m) { return m->path; });
+    (*member)->part = true;
+}
+
 void FileSet::remove(const std::string& name) {
     const fs::path path = placeOf(name);
     const std::lock_guard lock(mutex_);
@@ -124,20 +133,45 @@ void FileSet::takeBack() noexcept {
 /// The JSON files of a set state its key and name the others; pictures do where there is no JSON,
 /// since JSON may hold their checksums. A file with a key of its own stands for itself.
 void FileSet::stateKeys() {
-    const auto isJson = [](const auto& member) { return member->path.extension() == ".json"; };
+    const auto isJson = [](const auto& member) {
+        return member->path.extension() == ".json" && !member->part;
+    };
     const bool anyJson = std::ranges::any_of(members_, isJson);
-    std::vector<std::string> names;
-    for (const auto& member : members_)
-        if (member->file.key() == key_)
-            names.push_back(member->path.lexically_relative(folder_).string());
+    const auto states = [&](const auto& member) {
+        return !member->part && canStateMadeFrom(member->path.string()) &&
+               (!anyJson || isJson(member));
+    };
+    std::vector<std::string> names, sums;
+    for (const auto& member : members_) {
+        if (key_.empty() || member->file.key() != key_) continue;
+        names.push_back(member->path.lexically_relative(folder_).string());
+        sums.push_back(states(member) ? std::string() : sumOfPart(member->file.temporaryPath()));
+    }
     for (const auto& member : members_) {
         if (member->file.key() != key_)
             member->file.state({});
-        else if (anyJson && !isJson(member))
+        else if (!states(member))
             member->file.leaveUnstated();
         else
-            member->file.state(names);
+            member->file.state(names, sums);
     }
+}
+
+/// Of the sets that members replace.
+std::vector<fs::path> FileSet::others() const {
+    std::vector<fs::path> result;
+    std::error_code error;
+    for (const auto& member : members_) {
+        const auto made = madeFromOf(member->file.target());
+        if (!made) continue;
+        for (const std::string& name : made->files) {
+            const fs::path path = placeOf(name);
+            if (fs::path(name).has_parent_path() || !fs::is_regular_file(path, error)) continue;
+            if (std::ranges::none_of(members_, [&](const auto& m) { return m->path == path; }))
+                result.push_back(path);
+        }
+    }
+    return result;
 }
 
 void FileSet::commit() {
@@ -145,6 +179,7 @@ void FileSet::commit() {
     for (const auto& member : members_) member->file.finish();
     stateKeys();
     for (const auto& member : members_) member->file.requirePlace();
+    const std::vector<fs::path> replaced = removesOthers_ ? others() : std::vector<fs::path>{};
     const Uninterrupted renames;
     try {
         for (const auto& member : members_) {
@@ -160,6 +195,7 @@ void FileSet::commit() {
     for (const auto& member : members_) {
         if (!member->before.empty()) fs::remove(member->before, error);
     }
+    for (const fs::path& path : replaced) fs::remove(path, error);
     members_.clear();
     made_.clear();
     madeTraces_.clear();

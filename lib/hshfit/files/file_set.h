@@ -46,6 +46,11 @@ public:
     const AtomicFile& write(const std::string& name, std::string_view text);
     /// The same with a function that writes it. Where it throws, the set is without that file.
     const AtomicFile& write(const std::string& name, const std::function<void(AtomicFile&)>& fill);
+    /// The same of one of very many, which the others name, but which states no key itself.
+    void writePart(const std::string& name, std::string_view text);
+    /// commit() then also removes what stands in the folder from the set that this one replaces:
+    /// files that the statement of a replaced file names and that this set does not have.
+    void removeOthers() { removesOthers_ = true; }
     /// Takes a file out of the set again.
     void remove(const std::string& name);
 
@@ -60,14 +65,17 @@ private:
         std::string before;  ///< a link to what stood there
         bool stood = false;  ///< something stood there
         bool placed = false;
+        bool part = false;  ///< states nothing
     };
     std::filesystem::path placeOf(const std::string& name) const;
     static void keepWhatStands(Member& member);
     void stateKeys();
+    std::vector<std::filesystem::path> others() const;
     void takeBack() noexcept;
 
     std::filesystem::path folder_;
     bool force_;
+    bool removesOthers_ = false;
     std::string key_ = OutputKey::current();
     std::vector<std::filesystem::path> made_;  ///< folders, the outermost first
     std::deque<Trace> madeTraces_;

@@ -35,6 +35,7 @@ std::string textOf(const MadeFrom& made, std::string_view content) {
         {"command", made.command}, {"key", made.key}, {"content", sha256(content)}};
     if (made.exitCode != 0) json["exit_code"] = made.exitCode;
     if (!made.files.empty()) json["files"] = made.files;
+    if (!made.sums.empty()) json["sums"] = made.sums;
     return jsonText(json);
 }
 
@@ -45,6 +46,7 @@ std::optional<MadeFrom> parsed(std::string_view text, const std::string& path) {
         made.exitCode = json.value("exit_code", 0);
         made.content = json.value("content", "");
         if (json.contains("files")) made.files = json["files"].get<std::vector<std::string>>();
+        if (json.contains("sums")) made.sums = json["sums"].get<std::vector<std::string>>();
         return made;
     } catch (const Error&) {
         return std::nullopt;
@@ -279,6 +281,19 @@ std::string extensionOf(const std::string& path) {
 }
 
 }  // namespace
+
+std::string sumOfPart(const std::string& path) {
+    constexpr std::uint64_t piece = std::uint64_t{1} << 20, pieces = 16;
+    std::error_code error;
+    const std::uint64_t size = fs::file_size(path, error);
+    std::ifstream file(path, std::ios::binary);
+    if (error || !file) return "absent";
+    if (size <= pieces * piece) return sha256(bytesAt(file, 0, size));
+    std::string bytes = fmt::format("{}\n", size);
+    for (std::uint64_t k = 0; k < pieces; ++k)
+        bytes += bytesAt(file, (size - piece) * k / (pieces - 1), piece);
+    return sha256(bytes);
+}
 
 bool canStateMadeFrom(const std::string& path) {
     constexpr std::array<std::string_view, 3> extensions{".json", ".exr", ".png"};

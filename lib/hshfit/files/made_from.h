@@ -14,11 +14,18 @@ struct MadeFrom {
     /// Of the run, where that is not 0: what it found out lies in its files all the same.
     int exitCode = 0;
     std::vector<std::string> files = {};  ///< written with it, by names in the same folder
+    /// sumOfPart of each of them; empty for one that states its own content.
+    std::vector<std::string> sums = {};
     /// SHA-256 of the bytes that the statement leaves where they are: before it, in OpenEXR the
     /// pixels. Computed when the statement is added.
     std::string content = {};
     bool changed = false;  ///< read back: `content` is no longer that of the file
 };
+
+/// SHA-256 of a file's bytes; of a file of more than 16 MiB, of its size and of 16 pieces of a MiB
+/// spread evenly from its beginning to its end, so that a map of gigabytes is not read again.
+/// "absent" where there is none.
+std::string sumOfPart(const std::string& path);
 
 /// Whether a file of this name has a place for it: .json, .exr and .png.
 bool canStateMadeFrom(const std::string& path);

@@ -125,6 +125,11 @@ void ClusterEncoder::reduce(const float* texel, float* linear) const {
     linear[lowRank_.weightsOfTexel()] = lowRank_.reduce(texel, linear);
 }
 
+const float* ClusterEncoder::centre(std::size_t level, const float* linear) const {
+    const std::size_t material = firsts_[level] + nearest_[level](linear).index;
+    return centres_.data() + material * lowRank_.weightsOfTexel();
+}
+
 EncodedRange ClusterEncoder::encode(std::size_t level, std::span<const float> linear,
                                     const EncodedTexels& to) const {
     EncodedRange result;

@@ -52,6 +52,8 @@ public:
     const LowRank& lowRank() const { return lowRank_; }
     /// [material][channel * rank + r], of all levels known so far.
     const std::vector<float>& centres() const { return centres_; }
+    /// The weights of the material of a level that is nearest to a texel of linear() numbers.
+    const float* centre(std::size_t level, const float* linear) const;
     /// Materials of a level.
     std::size_t count(std::size_t level) const { return nearest_[level].count(); }
 

@@ -50,7 +50,7 @@ std::vector<LevelSize> readLevels(const JsonFields& texture) {
 
 std::size_t MapSidecar::layers() const {
     if (form == "outgoing") return layout.layers();
-    return form == "clusters" ? 1 : (channels.count() * rank() + 3) / 4;
+    return hasMaterials() ? 1 : (channels.count() * rank() + 3) / 4;
 }
 
 std::string toText(const MapSidecar& s) {
@@ -76,13 +76,17 @@ std::string toText(const MapSidecar& s) {
         {"generator", s.generator}};
     if (!s.shapes.empty()) json["shapes"] = tableOf(s.shapes, s.layout.shape());
     if (!s.centres.empty()) json["materials"] = tableOf(s.centres, s.channels.count() * s.rank());
+    if (!s.files.empty()) json["files"] = s.files;
     return jsonText(json) + "\n";
 }
 
 MapSidecar readMapSidecar(const std::string& file) {
     const MappedFile mapped(file);
     if (mapped.size() > mostBytes) throw InputError(fmt::format("{}: is too large", file));
-    const std::string_view text(reinterpret_cast<const char*>(mapped.data()), mapped.size());
+    return parseMapSidecar({reinterpret_cast<const char*>(mapped.data()), mapped.size()}, file);
+}
+
+MapSidecar parseMapSidecar(std::string_view text, const std::string& file) {
     const nlohmann::json json = parseJson(text, file, 8);
     const JsonFields root(json, "", file);
     if (root.word("format") != format) root.fail("is not hshfit-material-map", "format");
@@ -95,8 +99,8 @@ MapSidecar readMapSidecar(const std::string& file) {
         .texture = (std::filesystem::path(file).parent_path() / texture.word("file")).string(),
         .basis = basis.word("name"),
         .order = basis.integer("order", 1, 1000)};
-    if (s.form != "outgoing" && s.form != "low-rank" && s.form != "clusters")
-        root.fail("has to be outgoing, low-rank or clusters", "form");
+    if (s.form != "outgoing" && s.form != "low-rank" && !s.hasMaterials())
+        root.fail("has to be outgoing, low-rank, clusters or halfway", "form");
     const std::string quantity = root.word("quantity");
     if (quantity != quantityName(Quantity::brdf) && quantity != quantityName(Quantity::brdfCosine))
         root.fail("has to be brdf or brdf_cosine", "quantity");
@@ -117,9 +121,16 @@ MapSidecar readMapSidecar(const std::string& file) {
     s.number = gpu::parseNumber(texture.word("number"));
     s.levels = readLevels(texture);
     if (s.form != "outgoing") s.shapes = flat(root, "shapes", s.layout.shape());
-    if (s.form == "clusters") {
+    if (s.hasMaterials()) {
         for (const double value : flat(root, "materials", s.channels.count() * s.rank()))
             s.centres.push_back(static_cast<float>(value));
+    }
+    if (s.form == "halfway") {
+        const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+        for (const std::string& name : root.words("files"))
+            s.files.push_back(name.empty() ? name : (folder / name).string());
+        if (s.files.size() != s.materials())
+            root.fail(fmt::format("has to have {} names", s.materials()), "files");
     }
     if (static_cast<std::size_t>(texture.integer("layers", 1, 1 << 24)) != s.layers())
         texture.fail(fmt::format("has to be {}", s.layers()), "layers");

@@ -6,13 +6,14 @@
 #include <hshfit/material_maps/texel_layout.h>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hshfit::inline material_maps {
 
 /// A map of materials as its JSON file states it, "hshfit-material-map" (docs/svbrdf.md).
 struct MapSidecar {
-    std::string form;  ///< "outgoing", "low-rank" or "clusters"
+    std::string form;  ///< "outgoing", "low-rank", "clusters" or "halfway"
     std::string texture = {}, basis = {};
     int order = 0;
     Quantity quantity = Quantity::brdf;
@@ -22,17 +23,26 @@ struct MapSidecar {
     gpu::Number number = gpu::Number::float16;
     std::vector<LevelSize> levels = {};
     std::vector<double> shapes = {};  ///< [rank][layout.shape()]; none of the form outgoing
-    std::vector<float> centres = {};  ///< [cluster][channel * rank + r]; of the form clusters
+    std::vector<float> centres = {};  ///< [cluster][channel * rank + r]; of clusters and halfway
+    /// Coefficient files of the materials, of the form halfway; empty where no texel has one.
+    std::vector<std::string> files = {};
     std::string source = {}, generator = {};
 
     std::size_t layers() const;
     std::size_t rank() const { return shapes.size() / layout.shape(); }
+    /// Whether texels are indices of shared materials, and how many there are.
+    bool hasMaterials() const { return form == "clusters" || form == "halfway"; }
+    std::size_t materials() const {
+        return hasMaterials() ? centres.size() / (channels.count() * rank()) : 0;
+    }
 };
 
 /// The file, on one line.
 std::string toText(const MapSidecar& sidecar);
 /// Throws InputError that starts with `file`.
 MapSidecar readMapSidecar(const std::string& file);
+/// The same of a text that is the content of `file`.
+MapSidecar parseMapSidecar(std::string_view text, const std::string& file);
 /// Whether a file starts like one.
 bool isMapSidecar(const std::string& file);
 

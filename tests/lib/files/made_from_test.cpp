@@ -13,6 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <set>
 #include <vector>
 
 using hshfit::addMadeFrom;
@@ -150,6 +151,67 @@ TEST_F(Rule, JsonOfASetNamesTheOthersAndPicturesStayAsTheyAre) {
     const auto read = madeFromOf(folder_ / "a.json");
     ASSERT_TRUE(read);
     EXPECT_EQ(read->files, (std::vector<std::string>{"a.json", "b.png"}));
+}
+
+TEST_F(Rule, ASetStatesTheSumsOfFilesThatStateNothing) {
+    state("k");
+    FileSet files(folder_.path(), true);
+    files.write("a.json", "{\"b\": 1}\n");
+    files.write("b.csv", "abc");
+    files.writePart("part.json", "{\"c\": 1}\n");
+    files.commit();
+    EXPECT_EQ(contentOf(folder_ / "part.json"), "{\"c\": 1}\n");
+    const auto read = madeFromOf(folder_ / "a.json");
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->files, (std::vector<std::string>{"a.json", "b.csv", "part.json"}));
+    ASSERT_EQ(read->sums.size(), 3u);
+    EXPECT_EQ(read->sums[0], "");
+    // FIPS 180-2, appendix B.1
+    EXPECT_EQ(read->sums[1], "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST_F(Rule, SumsOfLargeFilesSeeTheirSizeAndBothEnds) {
+    std::string bytes(std::size_t{17} << 20, 'a');
+    std::set<std::string> sums;
+    const auto sum = [&] {
+        put(folder_ / "large", bytes);
+        return hshfit::sumOfPart(folder_ / "large");
+    };
+    sums.insert(sum());
+    EXPECT_EQ(*sums.begin(), sum());
+    bytes.front() = 'b';
+    sums.insert(sum());
+    bytes.back() = 'b';
+    sums.insert(sum());
+    bytes += 'b';
+    sums.insert(sum());
+    EXPECT_EQ(sums.size(), 4u);
+    EXPECT_EQ(hshfit::sumOfPart(folder_ / "none"), "absent");
+}
+
+TEST_F(Rule, ASetRemovesWhatItReplacesButNothingElse) {
+    state("k", true);
+    {
+        FileSet files(folder_.path(), true);
+        files.write("a.json", "{\"b\": 1}\n");
+        files.write("b.csv", "1");
+        files.commit();
+    }
+    put(folder_ / "mine.csv", "2");
+    {
+        FileSet kept(folder_.path(), true);
+        kept.write("a.json", "{\"b\": 2}\n");
+        kept.write("b.csv", "1");
+        kept.removeOthers();
+        kept.commit();
+    }
+    EXPECT_EQ(contentOf(folder_ / "b.csv"), "1");
+    FileSet files(folder_.path(), true);
+    files.write("a.json", "{\"b\": 3}\n");
+    files.removeOthers();
+    files.commit();
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "b.csv"));
+    EXPECT_EQ(contentOf(folder_ / "mine.csv"), "2");
 }
 
 TEST_F(Rule, AKeyOfAThreadStandsOverThatOfTheProcess) {
