@@ -11,6 +11,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/files/json_fields.h>
+#include <hshfit/filtered_maps/filtered_sidecar.h>
 #include <hshfit/gpu/containers/targets.h>
 #include <hshfit/gpu/forms/form_files.h>
 #include <hshfit/gpu/forms/form_table.h>
@@ -307,6 +308,12 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
                             const ExportOptions& options, const Listener& listener) {
     const Targets chosen = gpu::selectTargets(options.targets);
     const std::vector<LightSpecification> lights = lightsOf(chosen, options);
+    if (isFilteredSidecar(path)) {
+        throw UsageError(
+            fmt::format("{}: maps of normals and directions have no shader; a texel of one is "
+                        "projected as {}:x=0,y=0,level=0 and its coefficients are exported",
+                        path, path));
+    }
     const Representation stored = readRepresentation(path);
     Exported exported;
     exported.name =

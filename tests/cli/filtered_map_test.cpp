@@ -127,6 +127,23 @@ TEST_F(FilteredMap, TexelsAreTheirModelInTurnedFrames) {
     }
 }
 
+/// A map has no shader; a projected texel has.
+TEST_F(FilteredMap, ExportNamesTheTexelThatCanBeExported) {
+    writeVectors("n.pfm", 2, 2, [](int x, int y) { return unit({0.1 * x, 0.1 * y, 1}); });
+    describe("ggx", {{"alpha", 0.5}}, {{"normal", {{"map", "n.pfm"}}}});
+    ASSERT_EQ(made("-o " + path("out")).code, 0);
+    const Answer refused = run("export " + path("out/material.json") + " -o " + path("shader"));
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.err.find(texel("out", 0, 0, 0)), std::string::npos) << refused.err;
+    EXPECT_FALSE(std::filesystem::exists(path("shader")));
+    ASSERT_EQ(run("project " + texel("out", 0, 0, 0) + " --order 3 --outgoing 4x4 -o " +
+                  path("texel.json"))
+                  .code,
+              0);
+    EXPECT_EQ(run("export " + path("texel.json") + " -o " + path("shader") + " --target glsl").code,
+              0);
+}
+
 /// The mean of f over four texels, each exact.
 TEST_F(FilteredMap, LevelsAreMeansOfReflectance) {
     writeVectors("n.pfm", 2, 2, [](int x, int y) { return unit({0.3 * x, 0.3 * y - 0.1, 1}); });
@@ -144,7 +161,7 @@ TEST_F(FilteredMap, LevelsAreMeansOfReflectance) {
     }
 }
 
-/// The measure, on maps that are shipped: 1,024 samples against averaged parameters.
+/// Maps that are shipped: 1,024 samples against averaged parameters.
 TEST_F(FilteredMap, FilteredLevelsHaveAQuarterOfTheErrorOfAveragedParameters) {
     for (const std::string name : {"bumpy", "brushed"}) {
         const Answer answer =

@@ -47,8 +47,8 @@ TEST_F(Installation, HasTheManualAndCompletionWhereManAndShellsLook) {
     }
     // The installed pages are those that this program writes, and that of hshfit-mpi.
     ASSERT_EQ(run("manual -o " + path("man")).code, 0);
-    const std::string differ =
-        "diff -r -x hshfit-mpi.1 " + path("man") + " " + (share / "man").string() + " >" + path("log");
+    const std::string differ = "diff -r -x hshfit-mpi.1 " + path("man") + " " +
+                               (share / "man").string() + " >" + path("log");
     EXPECT_EQ(std::system(differ.c_str()), 0) << read(path("log"));
     if (std::system("command -v man groff >/dev/null") != 0)
         GTEST_SKIP() << "man or groff is not installed";

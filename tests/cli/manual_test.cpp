@@ -33,7 +33,12 @@ TEST_F(Manual, HasAPageForTheProgramEveryCommandAndEveryTopic) {
         EXPECT_TRUE(fs::exists(path(std::string("man/man1/hshfit-") + row.name + ".1")));
     for (const cli::Topic& topic : cli::topics())
         EXPECT_TRUE(fs::exists(path(std::string("man/man7/hshfit-") + topic.name + ".7")));
-    expectError("manual -o " + path("man"), 5, "exists", 1);
+    const std::string page = path("man/man1/hshfit.1"), text = read(page);
+    EXPECT_EQ(run("manual -o " + path("man")).code, 0);
+    std::ofstream(page, std::ios::app) << "more";
+    expectError("manual -o " + path("man"), 5, page, 1);
+    EXPECT_EQ(run("manual --force -o " + path("man")).code, 0);
+    EXPECT_EQ(read(page), text);
 }
 
 TEST_F(Manual, GroffFormatsEveryPageWithoutAWarning) {

@@ -92,6 +92,14 @@ void FileSet::writePart(const std::string& name, std::string_view text) {
     (*member)->part = true;
 }
 
+void FileSet::leaveUnchecked(const std::string& name) {
+    const fs::path path = placeOf(name);
+    const std::lock_guard lock(mutex_);
+    for (const auto& member : members_) {
+        if (member->path == path) member->unchecked = true;
+    }
+}
+
 void FileSet::remove(const std::string& name) {
     const fs::path path = placeOf(name);
     const std::lock_guard lock(mutex_);
@@ -145,7 +153,9 @@ void FileSet::stateKeys() {
     for (const auto& member : members_) {
         if (key_.empty() || member->file.key() != key_) continue;
         names.push_back(member->path.lexically_relative(folder_).string());
-        sums.push_back(states(member) ? std::string() : sumOfPart(member->file.temporaryPath()));
+        sums.push_back(states(member) || member->unchecked
+                           ? std::string()
+                           : sumOfPart(member->file.temporaryPath()));
     }
     for (const auto& member : members_) {
         if (member->file.key() != key_)

@@ -48,6 +48,9 @@ public:
     const AtomicFile& write(const std::string& name, const std::function<void(AtomicFile&)>& fill);
     /// The same of one of very many, which the others name, but which states no key itself.
     void writePart(const std::string& name, std::string_view text);
+    /// The statements of the set then hold no sum of this file, if it has it: its bytes differ from
+    /// run to run, as times do, and those of the files that state it shall not.
+    void leaveUnchecked(const std::string& name);
     /// commit() then also removes what stands in the folder from the set that this one replaces:
     /// files that the statement of a replaced file names and that this set does not have.
     void removeOthers() { removesOthers_ = true; }
@@ -65,7 +68,8 @@ private:
         std::string before;  ///< a link to what stood there
         bool stood = false;  ///< something stood there
         bool placed = false;
-        bool part = false;  ///< states nothing
+        bool part = false;       ///< states nothing
+        bool unchecked = false;  ///< no file states a sum of it
     };
     std::filesystem::path placeOf(const std::string& name) const;
     static void keepWhatStands(Member& member);

@@ -132,6 +132,9 @@ void writeTradeoffs(std::span<const Tradeoff> trades, FileSet& files) {
     }
     files.write("tradeoff.html", tradeoffPage(trades, figures));
     if (timed) files.write("timing.html", timingPage(trades, timeFigures));
+    for (const char* name :
+         {"timing.csv", "timing_front.csv", "timing_gpu.csv", "timing.svg", "timing.html"})
+        files.leaveUnchecked(name);
     files.commit();
     if (undrawn) throw NoFigures(*undrawn);
 }
