@@ -22,11 +22,17 @@ Position positionOf(const Direction& d) {
     return {mu, r2 / (1 + mu)};
 }
 
+/// log |Gamma(x)|. std::lgamma writes the sign into a variable that all threads share.
+Extended logGamma(Extended x) {
+    int sign = 0;
+    return ::lgammal_r(x, &sign);
+}
+
 /// c_m, from the integral of T^2 = c^2 F^(2m) W^2 (times mu for projected solid angle) being 1.
 Extended startOf(const JacobiFamily& family, int m) {
     const Extended alpha = family.alpha.at(m), beta = family.beta.at(m);
-    Extended logarithm = -((alpha + beta + 1) * std::log(2.0L) + std::lgamma(alpha + 1) +
-                           std::lgamma(beta + 1) - std::lgamma(alpha + beta + 2));
+    Extended logarithm = -((alpha + beta + 1) * std::log(2.0L) + logGamma(alpha + 1) +
+                           logGamma(beta + 1) - logGamma(alpha + beta + 2));
     const bool shifted = family.argument != JacobiFamily::Argument::cosine;
     const Extended two = std::log(2.0L);
     if (shifted) logarithm += two;  // d mu = dt / 2
