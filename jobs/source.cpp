@@ -57,7 +57,10 @@ std::unique_ptr<Brdf> openTexel(const std::string& spec) {
     if (map.sidecar().form == "halfway") {
         const std::size_t material = map.material(index("level"), index("x"), index("y"));
         map.checkIntact();
-        return reconstruct(readRepresentation(map.sidecar().files[material]), {});
+        const std::string& file = map.sidecar().files[material];
+        if (file.empty())
+            throw InputError(fmt::format("{}: material {} has no file", path, material));
+        return reconstruct(readRepresentation(file), {});
     }
     Coefficients coefficients = map.coefficients(index("level"), index("x"), index("y"));
     map.checkIntact();

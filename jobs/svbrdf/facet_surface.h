@@ -25,9 +25,9 @@ public:
     std::size_t channels() const { return channels_; }
     int weights() const { return static_cast<int>(columnOfWeight_.size()); }
     int albedos() const { return albedos_; }
-    /// f of texels, its parts, and nothing of the map.
     /// The largest relative distance of D from its interpolation, at the middle of intervals.
     double nodeError() const { return nodeError_; }
+    /// f of texels, its parts, and nothing of the map.
     FilteredSurface reflectance() const { return lobes_->surface(terms_, channels_, albedos_); }
 
     std::vector<SurfaceTexel> row(std::size_t row);

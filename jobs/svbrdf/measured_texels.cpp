@@ -14,8 +14,8 @@
 namespace hshfit::jobs {
 namespace {
 
-constexpr std::size_t mostSamples = 4096;   // the matrix of least squares has as many columns
-constexpr std::size_t mostMeasured = 2048;  // texels of the stated error
+constexpr std::size_t mostTexelSamples = 4096;  // the matrix of least squares has as many columns
+constexpr std::size_t mostMeasured = 2048;      // texels of the stated error
 
 }  // namespace
 
@@ -53,9 +53,9 @@ MeasuredTexels::MeasuredTexels(const std::string& file, const Basis& basis, cons
     width_ = field.shape[1];
     channels_ = field.shape[4];
     samples_ = outgoing_.size() * incoming_.size();
-    if (samples_ > mostSamples)
+    if (samples_ > mostTexelSamples)
         tensor_.fail(field, fmt::format("has {} samples of a texel; at most {} are possible",
-                                        samples_, mostSamples));
+                                        samples_, mostTexelSamples));
     reflectance_ = tensor_.raw(field).data();
     laws_.nonNegative = true;
     laws_.isotropic = laws_.mirrorSymmetric = options.isotropic;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr SpreadOptions pairsOfTexel{.incoming = 64};
 /// Texels of level 0 of which a texel of another level is the mean here.
-constexpr std::size_t mostParts = 64;
+constexpr std::size_t mostPartsOfPairs = 64;
 
 Direction directionAt(const double* values) {
     return {values[0], values[1], values[2]};
@@ -24,7 +24,7 @@ PairChecks::PairChecks(ParameterMaps& maps, const std::vector<LevelSize>& levels
     : places_(std::move(places)), processes_(processes), mine_(processes.share(places_.size())) {
     const std::vector<TexelPlace> own(places_.begin() + static_cast<std::ptrdiff_t>(mine_.first),
                                       places_.begin() + static_cast<std::ptrdiff_t>(mine_.last));
-    const std::vector<SpecShares> specs = brdfsOfTexels(maps, levels, own, mostParts);
+    const std::vector<SpecShares> specs = brdfsOfTexels(maps, levels, own, mostPartsOfPairs);
     references_.resize(own.size());
     eachInParallel(own.size(), [&](std::size_t k) {
         references_[k] =

@@ -119,16 +119,18 @@ std::string errorPicture(const MapWritten& written) {
 class MapFiles {
 public:
     MapFiles(const std::string& folder, bool force) {
-        if (!processes().isFirst()) return;
-        files_.emplace(folder, force);
-        files_->removeOthers();
-        for (const char* name : {textureName, sidecarName, pictureName}) files_->requireFree(name);
-        texture_ = std::filesystem::absolute(files_->add(textureName).temporaryPath()).string();
+        if (processes().isFirst()) {
+            files_.emplace(folder, force);
+            files_->removeOthers();
+            for (const char* name : {textureName, sidecarName, pictureName})
+                files_->requireFree(name);
+            texture_ = std::filesystem::absolute(files_->add(textureName).temporaryPath()).string();
+        }
+        processes().broadcast(texture_);
     }
 
-    /// The path of the texture until it is complete, after `share`.
+    /// The path of the texture until it is complete.
     const std::string& texture() const { return texture_; }
-    void share() { processes().broadcast(texture_); }
     void write(const std::string& name, std::string_view text) {
         if (files_) files_->write(name, text);
         names_.push_back(name);
@@ -211,7 +213,6 @@ void addHalfway(MapWork& work, const MapForm& form, const SvbrdfOptions& options
 void write(MapWork& work, const MapForm& form, const SvbrdfOptions& options, Svbrdf& result,
            const Listener& listener) {
     MapFiles files(result.folder, options.force);
-    files.share();
     const MapWritten written =
         writeTexture(work, *form.encoder, options, files.texture(), result, listener);
     // Materials of the last levels are known to the first process alone.

@@ -127,8 +127,11 @@ MapSidecar parseMapSidecar(std::string_view text, const std::string& file) {
     }
     if (s.form == "halfway") {
         const std::filesystem::path folder = std::filesystem::path(file).parent_path();
-        for (const std::string& name : root.words("files"))
+        for (const std::string& name : root.words("files")) {
+            if (std::filesystem::path(name).has_parent_path())
+                root.fail("has to have names of files beside this one", "files");
             s.files.push_back(name.empty() ? name : (folder / name).string());
+        }
         if (s.files.size() != s.materials())
             root.fail(fmt::format("has to have {} names", s.materials()), "files");
     }
