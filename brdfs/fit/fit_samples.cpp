@@ -333,6 +333,22 @@ FitSamples FitSamples::channel(std::size_t c) const {
     return result;
 }
 
+FitSamples unmeasuredSamples(std::span<const DirectionPair> pairs, const Channels& channels,
+                             bool isotropic) {
+    FitSamples samples;
+    samples.channels = channels;
+    samples.isotropic = isotropic;
+    for (const DirectionPair& pair : pairs) {
+        samples.wiX.push_back(pair.wi.x);
+        samples.wiY.push_back(pair.wi.y);
+        samples.wiZ.push_back(pair.wi.z);
+        samples.wo.push_back(pair.wo);
+    }
+    samples.values.assign(pairs.size() * channels.count(), 0);
+    samples.weights.assign(pairs.size(), 1);
+    return samples;
+}
+
 bool areMeasured(const Brdf& data) {
     const Brdf* source = &data;
     while (const auto* view = dynamic_cast<const ChannelView*>(source)) source = &view->seen();

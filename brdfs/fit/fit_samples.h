@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -92,6 +93,10 @@ struct FitSamples {
     /// One channel of them.
     FitSamples channel(std::size_t c) const;
 };
+
+/// Samples without values, to evaluate a fit at: 0 at each pair in every channel, weights of 1.
+FitSamples unmeasuredSamples(std::span<const DirectionPair> pairs, const Channels& channels,
+                             bool isotropic);
 
 /// Whether a BRDF is made of scattered measurements, also where it is seen as RGB or as grey.
 bool areMeasured(const Brdf& data);

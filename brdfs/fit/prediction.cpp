@@ -20,20 +20,6 @@ namespace {
 /// Pairs are taken so many at a time, to bound the memory of derivatives and of draws.
 constexpr std::size_t atOnce = 4096;
 
-FitSamples samplesAt(std::span<const DirectionPair> pairs, bool isotropic) {
-    FitSamples samples;
-    samples.isotropic = isotropic;
-    for (const DirectionPair& pair : pairs) {
-        samples.wiX.push_back(pair.wi.x);
-        samples.wiY.push_back(pair.wi.y);
-        samples.wiZ.push_back(pair.wi.z);
-        samples.wo.push_back(pair.wo);
-    }
-    samples.values.assign(pairs.size(), 0);
-    samples.weights.assign(pairs.size(), 1);
-    return samples;
-}
-
 /// x of FitProblem::joint from values of the parameters.
 std::vector<double> pointOf(const ParametricSum& sum, const std::vector<double>& values) {
     std::vector<double> x = values;
@@ -136,8 +122,9 @@ Prediction predict(const FitResult& fit, std::span<const DirectionPair> pairs, b
         result.bootstrap = {std::vector<double>(count), std::vector<Interval>(count),
                             std::vector<Interval>(count)};
     for (std::size_t first = 0; first < pairs.size(); first += atOnce) {
-        const FitSamples samples = samplesAt(
-            pairs.subspan(first, std::min(atOnce, pairs.size() - first)), fit.point.isotropic);
+        const FitSamples samples =
+            unmeasuredSamples(pairs.subspan(first, std::min(atOnce, pairs.size() - first)),
+                              Channels(), fit.point.isotropic);
         for (std::size_t c = 0; c < result.channels; ++c) {
             const Gradients g = gradientsOf(fit.point.channels[c], samples);
             const Eigen::MatrixXd covariance = partOf(fit.point.covariance, g.coefficients);
@@ -184,8 +171,9 @@ double simultaneousFactor(const FitResult& fit, std::span<const DirectionPair> p
     Eigen::VectorXd most = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(draws));
     constexpr std::size_t few = 256;
     for (std::size_t first = 0; first < pairs.size(); first += few) {
-        const FitSamples samples = samplesAt(
-            pairs.subspan(first, std::min(few, pairs.size() - first)), fit.point.isotropic);
+        const FitSamples samples =
+            unmeasuredSamples(pairs.subspan(first, std::min(few, pairs.size() - first)), Channels(),
+                              fit.point.isotropic);
         for (const FittedChannel& channel : fit.point.channels) {
             const Gradients g = gradientsOf(channel, samples);
             const Eigen::MatrixXd own = partOf(fit.point.covariance, g.coefficients);

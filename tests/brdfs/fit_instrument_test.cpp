@@ -29,16 +29,8 @@ Aperture cone(double half) {
 
 /// Samples at pairs of directions, as if they had been measured.
 FitSamples samplesAt(const std::vector<DirectionPair>& pairs) {
-    FitSamples samples;
-    samples.isotropic = true;
+    FitSamples samples = unmeasuredSamples(pairs, Channels(), true);
     samples.origin = SampleOrigin::measured;
-    for (const DirectionPair& pair : pairs) {
-        samples.wiX.push_back(pair.wi.x);
-        samples.wiY.push_back(pair.wi.y);
-        samples.wiZ.push_back(pair.wi.z);
-        samples.wo.push_back(pair.wo);
-        samples.weights.push_back(1);
-    }
     samples.values.assign(pairs.size(), 1);
     return samples;
 }

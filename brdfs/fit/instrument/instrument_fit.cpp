@@ -271,18 +271,8 @@ std::vector<double> readingsOf(const FitResult& result, const FitSamples& sample
 
 std::vector<double> readingsAt(const FitResult& result, const Channels& channels, bool isotropic,
                                std::span<const DirectionPair> pairs) {
-    FitSamples samples;
-    samples.channels = channels;
-    samples.isotropic = isotropic;
+    FitSamples samples = unmeasuredSamples(pairs, channels, isotropic);
     samples.origin = SampleOrigin::measured;
-    for (const DirectionPair& pair : pairs) {
-        samples.wiX.push_back(pair.wi.x);
-        samples.wiY.push_back(pair.wi.y);
-        samples.wiZ.push_back(pair.wi.z);
-        samples.wo.push_back(pair.wo);
-    }
-    samples.weights.assign(pairs.size(), 1);
-    samples.values.assign(pairs.size() * channels.count(), 0);
     FitResult unscaled = result;
     unscaled.instrument->instrument.scales = false;
     return readingsOf(unscaled, samples);

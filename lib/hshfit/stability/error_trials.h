@@ -24,7 +24,7 @@ struct ErrorTrial {
     /// writes it. Empty: the name of `brdf` is its specification.
     std::string file = {}, writtenBy = {};
 
-    /// The BRDF as it is given to `hshfit project`.
+    /// The specification, or the file of a table.
     std::string spec() const { return file.empty() ? brdf->name() : file; }
 };
 
