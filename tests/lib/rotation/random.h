@@ -25,7 +25,13 @@ public:
         const double length = std::sqrt(dot(d, d));
         return {d.x / length, d.y / length, d.z / length};
     }
-    Rotation rotation() { return Rotation::fromQuaternion(normal(), normal(), normal(), normal()); }
+    /// One draw a statement: compilers differ in the order of arguments.
+    Rotation rotation() {
+        const double z = normal();
+        const double y = normal();
+        const double x = normal();
+        return Rotation::fromQuaternion(normal(), x, y, z);
+    }
 
 private:
     std::mt19937_64 engine_;
