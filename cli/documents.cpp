@@ -8,10 +8,6 @@ namespace hshfit::cli {
 
 using Json = nlohmann::ordered_json;
 
-Json directionJson(const Direction& d) {
-    return {{"theta", degrees(polarAngle(d))}, {"phi", degrees(azimuth(d))}};
-}
-
 std::string directionText(const Direction& d) {
     return fmt::format("{:.2f},{:.2f}", degrees(polarAngle(d)), degrees(azimuth(d)));
 }

@@ -4,14 +4,16 @@
 
 #include <hshfit/accuracy/metrics.h>
 
+#include <jobs/direction_json.h>
+
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 namespace hshfit::cli {
 
-/// {"theta": degrees, "phi": degrees}
-nlohmann::ordered_json directionJson(const Direction& d);
+using jobs::directionJson;
+
 /// "52.00,10.00": theta and phi in degrees.
 std::string directionText(const Direction& d);
 

@@ -1,14 +1,13 @@
 #include "command.h"
-#include "documents.h"
 #include "svbrdf_filtered.h"
+#include "within.h"
 
 #include <hshfit/error.h>
-#include <hshfit/files/json_fields.h>
 #include <hshfit/files/output_rule.h>
-#include <hshfit/material_maps/cluster_encoder.h>
 #include <hshfit/representation/forms/form.h>
 
 #include <jobs/quality.h>
+#include <jobs/svbrdf/map_answers.h>
 #include <jobs/svbrdf/svbrdf.h>
 
 #include <fmt/format.h>
@@ -21,8 +20,6 @@
 namespace hshfit::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct SvbrdfArguments {
     std::string description, output;
     std::string mips = "reflectance", writes = "direct", halfway = "8,4,3";
@@ -34,111 +31,6 @@ struct SvbrdfArguments {
 
 double megabytes(std::size_t bytes) {
     return static_cast<double>(bytes) / 1e6;
-}
-
-Json jsonOf(const jobs::TexelPairErrors& errors) {
-    return {{"texels", errors.texels},
-            {"log_error",
-             {{"mean", errors.meanLog},
-              {"uncertainty", errors.uncertainty},
-              {"mirror", errors.mirror},
-              {"maximum", errors.worstLog},
-              {"column", errors.worstAt.column},
-              {"row", errors.worstAt.row}}},
-            {"largest_difference",
-             {{"value", errors.largest},
-              {"incoming", directionJson(errors.pair.wi)},
-              {"outgoing", directionJson(errors.pair.wo)},
-              {"column", errors.largestAt.column},
-              {"row", errors.largestAt.row}}},
-            {"albedo",
-             {{"error", errors.albedo},
-              {"uncertainty", errors.albedoUncertainty},
-              {"column", errors.albedoAt.column},
-              {"row", errors.albedoAt.row}}}};
-}
-
-Json jsonOf(const jobs::MapChoice& choice) {
-    Json json = {{"form", choice.form},
-                 {"count", choice.count},
-                 {"bytes_per_texel", choice.bytesOfTexel},
-                 {"shared_bytes", choice.sharedBytes}};
-    if (choice.errors) {
-        json["error"] = {{"mean", choice.errors->mean},
-                         {"percentile_99", choice.errors->percentile99},
-                         {"maximum", choice.errors->maximum}};
-    }
-    if (choice.pairs) json["against_brdfs"] = jsonOf(*choice.pairs);
-    return json;
-}
-
-Json levelsJson(const jobs::Svbrdf& done) {
-    Json levels = Json::array();
-    for (std::size_t level = 0; level < done.levels.size(); ++level) {
-        const LevelErrors& errors = done.errors[level];
-        Json json = {{"width", done.levels[level].width},
-                     {"height", done.levels[level].height},
-                     {"error",
-                      {{"mean", errors.mean},
-                       {"maximum", errors.maximum},
-                       {"column", errors.column},
-                       {"row", errors.row}}}};
-        for (const jobs::LevelCheck& check : done.checks) {
-            if (check.level != level) continue;
-            json["against_samples"] = {
-                {"texels", check.texels},
-                {"stored", {{"mean", check.stored}, {"maximum", check.storedMaximum}}},
-                {"parameters", {{"mean", check.parameters}, {"maximum", check.parametersMaximum}}}};
-        }
-        if (!done.levelPairs.empty()) json["against_brdfs"] = jsonOf(done.levelPairs[level]);
-        levels.push_back(std::move(json));
-    }
-    return levels;
-}
-
-/// The call that captures more of the poorest lobe; empty if none is known.
-std::string betterCall(const jobs::Svbrdf& done) {
-    const std::string call =
-        fmt::format("hshfit svbrdf {} -o {} --force", done.description, done.folder);
-    if (done.betterOrder) return fmt::format("{} --order {}", call, *done.betterOrder);
-    return done.halfwayIsBetter ? call + " --form halfway" : "";
-}
-
-Json jsonOf(const jobs::Svbrdf& done) {
-    Json choices = Json::array();
-    for (const jobs::MapChoice& choice : done.choices) choices.push_back(jsonOf(choice));
-    Json json = {
-        {"format", "hshfit-svbrdf-answer"},
-        {"version", 1},
-        {"description", done.description},
-        {"model", done.model},
-        {"width", done.width},
-        {"height", done.height},
-        {"isotropic", done.isotropic},
-        {"outgoing", done.outgoing},
-        {"lobes", done.lobes},
-        {"table", {{"axes", done.axes}, {"nodes", done.tableNodes}, {"error", done.tableError}}},
-        {"captured", {{"least", done.captured}, {"brdf", done.leastCaptured}}},
-        {"form", done.form},
-        {"count", done.count},
-        {"choices", choices},
-        {"levels", levelsJson(done)},
-        {"bytes", done.bytes},
-        {"processes", done.processes},
-        {"writes", done.pastPageCache ? "direct" : "cached"},
-        {"seconds", {{"preparation", done.tableSeconds}, {"writing", done.seconds}}},
-        {"texels_per_second", {{"written", done.rate}, {"kernel", done.kernelRate}}},
-        {"files", done.files}};
-    if (const std::string better = betterCall(done); !better.empty())
-        json["captured"]["better"] = better;
-    if (done.fit.texels > 0) {
-        json["fit"] = {{"texels", done.fit.texels},
-                       {"mean", done.fit.mean},
-                       {"maximum", done.fit.maximum},
-                       {"column", done.fit.column},
-                       {"row", done.fit.row}};
-    }
-    return json;
 }
 
 std::string textOf(const jobs::MapChoice& choice) {
@@ -213,7 +105,7 @@ std::string textOf(const jobs::Svbrdf& done) {
             done.fit.column, done.fit.row);
     }
     if (!done.leastCaptured.empty()) {
-        const std::string better = betterCall(done);
+        const std::string better = jobs::betterCall(done);
         text += fmt::format(
             "the basis captures {} of the energy of {}, the least of all lobes{}{}\n",
             jobs::percent(done.captured, 2), done.leastCaptured,
@@ -303,7 +195,7 @@ void runSvbrdf(SvbrdfArguments& arguments, const CLI::App& command, const Global
         throw UsageError("--rank belongs to --form low-rank, clusters or halfway");
     const jobs::Svbrdf done =
         jobs::svbrdf(arguments.description, arguments.output, options, listenerFor(globals));
-    if (globals.json) return printJson(jsonOf(done));
+    if (globals.json) return printJson(jobs::svbrdfJson(done));
     printText(textOf(done));
 }
 
@@ -334,7 +226,7 @@ void addSvbrdf(CLI::App& command, Globals& globals) {
     command.add_option("--basis", options.basis, "Basis over incoming directions")
         ->capture_default_str();
     command.add_option("--order", options.order, "Bands of the basis")
-        ->check(CLI::Range(1, 32))
+        ->check(within(jobs::bounds::mapOrder))
         ->capture_default_str();
     command.add_option("--outgoing", options.outgoing,
                        "Outgoing directions: N elevations, or WxH (default: 8 elevations where all "
@@ -346,21 +238,21 @@ void addSvbrdf(CLI::App& command, Globals& globals) {
     command
         .add_option("--tolerance", options.tolerance,
                     "Relative error of lobes between the nodes of their table")
-        ->check(CLI::Range(1e-6, 0.1))
+        ->check(within(jobs::bounds::mapTolerance))
         ->capture_default_str();
     command.add_option("--rank", options.rank, "Shared shapes (default: by --error)")
-        ->check(CLI::Range(1, 4096));
+        ->check(within(jobs::bounds::mapRank));
     command
         .add_option("--error", arguments->error,
                     "With --form low-rank or clusters: the largest relative error that shared "
                     "shapes may leave in a sampled texel (default: 0.01); with --form filtered or "
                     "harmonics: that of a level against samples (default: 0.1)")
-        ->check(CLI::Range(1e-6, 1.0));
+        ->check(within(jobs::bounds::mapError));
     command
         .add_option("--harmonics", arguments->harmonics,
                     "Order of the harmonics of --form harmonics, odd (default: 9, 17 or 33 by "
                     "--error)")
-        ->check(CLI::Range(3, 101));
+        ->check(within(jobs::bounds::mapHarmonics));
     command
         .add_option("--halfway", arguments->halfway,
                     "Functions along each axis of the materials of --form halfway, as of hshfit "
@@ -369,7 +261,7 @@ void addSvbrdf(CLI::App& command, Globals& globals) {
     command
         .add_option("--clusters", options.clusters,
                     "Shared materials of --form clusters or halfway, of each level")
-        ->check(CLI::Range(std::size_t{1}, ClusterEncoder::most))
+        ->check(within(jobs::bounds::mapClusters))
         ->capture_default_str();
     command
         .add_option("--mips", arguments->mips,
@@ -379,12 +271,12 @@ void addSvbrdf(CLI::App& command, Globals& globals) {
     command
         .add_option("--checks", options.checks,
                     "Texels of each level that are measured against the texels that they stand for")
-        ->check(CLI::Range(0, 4096))
+        ->check(within(jobs::bounds::mapChecks))
         ->capture_default_str();
     command
         .add_option("--memory", arguments->memoryMegabytes,
                     "MiB that bands of the map may take, of each process")
-        ->check(CLI::Range(16, 1 << 20))
+        ->check(within(jobs::bounds::mapMemory))
         ->capture_default_str();
     command
         .add_option("--writes", arguments->writes,

@@ -1,8 +1,7 @@
 #include "svbrdf_filtered.h"
 
-#include "documents.h"
-
 #include <jobs/quality.h>
+#include <jobs/svbrdf/map_answers.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,72 +9,6 @@
 
 namespace hshfit::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json jsonOf(const jobs::FilteredError& error) {
-    return {{"relative", error.relative},
-            {"mean", error.mean},
-            {"maximum", error.maximum},
-            {"column", error.column},
-            {"row", error.row},
-            {"largest_difference",
-             {{"value", error.largest},
-              {"incoming", directionJson(error.wi)},
-              {"outgoing", directionJson(error.wo)}}},
-            {"albedo", error.albedo},
-            {"worst_albedo", error.worstAlbedo}};
-}
-
-Json jsonOf(const jobs::FilteredLevel& level) {
-    Json json = {{"width", level.size.width}, {"height", level.size.height}};
-    if (level.texels > 0) {
-        json["against_samples"] = {{"texels", level.texels},
-                                   {"noise", level.noise},
-                                   {"stored", jsonOf(level.stored)},
-                                   {"parameters", jsonOf(level.parameters)}};
-    }
-    return json;
-}
-
-Json jsonOf(const jobs::FilteredMapAnswer& done) {
-    Json choices = Json::array(), levels = Json::array();
-    for (const jobs::FilteredChoice& choice : done.choices) {
-        choices.push_back({{"form", choice.form},
-                           {"order", choice.order},
-                           {"numbers", choice.numbers},
-                           {"bytes_per_texel", choice.bytesOfTexel},
-                           {"error", choice.error},
-                           {"level", choice.level},
-                           {"maximum",
-                            {{"error", choice.maximum},
-                             {"level", choice.maximumLevel},
-                             {"column", choice.column},
-                             {"row", choice.row}}}});
-    }
-    for (const jobs::FilteredLevel& level : done.levels) levels.push_back(jsonOf(level));
-    return {{"format", "hshfit-filtered-map-answer"},
-            {"version", 1},
-            {"description", done.description},
-            {"model", done.model},
-            {"width", done.width},
-            {"height", done.height},
-            {"renormalised", done.renormalised},
-            {"parameters", done.parameters},
-            {"nodes", done.nodes},
-            {"node_error", done.nodeError},
-            {"form", done.form},
-            {"order", done.order},
-            {"numbers", done.numbers},
-            {"weights", done.weights},
-            {"albedos", done.albedos},
-            {"choices", choices},
-            {"levels", levels},
-            {"bytes", done.bytes},
-            {"seconds", done.seconds},
-            {"texels_per_second", done.rate},
-            {"files", done.files}};
-}
 
 std::string formText(const std::string& form, int order) {
     return order > 0 ? fmt::format("{} of order {}", form, order) : form;
@@ -133,7 +66,7 @@ void runFilteredMap(const std::string& description, const std::string& folder,
                     const jobs::FilteredMapOptions& options, const Globals& globals) {
     const jobs::FilteredMapAnswer done =
         jobs::filteredMap(description, folder, options, listenerFor(globals));
-    if (globals.json) return printJson(jsonOf(done));
+    if (globals.json) return printJson(jobs::filteredMapJson(done));
     printText(textOf(done));
 }
 

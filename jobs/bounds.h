@@ -49,5 +49,10 @@ inline constexpr Bounds<int> planOrder{1, 32};
 // Forms and their trade.
 inline constexpr Bounds<int> tradeOrders{1, 1000}, tradeRanks{0, 1000}, pairCount{256, 1 << 24};
 
+// Maps of materials; memory in MiB.
+inline constexpr Bounds<int> mapOrder{1, 32}, mapRank{1, 4096}, mapHarmonics{3, 101},
+    mapClusters{1, 65536}, mapChecks{0, 4096}, mapMemory{16, 1 << 20};
+inline constexpr Bounds<double> mapTolerance{1e-6, 0.1}, mapError{1e-6, 1};
+
 }  // namespace bounds
 }  // namespace hshfit::jobs

@@ -1,5 +1,6 @@
 #include "render.h"
 
+#include "batch.h"
 #include "source.h"
 
 #include <hshfit/bases/catalog.h>

@@ -57,6 +57,7 @@ PYBIND11_MODULE(_hshfit, module) {
     bindLight(module);
     bindPictures(module);
     bindScenes(module);
+    bindMaterialMaps(module);
     bindTrades(module);
     bindFiles(module);
     bindCatalog(module);

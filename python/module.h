@@ -22,6 +22,7 @@ void bindLight(py::module_& module);
 void bindPictures(py::module_& module);
 void bindRotation(py::module_& module);
 void bindScenes(py::module_& module);
+void bindMaterialMaps(py::module_& module);
 void bindTrades(py::module_& module);
 void bindFiles(py::module_& module);
 void bindCatalog(py::module_& module);

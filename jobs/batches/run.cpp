@@ -28,14 +28,15 @@ std::size_t processesOf(const BatchOptions& options) {
 }
 
 /// The items of a shard, the most costly first, so that no long one is left for the end.
-struct Share {
+struct ShardWork {
     std::vector<std::size_t> items;
     std::vector<double> costs;  ///< of all items of the manifest
 };
 
-Share shareOf(const Manifest& manifest, const BatchProgram& program, const BatchOptions& options) {
+ShardWork workOf(const Manifest& manifest, const BatchProgram& program,
+                 const BatchOptions& options) {
     const Costs costs = options.costs.empty() ? Costs() : Costs::fromFile(options.costs);
-    Share share;
+    ShardWork share;
     std::vector<std::string> similarity;
     for (const BatchItem& item : manifest.items) {
         share.costs.push_back(costs.of(item, program));
@@ -53,7 +54,8 @@ Share shareOf(const Manifest& manifest, const BatchProgram& program, const Batch
 class Run {
 public:
     Run(const std::string& folder, const BatchProgram& program, const BatchOptions& options,
-        const std::function<void(const BatchEvent&)>& event, BatchRun& result, const Share& share)
+        const std::function<void(const BatchEvent&)>& event, BatchRun& result,
+        const ShardWork& share)
         : program_(program),
           options_(options),
           event_(event),
@@ -162,7 +164,7 @@ private:
     const BatchOptions& options_;
     const std::function<void(const BatchEvent&)>& event_;
     BatchRun& result_;
-    const Share& share_;
+    const ShardWork& share_;
     BatchStore store_;
     StoreWriter writer_;
     FileSums sums_;
@@ -175,7 +177,7 @@ private:
 
 std::vector<std::size_t> itemsOfShard(const Manifest& manifest, const BatchProgram& program,
                                       const BatchOptions& options) {
-    return shareOf(manifest, program, options).items;
+    return workOf(manifest, program, options).items;
 }
 
 BatchRun runBatch(const std::string& manifest, const std::string& folder,
@@ -189,7 +191,7 @@ BatchRun runBatch(const std::string& manifest, const std::string& folder,
     workers.emplace(processes, options.memory / processes, work);
     if (options.memory > 0) whole.emplace(1, options.memory, work);
     BatchRun result{.manifest = readManifest(manifest, program)};
-    const Share share = shareOf(result.manifest, program, options);
+    const ShardWork share = workOf(result.manifest, program, options);
     result.items = share.items.size();
     if (!result.manifest.mistakes.empty()) return result;
     Run run(folder, program, options, event, result, share);

@@ -17,7 +17,8 @@ from ._hshfit import (
     InputError, Light, NumericError, Outgoing, OutputError, Projection, Rotation, UsageError,
     __version__, catalog, compare, convert, curves, describe, direction, export, fit, function,
     illuminate, import_coefficients, irradiance, light, matrix, open, plan, plot, project,
-    project_all, rank_models, read, render, sample, set_threads, threads, tradeoff, transfer)
+    project_all, rank_models, read, render, sample, set_threads, svbrdf, threads, tradeoff,
+    transfer)
 from . import _html
 
 _html.attach()
@@ -28,4 +29,4 @@ __all__ = [
     "Projection", "Rotation", "UsageError", "catalog", "compare", "convert", "curves", "describe",
     "direction", "export", "fit", "function", "illuminate", "import_coefficients", "irradiance",
     "light", "matrix", "open", "plan", "plot", "project", "project_all", "rank_models", "read",
-    "render", "sample", "set_threads", "threads", "tradeoff", "transfer"]
+    "render", "sample", "set_threads", "svbrdf", "threads", "tradeoff", "transfer"]

@@ -284,6 +284,30 @@ class SameNumbers(program.InFolder):
         self.assertEqual(ours["energy"], theirs["energy"])
         self.assertEqual(ours["vertices"], theirs["vertices"])
 
+    def test_maps_of_materials_are_those_of_the_program(self):
+        maps = os.path.join(os.environ["HSHFIT_SOURCE"], "examples", "maps")
+        times = {"seconds", "texels_per_second"}
+        for name, folder, options, words in [
+                ("coin.json", "low-rank",
+                 {"form": "low-rank", "order": 3, "error": 0.02, "checks": 2},
+                 ["--form", "low-rank", "--order", "3", "--error", "0.02", "--checks", "2"]),
+                ("coin.json", "halfway",
+                 {"form": "halfway", "clusters": 2, "halfway": "4,2,1", "checks": 1, "mips": False},
+                 ["--form", "halfway", "--clusters", "2", "--halfway", "4,2,1", "--checks", "1",
+                  "--mips", "none"]),
+                ("bumpy.json", "filtered", {"form": "ellipse", "checks": 1},
+                 ["--form", "ellipse", "--checks", "1"])]:
+            source = os.path.join(maps, name)
+            ours = hshfit.svbrdf(source, "ours/" + folder, force=True, **options)
+            theirs = self.json_of("svbrdf", source, "-o", "theirs/" + folder, "--force", *words)
+            for document in ours, theirs:
+                document["files"] = [os.path.basename(file) for file in document["files"]]
+                document.get("captured", {}).pop("better", None)  # names its folder
+            with self.subTest(folder=folder):
+                self.assert_same_but_times(ours, theirs, times)
+                self.assertEqual(self.bytes_of(f"ours/{folder}/material.ktx2"),
+                                 self.bytes_of(f"theirs/{folder}/material.ktx2"))
+
     def test_plans_are_those_of_the_program(self):
         ours = hshfit.plan(self.scene("car_paint.json"), "ours", bases=["hsh"], max_order=4)
         with open("ours/plan.json", encoding="utf-8") as file:
@@ -311,6 +335,10 @@ class SameNumbers(program.InFolder):
                      lambda: hshfit.transfer("s.json", "x", kind="most"),
                      lambda: hshfit.transfer("s.json", "x", order=17),
                      lambda: hshfit.plan("s.json", "x", max_order=33),
+                     lambda: hshfit.svbrdf("m.json", "x", form="outgoing", rank=2),
+                     lambda: hshfit.svbrdf("m.json", "x", form="ellipse", order=4),
+                     lambda: hshfit.svbrdf("m.json", "x", form="outgoing", precision="byte"),
+                     lambda: hshfit.svbrdf("m.json", "x", form="clusters", clusters=65537),
                      lambda: hshfit.tradeoff("lambert", orders=[0])]:
             with self.assertRaises(hshfit.UsageError):
                 work()
@@ -326,6 +354,7 @@ class SameNumbers(program.InFolder):
             hshfit.compare("lambert", "lambert", sigma="2%")
         for work in [lambda: hshfit.illuminate("absent.json", "x"),
                      lambda: hshfit.transfer("absent.json", "x"),
+                     lambda: hshfit.svbrdf("absent.json", "x"),
                      lambda: hshfit.plan("absent.json", "x")]:
             with self.assertRaises(hshfit.InputError):
                 work()
