@@ -84,6 +84,7 @@ PartSearch chooseParts(const FitSamples& all, const FitOptions& fit, const PartO
         FitOptions how = fit;
         how.progress = {};
         how.uncertainty = {};
+        how.starts = std::max(1, fit.starts / 4);
         const std::vector<std::string> specs{withParts(fit.model, parts)};
         const ModelRank rank = compareModels(samples, specs, how).front();
         if (options.progress) options.progress(++done, most);

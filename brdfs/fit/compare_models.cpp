@@ -1,6 +1,7 @@
 #include <brdfs/fit/compare_models.h>
 
 #include <brdfs/catalog.h>
+#include <brdfs/fit/dispersion.h>
 #include <brdfs/fit/distributions.h>
 #include <brdfs/fit/parametric_sum.h>
 #include <hshfit/error.h>
@@ -84,8 +85,22 @@ void addSquares(const std::vector<double>& f, const FitSamples& held, Loss::Kind
         }
 }
 
-HeldOut heldOutLoss(const FitSamples& samples, const Folds& folds, FitOptions options) {
+/// The values of the shapes of a fit in which channels share them; empty for others, and without
+/// shapes.
+std::vector<double> shapesOf(const FitResult& fit, const FitOptions& options, bool isotropic) {
+    if (options.perChannel || options.instrument.any() || fit.point.channels.empty()) return {};
+    if (!options.dispersion.empty() || namesMetals(options.model)) return {};
+    const std::vector<double>& values = fit.point.channels.front().values;
+    const auto count =
+        static_cast<std::ptrdiff_t>(ParametricSum(options.model, isotropic).shapes().size());
+    return {values.begin(), values.begin() + count};
+}
+
+/// Of fits to all samples but those of a fold, from the fit to all of them: `whole`.
+HeldOut heldOutLoss(const FitSamples& samples, const Folds& folds, const FitResult& whole,
+                    FitOptions options) {
     options.starts = std::max(1, options.starts / 4);
+    options.from = shapesOf(whole, options, samples.isotropic);
     options.progress = {};
     options.uncertainty = {};
     double squares = 0, weights = 0;
@@ -146,7 +161,7 @@ std::vector<ModelRank> compareModels(const FitSamples& samples, std::span<const 
         options.model = model;
         try {
             rank.fit = fit(samples, options);
-            heldOut.push_back(heldOutLoss(samples, folds, options));
+            heldOut.push_back(heldOutLoss(samples, folds, rank.fit, options));
             rank.heldOut = heldOut.back().loss;
         } catch (const NumericError& error) {
             rank.failure = error.what();

@@ -27,7 +27,10 @@ struct FitOptions {
     /// Laws over the wavelength, "ior=cauchy:2,kd=spline:6" (dispersion_law.h); empty: shapes are
     /// shared, linear parameters free.
     std::string dispersion = {};
-    int starts = 16;         ///< local searches
+    int starts = 16;  ///< local searches
+    /// Values of the shapes, in their order, of which the only search starts; empty: `starts` of
+    /// them. Not for shapes of each channel, laws and terms of the instrument.
+    std::vector<double> from = {};
     std::uint64_t seed = 1;  ///< of the starts
     int iterations = 200;    ///< of the last search
     std::function<void(std::size_t, std::size_t)> progress = {};

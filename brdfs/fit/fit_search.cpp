@@ -177,14 +177,25 @@ Minimum onMore(const FitProblem& fewer, const FitProblem& more, bool linear, Min
     return search.from(minimum, last);
 }
 
+/// The place of values of the shapes in a search.
+std::vector<double> placeOf(const ParametricSum& sum, const std::vector<double>& values) {
+    std::vector<double> u;
+    for (std::size_t j = 0; j < sum.shapes().size(); ++j)
+        u.push_back(sum.shapes()[j].toScale(values[j]));
+    return u;
+}
+
 /// Minima of the problem on few samples, from the best of many starts, best first.
 std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
                                   const FitOptions& options) {
     const std::size_t shapes = problem.shapeCount();
-    const std::size_t starts = shapes == 0 ? 1 : static_cast<std::size_t>(options.starts);
+    const bool one = shapes == 0 || options.from.size() == shapes;
+    const std::size_t starts = one ? 1 : static_cast<std::size_t>(options.starts);
+    std::vector<std::vector<double>> places =
+        startsOf(problem.sum(), one ? 1 : 4 * starts, options.seed);
+    if (options.from.size() == shapes) places = {placeOf(problem.sum(), options.from)};
     std::vector<Minimum> candidates;
-    for (std::vector<double>& u :
-         startsOf(problem.sum(), shapes == 0 ? 1 : 4 * starts, options.seed)) {
+    for (std::vector<double>& u : places) {
         std::vector<double> best;
         Minimum candidate;
         candidate.cost = problem.eliminated(u, false, best).cost;

@@ -101,13 +101,19 @@ constexpr double knownTolerance = 1e-10;
 /// Relative fall of the cost, and largest component of the gradient in units of the root of its
 /// curvature and of the cost, in which a search counts as settled.
 constexpr double settledTolerance = 1e-7, settledPull = 1e-3;
+/// Points after which a search makes second derivatives anew, for 2 n gradients. Of the level
+/// valleys of SGD 2 takes 0.6 of the time that 1 does; with more, OpenPBR without noise ends in a
+/// minimum at a bound.
+constexpr int renewal = 2;
 
-/// Equations whose matrix is that of the second derivatives: differences of the gradient, where
-/// these are positive definite on what no bound holds, and else Gauss-Newton's.
+/// Equations whose matrix is that of the second derivatives: differences of the gradient, with
+/// eigenvalues made positive. What they add to Gauss-Newton's matrix changes slowly along a search
+/// (Dennis, Gay & Welsch 1981, 10.1145/355958.355965): it is made anew at every `renewed`th point.
 class Newton {
 public:
-    Newton(const Function& equations, std::span<const double> lower, std::span<const double> upper)
-        : equations_(equations), lower_(lower), upper_(upper) {}
+    Newton(const Function& equations, std::span<const double> lower, std::span<const double> upper,
+           int renewed)
+        : equations_(equations), lower_(lower), upper_(upper), renewed_(renewed) {}
 
     Equations at(std::span<const double> x, bool derivatives) const {
         Equations result = equations_(x, derivatives);
@@ -115,6 +121,10 @@ public:
         if (!derivatives || !std::isfinite(result.cost)) return result;
         const auto n = static_cast<Eigen::Index>(x.size());
         Eigen::Map<RowMatrix> given(result.hessian.data(), n, n);
+        if (age_++ % renewed_ != 0 && added_.rows() == n) {
+            given = positive(given + added_, given);
+            return result;
+        }
         RowMatrix hessian = given;
         for (std::size_t i = 0; i < x.size(); ++i) {
             const auto row = static_cast<Eigen::Index>(i);
@@ -143,6 +153,7 @@ public:
             if (!(given(i, i) > 0)) hessian.col(i).setZero();
         hessian = (0.5 * (hessian + hessian.transpose())).eval();
         if (!hessian.allFinite()) return result;
+        added_ = hessian - given;
         given = positive(hessian, given);
         return result;
     }
@@ -168,7 +179,9 @@ private:
 
     const Function& equations_;
     std::span<const double> lower_, upper_;
-    mutable int evaluations_ = 0;
+    int renewed_;
+    mutable int evaluations_ = 0, age_ = 0;
+    mutable RowMatrix added_;
 };
 
 /// Ends a search whose cost has fallen by less than `settledTolerance` of itself in `window`
@@ -257,7 +270,7 @@ Minimum minimise(const Function& equations, std::vector<double> start,
     left -= first;
     if (result.converged || left == 0) return result;
     // Large residuals: what Gauss-Newton leaves out of the matrix rules its (linear) convergence.
-    const Newton newton(equations, lower, upper);
+    const Newton newton(equations, lower, upper, renewal);
     const Function withCurvature = [&](std::span<const double> x, bool derivatives) {
         return newton.at(x, derivatives);
     };
@@ -269,7 +282,7 @@ Minimum minimise(const Function& equations, std::vector<double> start,
 std::vector<double> secondDerivatives(const Function& equations, std::span<const double> x,
                                       std::span<const double> lower,
                                       std::span<const double> upper) {
-    return Newton(equations, lower, upper).at(x, true).hessian;
+    return Newton(equations, lower, upper, 1).at(x, true).hessian;
 }
 
 }  // namespace hshfit::brdfs
