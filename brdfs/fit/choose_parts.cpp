@@ -85,6 +85,8 @@ PartSearch chooseParts(const FitSamples& all, const FitOptions& fit, const PartO
         how.progress = {};
         how.uncertainty = {};
         how.starts = std::max(1, fit.starts / 4);
+        // Along a level valley a search goes on for long after the held-out error has settled.
+        how.iterations = std::min(fit.iterations, 30);
         const std::vector<std::string> specs{withParts(fit.model, parts)};
         const ModelRank rank = compareModels(samples, specs, how).front();
         if (options.progress) options.progress(++done, most);

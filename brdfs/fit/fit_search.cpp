@@ -279,7 +279,7 @@ Fitted searchMinimum(FitProblem& problem, const FitOptions& options) {
     const std::vector<Minimum> minima = coarseMinima(few ? problem : small, linear, options);
     const Search search(problem, linear);
     const MinimiseOptions last{.iterations = options.iterations},
-        part{.costTolerance = 1e-9, .stepTolerance = 1e-8};
+        part{.iterations = options.iterations, .costTolerance = 1e-9, .stepTolerance = 1e-8};
     Fitted best;
     int iterations = 0, evaluations = 0;
     const bool many = samples.size() > manySamples;
