@@ -33,6 +33,14 @@ double megabytes(std::size_t bytes) {
     return static_cast<double>(bytes) / 1e6;
 }
 
+/// The call that captures more of the poorest lobe; empty if none is known.
+std::string betterCall(const jobs::Svbrdf& done) {
+    const std::string call =
+        fmt::format("hshfit svbrdf {} -o {} --force", done.description, done.folder);
+    if (done.betterOrder) return fmt::format("{} --order {}", call, *done.betterOrder);
+    return done.halfwayIsBetter ? call + " --form halfway" : "";
+}
+
 std::string textOf(const jobs::MapChoice& choice) {
     std::string text = fmt::format(
         "  {:<10} {:>6}  {:>8.4g} bytes a texel{}", choice.form, choice.count, choice.bytesOfTexel,
@@ -105,7 +113,7 @@ std::string textOf(const jobs::Svbrdf& done) {
             done.fit.column, done.fit.row);
     }
     if (!done.leastCaptured.empty()) {
-        const std::string better = jobs::betterCall(done);
+        const std::string better = betterCall(done);
         text += fmt::format(
             "the basis captures {} of the energy of {}, the least of all lobes{}{}\n",
             jobs::percent(done.captured, 2), done.leastCaptured,
@@ -195,7 +203,12 @@ void runSvbrdf(SvbrdfArguments& arguments, const CLI::App& command, const Global
         throw UsageError("--rank belongs to --form low-rank, clusters or halfway");
     const jobs::Svbrdf done =
         jobs::svbrdf(arguments.description, arguments.output, options, listenerFor(globals));
-    if (globals.json) return printJson(jobs::svbrdfJson(done));
+    if (globals.json) {
+        nlohmann::ordered_json json = jobs::svbrdfJson(done);
+        if (const std::string better = betterCall(done); !better.empty())
+            json["captured"]["better"] = better;
+        return printJson(json);
+    }
     printText(textOf(done));
 }
 

@@ -107,8 +107,9 @@ constexpr double settledTolerance = 1e-7, settledPull = 1e-3;
 constexpr int renewal = 2;
 
 /// Equations whose matrix is that of the second derivatives: differences of the gradient, with
-/// eigenvalues made positive. What they add to Gauss-Newton's matrix changes slowly along a search
-/// (Dennis, Gay & Welsch 1981, 10.1145/355958.355965): it is made anew at every `renewed`th point.
+/// eigenvalues made positive. The part of it that Gauss-Newton's matrix lacks changes slowly along
+/// a search (Dennis, Gay & Welsch 1981, 10.1145/355958.355965): it is made anew at every
+/// `renewed`th point.
 class Newton {
 public:
     Newton(const Function& equations, std::span<const double> lower, std::span<const double> upper,

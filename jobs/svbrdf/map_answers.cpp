@@ -2,7 +2,6 @@
 
 #include "../direction_json.h"
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace hshfit::jobs {
@@ -97,13 +96,6 @@ Json jsonOf(const FilteredLevel& level) {
 
 }  // namespace
 
-std::string betterCall(const Svbrdf& done) {
-    const std::string call =
-        fmt::format("hshfit svbrdf {} -o {} --force", done.description, done.folder);
-    if (done.betterOrder) return fmt::format("{} --order {}", call, *done.betterOrder);
-    return done.halfwayIsBetter ? call + " --form halfway" : "";
-}
-
 nlohmann::ordered_json svbrdfJson(const Svbrdf& done) {
     Json choices = Json::array();
     for (const MapChoice& choice : done.choices) choices.push_back(jsonOf(choice));
@@ -129,8 +121,6 @@ nlohmann::ordered_json svbrdfJson(const Svbrdf& done) {
         {"seconds", {{"preparation", done.tableSeconds}, {"writing", done.seconds}}},
         {"texels_per_second", {{"written", done.rate}, {"kernel", done.kernelRate}}},
         {"files", done.files}};
-    if (const std::string better = betterCall(done); !better.empty())
-        json["captured"]["better"] = better;
     if (done.fit.texels > 0) {
         json["fit"] = {{"texels", done.fit.texels},
                        {"mean", done.fit.mean},
