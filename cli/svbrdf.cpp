@@ -53,8 +53,9 @@ std::string textOf(const jobs::MapChoice& choice) {
     }
     if (choice.pairs) {
         const jobs::TexelPairErrors& pairs = *choice.pairs;
-        text += fmt::format("; log error {:.2g}, {:.2g} at most, albedo off by {:.2g} at most",
-                            pairs.meanLog, pairs.worstLog, pairs.albedo);
+        text += fmt::format(
+            "; log error {:.2g}, {:.2g} at most, albedo off by {:.2g} +- {:.1g} at most",
+            pairs.meanLog, pairs.worstLog, pairs.albedo, pairs.albedoUncertainty);
     }
     return text + "\n";
 }
