@@ -203,7 +203,7 @@ def main():
                 make_merl(shared, pathlib.Path(spec))
             pairs = folder / "pairs.csv"
             sets = [] if more[:1] == ["--orders"] else ISOTROPIC
-            trade, beside = measure(program, spec, paper, *sets, *more, "--write-pairs", str(pairs))
+            trade, beside = measure(program, spec, paper, *sets, *more, "--force", "--write-pairs", str(pairs))
             error = network_error(Network(shared, *network), pairs) if network else None
             line, note = row(name, trade, beside, error)
             print(line, flush=True)
