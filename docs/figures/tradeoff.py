@@ -25,7 +25,7 @@ ANISOTROPIC = "--orders 3,5,7 --outgoing 8x8 --outgoing 16x16 --ranks 0".split()
 # The size of Gautron et al. (2004): 32 x 32 directions, order 10; 1.2 MB in RGB.
 PAPER = ("--forms outgoing --bases hsh --orders 10 --outgoing 32x32 --ranks 0 --split none "
          "--precisions float32 --tolerance 1e-2 --no-timing").split()
-BUDGETS = (2700, 3200, 4096, 49152)
+BUDGETS = (2700, 4096)
 # From glossy to matte.
 MERL = ("chrome-steel", "brass", "black-obsidian", "specular-maroon-phenolic", "red-plastic",
         "blue-metallic-paint", "gold-paint", "delrin", "pink-jasper", "white-diffuse-bball",
@@ -37,7 +37,9 @@ MODELS = ("lambert:kd=.5", "oren-nayar:sigma=30", "eon:roughness=.5", "openpbr-d
           "sg:sharpness=30", "ward:ax=.15,ay=.15,kd=.3,ks=.3", "ward:ax=.2,ay=.5",
           "ashikhmin-shirley:nu=30,nv=30", "cook-torrance:m=.3,ior=1.5",
           "he:sigma=.15,tau=3", "abc:B=100,C=1", "sgd:alpha=.1,kd=.3", "beckmann:alpha=.3",
-          "ggx:alpha=.3", "ggx:alpha=.1", "ggx:alpha=.02", "gtr:gamma=1.5,alpha=.2")
+          "ggx:alpha=.3", "ggx:alpha=.1", "ggx:alpha=.02", "gtr:gamma=1.5,alpha=.2",
+          "gltf-pbr:baseColorFactor=.8/.5/.2,metallicFactor=.5,roughnessFactor=.5",
+          "openpbr:base_color=.5,specular_roughness=.4,coat_weight=.5,coat_roughness=.3")
 
 
 def run(program, *arguments):
@@ -82,21 +84,31 @@ def half_and_difference(wi, wo):
     return [sine, 0, h[2], h[2] * x - sine * wi[2], y, sine * x + h[2] * wi[2]]
 
 
-def network_error(network, pairs):
-    """Mean |ln(1 + f c) - ln(1 + g c)| on the pairs that the program wrote."""
-    total = weights = 0
-    with open(pairs, encoding="utf-8", newline="") as file:
-        rows = csv.reader(file)
-        next(rows)
-        for row in rows:
-            v = list(map(float, row))
-            f, cosine = v[7:], v[2]
-            g = network(v[0:3], v[3:6])
-            difference = sum(abs(math.log1p(a * cosine) - math.log1p(b * cosine))
-                             for a, b in zip(f, g))
-            total += v[6] * difference / len(f)
-            weights += v[6]
-    return total / weights
+class Errors:
+    """Means of |ln(1 + f c) - ln(1 + g c)| and the largest |f - g| c of a network on the pairs that
+    the program wrote: over all, within 10 degrees of the horizon, and with the half vector within 5
+    degrees of the normal, as `hshfit tradeoff` divides them."""
+
+    def __init__(self, network, pairs):
+        totals, weights, self.maximum = [0.0] * 3, [0.0] * 3, 0.0
+        with open(pairs, encoding="utf-8", newline="") as file:
+            rows = csv.reader(file)
+            next(rows)
+            for row in rows:
+                v = list(map(float, row))
+                f, cosine, weight = v[7:], v[2], v[6]
+                g = network(v[0:3], v[3:6])
+                error = sum(abs(math.log1p(a * cosine) - math.log1p(b * cosine))
+                            for a, b in zip(f, g)) / len(f)
+                self.maximum = max(self.maximum, *(abs(a - b) * cosine for a, b in zip(f, g)))
+                h = [v[i] + v[i + 3] for i in range(3)]
+                zones = (True, min(v[2], v[5]) < math.sin(math.radians(10)),
+                         h[2] > math.cos(math.radians(5)) * math.hypot(*h))
+                for zone in range(3):
+                    totals[zone] += weight * error * zones[zone]
+                    weights[zone] += weight * zones[zone]
+        self.mean, self.horizon, self.mirror = (
+            total / weight if weight > 0 else math.nan for total, weight in zip(totals, weights))
 
 
 def best(forms, budget):
@@ -122,10 +134,36 @@ def row(name, trade, paper, network):
     forms = trade["forms"]
     knee = forms[trade["knee"]]
     small = best(forms, 4096)
-    beside = [f"{error:.4f}" for error in (paper, network) if error is not None]
+    beside = [f"{error:.4f}" for error in (paper, network and network.mean) if error is not None]
     cells = [cell(best(forms, budget)) for budget in BUDGETS]
     return ["| " + " | ".join([name, *beside, cell(knee), *cells]) + " |",
             f"{name}: knee `{knee['options']}`; within 4 KiB `{small['options']}`"]
+
+
+def number(value):
+    return "" if value is None or math.isnan(value) else f"{value:.2g}"
+
+
+def zones(name, trade, network):
+    """The best form within 2700 bytes beside the network, where means hide most."""
+    form = best(trade["forms"], 2700)
+    pairs = form["pairs"]
+    ours = [pairs[zone]["value"] for zone in ("horizon", "mirror", "maximum")]
+    theirs = [network.horizon, network.mirror, network.maximum]
+    cells = [f"{number(b)}, {number(a)}" for a, b in zip(ours, theirs)]
+    mean = f"{form['error']:.4f} ± {pairs['mean_log']['error']:.1g}"
+    # Of pairs in a plane there is none.
+    of = pairs["albedo"]["of"]
+    albedo = f"{number(pairs['albedo']['value'])} of {number(of)}" if of else ""
+    return "| " + " | ".join([name, mean, *cells, albedo]) + " |"
+
+
+ZONES = """
+Within 2700 bytes: error of our form; network, ours near the horizon, near the mirror, largest
+|f - g| c; our largest error of albedo
+
+| material | mean | horizon | mirror | maximum | albedo |
+|---|---|---|---|---|---|"""
 
 
 def heading(paper, network):
@@ -193,7 +231,7 @@ def main():
     paper = "--paper" in sys.argv
     chosen = [word for word in sys.argv[4:] if word != "--paper"]
     print(heading(paper, table != "models"), flush=True)
-    notes = []
+    notes, beyond = [], []
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         for name, spec, more, network in TABLES[table](program, shared, folder):
@@ -203,13 +241,18 @@ def main():
                 make_merl(shared, pathlib.Path(spec))
             pairs = folder / "pairs.csv"
             sets = [] if more[:1] == ["--orders"] else ISOTROPIC
-            trade, beside = measure(program, spec, paper, *sets, *more, "--force", "--write-pairs", str(pairs))
-            error = network_error(Network(shared, *network), pairs) if network else None
+            trade, beside = measure(program, spec, paper, *sets, *more, "--force",
+                                    "--write-pairs", str(pairs))
+            error = Errors(Network(shared, *network), pairs) if network else None
             line, note = row(name, trade, beside, error)
             print(line, flush=True)
             notes.append(note)
+            if error and "pairs" in trade["forms"][0]:
+                beyond.append(zones(name, trade, error))
             if table == "merl":
                 pathlib.Path(spec).unlink()
+    if beyond:
+        print(ZONES + "\n" + "\n".join(beyond))
     print("\n" + "\n".join(notes))
 
 

@@ -1,5 +1,6 @@
 #include <hshfit/files/printable.h>
 #include <hshfit/pages/page_figures.h>
+#include <hshfit/pages/report_files.h>
 #include <hshfit/plan/plan_files.h>
 #include <hshfit/version.h>
 
@@ -90,7 +91,7 @@ data bandRows(const std::vector<double>& power) {
 data materialData(const MaterialPlan& plan) {
     const Material& material = plan.material;
     data entry("name", material.name);
-    entry.set("brdf", material.brdf);
+    entry.set("brdf", withoutFolders(material.brdf));
     entry.set("budget",
               fmt::format("{:g}, {}", material.budget.error,
                           material.budget.metric == Budget::Metric::log ? "mean of the logarithm’s"

@@ -1,5 +1,6 @@
 #include <hshfit/files/printable.h>
 #include <hshfit/pages/page_figures.h>
+#include <hshfit/pages/report_files.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
 #include <hshfit/version.h>
 
@@ -231,7 +232,7 @@ std::string page(std::span<const Tradeoff> trades, const std::vector<std::string
     for (std::size_t t = 0; t < trades.size(); ++t) {
         data entry = entryOf(trades[t]);
         entry.set("index", std::to_string(t + 1));
-        entry.set("brdf", trades[t].brdf);
+        entry.set("brdf", withoutFolders(trades[t].brdf));
         if (t < figures.size()) {
             plotter = plotterOf(figures[t]);
             entry.set("figure", inlinedFigure(figures[t], t + 1));

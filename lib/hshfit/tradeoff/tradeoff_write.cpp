@@ -88,7 +88,7 @@ std::string tradeoffScript(std::span<const Tradeoff> trades) {
     for (std::size_t t = 0; t < trades.size(); ++t) {
         data entry;
         entry.set("index", std::to_string(t + 1));
-        entry.set("title", gnuplotString(shortName(trades[t].brdf, 110)));
+        entry.set("title", gnuplotString(shortName(withoutFolders(trades[t].brdf), 110)));
         const std::size_t channels = trades[t].channels.count();
         const auto [smallest, largest] = std::ranges::minmax(trades[t].forms, {}, &Measured::bytes);
         entry.set("channels", std::to_string(channels));
