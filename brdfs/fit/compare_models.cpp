@@ -96,7 +96,7 @@ std::vector<double> shapesOf(const FitResult& fit, const FitOptions& options, bo
     return {values.begin(), values.begin() + count};
 }
 
-/// Of fits to all samples but those of a fold, from the fit to all of them: `whole`.
+/// The loss at each fold of a fit to the others. These fits start at `whole`, that to all samples.
 HeldOut heldOutLoss(const FitSamples& samples, const Folds& folds, const FitResult& whole,
                     FitOptions options) {
     options.starts = std::max(1, options.starts / 4);

@@ -268,9 +268,16 @@ FitResult fit(const FitSamples& samples, const FitOptions& options) {
     if (dispersed && options.instrument.any())
         throw UsageError(
             "terms of the instrument are for fits without laws over the wavelength and metals");
+    if (!options.from.empty() && (dispersed || options.instrument.any()))
+        throw UsageError(
+            "values to start from are for fits without laws over the wavelength, metals and terms "
+            "of the instrument");
     if (options.instrument.any()) return fitWithInstrument(samples, options);
     if (dispersed) return fitDispersed(samples, options);
     const ParametricSum sum(options.model, samples.isotropic);
+    if (!options.from.empty() && options.from.size() != sum.shapes().size())
+        throw UsageError(fmt::format("'{}' has {} shapes, and {} values to start from were given",
+                                     sum.spec(), sum.shapes().size(), options.from.size()));
     const std::size_t channels = samples.channels.count();
     const bool apart = options.perChannel && channels > 1;
     std::vector<Part> parts;

@@ -28,8 +28,9 @@ struct FitOptions {
     /// shared, linear parameters free.
     std::string dispersion = {};
     int starts = 16;  ///< local searches
-    /// Values of the shapes, in their order, of which the only search starts; empty: `starts` of
-    /// them. Not for shapes of each channel, laws and terms of the instrument.
+    /// Values of the shapes, in the order of the result, from which the only search starts; empty:
+    /// `starts` searches. `fit` throws UsageError for another number of values, and for values with
+    /// laws over the wavelength or terms of the instrument.
     std::vector<double> from = {};
     std::uint64_t seed = 1;  ///< of the starts
     int iterations = 200;    ///< of the last search

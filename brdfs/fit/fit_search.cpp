@@ -189,11 +189,13 @@ std::vector<double> placeOf(const ParametricSum& sum, const std::vector<double>&
 std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
                                   const FitOptions& options) {
     const std::size_t shapes = problem.shapeCount();
-    const bool one = shapes == 0 || options.from.size() == shapes;
+    const bool one = shapes == 0 || !options.from.empty();
     const std::size_t starts = one ? 1 : static_cast<std::size_t>(options.starts);
-    std::vector<std::vector<double>> places =
-        startsOf(problem.sum(), one ? 1 : 4 * starts, options.seed);
-    if (options.from.size() == shapes) places = {placeOf(problem.sum(), options.from)};
+    std::vector<std::vector<double>> places;
+    if (options.from.empty())
+        places = startsOf(problem.sum(), one ? 1 : 4 * starts, options.seed);
+    else
+        places.push_back(placeOf(problem.sum(), options.from));
     std::vector<Minimum> candidates;
     for (std::vector<double>& u : places) {
         std::vector<double> best;

@@ -223,7 +223,7 @@ void solve(const Function& equations, std::span<const double> lower, std::span<c
     ceresOptions.parameter_tolerance = options.stepTolerance;
     ceresOptions.gradient_tolerance = 1e-14;
     ceresOptions.num_threads = 1;
-    // Steps that end at bounds: each trial of a length costs as much as the step.
+    // Where a step meets a bound, Ceres tries shorter ones, each for the price of a whole step.
     ceresOptions.max_num_line_search_step_size_iterations = 3;
     ceresOptions.logging_type = ceres::SILENT;
     ceresOptions.callbacks.push_back(&settled);

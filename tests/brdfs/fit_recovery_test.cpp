@@ -285,5 +285,26 @@ TEST(Losses, EachFitIsBestByItsOwn) {
         }
 }
 
+TEST(GivenStart, IsTheOnlyOneAndLeadsToTheSameMinimum) {
+    const FitSamples samples =
+        gatherSamples(*open("lambert:kd=.1/.2/.3 + ggx:alpha=.2,F0=.05"), {}).drawn(1500, 2);
+    const FitResult searched = fit(samples, {.model = "lambert+ward"});
+    std::size_t searches = 0;
+    const FitResult given =
+        fit(samples, {.model = "lambert+ward",
+                      .from = {0.3},
+                      .progress = [&](std::size_t, std::size_t total) { searches = total - 1; }});
+    EXPECT_EQ(searches, 1u);
+    EXPECT_TRUE(given.converged);
+    EXPECT_NEAR(given.loss, searched.loss, 1e-9 * searched.loss);
+}
+
+TEST(GivenStart, OfAnotherKindIsRefused) {
+    const FitSamples samples = gatherSamples(*open("ggx:alpha=.2"), {}).drawn(300, 2);
+    EXPECT_THROW(fit(samples, {.model = "lambert+ward", .from = {0.2, 0.3}}), UsageError);
+    EXPECT_THROW(fit(samples, {.model = "ggx", .dispersion = "alpha=cauchy:2", .from = {0.2}}),
+                 UsageError);
+}
+
 }  // namespace
 }  // namespace hshfit::brdfs
