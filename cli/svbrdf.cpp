@@ -152,10 +152,6 @@ void refuseLaunchers() {
     }
 }
 
-bool isFilteredForm(const std::string& form) {
-    return form == "ellipse" || form == "harmonics" || form == "filtered";
-}
-
 /// Options that were given, but belong to other forms.
 void refuseOptions(const CLI::App& command, const std::string& form,
                    std::initializer_list<const char*> options) {
@@ -196,7 +192,7 @@ void runSvbrdf(SvbrdfArguments& arguments, const CLI::App& command, const Global
     options.force = outputRule().replace;
     refuseLaunchers();
     if (options.precision == "half") options.precision = "float16";
-    if (isFilteredForm(options.form)) return runFiltered(arguments, command, globals);
+    if (jobs::isFilteredForm(options.form)) return runFiltered(arguments, command, globals);
     refuseOptions(command, options.form, {"--harmonics"});
     if (options.form != "halfway") refuseOptions(command, options.form, {"--halfway"});
     if (command.count("--error") > 0) options.error = arguments.error;
@@ -236,7 +232,7 @@ void addSvbrdf(CLI::App& command, Globals& globals) {
                     "normals' distribution; filtered: the cheaper one within --error (default: "
                     "filtered where the description has normals or directions, else outgoing)")
         ->check(CLI::IsMember(
-            {"outgoing", "low-rank", "clusters", "halfway", "ellipse", "harmonics", "filtered"}));
+            std::vector<std::string>(std::begin(jobs::mapForms), std::end(jobs::mapForms))));
     command.add_option("--basis", options.basis, "Basis over incoming directions")
         ->capture_default_str();
     command.add_option("--order", options.order, "Bands of the basis")

@@ -7,10 +7,13 @@
 #include <jobs/svbrdf/map_answers.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <pybind11/stl.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <initializer_list>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -102,7 +105,7 @@ nlohmann::ordered_json mapAnswer(const std::string& description, const std::stri
                                  std::string form, const MapArguments& given,
                                  const jobs::Listener& listener) {
     if (form.empty()) form = jobs::turnsTexels(description) ? "filtered" : "outgoing";
-    if (form == "ellipse" || form == "harmonics" || form == "filtered")
+    if (jobs::isFilteredForm(form))
         return jobs::filteredMapJson(
             jobs::filteredMap(description, folder, filteredOptionsOf(given, form), listener));
     return jobs::svbrdfJson(jobs::svbrdf(description, folder, optionsOf(given, form), listener));
@@ -119,6 +122,9 @@ py::object mapped(const py::object& description, const py::object& folder, const
                   const Count& clusters, bool mips, int checks, const Count& memory, bool direct,
                   bool force, const py::object& progress) {
     requireWithin("checks", checks, bounds::mapChecks);
+    if (form && std::ranges::find(jobs::mapForms, *form) == std::end(jobs::mapForms))
+        throw UsageError(
+            fmt::format("form: '{}' is none of {}", *form, fmt::join(jobs::mapForms, ", ")));
     const MapArguments given{.basis = basis,
                              .outgoing = outgoing,
                              .halfway = halfway,

@@ -16,6 +16,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 
 namespace hshfit::jobs {
 namespace {
@@ -139,6 +140,11 @@ void writeLevels(FacetSurface& surface, const ParameterMaps& maps,
 bool turnsTexels(const std::string& description) {
     const MaterialDescription described = readMaterialDescription(description);
     return described.normal.has_value() || described.direction.has_value();
+}
+
+bool isFilteredForm(std::string_view form) {
+    const auto filtered = std::span(mapForms).last(3);
+    return std::ranges::find(filtered, form) != filtered.end();
 }
 
 FilteredMapAnswer filteredMap(const std::string& description, const std::string& folder,

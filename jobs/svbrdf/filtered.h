@@ -7,9 +7,16 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hshfit::jobs {
+
+/// Forms of textures of materials; the last three are those of filtered lobes.
+inline constexpr std::string_view mapForms[] = {"outgoing", "low-rank",  "clusters", "halfway",
+                                                "ellipse",  "harmonics", "filtered"};
+/// Whether a form is one of `filteredMap`, and not of `svbrdf`.
+bool isFilteredForm(std::string_view form);
 
 struct FilteredMapOptions {
     /// "ellipse", "harmonics", or "filtered": the one with the fewest numbers within `error`.

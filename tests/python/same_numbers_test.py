@@ -337,6 +337,7 @@ class SameNumbers(program.InFolder):
                      lambda: hshfit.plan("s.json", "x", max_order=33),
                      lambda: hshfit.svbrdf("m.json", "x", form="outgoing", rank=2),
                      lambda: hshfit.svbrdf("m.json", "x", form="ellipse", order=4),
+                     lambda: hshfit.svbrdf("m.json", "x", form="cluster"),
                      lambda: hshfit.svbrdf("m.json", "x", form="outgoing", precision="byte"),
                      lambda: hshfit.svbrdf("m.json", "x", form="clusters", clusters=65537),
                      lambda: hshfit.tradeoff("lambert", orders=[0])]:
