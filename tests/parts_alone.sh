@@ -23,7 +23,7 @@ ln -sfn "$top/../shared" "$top/build/parts/shared"
 find "$copy" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf {} +
 copyTracked CMakeLists.txt CMakePresets.json cmake lib/CMakeLists.txt 'lib/hshfit/*.h*' \
     tests/CMakeLists.txt 'tests/*.h' tests/places.cpp tests/lib tests/validate_schema.py \
-    docs/figures docs/schemas
+    tests/long_filters.sh docs/figures docs/schemas
 rm -rf "$copy/lib/hshfit/"*/
 
 # Steps are joined by &&, because the shell ignores `set -e` in a function that is tested.
