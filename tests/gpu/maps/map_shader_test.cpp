@@ -82,7 +82,7 @@ ShaderJob jobOf(const MaterialMap& map, Wrap wrap) {
 /// The coefficients at a place: sums of those of texels.
 Coefficients blended(const MaterialMap& map, const MapPlace& place, Wrap wrap) {
     Coefficients sum;
-    for (const MapCorner& corner : mapCorners(map.sidecar(), place, wrap)) {
+    for (const MapCorner& corner : mapCorners(map.sidecar().levels, place, wrap)) {
         const Coefficients texel = map.coefficients(corner.level, corner.column, corner.row);
         if (sum.values.empty()) {
             sum = texel;
@@ -172,7 +172,7 @@ void prove(Language language, Run runner = {}, bool world = false) {
         }
         // Beyond the last level of OSL another is expected.
         std::vector<double> expected = proof.expected;
-        const auto last = static_cast<double>(mostLevel(language, proof.map->sidecar()));
+        const auto last = static_cast<double>(mostLevel(language, proof.map->sidecar().levels));
         for (std::size_t k = 0; k < expected.size(); ++k) {
             const double level = placeAt(proof.job, k / proof.job.outputs()).level;
             if (language == Language::osl && level > last) expected[k] = std::nan("");

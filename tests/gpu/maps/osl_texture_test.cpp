@@ -40,7 +40,7 @@ TEST(OslTexture, FilterWidthsGiveTheLevelsOfTheShader) {
         const auto system = OIIO::TextureSystem::create(false);
         const OIIO::ustring file(place + "/m.map.exr");
         const MapSidecar& s = map->sidecar();
-        const auto last = static_cast<float>(mostLevel(gpu::Language::osl, s));
+        const auto last = static_cast<float>(mostLevel(gpu::Language::osl, s.levels));
         std::mt19937 random(2);
         std::uniform_real_distribution<float> uniform(0, 1);
         for (int k = 0; k < 400; ++k) {
@@ -59,7 +59,7 @@ TEST(OslTexture, FilterWidthsGiveTheLevelsOfTheShader) {
                 << system->geterror();
             double expected[4] = {};
             for (const MapCorner& corner :
-                 mapCorners(s,
+                 mapCorners(s.levels,
                             {static_cast<double>(u), static_cast<double>(v),
                              static_cast<double>(std::min(lod, last))},
                             Wrap::clamp)) {

@@ -4,29 +4,19 @@
 #include <hshfit/files/json_fields.h>
 #include <hshfit/gpu/containers/ktx2_image.h>
 #include <hshfit/gpu/containers/sidecar.h>
+#include <hshfit/material_maps/exports/map_json.h>
 #include <hshfit/version.h>
 
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
 
 namespace hshfit::inline material_maps::inline exports {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-MapTextureFile written(const char* role, const std::string& name, std::span<const std::byte> bytes,
-                       FileSet& files) {
-    constexpr std::size_t piece = std::size_t{64} << 20;
-    files.write(name, [&](AtomicFile& file) {
-        for (std::size_t at = 0; at < bytes.size(); at += piece)
-            file.write(bytes.subspan(at, std::min(piece, bytes.size() - at)));
-    });
-    return {role, "ktx2", name, bytes.size(), sha256(bytes)};
-}
-
 Json mapJson(const MapSidecar& map, Wrap wrap) {
-    Json levels = Json::array();
-    for (const LevelSize& level : map.levels)
-        levels.push_back({{"width", level.width}, {"height", level.height}});
     const bool clusters = map.form == "clusters";
     const char* layout =
         map.form == "outgoing"
@@ -35,7 +25,7 @@ Json mapJson(const MapSidecar& map, Wrap wrap) {
                    : "layer g, lane 4 g + k = channel * rank + r";
     return {{"number", gpu::numberName(map.number)},
             {"layers", map.layers()},
-            {"levels", levels},
+            {"levels", levelsJson(map.levels)},
             {"layout", layout},
             {"groups", map.form == "outgoing" ? map.layout.groups() : map.layers()},
             {"filter", clusters ? "none" : "linear"},
@@ -63,6 +53,27 @@ Json vectorJson(const Direction& d) {
     return {d.x, d.y, d.z};
 }
 
+}  // namespace
+
+Json levelsJson(std::span<const LevelSize> levels) {
+    Json rows = Json::array();
+    for (const LevelSize& level : levels)
+        rows.push_back({{"width", level.width}, {"height", level.height}});
+    return rows;
+}
+
+Json filesJson(std::span<const MapTextureFile> files) {
+    Json rows = Json::array();
+    for (const MapTextureFile& file : files) {
+        rows.push_back({{"role", file.role},
+                        {"container", file.container},
+                        {"path", file.path},
+                        {"bytes", file.bytes},
+                        {"sha256", file.sha256}});
+    }
+    return rows;
+}
+
 Json testsJson(std::span<const MapTest> tests) {
     Json rows = Json::array();
     for (const MapTest& test : tests) {
@@ -75,21 +86,35 @@ Json testsJson(std::span<const MapTest> tests) {
     return rows;
 }
 
-}  // namespace
+MapTextureFile writeTextureKtx2(std::string_view role, const std::string& name,
+                                std::span<const std::byte> bytes, FileSet& files) {
+    constexpr std::size_t piece = std::size_t{64} << 20;
+    files.write(name, [&](AtomicFile& file) {
+        for (std::size_t at = 0; at < bytes.size(); at += piece)
+            file.write(bytes.subspan(at, std::min(piece, bytes.size() - at)));
+    });
+    return {std::string(role), "ktx2", name, bytes.size(), sha256(bytes)};
+}
 
-std::vector<MapTextureFile> writeMapKtx2(const MaterialMap& map, const std::string& name,
-                                         FileSet& files) {
-    std::vector<MapTextureFile> made{written("map", name + ".map.ktx2", map.file(), files)};
-    map.checkIntact();
-    if (map.sidecar().form == "outgoing") return made;
-    const gpu::Texels texels = sharedNumbers(map.sidecar()).texels;
+MapTextureFile writeSharedKtx2(const std::string& name, const gpu::Texels& texels, FileSet& files) {
     const std::vector<std::byte> levels[] = {texels.bytes};
     const std::string file = gpu::ktx2File({.number = texels.number,
                                             .width = static_cast<std::size_t>(texels.width),
                                             .height = static_cast<std::size_t>(texels.height),
                                             .layers = 1},
                                            levels);
-    made.push_back(written("shared", name + ".shared.ktx2", std::as_bytes(std::span(file)), files));
+    return writeTextureKtx2("shared", name, std::as_bytes(std::span(file)), files);
+}
+
+std::vector<MapTextureFile> writeMapKtx2(const MaterialMap& map, const std::string& name,
+                                         FileSet& files) {
+    std::vector<MapTextureFile> made{
+        writeTextureKtx2("map", name + ".map.ktx2", map.file(), files)};
+    map.checkIntact();
+    if (map.sidecar().form != "outgoing") {
+        made.push_back(
+            writeSharedKtx2(name + ".shared.ktx2", sharedNumbers(map.sidecar()).texels, files));
+    }
     return made;
 }
 
@@ -97,14 +122,6 @@ std::string mapExportText(const MaterialMap& map, Wrap wrap,
                           std::span<const MapTextureFile> textures,
                           std::span<const MapTest> tests) {
     const MapSidecar& s = map.sidecar();
-    Json files = Json::array();
-    for (const MapTextureFile& file : textures) {
-        files.push_back({{"role", file.role},
-                         {"container", file.container},
-                         {"path", file.path},
-                         {"bytes", file.bytes},
-                         {"sha256", file.sha256}});
-    }
     const Json document = {
         {"format", "hshfit-gpu-map"},
         {"version", 1},
@@ -122,19 +139,25 @@ std::string mapExportText(const MaterialMap& map, Wrap wrap,
                                      : "q_c = sum_r y_cr(uv, lod) sum_j S_rj(wo) B_slots[j](wi)"},
         {"map", mapJson(s, wrap)},
         {"shared", sharedJson(s)},
-        {"files", files},
+        {"files", filesJson(textures)},
         {"tests", testsJson(tests)}};
     return gpu::readableSidecar(jsonText(document));
 }
 
+std::string mapTestText(const Channels& channels, std::string_view value,
+                        std::span<const MapTest> tests) {
+    return gpu::readableSidecar(jsonText(Json{{"format", "hshfit-gpu-map-test"},
+                                              {"version", 1},
+                                              {"channels", channels.names()},
+                                              {"value", value},
+                                              {"tests", testsJson(tests)}}));
+}
+
 std::string mapTestText(const MapSidecar& map, std::span<const MapTest> tests) {
-    return gpu::readableSidecar(jsonText(
-        Json{{"format", "hshfit-gpu-map-test"},
-             {"version", 1},
-             {"channels", map.channels.names()},
-             {"value", map.quantity == Quantity::brdf ? "f in 1/sr, not clamped"
-                                                      : "f cos(theta_i) in 1/sr, not clamped"},
-             {"tests", testsJson(tests)}}));
+    return mapTestText(map.channels,
+                       map.quantity == Quantity::brdf ? "f in 1/sr, not clamped"
+                                                      : "f cos(theta_i) in 1/sr, not clamped",
+                       tests);
 }
 
 }  // namespace hshfit::inline material_maps::inline exports

@@ -26,12 +26,11 @@ struct ExrLevel {
 };
 
 /// The texels of a layer at `level`; beyond the last, its first texels again.
-ExrLevel levelOf(const MaterialMap& map, std::size_t layer, std::size_t level) {
-    const MapSidecar& s = map.sidecar();
+ExrLevel levelOf(const StoredLevels& s, std::size_t layer, std::size_t level) {
     const std::size_t stored = std::min(level, s.levels.size() - 1);
     const LevelSize& size = s.levels[stored];
     const std::size_t texel = 4 * gpu::numberBytes(s.number), count = size.width * size.height;
-    const auto from = map.level(stored).subspan(layer * count * texel, count * texel);
+    const auto from = s.bytes(stored).subspan(layer * count * texel, count * texel);
     ExrLevel out{std::max<std::size_t>(s.levels.front().width >> level, 1),
                  std::max<std::size_t>(s.levels.front().height >> level, 1)};
     std::vector<std::byte> kept;
@@ -82,8 +81,8 @@ Imf::FrameBuffer slicesOf(ExrLevel& level, bool half) {
 
 /// A file of `layers` parts whose levels `texels(layer, level)` gives.
 template <class Levels>
-MapTextureFile writeExr(const char* role, const std::string& name, std::size_t layers, int width,
-                        int height, bool half, const Levels& texels, FileSet& files) {
+MapTextureFile writeExr(std::string_view role, const std::string& name, std::size_t layers,
+                        int width, int height, bool half, const Levels& texels, FileSet& files) {
     std::vector<Imf::Header> headers;
     for (std::size_t layer = 0; layer < layers; ++layer)
         headers.push_back(headerOf(width, height, half, layer));
@@ -109,26 +108,25 @@ MapTextureFile writeExr(const char* role, const std::string& name, std::size_t l
     });
     const MappedFile made(file.temporaryPath());
     const auto bytes = std::as_bytes(std::span(made.data(), made.size()));
-    return {role, "exr-parts", name, bytes.size(), sha256(bytes)};
+    return {std::string(role), "exr-parts", name, bytes.size(), sha256(bytes)};
 }
 
 }  // namespace
 
-std::vector<MapTextureFile> writeMapExr(const MaterialMap& map, const std::string& name,
-                                        FileSet& files) {
-    const MapSidecar& s = map.sidecar();
-    const LevelSize& size = s.levels.front();
-    std::vector<MapTextureFile> made{writeExr(
-        "map", name + ".map.exr", s.layers(), static_cast<int>(size.width),
-        static_cast<int>(size.height), s.number == gpu::Number::float16,
-        [&](std::size_t layer, std::size_t level) { return levelOf(map, layer, level); }, files)};
-    map.checkIntact();
-    if (s.form == "outgoing") return made;
-    const gpu::Texels texels = sharedNumbers(s).texels;
+MapTextureFile writeTextureExr(std::string_view role, const std::string& name,
+                               const StoredLevels& stored, FileSet& files) {
+    const LevelSize& size = stored.levels.front();
+    return writeExr(
+        role, name, stored.layers, static_cast<int>(size.width), static_cast<int>(size.height),
+        stored.number == gpu::Number::float16,
+        [&](std::size_t layer, std::size_t level) { return levelOf(stored, layer, level); }, files);
+}
+
+MapTextureFile writeSharedExr(const std::string& name, const gpu::Texels& texels, FileSet& files) {
     const auto width = static_cast<std::size_t>(texels.width);
     const auto height = static_cast<std::size_t>(texels.height);
-    made.push_back(writeExr(
-        "shared", name + ".shared.exr", 1, texels.width, texels.height, false,
+    return writeExr(
+        "shared", name, 1, texels.width, texels.height, false,
         [&](std::size_t, std::size_t level) {
             // Level 0 alone is read.
             ExrLevel of{std::max<std::size_t>(width >> level, 1),
@@ -137,7 +135,22 @@ std::vector<MapTextureFile> writeMapExr(const MaterialMap& map, const std::strin
             if (level == 0) of.bytes = texels.bytes;
             return of;
         },
-        files));
+        files);
+}
+
+std::vector<MapTextureFile> writeMapExr(const MaterialMap& map, const std::string& name,
+                                        FileSet& files) {
+    const MapSidecar& s = map.sidecar();
+    std::vector<MapTextureFile> made{
+        writeTextureExr("map", name + ".map.exr",
+                        {.levels = s.levels,
+                         .layers = s.layers(),
+                         .number = s.number,
+                         .bytes = [&](std::size_t level) { return map.level(level); }},
+                        files)};
+    map.checkIntact();
+    if (s.form != "outgoing")
+        made.push_back(writeSharedExr(name + ".shared.exr", sharedNumbers(s).texels, files));
     return made;
 }
 

@@ -21,13 +21,14 @@ double single(double value) {
 
 }  // namespace
 
-std::vector<MapCorner> mapCorners(const MapSidecar& map, const MapPlace& place, Wrap wrap) {
-    const double last = static_cast<double>(map.levels.size() - 1);
+std::vector<MapCorner> mapCorners(std::span<const LevelSize> levels, const MapPlace& place,
+                                  Wrap wrap) {
+    const double last = static_cast<double>(levels.size() - 1);
     const double level = std::clamp(place.level, 0.0, last), finer = std::floor(level);
     std::vector<MapCorner> corners;
     for (const int k : {0, 1}) {
         const auto at = static_cast<std::size_t>(std::min(finer + k, last));
-        const LevelSize& size = map.levels[at];
+        const LevelSize& size = levels[at];
         const double x = place.u * static_cast<double>(size.width) - 0.5;
         const double y = place.v * static_cast<double>(size.height) - 0.5;
         const double partX = x - std::floor(x), partY = y - std::floor(y);
@@ -49,7 +50,7 @@ std::vector<double> mapValue(const MaterialMap& map, const MapPlace& place, Wrap
                              const Direction& wo, const Direction& wi) {
     const std::size_t channels = map.sidecar().channels.count();
     std::vector<double> sum(channels, 0.0), q(channels);
-    for (const MapCorner& corner : mapCorners(map.sidecar(), place, wrap)) {
+    for (const MapCorner& corner : mapCorners(map.sidecar().levels, place, wrap)) {
         const Reconstruction texel(map.coefficients(corner.level, corner.column, corner.row));
         texel.evalQuantity(wo, {&wi.x, &wi.y, &wi.z, 1}, q.data());
         for (std::size_t c = 0; c < channels; ++c) sum[c] += corner.share * q[c];
@@ -57,9 +58,8 @@ std::vector<double> mapValue(const MaterialMap& map, const MapPlace& place, Wrap
     return sum;
 }
 
-std::vector<MapTest> mapTests(const MaterialMap& map, Wrap wrap) {
+std::vector<MapTest> mapTests(std::span<const LevelSize> levels, const MapValue& value) {
     std::vector<MapTest> tests;
-    const auto& levels = map.sidecar().levels;
     std::size_t k = 0;
     for (const gpu::TestTriple& pair : gpu::testPairs()) {
         // The additive recurrence in powers of the root of x^3 = x + 1 (Roberts).
@@ -77,10 +77,17 @@ std::vector<MapTest> mapTests(const MaterialMap& map, Wrap wrap) {
         } else if (k % 3 == 2) {
             place.level = single(static_cast<double>(levels.size() - 1) * place.u);
         }
-        tests.push_back({place, pair.wo, pair.wi, mapValue(map, place, wrap, pair.wo, pair.wi)});
+        tests.push_back({place, pair.wo, pair.wi, value(place, pair.wo, pair.wi)});
         ++k;
     }
     return tests;
+}
+
+std::vector<MapTest> mapTests(const MaterialMap& map, Wrap wrap) {
+    return mapTests(map.sidecar().levels,
+                    [&](const MapPlace& place, const Direction& wo, const Direction& wi) {
+                        return mapValue(map, place, wrap, wo, wi);
+                    });
 }
 
 }  // namespace hshfit::inline material_maps::inline exports

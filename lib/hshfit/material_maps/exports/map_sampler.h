@@ -5,6 +5,8 @@
 #include <hshfit/material_maps/material_map.h>
 
 #include <cstddef>
+#include <functional>
+#include <span>
 #include <vector>
 
 namespace hshfit::inline material_maps::inline exports {
@@ -20,7 +22,8 @@ struct MapCorner {
     std::size_t level = 0, column = 0, row = 0;
     double share = 0;
 };
-std::vector<MapCorner> mapCorners(const MapSidecar& map, const MapPlace& place, Wrap wrap);
+std::vector<MapCorner> mapCorners(std::span<const LevelSize> levels, const MapPlace& place,
+                                  Wrap wrap);
 
 /// q(wo, wi) at a place, per channel, not clamped, in double precision: what a shader has to give.
 /// Throws InputError.
@@ -34,7 +37,10 @@ struct MapTest {
     std::vector<double> value;
 };
 /// The 72 pairs of gpu::testPairs(), a third of them at centres of texels, a third anywhere on
-/// level 0 and a third between levels. Places are exact in float32.
+/// level 0 and a third between levels, with values by `value`. Places are exact in float32.
+using MapValue = std::function<std::vector<double>(const MapPlace& place, const Direction& wo,
+                                                   const Direction& wi)>;
+std::vector<MapTest> mapTests(std::span<const LevelSize> levels, const MapValue& value);
 std::vector<MapTest> mapTests(const MaterialMap& map, Wrap wrap);
 
 }  // namespace hshfit::inline material_maps::inline exports

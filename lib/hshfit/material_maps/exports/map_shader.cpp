@@ -5,16 +5,18 @@
 #include <hshfit/gpu/shader_data.h>
 #include <hshfit/gpu/shader_text.h>
 #include <hshfit/material_maps/exports/internal/weighted_sums.h>
+#include <hshfit/material_maps/exports/map_text.h>
 #include <hshfit/material_maps/exports/shared_numbers.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace hshfit::embedded {
-extern const std::string_view map_corners, map_eval, map_functions, map_glsl, map_header, map_hlsl,
-    map_level, map_material, map_metal, map_node, map_osl, map_shade, map_sums, map_wgsl;
+extern const std::string_view map_corners, map_eval, map_functions, map_functions_wgsl, map_header,
+    map_material, map_node, map_shade, map_sums;
 }  // namespace hshfit::embedded
 
 namespace hshfit::inline material_maps::inline exports {
@@ -23,40 +25,8 @@ namespace {
 using gpu::Language;
 using gpu::shaderNumber;
 using kainjow::mustache::data;
-using kainjow::mustache::partial;
 
 constexpr int maxEnvironmentOrder = 16;
-
-/// The words that maps need of a language beyond gpu::setWords.
-struct MapLanguage {
-    std::string_view text, letInt, toInt;
-    std::string parameters = {}, pass = {};  ///< textures as arguments
-};
-
-MapLanguage mapLanguage(Language language, const MapSidecar& map) {
-    const bool sharing = map.form != "outgoing", clusters = map.form == "clusters";
-    switch (language) {
-        case Language::glslEs:
-        case Language::glsl:
-            return {embedded::map_glsl, "int", "int"};
-        case Language::hlsl:
-            return {embedded::map_hlsl, "int", "int"};
-        case Language::wgsl:
-            return {embedded::map_wgsl, "let", "i32"};
-        case Language::metal:
-            return {embedded::map_metal, "int", "int",
-                    fmt::format("texture2d_array<float> map, {}{}",
-                                clusters ? "" : "sampler mapSampler, ",
-                                sharing ? "texture2d_array<float> numbers, " : ""),
-                    fmt::format("map, {}{}", clusters ? "" : "mapSampler, ",
-                                sharing ? "numbers, " : "")};
-        case Language::osl:
-            break;
-    }
-    return {embedded::map_osl, "int", "(int)",
-            sharing ? "string map, string numbers, " : "string map, ",
-            sharing ? "map, numbers, " : "map, "};
-}
 
 /// A payload without texels: what the parts of snippets ask of one.
 gpu::Payload headOf(const MapSidecar& map) {
@@ -120,34 +90,6 @@ void setNodes(const OutgoingSet& set, std::size_t groups, data& page) {
         rows.push_back(row);
     }
     page.set("nodes", rows);
-}
-
-/// The four texels of each of two levels.
-void setCorners(data& page) {
-    data levels = gpu::list();
-    int n = 0;
-    for (int k : {0, 1}) {
-        data corners = gpu::list();
-        for (int j : {0, 1}) {
-            for (int i : {0, 1}) {
-                data corner;
-                corner.set("n", std::to_string(n++));
-                corner.set("i", std::to_string(i));
-                corner.set("j", std::to_string(j));
-                corner.set(
-                    "part",
-                    fmt::format("{} * {} * {}", k ? "between" : "(1.0 - between)",
-                                fmt::format(fmt::runtime(i ? "partU{}" : "(1.0 - partU{})"), k),
-                                fmt::format(fmt::runtime(j ? "partV{}" : "(1.0 - partV{})"), k)));
-                corners.push_back(corner);
-            }
-        }
-        data level;
-        level.set("k", std::to_string(k));
-        level.set("corners", corners);
-        levels.push_back(level);
-    }
-    page.set("levels", levels);
 }
 
 std::vector<std::string> named(const char* name, std::size_t count) {
@@ -224,46 +166,11 @@ data sumsOf(const MapSidecar& map, const std::string& prefix, const std::string&
     return list;
 }
 
-/// The texel of an index texture at (px, py) of `level`.
-std::string indexFetch(Language language, const std::string& prefix, const std::string& pass) {
-    switch (language) {
-        case Language::glslEs:
-        case Language::glsl:
-            return fmt::format("texelFetch({}_map, ivec3(int(px), int(py), 0), int(level))",
-                               prefix);
-        case Language::hlsl:
-            return fmt::format("{}_map.Load(int4(int(px), int(py), 0, int(level)))", prefix);
-        case Language::wgsl:
-            return fmt::format("textureLoad({}_map, vec2<i32>(i32(px), i32(py)), 0, i32(level))",
-                               prefix);
-        case Language::metal:
-            return "map.read(uint2(uint(px), uint(py)), 0, uint(level))";
-        case Language::osl:
-            break;
-    }
-    return fmt::format("{0}_mapTexel({1}{0}_Two((px + 0.5) / wide, (py + 0.5) / high), 0, level)",
-                       prefix, pass);
-}
-
-void setSizes(const MapSidecar& map, const MapShaderOptions& options, data& page) {
-    const LevelSize& size = map.levels.front();
-    const auto real = [&](const char* name, std::size_t value) {
-        page.set(name, fmt::format("{}.0", value));
-    };
-    real("mapWidth", size.width);
-    real("mapHeight", size.height);
-    real("mapSide", std::min(size.width, size.height));
-    real("lastLevel", map.levels.size() - 1);
-    real("oslLevel", mostLevel(Language::osl, map));
-    page.set("levelCount", std::to_string(map.levels.size()));
-    page.set("repeat", options.wrap == Wrap::repeat);
-    page.set("oslWrap", options.wrap == Wrap::repeat ? "periodic" : "clamp");
+/// Sizes of what the texels share.
+void setSharing(const MapSidecar& map, data& page) {
     page.set("clusters", map.form == "clusters");
-    page.set("sharing", map.form != "outgoing");
     if (map.form == "outgoing") return;
     const SharedNumbers shared = sharedNumbers(map);
-    page.set("sharedWidth", std::to_string(SharedNumbers::width));
-    real("sharedRows", static_cast<std::size_t>(shared.texels.height));
     page.set("firstMaterial", std::to_string(shared.firstMaterial));
     page.set("groupsOfMaterial", std::to_string(shared.groupsOfMaterial));
 }
@@ -297,23 +204,19 @@ void setLight(Language language, const MapShaderOptions& options, data& page) {
     page.set("lightParameter", declared("light"));
 }
 
-void setMapPartials(data& page) {
+void setMapPartials(Language language, data& page) {
     gpu::setPartials(page);
     const std::pair<const char*, std::string_view> parts[] = {
-        {"header", embedded::map_header},         {"nodeBody", embedded::map_node},
-        {"cornersBody", embedded::map_corners},   {"materialBody", embedded::map_material},
-        {"sumsBody", embedded::map_sums},         {"mapEval", embedded::map_eval},
-        {"mapShade", embedded::map_shade},        {"levelBody", embedded::map_level},
-        {"mapFunctions", embedded::map_functions}};
-    for (const auto& [name, text] : parts) {
-        std::string body(text);
-        if (body.ends_with('\n')) body.pop_back();
-        page.set(name, data(partial([body] { return body; })));
-    }
-}
-
-std::string_view nameOf(Language language) {
-    return std::ranges::find(gpu::languages(), language, &gpu::LanguageEntry::language)->name;
+        {"header", embedded::map_header},
+        {"nodeBody", embedded::map_node},
+        {"cornersBody", embedded::map_corners},
+        {"materialBody", embedded::map_material},
+        {"sumsBody", embedded::map_sums},
+        {"mapEval", embedded::map_eval},
+        {"mapShade", embedded::map_shade},
+        {"mapFunctions",
+         language == Language::wgsl ? embedded::map_functions_wgsl : embedded::map_functions}};
+    for (const auto& [name, text] : parts) setPartial(page, name, text);
 }
 
 void check(Language language, const MapSidecar& map, const MapShaderOptions& options) {
@@ -322,58 +225,29 @@ void check(Language language, const MapSidecar& map, const MapShaderOptions& opt
         throw UsageError(fmt::format("environment of order {}; it has to be 0 (none) to {}",
                                      options.environmentOrder, maxEnvironmentOrder));
     }
-    if (map.layers() > mostLayers(language)) {
-        throw UsageError(fmt::format(
-            "the map has {} layers; a texture of {} has at most {}; fewer outgoing directions, a "
-            "lower order or the form low-rank have fewer",
-            map.layers(), nameOf(language), mostLayers(language)));
-    }
+    checkLayers(language, "the map", map.layers(),
+                "fewer outgoing directions, a lower order or the form low-rank have fewer");
 }
 
 }  // namespace
 
-std::string_view wrapName(Wrap wrap) {
-    return wrap == Wrap::clamp ? "clamp" : "repeat";
-}
-
-Wrap parseWrap(std::string_view name) {
-    for (const Wrap wrap : {Wrap::clamp, Wrap::repeat})
-        if (name == wrapName(wrap)) return wrap;
-    throw UsageError(fmt::format("unknown wrap '{}'; known: clamp, repeat", name));
-}
-
-std::size_t mostLayers(Language language) {
-    if (language == Language::osl) return std::size_t{1} << 16;
-    return language == Language::glslEs || language == Language::wgsl ? gpu::maxLayers : 2048;
-}
-
-std::size_t mostLevel(Language language, const MapSidecar& map) {
-    std::size_t level = map.levels.size() - 1;
-    if (language != Language::osl) return level;
-    const auto shorter = [&](std::size_t k) {
-        return std::min(map.levels[k].width, map.levels[k].height);
-    };
-    while (level > 0 && shorter(level - 1) == 1) --level;
-    return level;
-}
-
 std::string mapShader(Language language, const MapSidecar& map, const MapShaderOptions& options) {
     check(language, map, options);
-    const MapLanguage words = mapLanguage(language, map);
     const gpu::Payload payload = headOf(map);
     const auto basis = bases::make(map.basis, map.order);
     data page;
     gpu::setWords(language, payload, options.prefix, page);
-    page.set("letInt", std::string(words.letInt));
-    page.set("toInt", std::string(words.toInt));
-    page.set("parameters", words.parameters);
-    page.set("pass", words.pass);
-    page.set("inline", language == Language::metal ? "inline " : "");
-    page.set("es", language == Language::glslEs);
-    page.set("fetch", indexFetch(language, options.prefix, words.pass));
+    std::optional<SharedNumbers> shared;
+    if (map.form != "outgoing") shared = sharedNumbers(map);
+    const MapWords words = setMapTextures(language,
+                                          {.levels = map.levels,
+                                           .sampled = map.form != "clusters",
+                                           .shared = shared ? &shared->texels : nullptr,
+                                           .wrap = options.wrap},
+                                          page);
+    page.set("fetch", texelFetchText(language, options.prefix, words.pass, "0"));
     setHeader(map, page);
-    setSizes(map, options, page);
-    setCorners(page);
+    setSharing(map, page);
     const std::size_t groups = map.form == "outgoing"
                                    ? map.layout.groups()
                                    : (map.rank() * map.layout.slots.size() + 3) / 4;
@@ -394,7 +268,7 @@ std::string mapShader(Language language, const MapSidecar& map, const MapShaderO
     cost("eval", eval);
     cost("shade", shade);
     cost("world", world);
-    setMapPartials(page);
+    setMapPartials(language, page);
     return gpu::rendered(words.text, page);
 }
 

@@ -4,6 +4,7 @@
 #include <hshfit/material_maps/map_sidecar.h>
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -29,7 +30,7 @@ struct MapShaderOptions {
 std::size_t mostLayers(gpu::Language language);
 
 /// The coarsest level that a shader reads: the last, but in OSL the first whose shorter side is 1.
-std::size_t mostLevel(gpu::Language language, const MapSidecar& map);
+std::size_t mostLevel(gpu::Language language, std::span<const LevelSize> levels);
 
 /// A snippet unrolled for the basis, form and sizes of a map, beside its texture:
 ///     PREFIX_eval(uv, lod, wo, wi)     q of the texels around uv at level lod, clamped at 0

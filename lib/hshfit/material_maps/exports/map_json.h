@@ -1,0 +1,17 @@
+#pragma once
+
+#include <hshfit/material_maps/exports/map_export.h>
+
+#include <nlohmann/json.hpp>
+
+#include <span>
+
+namespace hshfit::inline material_maps::inline exports {
+
+// Parts of the sidecars of maps.
+
+nlohmann::ordered_json levelsJson(std::span<const LevelSize> levels);
+nlohmann::ordered_json filesJson(std::span<const MapTextureFile> files);
+nlohmann::ordered_json testsJson(std::span<const MapTest> tests);
+
+}  // namespace hshfit::inline material_maps::inline exports
