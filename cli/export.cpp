@@ -3,6 +3,7 @@
 #include "export_map.h"
 #include "export_material.h"
 
+#include <hshfit/filtered_maps/filtered_sidecar.h>
 #include <hshfit/gpu/error_split.h>
 
 #include <jobs/export.h>
@@ -211,13 +212,17 @@ void requireOptions(const CLI::App& command, bool materials) {
     }
 }
 
+bool isMap(const std::string& input) {
+    return isMapSidecar(input) || isFilteredSidecar(input);
+}
+
 /// Refuses options that maps of materials do not have, and those that they alone have.
 void requireMapOptions(const CLI::App& command, const std::vector<std::string>& inputs) {
     constexpr std::string_view those[] = {
         "COEFFS",  "--output", "--target",  "--name",   "--force", "--json",
         "--quiet", "--help",   "--threads", "--prefix", "--light", "--environment-order",
         "--wrap"};
-    const auto map = std::ranges::find_if(inputs, isMapSidecar);
+    const auto map = std::ranges::find_if(inputs, isMap);
     if (map == inputs.end()) {
         if (command.get_option("--wrap")->count() > 0)
             throw UsageError("export: --wrap is for maps of materials");
@@ -229,6 +234,13 @@ void requireMapOptions(const CLI::App& command, const std::vector<std::string>& 
         if (option->count() > 0 && std::ranges::find(those, name) == std::end(those)) {
             throw UsageError(fmt::format("export: {} is for coefficients; {} is a map of materials",
                                          name, *map));
+        }
+        const bool light = name == "--light" || name == "--environment-order";
+        if (light && option->count() > 0 && isFilteredSidecar(*map)) {
+            throw UsageError(
+                fmt::format("export: {}: {} is a map of filtered lobes, which take no "
+                            "light of an environment",
+                            name, *map));
         }
     }
 }
@@ -273,7 +285,7 @@ std::string answerText(const Json& answer) {
 /// The answer for a coefficient file or a map of materials.
 Json exported(const ExportArguments& arguments, const std::string& input, const std::string& folder,
               const jobs::Listener& listener) {
-    if (isMapSidecar(input))
+    if (isMap(input))
         return mapDocument(jobs::exportMap(input, folder, mapOptions(arguments), listener), folder);
     const jobs::Exported made =
         jobs::exportCoefficients(input, folder, arguments.options, listener);

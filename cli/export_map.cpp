@@ -10,7 +10,7 @@ namespace hshfit::cli {
 using Json = nlohmann::ordered_json;
 
 Json mapDocument(const jobs::ExportedMap& exported, const std::string& folder) {
-    const MapSidecar& map = exported.map;
+    const jobs::ExportableMap::Facts& map = exported.map;
     Json files = Json::array({{{"role", "sidecar"}, {"path", exported.sidecar}},
                               {{"role", "test"}, {"path", exported.test}}});
     for (const MapTextureFile& file : exported.textures) {
@@ -31,12 +31,13 @@ Json mapDocument(const jobs::ExportedMap& exported, const std::string& folder) {
                      {"width", map.levels.front().width},
                      {"height", map.levels.front().height},
                      {"levels", map.levels.size()},
-                     {"layers", map.layers()},
-                     {"number", gpu::numberName(map.number)},
-                     {"basis", map.basis},
-                     {"order", map.order},
-                     {"outgoing", map.layout.outgoing.spec()},
-                     {"files", files}};
+                     {"layers", map.layers},
+                     {"number", gpu::numberName(map.number)}};
+    if (!map.basis.empty()) document["basis"] = map.basis;
+    if (!map.model.empty()) document["model"] = map.model;
+    if (map.order > 0) document["order"] = map.order;
+    if (!map.outgoing.empty()) document["outgoing"] = map.outgoing;
+    document["files"] = files;
     for (const gpu::ViewerLight& light : exported.lights) {
         document["lights"].push_back(
             {{"light", light.name},
@@ -51,13 +52,18 @@ bool isMapDocument(const Json& document) {
 }
 
 std::string mapDocumentText(const Json& document) {
-    std::string out = fmt::format(
-        "{}: map of {} x {} materials in {} levels, form {}, {} order {}, {} layers of {}\n",
-        document["folder"].get<std::string>(), document["width"].get<std::size_t>(),
-        document["height"].get<std::size_t>(), document["levels"].get<std::size_t>(),
-        document["form"].get<std::string>(), document["basis"].get<std::string>(),
-        document["order"].get<int>(), document["layers"].get<std::size_t>(),
-        document["number"].get<std::string>());
+    const auto words = [&](const char* key) { return document[key].get<std::string>(); };
+    const std::string order =
+        document.contains("order") ? fmt::format(" order {}", document["order"].get<int>()) : "";
+    // The order is that of the basis, or of the harmonics that the form is named after.
+    const std::string form = document.contains("basis")
+                                 ? fmt::format("{}, {}{}", words("form"), words("basis"), order)
+                                 : fmt::format("{}{}", words("form"), order);
+    std::string out =
+        fmt::format("{}: map of {} x {} materials in {} levels, form {}, {} layers of {}\n",
+                    words("folder"), document["width"].get<std::size_t>(),
+                    document["height"].get<std::size_t>(), document["levels"].get<std::size_t>(),
+                    form, document["layers"].get<std::size_t>(), words("number"));
     for (const Json& file : document["files"])
         out += fmt::format("  {}\n", file["path"].get<std::string>());
     return out;

@@ -309,10 +309,10 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
     const Targets chosen = gpu::selectTargets(options.targets);
     const std::vector<LightSpecification> lights = lightsOf(chosen, options);
     if (isFilteredSidecar(path)) {
-        throw UsageError(
-            fmt::format("{}: maps of normals and directions have no shader; a texel of one is "
-                        "projected as {}:x=0,y=0,level=0 and its coefficients are exported",
-                        path, path));
+        throw UsageError(fmt::format(
+            "{}: a map of normals and directions has no coefficients; those of a texel, "
+            "projected as {}:x=0,y=0,level=0, are exported",
+            path, path));
     }
     const Representation stored = readRepresentation(path);
     Exported exported;

@@ -4,13 +4,13 @@
 #include <hshfit/files/file_set.h>
 #include <hshfit/gpu/containers/targets.h>
 #include <hshfit/light/catalog.h>
-#include <hshfit/material_maps/exports/map_viewer.h>
 #include <hshfit/wording.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 
 namespace hshfit::jobs {
 namespace {
@@ -27,25 +27,18 @@ public:
           wrap_(parseWrap(options.wrap)),
           chosen_(gpu::selectTargets(options.targets)),
           lights_(lightsOf()),
-          map_(path),
+          map_(openExportable(path, wrap_)),
           files_(folder, options.force) {
-        if (map_.sidecar().form == "halfway") {
-            throw UsageError(
-                fmt::format("{}: the form halfway of maps has no shader; its materials are "
-                            "exported one by one, "
-                            "as {} is, or the map in another form, as clusters",
-                            path, materialOf(map_.sidecar())));
-        }
         result_.name =
             options.name.empty() ? std::filesystem::path(path).stem().string() : options.name;
         result_.sidecar = result_.name + ".hsh.json";
         result_.test = result_.name + "_test.json";
-        result_.map = map_.sidecar();
+        result_.map = map_->facts();
         for (const std::string& name : {result_.sidecar, result_.test}) files_.requireFree(name);
     }
 
     ExportedMap run() {
-        tests_ = mapTests(map_, wrap_);
+        tests_ = map_->tests();
         // A module brings containers along: its own name belongs into the message.
         std::ranges::stable_sort(chosen_, {}, [](const Target* target) {
             return target->kind == Target::Kind::module ? 0 : 1;
@@ -58,20 +51,14 @@ public:
                 listener_.say(fmt::format("left out: {}", error.what()));
             }
         }
-        files_.write(result_.sidecar, mapExportText(map_, wrap_, result_.textures, tests_));
-        files_.write(result_.test, mapTestText(map_.sidecar(), tests_));
-        map_.checkIntact();
+        files_.write(result_.sidecar, map_->sidecar(result_.textures, tests_));
+        files_.write(result_.test, map_->testText(tests_));
+        map_->checkIntact();
         files_.commit();
         return std::move(result_);
     }
 
 private:
-    /// The file of a material of the form halfway.
-    static std::string materialOf(const MapSidecar& map) {
-        const auto first =
-            std::ranges::find_if(map.files, [](const auto& f) { return !f.empty(); });
-        return first == map.files.end() ? std::string() : *first;
-    }
     bool hasViewer() const {
         return std::ranges::any_of(
             chosen_, [](const Target* target) { return target->kind == Target::Kind::viewer; });
@@ -112,17 +99,15 @@ private:
                 "{} has no levels: maps of materials are written as ktx2, or exr-parts for OSL",
                 container));
         }
-        const auto made = container == "ktx2" ? writeMapKtx2(map_, result_.name, files_)
-                                              : writeMapExr(map_, result_.name, files_);
+        const auto made = container == "ktx2" ? map_->writeKtx2(result_.name, files_)
+                                              : map_->writeExr(result_.name, files_);
         result_.textures.insert(result_.textures.end(), made.begin(), made.end());
     }
 
     void writeShader(const std::string& name) {
         const auto& entry = *std::ranges::find(gpu::languages(), name, &gpu::LanguageEntry::name);
-        const std::string text = mapShader(entry.language, map_.sidecar(),
-                                           {.prefix = options_.prefix,
-                                            .environmentOrder = options_.environmentOrder,
-                                            .wrap = wrap_});
+        const std::string text =
+            map_->shader(entry.language, options_.prefix, options_.environmentOrder);
         const bool es = entry.language == gpu::Language::glslEs;
         const std::string file = fmt::format("{}_{}.{}{}", result_.name, options_.prefix,
                                              es ? "es." : "", entry.extension);
@@ -136,14 +121,10 @@ private:
         std::vector<gpu::ViewerLight> lights;
         for (const LightSpecification& light : lights_)
             lights.push_back(gpu::viewerLight(light, order));
-        const std::string source = map_.sidecar().source;
-        const std::string page = mapViewerPage(
-            {.map = map_,
-             .wrap = wrap_,
-             .title = source.empty() ? result_.name : std::filesystem::path(source).stem().string(),
-             .lights = lights,
-             .order = order,
-             .tests = tests_});
+        const std::string source = result_.map.source;
+        const std::string page = map_->viewer(
+            source.empty() ? result_.name : std::filesystem::path(source).stem().string(), lights,
+            order, tests_);
         const std::string file = result_.name + "_viewer.html";
         files_.write(file, page);
         result_.lights = std::move(lights);
@@ -155,7 +136,7 @@ private:
     Wrap wrap_;
     std::vector<const Target*> chosen_;
     std::vector<LightSpecification> lights_;
-    MaterialMap map_;
+    std::unique_ptr<ExportableMap> map_;
     FileSet files_;
     std::vector<MapTest> tests_;
     ExportedMap result_;

@@ -1,9 +1,7 @@
 #pragma once
 
+#include "exportable_map.h"
 #include "listener.h"
-
-#include <hshfit/gpu/viewer_light.h>
-#include <hshfit/material_maps/exports/map_export.h>
 
 #include <string>
 #include <vector>
@@ -29,7 +27,7 @@ struct ExportedMapText {
 
 struct ExportedMap {
     std::string name;
-    MapSidecar map;
+    ExportableMap::Facts map;
     std::string sidecar, test;  ///< names of files in the folder, as those below
     std::vector<MapTextureFile> textures;
     std::vector<ExportedMapText> texts;

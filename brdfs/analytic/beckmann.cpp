@@ -47,7 +47,7 @@ std::unique_ptr<Brdf> make(const Parameters& p) {
     const Roughness roughness = roughnessOf(beckmannModel(), p);
     return std::make_unique<WithFacetNormals<Beckmann>>(
         microfacetNormals(beckmannModel(), p, beckmannNormals(roughness.ax, roughness.ay),
-                          roughness),
+                          roughness, true),
         beckmannModel(), p, microfacetLaws(p, roughness), BeckmannShape<double>{roughness});
 }
 

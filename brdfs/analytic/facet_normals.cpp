@@ -23,13 +23,23 @@ std::function<double(const Direction& h)> beckmannNormals(double ax, double ay) 
 
 FacetNormals microfacetNormals(const Model& model, const Parameters& p,
                                std::function<double(const Direction& h)> density,
-                               const RoughnessOf<double>& roughness) {
+                               const RoughnessOf<double>& roughness, bool gaussian) {
     FacetNormals result{
         .density = std::move(density),
         .widthX = roughness.ax,
         .widthY = roughness.ay,
         .weights = {overPi(p.colour("kd")), FacetFresnel(model, p).weights(p.colour("ks"))}};
     result.ofLobe.assign(result.weights.terms.size(), true);
+    const bool same = p.number("alpha") > 0;
+    result.text = facetText(
+        {{"ax", same ? "alpha" : "ax", roughness.ax}, {"ay", same ? "alpha" : "ay", roughness.ay}},
+        {"smith"});
+    if (gaussian) result.text.flags.emplace_back("gaussian");
+    if (p.choice("masking") == "correlated") result.text.flags.emplace_back("correlated");
+    const FacetFresnel fresnel(model, p);
+    for (const FacetIndex<double>& index : fresnel.indices())
+        result.text.indices.push_back({{"ior", "ior", index.ior}, {"k", "k", index.k}});
+    if (fresnel.indices().empty()) result.text.flags.emplace_back("schlick");
     return result;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <brdfs/analytic/facet_text.h>
 #include <brdfs/analytic/ggx_shape.h>
 #include <brdfs/analytic/term_brdf.h>
 
@@ -21,6 +22,7 @@ struct FacetNormals {
     double turn = 0;                ///< of the axes, radians
     TermWeights weights = {};
     std::vector<bool> ofLobe = {};  ///< [term]
+    FacetText text = {};            ///< without templates: the lobe has no closed form in shaders
 };
 
 /// A model whose lobe is one of microfacets.
@@ -72,9 +74,9 @@ private:
 std::function<double(const Direction& h)> ggxNormals(double ax, double ay);
 /// D of Beckmann (Walter et al. 2007, Eq. 25), a Gaussian of slopes.
 std::function<double(const Direction& h)> beckmannNormals(double ax, double ay);
-/// Those of a model of microfacet.h with this D.
+/// Those of a model of microfacet.h with this D, a Gaussian of slopes or not.
 FacetNormals microfacetNormals(const Model& model, const Parameters& p,
                                std::function<double(const Direction& h)> density,
-                               const RoughnessOf<double>& roughness);
+                               const RoughnessOf<double>& roughness, bool gaussian);
 
 }  // namespace hshfit::brdfs

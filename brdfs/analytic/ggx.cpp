@@ -33,7 +33,7 @@ protected:
 std::unique_ptr<Brdf> make(const Parameters& p) {
     const Roughness roughness = roughnessOf(ggxModel(), p);
     return std::make_unique<WithFacetNormals<Ggx>>(
-        microfacetNormals(ggxModel(), p, ggxNormals(roughness.ax, roughness.ay), roughness),
+        microfacetNormals(ggxModel(), p, ggxNormals(roughness.ax, roughness.ay), roughness, false),
         ggxModel(), p, microfacetLaws(p, roughness), GgxShape<double>{roughness});
 }
 

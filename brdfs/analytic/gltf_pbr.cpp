@@ -13,6 +13,10 @@
 #include <array>
 #include <cmath>
 
+namespace hshfit::embedded {
+extern const std::string_view facet_smooth;
+}  // namespace hshfit::embedded
+
 namespace hshfit::brdfs {
 
 template <class N>
@@ -108,6 +112,17 @@ public:
     }
 };
 
+FacetText textOf(const Parameters& p) {
+    FacetText text = facetText({{"roughness", "roughnessFactor", p.number("roughnessFactor")},
+                                {"strength", "anisotropyStrength", p.number("anisotropyStrength")},
+                                {"strengthOfF0", "specularFactor", p.number("specularFactor")},
+                                {"ior", "ior", p.number("ior")},
+                                {"colour", "", largest(p.colour("specularColorFactor"))}},
+                               {"smith", "squared", "correlated", "schlick"});
+    text.smooth = embedded::facet_smooth;
+    return text;
+}
+
 std::unique_ptr<Brdf> make(const Parameters& p) {
     const GltfPbrShape<double> shape = shapeOf(p);
     // A coat is a second lobe, and sheen has a peak of its own.
@@ -119,7 +134,8 @@ std::unique_ptr<Brdf> make(const Parameters& p) {
                      .widthY = r.ay,
                      .turn = p.number("anisotropyRotation"),
                      .weights = channelWeights<GltfPbrFormula>(p),
-                     .ofLobe = {false, true, true, false, false}},
+                     .ofLobe = {false, true, true, false, false},
+                     .text = textOf(p)},
         p);
 }
 

@@ -15,13 +15,15 @@ namespace hshfit::jobs {
 namespace {
 
 /// The models that are sums of a smooth part and one lobe of microfacets, at any setting of theirs.
-std::vector<std::string_view> facetModels() {
+template <class Has>
+std::vector<std::string_view> modelsWith(const Has& has) {
     std::vector<std::string_view> names;
     for (const brdfs::Model& model : brdfs::models()) {
         for (const char* setting : {"", ":alpha=0.5", ":ax=0.5,ay=0.5"}) {
             try {
                 const auto brdf = brdfs::openModel(std::string(model.name) + setting);
-                if (dynamic_cast<const brdfs::HasFacetNormals*>(brdf.get()) == nullptr) continue;
+                const auto* facets = dynamic_cast<const brdfs::HasFacetNormals*>(brdf.get());
+                if (facets == nullptr || !has(facets->facetNormals())) continue;
                 names.push_back(model.name);
                 break;
             } catch (const UsageError&) {
@@ -30,6 +32,10 @@ std::vector<std::string_view> facetModels() {
         }
     }
     return names;
+}
+
+std::vector<std::string_view> facetModels() {
+    return modelsWith([](const brdfs::FacetNormals&) { return true; });
 }
 
 using Terms = std::array<double, brdfs::TermBatch::maxTerms>;
@@ -46,6 +52,11 @@ Terms termsOf(const FacetLobe& lobe, const Direction& wi, const Direction& wo) {
 }
 
 }  // namespace
+
+std::vector<std::string_view> closedFacetModels() {
+    return modelsWith(
+        [](const brdfs::FacetNormals& normals) { return !normals.text.terms.empty(); });
+}
 
 FacetLobe::FacetLobe(const std::string& specification)
     : brdf(brdfs::openModel(specification)),

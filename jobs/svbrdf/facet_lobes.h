@@ -10,9 +10,13 @@
 #include <memory>
 #include <shared_mutex>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hshfit::jobs {
+
+/// The models of facets whose lobe has a closed form in shaders.
+std::vector<std::string_view> closedFacetModels();
 
 /// A model as smooth part and lobe of microfacets, at one setting of its parameters.
 struct FacetLobe {

@@ -5,12 +5,11 @@
 #include <hshfit/brdf/vectors.h>
 #include <hshfit/error.h>
 #include <hshfit/filtered_maps/filtered_map.h>
-#include <hshfit/normal_filtering/surface_frame.h>
+#include <hshfit/filtered_maps/plain_texel.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 
 namespace hshfit::jobs {
@@ -38,17 +37,7 @@ public:
         table_ = lobes_.table(harmonics ? layout_.order : 3);
         texel_ = std::make_unique<FilteredTexel>(layout_, numbers_, *table_);
         if (level > 0) return;
-        base_ = std::make_unique<SurfaceTexel>(
-            SurfaceTexel{.normal = texel_->normal(),
-                         .tangent = texel_->tangentAt(texel_->normal()),
-                         .lobe = texel_->lobe()});
-        for (int k = 0; k < layout_.weights; ++k)
-            base_->weights[static_cast<std::size_t>(k)] =
-                numbers_[MipLayout::weight + static_cast<std::size_t>(k)];
-        // Albedo times Y_0 = 1 / sqrt(4 pi).
-        for (int k = 0; k < layout_.albedos; ++k)
-            base_->albedos[static_cast<std::size_t>(k)] =
-                numbers_[layout_.albedo(k)] * std::sqrt(4 * pi);
+        base_ = std::make_unique<PlainTexel>(surface_, layout_, *texel_, numbers_);
     }
 
     std::string name() const override { return name_; }
@@ -85,15 +74,10 @@ private:
     void evalOne(const Direction& wi, const Direction& wo, std::span<double> f) const {
         std::fill(f.begin(), f.end(), 0.0);
         if (!(wi.z > 0) || !(wo.z > 0)) return;
-        if (base_) {
-            const SurfaceFrame frame(base_->normal, base_->tangent);
-            const Direction i = frame.toLocal(wi), o = frame.toLocal(wo);
-            if (!(i.z > 0) || !(o.z > 0)) return;
-            surface_.brdf(*base_, i, o, f);
-            for (double& value : f) value *= i.z / wi.z;
-            return;
-        }
-        texel_->reflect(use_, surface_.rest, wi, wo, f, surface_.shape);
+        if (base_)
+            base_->reflect(wi, wo, f);
+        else
+            texel_->reflect(use_, surface_.rest, wi, wo, f, surface_.shape);
         for (double& value : f) value = std::min(value / wi.z, 1e300);
     }
 
@@ -108,7 +92,7 @@ private:
     MipUse use_;
     std::shared_ptr<const LobeTable> table_;
     std::unique_ptr<FilteredTexel> texel_;
-    std::unique_ptr<SurfaceTexel> base_;  ///< of level 0
+    std::unique_ptr<PlainTexel> base_;  ///< of level 0
 };
 
 }  // namespace

@@ -26,6 +26,10 @@ public:
     /// harmonics and the level is not 0, else layout.ellipseSize(). Throws UsageError for a texel
     /// or a level that the map does not have.
     std::vector<double> numbers(std::size_t level, std::size_t column, std::size_t row) const;
+    /// The textures as they are stored; of harmonics, whose first level is the map's level 1, none
+    /// in other forms.
+    const LevelTexture& texture() const { return texture_; }
+    const LevelTexture* harmonics() const { return harmonics_.get(); }
     /// Throws InputError if a texture file was changed since it was opened.
     void checkIntact() const;
 

@@ -6,6 +6,7 @@
 #include <hshfit/normal_filtering/lobe_table.h>
 #include <hshfit/normal_filtering/mip_layout.h>
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,10 @@ struct FilteredSidecar {
     std::vector<StoredLobe> lobes = {};  ///< [row][column] of nodes
     std::string source = {}, generator = {};
 
+    /// The levels of the texture of harmonics.
+    std::span<const LevelSize> harmonicLevels() const {
+        return harmonics.empty() ? std::span<const LevelSize>() : std::span(levels).subspan(1);
+    }
     std::size_t layers() const { return (layout.ellipseSize() + 3) / 4; }
     std::size_t harmonicLayers() const { return (layout.size() - layout.ellipseSize() + 3) / 4; }
 };

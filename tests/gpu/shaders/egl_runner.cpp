@@ -137,6 +137,11 @@ void upload(GLenum unit, const gpu::Texels& first, const std::vector<gpu::Texels
     set(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAX_LEVEL, static_cast<GLint>(levels.size()));
 }
 
+void uploadHarmonics(GLenum unit, const ShaderJob& job) {
+    if (job.harmonics.empty()) return;
+    upload(unit, job.harmonics[0], {job.harmonics.begin() + 1, job.harmonics.end()});
+}
+
 /// A 2-D texture of numbers, 3 or 1 of them a texel, to be fetched exactly.
 void uploadNumbers(GLenum unit, int width, int height, const std::vector<float>& numbers) {
     newTexture(unit, GL_TEXTURE_2D, GL_NEAREST);
@@ -197,6 +202,7 @@ std::vector<float> runOpenGl(const ShaderJob& job, const std::string& source) {
     uploadBlock(link({compile(GL_COMPUTE_SHADER, source)}), job);
     upload(0, job.payload.coefficients, job.levels);
     if (job.payload.basisTexels) upload(2, *job.payload.basisTexels);
+    uploadHarmonics(5, job);
     const std::vector<float> inputs = inputNumbers(job);
     std::vector<float> outputs(job.pairs.wo.size() * job.outputs());
     storage(3, inputs.size() * 4, inputs.data());
@@ -237,6 +243,8 @@ std::vector<float> runOpenGlEs(const ShaderJob& job, const std::string& source) 
     const std::vector<float> places(job.places.begin(), job.places.end());
     if (!places.empty()) uploadNumbers(6, side, side, places);
     setSampler(program, "places", 6);
+    uploadHarmonics(7, job);
+    setSampler(program, "hsh_harmonics", 7);
 
     GLuint frame = 0;
     GL(PFNGLGENFRAMEBUFFERSPROC, glGenFramebuffers)(1, &frame);

@@ -52,6 +52,8 @@ struct ShaderJob {
     /// before wo.
     std::vector<gpu::Texels> levels = {};
     std::vector<double> places = {};
+    /// Of a map of filtered lobes with harmonics: all levels of these, from the map's level 1 on.
+    std::vector<gpu::Texels> harmonics = {};
     std::vector<std::uint32_t> cells = {};  ///< the block of a form whose numbers are in a "table"
 
     std::size_t channels() const { return payload.head.channels.count(); }

@@ -41,6 +41,11 @@ std::vector<float> runVulkan(const ShaderJob& job, const std::vector<std::uint32
     if (!combined) resources.push_back({.binding = 1, .kind = Kind::sampler});
     if (job.payload.basisTexels)
         resources.push_back({.binding = 2, .kind = texture, .texels = *job.payload.basisTexels});
+    if (!job.harmonics.empty())
+        resources.push_back({.binding = 5,
+                             .kind = texture,
+                             .texels = job.harmonics[0],
+                             .levels = {job.harmonics.begin() + 1, job.harmonics.end()}});
     std::vector<float> found;
     {
         gpu::ComputeProgram program(*device, spirv, std::move(resources));

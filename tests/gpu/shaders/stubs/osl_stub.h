@@ -32,6 +32,15 @@ inline vector operator/(vector a, float b) {
 inline float dot(vector a, vector b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
+inline vector cross(vector a, vector b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline vector normalize(vector a) {
+    return a / stub::root(dot(a, a));
+}
+inline float ceil(float a) {
+    return __builtin_ceilf(a);
+}
 inline float step(float edge, float x) {
     return x < edge ? 0.0f : 1.0f;
 }

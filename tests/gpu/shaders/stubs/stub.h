@@ -45,7 +45,7 @@ struct Array {
 };
 
 struct Job {
-    Array coefficients, basis;
+    Array coefficients, basis, harmonics;
     int pairs, inputs, outputs;
     float* numbers;
     float* block;  ///< a uniform block, if there is one
@@ -84,6 +84,7 @@ int runAll(const char* from, const char* to, Evaluate evaluate) {
     if (file == nullptr) return 2;
     readArray(file, job.coefficients);
     readArray(file, job.basis);
+    readArray(file, job.harmonics);
     int length = 0;
     read(file, &length, 1);
     job.block = new float[static_cast<size_t>(length)];

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <hshfit/gpu/shader.h>
+#include <hshfit/gpu/viewer_light.h>
+#include <hshfit/material_maps/exports/map_export.h>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hshfit::jobs {
+
+/// A map of `svbrdf` as the exports take it.
+class ExportableMap {
+public:
+    virtual ~ExportableMap() = default;
+
+    /// What an answer says of the map; `order` is that of its basis or its harmonics, and basis and
+    /// outgoing directions are those of maps of coefficients, the model that of others.
+    struct Facts {
+        std::string source, form, basis = {}, outgoing = {}, model = {};
+        int order = 0;
+        std::vector<LevelSize> levels = {};
+        std::size_t layers = 0;
+        gpu::Number number = gpu::Number::float16;
+    };
+    virtual Facts facts() const = 0;
+    virtual std::vector<MapTest> tests() const = 0;
+    virtual std::vector<MapTextureFile> writeKtx2(const std::string& name,
+                                                  FileSet& files) const = 0;
+    virtual std::vector<MapTextureFile> writeExr(const std::string& name, FileSet& files) const = 0;
+    virtual std::string shader(gpu::Language language, const std::string& prefix,
+                               int environmentOrder) const = 0;
+    /// The page, with lights of `order` bands.
+    virtual std::string viewer(const std::string& title,
+                               const std::vector<gpu::ViewerLight>& lights, int order,
+                               std::span<const MapTest> tests) const = 0;
+    virtual std::string sidecar(std::span<const MapTextureFile> textures,
+                                std::span<const MapTest> tests) const = 0;
+    virtual std::string testText(std::span<const MapTest> tests) const = 0;
+    virtual void checkIntact() const = 0;
+};
+
+/// Opens a map of coefficients or of filtered lobes. Throws UsageError for a form without a shader
+/// and InputError.
+std::unique_ptr<ExportableMap> openExportable(const std::string& sidecar, Wrap wrap);
+
+}  // namespace hshfit::jobs
