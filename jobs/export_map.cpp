@@ -26,8 +26,8 @@ public:
           listener_(listener),
           wrap_(parseWrap(options.wrap)),
           chosen_(gpu::selectTargets(options.targets)),
-          lights_(lightsOf()),
           map_(openExportable(path, wrap_)),
+          lights_(lightsOf()),
           files_(folder, options.force) {
         result_.name =
             options.name.empty() ? std::filesystem::path(path).stem().string() : options.name;
@@ -71,6 +71,13 @@ private:
                                          Setting{"ExportOptions::lights"}, options_.targets));
         }
         std::vector<LightSpecification> lights;
+        if (!map_->takesLight()) {
+            if (options_.lights.empty()) return lights;
+            throw UsageError(
+                fmt::format("{}: a map of filtered lobes takes no light of an "
+                            "environment",
+                            Setting{"ExportOptions::lights"}));
+        }
         for (const std::string& text : options_.lights) lights.push_back(parseLights(text));
         if (lights.empty() && hasViewer())
             lights.push_back(parseLights(std::string(gpu::studioLight)));
@@ -135,8 +142,8 @@ private:
     const Listener& listener_;
     Wrap wrap_;
     std::vector<const Target*> chosen_;
-    std::vector<LightSpecification> lights_;
     std::unique_ptr<ExportableMap> map_;
+    std::vector<LightSpecification> lights_;
     FileSet files_;
     std::vector<MapTest> tests_;
     ExportedMap result_;

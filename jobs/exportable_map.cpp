@@ -118,9 +118,10 @@ public:
     std::string shader(gpu::Language language, const std::string& prefix, int) const override {
         return filteredShader(language, map_.sidecar(), text_, {.prefix = prefix, .wrap = wrap_});
     }
-    std::string viewer(const std::string&, const std::vector<gpu::ViewerLight>&, int,
-                       std::span<const MapTest>) const override {
-        throw UsageError("the target viewer does not take maps of filtered lobes");
+    bool takesLight() const override { return false; }
+    std::string viewer(const std::string& title, const std::vector<gpu::ViewerLight>&, int,
+                       std::span<const MapTest> tests) const override {
+        return filteredViewerPage(map_, text_, wrap_, title, tests);
     }
     std::string sidecar(std::span<const MapTextureFile> textures,
                         std::span<const MapTest> tests) const override {

@@ -32,6 +32,8 @@ public:
     virtual std::vector<MapTextureFile> writeExr(const std::string& name, FileSet& files) const = 0;
     virtual std::string shader(gpu::Language language, const std::string& prefix,
                                int environmentOrder) const = 0;
+    /// Whether shaders and the page take the light of an environment.
+    virtual bool takesLight() const { return true; }
     /// The page, with lights of `order` bands.
     virtual std::string viewer(const std::string& title,
                                const std::vector<gpu::ViewerLight>& lights, int order,

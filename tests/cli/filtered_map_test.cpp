@@ -127,21 +127,65 @@ TEST_F(FilteredMap, TexelsAreTheirModelInTurnedFrames) {
     }
 }
 
-/// A map has no shader; a projected texel has.
-TEST_F(FilteredMap, ExportNamesTheTexelThatCanBeExported) {
+/// Every file of an export keeps its schema, textures are the map's own, and test values are those
+/// of `eval` at centres of texels, times cos(theta_i).
+TEST_F(FilteredMap, ExportsKeepTheirSchemasAndTheirValuesAreThoseOfEval) {
+    writeVectors("n.pfm", 8, 4, [](int x, int y) {
+        return unit({0.3 * std::sin(x * 1.7), 0.2 * std::cos(y * 1.3), 1});
+    });
+    describe("ggx", {{"alpha", 0.5}, {"kd", 0.2}, {"ks", {0.9, 0.5, 0.1}}},
+             {{"normal", {{"map", "n.pfm"}}}});
+    for (const std::string form : {"ellipse", "harmonics --harmonics 9"}) {
+        ASSERT_EQ(made("-o " + path("map") + " --force --checks 0 --form " + form).code, 0);
+        const Answer answer =
+            run("export " + path("map/material.json") + " -o " + path("out") +
+                " --force --json --target ktx2,exr-parts,glsl-es,glsl,hlsl,wgsl,metal,osl");
+        ASSERT_EQ(answer.code, 0) << answer.err;
+        EXPECT_TRUE(keepsSchema(answer.out, "export_map"));
+        EXPECT_TRUE(keepsSchema(bytes("out/material.hsh.json"), "gpu_filtered_map"));
+        EXPECT_TRUE(keepsSchema(bytes("out/material_test.json"), "gpu_map_test"));
+        EXPECT_EQ(bytes("out/material.map.ktx2"), bytes("map/material.ktx2"));
+        if (form != "ellipse") {
+            EXPECT_EQ(bytes("out/material.harmonics.ktx2"), bytes("map/harmonics.ktx2"));
+        }
+        const Json tests = Json::parse(bytes("out/material_test.json"))["tests"];
+        ASSERT_EQ(tests.size(), 72U);
+        double largest = 0;
+        for (std::size_t k = 0; k < tests.size(); k += 9) {
+            const Json& test = tests[k];
+            const int level = test["lod"];
+            const auto at = [&](std::size_t axis, int side) {
+                return static_cast<int>(test["uv"][axis].get<double>() *
+                                        std::max(side >> level, 1));
+            };
+            const Vector wi = test["wi"], wo = test["wo"];
+            const double f = value(texel("map", at(0, 8), at(1, 4), level), wi, wo);
+            const double expected = test["value"][0];
+            EXPECT_NEAR(f * wi[2], expected, 1e-5 * (1 + expected)) << form << ' ' << k;
+            largest = std::max(largest, expected);
+        }
+        EXPECT_GT(largest, 0.01);
+    }
+}
+
+TEST_F(FilteredMap, ExportRefusesWhatFilteredMapsDoNotHave) {
     writeVectors("n.pfm", 2, 2, [](int x, int y) { return unit({0.1 * x, 0.1 * y, 1}); });
     describe("ggx", {{"alpha", 0.5}}, {{"normal", {{"map", "n.pfm"}}}});
-    ASSERT_EQ(made("-o " + path("out")).code, 0);
-    const Answer refused = run("export " + path("out/material.json") + " -o " + path("shader"));
-    EXPECT_EQ(refused.code, 2);
-    EXPECT_NE(refused.err.find(texel("out", 0, 0, 0)), std::string::npos) << refused.err;
-    EXPECT_FALSE(std::filesystem::exists(path("shader")));
-    ASSERT_EQ(run("project " + texel("out", 0, 0, 0) + " --order 3 --outgoing 4x4 -o " +
-                  path("texel.json"))
-                  .code,
-              0);
-    EXPECT_EQ(run("export " + path("texel.json") + " -o " + path("shader") + " --target glsl").code,
-              0);
+    ASSERT_EQ(made("-o " + path("map") + " --form ellipse").code, 0);
+    for (const char* more : {"--environment-order 3", "--light sky", "--order 3", "--target bin"}) {
+        const Answer answer =
+            run("export " + path("map/material.json") + " -o " + path("out") + " " + more);
+        EXPECT_EQ(answer.code, 2) << more << answer.err;
+        EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1) << answer.err;
+        EXPECT_FALSE(std::filesystem::exists(path("out"))) << more;
+    }
+    // A sidecar whose terms are not those of its model.
+    auto json = nlohmann::ordered_json::parse(bytes("map/material.json"));
+    json["terms"].push_back(json["terms"][0]);
+    std::ofstream(path("map/material.json")) << json;
+    const Answer answer = run("export " + path("map/material.json") + " -o " + path("out"));
+    EXPECT_EQ(answer.code, 3) << answer.err;
+    EXPECT_NE(answer.err.find("terms"), std::string::npos) << answer.err;
 }
 
 /// The mean of f over four texels, each exact.

@@ -9,15 +9,18 @@ import { fileURLToPath, pathToFileURL } from 'node:url';
 import { expect, finish, withBrowser } from './browser.mjs';
 
 const [driver, program] = process.argv.slice(2);
-const coin = join(dirname(fileURLToPath(import.meta.url)), '../../../examples/maps/coin.json');
+const maps = join(dirname(fileURLToPath(import.meta.url)), '../../../examples/maps');
+const coin = join(maps, 'coin.json');
 const forms = [
   ['outgoing', []],
   ['low-rank', []],
   ['clusters', ['--clusters', '64']],
+  ['ellipse', ['--checks', '0'], join(maps, 'bumpy.json')],
+  ['harmonics', ['--harmonics', '9', '--checks', '0'], join(maps, 'brushed.json')],
 ];
 
-function exported(folder, form, more, description = coin) {
-  const made = join(folder, description === coin ? form : `${form}_noise`);
+function exported(folder, form, more, description = coin, name = form) {
+  const made = join(folder, name);
   execFileSync(program, ['svbrdf', description, '-o', made, '--form', form, '--quiet', ...more]);
   execFileSync(program, ['export', join(made, 'material.json'), '-o', join(made, 'out'), '--target',
     'wgsl,viewer', '--quiet']);
@@ -49,13 +52,13 @@ async function compute({ wgsl, data }) {
   const device = await adapter.requestDevice();
   device.pushErrorScope('validation');
   const main = `
-@group(0) @binding(3) var<storage, read_write> inputs: array<f32>;
-@group(0) @binding(4) var<storage, read_write> outputs: array<f32>;
+@group(0) @binding(6) var<storage, read_write> inputs: array<f32>;
+@group(0) @binding(7) var<storage, read_write> outputs: array<f32>;
 @compute @workgroup_size(64) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let k = i32(id.x);
     if (k >= ${data.tests.length}) { return; }
     let n = 12 * k;
-    let q = hsh_evalRaw(vec2<f32>(inputs[n], inputs[n + 1]), inputs[n + 2],
+    let q = ${data.lights.length ? 'hsh_evalRaw' : 'hsh_eval'}(vec2<f32>(inputs[n], inputs[n + 1]), inputs[n + 2],
         vec3<f32>(inputs[n + 4], inputs[n + 5], inputs[n + 6]),
         vec3<f32>(inputs[n + 8], inputs[n + 9], inputs[n + 10]));
     for (var c = 0; c < 3; c++) { outputs[3 * k + c] = q[c]; }
@@ -88,14 +91,17 @@ async function compute({ wgsl, data }) {
   const size = 12 * data.tests.length, results = buffer(size, STORAGE | COPY_SRC);
   const entries = [
     { binding: 0, resource: texture(...formats[data.number], data.levels, data.layers) },
-    { binding: 3, resource: { buffer: inputs } },
-    { binding: 4, resource: { buffer: results } },
+    { binding: 6, resource: { buffer: inputs } },
+    { binding: 7, resource: { buffer: results } },
   ];
   if (data.form !== 'clusters')
     entries.push({ binding: 1, resource: device.createSampler({
       minFilter: 'linear', magFilter: 'linear', mipmapFilter: 'linear' }) });
   if (data.shared)
     entries.push({ binding: 2, resource: texture('rgba32float', 16, [data.shared], 1) });
+  if (data.harmonics)
+    entries.push({ binding: 3, resource: texture(...formats[data.number], data.harmonics.levels,
+      data.harmonics.layers) });
   const readable = buffer(size, MAP_READ | COPY_DST);
   const encoder = device.createCommandEncoder(), pass = encoder.beginComputePass();
   pass.setPipeline(pipeline);
@@ -189,7 +195,7 @@ async function proveLevels(page, folder) {
   const description = join(folder, 'noise.json');
   writeFileSync(description, JSON.stringify({ format: 'hshfit-svbrdf', version: 1, model: 'ggx',
     parameters: { kd: { map: 'noise.pfm' }, alpha: 0.5, ks: 0.1 } }));
-  const made = exported(folder, 'low-rank', [], description);
+  const made = exported(folder, 'low-rank', [], description, 'noise');
   await page.goto(pathToFileURL(made.page).href);
   await page.waitForFunction(() => window.mapPage !== undefined);
   const far = { exposure: -1, view: { azimuth: -90, elevation: 50, distance: 10 } };
@@ -212,8 +218,8 @@ await finish(async () => {
       path === '/' ? { contentType: 'text/html', body: '<title>check</title>' } : null;
     await withBrowser(driver, async (page, complaints) => {
       if (driver === 'webgpu') await page.goto('http://localhost/');
-      for (const [form, more] of forms) {
-        const made = exported(folder, form, more);
+      for (const [form, more, description] of forms) {
+        const made = exported(folder, form, more, description);
         if (driver !== 'webgpu') {
           await proveViewer(page, complaints, form, made);
           continue;

@@ -1,11 +1,14 @@
 #include <hshfit/filtered_maps/exports/filtered_export.h>
 
 #include <hshfit/files/json_fields.h>
+#include <hshfit/filtered_maps/exports/filtered_shader.h>
 #include <hshfit/filtered_maps/exports/lobe_numbers.h>
 #include <hshfit/gpu/containers/sidecar.h>
 #include <hshfit/material_maps/exports/map_json.h>
+#include <hshfit/material_maps/exports/map_viewer.h>
 #include <hshfit/version.h>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace hshfit::inline filtered_maps::inline exports {
@@ -148,6 +151,34 @@ std::string filteredExportText(const FilteredMap& map, Wrap wrap,
         {"files", filesJson(textures)},
         {"tests", testsJson(tests)}};
     return gpu::readableSidecar(jsonText(document));
+}
+
+std::string filteredViewerPage(const FilteredMap& map, const LobeText& lobe, Wrap wrap,
+                               const std::string& title, std::span<const MapTest> tests) {
+    const FilteredSidecar& s = map.sidecar();
+    const LevelSize& size = s.levels.front();
+    const LobeNumbers lobes = lobeNumbers(s);
+    const std::string order =
+        s.form == "harmonics" ? fmt::format(" of order {}", s.layout.order) : "";
+    MapPage page;
+    page.form = s.form;
+    page.title = title;
+    page.summary = fmt::format("{} x {} texels of {} in {} levels; form {}{}, {} layers of {}",
+                               size.width, size.height, s.model, s.levels.size(), s.form, order,
+                               s.layers() + s.harmonicLayers(), gpu::numberName(s.number));
+    page.map = storedLevels(map.texture(), s.levels, s.layers(), s.number);
+    page.shared = &lobes.texels;
+    page.channels = s.channels;
+    page.cosine = true;
+    page.wrap = wrap;
+    page.tests = tests;
+    page.snippet = filteredShader(gpu::Language::glslEs, s, lobe, {.wrap = wrap});
+    page.raw = "hsh_eval";
+    if (map.harmonics() != nullptr) {
+        page.harmonics =
+            storedLevels(*map.harmonics(), s.harmonicLevels(), s.harmonicLayers(), s.number);
+    }
+    return mapPage(page, "Fewer texels, and the form ellipse, are");
 }
 
 }  // namespace hshfit::inline filtered_maps::inline exports

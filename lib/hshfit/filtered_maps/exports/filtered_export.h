@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/files/file_set.h>
+#include <hshfit/filtered_maps/exports/lobe_text.h>
 #include <hshfit/filtered_maps/filtered_map.h>
 #include <hshfit/material_maps/exports/map_export.h>
 
@@ -22,5 +23,10 @@ std::vector<MapTextureFile> writeFilteredExr(const FilteredMap& map, const std::
 std::string filteredExportText(const FilteredMap& map, Wrap wrap,
                                std::span<const MapTextureFile> textures,
                                std::span<const MapTest> tests);
+
+/// One HTML page of `mapPage` with the map under a point light. Throws UsageError for a map of more
+/// than `mostViewerBytes` or of more layers than WebGL 2 has.
+std::string filteredViewerPage(const FilteredMap& map, const LobeText& lobe, Wrap wrap,
+                               const std::string& title, std::span<const MapTest> tests);
 
 }  // namespace hshfit::inline filtered_maps::inline exports

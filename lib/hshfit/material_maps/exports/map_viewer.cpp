@@ -12,6 +12,8 @@
 #include <kainjow/mustache.hpp>
 #include <nlohmann/json.hpp>
 
+#include <optional>
+
 namespace hshfit::embedded {
 extern const std::string_view map_page, map_page_style, map_page_main, map_page_renderer,
     map_page_vert, map_page_frag, map_page_check;
@@ -23,20 +25,24 @@ namespace {
 using Json = nlohmann::ordered_json;
 using kainjow::mustache::data;
 
-Json pageLevelsJson(const MaterialMap& map) {
+Json pageLevelsJson(const StoredLevels& stored) {
     Json levels = Json::array();
-    for (std::size_t k = 0; k < map.sidecar().levels.size(); ++k) {
-        levels.push_back({{"width", map.sidecar().levels[k].width},
-                          {"height", map.sidecar().levels[k].height},
-                          {"bytes", base64(map.level(k))}});
+    for (std::size_t k = 0; k < stored.levels.size(); ++k) {
+        levels.push_back({{"width", stored.levels[k].width},
+                          {"height", stored.levels[k].height},
+                          {"bytes", base64(stored.bytes(k))}});
     }
     return levels;
 }
 
-Json pageSharedJson(const MapSidecar& map) {
-    if (map.form == "outgoing") return nullptr;
-    const gpu::Texels texels = sharedNumbers(map).texels;
-    return {{"width", texels.width}, {"height", texels.height}, {"bytes", base64(texels.bytes)}};
+Json pageHarmonicsJson(const StoredLevels& stored) {
+    if (stored.levels.empty()) return nullptr;
+    return {{"layers", stored.layers}, {"levels", pageLevelsJson(stored)}};
+}
+
+Json pageSharedJson(const gpu::Texels* texels) {
+    if (texels == nullptr) return nullptr;
+    return {{"width", texels->width}, {"height", texels->height}, {"bytes", base64(texels->bytes)}};
 }
 
 /// [slot][R, G, B].
@@ -64,21 +70,19 @@ Json pageTestsJson(std::span<const MapTest> tests) {
     return rows;
 }
 
-void checkViewer(const MapViewerInput& input) {
+void checkPage(const MapPage& page, std::string_view smaller) {
     std::size_t bytes = 0;
-    for (std::size_t k = 0; k < input.map.sidecar().levels.size(); ++k)
-        bytes += input.map.level(k).size();
+    for (const StoredLevels* stored : {&page.map, &page.harmonics})
+        for (std::size_t k = 0; k < stored->levels.size(); ++k) bytes += stored->bytes(k).size();
     if (bytes > mostViewerBytes) {
-        throw UsageError(fmt::format(
-            "the texels are {} MB; a viewer holds at most {} MB. The forms low-rank and clusters "
-            "are smaller",
-            bytes / 1000000, mostViewerBytes / 1000000));
+        throw UsageError(
+            fmt::format("the texels are {} MB; a viewer holds at most {} MB. {} smaller",
+                        bytes / 1000000, mostViewerBytes / 1000000, smaller));
     }
-    if (input.lights.empty()) throw UsageError("a viewer needs a light");
-    for (const gpu::ViewerLight& light : input.lights) {
-        if (light.coefficients.order == input.order) continue;
+    for (const gpu::ViewerLight& light : page.lights) {
+        if (light.coefficients.order == page.order) continue;
         throw UsageError(fmt::format("{}: a light of {} bands in a viewer of {}", light.name,
-                                     light.coefficients.order, input.order));
+                                     light.coefficients.order, page.order));
     }
 }
 
@@ -92,40 +96,66 @@ std::string summaryOf(const MapSidecar& map) {
 
 }  // namespace
 
-std::string mapViewerPage(const MapViewerInput& input) {
-    checkViewer(input);
-    const MapSidecar& map = input.map.sidecar();
-    const std::string snippet = mapShader(gpu::Language::glslEs, map,
-                                          {.environmentOrder = input.order, .wrap = input.wrap});
-    const Json document = {{"form", map.form},
-                           {"channels", map.channels.count()},
-                           {"number", gpu::numberName(map.number)},
-                           {"layers", map.layers()},
+std::string mapPage(const MapPage& input, std::string_view smaller) {
+    checkPage(input, smaller);
+    const std::string check =
+        fmt::format("#define VALUE {}\n{}", input.raw, embedded::map_page_check);
+    const Json document = {{"form", input.form},
+                           {"channels", input.channels.count()},
+                           {"number", gpu::numberName(input.map.number)},
+                           {"layers", input.map.layers},
                            {"levels", pageLevelsJson(input.map)},
-                           {"shared", pageSharedJson(map)},
+                           {"harmonics", pageHarmonicsJson(input.harmonics)},
+                           {"shared", pageSharedJson(input.shared)},
                            {"wrap", wrapName(input.wrap)},
-                           {"cosine", map.quantity == Quantity::brdfCosine},
+                           {"cosine", input.cosine},
                            {"order", input.order},
                            {"lights", pageLightsJson(input.lights)},
                            {"tests", pageTestsJson(input.tests)},
                            {"shaders",
-                            {{"snippet", snippet},
+                            {{"snippet", input.snippet},
                              {"vertex", embedded::map_page_vert},
                              {"fragment", embedded::map_page_frag},
-                             {"check", embedded::map_page_check}}}};
+                             {"check", check}}}};
     data page;
     page.set("title", input.title);
-    page.set("summary", summaryOf(map));
+    page.set("summary", input.summary);
     page.set("generator", std::string("hshfit ") + version);
     page.set("style", livePageStyle(embedded::map_page_style));
-    page.set("lastLevel", std::to_string(map.levels.size() - 1));
+    page.set("lastLevel", std::to_string(input.map.levels.size() - 1));
     page.set("repeat", input.wrap == Wrap::repeat);
+    page.set("lit", !input.lights.empty());
     page.set("data", scriptSafe(jsonText(document)));
     page.set("script", std::string(gpu::harmonicsScript()) +
                            std::string(embedded::map_page_renderer) +
                            std::string(embedded::map_page_main));
     return printableLines(
         kainjow::mustache::mustache(std::string(embedded::map_page)).render(page));
+}
+
+std::string mapViewerPage(const MapViewerInput& input) {
+    if (input.lights.empty()) throw UsageError("a viewer needs a light");
+    const MapSidecar& map = input.map.sidecar();
+    std::optional<SharedNumbers> shared;
+    if (map.form != "outgoing") shared = sharedNumbers(map);
+    MapPage page;
+    page.form = map.form;
+    page.title = input.title;
+    page.summary = summaryOf(map);
+    page.map.levels = map.levels;
+    page.map.layers = map.layers();
+    page.map.number = map.number;
+    page.map.bytes = [&](std::size_t level) { return input.map.level(level); };
+    page.shared = shared ? &shared->texels : nullptr;
+    page.channels = map.channels;
+    page.cosine = map.quantity == Quantity::brdfCosine;
+    page.wrap = input.wrap;
+    page.lights = input.lights;
+    page.order = input.order;
+    page.tests = input.tests;
+    page.snippet = mapShader(gpu::Language::glslEs, map,
+                             {.environmentOrder = input.order, .wrap = input.wrap});
+    return mapPage(page, "The forms low-rank and clusters are");
 }
 
 }  // namespace hshfit::inline material_maps::inline exports

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <hshfit/gpu/viewer_light.h>
+#include <hshfit/material_maps/exports/map_export.h>
 #include <hshfit/material_maps/exports/map_sampler.h>
 #include <hshfit/material_maps/material_map.h>
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hshfit::inline material_maps::inline exports {
@@ -27,5 +29,22 @@ struct MapViewerInput {
 /// Throws UsageError for a map of more than `mostViewerBytes`, of more layers than WebGL 2 has, or
 /// without a light.
 std::string mapViewerPage(const MapViewerInput& input);
+
+/// What the page needs of a map of any kind.
+struct MapPage {
+    std::string form, title, summary;
+    StoredLevels map = {}, harmonics = {};  ///< the latter without levels: none
+    const gpu::Texels* shared = nullptr;
+    Channels channels = {};
+    bool cosine = false;  ///< whether values are f cos(theta_i)
+    Wrap wrap = Wrap::clamp;
+    std::vector<gpu::ViewerLight> lights = {};  ///< none: the snippet has no `shadeWorld`
+    int order = 5;                              ///< of their bands
+    std::span<const MapTest> tests = {};
+    std::string snippet = {};         ///< in GLSL ES, with the prefix hsh
+    std::string raw = "hsh_evalRaw";  ///< the function that tests are of
+};
+/// The page. Throws UsageError as `mapViewerPage`, naming `smaller` as forms with fewer texels.
+std::string mapPage(const MapPage& page, std::string_view smaller);
 
 }  // namespace hshfit::inline material_maps::inline exports

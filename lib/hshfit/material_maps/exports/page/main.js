@@ -25,8 +25,9 @@ function halvesOf() {
   return [Math.min(1, width / height), Math.min(1, height / width)];
 }
 
-// The environment, turned about the vertical.
+// The environment, turned about the vertical; null of a map that takes none.
 function environmentNow() {
+  if (data.lights.length === 0) return null;
   const c = Math.cos(radians(state.turn)), s = Math.sin(radians(state.turn));
   const turned = rotated(data.order, [c, -s, 0, s, c, 0, 0, 0, 1],
     data.lights[state.light].coefficients);
@@ -82,7 +83,7 @@ function show() {
     element(`${id}Text`).textContent = text;
   }
   element('shape').value = state.shape;
-  element('light').value = state.light;
+  if (element('light')) element('light').value = state.light;
   element('automatic').checked = state.automatic;
   element('coloured').checked = state.coloured;
   element('level').disabled = state.automatic;
@@ -156,7 +157,7 @@ function listen() {
   window.addEventListener('resize', resize);
 }
 
-data.lights.forEach((light, k) => element('light').add(new Option(light.name, k)));
+data.lights.forEach((light, k) => element('light')?.add(new Option(light.name, k)));
 try {
   renderer = new MapRenderer(canvas, data);
   listen();

@@ -1,7 +1,9 @@
 // A plane of the map's proportions in z = 0, or the unit sphere, seen by rays. The world has +z up.
 uniform vec2 size, halves;
 uniform vec3 eye, right, up, back, lamp;
+#if ENVIRONMENT > 0
 uniform vec3 environment[ENVIRONMENT];
+#endif
 uniform float slope, lampStrength, exposure, fixedLevel, repeats;
 uniform int shape;
 uniform bool automatic, coloured;
@@ -69,7 +71,9 @@ void main() {
     f *= max(localWi.z, 0.0);
 #endif
     vec3 light = f * lampStrength / dot(toLamp, toLamp);
+#if ENVIRONMENT > 0
     light += max(hsh_shadeWorld(uv, lod, -ray, t, b, n, environment), 0.0);
+#endif
     light *= exp2(exposure);
     if (coloured) light = 0.25 * light + 0.75 * levelColour(lod);
     vec3 codes = mix(1.055 * pow(max(light, 0.0), vec3(1.0 / 2.4)) - 0.055, 12.92 * light,

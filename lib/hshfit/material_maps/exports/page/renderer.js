@@ -13,9 +13,11 @@ class MapRenderer {
     if (data.number === 'float32' && data.form !== 'clusters'
       && !gl.getExtension('OES_texture_float_linear'))
       throw new Error('This browser does not blend texels of float32; the map has to be float16.');
-    if (data.layers > gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS))
-      throw new Error(`The map has ${data.layers} layers, more than this browser takes.`);
-    this.map = this.mapTexture();
+    const layers = Math.max(data.layers, data.harmonics?.layers ?? 0);
+    if (layers > gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS))
+      throw new Error(`The map has ${layers} layers, more than this browser takes.`);
+    this.map = this.levelsTexture(0, data);
+    this.harmonics = data.harmonics ? this.levelsTexture(4, data.harmonics) : null;
     this.shared = data.shared ? this.sharedTexture() : null;
     this.view = this.program(data.shaders.fragment);
   }
@@ -32,11 +34,12 @@ class MapRenderer {
     return texture;
   }
 
-  mapTexture() {
+  // The levels of the map, or of its harmonics.
+  levelsTexture(unit, { levels, layers }) {
     const { gl, data } = this;
     const clusters = data.form === 'clusters', array = gl.TEXTURE_2D_ARRAY;
     const wrap = data.wrap === 'repeat' ? gl.REPEAT : gl.CLAMP_TO_EDGE;
-    const texture = this.newTexture(0, array,
+    const texture = this.newTexture(unit, array,
       clusters ? gl.NEAREST_MIPMAP_NEAREST : gl.LINEAR_MIPMAP_LINEAR,
       clusters ? gl.NEAREST : gl.LINEAR, wrap);
     const [format, type, Numbers] = {
@@ -44,13 +47,13 @@ class MapRenderer {
       float32: [gl.RGBA32F, gl.FLOAT, Float32Array],
       unorm8: [gl.RGBA8, gl.UNSIGNED_BYTE, Uint8Array],
     }[data.number];
-    const [first] = data.levels;
-    gl.texStorage3D(array, data.levels.length, format, first.width, first.height, data.layers);
-    data.levels.forEach((level, k) => {
-      gl.texSubImage3D(array, k, 0, 0, 0, level.width, level.height, data.layers, gl.RGBA, type,
+    const [first] = levels;
+    gl.texStorage3D(array, levels.length, format, first.width, first.height, layers);
+    levels.forEach((level, k) => {
+      gl.texSubImage3D(array, k, 0, 0, 0, level.width, level.height, layers, gl.RGBA, type,
         new Numbers(bytesOf(level.bytes).buffer));
     });
-    gl.texParameteri(array, gl.TEXTURE_MAX_LEVEL, data.levels.length - 1);
+    gl.texParameteri(array, gl.TEXTURE_MAX_LEVEL, levels.length - 1);
     return texture;
   }
 
@@ -66,7 +69,7 @@ class MapRenderer {
   program(fragment) {
     const { gl, data } = this;
     const program = gl.createProgram();
-    const defines = `#define ENVIRONMENT ${data.order * data.order}\n`
+    const defines = `#define ENVIRONMENT ${data.lights.length ? data.order * data.order : 0}\n`
       + (data.cosine ? '#define COSINE_INCLUDED\n' : '');
     const add = (type, text) => {
       const shader = gl.createShader(type);
@@ -90,7 +93,9 @@ class MapRenderer {
     gl.useProgram(program);
     gl.uniform1i(gl.getUniformLocation(program, 'hsh_map'), 0);
     gl.uniform1i(gl.getUniformLocation(program, 'hsh_shared'), 1);
+    gl.uniform1i(gl.getUniformLocation(program, 'hsh_harmonics'), 4);
     for (const [name, value] of Object.entries(uniforms)) {
+      if (value === null) continue;
       const at = gl.getUniformLocation(program, name);
       if (value.whole !== undefined) gl.uniform1i(at, value.whole);
       else if (typeof value === 'number') gl.uniform1f(at, value);
