@@ -25,9 +25,8 @@ function halvesOf() {
   return [Math.min(1, width / height), Math.min(1, height / width)];
 }
 
-// The environment, turned about the vertical; null of a map that takes none.
+// The environment, turned about the vertical.
 function environmentNow() {
-  if (data.lights.length === 0) return null;
   const c = Math.cos(radians(state.turn)), s = Math.sin(radians(state.turn));
   const turned = rotated(data.order, [c, -s, 0, s, c, 0, 0, 0, 1],
     data.lights[state.light].coefficients);
@@ -46,7 +45,7 @@ function uniformsNow() {
     up: crossed(back, right),
     back,
     lamp: towards(state.azimuth, state.elevation, 2),
-    environment: environmentNow(),
+    ...(data.lights.length ? { environment: environmentNow() } : { fill: state.share }),
     slope,
     lampStrength: state.lamp,
     exposure: state.exposure,

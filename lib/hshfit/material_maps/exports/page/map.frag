@@ -3,6 +3,8 @@ uniform vec2 size, halves;
 uniform vec3 eye, right, up, back, lamp;
 #if ENVIRONMENT > 0
 uniform vec3 environment[ENVIRONMENT];
+#else
+uniform float fill;
 #endif
 uniform float slope, lampStrength, exposure, fixedLevel, repeats;
 uniform int shape;
@@ -73,6 +75,13 @@ void main() {
     vec3 light = f * lampStrength / dot(toLamp, toLamp);
 #if ENVIRONMENT > 0
     light += max(hsh_shadeWorld(uv, lod, -ray, t, b, n, environment), 0.0);
+#else
+    // Eight lamps far away, towards the corners of a cube.
+    for (int k = 0; k < 8 && fill > 0.0; ++k) {
+        vec3 d = (vec3(k & 1, (k >> 1) & 1, k >> 2) * 2.0 - 1.0) * 0.577350269;
+        vec3 local = vec3(dot(d, t), dot(d, b), dot(d, n));
+        light += fill * vec3(hsh_eval(uv, lod, localWo, local));
+    }
 #endif
     light *= exp2(exposure);
     if (coloured) light = 0.25 * light + 0.75 * levelColour(lod);

@@ -95,7 +95,6 @@ class MapRenderer {
     gl.uniform1i(gl.getUniformLocation(program, 'hsh_shared'), 1);
     gl.uniform1i(gl.getUniformLocation(program, 'hsh_harmonics'), 4);
     for (const [name, value] of Object.entries(uniforms)) {
-      if (value === null) continue;
       const at = gl.getUniformLocation(program, name);
       if (value.whole !== undefined) gl.uniform1i(at, value.whole);
       else if (typeof value === 'number') gl.uniform1f(at, value);
