@@ -268,7 +268,7 @@ TEST(FilteredShader, FaultsShow) {
     }
 }
 
-/// What a shader is held against is, at centres of texels, what `eval` says of them.
+/// The reference of these tests agrees with `eval` at centres of texels.
 TEST(FilteredShader, CentresAreTheTexelsThatOpenAsBrdfs) {
     for (const Proof& proof : proofs()) {
         const FilteredMap& map = proof.written->map;

@@ -1,8 +1,7 @@
 #pragma once
 
+#include <hshfit/files/json_fields.h>
 #include <hshfit/material_maps/exports/map_export.h>
-
-#include <nlohmann/json.hpp>
 
 #include <span>
 

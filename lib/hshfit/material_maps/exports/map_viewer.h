@@ -30,7 +30,7 @@ struct MapViewerInput {
 /// without a light.
 std::string mapViewerPage(const MapViewerInput& input);
 
-/// What the page needs of a map of any kind.
+/// A map of any kind as the page takes it.
 struct MapPage {
     std::string form, title, summary;
     StoredLevels map = {}, harmonics = {};  ///< the latter without levels: none
