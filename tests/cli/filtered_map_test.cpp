@@ -179,13 +179,16 @@ TEST_F(FilteredMap, ExportRefusesWhatFilteredMapsDoNotHave) {
         EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1) << answer.err;
         EXPECT_FALSE(std::filesystem::exists(path("out"))) << more;
     }
-    // A sidecar whose terms are not those of its model.
-    auto json = nlohmann::ordered_json::parse(bytes("map/material.json"));
-    json["terms"].push_back(json["terms"][0]);
-    std::ofstream(path("map/material.json")) << json;
-    const Answer answer = run("export " + path("map/material.json") + " -o " + path("out"));
-    EXPECT_EQ(answer.code, 3) << answer.err;
-    EXPECT_NE(answer.err.find("terms"), std::string::npos) << answer.err;
+    // A sidecar whose terms are not those of its model, or whose lobes are not those of its nodes.
+    const auto whole = nlohmann::ordered_json::parse(bytes("map/material.json"));
+    for (const char* key : {"terms", "lobes"}) {
+        auto json = whole;
+        json[key].push_back(json[key][0]);
+        std::ofstream(path("map/material.json")) << json;
+        const Answer answer = run("export " + path("map/material.json") + " -o " + path("out"));
+        EXPECT_EQ(answer.code, 3) << answer.err;
+        EXPECT_NE(answer.err.find(key), std::string::npos) << answer.err;
+    }
 }
 
 /// The mean of f over four texels, each exact.

@@ -158,6 +158,9 @@ FilteredSidecar readFilteredSidecar(const std::string& file) {
             harmonics.fail(fmt::format("has to be {}", s.harmonicLayers()), "layers");
     }
     for (const JsonFields& lobe : root.objects("lobes")) s.lobes.push_back(lobeOf(lobe));
+    std::size_t nodes = 1;
+    for (const LobeNodes& parameter : s.nodes) nodes *= parameter.values.size();
+    if (s.lobes.size() != nodes) root.fail(fmt::format("has to be {}", nodes), "lobes");
     s.source = root.word("source");
     s.generator = root.word("generator");
     return s;

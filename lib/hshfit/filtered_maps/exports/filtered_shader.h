@@ -16,8 +16,7 @@ struct FilteredShaderOptions {
 /// A snippet for a map of filtered lobes, beside its textures and LobeNumbers:
 ///     PREFIX_eval(uv, lod, wo, wi)  f cos(theta_i) as FilteredSampler gives it
 ///     PREFIX_level(dx, dy)          the level where uv changes by dx and dy from pixel to pixel
-/// Throws UsageError for a map that the language cannot take, with the reason, and InputError for a
-/// sidecar that contradicts itself.
+/// Throws UsageError for a map that the language cannot take, with the reason.
 std::string filteredShader(gpu::Language language, const FilteredSidecar& map, const LobeText& lobe,
                            const FilteredShaderOptions& options);
 

@@ -1,11 +1,9 @@
 #include <hshfit/filtered_maps/exports/lobe_numbers.h>
 
-#include <hshfit/error.h>
 #include <hshfit/material_maps/exports/shared_numbers.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <cassert>
 #include <vector>
 
 namespace hshfit::inline filtered_maps::inline exports {
@@ -15,10 +13,7 @@ LobeNumbers lobeNumbers(const FilteredSidecar& map) {
         return k < map.nodes.size() ? map.nodes[k].values.size() : std::size_t{1};
     };
     LobeNumbers made{nodesOf(0), nodesOf(1)};
-    if (map.lobes.size() != made.nodes()) {
-        throw InputError(fmt::format("the map states {} lobes; its parameters have {} nodes",
-                                     map.lobes.size(), made.nodes()));
-    }
+    assert(map.lobes.size() == made.nodes());
     for (const StoredLobe& lobe : map.lobes)
         made.gaussians = std::max(made.gaussians, lobe.gaussians.peaks.size());
     constexpr std::size_t width = SharedNumbers::width;

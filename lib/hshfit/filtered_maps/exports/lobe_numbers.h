@@ -18,7 +18,6 @@ struct LobeNumbers {
     std::size_t nodes() const { return rows * columns; }
 };
 
-/// Throws InputError for a sidecar with another number of lobes than nodes.
 LobeNumbers lobeNumbers(const FilteredSidecar& map);
 
 }  // namespace hshfit::inline filtered_maps::inline exports
