@@ -11,18 +11,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json trialsJson(const brdfs::PartSearch& search) {
-    Json trials = Json::array();
-    for (const brdfs::PartTrial& trial : search.trials) {
-        trials.push_back({{"parts", trial.parts}, {"taken", trial.taken}});
-        if (trial.failure.empty())
-            trials.back()["held_out_rms"] = trial.heldOut;
-        else
-            trials.back()["failure"] = trial.failure;
-    }
-    return trials;
-}
-
 Json document(const jobs::ExportedMaterials& exported, const std::string& folder) {
     Json document = {{"format", "hshfit-export-materials"},
                      {"version", 1},
@@ -37,7 +25,8 @@ Json document(const jobs::ExportedMaterials& exported, const std::string& folder
                      {"bytes", file.bytes},   {"spec", file.spec},
                      {"fitted", file.fitted}, {"converged", file.converged}};
         if (file.search) {
-            json["parts"] = {{"chosen", file.search->parts}, {"trials", trialsJson(*file.search)}};
+            json["parts"] = {{"chosen", file.search->parts},
+                             {"trials", brdfs::trialsJson(*file.search)}};
         }
         json["loss"] = file.loss ? jobs::lossJson(*file.loss) : Json{{"reason", file.reason}};
         document["files"].push_back(std::move(json));
@@ -56,11 +45,8 @@ std::string text(const jobs::ExportedMaterials& exported, const std::string& fol
         if (!file.converged) out += "  the fit did not converge\n";
         if (file.search) {
             for (const brdfs::PartTrial& trial : file.search->trials)
-                out +=
-                    trial.failure.empty()
-                        ? fmt::format("  extensions {}: held out {:.6g}{}\n", nameOf(trial.parts),
-                                      trial.heldOut, trial.taken ? ", taken" : "")
-                        : fmt::format("  extensions {}: {}\n", nameOf(trial.parts), trial.failure);
+                out += fmt::format("  extensions {}: {}\n", nameOf(trial.parts),
+                                   brdfs::outcomeOf(trial));
         }
         if (!file.loss) {
             out += fmt::format("  no loss: {}\n", file.reason);

@@ -73,10 +73,7 @@ std::string text(const jobs::Fitted& fitted, const FitArguments& arguments) {
             const std::string name = trial.parts.empty()
                                          ? "no extension"
                                          : fmt::format("{}", fmt::join(trial.parts, " + "));
-            lines += trial.failure.empty()
-                         ? fmt::format("  {:<40} held out {:.6g}{}\n", name, trial.heldOut,
-                                       trial.taken ? ", taken" : "")
-                         : fmt::format("  {:<40} {}\n", name, trial.failure);
+            lines += fmt::format("  {:<40} {}\n", name, brdfs::outcomeOf(trial));
         }
     }
     for (const auto& set : result.ambiguous)

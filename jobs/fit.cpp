@@ -160,17 +160,9 @@ std::optional<brdfs::PartSearch> restrictParts(const FitOptions& options,
 }
 
 nlohmann::ordered_json searchJson(const brdfs::PartSearch& search) {
-    nlohmann::ordered_json trials = nlohmann::ordered_json::array();
-    for (const brdfs::PartTrial& trial : search.trials) {
-        trials.push_back({{"parts", trial.parts}, {"taken", trial.taken}});
-        if (trial.failure.empty())
-            trials.back()["held_out_rms"] = trial.heldOut;
-        else
-            trials.back()["failure"] = trial.failure;
-    }
     return {{"chosen", search.parts},
             {"least_gain", brdfs::PartOptions{}.leastGain},
-            {"trials", trials}};
+            {"trials", brdfs::trialsJson(search)}};
 }
 
 /// Wider models than that of a poor fit, fitted in brief: a second lobe, and sums of the catalog

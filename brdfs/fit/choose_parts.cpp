@@ -2,11 +2,15 @@
 
 #include <brdfs/fit/compare_models.h>
 #include <brdfs/fit/free_parameters.h>
+#include <brdfs/fit/parametric_sum.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 namespace hshfit::brdfs {
 namespace {
@@ -44,6 +48,75 @@ bool isFree(const Model& model, const ModelPart& part, const Parameters& stated,
     });
 }
 
+struct Fitted {
+    PartTrial trial = {};
+    FitOptions options = {};
+    FitResult result = {};
+};
+
+/// Fits of a model with some of its parts.
+class Trials {
+public:
+    Trials(const FitSamples& samples, const FitOptions& fit, const PartOptions& options,
+           std::size_t most)
+        : samples_(samples), fit_(fit), options_(options), most_(most) {}
+
+    /// To all samples. `before`: a fit with fewer parts, of which the shapes start where it ended.
+    Fitted fitted(std::vector<std::string> parts, const Fitted* before) {
+        Fitted own;
+        own.trial.parts = std::move(parts);
+        own.options = fit_;
+        own.options.model = withParts(fit_.model, own.trial.parts);
+        own.options.progress = {};
+        own.options.uncertainty = {};
+        own.options.starts = std::max(1, fit_.starts / 4);
+        // Along a level valley a search goes on for long after the held-out error has settled.
+        own.options.iterations = std::min(fit_.iterations, 30);
+        if (before) own.options.from = startOf(own.options, *before);
+        try {
+            own.result = brdfs::fit(samples_, own.options);
+            own.trial.loss = own.result.loss;
+        } catch (const NumericError& error) {
+            own.trial.failure = error.what();
+        }
+        if (options_.progress) options_.progress(++done_, most_);
+        return own;
+    }
+
+    void holdOut(Fitted& own) const {
+        if (!own.trial.failure.empty()) return;
+        try {
+            own.trial.heldOut = heldOutLoss(samples_, own.result, own.options);
+        } catch (const NumericError& error) {
+            own.trial.failure = error.what();
+        }
+    }
+
+private:
+    /// Values of the shapes by which models with and without a part are told, NaN for new ones.
+    std::vector<double> startOf(const FitOptions& own, const Fitted& before) const {
+        const std::vector<double> known = shapesOf(before.result, before.options, samples_);
+        if (known.empty()) return {};
+        const ParametricSum sum(own.model, samples_.isotropic),
+            last(before.options.model, samples_.isotropic);
+        std::vector<double> from;
+        for (const ShapeParameter& shape : sum.shapes()) {
+            const auto same =
+                std::ranges::find(last.shapes(), shape.free.keys,
+                                  [](const ShapeParameter& s) { return s.free.keys; });
+            from.push_back(same == last.shapes().end()
+                               ? std::numeric_limits<double>::quiet_NaN()
+                               : known[static_cast<std::size_t>(same - last.shapes().begin())]);
+        }
+        return from;
+    }
+
+    const FitSamples& samples_;
+    const FitOptions& fit_;
+    const PartOptions& options_;
+    std::size_t most_, done_ = 0;
+};
+
 }  // namespace
 
 const Model* modelWithParts(std::string_view spec) {
@@ -72,49 +145,65 @@ std::string withParts(std::string_view spec, const std::vector<std::string>& par
 PartSearch chooseParts(const FitSamples& all, const FitOptions& fit, const PartOptions& options) {
     const Model* model = modelWithParts(fit.model);
     if (!model) throw UsageError(fmt::format("'{}': no model with optional parts", fit.model));
-    const FitSamples samples =
-        all.size() > options.samples ? all.drawn(options.samples, fit.seed) : all;
+    const FitSamples samples = all.fewer                      ? *all.fewer
+                               : all.size() > options.samples ? all.drawn(options.samples, fit.seed)
+                                                              : all;
     const Parameters stated = statedIn(fit.model, *model);
     std::vector<std::string> open;
     for (const ModelPart& part : model->parts)
         if (isFree(*model, part, stated, samples.isotropic)) open.emplace_back(part.name);
-    std::size_t done = 0;
-    const std::size_t most = 1 + open.size() * (open.size() + 1) / 2;
-    const auto tried = [&](std::vector<std::string> parts) {
-        FitOptions how = fit;
-        how.progress = {};
-        how.uncertainty = {};
-        how.starts = std::max(1, fit.starts / 4);
-        // Along a level valley a search goes on for long after the held-out error has settled.
-        how.iterations = std::min(fit.iterations, 30);
-        const std::vector<std::string> specs{withParts(fit.model, parts)};
-        const ModelRank rank = compareModels(samples, specs, how).front();
-        if (options.progress) options.progress(++done, most);
-        return PartTrial{std::move(parts), rank.heldOut, false, rank.failure};
-    };
+    Trials trials(samples, fit, options, 1 + open.size() * (open.size() + 1) / 2);
     PartSearch search;
-    search.trials.push_back(tried({}));
-    search.trials.back().taken = true;
-    if (!search.trials.back().failure.empty()) return search;
-    double best = search.trials.back().heldOut;
-    while (!open.empty()) {
-        std::optional<std::size_t> winner;
+    Fitted current = trials.fitted({}, nullptr);
+    trials.holdOut(current);
+    current.trial.taken = true;
+    search.trials.push_back(current.trial);
+    while (current.trial.failure.empty() && !open.empty()) {
+        std::vector<Fitted> wider;
         for (const std::string& name : open) {
             std::vector<std::string> parts = search.parts;
             parts.push_back(name);
-            search.trials.push_back(tried(std::move(parts)));
-            const PartTrial& trial = search.trials.back();
-            if (trial.failure.empty() &&
-                (!winner || trial.heldOut < search.trials[*winner].heldOut))
-                winner = search.trials.size() - 1;
+            wider.push_back(trials.fitted(std::move(parts), &current));
         }
-        if (!winner || search.trials[*winner].heldOut > (1 - options.leastGain) * best) break;
-        search.trials[*winner].taken = true;
-        best = search.trials[*winner].heldOut;
-        search.parts = search.trials[*winner].parts;
+        std::ranges::stable_sort(wider, {}, [](const Fitted& own) {
+            return std::pair(!own.trial.failure.empty(), own.trial.loss);
+        });
+        const double least = 1 - options.leastGain;
+        const auto taken = std::ranges::find_if(wider, [&](Fitted& own) {
+            if (!own.trial.failure.empty() || own.trial.loss > least * current.trial.loss)
+                return false;
+            trials.holdOut(own);
+            own.trial.taken =
+                own.trial.heldOut && *own.trial.heldOut <= least * *current.trial.heldOut;
+            return own.trial.taken;
+        });
+        for (const Fitted& own : wider) search.trials.push_back(own.trial);
+        if (taken == wider.end()) break;
+        current = std::move(*taken);
+        search.parts = current.trial.parts;
         std::erase(open, search.parts.back());
     }
     return search;
+}
+
+nlohmann::ordered_json trialsJson(const PartSearch& search) {
+    nlohmann::ordered_json trials = nlohmann::ordered_json::array();
+    for (const PartTrial& trial : search.trials) {
+        trials.push_back({{"parts", trial.parts}, {"taken", trial.taken}});
+        if (!trial.failure.empty()) {
+            trials.back()["failure"] = trial.failure;
+            continue;
+        }
+        trials.back()["rms"] = trial.loss;
+        if (trial.heldOut) trials.back()["held_out_rms"] = *trial.heldOut;
+    }
+    return trials;
+}
+
+std::string outcomeOf(const PartTrial& trial) {
+    if (!trial.failure.empty()) return trial.failure;
+    if (!trial.heldOut) return fmt::format("rms {:.6g}, not held out", trial.loss);
+    return fmt::format("held out {:.6g}{}", *trial.heldOut, trial.taken ? ", taken" : "");
 }
 
 }  // namespace hshfit::brdfs

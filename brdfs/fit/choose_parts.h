@@ -3,6 +3,8 @@
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit.h>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <functional>
 #include <optional>
 #include <string>
@@ -22,9 +24,12 @@ const Model* modelWithParts(std::string_view spec);
 /// One step of a search for parts.
 struct PartTrial {
     std::vector<std::string> parts;  ///< in the model
-    double heldOut = 0;              ///< ModelRank::heldOut
-    bool taken = false;              ///< the search went on from here
-    std::string failure = {};        ///< why there is no fit
+    double loss = 0;                 ///< FitResult::loss
+    /// ModelRank::heldOut; none where the loss itself falls by less than `leastGain`, which it does
+    /// not beyond the samples that were fitted either.
+    std::optional<double> heldOut = {};
+    bool taken = false;        ///< the search went on from here
+    std::string failure = {};  ///< why there is no fit
 };
 
 struct PartSearch {
@@ -36,14 +41,21 @@ struct PartOptions {
     /// A part is worth it if it lowers the held-out loss by this share. Folds of the same data
     /// differ by less.
     double leastGain = 0.02;
-    /// Samples that the search draws; the fit that follows takes all.
+    /// Samples that the search draws, of others than pixels, which have FitSamples::fewer; the fit
+    /// that follows takes all.
     std::size_t samples = 4096;
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
 
-/// Adds the part that lowers the held-out loss (compare_models.h) most, again and again, while it
-/// gains `leastGain`. Parts whose parameters are all held or stated are not tried.
+/// Adds the part that lowers the loss most among those that lower the held-out loss
+/// (compare_models.h) by `leastGain`, again and again. Each fit starts at the one without the part.
+/// Parts whose parameters are all held or stated are not tried.
 PartSearch chooseParts(const FitSamples& samples, const FitOptions& fit,
                        const PartOptions& options = {});
+
+/// The steps of a search, in the form of docs/schemas/fit.schema.json.
+nlohmann::ordered_json trialsJson(const PartSearch& search);
+/// "held out 0.0274, taken", the loss where it fell too little for that, or the failure.
+std::string outcomeOf(const PartTrial& trial);
 
 }  // namespace hshfit::brdfs

@@ -85,22 +85,11 @@ void addSquares(const std::vector<double>& f, const FitSamples& held, Loss::Kind
         }
 }
 
-/// The values of the shapes of a fit in which channels share them; empty for others, and without
-/// shapes.
-std::vector<double> shapesOf(const FitResult& fit, const FitOptions& options, bool isotropic) {
-    if (options.perChannel || options.instrument.any() || fit.point.channels.empty()) return {};
-    if (!options.dispersion.empty() || namesMetals(options.model)) return {};
-    const std::vector<double>& values = fit.point.channels.front().values;
-    const auto count =
-        static_cast<std::ptrdiff_t>(ParametricSum(options.model, isotropic).shapes().size());
-    return {values.begin(), values.begin() + count};
-}
-
 /// The loss at each fold of a fit to the others. These fits start at `whole`, that to all samples.
-HeldOut heldOutLoss(const FitSamples& samples, const Folds& folds, const FitResult& whole,
-                    FitOptions options) {
+HeldOut heldOutOf(const FitSamples& samples, const Folds& folds, const FitResult& whole,
+                  FitOptions options) {
     options.starts = std::max(1, options.starts / 4);
-    options.from = shapesOf(whole, options, samples.isotropic);
+    options.from = shapesOf(whole, options, samples);
     options.progress = {};
     options.uncertainty = {};
     double squares = 0, weights = 0;
@@ -148,6 +137,20 @@ bool areTied(const HeldOut& best, const HeldOut& other, const Groups& groups) {
 
 }  // namespace
 
+std::vector<double> shapesOf(const FitResult& fit, const FitOptions& options,
+                             const FitSamples& samples) {
+    if (options.perChannel || options.instrument.any() || fit.point.channels.empty()) return {};
+    if (!options.dispersion.empty() || namesMetals(options.model)) return {};
+    const std::vector<double>& values = fit.point.channels.front().values;
+    const auto count = static_cast<std::ptrdiff_t>(
+        ParametricSum(options.model, samples.isotropic).shapes().size());
+    return {values.begin(), values.begin() + count};
+}
+
+double heldOutLoss(const FitSamples& samples, const FitResult& whole, const FitOptions& options) {
+    return heldOutOf(samples, foldsOf(samples, groupsOf(samples)), whole, options).loss;
+}
+
 std::vector<ModelRank> compareModels(const FitSamples& samples, std::span<const std::string> models,
                                      FitOptions options) {
     // A model that is misspelt shows before the others are fitted.
@@ -161,7 +164,7 @@ std::vector<ModelRank> compareModels(const FitSamples& samples, std::span<const 
         options.model = model;
         try {
             rank.fit = fit(samples, options);
-            heldOut.push_back(heldOutLoss(samples, folds, rank.fit, options));
+            heldOut.push_back(heldOutOf(samples, folds, rank.fit, options));
             rank.heldOut = heldOut.back().loss;
         } catch (const NumericError& error) {
             rank.failure = error.what();

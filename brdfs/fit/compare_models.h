@@ -29,4 +29,12 @@ struct ModelRank {
 std::vector<ModelRank> compareModels(const FitSamples& samples, std::span<const std::string> models,
                                      FitOptions options);
 
+/// ModelRank::heldOut of one fit to all samples, by which the others start.
+double heldOutLoss(const FitSamples& samples, const FitResult& whole, const FitOptions& options);
+
+/// The values of the shapes of a fit in which channels share them, in the order of
+/// FitOptions::from; empty for others, and without shapes.
+std::vector<double> shapesOf(const FitResult& fit, const FitOptions& options,
+                             const FitSamples& samples);
+
 }  // namespace hshfit::brdfs

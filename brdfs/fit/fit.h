@@ -29,8 +29,9 @@ struct FitOptions {
     std::string dispersion = {};
     int starts = 16;  ///< local searches
     /// Values of the shapes, in the order of the result, from which the only search starts; empty:
-    /// `starts` searches. `fit` throws UsageError for another number of values, and for values with
-    /// laws over the wavelength or terms of the instrument.
+    /// `starts` searches; NaN: the value of each of the `starts`. `fit` throws UsageError for
+    /// another number of values, and for values with laws over the wavelength or terms of the
+    /// instrument.
     std::vector<double> from = {};
     std::uint64_t seed = 1;  ///< of the starts
     int iterations = 200;    ///< of the last search

@@ -60,6 +60,10 @@ std::vector<double> joined(std::vector<double> u, const std::vector<double>& lin
     return u;
 }
 
+bool isNan(double value) {
+    return std::isnan(value);
+}
+
 bool byCost(const Minimum& a, const Minimum& b) {
     return (std::isfinite(a.cost) ? a.cost : 1e300) < (std::isfinite(b.cost) ? b.cost : 1e300);
 }
@@ -113,19 +117,14 @@ public:
     Minimum eliminated(const std::vector<double>& u, const MinimiseOptions& options) const {
         std::vector<double> linear;
         Minimum minimum =
-            minimise([&](std::span<const double> at,
-                         bool derivatives) { return problem_.eliminated(at, derivatives, linear); },
-                     u, shapes_.lower, shapes_.upper, options);
+            minimise(eliminatedEquations(linear), u, shapes_.lower, shapes_.upper, options);
         problem_.eliminated(minimum.x, false, linear);
         minimum.x = joined(std::move(minimum.x), linear);
         return minimum;
     }
 
     Minimum fromAll(const Minimum& start, const MinimiseOptions& options) const {
-        Minimum minimum =
-            minimise([&](std::span<const double> at,
-                         bool derivatives) { return problem_.joint(at, derivatives); },
-                     start.x, joint_.lower, joint_.upper, options);
+        Minimum minimum = minimise(jointEquations(), start.x, joint_.lower, joint_.upper, options);
         minimum.iterations += start.iterations;
         minimum.evaluations += start.evaluations;
         return minimum;
@@ -137,19 +136,22 @@ public:
         return eliminated(variables(start), options);
     }
 
-    /// Second derivatives at a minimum, in the same variables.
-    std::vector<double> curvatures(const Minimum& minimum) const {
-        std::vector<double> linear;
-        const auto equations = [&](std::span<const double> at, bool derivatives) {
-            return linear_ ? problem_.eliminated(at, derivatives, linear)
-                           : problem_.joint(at, derivatives);
-        };
-        const Bounds& bounds = linear_ ? shapes_ : joint_;
-        if (bounds.lower.empty()) return {};
-        return secondDerivatives(equations, variables(minimum), bounds.lower, bounds.upper);
+    /// What `from` minimises; `linear` receives what elimination finds, and has to outlive it.
+    SumOfSquares equations(std::vector<double>& linear) const {
+        return linear_ ? eliminatedEquations(linear) : jointEquations();
     }
 
 private:
+    SumOfSquares eliminatedEquations(std::vector<double>& linear) const {
+        return [this, &linear](std::span<const double> at, bool derivatives) {
+            return problem_.eliminated(at, derivatives, linear);
+        };
+    }
+    SumOfSquares jointEquations() const {
+        return [this](std::span<const double> at, bool derivatives) {
+            return problem_.joint(at, derivatives);
+        };
+    }
     std::vector<double> variables(const Minimum& at) const {
         const auto shapes = static_cast<std::ptrdiff_t>(problem_.shapeCount());
         return linear_ ? std::vector<double>(at.x.begin(), at.x.begin() + shapes) : at.x;
@@ -160,42 +162,37 @@ private:
     Bounds shapes_, joint_;
 };
 
-/// Goes on from the minimum on fewer samples, whose second derivatives, renewed as the search moves
-/// on, stand for those on all: a few iterations suffice then, for a price of one evaluation each.
-Minimum onMore(const FitProblem& fewer, const FitProblem& more, bool linear, Minimum minimum,
+/// Goes on from the minimum on fewer samples, whose second derivatives stand for those on all: a
+/// few iterations suffice then, for the price of about one evaluation each.
+Minimum onMore(const FitProblem& fewer, const FitProblem& more, bool linear, const Minimum& start,
                const MinimiseOptions& last) {
-    constexpr int renewals = 5, steps = 10;
-    const Search before(fewer, linear), search(more, linear);
-    for (int i = 0; i < renewals; ++i) {
-        const std::vector<double> matrix = before.curvatures(minimum);
-        MinimiseOptions options = last;
-        options.iterations = std::min(steps, last.iterations);
-        options.matrix = matrix;
-        minimum = search.from(minimum, options);
-        if (minimum.converged) return minimum;
-    }
-    return search.from(minimum, last);
+    std::vector<double> found;
+    const Search before(fewer, linear);
+    const SumOfSquares part = before.equations(found);
+    MinimiseOptions options = last;
+    options.fewer = &part;
+    return Search(more, linear).from(start, options);
 }
 
-/// The place of values of the shapes in a search.
-std::vector<double> placeOf(const ParametricSum& sum, const std::vector<double>& values) {
-    std::vector<double> u;
-    for (std::size_t j = 0; j < sum.shapes().size(); ++j)
-        u.push_back(sum.shapes()[j].toScale(values[j]));
-    return u;
+/// Moves a start to known values of shapes (FitOptions::from).
+void moveTo(const std::vector<double>& values, const ParametricSum& sum, std::vector<double>& u) {
+    for (std::size_t j = 0; j < values.size(); ++j)
+        if (!std::isnan(values[j])) u[j] = sum.shapes()[j].toScale(values[j]);
 }
+
+/// Of pixels, the searches that go on after their first iterations.
+constexpr std::size_t heatWinners = 8;
 
 /// Minima of the problem on few samples, from the best of many starts, best first.
 std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
                                   const FitOptions& options) {
     const std::size_t shapes = problem.shapeCount();
-    const bool one = shapes == 0 || !options.from.empty();
+    const bool known = !options.from.empty() && std::ranges::none_of(options.from, isNan);
+    const bool one = shapes == 0 || known;
     const std::size_t starts = one ? 1 : static_cast<std::size_t>(options.starts);
-    std::vector<std::vector<double>> places;
-    if (options.from.empty())
-        places = startsOf(problem.sum(), one ? 1 : 4 * starts, options.seed);
-    else
-        places.push_back(placeOf(problem.sum(), options.from));
+    std::vector<std::vector<double>> places =
+        startsOf(problem.sum(), one ? 1 : 4 * starts, options.seed);
+    for (std::vector<double>& u : places) moveTo(options.from, problem.sum(), u);
     std::vector<Minimum> candidates;
     for (std::vector<double>& u : places) {
         std::vector<double> best;
@@ -207,12 +204,16 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
     }
     std::ranges::stable_sort(candidates, byCost);
     candidates.resize(std::min(candidates.size(), starts));
-    const Search search(problem, linear);
     // Of measured samples and cells, fits keep the minima that they had in earlier versions.
     const SampleOrigin origin = problem.samples().origin;
-    const bool lifts = !linear && (origin == SampleOrigin::nodes || origin == SampleOrigin::pixels);
-    const MinimiseOptions few{
-        .iterations = 60, .costTolerance = 1e-8, .stepTolerance = 1e-7, .curvature = false};
+    const bool pixels = origin == SampleOrigin::pixels;
+    const bool lifts = !linear && (origin == SampleOrigin::nodes || pixels);
+    constexpr int most = 60, heat = 25;
+    MinimiseOptions few{.iterations = pixels ? heat : most,
+                        .costTolerance = 1e-8,
+                        .stepTolerance = 1e-7,
+                        .curvature = false};
+    const Search search(problem, linear);
     for (std::size_t i = 0; i < candidates.size(); ++i) {
         const std::vector<double> u = candidates[i].x;
         candidates[i] = search.fromShapes(u, few);
@@ -221,6 +222,13 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
             if (lifted && byCost(*lifted, candidates[i])) candidates[i] = std::move(*lifted);
         }
         if (options.progress) options.progress(i + 1, candidates.size() + 1);
+    }
+    if (pixels) {
+        std::ranges::stable_sort(candidates, byCost);
+        candidates.resize(std::min(candidates.size(), heatWinners));
+        few.iterations = most - heat;
+        for (Minimum& candidate : candidates)
+            if (!candidate.converged) candidate = search.from(candidate, few);
     }
     std::ranges::stable_sort(candidates, byCost);
     return candidates;

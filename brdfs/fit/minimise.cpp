@@ -11,13 +11,12 @@ namespace hshfit::brdfs {
 namespace {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using Function = std::function<Equations(std::span<const double>, bool)>;
 
 /// With H = V L V^T (rows and columns scaled to a diagonal of 1) the residuals L^(-1/2) V^T g, and
 /// one more that makes up the cost, have the Jacobian L^(1/2) V^T: J^T J = H, J^T r = g.
 class CompressedResiduals final : public ceres::CostFunction {
 public:
-    CompressedResiduals(const Function& equations, std::span<const double> lower,
+    CompressedResiduals(const SumOfSquares& equations, std::span<const double> lower,
                         std::span<const double> upper)
         : equations_(equations), count_(lower.size()), lower_(lower), upper_(upper) {
         const std::size_t count = count_;
@@ -81,7 +80,7 @@ private:
         return remembered_;
     }
 
-    const Function& equations_;
+    const SumOfSquares& equations_;
     std::size_t count_;
     std::span<const double> lower_, upper_;
     mutable double pull_ = 0;
@@ -91,7 +90,7 @@ private:
 
 /// Ceres asks for the cost of a trial, and for its derivatives if it is taken, as most are: both at
 /// once.
-Function always(const Function& equations) {
+SumOfSquares always(const SumOfSquares& equations) {
     return [&equations](std::span<const double> x, bool) { return equations(x, true); };
 }
 
@@ -112,9 +111,10 @@ constexpr int renewal = 2;
 /// `renewed`th point.
 class Newton {
 public:
-    Newton(const Function& equations, std::span<const double> lower, std::span<const double> upper,
-           int renewed)
-        : equations_(equations), lower_(lower), upper_(upper), renewed_(renewed) {}
+    /// `fewer`: a sum over part of the samples, whose gradients stand for those of all; or null.
+    Newton(const SumOfSquares& equations, const SumOfSquares* fewer, std::span<const double> lower,
+           std::span<const double> upper, int renewed)
+        : equations_(equations), fewer_(fewer), lower_(lower), upper_(upper), renewed_(renewed) {}
 
     Equations at(std::span<const double> x, bool derivatives) const {
         Equations result = equations_(x, derivatives);
@@ -126,21 +126,26 @@ public:
             given = positive(given + added_, given);
             return result;
         }
-        RowMatrix hessian = given;
+        const SumOfSquares& source = fewer_ ? *fewer_ : equations_;
+        const Equations own = fewer_ ? source(x, true) : Equations();
+        const RowMatrix model =
+            fewer_ ? RowMatrix(Eigen::Map<const RowMatrix>(own.hessian.data(), n, n))
+                   : RowMatrix(given);
+        const double cost = fewer_ ? own.cost : result.cost;
+        RowMatrix hessian = model;
         for (std::size_t i = 0; i < x.size(); ++i) {
             const auto row = static_cast<Eigen::Index>(i);
-            const double curvature = given(row, row);
+            const double curvature = model(row, row);
             if (!(curvature > 0)) {
                 hessian.row(row).setZero();
                 continue;
             }
-            const double step =
-                std::clamp(1e-3 * std::sqrt(2 * result.cost / curvature), 1e-7, 1e-2);
+            const double step = std::clamp(1e-3 * std::sqrt(2 * cost / curvature), 1e-7, 1e-2);
             const auto gradientAt = [&](double moved) {
                 std::vector<double> point(x.begin(), x.end());
                 point[i] = moved;
-                ++evaluations_;
-                return equations_(point, true).gradient;
+                if (!fewer_) ++evaluations_;
+                return source(point, true).gradient;
             };
             const double above = std::min(x[i] + step, upper_[i]),
                          below = std::max(x[i] - step, lower_[i]);
@@ -151,11 +156,11 @@ public:
             }
         }
         for (Eigen::Index i = 0; i < n; ++i)
-            if (!(given(i, i) > 0)) hessian.col(i).setZero();
+            if (!(model(i, i) > 0)) hessian.col(i).setZero();
         hessian = (0.5 * (hessian + hessian.transpose())).eval();
         if (!hessian.allFinite()) return result;
-        added_ = hessian - given;
-        given = positive(hessian, given);
+        added_ = hessian - model;
+        given = positive(given + added_, given);
         return result;
     }
     int evaluations() const { return evaluations_; }
@@ -178,7 +183,8 @@ private:
         return result;
     }
 
-    const Function& equations_;
+    const SumOfSquares& equations_;
+    const SumOfSquares* fewer_;
     std::span<const double> lower_, upper_;
     int renewed_;
     mutable int evaluations_ = 0, age_ = 0;
@@ -206,8 +212,9 @@ private:
 };
 
 /// Goes on from result.x.
-void solve(const Function& equations, std::span<const double> lower, std::span<const double> upper,
-           const MinimiseOptions& options, int iterations, Minimum& result) {
+void solve(const SumOfSquares& equations, std::span<const double> lower,
+           std::span<const double> upper, const MinimiseOptions& options, int iterations,
+           Minimum& result) {
     ceres::Problem problem;
     auto* residuals = new CompressedResiduals(equations, lower, upper);
     problem.AddResidualBlock(residuals, nullptr, result.x.data());
@@ -240,7 +247,7 @@ void solve(const Function& equations, std::span<const double> lower, std::span<c
 
 }  // namespace
 
-Minimum minimise(const Function& equations, std::vector<double> start,
+Minimum minimise(const SumOfSquares& equations, std::vector<double> start,
                  std::span<const double> lower, std::span<const double> upper,
                  const MinimiseOptions& options) {
     Minimum result;
@@ -256,7 +263,7 @@ Minimum minimise(const Function& equations, std::vector<double> start,
         result.x[i] = std::clamp(result.x[i], lower[i], upper[i]);
     int left = options.iterations;
     if (!options.matrix.empty()) {
-        const Function withMatrix = [&](std::span<const double> x, bool) {
+        const SumOfSquares withMatrix = [&](std::span<const double> x, bool) {
             Equations at = equations(x, true);
             at.hessian.assign(options.matrix.begin(), options.matrix.end());
             return at;
@@ -268,13 +275,16 @@ Minimum minimise(const Function& equations, std::vector<double> start,
         left -= known;
         if (result.converged || left == 0) return result;
     }
-    const int first = options.curvature ? std::min(left, gaussNewtonIterations) : left;
-    solve(always(equations), lower, upper, options, first, result);
-    left -= first;
-    if (result.converged || left == 0) return result;
+    const bool known = options.curvature && options.fewer;
+    if (!known) {
+        const int first = options.curvature ? std::min(left, gaussNewtonIterations) : left;
+        solve(always(equations), lower, upper, options, first, result);
+        left -= first;
+        if (result.converged || left == 0) return result;
+    }
     // Large residuals: what Gauss-Newton leaves out of the matrix rules its (linear) convergence.
-    const Newton newton(equations, lower, upper, renewal);
-    const Function withCurvature = [&](std::span<const double> x, bool derivatives) {
+    const Newton newton(equations, options.fewer, lower, upper, known ? 4 : renewal);
+    const SumOfSquares withCurvature = [&](std::span<const double> x, bool derivatives) {
         return newton.at(x, derivatives);
     };
     solve(withCurvature, lower, upper, options, left, result);
@@ -282,10 +292,10 @@ Minimum minimise(const Function& equations, std::vector<double> start,
     return result;
 }
 
-std::vector<double> secondDerivatives(const Function& equations, std::span<const double> x,
+std::vector<double> secondDerivatives(const SumOfSquares& equations, std::span<const double> x,
                                       std::span<const double> lower,
                                       std::span<const double> upper) {
-    return Newton(equations, lower, upper, 1).at(x, true).hessian;
+    return Newton(equations, nullptr, lower, upper, 1).at(x, true).hessian;
 }
 
 }  // namespace hshfit::brdfs

@@ -9,6 +9,9 @@
 
 namespace hshfit::brdfs {
 
+/// A sum of squares at x, with derivatives if asked for.
+using SumOfSquares = std::function<Equations(std::span<const double> x, bool derivatives)>;
+
 struct MinimiseOptions {
     int iterations = 200;
     /// Relative change of the cost, and of x, that counts as converged.
@@ -21,6 +24,9 @@ struct MinimiseOptions {
     /// minimum: they replace Gauss-Newton's matrix in the first ten iterations, of which a few
     /// suffice then. Empty: none are known.
     std::span<const double> matrix = {};
+    /// The same sum over a part of its samples: what Gauss-Newton's matrix lacks is that of this
+    /// one, from the first iteration on, for the price of fewer samples. Null: of all samples.
+    const SumOfSquares* fewer = nullptr;
 };
 
 /// The report of Ceres on a run.
@@ -37,14 +43,13 @@ struct Minimum {
 /// n + 1 residuals with the same cost, gradient and Gauss-Newton matrix. Without parameters it is
 /// the point itself, converged. Ceres has to be given finite values; where they are not, it steps
 /// back.
-Minimum minimise(const std::function<Equations(std::span<const double>, bool)>& equations,
-                 std::vector<double> start, std::span<const double> lower,
-                 std::span<const double> upper, const MinimiseOptions& options = {});
+Minimum minimise(const SumOfSquares& equations, std::vector<double> start,
+                 std::span<const double> lower, std::span<const double> upper,
+                 const MinimiseOptions& options = {});
 
 /// The matrix of second derivatives at x, for MinimiseOptions::matrix, made positive definite: by
 /// differences of the gradient, 2 n of them.
-std::vector<double> secondDerivatives(
-    const std::function<Equations(std::span<const double>, bool)>& equations,
-    std::span<const double> x, std::span<const double> lower, std::span<const double> upper);
+std::vector<double> secondDerivatives(const SumOfSquares& equations, std::span<const double> x,
+                                      std::span<const double> lower, std::span<const double> upper);
 
 }  // namespace hshfit::brdfs
