@@ -137,8 +137,8 @@ std::string predictionLine(const Document& prediction, const std::string& unit) 
 
 std::string bandsLine(const Document& bands) {
     return fmt::format(
-        "  bands at {} pairs: 95 % at one of them within {:.4g} standard errors, at all at once "
-        "within {:.4g}\n",
+        "  bands at {} pairs: 95 % at one of them within at most {:.4g} standard errors, at all at "
+        "once within {:.4g}\n",
         bands["count"].get<std::size_t>(), bands["pointwise_95"].get<double>(),
         bands["simultaneous_95"].get<double>());
 }

@@ -29,9 +29,10 @@ std::vector<PrintFigure> ofSamples(const brdfs::PlottedModel& model, const Figur
 /// Of the band that holds the true f with 95 % at each pair.
 std::vector<double> halfWidths(const brdfs::FitResult& result,
                                std::span<const DirectionPair> pairs) {
-    std::vector<double> widths = brdfs::predict(result, pairs, false).errors;
-    for (double& width : widths) width *= brdfs::Prediction::pointwise(0.95);
-    return widths;
+    brdfs::Prediction prediction = brdfs::predict(result, pairs, false);
+    for (std::size_t v = 0; v < prediction.errors.size(); ++v)
+        prediction.errors[v] *= brdfs::Prediction::pointwise(0.95, prediction.degrees[v]);
+    return std::move(prediction.errors);
 }
 
 void append(std::vector<PrintFigure> more, std::vector<PrintFigure>& figures) {

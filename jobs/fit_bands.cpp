@@ -68,7 +68,7 @@ std::unique_ptr<AtomicFile> addBands(const FitOptions& options, const Channels& 
         brdfs::simultaneousFactor(fitted.result, pairs, probability, options.seed)};
     fitted.preset["fit"]["bands"] = {{"pairs", options.bands},
                                      {"count", pairs.size()},
-                                     {"pointwise_95", brdfs::Prediction::pointwise(probability)},
+                                     {"pointwise_95", prediction.widest(probability)},
                                      {"simultaneous_95", bands.simultaneous},
                                      {"bootstrap_draws", fitted.result.point.draws.size()}};
     fitted.bands = brdfs::bandRowsJson(bands, channels);

@@ -93,7 +93,13 @@ py::dict predicted(const jobs::Fitted& fitted, const py::object& wi, const py::o
     py::dict answer;
     answer["f"] = byPair(found.values);
     answer["standard_error"] = byPair(found.errors);
-    answer["pointwise"] = brdfs::Prediction::pointwise(probability);
+    std::vector<double> widths;
+    for (std::size_t v = 0; v < found.errors.size(); ++v)
+        widths.push_back(found.errors[v] *
+                         brdfs::Prediction::pointwise(probability, found.degrees[v]));
+    answer["degrees_of_freedom"] = byPair(found.degrees);
+    answer["half_width"] = byPair(widths);
+    answer["pointwise"] = found.widest(probability);
     answer["simultaneous"] = simultaneous;
     if (found.bootstrap) answer["bootstrap_error"] = byPair(found.bootstrap->errors);
     return answer;
@@ -294,8 +300,10 @@ void bindResult(py::module_& module) {
              py::arg("probability") = 0.95, py::arg("seed") = 1,
              R"(f of the fit at pairs of directions above the horizon, unit vectors (..., 3), with
 its errors by the delta method (Seber & Wild 1989, 5.1): a dict of "f" and "standard_error",
-(..., channels) in 1/sr, and of the factors of the errors with which bands hold f with
-`probability`, "pointwise" at one pair and "simultaneous" at all of these. "bootstrap_error" where
+(..., channels) in 1/sr; "degrees_of_freedom" of the variances (inf: so many that they do not
+matter) and "half_width" of the band that holds f with `probability` at one pair, by Student's
+distribution, likewise; "pointwise", the largest half width over its error, and "simultaneous", the
+factor of the errors with which bands hold f at all of these pairs at once. "bootstrap_error" where
 the fit has draws. Errors are those of the fitted curve for a true model; readings have noise in
 addition.)")
         .def("brdf", brdfOf, "The fit as a Brdf.")

@@ -14,6 +14,13 @@ std::string ends(const Interval& interval) {
     return fmt::format(",{},{}", *interval.low, *interval.high);
 }
 
+/// What a normal variable has within one standard deviation.
+const double oneSigma = std::erf(std::sqrt(0.5));
+
+std::string degreesText(double degrees) {
+    return std::isfinite(degrees) ? fmt::format("{}", degrees) : "";
+}
+
 /// The value that counts most by `size`, with its place.
 template <class Size>
 nlohmann::ordered_json largest(const FitSamples& samples, const Prediction& prediction,
@@ -36,22 +43,24 @@ void writeBandRows(const Bands& bands, const Channels& channels,
                    const std::function<void(std::string_view)>& write) {
     const Prediction& p = bands.prediction;
     write(fmt::format(
-        "pair,wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,channel,f,standard_error,low_68,high_68,low_95,high_95,"
+        "pair,wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,channel,f,standard_error,degrees_of_freedom,low_68,"
+        "high_68,low_95,high_95,"
         "all_low_95,all_high_95{}\n",
         p.bootstrap ? ",bootstrap_error,bootstrap_low_68,bootstrap_high_68,bootstrap_low_95,"
                       "bootstrap_high_95"
                     : ""));
     const std::vector<std::string> names = columnNames(channels);
-    const double outer = Prediction::pointwise(0.95);
     for (std::size_t k = 0; k < p.pairs; ++k)
         for (std::size_t c = 0; c < p.channels; ++c) {
             const std::size_t v = c * p.pairs + k;
             const DirectionPair& pair = bands.pairs[k];
             const double f = p.values[v], e = p.errors[v];
-            std::string row =
-                fmt::format("{},{},{},{},{},{},{},{},{},{}", k + 1, pair.wi.x, pair.wi.y, pair.wi.z,
-                            pair.wo.x, pair.wo.y, pair.wo.z, names[c], f, e);
-            for (const double factor : {1.0, outer, bands.simultaneous})
+            std::string row = fmt::format("{},{},{},{},{},{},{},{},{},{},{}", k + 1, pair.wi.x,
+                                          pair.wi.y, pair.wi.z, pair.wo.x, pair.wo.y, pair.wo.z,
+                                          names[c], f, e, degreesText(p.degrees[v]));
+            for (const double factor :
+                 {Prediction::pointwise(oneSigma, p.degrees[v]),
+                  Prediction::pointwise(0.95, p.degrees[v]), bands.simultaneous})
                 row += ends({f - factor * e, f + factor * e});
             if (p.bootstrap)
                 row += fmt::format(",{}{}{}", p.bootstrap->errors[v],
@@ -73,6 +82,7 @@ nlohmann::ordered_json bandRowsJson(const Bands& bands, const Channels& channels
             if (!names[c].empty()) row["channel"] = names[c];
             row["f"] = p.values[v];
             row["standard_error"] = p.errors[v];
+            if (std::isfinite(p.degrees[v])) row["degrees_of_freedom"] = p.degrees[v];
             if (p.bootstrap) row["bootstrap_error"] = p.bootstrap->errors[v];
             rows.push_back(std::move(row));
         }

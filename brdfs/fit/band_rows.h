@@ -20,7 +20,9 @@ struct Bands {
 /// As CSV, a row for each pair and channel:
 ///     pair, wi_x … wo_z, channel    number from 1 on; nm, R, G or B; empty for grey
 ///     f, standard_error             1/sr, Prediction
-///     low_68 … high_95              pointwise, f -+ 1 and 1.96 standard errors
+///     degrees_of_freedom            of the variance; empty: so many that they do not matter
+///     low_68 … high_95              pointwise, by Student's distribution: f -+ 1 and 1.96 standard
+///                                   errors for many degrees of freedom
 ///     all_low_95, all_high_95       simultaneous
 ///     bootstrap_error, bootstrap_low_68 … bootstrap_high_95    where the fit has draws
 /// `write` gets the text line by line.

@@ -12,6 +12,10 @@ double chiSquareProbability(double chiSquare, double degrees) {
     return degrees > 0 ? boost::math::gamma_q(degrees / 2, chiSquare / 2) : 1;
 }
 
+double chiSquareQuantile(double probability, double degrees) {
+    return 2 * boost::math::gamma_p_inv(degrees / 2, probability);
+}
+
 double studentBound(double probability, double degrees) {
     using boost::math::complement;
     if (std::isinf(degrees))

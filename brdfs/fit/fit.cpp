@@ -28,6 +28,7 @@ struct Part {
     FitResult result;  ///< without spec
     std::vector<double> shapes, linear;
     std::vector<double> covariance;  ///< of all values: FittedPoint
+    std::shared_ptr<const VarianceFreedom> freedom;
     double squares = 0, weights = 0;
 };
 
@@ -81,6 +82,7 @@ void describe(const FitProblem& problem, const std::vector<double>& x, const Fit
         equations.spread = spreadOfScans(problem, x, inverse);
         covariance = covarianceOf(equations, fixed);
     }
+    part.freedom = freedomAt(problem, x, inverse, slope);
     part.covariance = covariance.whole;
     for (std::size_t i = 0; i < x.size(); ++i)
         for (std::size_t j = 0; j < x.size(); ++j)
@@ -218,6 +220,7 @@ FittedPoint pointOf(const std::vector<Part>& parts, const ParametricSum& sum,
     for (std::size_t p = 0; p < parts.size(); ++p) {
         const Part& part = parts[p];
         const std::size_t count = part.result.parameters.size();
+        if (part.freedom) point.freedom.push_back({first, part.freedom});
         std::vector<double> all = part.shapes;
         all.insert(all.end(), part.linear.begin(), part.linear.end());
         for (std::size_t i = 0; i < count; ++i)

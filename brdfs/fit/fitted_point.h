@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace hshfit::brdfs {
+
+class VarianceFreedom;
 
 /// A fit at one channel, as a point about which predictions are linearised (prediction.h).
 struct FittedChannel {
@@ -27,6 +30,13 @@ struct FittedPoint {
     /// without directions in which no sample changes, so that f at the samples has its variance
     /// also where the data do not tell parameters apart.
     std::vector<double> covariance;
+    /// Degrees of freedom of its parts, each of consecutive coefficients; none for more than 20,000
+    /// values without scans, where they hardly matter, and for sums of f.
+    struct Freedom {
+        std::size_t first = 0;
+        std::shared_ptr<const VarianceFreedom> of;
+    };
+    std::vector<Freedom> freedom;
     /// Fits to resampled data: [draw][channel] as FittedChannel::values; a draw that did not
     /// converge is empty.
     std::vector<std::vector<std::vector<double>>> draws;

@@ -70,6 +70,21 @@ std::vector<ScanSums> sumsOfScans(const WeightedRows& rows, const std::vector<st
     return sums;
 }
 
+/// Above this number of values they hardly matter.
+constexpr std::size_t mostValues = 20'000;
+
+DenseMatrix wholeRows(const WeightedRows& rows, std::size_t n, std::size_t shapes) {
+    DenseMatrix whole = DenseMatrix::Zero(at(rows.channels * rows.samples), at(n));
+    for (std::size_t c = 0; c < rows.channels; ++c)
+        for (std::size_t k = 0; k < rows.samples; ++k) {
+            const std::size_t value = c * rows.samples + k;
+            for (std::size_t i = 0; i < rows.columns; ++i)
+                whole(at(value), at(rows.place(i, c, shapes))) =
+                    rows.slopes[value * rows.columns + i];
+        }
+    return whole;
+}
+
 std::size_t scanCount(const FitSamples& samples) {
     return samples.scans.empty() ? 0 : *std::ranges::max_element(samples.scans) + 1;
 }
@@ -86,6 +101,24 @@ std::vector<double> spreadOfScans(const FitProblem& problem, std::span<const dou
     const DenseMatrix spread =
         scanSpread(sumsOfScans(rows, scans, n, shapes), own, rows.columns) / square;
     return {spread.data(), spread.data() + n * n};
+}
+
+std::shared_ptr<const VarianceFreedom> freedomAt(const FitProblem& problem,
+                                                 std::span<const double> x,
+                                                 std::span<const double> inverse,
+                                                 const std::vector<double>& slope) {
+    const FitSamples& samples = problem.samples();
+    const bool byScan = !samples.scans.empty();
+    if (samples.sums || (!byScan && samples.size() * problem.channels() > mostValues)) return {};
+    const std::size_t n = x.size(), shapes = problem.shapeCount();
+    const WeightedRows rows = problem.weightedRows(x);
+    DenseMatrix own = unscaledInverse(problem, inverse, n);
+    DenseVector slopes = Eigen::Map<const DenseVector>(slope.data(), at(n));
+    if (!byScan)
+        return std::make_shared<const VarianceFreedom>(wholeRows(rows, n, shapes), std::move(own),
+                                                       std::move(slopes));
+    return std::make_shared<const VarianceFreedom>(sumsOfScans(rows, samples.scans, n, shapes),
+                                                   std::move(own), std::move(slopes));
 }
 
 Uncertainty influences(const StudiedValues& values) {

@@ -8,10 +8,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
 namespace hshfit::brdfs {
+
+class VarianceFreedom;
 
 /// A minimum of a problem as its description found it. x as in FitProblem::joint.
 struct StudiedMinimum {
@@ -30,6 +33,12 @@ struct StudiedMinimum {
 /// Throws NumericError for fewer scans than parameters that act on one channel.
 std::vector<double> spreadOfScans(const FitProblem& problem, std::span<const double> x,
                                   std::span<const double> inverse);
+
+/// The degrees of freedom of variances at x, by scan or by value; null: FittedPoint::freedom.
+std::shared_ptr<const VarianceFreedom> freedomAt(const FitProblem& problem,
+                                                 std::span<const double> x,
+                                                 std::span<const double> inverse,
+                                                 const std::vector<double>& slope);
 
 /// The values of a fit at its minimum.
 struct StudiedValues {

@@ -4,6 +4,7 @@
 #include <brdfs/fit/normal_equations.h>
 #include <brdfs/fit/parametric_sum.h>
 #include <brdfs/fit/percentiles.h>
+#include <brdfs/fit/scan_spread.h>
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/linear_algebra/decompositions.h>
@@ -19,6 +20,7 @@ namespace {
 
 /// Pairs are taken so many at a time, to bound the memory of derivatives and of draws.
 constexpr std::size_t atOnce = 4096;
+constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 /// x of FitProblem::joint from values of the parameters.
 std::vector<double> pointOf(const ParametricSum& sum, const std::vector<double>& values) {
@@ -78,6 +80,26 @@ Eigen::MatrixXd partOf(const std::vector<double>& covariance,
     return part;
 }
 
+/// Of the variances of f.
+std::vector<double> degreesOf(const FittedPoint& point, const Gradients& g) {
+    for (const FittedPoint::Freedom& part : point.freedom) {
+        const Eigen::Index count = part.of->count();
+        Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(g.slopes.rows(), count);
+        bool own = true;
+        for (std::size_t i = 0; own && i < g.coefficients.size(); ++i) {
+            const auto at = static_cast<Eigen::Index>(g.coefficients[i]) -
+                            static_cast<Eigen::Index>(part.first);
+            own = at >= 0 && at < count;
+            if (own) whole.col(at) = g.slopes.col(static_cast<Eigen::Index>(i));
+        }
+        if (!own) continue;
+        std::vector<double> degrees = part.of->degrees(whole);
+        for (double& d : degrees) d = d > 0 ? std::max(d, 1.0) : unlimited;
+        return degrees;
+    }
+    return std::vector<double>(static_cast<std::size_t>(g.slopes.rows()), unlimited);
+}
+
 void addBootstrapBands(const FitResult& fit, const FitSamples& samples, std::size_t first,
                        Prediction& result) {
     Prediction::Bootstrap& bands = *result.bootstrap;
@@ -107,8 +129,12 @@ std::size_t drawsOf(const FitResult& fit) {
 
 }  // namespace
 
-double Prediction::pointwise(double probability) {
-    return studentBound(1 - probability, std::numeric_limits<double>::infinity());
+double Prediction::pointwise(double probability, double degrees) {
+    return studentBound(1 - probability, degrees);
+}
+
+double Prediction::widest(double probability) const {
+    return pointwise(probability, degrees.empty() ? unlimited : std::ranges::min(degrees));
 }
 
 Prediction predict(const FitResult& fit, std::span<const DirectionPair> pairs, bool bootstrap) {
@@ -118,6 +144,7 @@ Prediction predict(const FitResult& fit, std::span<const DirectionPair> pairs, b
     const std::size_t count = result.pairs * result.channels;
     result.values.resize(count);
     result.errors.resize(count);
+    result.degrees.resize(count);
     if (bootstrap && drawsOf(fit) > 1)
         result.bootstrap = {std::vector<double>(count), std::vector<Interval>(count),
                             std::vector<Interval>(count)};
@@ -130,9 +157,11 @@ Prediction predict(const FitResult& fit, std::span<const DirectionPair> pairs, b
             const Eigen::MatrixXd covariance = partOf(fit.point.covariance, g.coefficients);
             const Eigen::VectorXd variance =
                 (g.slopes * covariance).cwiseProduct(g.slopes).rowwise().sum();
+            const std::vector<double> degrees = degreesOf(fit.point, g);
             for (std::size_t k = 0; k < samples.size(); ++k) {
                 const std::size_t v = c * result.pairs + first + k;
                 result.values[v] = g.values[k];
+                result.degrees[v] = degrees[k];
                 result.errors[v] = std::sqrt(std::max(0.0, variance(static_cast<Eigen::Index>(k))));
             }
         }
@@ -170,6 +199,7 @@ double simultaneousFactor(const FitResult& fit, std::span<const DirectionPair> p
     const Eigen::MatrixXd changes = root * normal;
     Eigen::VectorXd most = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(draws));
     constexpr std::size_t few = 256;
+    double degrees = unlimited;
     for (std::size_t first = 0; first < pairs.size(); first += few) {
         const FitSamples samples =
             unmeasuredSamples(pairs.subspan(first, std::min(few, pairs.size() - first)), Channels(),
@@ -181,13 +211,17 @@ double simultaneousFactor(const FitResult& fit, std::span<const DirectionPair> p
                 (g.slopes * own).cwiseProduct(g.slopes).rowwise().sum().cwiseMax(0).cwiseSqrt();
             for (double& e : error) e = e > 0 ? 1 / e : 0;
             std::vector<Eigen::Index> rows(g.coefficients.begin(), g.coefficients.end());
+            degrees = std::min(degrees, std::ranges::min(degreesOf(fit.point, g)));
             const Eigen::MatrixXd z = error.asDiagonal() * g.slopes * changes(rows, Eigen::all);
             most = most.cwiseMax(z.cwiseAbs().colwise().maxCoeff().transpose());
         }
     }
+    if (std::isfinite(degrees))
+        for (double& z : most) z *= std::sqrt(degrees / chiSquareQuantile(uniform(), degrees));
     std::vector<double> sorted(most.begin(), most.end());
     std::ranges::sort(sorted);
-    return percentile(sorted, probability);
+    // That of one pair but for the chance of the draws, where one combination decides all.
+    return std::max(percentile(sorted, probability), Prediction::pointwise(probability, degrees));
 }
 
 }  // namespace hshfit::brdfs

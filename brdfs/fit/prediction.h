@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct Prediction {
     /// sqrt(g^T C g), g the derivatives of f by the coefficients of the fit and C their covariance
     /// (delta method; Seber & Wild 1989, 10.1002/0471725315, section 5.1).
     std::vector<double> errors;
+    /// Degrees of freedom of their variances (scan_spread.h), 1 and more: few where few samples, or
+    /// scans, decide. Infinite where they are not known (FittedPoint::freedom).
+    std::vector<double> degrees;
     /// Of fits to resampled data, where the fit has them: their standard deviation and percentiles.
     struct Bootstrap {
         std::vector<double> errors;
@@ -24,9 +28,13 @@ struct Prediction {
     };
     std::optional<Bootstrap> bootstrap;
 
-    /// The factor of `errors` with which bands hold the true f at one pair and channel with this
-    /// probability, for a true model and normal errors: 1 for 0.6827.
-    static double pointwise(double probability);
+    /// The factor of an error with which a band holds the true f at one pair and channel with this
+    /// probability, for a true model and normal errors: Student's, 1 for 0.6827 of infinitely many
+    /// degrees of freedom.
+    static double pointwise(double probability,
+                            double degrees = std::numeric_limits<double>::infinity());
+    /// The largest factor among the pairs and channels.
+    double widest(double probability) const;
 };
 
 /// Predicts f at pairs that need not have been fitted. Both directions above the horizon. The error
@@ -39,9 +47,10 @@ Prediction predict(const FitResult& fit, std::span<const DirectionPair> pairs,
 Prediction predict(const FitResult& fit, const FitSamples& samples, bool bootstrap = true);
 
 /// The factor of the errors with which bands hold the true f at all these pairs and channels at
-/// once with this probability: the quantile, over `draws` normal draws of the coefficients, of the
-/// largest |change of f| / error (Scheffe's bands hold for all pairs there are, and are wider). The
-/// same for the same seed.
+/// once with this probability: the quantile, over `draws` draws of the coefficients, of the largest
+/// |change of f| / error (Scheffe's bands hold for all pairs there are, and are wider). Draws are
+/// those of the multivariate Student distribution with the fewest degrees of freedom among the
+/// pairs. The same for the same seed.
 double simultaneousFactor(const FitResult& fit, std::span<const DirectionPair> pairs,
                           double probability, std::uint64_t seed = 1, std::size_t draws = 4000);
 

@@ -24,6 +24,10 @@ Eigen::MatrixXd rootOf(const Eigen::MatrixXd& inverse) {
            eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
 }
 
+double satterthwaite(double trace, double squares) {
+    return trace > 0 && squares > 0 ? trace * trace / squares : 0;
+}
+
 }  // namespace
 
 // With M = L L^T, q = L^T A L of a scan and b = L^T c, the variance of c is that of the terms
@@ -59,9 +63,32 @@ std::vector<double> scanDegrees(const std::vector<ScanSums>& scans, const Eigen:
     std::vector<double> degrees;
     for (const Sums& sum : sums) {
         const double squares = sum.squares + sum.outer.squaredNorm();
-        degrees.push_back(sum.trace > 0 && squares > 0 ? sum.trace * sum.trace / squares : 0);
+        degrees.push_back(satterthwaite(sum.trace, squares));
     }
     return degrees;
+}
+
+// As above with q = u u^T of a value, u = L^T a and leverage u^T u: u^T v = u^T b / (1 - u^T u).
+std::vector<double> valueDegrees(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& inverse,
+                                 const Eigen::MatrixXd& of) {
+    const Eigen::MatrixXd root = rootOf(inverse), u = rows * root;
+    const Eigen::ArrayXd leverage = u.rowwise().squaredNorm();
+    const Eigen::MatrixXd along = u * (of * root).transpose();
+    std::vector<double> degrees;
+    for (Eigen::Index i = 0; i < along.cols(); ++i) {
+        const Eigen::ArrayXd own =
+            (along.col(i).array() / (1 - leverage).max(leastFreedom)).square();
+        const Eigen::MatrixXd outer = u.transpose() * own.matrix().asDiagonal() * u;
+        const double trace = (own * (1 - leverage)).sum();
+        const double squares = (own.square() * (1 - 2 * leverage)).sum() + outer.squaredNorm();
+        degrees.push_back(satterthwaite(trace, squares));
+    }
+    return degrees;
+}
+
+std::vector<double> VarianceFreedom::degrees(const Eigen::MatrixXd& of) const {
+    const Eigen::MatrixXd own = of * slope_.asDiagonal();
+    return scans_.empty() ? valueDegrees(rows_, inverse_, own) : scanDegrees(scans_, inverse_, own);
 }
 
 Eigen::MatrixXd scanSpread(const std::vector<ScanSums>& scans, const Eigen::MatrixXd& inverse,

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include <utility>
 #include <vector>
 
 namespace hshfit::brdfs {
@@ -25,5 +26,29 @@ Eigen::MatrixXd scanSpread(const std::vector<ScanSums>& scans, const Eigen::Matr
 /// fewer if some do; intervals are those of Student's distribution. 0 where the variance is 0.
 std::vector<double> scanDegrees(const std::vector<ScanSums>& scans, const Eigen::MatrixXd& inverse,
                                 const Eigen::MatrixXd& of);
+
+/// The same where each value is a scan of its own (HC3). `rows`: root(w) times the derivatives of
+/// each value by the parameters [value, parameter].
+std::vector<double> valueDegrees(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& inverse,
+                                 const Eigen::MatrixXd& of);
+
+/// Degrees of freedom of the variances of a fit, for combinations that are known later.
+class VarianceFreedom {
+public:
+    /// `slope`: of the coefficients by the parameters in which the others are.
+    VarianceFreedom(std::vector<ScanSums> scans, Eigen::MatrixXd inverse, Eigen::VectorXd slope)
+        : scans_(std::move(scans)), inverse_(std::move(inverse)), slope_(std::move(slope)) {}
+    VarianceFreedom(Eigen::MatrixXd rows, Eigen::MatrixXd inverse, Eigen::VectorXd slope)
+        : rows_(std::move(rows)), inverse_(std::move(inverse)), slope_(std::move(slope)) {}
+
+    Eigen::Index count() const { return slope_.size(); }
+    /// Of combinations of the coefficients, the rows of `of`; 0 where the variance is 0.
+    std::vector<double> degrees(const Eigen::MatrixXd& of) const;
+
+private:
+    std::vector<ScanSums> scans_;  ///< empty: values that stand each for itself
+    Eigen::MatrixXd rows_, inverse_;
+    Eigen::VectorXd slope_;
+};
 
 }  // namespace hshfit::brdfs

@@ -365,17 +365,21 @@ TEST(DispersedFit, ProfilesEndWhereChiSquareHasRisen) {
 }
 
 // With noise this small the fit is as good as linear, in terms that several coefficients share too.
-TEST(DispersedFit, ProfilesOfCauchysTermsAreTheNormalIntervals) {
-    FitOptions options = optionsOf("ior=cauchy:2,kd=poly:1");
-    options.uncertainty.profile = true;
-    const FitResult result = fit(spectralSamples(150, 9), options);
-    for (std::size_t i = 0; i < result.parameters.size(); ++i) {
-        const ParameterUncertainty& own = result.uncertainty->parameters[i];
-        ASSERT_TRUE(own.profile && own.profile->within95.low && own.profile->within95.high);
-        const double value = result.parameters[i].value,
-                     half = gsl_cdf_ugaussian_Qinv(0.025) * *own.normal;
-        EXPECT_NEAR(*own.profile->within95.high - value, half, 0.05 * half);
-        EXPECT_NEAR(value - *own.profile->within95.low, half, 0.05 * half);
+TEST(DispersedFit, ProfilesAreTheNormalIntervals) {
+    for (const std::string laws : {"ior=cauchy:2,kd=poly:1", "ior=sellmeier:1,kd=spline:4"}) {
+        FitOptions options = optionsOf(laws);
+        options.uncertainty.profile = true;
+        const FitResult result = fit(spectralSamples(150, 9), options);
+        for (std::size_t i = 0; i < result.parameters.size(); ++i) {
+            const ParameterUncertainty& own = result.uncertainty->parameters[i];
+            const std::string& name = result.parameters[i].name;
+            ASSERT_TRUE(own.profile && own.profile->within95.low && own.profile->within95.high)
+                << laws << " " << name;
+            const double value = result.parameters[i].value,
+                         half = gsl_cdf_ugaussian_Qinv(0.025) * *own.normal;
+            EXPECT_NEAR(*own.profile->within95.high - value, half, 0.05 * half) << name;
+            EXPECT_NEAR(value - *own.profile->within95.low, half, 0.05 * half) << name;
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 // table.
 #include <cli/program.h>
 
+#include <gsl/gsl_cdf.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -163,19 +164,43 @@ TEST_F(FitFigures, CutsStandAtTheirMeasuredAngles) {
 }
 
 // A Lambert fit has one value, and one error, at all directions.
-TEST_F(FitFigures, BandsAre1_96StandardErrorsOfF) {
+/// The degrees of freedom of HC3's variance of a weighted mean: Satterthwaite's formula for one
+/// parameter, by the shares of the weights.
+double degreesOfMean(const std::string& astm) {
+    std::vector<double> weights;
+    double sum = 0;
+    std::istringstream lines(astm);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.empty() || line.find_first_not_of("0123456789.,-") != line.npos) continue;
+        const double sigma = std::stod(line.substr(line.rfind(',') + 1));
+        weights.push_back(1 / (sigma * sigma));
+        sum += weights.back();
+    }
+    double trace = 0, squares = 0, product = 0;
+    for (const double weight : weights) {
+        const double share = weight / sum, own = share / ((1 - share) * (1 - share));
+        trace += own * (1 - share);
+        squares += own * own * (1 - 2 * share);
+        product += own * share;
+    }
+    return trace * trace / (squares + product * product);
+}
+
+TEST_F(FitFigures, BandsAreStudentsOfTheStandardErrorOfF) {
     const Answer got = run("fit --json " + path("scans.astm") +
                            " --model lambert --sigma column --figures " + path("figures"));
     ASSERT_EQ(got.code, 0) << got.err;
     const Json parameter = Json::parse(got.out)["fit"]["parameters"][0];
     const double pi = std::acos(-1.0), f = parameter["value"].get<double>() / pi,
                  error = parameter["standard_error"].get<double>() / pi;
+    const double factor = gsl_cdf_tdist_Pinv(0.975, degreesOfMean(scans()));
+    EXPECT_GT(factor, 1.97);
     int rows = 0;
     for (const auto& row : rowsOf(read(path("figures/cuts.csv")))) {
         if (row[2] != "95 %") continue;
         ++rows;
-        EXPECT_NEAR(std::stod(row[5]), f - 1.959964 * error, 1e-6 * f);
-        EXPECT_NEAR(std::stod(row[6]), f + 1.959964 * error, 1e-6 * f);
+        EXPECT_NEAR(std::stod(row[5]), f - factor * error, 1e-6 * f);
+        EXPECT_NEAR(std::stod(row[6]), f + factor * error, 1e-6 * f);
     }
     EXPECT_GT(rows, 100);
 }

@@ -185,14 +185,19 @@ TEST_F(Laboratory, BandsAreARowForEachPairAndAgreeWithTheModelAndTheResiduals) {
     next(residuals), next(bands);
     for (std::size_t k = 0; k < 96; ++k) {
         const std::vector<double> residual = next(residuals), band = next(bands);
-        ASSERT_EQ(band.size(), 16u);
+        ASSERT_EQ(band.size(), 17u);
         EXPECT_NEAR(band[8], residual[10], 1e-12);
         EXPECT_NEAR(band[9], residual[19], 1e-9 * residual[19]);
-        EXPECT_NEAR(band[8] + band[9], band[11], 1e-12);
-        EXPECT_GT(band[15], band[13]);
+        // 96 values less two parameters, and somewhat fewer where few of them decide.
+        EXPECT_GT(band[10], 20);
+        EXPECT_LT(band[10], 96);
+        EXPECT_GT(band[12], band[8] + band[9]);
+        EXPECT_LT(band[12], band[8] + 1.03 * band[9]);
+        EXPECT_GE(band[16], band[14] - 1e-12);
         EXPECT_EQ(fit["bands"][k]["f"], band[8]);
+        EXPECT_EQ(fit["bands"][k]["degrees_of_freedom"], band[10]);
     }
-    EXPECT_GT(fit["fit"]["bands"]["simultaneous_95"], fit["fit"]["bands"]["pointwise_95"]);
+    EXPECT_GE(fit["fit"]["bands"]["simultaneous_95"], fit["fit"]["bands"]["pointwise_95"]);
     const Json plane = answer(fitted + "--bands plane:0/30.5");
     EXPECT_EQ(plane["bands"].size(), 2 * 179u);
     EXPECT_NEAR(plane["bands"][0]["wi"][2].get<double>(), 1, 1e-12);
