@@ -1,4 +1,5 @@
 #include <brdfs/catalog.h>
+#include <brdfs/fit/askew_ltc.h>
 #include <brdfs/fit/ltc_table.h>
 #include <hshfit/error.h>
 #include <hshfit/projection/albedo.h>
@@ -203,6 +204,51 @@ TEST(LtcTable, RefusesWhatItCannotHold) {
     EXPECT_THROW(fitLtcTable("ggx", {.size = 1}), UsageError);
     EXPECT_THROW(fitLtcTable("lambert:kd=0 + ggx", {.size = 2}), UsageError);
     EXPECT_THROW(fitLtcTable("lambert", {.size = 2, .parameter = "kd"}), NumericError);
+}
+
+/// Points of the hemisphere, even in the cosine and the azimuth.
+LobeSamples hemisphereSamples(const AskewLtc& w, double magnitude) {
+    constexpr int rings = 120, points = 240;
+    LobeSamples samples;
+    for (int i = 0; i < rings; ++i) {
+        for (int j = 0; j < points; ++j) {
+            samples.wi.push_back(
+                directionFromAngles(std::acos((i + 0.5) / rings), 2 * pi * (j + 0.5) / points));
+            samples.weights.push_back(2 * pi / rings / points);
+            samples.values.push_back(magnitude * density(w, samples.wi.back()));
+        }
+    }
+    return samples;
+}
+
+TEST(AskewLtc, StandardFormKeepsTheLobeAndIsThatOfThePlane) {
+    const AskewLtc w{{{1.2, 0.5, -0.3}, {-0.4, 0.9, 0.2}, {0.3, -0.2, 0.6}}};
+    const AskewLtc form = inStandardForm(w);
+    EXPECT_EQ(form[0][1], 0);
+    EXPECT_NEAR(form[1][1], 1, 1e-15);
+    const Ltc plane{.a = 1.3, .c = -0.4, .b = 0.2, .d = 0.7};
+    const AskewLtc same{{{plane.a, 0, plane.b}, {0, 1, 0}, {plane.c, 0, plane.d}}};
+    for (const double phi : {0.0, 0.9, 2.3, 4.4}) {
+        for (const double theta : {0.1, 0.7, 1.5}) {
+            const Direction d = directionFromAngles(theta, phi);
+            EXPECT_NEAR(density(form, d), density(w, d), 1e-12);
+            EXPECT_NEAR(density(same, d), plane.density(d), 1e-12);
+            EXPECT_NEAR(density(turnedAboutY(same, 0.4), d), turned(plane, 0.4).density(d), 1e-12);
+        }
+    }
+}
+
+TEST(AskewLtc, FitsRecoverALobeOutsideThePlaneOfIncidence) {
+    // Narrow enough to lie above the horizon, wider along a slanted direction than across it.
+    const AskewLtc truth =
+        inStandardForm({{{0.9, 0.5, -0.35}, {-0.9, 1.6, 0.15}, {0.12, 0.03, 0.35}}});
+    const LobeSamples samples = hemisphereSamples(truth, 0.7);
+    const AskewLtc start{{{1, 0, 0}, {0, 1, 0}, {0, 0, 0.5}}};
+    const AskewFit fit = fitAskewLtc(samples, start);
+    EXPECT_LT(fit.error, 2e-3);
+    for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = 0; column < 3; ++column)
+            EXPECT_NEAR(fit.w[row][column], truth[row][column], 5e-3) << row << column;
 }
 
 }  // namespace
