@@ -426,7 +426,8 @@ void addExport(CLI::App& command, Globals& globals) {
     command.add_option("--lighting", arguments->lighting,
                        "Tables, light and shaders for environments and area lights in place of "
                        "textures: all, or of coefficients, split-sum and ltc those named; with "
-                       "--light the light that is written");
+                       "--light the light that is written; shaders of materials that are not "
+                       "isotropic take a tangent");
     command.add_option("--library", options.library,
                        "Of the target three: where its page finds three.js, a path from the folder "
                        "or an address (default: ./node_modules/three)");

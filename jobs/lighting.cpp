@@ -12,6 +12,7 @@
 #include <hshfit/gpu/shader.h>
 #include <hshfit/light/catalog.h>
 #include <hshfit/lighting/lighting_shader.h>
+#include <hshfit/rendering/view.h>
 #include <hshfit/version.h>
 #include <hshfit/wording.h>
 
@@ -53,11 +54,11 @@ const lighting::ElevationTable& tableOf(Kind kind, const LightingTables& tables)
 }
 
 Json writeTable(const LightingModel& model, const lighting::ElevationTable& table, Output& output) {
-    const auto width = static_cast<int>(table.texels), height = static_cast<int>(table.rows.count);
+    const auto width = static_cast<int>(table.texels), height = static_cast<int>(table.height());
     const gpu::Texels texels = gpu::encode(table.values, width, height, 1, gpu::Number::float32);
     const gpu::Ktx2Image image{.number = texels.number,
                                .width = table.texels,
-                               .height = table.rows.count,
+                               .height = table.height(),
                                .pairs = {{"hshfit:model", std::string(model.name)}}};
     const std::string stem = fmt::format(".{}.table", model.name);
     return {{"width", width},
@@ -132,7 +133,10 @@ Json writeLightingShaders(const LightingModel& model, const LightingTables& tabl
         .kind = static_cast<lighting::LightingShader::Kind>(model.kind),
         .order = tables.harmonics ? tables.harmonics->order : 0,
         .levels = tables.splitSum ? tables.splitSum->levels : 0,
+        .taps = tables.splitSum ? tables.splitSum->taps : 0,
+        .inPlane = tables.inPlane,
         .rows = table.rows,
+        .azimuths = table.azimuths,
         .texels = table.texels,
         .prefix = output.options.prefix,
         .source = source,
@@ -157,6 +161,20 @@ Json writeLightingShaders(const LightingModel& model, const LightingTables& tabl
     return shaders;
 }
 
+/// The order of the table's rows, where they are by azimuth too.
+void describeAzimuths(const LightingTables& tables, Json& document) {
+    const lighting::AzimuthNodes& azimuths = tables.azimuths;
+    if (azimuths.count == 1) return;
+    document["rows"]["azimuths"] = azimuths.count;
+    document["rows"]["azimuth_formula"] =
+        azimuths.folded
+            ? "azimuth = (azimuths - 1) phi / 90 degrees, with phi of wo about the tangent taken "
+              "into the first quarter; where x y < 0 there, the lobe is mirrored at the plane of "
+              "incidence; row of the table = azimuth count + row"
+            : "azimuth = azimuths phi / 360 degrees, with phi of wo about the tangent, the first "
+              "after the last; row of the table = azimuth count + row";
+}
+
 /// Normals all over the sphere and viewers all over their hemispheres, with each model's radiance.
 Json testsOf(std::span<const LightingModel* const> models, const LightingTables& tables,
              const LightingEnvironment& light) {
@@ -168,6 +186,7 @@ Json testsOf(std::span<const LightingModel* const> models, const LightingTables&
         const double cosine = 0.03 + 0.97 * (static_cast<double>(k) + 0.5) / count;
         const Direction viewer = axes.toWorld({std::sqrt(1 - cosine * cosine), 0, cosine});
         Json test = {{"normal", pointJson(normals[k])}, {"viewer", pointJson(viewer)}};
+        if (tables.azimuths.count > 1) test["tangent"] = pointJson(frameAt(normals[k]).tangent);
         for (const LightingModel* model : models)
             test[std::string(model->name)] =
                 shadingOf(model->kind, tables, light)(normals[k], viewer);
@@ -230,6 +249,7 @@ LightingExport exportLighting(const std::string& path, const std::string& folder
                   {"least_cosine", lighting::ElevationRows::leastCosine},
                   {"formula", "row = (count - 1) sqrt((1 - cos(theta_o)) / (1 - least_cosine))"}}},
                 {"models", Json::array()}};
+    describeAzimuths(tables, document);
     for (const LightingModel* model : models) {
         const int k = static_cast<int>(model->kind);
         Json entry = {{"model", model->name},
@@ -242,6 +262,10 @@ LightingExport exportLighting(const std::string& path, const std::string& folder
         if (model->kind == Kind::splitSum) {
             entry["kernel_scale"] = tables.splitSum->firstScale;
             entry["kernel_width_degrees"] = degrees(tables.splitSum->firstWidth);
+            if (tables.splitSum->taps > 0) {
+                entry["taps"] = tables.splitSum->taps;
+                entry["misplaced"] = tables.splitSum->misplaced;
+            }
         }
         entry["table"] = writeTable(*model, tableOf(model->kind, tables), output);
         describeLighting(*model, light, output, entry);

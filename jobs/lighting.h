@@ -29,10 +29,10 @@ struct LightingExport {
     std::vector<std::string> files;  ///< names in the folder
 };
 
-/// Tables by elevation of the BRDF in a coefficient file of any form, for each of the models, with
-/// one light made ready for them, as textures, shaders and a sidecar: all files or none. Spectra
-/// become RGB. Throws UsageError (for a BRDF that is not isotropic, too), InputError, NumericError
-/// and OutputError.
+/// Tables by elevation, and by azimuth where it is not isotropic, of the BRDF in a coefficient file
+/// of any form, for each of the models, with one light made ready for them, as textures, shaders
+/// and a sidecar: all files or none. Spectra become RGB. Throws UsageError, InputError,
+/// NumericError and OutputError.
 LightingExport exportLighting(const std::string& coefficients, const std::string& folder,
                               const LightingExportOptions& options, const Listener& listener = {});
 

@@ -1,10 +1,12 @@
 #include "lighting_models.h"
 
-#include <brdfs/fit/ltc_lobe.h>
+#include "lighting_cosines.h"
+
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/light/light_projection.h>
 #include <hshfit/lighting/lobe_nodes.h>
+#include <hshfit/rendering/view.h>
 #include <hshfit/specification/parameters.h>
 
 #include <fmt/format.h>
@@ -28,44 +30,6 @@ constexpr std::array lightingTable{
     LightingModel{Kind::cosines, "ltc",
                   "linearly transformed cosines of the BRDF for polygons of light"},
 };
-
-/// The lobe above its even part, as grey: the mean of the channels, at least 0.
-class LobeRest final : public Brdf {
-public:
-    LobeRest(const Brdf& whole, const Rgb& even) : whole_(whole) {
-        for (const double part : even) level_ += part / pi / 3;
-        laws_ = whole.laws();
-    }
-    std::string name() const override { return whole_.name(); }
-    const Channels& channels() const override { return channels_; }
-    const Laws& laws() const override { return laws_; }
-    std::vector<Lobe> lobes(const Direction& wo) const override { return whole_.lobes(wo); }
-    std::vector<double> kinks(const Direction& wo) const override { return whole_.kinks(wo); }
-    void eval(const Direction& wo, DirectionBatch wi, double* out) const override {
-        const std::size_t count = whole_.channels().count();
-        std::vector<double> values(count * wi.count);
-        whole_.eval(wo, wi, values.data());
-        for (std::size_t k = 0; k < wi.count; ++k) {
-            double sum = 0;
-            for (std::size_t c = 0; c < count; ++c) sum += values[c * wi.count + k];
-            const double rest = sum / static_cast<double>(count) - level_;
-            out[k] = wi.z[k] > 0 ? std::max(0.0, rest) : 0;
-        }
-    }
-
-private:
-    const Brdf& whole_;
-    double level_ = 0;
-    Laws laws_;
-    Channels channels_ = Channels::grey();
-};
-
-/// A lobe with the mean direction and about the width of the rest.
-brdfs::Ltc startOf(const lighting::LobeSummary& lobe) {
-    const double width = std::acos(std::min(lobe.meanCosine, 1 - 1e-8)) * 0.8;
-    return brdfs::turned({.a = 1, .c = 0, .b = 0, .d = std::max(width, 1e-4)},
-                         std::atan2(lobe.axis.x, lobe.axis.z));
-}
 
 double secondsOf(const std::function<void()>& work) {
     const auto start = std::chrono::steady_clock::now();
@@ -102,72 +66,6 @@ std::vector<const LightingModel*> selectLightingModels(std::string_view names) {
     return models;
 }
 
-namespace {
-
-/// The better of fits from the lobe's first moment and from the row before.
-struct CosineFit {
-    lighting::CosineRow row;
-    brdfs::Ltc ltc = {};
-    double misplaced = 0;
-    bool any = false;  ///< there is something above the even part
-};
-CosineFit fitCosine(const Brdf& brdf, const lighting::LobeNodes& nodes, double evenShare,
-                    const std::optional<brdfs::Ltc>& before) {
-    const lighting::LobeSummary lobe = lighting::summarise(nodes, evenShare);
-    CosineFit fit{.row = {.even = lobe.even, .rest = lobe.rest}};
-    if (lobe.meanCosine >= 1) return fit;
-    fit.any = true;
-    const LobeRest rest(brdf, lobe.even);
-    const brdfs::LtcFitOptions how{.symmetric = nodes.wo.x < 1e-6};
-    brdfs::LtcLobe best = brdfs::fitLtc(rest, nodes.wo, startOf(lobe), how);
-    if (before) {
-        const brdfs::LtcLobe other = brdfs::fitLtc(rest, nodes.wo, *before, how);
-        if (other.error < best.error) best = other;
-    }
-    fit.ltc = best.ltc;
-    fit.row.lobe = {.a = best.ltc.a, .b = best.ltc.b, .c = best.ltc.c, .d = best.ltc.d};
-    const double share = fit.row.lobe.share();
-    fit.misplaced = lighting::misplaced(
-        nodes, lobe, [&](const Direction& d) { return best.ltc.density(d) / share; });
-    return fit;
-}
-
-/// The one of evenShares that misplaces the least light, over some rows.
-double chooseEvenShare(const Brdf& brdf, std::span<const lighting::LobeNodes> nodes) {
-    double best = 0, least = HUGE_VAL;
-    for (const double share : lighting::evenShares) {
-        double sum = 0;
-        for (const std::size_t k : {nodes.size() / 4, nodes.size() / 2, 3 * nodes.size() / 4})
-            sum += fitCosine(brdf, nodes[k], share, {}).misplaced;
-        if (sum >= least) continue;
-        least = sum;
-        best = share;
-    }
-    return best;
-}
-
-}  // namespace
-
-lighting::CosineTable fitCosineTable(const Brdf& brdf, lighting::ElevationRows rows) {
-    lighting::requireIsotropic(brdf);
-    std::vector<lighting::LobeNodes> nodes;
-    for (std::size_t k = 0; k < rows.count; ++k)
-        nodes.push_back(
-            lighting::lobeNodes(brdf, directionFromAngles(std::acos(rows.cosine(k)), 0), 2));
-    const double share = chooseEvenShare(brdf, nodes);
-    std::vector<lighting::CosineRow> result;
-    std::optional<brdfs::Ltc> before;
-    for (std::size_t k = 0; k < rows.count; ++k) {
-        if (before && k > 0)
-            before =
-                brdfs::turned(*before, std::acos(rows.cosine(k - 1)) - std::acos(rows.cosine(k)));
-        const CosineFit fit = fitCosine(brdf, nodes[k], share, before);
-        if (fit.any) before = fit.ltc;
-        result.push_back(fit.row);
-    }
-    return lighting::cosineTable(result);
-}
-
 std::size_t LightingTables::bytes(Kind kind) const {
     switch (kind) {
         case Kind::coefficients:
@@ -185,15 +83,20 @@ LightingTables fitLightingTables(const Brdf& brdf, std::span<const LightingModel
     const lighting::ElevationRows rows{.count = options.rows};
     if (options.rows < 2 || options.rows > 1024)
         throw UsageError(fmt::format("{} elevations: from 2 to 1024 are possible", options.rows));
-    LightingTables tables;
+    const std::size_t steps = options.azimuthSteps;
+    if (steps < 1 || steps > 64)
+        throw UsageError(
+            fmt::format("{} azimuths in a quarter turn: from 1 to 64 are possible", steps));
+    LightingTables tables{.azimuths = lighting::AzimuthNodes(brdf.laws(), steps),
+                          .inPlane = lighting::lobesInPlane(brdf.laws())};
     for (const LightingModel* model : models) {
         tables.seconds[static_cast<int>(model->kind)] = secondsOf([&] {
             if (model->kind == Kind::coefficients)
-                tables.harmonics = lighting::fitHarmonics(brdf, options.order, rows);
+                tables.harmonics = lighting::fitHarmonics(brdf, options.order, rows, steps);
             else if (model->kind == Kind::splitSum)
-                tables.splitSum = lighting::fitSplitSum(brdf, rows);
+                tables.splitSum = lighting::fitSplitSum(brdf, rows, steps);
             else
-                tables.cosines = fitCosineTable(brdf, rows);
+                tables.cosines = fitCosineTable(brdf, rows, steps);
         });
     }
     return tables;
@@ -238,17 +141,18 @@ lighting::Shading shadingOf(Kind kind, const LightingTables& tables,
                             const LightingEnvironment& light) {
     if (kind == Kind::coefficients) {
         return [&light](const Direction& normal, const Direction& viewer) {
-            return light.harmonics->radiance(normal, viewer);
+            return light.harmonics->radiance(normal, viewer, frameAt(normal).tangent);
         };
     }
     if (kind == Kind::splitSum) {
         return [&](const Direction& normal, const Direction& viewer) {
             return lighting::radiance(*tables.splitSum, light.cube, light.irradiance, normal,
-                                      viewer);
+                                      viewer, frameAt(normal).tangent);
         };
     }
     return [&](const Direction& normal, const Direction& viewer) {
-        return lighting::radiance(*tables.cosines, light.areas, normal, viewer);
+        return lighting::radiance(*tables.cosines, light.areas, normal, viewer,
+                                  frameAt(normal).tangent);
     };
 }
 

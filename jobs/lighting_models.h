@@ -28,29 +28,28 @@ std::span<const LightingModel> lightingModels();
 std::vector<const LightingModel*> selectLightingModels(std::string_view names);
 
 struct LightingTableOptions {
-    std::size_t rows = 32;   ///< elevations of wo
+    std::size_t rows = 32;  ///< elevations of wo
+    /// Steps of its azimuth in a quarter turn, where the BRDF is not isotropic.
+    std::size_t azimuthSteps = lighting::AzimuthNodes::defaultSteps;
     int order = 5;           ///< bands of light that meet harmonics
     std::size_t face = 128;  ///< most texels along an edge of the cube's faces
     std::size_t tiles = 64;  ///< quadrilaterals that skies and pictures are cut into
 };
 
-/// Tables of an isotropic BRDF, of the models that were asked for; `seconds` in the order of
+/// Tables of a BRDF, of the models that were asked for; `seconds` in the order of
 /// lightingModels().
 struct LightingTables {
     std::optional<lighting::HarmonicTable> harmonics = {};
     std::optional<lighting::SplitSumTable> splitSum = {};
     std::optional<lighting::CosineTable> cosines = {};
+    lighting::AzimuthNodes azimuths = {};  ///< of each table
+    bool inPlane = true;                   ///< lighting::lobesInPlane of the BRDF
     double seconds[3] = {0, 0, 0};
 
     std::size_t bytes(LightingModel::Kind kind) const;
 };
 LightingTables fitLightingTables(const Brdf& brdf, std::span<const LightingModel* const> models,
                                  const LightingTableOptions& options);
-
-/// Transformed cosines by elevation: the even part of the lobe apart (LobeSummary, with the one of
-/// evenShares that misplaces the least light), the rest fitted by brdfs::fitLtc from its own first
-/// moment and from the row before.
-lighting::CosineTable fitCosineTable(const Brdf& brdf, lighting::ElevationRows rows);
 
 /// Light made ready for the tables' models.
 struct LightingEnvironment {

@@ -21,7 +21,7 @@ struct PlannedLighting {
 
 /// For each material of a scene, the least model of lighting (by bytes, or by time) whose picture
 /// of a sphere under the scene's lights is within the number of the material's budget, whatever its
-/// metric. A material that cannot be opened or is not isotropic has a reason.
+/// metric. A material that cannot be opened has a reason.
 /// Throws UsageError for unknown models.
 std::vector<PlannedLighting> planLighting(const plan::Scene& scene, const std::string& models,
                                           bool byTime, const Listener& listener = {});

@@ -64,6 +64,45 @@ TEST_F(Lighting, TablesLightAndShadersOfAFormAreWrittenWithTheirErrors) {
     EXPECT_EQ(word(cube, 80) + word(cube, 88), cube.size());
 }
 
+TEST_F(Lighting, BrushedMaterialsHaveTablesByAzimuth) {
+    project("ward:ax=.5,ay=.9", "ward.json", "--order 4 --outgoing 8x8");
+    const Answer answer = run("export " + path("ward.json") + " -o " + path("out") +
+                              " --lighting all --target glsl,hlsl,wgsl,glsl-es --light "
+                              "uniform:radiance=2 --no-error --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "lighting"));
+    const std::string sidecar = read(path("out/ward.lighting.json"));
+    EXPECT_TRUE(keepsSchema(sidecar, "lighting"));
+    const Json written = Json::parse(sidecar);
+    EXPECT_EQ(written["rows"]["azimuths"], 9);
+    // Mirror-symmetric: harmonics of m < 0, and matrices outside the plane of incidence.
+    const std::size_t widths[] = {25, 3, 4};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Json model = written["models"][k];
+        EXPECT_EQ(model["table"]["width"], widths[k]);
+        EXPECT_EQ(model["table"]["height"], 9 * 32);
+        EXPECT_EQ(model["bytes"], widths[k] * 9 * 32 * 16);
+        EXPECT_EQ(read(path("out/" + model["table"]["files"][1]["path"].get<std::string>())).size(),
+                  widths[k] * 9 * 32 * 16);
+        for (const Json& shader : model["shaders"]) {
+            EXPECT_NE(read(path("out/" + shader["path"].get<std::string>())).find("tangent"),
+                      std::string::npos);
+        }
+    }
+    EXPECT_GT(written["models"][1]["taps"], 1);
+    // Under uniform light, every model reflects twice the albedo, and so they agree.
+    for (const Json& test : written["tests"]) {
+        const auto at = [&](const char* vector, std::size_t c) {
+            return test[vector][c].get<double>();
+        };
+        EXPECT_NEAR(at("tangent", 0) * at("normal", 0) + at("tangent", 1) * at("normal", 1), 0,
+                    1e-12);
+        EXPECT_GT(at("coefficients", 1), 0.1);
+        EXPECT_NEAR(at("split-sum", 1), at("coefficients", 1), 5e-3 * at("coefficients", 1));
+        EXPECT_NEAR(at("ltc", 1), at("coefficients", 1), 5e-3 * at("coefficients", 1));
+    }
+}
+
 TEST_F(Lighting, TradeAndPlanChooseAmongTheModels) {
     const Answer answer =
         run("tradeoff lambert:kd=.5 --lighting all --light uniform:radiance=1 "
@@ -96,14 +135,12 @@ TEST_F(Lighting, TradeAndPlanChooseAmongTheModels) {
 }
 
 TEST_F(Lighting, BadInputIsRefused) {
-    project("ward:ax=.2,ay=.6", "ward.json", "--order 3 --outgoing 8x8");
     project("lambert", "plain.json", "--order 2 --outgoing 4");
     const std::string out = " -o " + path("out");
-    expectError("export " + path("ward.json") + out + " --lighting ltc", 2, "isotropic", 2);
-    expectError("export " + path("plain.json") + out + " --lighting fog", 2, "split-sum", 2);
+    expectError("export " + path("plain.json") + out + " --lighting fog", 2, "split-sum", 1);
     expectError("export " + path("plain.json") + out + " --lighting coefficients " +
                     "--environment-order 40",
-                2, "40 bands", 2);
+                2, "40 bands", 1);
     EXPECT_FALSE(fs::exists(path("out")));
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <hshfit/brdf/brdf.h>
+
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -22,19 +24,48 @@ struct ElevationRows {
     Place place(double cosine) const;
 };
 
-/// Numbers by elevation as shaders read them: texels of four, interpolated linearly between rows.
+/// The azimuths of wo, about the tangent, that a table has. An isotropic BRDF needs one. A
+/// mirror-symmetric one needs a quarter turn with both its ends, because wo in another quarter sees
+/// the mirror image of a lobe; any other needs the whole circle, of which the first node follows
+/// the last.
+struct AzimuthNodes {
+    static constexpr std::size_t defaultSteps = 8;  ///< docs/lighting.md has the errors of others
+    std::size_t count = 1;
+    bool folded = false;
+
+    AzimuthNodes() = default;
+    /// The azimuths that the laws ask for, with `steps` between nodes in a quarter turn (at least
+    /// 1).
+    AzimuthNodes(const Laws& laws, std::size_t steps);
+
+    double angle(std::size_t node) const;
+    /// Two nodes, the share of the second, and whether the lobe has to be mirrored at the plane of
+    /// incidence.
+    struct Place {
+        std::size_t first = 0, second = 0;
+        double share = 0;
+        bool mirrored = false;
+    };
+    Place place(double azimuth) const;
+};
+
+/// Numbers by elevation, and by azimuth where there are several, as shaders read them: texels of
+/// four, interpolated linearly between rows and between azimuths.
 struct ElevationTable {
     ElevationRows rows = {};
+    AzimuthNodes azimuths = {};
     std::size_t texels = 0;      ///< of a row
-    std::vector<double> values;  ///< [row][texel][4]
+    std::vector<double> values;  ///< [azimuth][row][texel][4]
 
     ElevationTable() = default;
-    ElevationTable(ElevationRows rows, std::size_t texels);
+    ElevationTable(ElevationRows rows, std::size_t texels, AzimuthNodes azimuths = {});
 
-    std::span<double> row(std::size_t k);
-    std::span<const double> row(std::size_t k) const;
-    /// The interpolated row at an elevation: 4 texels numbers to `out`.
-    void at(double cosine, std::span<double> out) const;
+    std::size_t height() const { return azimuths.count * rows.count; }
+    std::span<double> row(std::size_t k, std::size_t azimuth = 0);
+    std::span<const double> row(std::size_t k, std::size_t azimuth = 0) const;
+    /// The interpolated row of a view: 4 texels numbers to `out`. Returns whether the lobe has to
+    /// be mirrored at the plane of incidence.
+    bool at(double cosine, double azimuth, std::span<double> out) const;
 };
 
 }  // namespace hshfit::lighting

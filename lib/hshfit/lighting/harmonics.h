@@ -10,13 +10,16 @@
 
 namespace hshfit::lighting {
 
-/// An isotropic, mirror-symmetric BRDF as spherical harmonics by elevation:
-///     F_{l,m}(theta_o) = integral over the hemisphere of f cos(theta_i) Y_{l,m}(wi),  m >= 0,
-/// with wo at azimuth 0. Light of `order` bands is then reflected exactly, but for the
-/// interpolation between rows: the radiance is the sum of F_{l,m} L_{l,m} over the coefficients of
-/// light in the frame of n and wo. Texel l (l + 1) / 2 + m has R, G, B.
+/// A BRDF as spherical harmonics by elevation and, with a tangent, azimuth of wo:
+///     F_{l,m}(wo) = integral over the hemisphere of f cos(theta_i) Y_{l,m}(wi)
+/// in the frame turned about the normal in which wo is at azimuth 0. Light of `order` bands is then
+/// reflected exactly, but for the interpolation: the radiance is the sum of F_{l,m} L_{l,m} over
+/// the coefficients of light in the frame of n and wo. Texels have R, G, B: texel l (l + 1) / 2 + m
+/// that of m >= 0 where lobes are their own mirror image (`inPlane`: F is 0 for m < 0), else texel
+/// l (l + 1) + m.
 struct HarmonicTable {
     int order = 0;
+    bool inPlane = true;
     ElevationTable table = {};
 
     std::size_t bytes() const { return table.values.size() * sizeof(float); }
@@ -27,16 +30,18 @@ constexpr std::size_t harmonicTexel(int l, int m) {
     return static_cast<std::size_t>(l * (l + 1) / 2 + m);
 }
 
-/// Throws UsageError for a BRDF that is not isotropic and mirror-symmetric or an order that is not
-/// 1 to 16; NumericError where f is not finite.
-HarmonicTable fitHarmonics(const Brdf& brdf, int order, ElevationRows rows = {});
+/// Throws UsageError for an order that is not 1 to 16; NumericError where f is not finite.
+HarmonicTable fitHarmonics(const Brdf& brdf, int order, ElevationRows rows = {},
+                           std::size_t azimuthSteps = AzimuthNodes::defaultSteps);
 
 /// Radiance under light by SH coefficients in the world. Immutable.
 class HarmonicShading {
 public:
     /// `light`: RGB on the sphere, at least of the table's order, without the Condon-Shortley sign.
     HarmonicShading(HarmonicTable table, const LightCoefficients& light);
-    Rgb radiance(const Direction& normal, const Direction& viewer) const;
+    /// `tangent`: unit vector across the normal; of no account for an isotropic BRDF.
+    Rgb radiance(const Direction& normal, const Direction& viewer,
+                 const Direction& tangent = {0, 0, 0}) const;
 
     const HarmonicTable& table() const { return table_; }
     const std::vector<Rgb>& light() const { return light_; }  ///< [slot]
@@ -48,18 +53,19 @@ private:
     std::shared_ptr<const ShRotation> rotation_;
 };
 
-/// The axes in which a table is read: +z the normal, +x the viewer's part across it (any tangent
-/// where that vanishes).
+/// The axes in which a table is read: +z the normal, +x the viewer's part across it (`tangent`, or
+/// any where that is 0, where the viewer's part vanishes).
 struct ViewAxes {
-    ViewAxes(const Direction& normal, const Direction& viewer);
+    ViewAxes(const Direction& normal, const Direction& viewer,
+             const Direction& tangent = {0, 0, 0});
+    /// +y the other way, for a table whose lobe has to be mirrored.
+    void mirror();
     Direction toLocal(const Direction& world) const;
     Direction toWorld(const Direction& local) const;
 
     Direction x, y, z;
-    double cosine = 1;  ///< of the viewer
+    double cosine = 1;   ///< of the viewer
+    double azimuth = 0;  ///< of +x about the tangent; 0 where that is 0
 };
-
-/// Throws UsageError, naming `what`, unless the BRDF's laws say isotropic and mirror-symmetric.
-void requireIsotropic(const Brdf& brdf);
 
 }  // namespace hshfit::lighting

@@ -5,6 +5,7 @@
 #include <hshfit/gpu/shader_data.h>
 #include <hshfit/gpu/shader_text.h>
 #include <hshfit/lighting/harmonics.h>
+#include <hshfit/lighting/lobe_taps.h>
 
 #include <fmt/format.h>
 
@@ -69,18 +70,54 @@ void setDeclarations(Language language, const LightingShader& shader, data& page
              coefficients ? array("light", shader.order * shader.order) : array("irradiance", 9));
 }
 
+/// Terms of m >= 0, and those of m < 0 of lobes that are not their own mirror images.
 void setTerms(const LightingShader& shader, data& page) {
-    data terms{data::type::list};
+    data terms{data::type::list}, sines{data::type::list};
     for (int l = 0; l < shader.order; ++l) {
-        for (int m = 0; m <= l; ++m) {
+        for (int m = shader.inPlane ? 0 : -l; m <= l; ++m) {
             data term;
-            term.set("plus", l == 0 ? "" : "\n        + ");
-            term.set("column", std::to_string(harmonicTexel(l, m)));
+            term.set("plus", m < 0    ? (sines.is_empty_list() ? "" : "\n            + ")
+                             : l == 0 ? ""
+                                      : "\n        + ");
+            term.set("column",
+                     std::to_string(shader.inPlane ? harmonicTexel(l, m)
+                                                   : static_cast<std::size_t>(slotOf(l, m))));
             term.set("slot", std::to_string(slotOf(l, m)));
-            terms.push_back(term);
+            (m < 0 ? sines : terms).push_back(term);
         }
     }
     page.set("terms", terms);
+    page.set("sines", sines);
+}
+
+/// The parts that tables by azimuth and lobes that are not their own mirror images add.
+void setAskew(const LightingShader& shader, data& page) {
+    const AzimuthNodes& azimuths = shader.azimuths;
+    const auto count = static_cast<double>(azimuths.count);
+    const bool around = azimuths.count > 1;
+    page.set("around", around);
+    page.set("folded", azimuths.folded);
+    page.set("askew", !shader.inPlane &&
+                          (shader.kind != LightingShader::Kind::coefficients || shader.order > 1));
+    page.set("place", around ? "cosine, turn" : "cosine");
+    page.set("side", azimuths.folded ? "side" : "b");
+    page.set("flip", azimuths.folded ? "flip * " : "");
+    page.set("azimuths", std::to_string(azimuths.count));
+    page.set("height", std::to_string(azimuths.count * shader.rows.count));
+    page.set("lastAzimuth", fmt::format("{}.0", azimuths.count - (azimuths.folded ? 2 : 1)));
+    page.set("perRadian",
+             gpu::shaderNumber(azimuths.folded ? (count - 1) / (pi / 2) : count / (2 * pi)));
+    data list{data::type::list};
+    if (shader.taps > 0) {
+        const LobeTaps taps(shader.taps);
+        for (std::size_t k = 0; k < shader.taps; ++k) {
+            data tap;
+            tap.set("offset", gpu::shaderNumber(taps.offsets[k]));
+            tap.set("weight", gpu::shaderNumber(taps.weights[k]));
+            list.push_back(tap);
+        }
+    }
+    page.set("taps", list);
 }
 
 void setPartials(data& page) {
@@ -142,6 +179,7 @@ std::string lightingShaderSource(Language language, const LightingShader& shader
     page.set("texels", std::to_string(shader.texels));
     page.set("last", fmt::format("{}.0", shader.rows.count - 1));
     page.set("span", gpu::shaderNumber(1 - ElevationRows::leastCosine));
+    setAskew(shader, page);
     if (shader.kind == LightingShader::Kind::coefficients) {
         setTerms(shader, page);
         gpu::setFrameTurn(shader.order, page);

@@ -14,34 +14,59 @@ constexpr double narrowest = 1e-5;      // in t
 constexpr std::size_t entries = 16384;  // of a tabulated kernel
 constexpr double leastScale = 1e-3, mostScale = 30;
 
-}  // namespace
-
-LobeKernel::LobeKernel(const Brdf& brdf, double evenShare) {
-    const Direction normal{0, 0, 1};
-    const LobeSummary upright = summarise(lobeNodes(brdf, normal, 2), evenShare);
+/// Where f is looked up: along the meridian of +x, or to both sides of an axis.
+struct ProfileDirections {
     std::vector<double> x, y, z;
-    for (std::size_t k = 0; k < samples; ++k) {
-        const double t =
-            narrowest * std::pow(1 / narrowest, static_cast<double>(k) / (samples - 1));
-        t_.push_back(t);
+
+    void addMeridian(double t) {
         x.push_back(2 * t / (1 + t * t));
         y.push_back(0);
         z.push_back(std::max(0.0, (1 - t * t) / (1 + t * t)));
     }
-    const std::size_t channels = brdf.channels().count();
-    std::vector<double> f(channels * samples);
-    brdf.eval(normal, {x.data(), y.data(), z.data(), samples}, f.data());
-    bool any = false;
+    /// Both sides of an axis, one after the other.
+    void addSides(const Direction& axis, double angle, const std::vector<double>& ts) {
+        const Direction across = AcrossAxis(axis).at(angle);
+        for (const double side : {1.0, -1.0}) {
+            for (const double t : ts) {
+                const double c = (1 - t * t) / (1 + t * t), s = side * 2 * t / (1 + t * t);
+                x.push_back(c * axis.x + s * across.x);
+                y.push_back(c * axis.y + s * across.y);
+                z.push_back(std::max(0.0, c * axis.z + s * across.z));
+            }
+        }
+    }
+};
+
+}  // namespace
+
+LobeKernel::LobeKernel(const Brdf& brdf, double evenShare) {
+    const Direction normal{0, 0, 1};
+    const LobeNodes nodes = lobeNodes(brdf, normal, 2);
+    const LobeSummary upright = summarise(nodes, evenShare);
+    const bool round = lobesInPlane(brdf.laws());
+    ProfileDirections profile;
     for (std::size_t k = 0; k < samples; ++k) {
+        const double t =
+            narrowest * std::pow(1 / narrowest, static_cast<double>(k) / (samples - 1));
+        t_.push_back(t);
+        if (round) profile.addMeridian(t);
+    }
+    if (!round) profile.addSides(upright.axis, spreadOf(nodes, upright).angle() + pi / 2, t_);
+    const std::size_t channels = brdf.channels().count(), count = profile.x.size();
+    std::vector<double> f(channels * count);
+    brdf.eval(normal, {profile.x.data(), profile.y.data(), profile.z.data(), count}, f.data());
+    bool any = false;
+    values_.resize(samples);
+    for (std::size_t k = 0; k < count; ++k) {
         double value = 0;
-        for (std::size_t c = 0; c < channels; ++c)
-            value += f[c * samples + k] - upright.even[c] / pi;
-        values_.push_back(std::max(0.0, value) * z[k]);
+        for (std::size_t c = 0; c < channels; ++c) value += f[c * count + k] - upright.even[c] / pi;
+        values_[k % samples] += std::max(0.0, value) * profile.z[k];
         any = any || value > 1e-9 * upright.albedo[0];
     }
     const Rgb& rest = upright.rest;
     if (any && rest[0] + rest[1] + rest[2] > 0) return;
-    values_ = z;
+    for (std::size_t k = 0; k < samples; ++k)
+        values_[k] = std::max(0.0, (1 - t_[k] * t_[k]) / (1 + t_[k] * t_[k]));
 }
 
 LobeKernel::LobeKernel(std::vector<double> t, std::vector<double> values)
@@ -69,8 +94,10 @@ LobeKernel::Moments LobeKernel::moments(double scale) const {
         const double weight = 8 * pi * t * t / std::pow(1 + t * t, 2) * step * shape(u);
         result.integral += weight;
         result.meanCosine += weight * (1 - t * t) / (1 + t * t);
+        result.meanSquare += weight * std::pow((1 - t * t) / (1 + t * t), 2);
     }
     result.meanCosine /= result.integral;
+    result.meanSquare /= result.integral;
     return result;
 }
 

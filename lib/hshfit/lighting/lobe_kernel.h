@@ -7,16 +7,24 @@
 namespace hshfit::lighting {
 
 /// The lobe of a BRDF at normal incidence as a kernel about an axis: (f - even part) cos(theta_i),
-/// the mean over channels, as a function of t = tan(alpha / 2), alpha the angle from the axis.
+/// the mean over channels, as a function of t = tan(alpha / 2), alpha the angle from the axis. The
+/// axis is the normal, and for lobes that are not of revolution (lobesInPlane) the lobe's own, with
+/// f along the narrowest direction across it, the mean of both sides.
 /// Wider and narrower kernels have the same shape in t / scale: a stereographic map of the lobe.
 /// Each integrates to 1 over the sphere.
 class LobeKernel {
 public:
-    /// `brdf` is isotropic. A BRDF without a lobe gets the cosine's.
+    /// A BRDF without a lobe gets the cosine's.
     /// `evenShare`: of summarise().
     LobeKernel(const Brdf& brdf, double evenShare);
     /// From values at t = tan(alpha / 2), ascending and at most 1; 0 beyond.
     LobeKernel(std::vector<double> t, std::vector<double> values);
+
+    /// Means under the kernel, and its integral before it was scaled to 1.
+    struct Moments {
+        double integral = 0, meanCosine = 0, meanSquare = 0;  ///< of cos(alpha)
+    };
+    Moments moments(double scale) const;
 
     /// Mean of cos(alpha) under the kernel: 1 for a mirror's, falling with `scale`.
     double meanCosine(double scale) const;
@@ -36,11 +44,6 @@ public:
 
 private:
     double shape(double t) const;
-    struct Moments {
-        double integral = 0, meanCosine = 0;
-    };
-    Moments moments(double scale) const;
-
     std::vector<double> t_, values_;
 };
 

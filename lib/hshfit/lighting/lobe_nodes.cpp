@@ -13,7 +13,7 @@
 namespace hshfit::lighting {
 namespace {
 
-constexpr std::size_t mostNodes = std::size_t{1} << 20;
+constexpr std::size_t mostNodes = std::size_t{1} << 20, mostByAzimuth = mostNodes / 8;
 constexpr double settled = 2e-4;  // of the albedo; tables are interpolated with larger errors
 
 LobeNodes nodesAt(const Brdf& brdf, const Direction& wo, const HemisphereGrid& grid) {
@@ -74,12 +74,13 @@ LobeNodes lobeNodes(const Brdf& brdf, const Direction& wo, int order) {
             fmt::format("{}: lighting takes grey and RGB, not {} channels", brdf.name(), channels));
     const std::vector<Lobe> lobes = brdf.lobes(wo);
     const std::vector<double> kinks = brdf.kinks(wo);
+    const std::size_t most = lobesInPlane(brdf.laws()) ? mostNodes : mostByAzimuth;
     LobeNodes nodes;
     Rgb before{};
     for (int level = 0;; ++level) {
         const HemisphereGrid grid =
             gridFor(lobes, wo, {.order = order, .level = level, .squeezed = true}, kinks);
-        if (level > 0 && grid.points() > mostNodes) break;
+        if (level > 0 && grid.points() > most) break;
         nodes = nodesAt(brdf, wo, grid);
         const Rgb albedo = albedoOf(nodes);
         double change = 0, size = 0;
@@ -94,6 +95,46 @@ LobeNodes lobeNodes(const Brdf& brdf, const Direction& wo, int order) {
         if (level > 1 && change <= settled * size) break;
     }
     return nodes;
+}
+
+LobeNodes viewNodes(const Brdf& brdf, double cosine, double azimuth, int order) {
+    const double theta = std::acos(cosine);
+    LobeNodes nodes = lobeNodes(brdf, directionFromAngles(theta, azimuth), order);
+    nodes.inPlane = lobesInPlane(brdf.laws());
+    if (azimuth == 0) return nodes;
+    nodes.wo = directionFromAngles(theta, 0);
+    for (std::size_t k = 0; k < nodes.count(); ++k) {
+        const Direction d = rotateAboutZ({nodes.x[k], nodes.y[k], nodes.z[k]}, -azimuth);
+        nodes.x[k] = d.x;
+        nodes.y[k] = d.y;
+    }
+    return nodes;
+}
+
+LobeNodes thinned(const LobeNodes& nodes, std::size_t most) {
+    if (nodes.count() <= most) return nodes;
+    LobeNodes result;
+    result.wo = nodes.wo;
+    result.inPlane = nodes.inPlane;
+    const Rgb albedo = albedoOf(nodes);
+    const double energy = std::max(albedo[0] + albedo[1] + albedo[2], 1e-300);
+    double passed = 0, next = 0.5;
+    for (std::size_t k = 0; k < nodes.count(); ++k) {
+        const double f = nodes.f[0][k] + nodes.f[1][k] + nodes.f[2][k];
+        const double share =
+            nodes.weights[k] / 2 * (std::abs(f) * nodes.z[k] / energy + 1 / (2 * pi));
+        const double expected = share * static_cast<double>(most);
+        passed += expected;
+        double picks = 0;
+        for (; next < passed; ++next) ++picks;
+        if (picks == 0) continue;
+        result.x.push_back(nodes.x[k]);
+        result.y.push_back(nodes.y[k]);
+        result.z.push_back(nodes.z[k]);
+        result.weights.push_back(nodes.weights[k] * picks / expected);
+        for (std::size_t c = 0; c < 3; ++c) result.f[c].push_back(nodes.f[c][k]);
+    }
+    return result;
 }
 
 LobeSummary summarise(const LobeNodes& nodes, double evenShare) {
@@ -119,13 +160,49 @@ LobeSummary summarise(const LobeNodes& nodes, double evenShare) {
         mean.y += value * nodes.y[k];
         mean.z += value * nodes.z[k];
     }
-    // The lobe of an isotropic BRDF has its mean in the plane of incidence.
-    mean.y = 0;
+    if (nodes.inPlane) mean.y = 0;
     const double length = std::sqrt(dot(mean, mean));
     if (!(length > 0)) return result;
-    result.axis = {mean.x / length, 0, mean.z / length};
+    result.axis = {mean.x / length, mean.y / length, mean.z / length};
     result.meanCosine = std::min(length, 1.0);
     return result;
+}
+
+AcrossAxis::AcrossAxis(const Direction& a)
+    : first{1 - a.x * a.x / (1 + a.z), -a.x * a.y / (1 + a.z), -a.x},
+      second{-a.x * a.y / (1 + a.z), 1 - a.y * a.y / (1 + a.z), -a.y} {}
+
+Direction AcrossAxis::at(double angle) const {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {c * first.x + s * second.x, c * first.y + s * second.y, c * first.z + s * second.z};
+}
+
+double LobeSpread::angle() const {
+    return std::atan2(product, difference) / 2;
+}
+double LobeSpread::widest() const {
+    return (sum + std::hypot(difference, product)) / 2;
+}
+double LobeSpread::narrowest() const {
+    return std::max(0.0, sum - std::hypot(difference, product)) / 2;
+}
+
+LobeSpread spreadOf(const LobeNodes& nodes, const LobeSummary& lobe) {
+    const AcrossAxis across(lobe.axis);
+    const double rest = lobe.rest[0] + lobe.rest[1] + lobe.rest[2];
+    const double even = lobe.even[0] + lobe.even[1] + lobe.even[2];
+    LobeSpread spread;
+    if (!(rest > 0)) return spread;
+    for (std::size_t k = 0; k < nodes.count(); ++k) {
+        const double f = nodes.f[0][k] + nodes.f[1][k] + nodes.f[2][k] - even / pi;
+        const double share = f * nodes.weights[k] * nodes.z[k] / rest;
+        const Direction d{nodes.x[k], nodes.y[k], nodes.z[k]};
+        const double u = dot(d, across.first), v = dot(d, across.second);
+        spread.sum += share * (u * u + v * v);
+        spread.difference += share * (u * u - v * v);
+        spread.product += share * 2 * u * v;
+    }
+    return spread;
 }
 
 double misplaced(const LobeNodes& nodes, const LobeSummary& lobe,

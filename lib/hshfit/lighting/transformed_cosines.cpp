@@ -52,14 +52,17 @@ Polygon polygonOf(const std::array<Direction, 4>& corners) {
 }  // namespace
 
 double TransformedCosine::share() const {
-    return (1 + a / std::sqrt(a * a + c * c)) / 2;
+    // The surface's normal is taken to the third row of the inverse.
+    const double x = e * g - c, y = a * g;
+    return (1 + a / std::sqrt(a * a + x * x + y * y)) / 2;
 }
 
-CosineTable cosineTable(std::span<const CosineRow> rows) {
-    CosineTable result{ElevationTable({.count = rows.size()}, 3)};
+CosineTable cosineTable(std::span<const CosineRow> rows, AzimuthNodes azimuths, bool inPlane) {
+    const std::size_t count = rows.size() / azimuths.count;
+    CosineTable result{ElevationTable({.count = count}, inPlane ? 3 : 4, azimuths)};
     for (std::size_t k = 0; k < rows.size(); ++k) {
         const TransformedCosine& lobe = rows[k].lobe;
-        const std::span<double> row = result.table.row(k);
+        const std::span<double> row = result.table.row(k % count, k / count);
         for (std::size_t c = 0; c < 3; ++c) {
             row[c] = rows[k].even[c];
             row[4 + c] = rows[k].rest[c] / lobe.share();
@@ -68,6 +71,10 @@ CosineTable cosineTable(std::span<const CosineRow> rows) {
         row[7] = lobe.b;
         row[8] = lobe.c;
         row[9] = lobe.d;
+        if (inPlane) continue;
+        row[10] = lobe.e;
+        row[11] = lobe.f;
+        row[12] = lobe.g;
     }
     return result;
 }
@@ -77,12 +84,13 @@ double formFactor(const std::array<Direction, 4>& corners) {
 }
 
 Rgb radiance(const CosineTable& table, std::span<const AreaLight> lights, const Direction& normal,
-             const Direction& viewer) {
-    const ViewAxes axes(normal, viewer);
+             const Direction& viewer, const Direction& tangent) {
+    ViewAxes axes(normal, viewer, tangent);
     Rgb sum{};
     if (!(axes.cosine > 0)) return sum;
-    std::array<double, 12> row{};
-    table.table.at(axes.cosine, row);
+    std::array<double, 16> row{};
+    if (table.table.at(axes.cosine, axes.azimuth, {row.data(), 4 * table.table.texels}))
+        axes.mirror();
     for (const AreaLight& light : lights) {
         Polygon polygon;
         for (const Direction& corner : light.corners) polygon.add(axes.toLocal(corner));
@@ -91,7 +99,8 @@ Rgb radiance(const CosineTable& table, std::span<const AreaLight> lights, const 
         const double even = edges(polygon);
         for (std::size_t k = 0; k < polygon.count; ++k) {
             Direction& p = polygon.corners[k];
-            p = {row[3] * p.x + row[7] * p.z, p.y, row[8] * p.x + row[9] * p.z};
+            p = {row[3] * p.x + row[7] * p.z, row[10] * p.x + p.y + row[11] * p.z,
+                 row[8] * p.x + row[12] * p.y + row[9] * p.z};
         }
         const double rest = edges(above(polygon));
         for (std::size_t c = 0; c < 3; ++c)

@@ -10,33 +10,37 @@
 
 namespace hshfit::lighting {
 
-/// Linearly transformed cosines of one BRDF by elevation, for polygons of light (Heitz, Dupuy,
-/// Hill & Neubelt 2016, 10.1145/2897824.2925895):
-///     radiance of a polygon = L (even(theta_o) F(polygon) + rest(theta_o) F(W polygon) / share)
+/// Linearly transformed cosines of one BRDF by elevation and, with a tangent, azimuth of wo, for
+/// polygons of light (Heitz, Dupuy, Hill & Neubelt 2016, 10.1145/2897824.2925895):
+///     radiance of a polygon = L (even(wo) F(polygon) + rest(wo) F(W polygon) / share)
 /// F is the form factor of the part above the horizon; polygons are cut at the surface's horizon
 /// before they are transformed, and `share`, the part of the lobe above it, makes the albedo exact.
-/// W = | a 0 b | 0 1 0 | c 0 d | in the plane of incidence, wo on the side of +x.
-/// A row is three texels: R, G, B of `even` and a; R, G, B of `rest` / share and b; c, d, 0, 0.
+/// W = | a 0 b | e 1 f | c g d | in the frame of n and wo, wo on the side of +x.
+/// A row is three texels: R, G, B of `even` and a; R, G, B of `rest` / share and b; c, d, 0, 0
+/// where lobes are their own mirror image (lobesInPlane: e, f and g are 0), else four: c, d, e, f;
+/// g, 0, 0, 0.
 struct CosineTable {
     ElevationTable table = {};
 
     std::size_t bytes() const { return table.values.size() * sizeof(float); }
 };
 
-/// One row's lobe.
+/// One row's lobe. Any invertible matrix has this form, up to a factor and a turn about +z that
+/// leaves the cosine as it is.
 struct TransformedCosine {
-    double a = 1, b = 0, c = 0, d = 1;
-    /// The part of the lobe above the horizon, (1 + a / sqrt(a^2 + c^2)) / 2: that of a cosine's
-    /// lune. The determinant a d - b c is positive.
+    double a = 1, b = 0, c = 0, d = 1, e = 0, f = 0, g = 0;
+    /// The part of the lobe above the horizon, (1 + a / sqrt(a^2 + (e g - c)^2 + (a g)^2)) / 2:
+    /// that of a cosine's lune. The determinant is positive.
     double share() const;
 };
 
-/// A table from rows: `even` and `rest` as in LobeSummary.
+/// A table from rows, [azimuth][row] as in ElevationTable: `even` and `rest` as in LobeSummary.
 struct CosineRow {
     Rgb even{}, rest{};
     TransformedCosine lobe = {};
 };
-CosineTable cosineTable(std::span<const CosineRow> rows);
+CosineTable cosineTable(std::span<const CosineRow> rows, AzimuthNodes azimuths = {},
+                        bool inPlane = true);
 
 /// A quadrilateral of uniform radiance that lights from both sides; corners relative to the
 /// surface, at any distance.
@@ -54,8 +58,8 @@ std::vector<AreaLight> areaLights(std::span<const Light> lights, std::size_t cou
 /// F = 1 / pi times the integral of cos(theta) over the part of a quadrilateral above z = 0.
 double formFactor(const std::array<Direction, 4>& corners);
 
-/// Radiance of a surface in the world under the sum of the lights.
+/// Radiance of a surface in the world under the sum of the lights; `tangent` as in HarmonicShading.
 Rgb radiance(const CosineTable& table, std::span<const AreaLight> lights, const Direction& normal,
-             const Direction& viewer);
+             const Direction& viewer, const Direction& tangent = {0, 0, 0});
 
 }  // namespace hshfit::lighting

@@ -18,8 +18,8 @@ const scenes = readJson(join(folder, 'scenes.json'));
 const sidecar = readJson(join(folder, scenes.sidecar));
 const language = driver === 'webgpu' ? 'wgsl' : 'glsl-es';
 
-// What a page needs to draw normals and viewers with one model.
-function jobOf(entry, normals, viewers, width, height) {
+// What a page needs to draw normals, viewers and, of materials with one, tangents with one model.
+function jobOf(entry, { normals, viewers, tangents }, width, height) {
   const shader = entry.shaders.find(({ target }) => target === language);
   const numbers = {
     coefficients: () => entry.light.flat(),
@@ -38,6 +38,7 @@ function jobOf(entry, normals, viewers, width, height) {
     light: numbers[entry.model](),
     normals: base64(normals),
     viewers: base64(viewers),
+    tangents: sidecar.rows.azimuths && base64(tangents),
     width,
     height,
   };
@@ -55,7 +56,8 @@ async function prove(page) {
   for (const entry of sidecar.models) {
     const normals = four(sidecar.tests.map(({ normal }) => normal));
     const viewers = four(sidecar.tests.map(({ viewer }) => viewer));
-    const found = await draw(jobOf(entry, normals, viewers, 8, 8));
+    const tangents = four(sidecar.tests.map(({ tangent }) => tangent ?? [0, 0, 0]));
+    const found = await draw(jobOf(entry, { normals, viewers, tangents }, 8, 8));
     name = found.name;
     const values = decoded(found.values);
     let worst = 0,
@@ -75,11 +77,14 @@ async function prove(page) {
   for (const scene of scenes.scenes) {
     const normals = floatsOf(`${scene.name}.normals.bin`);
     const truth = floatsOf(`${scene.name}.integration.bin`);
+    const tangents = floatsOf(`${scene.name}.tangents.bin`);
     const viewers = new Float32Array(normals.length);
     for (let i = 0; i < viewers.length; ++i) viewers[i] = [...scenes.viewer, 1][i % 4];
     const row = [{ title: 'integration', values: base64(truth), channels: 3 }];
     for (const entry of sidecar.models) {
-      const found = await draw(jobOf(entry, normals, viewers, scene.size, scene.size));
+      const found = await draw(
+        jobOf(entry, { normals, viewers, tangents }, scene.size, scene.size),
+      );
       const values = decoded(found.values);
       const library = floatsOf(`${scene.name}.${entry.model}.bin`);
       let squares = 0,

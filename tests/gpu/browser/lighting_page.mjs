@@ -5,28 +5,30 @@ export async function drawWebGl2(job) {
   const gl = document.createElement('canvas').getContext('webgl2');
   if (!gl.getExtension('EXT_color_buffer_float')) throw new Error('no EXT_color_buffer_float');
   const areas = job.light.length / 15;
+  const surface = job.tangents ? 'n, t' : 'n';
   const shading = {
     coefficients: `uniform vec3 light[${job.light.length / 3}];
-      vec3 shade(vec3 n, vec3 wo) { return hsh_coefficients(n, wo, light); }`,
+      vec3 shade(vec3 n, vec3 t, vec3 wo) { return hsh_coefficients(${surface}, wo, light); }`,
     'split-sum': `uniform vec3 light[9];
-      vec3 shade(vec3 n, vec3 wo) { return hsh_splitSum(n, wo, light); }`,
+      vec3 shade(vec3 n, vec3 t, vec3 wo) { return hsh_splitSum(${surface}, wo, light); }`,
     ltc: `uniform vec3 light[${5 * areas}];
-      vec3 shade(vec3 n, vec3 wo) {
+      vec3 shade(vec3 n, vec3 t, vec3 wo) {
         vec3 sum = vec3(0.0);
         for (int k = 0; k < ${5 * areas}; k += 5)
-          sum += light[k + 4] * hsh_ltc(n, wo, light[k], light[k + 1], light[k + 2], light[k + 3]);
+          sum += light[k + 4] * hsh_ltc(${surface}, wo, light[k], light[k + 1], light[k + 2], light[k + 3]);
         return sum;
       }`,
   }[job.model];
   const fragment = `#version 300 es
     ${job.source}
-    uniform sampler2D normals, viewers;
+    uniform sampler2D normals, viewers${job.tangents ? ', tangents' : ''};
     ${shading}
     out vec4 colour;
     void main() {
       ivec2 at = ivec2(gl_FragCoord.xy);
       vec4 n = texelFetch(normals, at, 0);
-      colour = vec4(n.w > 0.0 ? shade(n.xyz, texelFetch(viewers, at, 0).xyz) : vec3(0.0), n.w);
+      vec3 t = ${job.tangents ? 'texelFetch(tangents, at, 0).xyz' : 'vec3(0.0)'};
+      colour = vec4(n.w > 0.0 ? shade(n.xyz, t, texelFetch(viewers, at, 0).xyz) : vec3(0.0), n.w);
     }`;
   const program = checks.useProgram(gl, fragment);
   let unit = 0;
@@ -48,6 +50,7 @@ export async function drawWebGl2(job) {
   numbers(`hsh_${name}_table`, job.table.width, job.table.height, job.table.bytes);
   numbers('normals', job.width, job.height, job.normals);
   numbers('viewers', job.width, job.height, job.viewers);
+  if (job.tangents) numbers('tangents', job.width, job.height, job.tangents);
   if (job.cube) {
     bind('hsh_splitSum_cube', gl.TEXTURE_CUBE_MAP, gl.LINEAR_MIPMAP_LINEAR, gl.LINEAR);
     gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MAX_LEVEL, job.cube.levels.length - 1);
@@ -106,12 +109,13 @@ export async function drawWebGpu(job) {
   const device = await adapter.requestDevice();
   device.pushErrorScope('validation');
   const count = job.light.length / 3;
+  const surface = job.tangents ? 'n, t' : 'n';
   const shading = {
-    coefficients: 'return hsh_coefficients(n, wo, all);',
-    'split-sum': 'return hsh_splitSum(n, wo, all);',
+    coefficients: `return hsh_coefficients(${surface}, wo, all);`,
+    'split-sum': `return hsh_splitSum(${surface}, wo, all);`,
     ltc: `var sum = vec3<f32>(0.0);
       for (var k = 0; k < ${count}; k += 5) {
-        sum += all[k + 4] * hsh_ltc(n, wo, all[k], all[k + 1], all[k + 2], all[k + 3]);
+        sum += all[k + 4] * hsh_ltc(${surface}, wo, all[k], all[k + 1], all[k + 2], all[k + 3]);
       }
       return sum;`,
   }[job.model];
@@ -119,7 +123,8 @@ export async function drawWebGpu(job) {
     @group(0) @binding(3) var<storage, read> light: array<vec4<f32>>;
     @group(0) @binding(4) var<storage, read> normals: array<vec4<f32>>;
     @group(0) @binding(5) var<storage, read> viewers: array<vec4<f32>>;
-    fn shade(n: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
+    ${job.tangents ? '@group(0) @binding(6) var<storage, read> tangents: array<vec4<f32>>;' : ''}
+    fn shade(n: vec3<f32>, t: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {
       var all: array<vec3<f32>, ${count}>;
       for (var i = 0; i < ${count}; i++) { all[i] = light[i].xyz; }
       ${shading}
@@ -131,7 +136,8 @@ export async function drawWebGpu(job) {
       let k = u32(at.y) * ${job.width} + u32(at.x);
       let n = normals[k];
       var colour = vec3<f32>(0.0);
-      if (n.w > 0.0) { colour = shade(n.xyz, viewers[k].xyz); }
+      let t = ${job.tangents ? 'tangents[k].xyz' : 'vec3<f32>(0.0)'};
+      if (n.w > 0.0) { colour = shade(n.xyz, t, viewers[k].xyz); }
       return vec4<f32>(colour, n.w);
     }`;
   const module = device.createShaderModule({ code });
@@ -176,6 +182,8 @@ export async function drawWebGpu(job) {
     { binding: 4, resource: bufferOf(checks.bytesOf(job.normals)) },
     { binding: 5, resource: bufferOf(checks.bytesOf(job.viewers)) },
   ];
+  if (job.tangents)
+    entries.push({ binding: 6, resource: bufferOf(checks.bytesOf(job.tangents)) });
   if (job.cube) {
     const { levels } = job.cube;
     const cube = textureOf('rgba16float', levels[0].face, 6, levels.length);

@@ -32,12 +32,14 @@ void writeFloats(const std::string& path, const std::vector<float>& values) {
     if (!out) throw OutputError(path + ": cannot be written");
 }
 
-/// One normal for each pixel, in the world, and the share of the pixel as the fourth number.
-std::vector<float> normalsOf(const SurfacePoints& points) {
+/// One normal for each pixel, in the world, or its tangent, and the share of the pixel as the
+/// fourth number.
+std::vector<float> normalsOf(const SurfacePoints& points, bool tangents = false) {
     std::vector<float> values;
     for (std::size_t pixel = 0; pixel < points.coverage.size(); ++pixel) {
         const bool hit = points.first[pixel + 1] > points.first[pixel];
-        const Direction n = hit ? points.normals[points.first[pixel]] : Direction{0, 0, 1};
+        Direction n = hit ? points.normals[points.first[pixel]] : Direction{0, 0, 1};
+        if (tangents) n = frameAt(n).tangent;
         for (const double value : {n.x, n.y, n.z}) values.push_back(static_cast<float>(value));
         values.push_back(hit ? 1.0F : 0.0F);
     }
@@ -54,7 +56,7 @@ void run(const std::vector<std::string>& words) {
                                         .force = true};
     jobs::exportLighting(file, folder, options);
 
-    const bool coefficients = std::filesystem::exists(file);
+    const bool coefficients = std::filesystem::path(file).extension() == ".json";
     const auto source =
         jobs::openBrdf(coefficients ? readRepresentation(file).head.source : file, true);
     const std::vector<Light> lights = parseLights(lightText).lights;
@@ -67,6 +69,7 @@ void run(const std::vector<std::string>& words) {
     nlohmann::ordered_json scenes = nlohmann::ordered_json::array();
     const auto add = [&](const std::string& name, const SurfacePoints& points) {
         writeFloats(folder + "/" + name + ".normals.bin", normalsOf(points));
+        writeFloats(folder + "/" + name + ".tangents.bin", normalsOf(points, true));
         const LitPicture truth = renderByIntegration(*source, points, view, direct);
         writeFloats(folder + "/" + name + ".integration.bin", truth.picture.radiance);
         nlohmann::ordered_json scene = {{"name", name}, {"size", size}, {"error", truth.error}};
