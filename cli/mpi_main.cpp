@@ -7,7 +7,7 @@
 #include <hshfit/files/atomic_file.h>
 
 #include <jobs/mpi/mpi_processes.h>
-#include <jobs/svbrdf/svbrdf.h>
+#include <jobs/svbrdf/map_processes.h>
 
 #include <fmt/format.h>
 

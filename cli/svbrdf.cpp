@@ -8,6 +8,7 @@
 
 #include <jobs/quality.h>
 #include <jobs/svbrdf/map_answers.h>
+#include <jobs/svbrdf/map_processes.h>
 #include <jobs/svbrdf/svbrdf.h>
 
 #include <fmt/format.h>
@@ -164,8 +165,6 @@ void refuseOptions(const CLI::App& command, const std::string& form,
 void runFiltered(const SvbrdfArguments& arguments, const CLI::App& command,
                  const Globals& globals) {
     const jobs::SvbrdfOptions& from = arguments.options;
-    if (jobs::processesOfMaps().count() > 1)
-        throw UsageError(fmt::format("--form {} is made by one process", from.form));
     refuseOptions(command, from.form,
                   {"--basis", "--order", "--outgoing", "--cosine", "--tolerance", "--rank",
                    "--clusters", "--halfway", "--memory", "--writes"});

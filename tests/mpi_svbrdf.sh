@@ -38,6 +38,19 @@ json.dump(head | {"parameters": parameters}, open(f"{folder}/d.json", "w"))
 write("bad", lambda x, y: math.nan if (x, y) == (3, 250) else 0.5)
 json.dump(head | {"parameters": parameters | {"kd": {"map": "bad.pfm"}}},
           open(f"{folder}/bad.json", "w"))
+# Normals, of 50 x 261 texels: sides that are odd. One of the second map points downwards.
+def normals(name, spoilt):
+    with open(f"{folder}/{name}.pfm", "wb") as file:
+        file.write(b"PF\n50 261\n-1.0\n")
+        for y in reversed(range(261)):
+            for x in range(50):
+                u, v = 0.3 * math.sin(x * 1.7 + y * 0.1), 0.2 * math.cos(y * 1.3)
+                length = math.sqrt(1 + u * u + v * v) * (-1 if (x, y) == spoilt else 1)
+                file.write(struct.pack("<3f", u / length, v / length, 1 / length))
+    json.dump(head | {"parameters": {"alpha": 0.3, "kd": 0.2}, "normal": {"map": f"{name}.pfm"}},
+              open(f"{folder}/{name}.json", "w"))
+normals("turned", None)
+normals("below", (7, 200))
 END
 
 # shellcheck disable=SC2086  # a form with its options
@@ -52,24 +65,55 @@ for form in outgoing low-rank "clusters --clusters 32" "halfway --clusters 2 --h
     done
 done
 
+# Forms of turned texels: the choice by measurement, measured levels, and their picture.
+maps=$(dirname "$0")/../examples/maps
+# shellcheck disable=SC2086
+for call in "$work/turned.json --checks 8" \
+    "$work/turned.json --form harmonics --harmonics 5 --checks 0" \
+    "$work/turned.json --form ellipse --mips none" \
+    "$maps/bumpy.json --form ellipse --checks 1" \
+    "$maps/brushed.json --form harmonics --harmonics 9 --checks 1"; do
+    rm -rf "$work/alone" "$work/shared"
+    "$alone" svbrdf $call -o "$work/alone" --quiet --json >"$work/said.alone"
+    for count in 1 2 4; do
+        ranks $count $call -o "$work/shared" --force --json >"$work/said"
+        grep -q "\"processes\": $count," "$work/said" || fail "$count processes do not say so"
+        diff -r "$work/alone" "$work/shared" || fail "$call with $count processes"
+        # Numbers of the answer, but for times and places.
+        for file in said said.alone; do
+            grep -vE '"(processes|seconds|texels_per_second)"|/material|/harmonics|/errors' \
+                "$work/$file" | grep -v '"folder"' >"$work/$file.numbers"
+        done
+        diff "$work/said.alone.numbers" "$work/said.numbers" || fail "the answer to $call"
+    done
+done
+
 # One line, the exit code, and nothing on the disk.
-code=0
-ranks 3 "$work/bad.json" -o "$work/bad" >"$work/said" 2>"$work/errors" || code=$?
-[ $code = 3 ] || fail "a broken map ends with $code"
-[ "$(grep -c '^hshfit: ' "$work/errors")" = 1 ] || fail "not one line: $(cat "$work/errors")"
-grep -q 'texel (3, 250): kd is nan' "$work/errors" || fail "$(cat "$work/errors")"
-[ ! -e "$work/bad" ] || fail "a broken map leaves a folder"
+broken() {
+    code=0
+    ranks 3 "$work/$1.json" -o "$work/bad" >"$work/said" 2>"$work/errors" || code=$?
+    [ $code = 3 ] || fail "a broken map ends with $code"
+    [ "$(grep -c '^hshfit: ' "$work/errors")" = 1 ] || fail "not one line: $(cat "$work/errors")"
+    grep -q "$2" "$work/errors" || fail "$(cat "$work/errors")"
+    [ ! -e "$work/bad" ] || fail "a broken map leaves a folder"
+}
+broken bad 'texel (3, 250): kd is nan'
+broken below 'texel (7, 200): the normal is'
 
 # A process that fails in the middle: only one has a limit on the size of files.
 # shellcheck disable=SC2016  # expanded by the inner shell
 limited='[ "$OMPI_COMM_WORLD_RANK" != 1 ] || { trap "" XFSZ; ulimit -f 64; }; exec "$@"'
-code=0
-mpirun --oversubscribe -n 2 sh -c "$limited" sh "$program" svbrdf "$work/d.json" -o "$work/cut" \
-    --threads 1 --writes cached >"$work/said" 2>"$work/errors" || code=$?
-[ $code = 5 ] || fail "a full disk ends with $code: $(cat "$work/errors")"
-[ "$(grep -c '^hshfit: ' "$work/errors")" = 1 ] || fail "not one line: $(cat "$work/errors")"
-grep -q 'process 2 of 2: .*File too large' "$work/errors" || fail "$(cat "$work/errors")"
-[ ! -e "$work/cut" ] || fail "a full disk leaves a folder"
+# shellcheck disable=SC2086
+for call in "$work/d.json --writes cached" \
+    "$work/turned.json --form harmonics --harmonics 5 --checks 0"; do
+    code=0
+    mpirun --oversubscribe -n 2 sh -c "$limited" sh "$program" svbrdf $call -o "$work/cut" \
+        --threads 1 >"$work/said" 2>"$work/errors" || code=$?
+    [ $code = 5 ] || fail "a full disk ends with $code: $(cat "$work/errors")"
+    [ "$(grep -c '^hshfit: ' "$work/errors")" = 1 ] || fail "not one line: $(cat "$work/errors")"
+    grep -q 'process 2 of 2: .*File too large' "$work/errors" || fail "$(cat "$work/errors")"
+    [ ! -e "$work/cut" ] || fail "a full disk leaves a folder"
+done
 
 # One that is killed takes the others along, and the file under its temporary name.
 # shellcheck disable=SC2016

@@ -96,7 +96,7 @@ public:
         return band == none ? std::nullopt : std::optional<std::size_t>(band);
     }
 
-    void collect(std::map<std::size_t, std::vector<float>>& results) override {
+    void collect(std::map<std::size_t, BandBytes>& results) override {
         processes_.meet();
         if (processes_.isFirst()) {
             for (int from = 1; from < static_cast<int>(processes_.count()); ++from)
@@ -134,27 +134,33 @@ private:
         }
     }
 
-    static void send(const std::map<std::size_t, std::vector<float>>& results) {
+    /// Bytes that one message takes, of those from `at` on.
+    static int piece(const BandBytes& bytes, std::size_t at) {
+        return static_cast<int>(std::min<std::size_t>(INT_MAX, bytes.size() - at));
+    }
+
+    static void send(const std::map<std::size_t, BandBytes>& results) {
         const Number bands = results.size();
         MPI_Send(&bands, 1, MPI_UINT64_T, 0, headTag, MPI_COMM_WORLD);
-        for (const auto& [band, floats] : results) {
-            const Number head[] = {band, floats.size()};
+        for (const auto& [band, bytes] : results) {
+            const Number head[] = {band, bytes.size()};
             MPI_Send(head, 2, MPI_UINT64_T, 0, headTag, MPI_COMM_WORLD);
-            MPI_Send(floats.data(), static_cast<int>(floats.size()), MPI_FLOAT, 0, bandTag,
-                     MPI_COMM_WORLD);
+            for (std::size_t at = 0; at < bytes.size(); at += INT_MAX)
+                MPI_Send(bytes.data() + at, piece(bytes, at), MPI_BYTE, 0, bandTag, MPI_COMM_WORLD);
         }
     }
 
-    static void receive(int from, std::map<std::size_t, std::vector<float>>& results) {
+    static void receive(int from, std::map<std::size_t, BandBytes>& results) {
         Number bands = 0;
         MPI_Recv(&bands, 1, MPI_UINT64_T, from, headTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
         for (; bands > 0; --bands) {
             Number head[2];
             MPI_Recv(head, 2, MPI_UINT64_T, from, headTag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-            std::vector<float>& floats = results[head[0]];
-            floats.resize(head[1]);
-            MPI_Recv(floats.data(), static_cast<int>(floats.size()), MPI_FLOAT, from, bandTag,
-                     MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+            BandBytes& bytes = results[head[0]];
+            bytes.resize(head[1]);
+            for (std::size_t at = 0; at < bytes.size(); at += INT_MAX)
+                MPI_Recv(bytes.data() + at, piece(bytes, at), MPI_BYTE, from, bandTag,
+                         MPI_COMM_WORLD, MPI_STATUS_IGNORE);
         }
     }
 

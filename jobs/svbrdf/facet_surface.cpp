@@ -39,7 +39,44 @@ std::vector<double> factorsOf(const brdfs::FacetNormals& normals) {
 
 }  // namespace
 
-FacetSurface::FacetSurface(ParameterMaps& maps, const std::string& file, const Listener& listener)
+/// Of column i to column j, over the texels where either is not 0.
+struct FacetSurface::ColumnRatio {
+    double first = 0;  ///< in the order of texels
+    double low = INFINITY, high = -INFINITY;
+    double undefined = 0;  ///< whether column i has a value where j has none
+
+    bool known() const { return high >= low; }
+    bool holds() const {
+        const auto near = [&](double value) {
+            return std::abs(value - first) <= 1e-6 * std::abs(value);
+        };
+        return undefined == 0 && (!known() || (near(low) && near(high)));
+    }
+    /// Holds for no first value of texels before these either.
+    bool varies() const {
+        return undefined != 0 || high - low > 1e-5 * std::max(std::abs(low), std::abs(high));
+    }
+    void add(double a, double b) {
+        if (b == 0) {
+            if (a != 0) undefined = 1;
+            return;
+        }
+        const double ratio = a / b;
+        if (!known()) first = ratio;
+        low = std::min(low, ratio);
+        high = std::max(high, ratio);
+    }
+    /// Of the rows that follow.
+    void add(const ColumnRatio& later) {
+        if (!known()) first = later.first;
+        low = std::min(low, later.low);
+        high = std::max(high, later.high);
+        undefined = std::max(undefined, later.undefined);
+    }
+};
+
+FacetSurface::FacetSurface(ParameterMaps& maps, const std::string& file, Processes& processes,
+                           const Listener& listener)
     : maps_(maps), common_(maps.common()) {
     try {
         classify(maps);
@@ -54,7 +91,7 @@ FacetSurface::FacetSurface(ParameterMaps& maps, const std::string& file, const L
             "norm (asked: {})",
             file, mostNodes, nodeError_, nodeTolerance));
     }
-    findEqualColumns(listener);
+    findEqualColumns(processes, listener);
 }
 
 std::string FacetSurface::specification(const std::vector<double>& values) const {
@@ -289,52 +326,58 @@ std::vector<double> FacetSurface::columns(const std::vector<float>& values,
     return out;
 }
 
-/// Columns that are proportional in all texels become one weight.
-void FacetSurface::findEqualColumns(const Listener& listener) {
-    struct Ratio {
-        double value = 0;
-        bool known = false, holds = true;
-    };
+/// Of each column to those before it, [column][column], and to 1: black where all are 0.
+std::vector<FacetSurface::ColumnRatio> FacetSurface::columnRatios(const ItemRange& rows,
+                                                                  const Listener& listener) {
     const std::size_t count = columnCount(), width = maps_.width();
-    std::vector<Ratio> ratios(count * count);
-    std::vector<char> black(count, 1);
+    std::vector<ColumnRatio> ratios(count * count);
     const auto progress = listener.part("factors of lobes");
-    for (std::size_t y = 0; y < maps_.height(); ++y) {
+    for (std::size_t y = rows.first; y < rows.last; ++y) {
         const std::vector<double> all = columns(maps_.row(y), width);
         for (std::size_t i = 0; i < count; ++i) {
             const double* a = all.data() + i * width;
-            for (std::size_t x = 0; x < width; ++x) black[i] = black[i] && a[x] == 0;
+            for (std::size_t x = 0; x < width; ++x) ratios[i * count + i].add(a[x], 1);
             for (std::size_t j = 0; j < i; ++j) {
-                Ratio& ratio = ratios[i * count + j];
+                ColumnRatio& ratio = ratios[i * count + j];
                 const double* b = all.data() + j * width;
-                for (std::size_t x = 0; ratio.holds && x < width; ++x) {
-                    if (a[x] == 0 && b[x] == 0) continue;
-                    if (!ratio.known && b[x] != 0) ratio = {a[x] / b[x], true, true};
-                    ratio.holds = b[x] != 0 && std::abs(a[x] - ratio.value * b[x]) <=
-                                                   1e-6 * std::max(std::abs(a[x]), 1e-30);
-                }
+                for (std::size_t x = 0; !ratio.varies() && x < width; ++x) ratio.add(a[x], b[x]);
             }
         }
-        if (progress) progress(y + 1, maps_.height());
+        if (progress) progress(y + 1 - rows.first, rows.last - rows.first);
     }
+    return ratios;
+}
+
+/// Columns that are proportional in all texels become one weight.
+void FacetSurface::findEqualColumns(Processes& processes, const Listener& listener) {
+    const std::size_t count = columnCount(), all = count * count;
+    const std::vector<ColumnRatio> own = columnRatios(processes.share(maps_.height()), listener);
+    std::vector<ColumnRatio> ofAll(processes.count() * all), ratios(all);
+    std::ranges::copy(own, ofAll.begin() + static_cast<std::ptrdiff_t>(processes.number() * all));
+    gatherValues(processes, processes.count(), ofAll);
+    for (std::size_t k = 0; k < ofAll.size(); ++k) ratios[k % all].add(ofAll[k]);
+    const auto black = [&](std::size_t i) {
+        const ColumnRatio& values = ratios[i * count + i];
+        return values.low == 0 && values.high == 0;
+    };
     terms_.assign(lobeTerms_, std::vector<LobeWeight>(channels_));
     for (std::size_t i = 0; i < lobeTerms_ * channels_; ++i) {
         LobeWeight& weight = terms_[i / channels_][i % channels_];
-        if (black[i]) continue;
+        if (black(i)) continue;
         std::size_t k = 0;
-        while (k < columnOfWeight_.size() && !ratios[i * count + columnOfWeight_[k]].holds) ++k;
+        while (k < columnOfWeight_.size() && !ratios[i * count + columnOfWeight_[k]].holds()) ++k;
         weight = {k, 1};
         if (k == columnOfWeight_.size())
             columnOfWeight_.push_back(i);
         else
-            weight.scale = ratios[i * count + columnOfWeight_[k]].value;
+            weight.scale = ratios[i * count + columnOfWeight_[k]].first;
     }
     const std::size_t smooth = lobeTerms_ * channels_;
     bool grey = true, none = true;
     for (std::size_t c = 0; c < channels_; ++c) {
-        none = none && black[smooth + c];
-        const Ratio& ratio = ratios[(smooth + c) * count + smooth];
-        if (c > 0) grey = grey && ((ratio.known && ratio.holds && ratio.value == 1) || none);
+        none = none && black(smooth + c);
+        const ColumnRatio& ratio = ratios[(smooth + c) * count + smooth];
+        if (c > 0) grey = grey && ((ratio.known() && ratio.holds() && ratio.first == 1) || none);
     }
     albedos_ = none ? 0 : grey ? 1 : static_cast<int>(channels_);
 }

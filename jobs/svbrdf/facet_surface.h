@@ -15,9 +15,11 @@ namespace hshfit::jobs {
 /// one of them (f has to be affine in it); at most two others are parameters of the lobe.
 class FacetSurface {
 public:
-    /// Reads the maps once to find factors that are equal. Throws InputError, which starts with
-    /// `file`, for a model without facets, and for parameters that are neither.
-    FacetSurface(ParameterMaps& maps, const std::string& file, const Listener& listener);
+    /// Reads the maps once, by all processes together, to find factors that are equal. Throws
+    /// InputError, which starts with `file`, for a model without facets, and for parameters that
+    /// are neither.
+    FacetSurface(ParameterMaps& maps, const std::string& file, Processes& processes,
+                 const Listener& listener);
 
     const FacetLobes& lobes() const { return *lobes_; }
     /// [term of the lobe][channel]
@@ -50,7 +52,9 @@ private:
     void findNodes();
     /// Factors of terms [term of the lobe, then the smooth part][channel][column].
     std::vector<double> columns(const std::vector<float>& values, std::size_t width) const;
-    void findEqualColumns(const Listener& listener);
+    struct ColumnRatio;
+    std::vector<ColumnRatio> columnRatios(const ItemRange& rows, const Listener& listener);
+    void findEqualColumns(Processes& processes, const Listener& listener);
     std::size_t columnCount() const { return (lobeTerms_ + 1) * channels_; }
 
     ParameterMaps& maps_;

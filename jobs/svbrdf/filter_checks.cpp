@@ -10,6 +10,9 @@ namespace {
 
 constexpr int samples = 1024, pictureSamples = 64;
 constexpr std::size_t pictureSide = 64, pixels = 256;
+/// Texels travel between processes as they are.
+constexpr std::size_t doublesOfTexel = sizeof(SurfaceTexel) / sizeof(double);
+static_assert(sizeof(SurfaceTexel) % sizeof(double) == 0);
 
 std::vector<MipPlace> measuredPlaces(const std::vector<LevelSize>& sizes, int texels) {
     std::vector<MipPlace> places;
@@ -59,8 +62,11 @@ const MipError& formIn(const MipErrors& errors, const std::string& form) {
 }  // namespace
 
 FilterChecks::FilterChecks(std::size_t width, std::size_t height,
-                           const std::vector<LevelSize>& sizes, int texels)
-    : sizes_(sizes),
+                           const std::vector<LevelSize>& sizes, int texels, Processes& processes)
+    : width_(width),
+      height_(height),
+      processes_(processes),
+      sizes_(sizes),
       ranges_(sizes.size()),
       pictureLevel_(levelOfPicture(sizes)),
       measured_(width, height, measuredPlaces(sizes, texels), samples),
@@ -74,9 +80,9 @@ FilterChecks::FilterChecks(std::size_t width, std::size_t height,
     }
 }
 
-void FilterChecks::add(std::span<const SurfaceTexel> row) {
-    measured_.add(row);
-    pictured_.add(row);
+void FilterChecks::add(std::size_t y, std::span<const SurfaceTexel> row) {
+    measured_.add(y, row);
+    pictured_.add(y, row);
 }
 
 void FilterChecks::addFiltered(const MipRow& row, const MipLayout& layout) {
@@ -89,13 +95,77 @@ void FilterChecks::addFiltered(const MipRow& row, const MipLayout& layout) {
     }
 }
 
+/// Calls each(k) for the measured texels of a part's levels, in a fixed order.
+template <class Each>
+void FilterChecks::eachNumbers(const MipPart& part, const Each& each) const {
+    for (int level = 1; level <= part.level; ++level) {
+        const MipRows own = part.own(level);
+        for (auto at = byRow_.lower_bound({level, own.first});
+             at != byRow_.end() && at->first < std::pair(level, own.last); ++at)
+            for (const std::size_t k : at->second) each(k);
+    }
+}
+
+/// The texels of both sets, then the count and the numbers of each measured one.
+std::vector<double> FilterChecks::taken(const MipPart& part) const {
+    std::vector<double> all;
+    for (const GatheredTexels* set : {&measured_, &pictured_}) {
+        const std::vector<SurfaceTexel> texels = set->taken(part.own(0));
+        const std::vector<double> numbers = bandValues<double>(std::as_bytes(std::span(texels)));
+        all.insert(all.end(), numbers.begin(), numbers.end());
+    }
+    eachNumbers(part, [&](std::size_t k) {
+        const std::vector<double>& numbers = measured_.texel(k).numbers;
+        all.push_back(static_cast<double>(numbers.size()));
+        all.insert(all.end(), numbers.begin(), numbers.end());
+    });
+    return all;
+}
+
+void FilterChecks::put(const MipPart& part, std::span<const double> numbers) {
+    for (GatheredTexels* set : {&measured_, &pictured_}) {
+        const std::size_t count = set->takenCount(part.own(0)) * doublesOfTexel;
+        set->put(part.own(0), bandValues<SurfaceTexel>(std::as_bytes(numbers.first(count))));
+        numbers = numbers.subspan(count);
+    }
+    eachNumbers(part, [&](std::size_t k) {
+        const auto count = static_cast<std::size_t>(numbers.front());
+        const auto own = numbers.subspan(1, count);
+        measured_.texel(k).numbers.assign(own.begin(), own.end());
+        numbers = numbers.subspan(1 + count);
+    });
+}
+
+void FilterChecks::finish() {
+    if (processes_.count() > 1) {
+        const MipPart whole = MipParts(width_, height_).part(0);
+        std::string text;
+        if (processes_.isFirst()) {
+            const std::vector<double> all = taken(whole);
+            const auto bytes = std::as_bytes(std::span(all));
+            text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        }
+        processes_.broadcast(text);
+        if (!processes_.isFirst()) put(whole, bandValues<double>(std::as_bytes(std::span(text))));
+    }
+    measured_.finish();
+    pictured_.finish();
+}
+
+MipErrorShare FilterChecks::shareOf(std::size_t texels) const {
+    const ItemRange share = processes_.share(texels);
+    return {share.first, share.last, [this, texels](std::vector<double>& records) {
+                gatherValues(processes_, texels, records);
+            }};
+}
+
 MipErrors FilterChecks::measureLevel(const FilteredSurface& surface, const MipLayout& layout,
                                      const LobeTable& table, const Range& range,
                                      const MipErrorOptions& options) const {
     return measureMipTexels(
         surface, layout, range.count,
         [&](std::size_t k, std::mt19937_64&) { return measured_.texel(range.first + k); }, table,
-        options);
+        options, shareOf(range.count));
 }
 
 MipErrors FilterChecks::worst(const FilteredSurface& surface, const MipLayout& layout,
@@ -179,7 +249,7 @@ std::string FilterChecks::picture(const FilteredSurface& surface, const LobeTabl
             texel.numbers = storedAt(map, pictured_.place(k));
             return texel;
         },
-        table, options);
+        table, options, shareOf(pictured_.size()));
     const std::vector<double>& left = formIn(errors, map.sidecar().form).texels;
     const std::vector<double>& right = formIn(errors, "parameters").texels;
     const double largest =

@@ -2,6 +2,9 @@
 
 #include "facet_surface.h"
 #include "filter_checks.h"
+#include "level_pass.h"
+#include "map_files.h"
+#include "map_processes.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
@@ -48,21 +51,14 @@ bool isOpen(const FilteredMapOptions& options, std::size_t levels) {
 }
 
 /// Reads all rows once, for what is measured, and filters them where the form is open.
-void gather(FacetSurface& surface, const ParameterMaps& maps,
-            std::shared_ptr<const LobeTable> table, const MipLayout& layout, bool filter,
-            FilterChecks& checks, const Listener& listener) {
-    std::optional<MipFilter> filtered;
-    if (filter) {
-        filtered.emplace(maps.width(), maps.height(), std::move(table), layout,
-                         [&](const MipRow& row) { checks.addFiltered(row, layout); });
-    }
-    const auto progress = listener.part("gathering texels");
-    for (std::size_t y = 0; y < maps.height(); ++y) {
-        const std::vector<SurfaceTexel> row = surface.row(y);
-        checks.add(row);
-        if (filtered) filtered->add(row);
-        if (progress) progress(y + 1, maps.height());
-    }
+void gather(const LevelPass& pass, const MipLayout& layout, bool filter, FilterChecks& checks,
+            const Listener& listener) {
+    LevelSinks sinks{.base = [&](std::size_t y, auto row) { checks.add(y, row); },
+                     .taken = [&](const MipPart& part) { return checks.taken(part); },
+                     .put = [&](const MipPart& part, auto numbers) { checks.put(part, numbers); }};
+    if (filter) sinks.level = [&](const MipRow& row) { checks.addFiltered(row, layout); };
+    pass.run(layout, sinks, listener.part("gathering texels"));
+    checks.finish();
 }
 
 void chooseForm(const FacetSurface& surface, const LobeTable& table, const MipLayout& layout,
@@ -117,22 +113,117 @@ FilteredSidecar sidecarOf(const FacetSurface& surface, const LobeTable& table,
 }
 
 /// All levels, a row at a time.
-void writeLevels(FacetSurface& surface, const ParameterMaps& maps,
-                 const std::shared_ptr<const LobeTable>& table, const FilteredSidecar& sidecar,
+void writeLevels(const LevelPass& pass, const LobeTable& table, const FilteredSidecar& sidecar,
                  FilteredMapWriter& writer, const Listener& listener) {
-    std::optional<MipFilter> filter;
+    LevelSinks sinks{.base = [&](std::size_t y, auto row) {
+        writer.write(0, y, ellipseNumbers(row, table, sidecar.layout));
+    }};
     if (sidecar.levels.size() > 1) {
-        filter.emplace(maps.width(), maps.height(), table, sidecar.layout, [&](const MipRow& row) {
+        sinks.level = [&](const MipRow& row) {
             writer.write(static_cast<std::size_t>(row.level), row.y, row.texels);
-        });
+        };
     }
-    const auto progress = listener.part("texels");
-    for (std::size_t y = 0; y < maps.height(); ++y) {
-        const std::vector<SurfaceTexel> row = surface.row(y);
-        writer.write(0, y, ellipseNumbers(row, *table, sidecar.layout));
-        if (filter) filter->add(row);
-        if (progress) progress(y + 1, maps.height());
+    pass.run(sidecar.layout, sinks, listener.part("texels"));
+}
+
+/// Before long work is done for nothing.
+void requireFree(const std::string& folder, const FilteredMapOptions& options,
+                 const Processes& processes) {
+    if (!processes.isFirst()) return;
+    const FileSet files(folder, options.force);  // the folder goes again
+    for (const char* name : {textureName, sidecarName, pictureName}) files.requireFree(name);
+    if (options.form != "ellipse") files.requireFree(harmonicsName);
+}
+
+/// What is known before anything is measured.
+FilteredMapAnswer answerOf(const std::string& description, const MaterialDescription& described,
+                           const std::string& folder, const FilteredMapOptions& options,
+                           const ParameterMaps& maps, const FacetSurface& surface) {
+    FilteredMapAnswer answer{.description = description,
+                             .model = described.model,
+                             .folder = folder,
+                             .width = maps.width(),
+                             .height = maps.height(),
+                             .renormalised = maps.renormalised(),
+                             .nodeError = surface.nodeError(),
+                             .form = options.form == "harmonics" ? "harmonics" : "ellipse",
+                             .order = options.form == "harmonics" ? options.harmonics : 0,
+                             .weights = static_cast<std::size_t>(surface.weights()),
+                             .albedos = static_cast<std::size_t>(surface.albedos()),
+                             .processes = processesOfMaps().count()};
+    for (const LobeNodes& nodes : surface.lobes().nodes()) {
+        answer.parameters.push_back(nodes.name);
+        answer.nodes *= nodes.values.size();
     }
+    return answer;
+}
+
+/// Writes the textures under temporary names, measures them, and puts all files in place.
+void write(const LevelPass& pass, FacetSurface& surface, const LobeTable& table,
+           FilteredSidecar sidecar, const FilteredMapOptions& options, FilterChecks& checks,
+           FilteredMapAnswer& answer, const Listener& listener) {
+    Processes& processes = processesOfMaps();
+    MapFiles files(answer.folder, options.force, processes);
+    files.requireFree({textureName, sidecarName, pictureName});
+    const std::string texture = files.texture(textureName);
+    const std::string harmonics = sidecar.harmonics.empty() ? "" : files.texture(sidecar.harmonics);
+    const auto start = Clock::now();
+    FilteredMapWriter writer(sidecar, texture, harmonics);
+    if (processes.isFirst()) writer.begin();
+    writeLevels(pass, table, sidecar, writer, listener);
+    answer.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    answer.rate = static_cast<double>(answer.width * answer.height) / answer.seconds;
+    answer.bytes = writer.bytes();
+    files.write(sidecarName, toText(sidecar));
+    for (const LevelSize& level : sidecar.levels) answer.levels.push_back({.size = level});
+    if (options.checks > 0 && sidecar.levels.size() > 1) {
+        sidecar.texture = texture;
+        sidecar.harmonics = harmonics;
+        const std::filesystem::path folder(answer.folder);
+        const FilteredMap map(sidecar, (folder / sidecarName).string());
+        checks.measure(surface.reflectance(), table, map, answer.levels, listener);
+        files.write(pictureName, checks.picture(surface.reflectance(), table, map));
+    }
+    for (const std::string& name : files.commit())
+        answer.files.push_back((std::filesystem::path(answer.folder) / name).string());
+}
+
+FilteredMapAnswer made(const std::string& description, const std::string& folder,
+                       const FilteredMapOptions& options, const Listener& listener) {
+    Processes& processes = processesOfMaps();
+    requireFree(folder, options, processes);
+    const MaterialDescription described = readMaterialDescription(description);
+    ParameterMaps maps(described, processes, listener);
+    FacetSurface surface(maps, description, processes, listener);
+    const LevelSize size{maps.width(), maps.height()};
+    const std::vector<LevelSize> sizes = sizesOf(size.width, size.height, options.mips);
+    if (options.form == "harmonics" && sizes.size() == 1)
+        throw UsageError("harmonics begin at level 1; a map of one level is an ellipse");
+    FilteredMapAnswer answer = answerOf(description, described, folder, options, maps, surface);
+    if (answer.renormalised > 0) {
+        listener.say(
+            fmt::format("{} normals of {} had a length that is off by more than 5 % and "
+                        "were renormalised",
+                        answer.renormalised, size.width * size.height));
+    }
+    const bool open = isOpen(options, sizes.size());
+    const std::vector<int> orders = ordersFor(options);
+    const int most = orders.empty() ? 3 : std::max(3, *std::ranges::max_element(orders));
+    const std::shared_ptr<const LobeTable> table = surface.lobes().table(most);
+    const LevelPass pass(surface, size, table, processes);
+    const MipLayout layout{surface.weights(), surface.albedos(), most};
+    // A form is chosen by measurement, also where none is asked for.
+    constexpr int leastTexels = 8;
+    FilterChecks checks(size.width, size.height, sizes,
+                        open ? std::max(options.checks, leastTexels) : options.checks, processes);
+    if (open || options.checks > 0) gather(pass, layout, open, checks, listener);
+    if (open) chooseForm(surface, *table, layout, options, checks, answer, listener);
+    FilteredSidecar sidecar = sidecarOf(surface, *table, options, described.file, answer, sizes);
+    answer.numbers =
+        answer.form == "ellipse" ? sidecar.layout.ellipseSize() : sidecar.layout.size();
+    write(pass, surface, *table, std::move(sidecar), options, checks, answer, listener);
+    maps.checkIntact();
+    return answer;
 }
 
 }  // namespace
@@ -151,86 +242,7 @@ FilteredMapAnswer filteredMap(const std::string& description, const std::string&
                               const FilteredMapOptions& options, const Listener& listener) {
     if (options.harmonics > 0 && options.harmonics % 2 == 0)
         throw UsageError("the order of harmonics has to be odd: D is even");
-    const MaterialDescription described = readMaterialDescription(description);
-    Processes alone;
-    ParameterMaps maps(described, alone, listener);
-    FacetSurface surface(maps, description, listener);
-    const std::vector<LevelSize> sizes = sizesOf(maps.width(), maps.height(), options.mips);
-    if (options.form == "harmonics" && sizes.size() == 1)
-        throw UsageError("harmonics begin at level 1; a map of one level is an ellipse");
-    FilteredMapAnswer answer{.description = description,
-                             .model = described.model,
-                             .folder = folder,
-                             .width = maps.width(),
-                             .height = maps.height(),
-                             .renormalised = maps.turns().renormalised(),
-                             .form = options.form == "harmonics" ? "harmonics" : "ellipse",
-                             .order = options.form == "harmonics" ? options.harmonics : 0,
-                             .weights = static_cast<std::size_t>(surface.weights()),
-                             .albedos = static_cast<std::size_t>(surface.albedos())};
-    if (answer.renormalised > 0) {
-        listener.say(
-            fmt::format("{} normals of {} had a length that is off by more than 5 % and "
-                        "were renormalised",
-                        answer.renormalised, maps.width() * maps.height()));
-    }
-    answer.nodeError = surface.nodeError();
-    for (const LobeNodes& nodes : surface.lobes().nodes()) {
-        answer.parameters.push_back(nodes.name);
-        answer.nodes *= nodes.values.size();
-    }
-    const bool open = isOpen(options, sizes.size());
-    const std::vector<int> orders = ordersFor(options);
-    const int most = orders.empty() ? 3 : std::max(3, *std::ranges::max_element(orders));
-    const std::shared_ptr<const LobeTable> table = surface.lobes().table(most);
-    // A form is chosen by measurement, also where none is asked for.
-    constexpr int leastTexels = 8;
-    FilterChecks checks(maps.width(), maps.height(), sizes,
-                        open ? std::max(options.checks, leastTexels) : options.checks);
-    if (open || options.checks > 0) {
-        gather(surface, maps, table, {surface.weights(), surface.albedos(), most}, open, checks,
-               listener);
-    }
-    if (open) {
-        chooseForm(surface, *table, {surface.weights(), surface.albedos(), most}, options, checks,
-                   answer, listener);
-    }
-
-    FileSet files(folder, options.force);
-    files.removeOthers();
-    for (const char* name : {textureName, harmonicsName, sidecarName, pictureName})
-        if (name != harmonicsName || answer.form == "harmonics") files.requireFree(name);
-    const FilteredSidecar sidecar =
-        sidecarOf(surface, *table, options, described.file, answer, sizes);
-    answer.numbers = sidecar.layout.size();
-    if (answer.form == "ellipse") answer.numbers = sidecar.layout.ellipseSize();
-    const std::string texture = files.add(textureName).temporaryPath();
-    const std::string harmonics =
-        answer.form == "harmonics" ? files.add(harmonicsName).temporaryPath() : "";
-    const auto start = Clock::now();
-    FilteredMapWriter writer(sidecar, texture, harmonics);
-    writeLevels(surface, maps, table, sidecar, writer, listener);
-    answer.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    answer.rate = static_cast<double>(maps.width() * maps.height()) / answer.seconds;
-    answer.bytes = writer.bytes();
-    maps.checkIntact();
-    files.write(sidecarName, toText(sidecar));
-    for (const LevelSize& size : sizes) answer.levels.push_back({.size = size});
-    std::vector<const char*> names{textureName, sidecarName};
-    if (answer.form == "harmonics") names.push_back(harmonicsName);
-    if (options.checks > 0 && sizes.size() > 1) {
-        FilteredSidecar written = sidecar;
-        written.texture = texture;
-        written.harmonics = harmonics;
-        const FilteredMap map(written, (files.folder() / sidecarName).string());
-        checks.measure(surface.reflectance(), *table, map, answer.levels, listener);
-        files.write(pictureName, checks.picture(surface.reflectance(), *table, map));
-        names.push_back(pictureName);
-    }
-    files.commit();
-    for (const char* name : names)
-        answer.files.push_back((std::filesystem::path(folder) / name).string());
-    return answer;
+    return together([&] { return made(description, folder, options, listener); });
 }
 
 }  // namespace hshfit::jobs

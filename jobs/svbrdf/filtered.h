@@ -74,6 +74,7 @@ struct FilteredMapAnswer {
     std::vector<FilteredChoice> choices = {};
     std::vector<FilteredLevel> levels = {};
     std::size_t bytes = 0;
+    std::size_t processes = 1;
     double seconds = 0, rate = 0;  ///< of writing; texels of level 0 per second
     std::vector<std::string> files = {};
 };
@@ -84,8 +85,8 @@ bool turnsTexels(const std::string& description);
 /// A description of materials as textures of filtered lobes in FOLDER: material.ktx2 with all
 /// levels, harmonics.ktx2 where the form has them, material.json and errors.png
 /// (docs/filtered_maps.md). All maps are read and checked before anything is written. Results are
-/// the same bytes for any number of threads. Throws UsageError, InputError, NumericError and
-/// OutputError.
+/// the same bytes for any number of threads and processes (map_processes.h). Throws UsageError,
+/// InputError, NumericError and OutputError.
 FilteredMapAnswer filteredMap(const std::string& description, const std::string& folder,
                               const FilteredMapOptions& options, const Listener& listener = {});
 

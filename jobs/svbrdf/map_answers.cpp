@@ -165,6 +165,7 @@ nlohmann::ordered_json filteredMapJson(const FilteredMapAnswer& done) {
             {"choices", choices},
             {"levels", levels},
             {"bytes", done.bytes},
+            {"processes", done.processes},
             {"seconds", done.seconds},
             {"texels_per_second", done.rate},
             {"files", done.files}};

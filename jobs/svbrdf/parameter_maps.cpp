@@ -122,7 +122,11 @@ ParameterMaps::ParameterMaps(const MaterialDescription& description, Processes& 
                         description.file));
     }
     check(processes, listener);
-    turns_->check(listener);
+    turns_->check(processes.share(height_), listener);
+    std::vector<std::size_t> renormalised(processes.count());
+    renormalised[processes.number()] = turns_->renormalised();
+    gatherValues(processes, renormalised.size(), renormalised);
+    for (const std::size_t ofProcess : renormalised) renormalised_ += ofProcess;
 }
 
 /// Rows are shared out among processes.

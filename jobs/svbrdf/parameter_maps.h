@@ -42,6 +42,8 @@ public:
     std::vector<float> row(std::size_t row);
     /// The frames of texels.
     TurnMaps& turns() { return *turns_; }
+    /// Normals whose length is off by more than 5 %.
+    std::size_t renormalised() const { return renormalised_; }
     void checkIntact() const;
 
 private:
@@ -54,6 +56,7 @@ private:
     std::vector<std::vector<double>> constants_;  ///< of `varying_`
     std::string common_;
     std::unique_ptr<TurnMaps> turns_;
+    std::size_t renormalised_ = 0;
 };
 
 }  // namespace hshfit::jobs

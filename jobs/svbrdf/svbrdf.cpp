@@ -3,7 +3,9 @@
 #include "../quality.h"
 #include "halfway_materials.h"
 #include "level_checks.h"
+#include "map_files.h"
 #include "map_forms.h"
+#include "map_processes.h"
 #include "map_work.h"
 
 #include <hshfit/each_in_parallel.h>
@@ -29,11 +31,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-Processes* sharing = nullptr;
-
 Processes& processes() {
-    static Processes alone;
-    return sharing ? *sharing : alone;
+    return processesOfMaps();
 }
 
 double secondsSince(Clock::time_point start) {
@@ -115,45 +114,6 @@ std::string errorPicture(const MapWritten& written) {
     return rgbPng(picture, 0);
 }
 
-/// The files of a map: the first process has them under temporary names until all are complete.
-class MapFiles {
-public:
-    MapFiles(const std::string& folder, bool force) {
-        if (processes().isFirst()) {
-            files_.emplace(folder, force);
-            files_->removeOthers();
-            for (const char* name : {textureName, sidecarName, pictureName})
-                files_->requireFree(name);
-            texture_ = std::filesystem::absolute(files_->add(textureName).temporaryPath()).string();
-        }
-        processes().broadcast(texture_);
-    }
-
-    /// The path of the texture until it is complete.
-    const std::string& texture() const { return texture_; }
-    void write(const std::string& name, std::string_view text) {
-        if (files_) files_->write(name, text);
-        names_.push_back(name);
-    }
-    /// One of many, which the sidecar names: it would not name them all itself.
-    void writePart(const std::string& name, std::string_view text) {
-        if (files_) files_->writePart(name, text);
-        names_.push_back(name);
-    }
-    /// Puts all in place; their names are returned.
-    std::vector<std::string> commit() {
-        if (files_) files_->commit();
-        processes().meet();
-        names_.insert(names_.begin(), textureName);
-        return names_;
-    }
-
-private:
-    std::optional<FileSet> files_;
-    std::string texture_;
-    std::vector<std::string> names_;
-};
-
 /// Writes the texture under its temporary name.
 MapWritten writeTexture(MapWork& work, TexelEncoder& encoder, const SvbrdfOptions& options,
                         const std::string& path, Svbrdf& result, const Listener& listener) {
@@ -212,16 +172,18 @@ void addHalfway(MapWork& work, const MapForm& form, const SvbrdfOptions& options
 /// Measures what was written, and puts the files in place.
 void write(MapWork& work, const MapForm& form, const SvbrdfOptions& options, Svbrdf& result,
            const Listener& listener) {
-    MapFiles files(result.folder, options.force);
+    MapFiles files(result.folder, options.force, processes());
+    files.requireFree({textureName, sidecarName, pictureName});
+    const std::string texture = files.texture(textureName);
     const MapWritten written =
-        writeTexture(work, *form.encoder, options, files.texture(), result, listener);
+        writeTexture(work, *form.encoder, options, texture, result, listener);
     // Materials of the last levels are known to the first process alone.
     std::string text;
     if (processes().isFirst())
         text = toText(sidecarOf(work, options, *form.encoder, result.levels));
     processes().broadcast(text);
     MapSidecar sidecar = parseMapSidecar(text, sidecarName);
-    sidecar.texture = files.texture();
+    sidecar.texture = texture;
     const MaterialMap map(sidecar, (std::filesystem::path(result.folder) / sidecarName).string());
     if (options.form == "halfway") {
         addHalfway(work, form, options, map, files, sidecar, result, listener);
@@ -296,24 +258,9 @@ Svbrdf made(const std::string& description, const std::string& folder, const Svb
 
 }  // namespace
 
-void shareMapsWith(Processes& processes) {
-    sharing = &processes;
-}
-
-const Processes& processesOfMaps() {
-    return processes();
-}
-
 Svbrdf svbrdf(const std::string& description, const std::string& folder,
               const SvbrdfOptions& options, const Listener& listener) {
-    try {
-        Svbrdf result = made(description, folder, options, listener);
-        processes().meet();
-        return result;
-    } catch (...) {
-        processes().fail();
-        throw;
-    }
+    return together([&] { return made(description, folder, options, listener); });
 }
 
 }  // namespace hshfit::jobs

@@ -106,9 +106,4 @@ struct Svbrdf {
 Svbrdf svbrdf(const std::string& description, const std::string& folder,
               const SvbrdfOptions& options, const Listener& listener = {});
 
-/// The processes that share the work of `svbrdf` from now on; by default this one alone. The first
-/// has the results. `processes` has to outlive all calls.
-void shareMapsWith(Processes& processes);
-const Processes& processesOfMaps();
-
 }  // namespace hshfit::jobs

@@ -45,19 +45,18 @@ TurnMaps::TurnMaps(const MaterialDescription& description,
         directions_->picture().fail("has one channel; a direction as a vector has two");
 }
 
-void TurnMaps::check(const Listener& listener) {
+void TurnMaps::check(const ItemRange& rows, const Listener& listener) {
     for (const ChannelRows* map : {normals_.get(), directions_.get()}) {
         if (map == nullptr) continue;
         const auto progress = listener.part(fmt::format("checking {}", map->picture().path()));
-        const std::size_t height = map->picture().height();
         std::vector<TexelTurn> turns;
-        for (std::size_t y = 0; y < height; ++y) {
+        for (std::size_t y = rows.first; y < rows.last; ++y) {
             turns.assign(map->picture().width(), {});
             if (map == normals_.get())
                 addNormals(y, turns);
             else
                 addDirections(y, turns);
-            if (progress) progress(y + 1, height);
+            if (progress) progress(y + 1 - rows.first, rows.last - rows.first);
         }
     }
 }

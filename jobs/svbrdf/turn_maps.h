@@ -5,6 +5,7 @@
 #include "description.h"
 
 #include <hshfit/brdf/directions.h>
+#include <hshfit/material_maps/processes.h>
 
 #include <cstddef>
 #include <functional>
@@ -29,15 +30,15 @@ public:
     /// file and the texel.
     TurnMaps(const MaterialDescription& description,
              const std::function<void(const PictureFile&)>& checkSize);
-    /// Reads all rows.
-    void check(const Listener& listener);
+    /// Reads some rows.
+    void check(const ItemRange& rows, const Listener& listener);
 
     /// Whether the description turns texels at all.
     bool any() const { return normals_ || directions_ || azimuth_ != 0; }
     bool hasNormals() const { return normals_ != nullptr; }
     bool hasDirections() const { return directions_ || azimuth_ != 0; }
     bool hasMaps() const { return normals_ || directions_; }
-    /// Normals whose length is off by more than 5 %, after `check`.
+    /// Normals in the rows of `check` whose length is off by more than 5 %.
     std::size_t renormalised() const { return renormalised_; }
 
     /// A row of `width` texels. By one thread at a time; best with rising rows.

@@ -27,13 +27,16 @@ FilteredMapWriter::FilteredMapWriter(const FilteredSidecar& sidecar, const std::
     : sidecar_(sidecar),
       texture_(texture, sidecar.number, sidecar.layers(), sidecar.levels,
                {.pairs = {{"hshfit:form", sidecar.form}}, .pastPageCache = false}) {
-    texture_.begin();
     if (sidecar.form != "harmonics") return;
     harmonics_ = std::make_unique<LevelFile>(
         harmonics, sidecar.number, sidecar.harmonicLayers(),
         std::vector<LevelSize>(sidecar.levels.begin() + 1, sidecar.levels.end()),
         LevelFileOptions{.pairs = {{"hshfit:form", "harmonics"}}, .pastPageCache = false});
-    harmonics_->begin();
+}
+
+void FilteredMapWriter::begin() {
+    texture_.begin();
+    if (harmonics_) harmonics_->begin();
 }
 
 void FilteredMapWriter::write(std::size_t level, std::size_t row, std::span<const double> texels) {

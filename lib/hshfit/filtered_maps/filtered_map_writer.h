@@ -10,13 +10,16 @@
 
 namespace hshfit::inline filtered_maps {
 
-/// The textures of a map of filtered lobes, written row by row in any order.
+/// The textures of a map of filtered lobes, written row by row in any order, by several processes
+/// if need be.
 class FilteredMapWriter {
 public:
     /// The files stand: temporaries, say. `harmonics` is not used without harmonics.
     FilteredMapWriter(const FilteredSidecar& sidecar, const std::string& texture,
                       const std::string& harmonics);
 
+    /// The heads and the lengths of the files, before anything else: by one process.
+    void begin();
     /// A row of a level: layout.ellipseSize() numbers a texel for level 0, else layout.size().
     /// Throws NumericError for a number beyond the format, with its texel, and OutputError.
     void write(std::size_t level, std::size_t row, std::span<const double> texels);

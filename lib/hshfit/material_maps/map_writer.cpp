@@ -56,7 +56,7 @@ void add(LevelErrors& sum, std::size_t& count, const LevelErrors& more, std::siz
 }
 
 /// Texels of a band on their way to the file, by level.
-using BandBytes = std::vector<EncodedLevel>;
+using BandLevels = std::vector<EncodedLevel>;
 
 /// The work on a map that does not change from band to band.
 class MapWork {
@@ -79,7 +79,7 @@ public:
     }
 
     /// The levels of a band in bytes; its other results.
-    BandResult levelsOf(std::size_t band, const TexelBand& texels, BandBytes& bytes) {
+    BandResult levelsOf(std::size_t band, const TexelBand& texels, BandLevels& bytes) {
         BandResult result;
         const std::size_t width = source_.width(), rows = bottomOf(band) - topOf(band);
         reserve(rows, bytes);
@@ -100,7 +100,7 @@ public:
         return result;
     }
 
-    void write(std::size_t band, const BandBytes& bytes) {
+    void write(std::size_t band, const BandLevels& bytes) {
         for (std::size_t level = 0; level < writtenLevels_; ++level) {
             const EncodedLevel& from = bytes[level];
             file_.write(level, topOf(band) >> level, from.rows,
@@ -109,11 +109,12 @@ public:
     }
 
     /// The levels that no band completes, and the errors of all.
-    MapWritten finished(const std::map<std::size_t, std::vector<float>>& results) {
+    MapWritten finished(const std::map<std::size_t, BandBytes>& results) {
         MapWritten written{.levels = std::vector<LevelErrors>(writtenLevels_)};
         std::vector<std::size_t> counts(writtenLevels_, 0);
         LevelTexels top{.step = encoder_.linear()}, picture{.step = 1};
-        for (const auto& [band, floats] : results) {
+        for (const auto& [band, bytes] : results) {
+            const std::vector<float> floats = bandValues<float>(bytes);
             const std::size_t rows = bottomOf(band) - topOf(band);
             for (std::size_t level = 0; level < writtenLevels_; ++level) {
                 add(written.levels[level], counts[level],
@@ -156,7 +157,7 @@ private:
 
     std::size_t bytesInLayer() const { return file_.bytesOfTexel() / encoder_.layers(); }
 
-    void reserve(std::size_t rows, BandBytes& bytes) const {
+    void reserve(std::size_t rows, BandLevels& bytes) const {
         bytes.resize(writtenLevels_);
         for (std::size_t level = 0; level < writtenLevels_; ++level) {
             bytes[level].width = sizes_[level].width;
@@ -242,7 +243,7 @@ MapWritten writeMap(TexelSource& source, TexelEncoder& encoder, LevelFile& file,
     MapWork work(source, encoder, file, plan, options);
     if (processes.isFirst()) file.begin();
     const auto dealer = processes.deal(plan.count);
-    std::map<std::size_t, std::vector<float>> results;
+    std::map<std::size_t, BandBytes> results;
     std::size_t done = 0;
     // One band is read and one is written while one is computed.
     const auto reading = [&](std::optional<std::size_t> band) {
@@ -252,15 +253,15 @@ MapWritten writeMap(TexelSource& source, TexelEncoder& encoder, LevelFile& file,
     };
     std::optional<std::size_t> band = dealer->next();
     auto read = reading(band);
-    BandBytes buffers[2];       // one is filled while the other is written
+    BandLevels buffers[2];      // one is filled while the other is written
     std::future<void> writing;  // ends before the buffers do, also after an exception
     while (band) {
         const std::unique_ptr<TexelBand> texels = read.get();
         const std::size_t current = *band;
         band = dealer->next();
         read = reading(band);
-        BandBytes& bytes = buffers[done % 2];
-        results[current] = work.levelsOf(current, *texels, bytes).floats();
+        BandLevels& bytes = buffers[done % 2];
+        results[current] = bandBytes(work.levelsOf(current, *texels, bytes).floats());
         if (writing.valid()) writing.get();
         writing = std::async(std::launch::async, [&, current] { work.write(current, bytes); });
         ++done;

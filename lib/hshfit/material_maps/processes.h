@@ -1,13 +1,33 @@
 #pragma once
 
 #include <cstddef>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace hshfit::inline material_maps {
+
+/// Numbers of a band on their way to another process.
+using BandBytes = std::vector<std::byte>;
+
+template <class T>
+BandBytes bandBytes(const std::vector<T>& values) {
+    const auto bytes = std::as_bytes(std::span(values));
+    return {bytes.begin(), bytes.end()};
+}
+template <class T>
+std::vector<T> bandValues(std::span<const std::byte> bytes) {
+    std::vector<T> values(bytes.size() / sizeof(T));
+    static_assert(std::is_trivially_copyable_v<T>);
+    if (!values.empty())
+        std::memcpy(static_cast<void*>(values.data()), bytes.data(), values.size() * sizeof(T));
+    return values;
+}
 
 /// Deals the bands of a map to the processes that share the work, and brings their results to the
 /// first of them.
@@ -17,7 +37,7 @@ public:
     /// The next band that nobody has yet; none: all are taken.
     virtual std::optional<std::size_t> next() = 0;
     /// Afterwards the first process has the results of all, by band, and the others none.
-    virtual void collect(std::map<std::size_t, std::vector<float>>& results) { (void)results; }
+    virtual void collect(std::map<std::size_t, BandBytes>& results) { (void)results; }
 };
 
 /// All bands, in order.

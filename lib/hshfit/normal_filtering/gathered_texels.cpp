@@ -19,7 +19,6 @@ GatheredTexels::GatheredTexels(std::size_t width, std::size_t height, std::vecto
         const Footprint f =
             footprintOf(width, height, mipSize(width, level), mipSize(height, level), index);
         Gathering g{f.x, f.y, f.width, f.height};
-        texels_[k].mean = noTexel();
         texels_[k].all = f.count() <= static_cast<std::size_t>(samples);
         if (texels_[k].all) {
             for (std::size_t i = 0; i < f.count(); ++i)
@@ -36,24 +35,73 @@ GatheredTexels::GatheredTexels(std::size_t width, std::size_t height, std::vecto
             }
             std::ranges::stable_sort(g.samples, {}, &Sample::y);
         }
+        texels_[k].base.resize(g.samples.size());
+        g.blocks.assign((f.y + f.height - 1) / blockRows - f.y / blockRows + 1, noTexel());
         gathering_.push_back(std::move(g));
     }
 }
 
-void GatheredTexels::add(std::span<const SurfaceTexel> row) {
+template <class Block, class Sampled>
+void GatheredTexels::each(std::size_t k, const MipRows& rows, const Block& block,
+                          const Sampled& sample) const {
+    const Gathering& g = gathering_[k];
+    const std::size_t first = std::max(rows.first, g.y), last = std::min(rows.last, g.y + g.height);
+    if (first >= last) return;
+    for (std::size_t b = first / blockRows; b <= (last - 1) / blockRows; ++b)
+        block(b - g.firstBlock());
+    auto at = std::ranges::lower_bound(g.samples, first, {}, &Sample::y);
+    for (; at != g.samples.end() && at->y < last; ++at)
+        sample(static_cast<std::size_t>(at - g.samples.begin()));
+}
+
+void GatheredTexels::add(std::size_t y, std::span<const SurfaceTexel> row) {
     assert(row.size() == width_);
     for (std::size_t k = 0; k < gathering_.size(); ++k) {
         Gathering& g = gathering_[k];
-        if (row_ < g.y || row_ >= g.y + g.height) continue;
-        MeasuredTexel& texel = texels_[k];
         const double share = 1 / static_cast<double>(g.width * g.height);
-        for (std::size_t x = g.x; x < g.x + g.width; ++x) addToMean(row[x], share, texel.mean);
-        for (; g.next < g.samples.size() && g.samples[g.next].y == row_; ++g.next)
-            texel.base.push_back(row[g.samples[g.next].x]);
-        if (row_ + 1 == g.y + g.height && !(dot(texel.mean.normal, texel.mean.normal) > 1e-12))
-            texel.mean.normal = {0, 0, 1};
+        each(
+            k, {y, y + 1},
+            [&](std::size_t block) {
+                for (std::size_t x = g.x; x < g.x + g.width; ++x)
+                    addToMean(row[x], share, g.blocks[block]);
+            },
+            [&](std::size_t sample) { texels_[k].base[sample] = row[g.samples[sample].x]; });
     }
-    ++row_;
+}
+
+std::size_t GatheredTexels::takenCount(const MipRows& rows) const {
+    std::size_t count = 0;
+    const auto one = [&](std::size_t) { ++count; };
+    for (std::size_t k = 0; k < gathering_.size(); ++k) each(k, rows, one, one);
+    return count;
+}
+
+std::vector<SurfaceTexel> GatheredTexels::taken(const MipRows& rows) const {
+    std::vector<SurfaceTexel> all;
+    for (std::size_t k = 0; k < gathering_.size(); ++k) {
+        each(
+            k, rows, [&](std::size_t block) { all.push_back(gathering_[k].blocks[block]); },
+            [&](std::size_t sample) { all.push_back(texels_[k].base[sample]); });
+    }
+    return all;
+}
+
+void GatheredTexels::put(const MipRows& rows, std::span<const SurfaceTexel> taken) {
+    auto from = taken.begin();
+    for (std::size_t k = 0; k < gathering_.size(); ++k) {
+        each(
+            k, rows, [&](std::size_t block) { gathering_[k].blocks[block] = *from++; },
+            [&](std::size_t sample) { texels_[k].base[sample] = *from++; });
+    }
+}
+
+void GatheredTexels::finish() {
+    for (std::size_t k = 0; k < gathering_.size(); ++k) {
+        SurfaceTexel& mean = texels_[k].mean;
+        mean = noTexel();
+        for (const SurfaceTexel& block : gathering_[k].blocks) addSum(block, mean);
+        if (!(dot(mean.normal, mean.normal) > 1e-12)) mean.normal = {0, 0, 1};
+    }
 }
 
 }  // namespace hshfit::inline normal_filtering

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/normal_filtering/mip_errors.h>
+#include <hshfit/normal_filtering/mip_parts.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -16,19 +17,31 @@ struct MipPlace {
 };
 
 /// Gathers what the measurement of mip texels needs of their base texels while rows of the base
-/// stream by, so that neither the base nor a level is held.
+/// pass by, so that neither the base nor a level is held. Averages are sums of sums over blocks of
+/// rows, so that processes that gather parts of the base come to the same bits as one.
 class GatheredTexels {
 public:
+    /// Parts of the base that are gathered apart begin at multiples of so many rows.
+    static constexpr std::size_t blockRows = 16;
+
     /// `samples`: base texels of each, one in each cell of its footprint; all where it has fewer.
     GatheredTexels(std::size_t width, std::size_t height, std::vector<MipPlace> places, int samples,
                    std::uint64_t seed = 1);
 
-    /// The next row of the base.
-    void add(std::span<const SurfaceTexel> row);
+    /// A row of the base; rising rows.
+    void add(std::size_t y, std::span<const SurfaceTexel> row);
+    /// What was gathered from some rows: the last may be those of a block that is cut off by the
+    /// end of the base alone.
+    std::vector<SurfaceTexel> taken(const MipRows& rows) const;
+    /// How many texels that is, and its inverse.
+    std::size_t takenCount(const MipRows& rows) const;
+    void put(const MipRows& rows, std::span<const SurfaceTexel> taken);
+    /// To be called when all rows have been gathered.
+    void finish();
 
     std::size_t size() const { return places_.size(); }
     const MipPlace& place(std::size_t k) const { return places_[k]; }
-    /// After the last row. Filtered numbers are the caller's.
+    /// After `finish`. Filtered numbers are the caller's.
     const MeasuredTexel& texel(std::size_t k) const { return texels_[k]; }
     MeasuredTexel& texel(std::size_t k) { return texels_[k]; }
 
@@ -38,10 +51,16 @@ private:
     };
     struct Gathering {
         std::size_t x, y, width, height;
-        std::vector<Sample> samples = {};  ///< in the order of rows
-        std::size_t next = 0;
+        std::vector<Sample> samples = {};       ///< in the order of rows
+        std::vector<SurfaceTexel> blocks = {};  ///< sums over rows of each block, from y on
+
+        std::size_t firstBlock() const { return y / blockRows; }
     };
-    std::size_t width_, row_ = 0;
+    /// Calls each(block) and each(sample) for what rows have of gathering k, in a fixed order.
+    template <class Block, class Sampled>
+    void each(std::size_t k, const MipRows& rows, const Block& block, const Sampled& sample) const;
+
+    std::size_t width_;
     std::vector<MipPlace> places_;
     std::vector<Gathering> gathering_;
     std::vector<MeasuredTexel> texels_;

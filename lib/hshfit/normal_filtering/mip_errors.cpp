@@ -10,6 +10,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 namespace hshfit::inline normal_filtering {
@@ -144,6 +146,13 @@ std::vector<Pair> pairsFor(std::span<const double> numbers, const MipErrorOption
     return pairs;
 }
 
+/// Numbers that pairsFor draws, whatever the texel: an angle; for each outgoing direction another,
+/// and two for each incoming one.
+unsigned long long drawsOfPairs(const MipErrorOptions& options) {
+    return 1 + static_cast<unsigned long long>(options.outgoing) *
+                   (1 + 2 * static_cast<unsigned long long>(options.incoming));
+}
+
 /// f cos(theta_i) of the truth and of all forms for the pairs of a mip texel.
 struct Values {
     std::vector<double> truth, variance;     // [pair][channel]
@@ -229,52 +238,114 @@ Values valuesOf(const FilteredSurface& s, const std::vector<Facet>& facets, cons
     return v;
 }
 
-/// Sums over all mip texels: of the truth, and of each form.
-struct Sums {
+/// Sums of one mip texel: of the truth, and of each form.
+struct TruthSums {
     double norm = 0, noise = 0, albedo = 0;
-    std::vector<double> distances, albedos;
+};
+struct FormSums {
+    double distance = 0, albedo = 0, worstAlbedo = 0;
+    double maximum = 0;  ///< difference over the largest true value, and its place
+    Direction wi = {}, wo = {};
 };
 
-/// Adds one mip texel.
-void addErrors(const std::vector<Pair>& pairs, const Values& v, std::size_t channels,
-               std::size_t incoming, std::vector<MipError>& errors, Sums& sums) {
-    double largest = 0, albedo = 0, cosines = 0;
-    const double normBefore = sums.norm;
-    std::vector<double> directional(pairs.size() / incoming, 0.0);
+/// The record of a mip texel, in numbers that processes exchange: sums of the truth, then of forms.
+template <class Sums>
+using Doubles = std::array<double, sizeof(Sums) / sizeof(double)>;
+
+std::size_t recordSize(std::size_t forms) {
+    return (sizeof(TruthSums) + forms * sizeof(FormSums)) / sizeof(double);
+}
+template <class Sums>
+Sums readSums(const double* from) {
+    Doubles<Sums> numbers;
+    std::copy_n(from, numbers.size(), numbers.begin());
+    return std::bit_cast<Sums>(numbers);
+}
+template <class Sums>
+void writeSums(const Sums& sums, double* to) {
+    std::ranges::copy(std::bit_cast<Doubles<Sums>>(sums), to);
+}
+
+/// Incoming directions of each outgoing one, and channels of each pair.
+struct PairSizes {
+    std::size_t incoming, channels;
+};
+
+FormSums sumsOf(const std::vector<Pair>& pairs, const Values& v, const std::vector<double>& form,
+                const PairSizes& sizes, const TruthSums& truth, double cosines) {
+    double largest = 0;
+    FormSums sums;
+    std::vector<double> own(pairs.size() / sizes.incoming, 0.0), directional = own;
+    for (std::size_t k = 0; k < v.truth.size(); ++k)
+        largest = std::max(largest, v.truth[k] * pairs[k / sizes.channels].wo.z);
     for (std::size_t k = 0; k < v.truth.size(); ++k) {
-        const Pair& p = pairs[k / channels];
-        largest = std::max(largest, v.truth[k] * p.wo.z);
-        const double scale = p.weight * p.wo.z * p.wo.z;
-        sums.norm += scale * v.truth[k] * v.truth[k];
-        sums.noise += scale * v.variance[k];
-        albedo += p.outgoingWeight * p.incomingWeight * p.wo.z * v.truth[k];
-        directional[k / channels / incoming] += p.incomingWeight * v.truth[k];
-    }
-    for (std::size_t o = 0; o < directional.size(); ++o)
-        cosines += pairs[o * incoming].outgoingWeight * pairs[o * incoming].wo.z;
-    sums.albedo += albedo;
-    for (std::size_t f = 0; f < errors.size(); ++f) {
-        std::vector<double> own(directional.size(), 0.0);
-        const double distanceBefore = sums.distances[f];
-        for (std::size_t k = 0; k < v.truth.size(); ++k) {
-            const Pair& p = pairs[k / channels];
-            const double difference = (v.forms[f][k] - v.truth[k]) * p.wo.z;
-            sums.distances[f] += p.weight * difference * difference;
-            sums.albedos[f] += p.weight * p.wo.z * v.forms[f][k];
-            own[k / channels / incoming] += p.incomingWeight * v.forms[f][k];
-            if (p.weight > 0 && std::abs(difference) > errors[f].maximum * largest) {
-                errors[f].maximum = std::abs(difference) / largest;
-                errors[f].wi = p.wi;
-                errors[f].wo = p.wo;
-            }
+        const Pair& p = pairs[k / sizes.channels];
+        const double difference = (form[k] - v.truth[k]) * p.wo.z;
+        sums.distance += p.weight * difference * difference;
+        sums.albedo += p.weight * p.wo.z * form[k];
+        directional[k / sizes.channels / sizes.incoming] += p.incomingWeight * v.truth[k];
+        own[k / sizes.channels / sizes.incoming] += p.incomingWeight * form[k];
+        if (p.weight > 0 && std::abs(difference) > sums.maximum * largest) {
+            sums.maximum = std::abs(difference) / largest;
+            sums.wi = p.wi;
+            sums.wo = p.wo;
         }
-        const double norm = sums.norm - normBefore;
-        errors[f].texels.push_back(
-            norm > 0 ? std::sqrt(std::max(0.0, sums.distances[f] - distanceBefore) / norm) : 0);
-        for (std::size_t o = 0; o < own.size(); ++o)
-            errors[f].worstAlbedo = std::max(
-                errors[f].worstAlbedo, std::abs(own[o] - directional[o]) / (albedo / cosines));
     }
+    for (std::size_t o = 0; o < own.size(); ++o)
+        sums.worstAlbedo = std::max(sums.worstAlbedo,
+                                    std::abs(own[o] - directional[o]) / (truth.albedo / cosines));
+    return sums;
+}
+
+void fillRecord(const std::vector<Pair>& pairs, const Values& v, const PairSizes& sizes,
+                double* record) {
+    TruthSums truth;
+    double cosines = 0;
+    for (std::size_t k = 0; k < v.truth.size(); ++k) {
+        const Pair& p = pairs[k / sizes.channels];
+        const double scale = p.weight * p.wo.z * p.wo.z;
+        truth.norm += scale * v.truth[k] * v.truth[k];
+        truth.noise += scale * v.variance[k];
+        truth.albedo += p.outgoingWeight * p.incomingWeight * p.wo.z * v.truth[k];
+    }
+    for (std::size_t k = 0; k < pairs.size(); k += sizes.incoming)
+        cosines += pairs[k].outgoingWeight * pairs[k].wo.z;
+    writeSums(truth, record);
+    for (std::size_t f = 0; f < v.forms.size(); ++f)
+        writeSums(sumsOf(pairs, v, v.forms[f], sizes, truth, cosines), record + recordSize(f));
+}
+
+/// Adds up the records of all mip texels.
+void addRecords(const std::vector<double>& records, MipErrors& result) {
+    const std::size_t size = recordSize(result.forms.size());
+    TruthSums all;
+    for (std::size_t at = 0; at < records.size(); at += size) {
+        const TruthSums truth = readSums<TruthSums>(&records[at]);
+        all.norm += truth.norm;
+        all.noise += truth.noise;
+        all.albedo += truth.albedo;
+    }
+    for (std::size_t f = 0; f < result.forms.size(); ++f) {
+        MipError& error = result.forms[f];
+        double distance = 0, albedo = 0;
+        for (std::size_t at = 0; at < records.size(); at += size) {
+            const double norm = readSums<TruthSums>(&records[at]).norm;
+            const FormSums form = readSums<FormSums>(&records[at + recordSize(f)]);
+            distance += form.distance;
+            albedo += form.albedo;
+            // Black texels have no norm.
+            error.texels.push_back(norm > 0 ? std::sqrt(form.distance / norm) : 0);
+            error.worstAlbedo = std::max(error.worstAlbedo, form.worstAlbedo);
+            if (form.maximum <= error.maximum) continue;
+            error.maximum = form.maximum;
+            error.wi = form.wi;
+            error.wo = form.wo;
+        }
+        if (!(all.norm > 0)) continue;
+        error.relative = std::sqrt(distance / all.norm);
+        error.albedo = albedo / all.albedo;
+    }
+    result.noise = all.norm > 0 ? std::sqrt(all.noise / all.norm) : 0;
 }
 
 }  // namespace
@@ -329,29 +400,30 @@ std::vector<std::size_t> measuredTexels(std::size_t width, std::size_t height,
 MipErrors measureMipTexels(
     const FilteredSurface& surface, const MipLayout& layout, std::size_t count,
     const std::function<MeasuredTexel(std::size_t k, std::mt19937_64& random)>& texel,
-    const LobeTable& table, const MipErrorOptions& options) {
+    const LobeTable& table, const MipErrorOptions& options, const MipErrorShare& share) {
     MipErrors result{.forms = formsOf(layout, options)};
-    Sums sums;
-    sums.distances = sums.albedos = std::vector<double>(result.forms.size(), 0.0);
+    const std::size_t size = recordSize(result.forms.size());
+    std::vector<double> records(count * size);
     std::mt19937_64 random(options.seed);
     const std::shared_ptr<const Basis> basis = bases::makeSh(layout.order, {});
     for (std::size_t k = 0; k < count; ++k) {
+        if (k < share.first || k >= share.last) {
+            random.discard(drawsOfPairs(options));
+            continue;
+        }
         const MeasuredTexel measured = texel(k, random);
         const std::vector<Facet> facets(measured.base.begin(), measured.base.end());
         const std::vector<Pair> pairs = pairsFor(measured.numbers, options, random);
         const Values values = valuesOf(surface, facets, Facet(measured.mean),
                                        FilteredTexel(layout, measured.numbers, table, basis),
                                        result.forms, pairs, measured.all, options.byVisibleArea);
-        addErrors(pairs, values, static_cast<std::size_t>(surface.channels),
-                  static_cast<std::size_t>(options.incoming), result.forms, sums);
+        fillRecord(pairs, values,
+                   {static_cast<std::size_t>(options.incoming),
+                    static_cast<std::size_t>(surface.channels)},
+                   &records[k * size]);
     }
-    // Black texels have no norm.
-    for (std::size_t f = 0; f < result.forms.size(); ++f) {
-        if (!(sums.norm > 0)) continue;
-        result.forms[f].relative = std::sqrt(sums.distances[f] / sums.norm);
-        result.forms[f].albedo = sums.albedos[f] / sums.albedo;
-    }
-    result.noise = sums.norm > 0 ? std::sqrt(sums.noise / sums.norm) : 0;
+    if (share.gather) share.gather(records);
+    addRecords(records, result);
     return result;
 }
 

@@ -79,12 +79,20 @@ struct MeasuredTexel {
     std::vector<double> numbers = {};
 };
 
-/// The same for texels that the caller gathers: texel(k, random) for k = 0 … count - 1, in order,
-/// one at a time. `surface` needs no `texel`, and no size.
+/// The texels that one of several processes measures: [first, last), and a function that gives it
+/// the records of the others, [texel][number]. All then have the same bits.
+struct MipErrorShare {
+    std::size_t first = 0, last = ~std::size_t{0};
+    std::function<void(std::vector<double>& records)> gather = {};
+};
+
+/// The same for texels that the caller gathers: texel(k, random) in rising order, one at a time,
+/// for those of the share; it draws no numbers where others measure some. `surface` needs no
+/// `texel`, and no size.
 MipErrors measureMipTexels(
     const FilteredSurface& surface, const MipLayout& layout, std::size_t count,
     const std::function<MeasuredTexel(std::size_t k, std::mt19937_64& random)>& texel,
-    const LobeTable& table, const MipErrorOptions& options = {});
+    const LobeTable& table, const MipErrorOptions& options = {}, const MipErrorShare& share = {});
 
 /// The form with the fewest numbers whose relative error is at most `tolerance`; where there is
 /// none, the one with the least error.

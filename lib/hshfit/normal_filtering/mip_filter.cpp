@@ -3,6 +3,7 @@
 #include <hshfit/bases/sh.h>
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
+#include <hshfit/normal_filtering/internal/mip_box.h>
 #include <hshfit/normal_filtering/surface_frame.h>
 #include <hshfit/rotation/sh_rotation.h>
 
@@ -17,20 +18,6 @@ namespace {
 
 /// Texels of a row that one task filters.
 constexpr std::size_t blockTexels = 64;
-
-/// Sources of texel `at` along a side of `size` texels below it: the first and up to three shares.
-struct Box {
-    std::size_t first = 0, count = 1;
-    double shares[3] = {1, 0, 0};
-    std::size_t end() const { return first + count; }
-};
-Box boxOf(std::size_t at, std::size_t size) {
-    if (size == 1) return {};
-    if (size % 2 == 0) return {2 * at, 2, {0.5, 0.5, 0}};
-    const double k = static_cast<double>(size / 2), n = static_cast<double>(size),
-                 i = static_cast<double>(at);
-    return {2 * at, 3, {(k - i) / n, k / n, (i + 1) / n}};
-}
 
 bool finite(const Direction& d) {
     return std::isfinite(d.x) && std::isfinite(d.y) && std::isfinite(d.z);
@@ -101,11 +88,13 @@ struct MipFilter::Work {
     struct Level {
         std::size_t width, height;
         std::size_t next = 0;   ///< row of the level above that is made next
+        std::size_t end = 0;    ///< rows of the level above that are made end here
         std::size_t first = 0;  ///< row of held.front()
+        MipRows own = {};       ///< rows that leave
         std::deque<std::vector<double>> held = {};
     };
 
-    std::size_t width, height, received = 0;
+    std::size_t width = 0, height = 0, received = 0, last = 0;  ///< rows of the base
     std::shared_ptr<const LobeTable> table;
     MipLayout layout;
     Sink sink;
@@ -113,7 +102,7 @@ struct MipFilter::Work {
     std::unique_ptr<ShRotation> rotation;
     std::deque<std::vector<SurfaceTexel>> held = {};  // rows of the base
     std::size_t firstHeld = 0;
-    std::vector<Level> levels;  // sizes of all levels; [0] is the base
+    std::vector<Level> levels = {};  // those that are made; [0] is the base
 
     void addHarmonics(std::span<const SurfaceTexel> row, std::size_t first, std::size_t count,
                       std::vector<double>& out) const;
@@ -215,12 +204,8 @@ std::vector<double> MipFilter::Work::firstRow(std::size_t y) const {
 /// Rows of `level` + 1 as far as those held of `level` allow.
 void MipFilter::Work::reduce(std::size_t level) {
     Level& below = levels[level];
-    if (level + 1 >= levels.size()) {
-        below.held.clear();
-        return;
-    }
     const std::size_t size = layout.size(), above = levels[level + 1].width;
-    while (below.next < levels[level + 1].height) {
+    while (below.next < below.end) {
         const Box box = boxOf(below.next, below.height);
         if (box.end() > below.first + below.held.size()) return;
         std::vector<double> out(above * size, 0.0);
@@ -249,7 +234,7 @@ void MipFilter::Work::reduce(std::size_t level) {
 void MipFilter::Work::emit(std::size_t level, std::vector<double> row) {
     Level& of = levels[level];
     const std::size_t y = of.first + of.held.size();
-    sink({static_cast<int>(level), y, of.width, row});
+    if (y < of.own.last) sink({static_cast<int>(level), y, of.width, row});
     if (level + 1 >= levels.size()) {
         ++of.first;
         return;
@@ -258,35 +243,45 @@ void MipFilter::Work::emit(std::size_t level, std::vector<double> row) {
     reduce(level);
 }
 
-int mipLevels(std::size_t width, std::size_t height) {
-    int levels = 0;
-    for (std::size_t size = std::max(width, height); size > 1; size /= 2) ++levels;
-    return levels;
-}
-
 MipFilter::MipFilter(std::size_t width, std::size_t height, std::shared_ptr<const LobeTable> table,
                      const MipLayout& layout, Sink sink)
+    : MipFilter(width, MipParts(width, height).part(0), std::move(table), layout, std::move(sink)) {
+}
+
+MipFilter::MipFilter(std::size_t width, const MipPart& part, std::shared_ptr<const LobeTable> table,
+                     const MipLayout& layout, Sink sink)
     : work_(std::make_unique<Work>()) {
-    if (width == 0 || height == 0)
-        throw UsageError(fmt::format("a surface of {} x {} texels has no levels", width, height));
+    if (width == 0 || part.height == 0) {
+        throw UsageError(
+            fmt::format("a surface of {} x {} texels has no levels", width, part.height));
+    }
     layout.check(table->order());
     work_->width = width;
-    work_->height = height;
+    work_->height = part.height;
     work_->table = std::move(table);
     work_->layout = layout;
     work_->sink = std::move(sink);
     work_->basis = bases::makeSh(std::max(3, layout.order), {});
     if (!work_->table->isotropic())
         work_->rotation = std::make_unique<ShRotation>(std::max(3, layout.order));
-    for (int level = 0; level <= mipLevels(width, height); ++level)
-        work_->levels.push_back({mipSize(width, level), mipSize(height, level)});
+    work_->received = work_->firstHeld = part.needed(0).first;
+    work_->last = part.needed(0).last;
+    for (int level = 0; level <= part.level; ++level) {
+        const MipRows above = level < part.level ? part.needed(level + 1) : MipRows{};
+        work_->levels.push_back({.width = mipSize(width, level),
+                                 .height = mipSize(part.height, level),
+                                 .next = above.first,
+                                 .end = above.last,
+                                 .first = part.needed(level).first,
+                                 .own = part.own(level)});
+    }
 }
 MipFilter::~MipFilter() = default;
 MipFilter::MipFilter(MipFilter&&) noexcept = default;
 MipFilter& MipFilter::operator=(MipFilter&&) noexcept = default;
 
 bool MipFilter::complete() const {
-    return work_->received == work_->height;
+    return work_->received == work_->last;
 }
 
 void MipFilter::add(std::span<const SurfaceTexel> rows) {
@@ -294,9 +289,9 @@ void MipFilter::add(std::span<const SurfaceTexel> rows) {
     const std::size_t count = rows.size() / w.width;
     if (rows.size() % w.width != 0)
         throw UsageError(fmt::format("{} texels are no whole rows of {}", rows.size(), w.width));
-    if (count > w.height - w.received)
+    if (count > w.last - w.received)
         throw InputError(
-            fmt::format("{} rows of texels for a surface of {}", w.received + count, w.height));
+            fmt::format("{} rows of texels for a surface of {}", w.received + count, w.last));
     for (std::size_t k = 0; k < rows.size(); ++k) {
         const std::string wrong = complaint(rows[k], w.layout, !w.table->isotropic());
         if (!wrong.empty())
@@ -308,7 +303,7 @@ void MipFilter::add(std::span<const SurfaceTexel> rows) {
         ++w.received;
         if (w.levels.size() == 1) continue;
         w.held.emplace_back(from.begin(), from.end());
-        while (w.levels[0].next < w.levels[1].height) {
+        while (w.levels[0].next < w.levels[0].end) {
             const std::size_t y = w.levels[0].next;
             if (boxOf(y, w.height).end() > w.firstHeld + w.held.size()) break;
             std::vector<double> made = w.firstRow(y);
@@ -318,6 +313,13 @@ void MipFilter::add(std::span<const SurfaceTexel> rows) {
             w.emit(1, std::move(made));
         }
     }
+}
+
+void MipFilter::addRow(int level, std::vector<double> row) {
+    const auto at = static_cast<std::size_t>(level);
+    if (at + 1 >= work_->levels.size()) return;
+    work_->levels[at].held.push_back(std::move(row));
+    work_->reduce(at);
 }
 
 std::vector<double> ellipseNumbers(std::span<const SurfaceTexel> texels, const LobeTable& table,

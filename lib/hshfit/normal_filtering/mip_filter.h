@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/normal_filtering/mip_layout.h>
+#include <hshfit/normal_filtering/mip_parts.h>
 
 #include <cstddef>
 #include <functional>
@@ -17,14 +18,6 @@ struct MipRow {
     std::span<const double> texels;  ///< valid during the call alone
 };
 
-/// Texels along one side of a level: base / 2^level, rounded down, at least 1.
-constexpr std::size_t mipSize(std::size_t base, int level) {
-    const std::size_t size = base >> level;
-    return size == 0 ? 1 : size;
-}
-/// Levels beyond the base until 1 x 1.
-int mipLevels(std::size_t width, std::size_t height);
-
 /// Mip levels of reflectance (Han, Sun, Ramamoorthi & Grinspun 2007, "Frequency domain normal map
 /// filtering"): each texel contributes its D turned to its normal, as coefficients
 ///     c_(l,m) = w sqrt(4 pi / (2 l + 1)) d_l Y_(l,m)(n),
@@ -33,7 +26,8 @@ int mipLevels(std::size_t width, std::size_t height);
 /// a renderer that takes many samples of a normal map.
 ///
 /// Rows come in any portions and leave as soon as they are complete, so that at most three rows of
-/// a level are held. The bits depend neither on the portions nor on the number of threads.
+/// a level are held. The bits depend neither on the portions nor on the number of threads, nor on
+/// the parts that a surface is filtered in.
 class MipFilter {
 public:
     using Sink = std::function<void(const MipRow&)>;
@@ -41,15 +35,22 @@ public:
     /// is not allowed and for a size of 0.
     MipFilter(std::size_t width, std::size_t height, std::shared_ptr<const LobeTable> table,
               const MipLayout& layout, Sink sink);
+    /// The rows of levels 1 to part.level that belong to a part, from its part.needed(0) of the
+    /// base.
+    MipFilter(std::size_t width, const MipPart& part, std::shared_ptr<const LobeTable> table,
+              const MipLayout& layout, Sink sink);
     ~MipFilter();
     MipFilter(MipFilter&&) noexcept;
     MipFilter& operator=(MipFilter&&) noexcept;
 
-    /// The next rows of the base, a multiple of `width` texels; the last one ends the work. Throws
+    /// The next rows of the base, whole ones; the last one ends the work. Throws
     /// InputError with row and column for a number that is not finite, a normal of length 0, a
     /// tangent along the normal where the table is anisotropic, a negative weight or albedo, and
     /// for more rows than there are.
     void add(std::span<const SurfaceTexel> rows);
+    /// The next row of a level that parts have made, for the levels above it. Of one level, and
+    /// instead of rows of the base.
+    void addRow(int level, std::vector<double> row);
     bool complete() const;
 
 private:

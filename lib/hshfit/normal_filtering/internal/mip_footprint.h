@@ -31,6 +31,16 @@ inline void addToMean(const SurfaceTexel& t, double share, SurfaceTexel& mean) {
         mean.albedos[i] += share * t.albedos[i];
     }
 }
+/// Adds a part of averaged parameters.
+inline void addSum(const SurfaceTexel& part, SurfaceTexel& mean) {
+    mean.normal = mean.normal + part.normal;
+    mean.tangent = mean.tangent + part.tangent;
+    for (std::size_t i = 0; i < 2; ++i) mean.lobe[i] += part.lobe[i];
+    for (std::size_t i = 0; i < SurfaceTexel::most; ++i) {
+        mean.weights[i] += part.weights[i];
+        mean.albedos[i] += part.albedos[i];
+    }
+}
 /// The mean before anything is added to it.
 inline SurfaceTexel noTexel() {
     SurfaceTexel mean;
