@@ -15,6 +15,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 import zlib
 from pathlib import Path
 
@@ -136,6 +137,44 @@ def ranks(program, folder, side, runs, kind):
               flush=True)
 
 
+def make_normals(folder, side):
+    """Bumps of every texel, and lengths of 1."""
+    slopes = 0.3 * numpy.random.default_rng(2).normal(size=(side, side, 2))
+    vectors = numpy.concatenate([slopes, numpy.ones((side, side, 1))], -1)
+    pfm(folder / "n.pfm", vectors / numpy.linalg.norm(vectors, axis=-1, keepdims=True))
+
+
+def turned(program, folder, runs, sides):
+    """One and two processes for the forms of turned texels, likewise; the whole by the clock."""
+    os.environ.update({"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"})
+    description = folder / "turned.json"
+    description.write_text(json.dumps({
+        "format": "hshfit-svbrdf", "version": 1, "model": "ggx", "normal": {"map": "n.pfm"},
+        "parameters": {"alpha": 0.2, "kd": [0.3, 0.2, 0.1], "F0": 0.5}}))
+    for side, form in zip(sides, (["harmonics", "--harmonics", "33", "--checks", "0"],
+                                  ["ellipse", "--checks", "0"], ["filtered"])):
+        make_normals(folder, side)
+        writing, wholes, times = [], [], {1: [], 2: []}
+        for _ in range(runs):
+            walls, parts = {}, {}
+            for count in (1, 2):
+                start = time.monotonic()
+                answer, _, _ = run(
+                    ["mpirun", "--bind-to", "core", "-n", str(count), f"{program}-mpi", "svbrdf",
+                     description, "-o", folder / "out", "--force", "--json", "--threads", "1",
+                     "--form", *form])
+                parts[count] = time.monotonic() - start
+                walls[count] = answer["seconds"]
+                times[count].append(parts[count])
+            writing.append(walls[1] / walls[2])
+            wholes.append(parts[1] / parts[2])
+        print(f"{side} x {side}, {form[0]}: two processes over one, writing "
+              f"{statistics.median(writing):.2f} ({min(writing):.2f} to {max(writing):.2f}), whole "
+              f"{statistics.median(wholes):.2f} ({min(wholes):.2f} to {max(wholes):.2f}); "
+              f"{statistics.median(times[1]):.2f} s and {statistics.median(times[2]):.2f} s, "
+              f"{answer['bytes'] / 1e6:.0f} MB", flush=True)
+
+
 def estimate(texel_seconds, decode_seconds, disk):
     """16,384 x 16,384 texels on 64 machines of 32 processors, from measured times."""
     texels, machines, processors = 16384**2, 64, 32
@@ -153,7 +192,7 @@ def main():
     parser.add_argument("folder", type=Path)
     parser.add_argument("--side", type=int, default=4096)
     parser.add_argument("--runs", type=int, default=3)
-    parser.add_argument("--only", choices=("forms", "ranks", "estimate"))
+    parser.add_argument("--only", choices=("forms", "ranks", "turned", "estimate"))
     parser.add_argument("--texel-ns", type=float, default=227, help="processor time of a texel")
     parser.add_argument("--decode-ns", type=float, default=96, help="of decoding a texel's maps")
     parser.add_argument("--disk", type=float, default=3e9, help="bytes a second of a machine")
@@ -165,6 +204,8 @@ def main():
         if given.only in (None, "ranks"):
             for kind in ("pfm", "png"):
                 ranks(program, Path(name), 2048, given.runs, kind)
+        if given.only in (None, "turned"):
+            turned(program, Path(name), given.runs, (1024, 2048, 512))
     if given.only in (None, "estimate"):
         estimate(given.texel_ns * 1e-9, given.decode_ns * 1e-9, given.disk)
 

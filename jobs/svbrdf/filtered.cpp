@@ -135,7 +135,7 @@ void requireFree(const std::string& folder, const FilteredMapOptions& options,
     if (options.form != "ellipse") files.requireFree(harmonicsName);
 }
 
-/// What is known before anything is measured.
+/// The answer before anything is measured.
 FilteredMapAnswer answerOf(const std::string& description, const MaterialDescription& described,
                            const std::string& folder, const FilteredMapOptions& options,
                            const ParameterMaps& maps, const FacetSurface& surface) {

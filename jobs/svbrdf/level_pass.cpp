@@ -8,7 +8,7 @@
 namespace hshfit::jobs {
 namespace {
 
-constexpr std::size_t partsOfProcess = 8;
+constexpr std::size_t partsOfProcess = 8;  // 32 were no faster (docs/svbrdf_scale.md)
 /// Of the level from which the first process goes on alone: 64 MiB of doubles.
 constexpr std::size_t heldNumbers = std::size_t{1} << 23;
 
@@ -34,7 +34,7 @@ void LevelPass::run(const MipLayout& layout, const LevelSinks& sinks,
     processes_.meet();
 }
 
-/// What the first process needs of a part: the rows of its last level, then what is taken.
+/// The numbers that the first process needs of a part: rows of its last level, then those taken.
 BandBytes LevelPass::partOf(const MipPart& part, const MipLayout& layout, const LevelSinks& sinks,
                             const std::function<void()>& rowDone) const {
     std::vector<double> numbers;

@@ -30,10 +30,10 @@ public:
 
     /// A row of the base; rising rows.
     void add(std::size_t y, std::span<const SurfaceTexel> row);
-    /// What was gathered from some rows: the last may be those of a block that is cut off by the
-    /// end of the base alone.
+    /// All that was gathered from some rows, which begin at a block and end at one or with the
+    /// base.
     std::vector<SurfaceTexel> taken(const MipRows& rows) const;
-    /// How many texels that is, and its inverse.
+    /// The number of these texels, and the inverse.
     std::size_t takenCount(const MipRows& rows) const;
     void put(const MipRows& rows, std::span<const SurfaceTexel> taken);
     /// To be called when all rows have been gathered.
