@@ -72,6 +72,7 @@ public:
         own.options.starts = std::max(1, fit_.starts / 4);
         // Along a level valley a search goes on for long after the held-out error has settled.
         own.options.iterations = std::min(fit_.iterations, 30);
+        own.options.brief = true;
         if (before) own.options.from = startOf(own.options, *before);
         try {
             own.result = brdfs::fit(samples_, own.options);

@@ -35,6 +35,9 @@ struct FitOptions {
     std::vector<double> from = {};
     std::uint64_t seed = 1;  ///< of the starts
     int iterations = 200;    ///< of the last search
+    /// To compare models: the search from the best start alone, without second derivatives, whose
+    /// loss is near the least.
+    bool brief = false;
     std::function<void(std::size_t, std::size_t)> progress = {};
     UncertaintyOptions uncertainty = {};
     /// Between f and the samples; with it the loss has to be l2 or cosine, without a robust kernel

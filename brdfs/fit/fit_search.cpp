@@ -180,7 +180,8 @@ void moveTo(const std::vector<double>& values, const ParametricSum& sum, std::ve
         if (!std::isnan(values[j])) u[j] = sum.shapes()[j].toScale(values[j]);
 }
 
-/// Of pixels, the searches that go on after their first iterations.
+/// Of pixels, the first iterations of a search, and the searches that go on after them.
+constexpr int heatIterations = 25;
 constexpr std::size_t heatWinners = 8;
 
 /// Minima of the problem on few samples, from the best of many starts, best first.
@@ -208,8 +209,8 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
     const SampleOrigin origin = problem.samples().origin;
     const bool pixels = origin == SampleOrigin::pixels;
     const bool lifts = !linear && (origin == SampleOrigin::nodes || pixels);
-    constexpr int most = 60, heat = 25;
-    MinimiseOptions few{.iterations = pixels ? heat : most,
+    constexpr int most = 60;
+    MinimiseOptions few{.iterations = pixels ? heatIterations : most,
                         .costTolerance = 1e-8,
                         .stepTolerance = 1e-7,
                         .curvature = false};
@@ -226,7 +227,7 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
     if (pixels) {
         std::ranges::stable_sort(candidates, byCost);
         candidates.resize(std::min(candidates.size(), heatWinners));
-        few.iterations = most - heat;
+        few.iterations = most - heatIterations;
         for (Minimum& candidate : candidates)
             if (!candidate.converged) candidate = search.from(candidate, few);
     }
@@ -288,15 +289,19 @@ Fitted searchMinimum(FitProblem& problem, const FitOptions& options) {
     const FitProblem small(coarse, problem.sum(), options.loss);
     const std::vector<Minimum> minima = coarseMinima(few ? problem : small, linear, options);
     const Search search(problem, linear);
-    const MinimiseOptions last{.iterations = options.iterations},
-        part{.iterations = options.iterations, .costTolerance = 1e-9, .stepTolerance = 1e-8};
+    const bool curvature = !options.brief;
+    const MinimiseOptions last{.iterations = options.iterations, .curvature = curvature},
+        part{.iterations = options.iterations,
+             .costTolerance = samples.fewer ? 1e-7 : 1e-9,
+             .stepTolerance = 1e-8,
+             .curvature = curvature};
     Fitted best;
     int iterations = 0, evaluations = 0;
     const bool many = samples.size() > manySamples;
     const FitSamples middle = samples.drawn(many ? middleCount : 1, options.seed);
     const FitProblem between(middle, problem.sum(), options.loss);
     const double difference = samples.fewer ? undecidedOfPixels : undecided;
-    std::vector<Minimum> starts = distinct(minima, many ? 1 : 3, difference);
+    std::vector<Minimum> starts = distinct(minima, many || options.brief ? 1 : 3, difference);
     if (many || samples.fewer) {
         for (Minimum& start : starts) start = refined(small, linear, start, part);
         std::ranges::stable_sort(starts, byCost);
@@ -306,14 +311,23 @@ Fitted searchMinimum(FitProblem& problem, const FitOptions& options) {
         starts = distinct(starts, starts.size(), difference);
     }
     for (const Minimum& start : starts) {
+        const auto onAll = [&](const Minimum& from, const MinimiseOptions& how) {
+            return samples.fewer ? onMore(small, problem, linear, from, how)
+                                 : refined(problem, linear, from, how);
+        };
         Minimum minimum;
-        if (many)
+        if (many) {
             minimum =
                 onMore(between, problem, linear, onMore(small, between, linear, start, part), last);
-        else if (samples.fewer)
-            minimum = onMore(small, problem, linear, start, last);
-        else
-            minimum = refined(problem, linear, start, last);
+        } else if (samples.fewer && !best.minimum.x.empty()) {
+            MinimiseOptions heat = last;
+            heat.iterations = std::min(heatIterations, last.iterations);
+            minimum = onAll(start, heat);
+            if (!minimum.converged && minimum.cost < (1 + difference) * best.minimum.cost)
+                minimum = onAll(minimum, last);
+        } else {
+            minimum = onAll(start, last);
+        }
         iterations += minimum.iterations, evaluations += minimum.evaluations;
         if (best.minimum.x.empty() || byCost(minimum, best.minimum))
             best.minimum = std::move(minimum);

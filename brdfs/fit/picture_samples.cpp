@@ -321,7 +321,7 @@ FitSamples pictureSamples(const Brdf& data, const PictureSampleOptions& options)
             pictureSamples(data, {.rings = std::max(options.rings / 3, 3),
                                   .around = std::max(options.around / 3, 3),
                                   .points = std::max(options.points / 4, 32),
-                                  .order = std::max(options.order * 2 / 3, 4),
+                                  .order = std::max(options.order / 2, 4),
                                   .grazingCut = options.grazingCut,
                                   .fewer = false}));
     return samples;
