@@ -2,6 +2,8 @@
 
 #include "measured_numbers.h"
 
+#include <brdfs/fit/fit_json.h>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>

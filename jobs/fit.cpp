@@ -195,7 +195,11 @@ std::vector<TriedModel> triedModels(const brdfs::FitSamples& samples, brdfs::Fit
 std::optional<Poor> judged(const Fitted& fitted, const brdfs::FitSamples& samples,
                            const std::string& data, const FitOptions& options,
                            const brdfs::FitOptions& how) {
-    if (!judgeFit(fitted.explained, data, {}, {})) return std::nullopt;
+    if (!judgeFit(fitted.explained, data, {}, {})) {
+        if (how.loss == brdfs::Loss::Kind::cosine || how.loss == brdfs::Loss::Kind::l2)
+            return std::nullopt;
+        return judgePeaks(fitted.relativeError, data, options.model, brdfs::lossName(how.loss));
+    }
     std::vector<Setting> settings;
     if (!options.loss.empty()) settings.push_back({"FitOptions::loss", options.loss});
     if (!options.sigma.empty()) settings.push_back({"FitOptions::sigma", options.sigma});

@@ -312,4 +312,16 @@ std::optional<Poor> judgeFit(double explained, const std::string& data,
                                                .settings = std::move(settings)})};
 }
 
+std::optional<Poor> judgePeaks(double relativeError, const std::string& data,
+                               const std::string& model, std::string_view loss) {
+    if (!(relativeError > 1)) return std::nullopt;
+    return Poor{fmt::format("the error of f cos(theta_i) is {} of it, in peaks that the loss {} "
+                            "hardly sees",
+                            percent(relativeError), loss),
+                fmt::format("{}", Call{.function = "fit",
+                                       .subject = data,
+                                       .settings = {{"FitOptions::model", model},
+                                                    {"FitOptions::loss", "cosine"}}})};
+}
+
 }  // namespace hshfit::jobs

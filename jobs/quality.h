@@ -75,5 +75,9 @@ struct TriedModel {
 /// that the call shares with the fit.
 std::optional<Poor> judgeFit(double explained, const std::string& data,
                              const std::vector<TriedModel>& tried, std::vector<Setting> settings);
+/// A fit by another loss than that of f cos(theta_i), of which `relativeError` is the error there:
+/// better is that loss where the error exceeds f itself, in peaks that `loss` hardly sees.
+std::optional<Poor> judgePeaks(double relativeError, const std::string& data,
+                               const std::string& model, std::string_view loss);
 
 }  // namespace hshfit::jobs

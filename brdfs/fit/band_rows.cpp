@@ -14,7 +14,7 @@ std::string ends(const Interval& interval) {
     return fmt::format(",{},{}", *interval.low, *interval.high);
 }
 
-/// What a normal variable has within one standard deviation.
+/// The probability of a normal variable within one standard deviation.
 const double oneSigma = std::erf(std::sqrt(0.5));
 
 std::string degreesText(double degrees) {

@@ -6,7 +6,6 @@
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -185,20 +184,6 @@ PartSearch chooseParts(const FitSamples& all, const FitOptions& fit, const PartO
         std::erase(open, search.parts.back());
     }
     return search;
-}
-
-nlohmann::ordered_json trialsJson(const PartSearch& search) {
-    nlohmann::ordered_json trials = nlohmann::ordered_json::array();
-    for (const PartTrial& trial : search.trials) {
-        trials.push_back({{"parts", trial.parts}, {"taken", trial.taken}});
-        if (!trial.failure.empty()) {
-            trials.back()["failure"] = trial.failure;
-            continue;
-        }
-        trials.back()["rms"] = trial.loss;
-        if (trial.heldOut) trials.back()["held_out_rms"] = *trial.heldOut;
-    }
-    return trials;
 }
 
 std::string outcomeOf(const PartTrial& trial) {

@@ -3,8 +3,6 @@
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit.h>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <functional>
 #include <optional>
 #include <string>
@@ -53,8 +51,6 @@ struct PartOptions {
 PartSearch chooseParts(const FitSamples& samples, const FitOptions& fit,
                        const PartOptions& options = {});
 
-/// The steps of a search, in the form of docs/schemas/fit.schema.json.
-nlohmann::ordered_json trialsJson(const PartSearch& search);
 /// "held out 0.0274, taken", the loss where it fell too little for that, or the failure.
 std::string outcomeOf(const PartTrial& trial);
 

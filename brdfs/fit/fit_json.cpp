@@ -74,13 +74,10 @@ Json fitPreset(const FitReport& report) {
     const FitOptions& options = report.options;
     const FitSamples& samples = *report.samples;
     const Masked& masked = samples.masked;
-    std::string_view loss;
-    for (const Loss& row : losses())
-        if (row.kind == options.loss) loss = row.name;
     Json fit = {
         {"data", report.data},
         {"model", result.model},
-        {"loss", loss},
+        {"loss", lossName(options.loss)},
         {"robust", robustName(options.robust)},
         {"weights", weightsOf(samples)},
         {"samples", result.samples},
@@ -124,6 +121,20 @@ Json fitPreset(const FitReport& report) {
     preset["generator"] = fmt::format("hshfit {}", version);
     preset["fit"] = std::move(fit);
     return preset;
+}
+
+Json trialsJson(const PartSearch& search) {
+    Json trials = Json::array();
+    for (const PartTrial& trial : search.trials) {
+        trials.push_back({{"parts", trial.parts}, {"taken", trial.taken}});
+        if (!trial.failure.empty()) {
+            trials.back()["failure"] = trial.failure;
+            continue;
+        }
+        trials.back()["rms"] = trial.loss;
+        if (trial.heldOut) trials.back()["held_out_rms"] = *trial.heldOut;
+    }
+    return trials;
 }
 
 }  // namespace hshfit::brdfs

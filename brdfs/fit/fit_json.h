@@ -1,5 +1,6 @@
 #pragma once
 
+#include <brdfs/fit/choose_parts.h>
 #include <brdfs/fit/fit.h>
 
 #include <nlohmann/json_fwd.hpp>
@@ -22,5 +23,8 @@ struct FitReport {
 /// {"format": "hshfit-preset", …, "fit": {…}}: opened as a preset by every command. The same for
 /// the same input, whatever the number of threads: without time.
 nlohmann::ordered_json fitPreset(const FitReport& report);
+
+/// The steps of a search for parts, in the form of the same schema.
+nlohmann::ordered_json trialsJson(const PartSearch& search);
 
 }  // namespace hshfit::brdfs

@@ -136,7 +136,8 @@ public:
         return eliminated(variables(start), options);
     }
 
-    /// What `from` minimises; `linear` receives what elimination finds, and has to outlive it.
+    /// The sum that `from` minimises; `linear` receives eliminated parameters and has to outlive
+    /// it.
     SumOfSquares equations(std::vector<double>& linear) const {
         return linear_ ? eliminatedEquations(linear) : jointEquations();
     }
@@ -251,6 +252,47 @@ std::vector<Minimum> distinct(const std::vector<Minimum>& minima, std::size_t mo
     return chosen;
 }
 
+/// The way of a search from few samples to all: at once; with second derivatives from the few; or
+/// by a number of samples in between.
+enum class Route { direct, byPart, byTwoParts };
+
+Route routeOf(const FitSamples& samples) {
+    if (samples.size() > manySamples) return Route::byTwoParts;
+    // Of measured samples and cells, fits keep the minima that they had in earlier versions.
+    const bool nodes = samples.origin == SampleOrigin::nodes && samples.size() > 4 * coarseCount;
+    return samples.fewer || nodes ? Route::byPart : Route::direct;
+}
+
+MinimiseOptions partOf(MinimiseOptions options, const FitSamples& samples) {
+    options.costTolerance = samples.fewer ? 1e-7 : 1e-9;
+    options.stepTolerance = 1e-8;
+    return options;
+}
+
+/// Follows starts on few samples to their minima, which those samples rank to some per cent.
+void rank(const FitProblem& small, bool linear, const MinimiseOptions& options, double difference,
+          std::vector<Minimum>& starts) {
+    for (Minimum& start : starts) start = refined(small, linear, start, options);
+    std::ranges::stable_sort(starts, byCost);
+    const double most = 1.05 * starts.front().cost;
+    std::erase_if(starts, [&](const Minimum& start) { return start.cost > most; });
+    starts = distinct(starts, starts.size(), difference);
+}
+
+/// Goes on from a minimum on fewer samples; to the end only if the cost is below `most` after the
+/// first iterations.
+Minimum raced(const FitProblem& fewer, const FitProblem& all, bool linear, const Minimum& start,
+              const MinimiseOptions& last, double most) {
+    MinimiseOptions heat = last;
+    heat.iterations = std::min(heatIterations, last.iterations);
+    Minimum minimum = onMore(fewer, all, linear, start, heat);
+    if (minimum.converged || minimum.cost >= most || heat.iterations == last.iterations)
+        return minimum;
+    MinimiseOptions rest = last;
+    rest.iterations -= heat.iterations;
+    return onMore(fewer, all, linear, minimum, rest);
+}
+
 double medianSize(std::vector<double> residuals) {
     for (double& r : residuals) r = std::abs(r);
     const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
@@ -289,45 +331,27 @@ Fitted searchMinimum(FitProblem& problem, const FitOptions& options) {
     const FitProblem small(coarse, problem.sum(), options.loss);
     const std::vector<Minimum> minima = coarseMinima(few ? problem : small, linear, options);
     const Search search(problem, linear);
-    const bool curvature = !options.brief;
-    const MinimiseOptions last{.iterations = options.iterations, .curvature = curvature},
-        part{.iterations = options.iterations,
-             .costTolerance = samples.fewer ? 1e-7 : 1e-9,
-             .stepTolerance = 1e-8,
-             .curvature = curvature};
-    Fitted best;
-    int iterations = 0, evaluations = 0;
-    const bool many = samples.size() > manySamples;
+    const MinimiseOptions last{.iterations = options.iterations, .curvature = !options.brief};
+    const Route route = routeOf(samples);
+    const bool many = route == Route::byTwoParts;
     const FitSamples middle = samples.drawn(many ? middleCount : 1, options.seed);
     const FitProblem between(middle, problem.sum(), options.loss);
     const double difference = samples.fewer ? undecidedOfPixels : undecided;
     std::vector<Minimum> starts = distinct(minima, many || options.brief ? 1 : 3, difference);
-    if (many || samples.fewer) {
-        for (Minimum& start : starts) start = refined(small, linear, start, part);
-        std::ranges::stable_sort(starts, byCost);
-        // Fewer samples rank minima to some per cent.
-        const double most = 1.05 * starts.front().cost;
-        std::erase_if(starts, [&](const Minimum& start) { return start.cost > most; });
-        starts = distinct(starts, starts.size(), difference);
-    }
+    if (route != Route::direct) rank(small, linear, partOf(last, samples), difference, starts);
+    Fitted best;
+    int iterations = 0, evaluations = 0;
     for (const Minimum& start : starts) {
-        const auto onAll = [&](const Minimum& from, const MinimiseOptions& how) {
-            return samples.fewer ? onMore(small, problem, linear, from, how)
-                                 : refined(problem, linear, from, how);
-        };
         Minimum minimum;
-        if (many) {
+        if (many)
+            minimum = onMore(between, problem, linear,
+                             onMore(small, between, linear, start, partOf(last, samples)), last);
+        else if (route == Route::direct)
+            minimum = refined(problem, linear, start, last);
+        else
             minimum =
-                onMore(between, problem, linear, onMore(small, between, linear, start, part), last);
-        } else if (samples.fewer && !best.minimum.x.empty()) {
-            MinimiseOptions heat = last;
-            heat.iterations = std::min(heatIterations, last.iterations);
-            minimum = onAll(start, heat);
-            if (!minimum.converged && minimum.cost < (1 + difference) * best.minimum.cost)
-                minimum = onAll(minimum, last);
-        } else {
-            minimum = onAll(start, last);
-        }
+                raced(small, problem, linear, start, last,
+                      (1 + difference) * (best.minimum.x.empty() ? 1e300 : best.minimum.cost));
         iterations += minimum.iterations, evaluations += minimum.evaluations;
         if (best.minimum.x.empty() || byCost(minimum, best.minimum))
             best.minimum = std::move(minimum);

@@ -207,8 +207,9 @@ private:
                                ? fmt::format(", probability ${}$", bareNumber(*own->probability, 3))
                                : ", probability below $10^{-300}$";
         } else {
-            fitness = fmt::format("root mean square residual ${}$ by the loss {}",
-                                  bareNumber(result_.loss, 4), latexText(lossName()));
+            fitness =
+                fmt::format("root mean square residual ${}$ by the loss {}",
+                            bareNumber(result_.loss, 4), latexText(lossName(report_.options.loss)));
         }
         std::string text =
             fmt::format("\\par\\smallskip {}; $N = {}$ samples, {} values; {}",
@@ -217,12 +218,6 @@ private:
             text +=
                 fmt::format("; standard uncertainties of the data: {}", latexText(report_.sigma));
         return text + fmt::format("; data: {}.\n", latexText(report_.data));
-    }
-
-    std::string lossName() const {
-        for (const Loss& loss : losses())
-            if (loss.kind == report_.options.loss) return std::string(loss.name);
-        return {};
     }
 
     const FitReport& report_;

@@ -59,6 +59,10 @@ const Loss& findLoss(std::string_view name) {
     throw spelling::unknown("loss", name, spelling::namesOf(table));
 }
 
+std::string_view lossName(Loss::Kind kind) {
+    return std::ranges::find(table, kind, &Loss::kind)->name;
+}
+
 Mapped mapValue(Loss::Kind kind, double f, double cosine) {
     if (kind == Loss::Kind::l2) return {f, 1};
     if (kind == Loss::Kind::cosine) return {f * cosine, cosine};

@@ -20,6 +20,7 @@ struct Loss {
 std::span<const Loss> losses();
 /// Throws UsageError that names the known ones.
 const Loss& findLoss(std::string_view name);
+std::string_view lossName(Loss::Kind kind);
 
 /// g and its derivative by f, for f cut at 0 if g is not linear.
 struct Mapped {

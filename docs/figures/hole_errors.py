@@ -2,8 +2,8 @@
 """Prints the errors of fills in docs/conversion.md: docs/figures/hole_errors.py PROGRAM TABLE
 
 PROGRAM is build/hshfit, TABLE a full table in MERL's layout. Cells of it are marked as not
-measured: a blind spot of 3 degrees about retroreflection, then all beyond an arm's 80 and 70 degrees. Those
-that `convert --repair holes` fills are compared with the table.
+measured: a blind spot of 3 degrees about retroreflection, then all beyond an arm's 80 and 70
+degrees. Those that `convert --repair holes` fills are compared with the table.
 """
 import pathlib
 import subprocess

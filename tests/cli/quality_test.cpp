@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <filesystem>
 
 namespace hshfit::test {
 namespace {
@@ -197,6 +198,20 @@ TEST_F(Quality, AFitThatExplainsLittleIsCalledPoor) {
         << poor["poor"];
     EXPECT_GT(answerOf(job + "lambert+ggx", false)["fit"]["explained"], 0.999);
     EXPECT_GT(answerOf(job + "ggx", false)["fit"]["explained"], 0.999);
+}
+
+// A clearcoat of any height is the same in pictures, whose peaks are white.
+TEST_F(Quality, AFitWithLargePeaksThatItsLossHardlySeesIsCalledPoor) {
+    const std::string data = sharedFolder() + "/data/merl_slices/alum-bronze.slice";
+    if (!std::filesystem::exists(data)) GTEST_SKIP() << "no " << data;
+    const std::string job = "fit " + data + " --model gltf-pbr";
+    const Json poor = answerOf(job, true);
+    EXPECT_TRUE(keepsSchema(poor.dump(), "fit"));
+    EXPECT_GT(poor["fit"]["explained"], 0.9);
+    EXPECT_GT(poor["fit"]["relative_error"], 1);
+    const Json better = betterThan(poor);
+    EXPECT_EQ(better["fit"]["loss"], "cosine");
+    EXPECT_LT(better["fit"]["relative_error"], 1);
 }
 
 TEST_F(Quality, AConversionThatLosesMoreThanAPerCentSaysSo) {

@@ -1,0 +1,134 @@
+// The choice of a model's optional parts, and the brief searches that it is made by.
+
+#include <brdfs/catalog.h>
+#include <brdfs/fit/choose_parts.h>
+#include <brdfs/fit/minimise.h>
+#include <brdfs/random_draws.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace hshfit::brdfs {
+namespace {
+
+FitSamples samplesOf(const std::string& spec, double noise) {
+    FitSamples samples = gatherSamples(*open(spec), {}).drawn(2000, 1);
+    std::mt19937_64 random(5);
+    for (double& value : samples.values) value *= std::exp(noise * test::normal(random));
+    return samples;
+}
+
+FitOptions optionsOf(const std::string& model) {
+    return {.model = model, .loss = Loss::Kind::log};
+}
+
+TEST(ChooseParts, TakesThePartThatIsThereAndNoOther) {
+    const PartSearch search =
+        chooseParts(samplesOf("gltf-pbr:baseColorFactor=.6/.3/.1,roughnessFactor=.5,"
+                              "clearcoatFactor=.8,clearcoatRoughnessFactor=.15",
+                              0.02),
+                    optionsOf("gltf-pbr"));
+    EXPECT_EQ(search.parts, std::vector<std::string>{"clearcoat"});
+    const double least = 1 - PartOptions{}.leastGain;
+    // By their number of parts: the fit that those with one part more started at.
+    std::vector<const PartTrial*> taken;
+    for (const PartTrial& trial : search.trials)
+        if (trial.taken) taken.push_back(&trial);
+    ASSERT_EQ(taken.size(), 2u);
+    for (const PartTrial& trial : search.trials) {
+        EXPECT_TRUE(trial.failure.empty()) << trial.failure;
+        if (trial.parts.empty()) continue;
+        const PartTrial& before = *taken[trial.parts.size() - 1];
+        // A wider model fits no worse, up to where a brief search ends.
+        EXPECT_LT(trial.loss, 1.001 * before.loss);
+        if (trial.heldOut) {
+            EXPECT_LE(trial.loss, least * before.loss);
+            EXPECT_EQ(trial.taken, *trial.heldOut <= least * *before.heldOut);
+        }
+    }
+}
+
+TEST(ChooseParts, TakesNoneWhereThereIsNone) {
+    const PartSearch search = chooseParts(
+        samplesOf("gltf-pbr:baseColorFactor=.6/.3/.1,roughnessFactor=.5,metallicFactor=.3", 0.02),
+        optionsOf("gltf-pbr"));
+    EXPECT_TRUE(search.parts.empty());
+    for (std::size_t k = 1; k < search.trials.size(); ++k) {
+        EXPECT_FALSE(search.trials[k].heldOut);  // no gain to be checked
+        EXPECT_EQ(outcomeOf(search.trials[k]).find("rms "), 0u);
+    }
+}
+
+// Unknown values of a start are those of the searches.
+TEST(GivenStart, MayBeOfSomeShapes) {
+    const FitSamples samples =
+        samplesOf("lambert:kd=.2+ggx:alpha=.1,ks=.4,F0=1+ggx:alpha=.5,ks=.5,F0=1", 0);
+    FitOptions options = optionsOf("lambert+ggx:F0=1+ggx:F0=1");
+    options.from = {0.1, std::numeric_limits<double>::quiet_NaN()};
+    std::size_t searches = 0;
+    options.progress = [&](std::size_t, std::size_t total) { searches = total - 1; };
+    options.starts = 4;
+    const FitResult result = fit(samples, options);
+    EXPECT_EQ(searches, 4u);
+    EXPECT_LT(result.loss, 1e-6);
+}
+
+TEST(BriefFit, HasNearlyTheLeastLoss) {
+    const FitSamples samples = samplesOf("cook-torrance:m=.3,kd=.1/.2/.3,ks=.5", 0.1);
+    for (const std::string model : {"lambert+ggx", "lambert+gtr", "disney"}) {
+        FitOptions options = optionsOf(model);
+        const FitResult whole = fit(samples, options);
+        options.brief = true;
+        const FitResult brief = fit(samples, options);
+        EXPECT_LT(brief.loss, 1.002 * whole.loss) << model;
+        EXPECT_LE(brief.evaluations, whole.evaluations) << model;
+    }
+}
+
+/// y = a exp(b t) through values that it does not fit: the part that Gauss-Newton's matrix lacks is
+/// as large as the matrix.
+class Exponential {
+public:
+    explicit Exponential(std::size_t every) : every_(every) {}
+    Equations operator()(std::span<const double> x, bool) const {
+        ++calls;
+        Equations sum{0, std::vector<double>(2), std::vector<double>(4), {}};
+        for (std::size_t k = 0; k < 400; k += every_) {
+            const double t = static_cast<double>(k) / 400, grown = std::exp(x[1] * t);
+            const double residual = x[0] * grown - (2 + 6 * std::sin(9 * t));
+            const double slopes[] = {grown, x[0] * t * grown};
+            const double share = static_cast<double>(every_);
+            sum.cost += share * residual * residual / 2;
+            for (std::size_t i = 0; i < 2; ++i) {
+                sum.gradient[i] += share * slopes[i] * residual;
+                for (std::size_t j = 0; j < 2; ++j)
+                    sum.hessian[2 * i + j] += share * slopes[i] * slopes[j];
+            }
+        }
+        return sum;
+    }
+    mutable std::size_t calls = 0;
+
+private:
+    std::size_t every_;
+};
+
+TEST(Minimise, SecondDerivativesOfFewerSamplesLeadToTheSameMinimum) {
+    const std::vector<double> start{1, 1}, lower{-50, -50}, upper{50, 50};
+    const Exponential all(1), some(5);
+    const Minimum plain = minimise(std::cref(all), start, lower, upper);
+    all.calls = 0;
+    const SumOfSquares fewer = std::cref(some);
+    const Minimum found = minimise(std::cref(all), start, lower, upper, {.fewer = &fewer});
+    EXPECT_TRUE(plain.converged && found.converged);
+    EXPECT_LT(all.calls, some.calls);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(found.x[i], plain.x[i], 1e-5);
+}
+
+}  // namespace
+}  // namespace hshfit::brdfs
