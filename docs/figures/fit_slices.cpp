@@ -27,10 +27,6 @@ struct Row {
     Duel duel;
 };
 
-std::string_view lossName(Loss::Kind kind) {
-    return std::ranges::find(losses(), kind, &Loss::kind)->name;
-}
-
 std::vector<std::string> materialsIn(const std::string& folder, const std::string& part) {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder))
