@@ -15,11 +15,13 @@ namespace hshfit::inline material_maps {
 /// Numbers of a band on their way to another process.
 using BandBytes = std::vector<std::byte>;
 
+/// The bytes of trivially copyable values, in their order.
 template <class T>
 BandBytes bandBytes(const std::vector<T>& values) {
     const auto bytes = std::as_bytes(std::span(values));
     return {bytes.begin(), bytes.end()};
 }
+/// The values whose bytes `bandBytes` gave; bytes of an incomplete value at the end are left out.
 template <class T>
 std::vector<T> bandValues(std::span<const std::byte> bytes) {
     std::vector<T> values(bytes.size() / sizeof(T));

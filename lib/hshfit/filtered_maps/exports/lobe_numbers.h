@@ -18,6 +18,7 @@ struct LobeNumbers {
     std::size_t nodes() const { return rows * columns; }
 };
 
+/// The numbers of the lobes that the sidecar of a map states.
 LobeNumbers lobeNumbers(const FilteredSidecar& map);
 
 }  // namespace hshfit::inline filtered_maps::inline exports
