@@ -21,8 +21,7 @@ public:
         if (map_.sidecar().form != "halfway") return;
         throw UsageError(
             fmt::format("{}: the form halfway of maps has no shader; its materials are "
-                        "exported one by one, "
-                        "as {} is, or the map in another form, as clusters",
+                        "exported one by one, as {} is, or the map in another form, as clusters",
                         path, materialOf(map_.sidecar())));
     }
 
@@ -86,10 +85,7 @@ public:
           wrap_(wrap),
           lobes_(map_.sidecar().model, map_.sidecar().nodes),
           text_(lobeText(lobes_, path)) {
-        const FilteredSidecar& s = map_.sidecar();
-        if (s.terms.size() == lobes_.lobeTerms().size()) return;
-        throw InputError(fmt::format("{}: states {} terms; the lobe of {} has {}", path,
-                                     s.terms.size(), s.model, lobes_.lobeTerms().size()));
+        lobes_.checkTerms(map_.sidecar().terms.size(), path);
     }
 
     Facts facts() const override {

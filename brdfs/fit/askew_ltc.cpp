@@ -1,10 +1,11 @@
 #include <brdfs/fit/askew_ltc.h>
 
+#include <hshfit/error.h>
+
 #include <ceres/ceres.h>
 #include <Eigen/LU>
 
 #include <array>
-#include <cassert>
 #include <cmath>
 
 namespace hshfit::brdfs {
@@ -101,7 +102,8 @@ double cubedError(const LobeSamples& samples, const AskewLtc& w) {
 
 AskewLtc inStandardForm(const AskewLtc& w) {
     const double across = std::hypot(w[0][1], w[1][1]);
-    assert(across > 0);
+    if (!(across > 0))
+        throw NumericError("the matrix of a transformed cosine takes y to z, and has no such form");
     const double c = w[1][1] / across, s = w[0][1] / across;
     AskewLtc form;
     for (std::size_t k = 0; k < 3; ++k) {

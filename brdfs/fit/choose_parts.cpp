@@ -47,7 +47,7 @@ bool isFree(const Model& model, const ModelPart& part, const Parameters& stated,
     });
 }
 
-struct Fitted {
+struct TriedParts {
     PartTrial trial = {};
     FitOptions options = {};
     FitResult result = {};
@@ -61,8 +61,8 @@ public:
         : samples_(samples), fit_(fit), options_(options), most_(most) {}
 
     /// To all samples. `before`: a fit with fewer parts, of which the shapes start where it ended.
-    Fitted fitted(std::vector<std::string> parts, const Fitted* before) {
-        Fitted own;
+    TriedParts fitted(std::vector<std::string> parts, const TriedParts* before) {
+        TriedParts own;
         own.trial.parts = std::move(parts);
         own.options = fit_;
         own.options.model = withParts(fit_.model, own.trial.parts);
@@ -83,7 +83,7 @@ public:
         return own;
     }
 
-    void holdOut(Fitted& own) const {
+    void holdOut(TriedParts& own) const {
         if (!own.trial.failure.empty()) return;
         try {
             own.trial.heldOut = heldOutLoss(samples_, own.result, own.options);
@@ -94,7 +94,7 @@ public:
 
 private:
     /// Values of the shapes by which models with and without a part are told, NaN for new ones.
-    std::vector<double> startOf(const FitOptions& own, const Fitted& before) const {
+    std::vector<double> startOf(const FitOptions& own, const TriedParts& before) const {
         const std::vector<double> known = shapesOf(before.result, before.options, samples_);
         if (known.empty()) return {};
         const ParametricSum sum(own.model, samples_.isotropic),
@@ -154,22 +154,22 @@ PartSearch chooseParts(const FitSamples& all, const FitOptions& fit, const PartO
         if (isFree(*model, part, stated, samples.isotropic)) open.emplace_back(part.name);
     Trials trials(samples, fit, options, 1 + open.size() * (open.size() + 1) / 2);
     PartSearch search;
-    Fitted current = trials.fitted({}, nullptr);
+    TriedParts current = trials.fitted({}, nullptr);
     trials.holdOut(current);
     current.trial.taken = true;
     search.trials.push_back(current.trial);
     while (current.trial.failure.empty() && !open.empty()) {
-        std::vector<Fitted> wider;
+        std::vector<TriedParts> wider;
         for (const std::string& name : open) {
             std::vector<std::string> parts = search.parts;
             parts.push_back(name);
             wider.push_back(trials.fitted(std::move(parts), &current));
         }
-        std::ranges::stable_sort(wider, {}, [](const Fitted& own) {
+        std::ranges::stable_sort(wider, {}, [](const TriedParts& own) {
             return std::pair(!own.trial.failure.empty(), own.trial.loss);
         });
         const double least = 1 - options.leastGain;
-        const auto taken = std::ranges::find_if(wider, [&](Fitted& own) {
+        const auto taken = std::ranges::find_if(wider, [&](TriedParts& own) {
             if (!own.trial.failure.empty() || own.trial.loss > least * current.trial.loss)
                 return false;
             trials.holdOut(own);
@@ -177,7 +177,7 @@ PartSearch chooseParts(const FitSamples& all, const FitOptions& fit, const PartO
                 own.trial.heldOut && *own.trial.heldOut <= least * *current.trial.heldOut;
             return own.trial.taken;
         });
-        for (const Fitted& own : wider) search.trials.push_back(own.trial);
+        for (const TriedParts& own : wider) search.trials.push_back(own.trial);
         if (taken == wider.end()) break;
         current = std::move(*taken);
         search.parts = current.trial.parts;

@@ -341,14 +341,13 @@ void describe(const DispersedProblem& problem, const Minimum& found, const FitOp
     const WeightedRows rows =
         options.uncertainty.report || byScan ? problem.weightedRows(found.x) : WeightedRows{};
     std::vector<double> degrees;
-    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(at(n));
     if (byScan) {
         const double square = problem.normalisation() * problem.normalisation();
         const std::vector<ScanSums> sums = sumsOfScans(rows, samples.scans, n);
         const Matrix spread = scanSpread(sums, unscaled, model.parameterCount()) / square;
         degrees = scanDegrees(sums, unscaled, report.slopes);
-        result.point.freedom.push_back(
-            {0, std::make_shared<const VarianceFreedom>(sums, unscaled, ones)});
+        result.point.freedom.push_back({0, std::make_shared<const VarianceFreedom>(
+                                               sums, unscaled, Eigen::VectorXd::Ones(at(n)))});
         equations.spread.assign(spread.data(), spread.data() + spread.size());
         covariance = covarianceOf(equations, fixed);
     }

@@ -78,11 +78,11 @@ void describe(const FitProblem& problem, const std::vector<double>& x, const Fit
     equations.spread = problem.joint(x, true, inverse).spread;
     Covariance covariance = covarianceOf(equations, fixed);
     const Covariance sandwich = covariance;
+    part.freedom = freedomAt(problem, x, inverse, slope);
     if (!problem.samples().scans.empty()) {
-        equations.spread = spreadOfScans(problem, x, inverse);
+        equations.spread = spreadOfScans(problem, *part.freedom);
         covariance = covarianceOf(equations, fixed);
     }
-    part.freedom = freedomAt(problem, x, inverse, slope);
     part.covariance = covariance.whole;
     for (std::size_t i = 0; i < x.size(); ++i)
         for (std::size_t j = 0; j < x.size(); ++j)
@@ -104,7 +104,8 @@ void describe(const FitProblem& problem, const std::vector<double>& x, const Fit
                     : fmt::format("{} {}", parameters[i].name, parameters[i].channel));
     }
     if (!options.uncertainty.report) return;
-    const StudiedMinimum minimum{problem, x, equations, fixed, slope, covariance, sandwich};
+    const StudiedMinimum minimum{problem, x,          equations, fixed,
+                                 slope,   covariance, sandwich,  part.freedom.get()};
     part.result.uncertainty = studied(minimum);
     if (options.uncertainty.bootstrap > 0)
         addBootstrap(minimum, options.uncertainty, options.seed, *part.result.uncertainty);

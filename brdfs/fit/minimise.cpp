@@ -95,8 +95,6 @@ SumOfSquares always(const SumOfSquares& equations) {
 }
 
 constexpr int gaussNewtonIterations = 10;
-/// Of the cost, with a known matrix: what is left falls by a factor of hundreds with each step.
-constexpr double knownTolerance = 1e-10;
 /// Relative fall of the cost, and largest component of the gradient in units of the root of its
 /// curvature and of the cost, in which a search counts as settled.
 constexpr double settledTolerance = 1e-7, settledPull = 1e-3;
@@ -104,6 +102,9 @@ constexpr double settledTolerance = 1e-7, settledPull = 1e-3;
 /// valleys of SGD 2 takes 0.6 of the time that 1 does; with more, OpenPBR without noise ends in a
 /// minimum at a bound.
 constexpr int renewal = 2;
+/// The same where they come from fewer samples, near whose minimum a search starts: made at every
+/// point, or every other, they save no iterations that are worth their price.
+constexpr int renewalOfFewer = 4;
 
 /// Equations whose matrix is that of the second derivatives: differences of the gradient, with
 /// eigenvalues made positive. The part of it that Gauss-Newton's matrix lacks changes slowly along
@@ -262,19 +263,6 @@ Minimum minimise(const SumOfSquares& equations, std::vector<double> start,
     for (std::size_t i = 0; i < result.x.size(); ++i)
         result.x[i] = std::clamp(result.x[i], lower[i], upper[i]);
     int left = options.iterations;
-    if (!options.matrix.empty()) {
-        const SumOfSquares withMatrix = [&](std::span<const double> x, bool) {
-            Equations at = equations(x, true);
-            at.hessian.assign(options.matrix.begin(), options.matrix.end());
-            return at;
-        };
-        const int known = std::min(left, gaussNewtonIterations);
-        MinimiseOptions fast = options;
-        fast.costTolerance = std::max(options.costTolerance, knownTolerance);
-        solve(withMatrix, lower, upper, fast, known, result);
-        left -= known;
-        if (result.converged || left == 0) return result;
-    }
     const bool known = options.curvature && options.fewer;
     if (!known) {
         const int first = options.curvature ? std::min(left, gaussNewtonIterations) : left;
@@ -283,19 +271,13 @@ Minimum minimise(const SumOfSquares& equations, std::vector<double> start,
         if (result.converged || left == 0) return result;
     }
     // Large residuals: what Gauss-Newton leaves out of the matrix rules its (linear) convergence.
-    const Newton newton(equations, options.fewer, lower, upper, known ? 4 : renewal);
+    const Newton newton(equations, options.fewer, lower, upper, known ? renewalOfFewer : renewal);
     const SumOfSquares withCurvature = [&](std::span<const double> x, bool derivatives) {
         return newton.at(x, derivatives);
     };
     solve(withCurvature, lower, upper, options, left, result);
     result.evaluations += newton.evaluations();
     return result;
-}
-
-std::vector<double> secondDerivatives(const SumOfSquares& equations, std::span<const double> x,
-                                      std::span<const double> lower,
-                                      std::span<const double> upper) {
-    return Newton(equations, nullptr, lower, upper, 1).at(x, true).hessian;
 }
 
 }  // namespace hshfit::brdfs

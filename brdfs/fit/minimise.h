@@ -20,10 +20,6 @@ struct MinimiseOptions {
     /// the gradient: where residuals are large, Gauss-Newton's converges by the hundred. A cost
     /// that falls by less than 1e-7 of itself in ten iterations counts as converged then.
     bool curvature = true;
-    /// [n * n], the second derivatives of the same sum over a part of its samples, near its
-    /// minimum: they replace Gauss-Newton's matrix in the first ten iterations, of which a few
-    /// suffice then. Empty: none are known.
-    std::span<const double> matrix = {};
     /// The same sum over a part of its samples: what Gauss-Newton's matrix lacks is that of this
     /// one, from the first iteration on, for the price of fewer samples. Null: of all samples.
     const SumOfSquares* fewer = nullptr;
@@ -46,10 +42,5 @@ struct Minimum {
 Minimum minimise(const SumOfSquares& equations, std::vector<double> start,
                  std::span<const double> lower, std::span<const double> upper,
                  const MinimiseOptions& options = {});
-
-/// The matrix of second derivatives at x, for MinimiseOptions::matrix, made positive definite: by
-/// differences of the gradient, 2 n of them.
-std::vector<double> secondDerivatives(const SumOfSquares& equations, std::span<const double> x,
-                                      std::span<const double> lower, std::span<const double> upper);
 
 }  // namespace hshfit::brdfs

@@ -91,25 +91,13 @@ std::size_t scanCount(const FitSamples& samples) {
 
 }  // namespace
 
-std::vector<double> spreadOfScans(const FitProblem& problem, std::span<const double> x,
-                                  std::span<const double> inverse) {
-    const std::vector<std::size_t>& scans = problem.samples().scans;
-    const std::size_t n = x.size(), shapes = problem.shapeCount();
-    const WeightedRows rows = problem.weightedRows(x);
-    const DenseMatrix own = unscaledInverse(problem, inverse, n);
-    const double square = problem.normalisation() * problem.normalisation();
-    const DenseMatrix spread =
-        scanSpread(sumsOfScans(rows, scans, n, shapes), own, rows.columns) / square;
-    return {spread.data(), spread.data() + n * n};
-}
-
 std::shared_ptr<const VarianceFreedom> freedomAt(const FitProblem& problem,
                                                  std::span<const double> x,
                                                  std::span<const double> inverse,
                                                  const std::vector<double>& slope) {
     const FitSamples& samples = problem.samples();
     const bool byScan = !samples.scans.empty();
-    if (samples.sums || (!byScan && samples.size() * problem.channels() > mostValues)) return {};
+    if (!byScan && (samples.sums || samples.size() * problem.channels() > mostValues)) return {};
     const std::size_t n = x.size(), shapes = problem.shapeCount();
     const WeightedRows rows = problem.weightedRows(x);
     DenseMatrix own = unscaledInverse(problem, inverse, n);
@@ -119,6 +107,13 @@ std::shared_ptr<const VarianceFreedom> freedomAt(const FitProblem& problem,
                                                        std::move(slopes));
     return std::make_shared<const VarianceFreedom>(sumsOfScans(rows, samples.scans, n, shapes),
                                                    std::move(own), std::move(slopes));
+}
+
+std::vector<double> spreadOfScans(const FitProblem& problem, const VarianceFreedom& byScan) {
+    const std::size_t ofChannel = problem.shapeCount() + problem.sum().linears().size();
+    const double square = problem.normalisation() * problem.normalisation();
+    const DenseMatrix spread = byScan.spread(ofChannel) / square;
+    return {spread.data(), spread.data() + spread.size()};
 }
 
 Uncertainty influences(const StudiedValues& values) {
@@ -189,9 +184,7 @@ Uncertainty studied(const StudiedMinimum& minimum) {
                                      .stated = !problem.samples().sigmas.empty(),
                                      .scans = scanCount(problem.samples())});
     std::vector<double> degrees;
-    if (result.scans > 0)
-        degrees = scanDegrees(sumsOfScans(rows, problem.samples().scans, n, shapes), inverse,
-                              DenseMatrix::Identity(at(n), at(n)));
+    if (result.scans > 0) degrees = minimum.freedom->degrees(DenseMatrix::Identity(at(n), at(n)));
     addErrors({inverse.data(), n * n}, minimum.slope, minimum.stated, minimum.sandwich, degrees,
               result);
     return result;

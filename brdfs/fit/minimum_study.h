@@ -25,20 +25,21 @@ struct StudiedMinimum {
     const std::vector<double>& slope;  ///< of the parameters' values by x
     const Covariance& stated;          ///< negative variance: no errors
     const Covariance& sandwich;        ///< samples independent
+    const VarianceFreedom* freedom;    ///< by scan where the samples have scans
 };
 
-/// Equations::spread with scans in place of samples: sum over scans of g g^T, g the gradient of a
-/// scan as it would be if the scan had not been fitted (CR3: Bell & McCaffrey 2002, Survey
-/// Methodology 28(2)), times (S - 1) / S for S scans. `inverse` as inverseOf gives it.
-/// Throws NumericError for fewer scans than parameters that act on one channel.
-std::vector<double> spreadOfScans(const FitProblem& problem, std::span<const double> x,
-                                  std::span<const double> inverse);
-
 /// The degrees of freedom of variances at x, by scan or by value; null: FittedPoint::freedom.
+/// `inverse` as inverseOf gives it.
 std::shared_ptr<const VarianceFreedom> freedomAt(const FitProblem& problem,
                                                  std::span<const double> x,
                                                  std::span<const double> inverse,
                                                  const std::vector<double>& slope);
+
+/// Equations::spread with scans in place of samples: sum over scans of g g^T, g the gradient of a
+/// scan as it would be if the scan had not been fitted (CR3: Bell & McCaffrey 2002, Survey
+/// Methodology 28(2)), times (S - 1) / S for S scans. Throws NumericError for fewer scans than
+/// parameters that act on one channel.
+std::vector<double> spreadOfScans(const FitProblem& problem, const VarianceFreedom& byScan);
 
 /// The values of a fit at its minimum.
 struct StudiedValues {

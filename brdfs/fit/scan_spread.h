@@ -42,6 +42,10 @@ public:
         : rows_(std::move(rows)), inverse_(std::move(inverse)), slope_(std::move(slope)) {}
 
     Eigen::Index count() const { return slope_.size(); }
+    /// scanSpread of the scans.
+    Eigen::MatrixXd spread(std::size_t parameters) const {
+        return scanSpread(scans_, inverse_, parameters);
+    }
     /// Of combinations of the coefficients, the rows of `of`; 0 where the variance is 0.
     std::vector<double> degrees(const Eigen::MatrixXd& of) const;
 

@@ -100,6 +100,12 @@ const FacetLobe& FacetLobes::at(const LobePlace& place) const {
     return *lobes_.try_emplace(place, std::move(lobe)).first->second;
 }
 
+void FacetLobes::checkTerms(std::size_t stated, const std::string& file) const {
+    if (stated != lobeTerms_.size())
+        throw InputError(fmt::format("{}: states {} terms; the lobe of {} has {}", file, stated,
+                                     model_, lobeTerms_.size()));
+}
+
 std::shared_ptr<const LobeTable> FacetLobes::table(int order) const {
     const auto count = [&](std::size_t k) {
         return k < nodes_.size() ? nodes_[k].values.size() : std::size_t{1};

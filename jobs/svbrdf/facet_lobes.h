@@ -42,6 +42,8 @@ public:
     /// Terms of the lobe, and the smooth one that is not constant; -1: none.
     const std::vector<std::size_t>& lobeTerms() const { return lobeTerms_; }
     int smoothTerm() const { return smoothTerm_; }
+    /// Throws InputError, which names the file, if a sidecar states another number of terms.
+    void checkTerms(std::size_t stated, const std::string& file) const;
 
     std::shared_ptr<const LobeTable> table(int order) const;
     /// D at the nodes, for shaders.

@@ -26,11 +26,7 @@ public:
           numbers_(map.numbers(level, column, row)),
           layout_(map.sidecar().layout) {
         const FilteredSidecar& sidecar = map.sidecar();
-        if (sidecar.terms.size() != lobes_.lobeTerms().size()) {
-            throw InputError(fmt::format("{}: states {} terms; the lobe of {} has {}", map.file(),
-                                         sidecar.terms.size(), sidecar.model,
-                                         lobes_.lobeTerms().size()));
-        }
+        lobes_.checkTerms(sidecar.terms.size(), map.file());
         surface_ = lobes_.surface(sidecar.terms, channels_.count(), layout_.albedos);
         const bool harmonics = level > 0 && sidecar.form == "harmonics";
         use_ = {harmonics ? MipForm::harmonics : MipForm::ellipse};
