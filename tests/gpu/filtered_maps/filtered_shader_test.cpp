@@ -20,7 +20,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iostream>
 #include <random>
 
@@ -193,14 +192,8 @@ double tolerance() {
     return std::getenv("HSHFIT_TEST_GPU") != nullptr ? 2e-2 : 1e-3;
 }
 
-using Run = std::function<std::vector<float>(const ShaderJob&, const std::string&)>;
-
 void prove(Language language, Run runner = {}) {
-    if (!runner) {
-        runner = [language](const auto& job, const auto& source) {
-            return run(language, job, source);
-        };
-    }
+    if (!runner) runner = runnerOf(language);
     for (const Proof& proof : proofs()) {
         // The stub of OSL's `texture` knows one mode beyond the edge.
         if (language == Language::osl && proof.sample.wrap == Wrap::repeat) continue;
@@ -254,10 +247,7 @@ TEST(FilteredShader, FaultsShow) {
         {"if (level <= 0.0)", "if (level <= 0.5)"},
     };
     for (const auto& [right, wrong] : faults) {
-        std::string broken = snippet;
-        const std::size_t at = broken.find(right);
-        ASSERT_NE(at, std::string::npos) << right;
-        broken.replace(at, right.size(), wrong);
+        const std::string broken = withFault(snippet, right, wrong);
         try {
             const auto found =
                 run(Language::metal, proof.job, wrapped(Language::metal, proof.job, broken));

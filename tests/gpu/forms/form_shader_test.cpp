@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iostream>
 #include <memory>
 
@@ -67,8 +66,6 @@ double relativeDifference(const std::vector<double>& expected, const std::vector
     return worst;
 }
 
-using Run = std::function<std::vector<float>(const ShaderJob&, const std::string&)>;
-
 bool takes(Language language, const gpu::FormPayload& payload, Storage storage) {
     const bool integers = storage == Storage::texture && isNormalised(payload.texels.number);
     if (language != Language::osl) return true;
@@ -76,11 +73,7 @@ bool takes(Language language, const gpu::FormPayload& payload, Storage storage) 
 }
 
 void prove(Language language, const std::vector<FormSample>& samples, Run runner = {}) {
-    if (!runner) {
-        runner = [language](const auto& job, const auto& source) {
-            return run(language, job, source);
-        };
-    }
+    if (!runner) runner = runnerOf(language);
     std::size_t index = static_cast<std::size_t>(language);
     for (const FormSample& sample : samples) {
         gpu::FormPayload payload = gpu::packForm(sample.form);

@@ -14,7 +14,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <iostream>
 #include <map>
 #include <random>
@@ -142,8 +141,6 @@ const std::vector<Proof>& proofs(bool world) {
     return all;
 }
 
-using Run = std::function<std::vector<float>(const ShaderJob&, const std::string&)>;
-
 /// Of the largest value. A lookup is placed to W 2^-25 per axis and a few 2^-24 between levels,
 /// and neighbouring texels of noise differ by twice the largest value.
 double toleranceOf(const SampleMap& sample) {
@@ -152,11 +149,7 @@ double toleranceOf(const SampleMap& sample) {
 }
 
 void prove(Language language, Run runner = {}, bool world = false) {
-    if (!runner) {
-        runner = [language](const auto& job, const auto& source) {
-            return run(language, job, source);
-        };
-    }
+    if (!runner) runner = runnerOf(language);
     for (const Proof& proof : proofs(world)) {
         // The stub of OSL's `texture` knows one mode beyond the edge.
         if (language == Language::osl && proof.sample.wrap == Wrap::repeat) continue;
@@ -225,10 +218,7 @@ TEST(MapShader, FaultsShow) {
         {"min(floor(nodeX)", "min(floor(nodeX + 0.5f)"},
     };
     for (const auto& [right, wrong] : faults) {
-        std::string broken = snippet;
-        const std::size_t at = broken.find(right);
-        ASSERT_NE(at, std::string::npos) << right;
-        broken.replace(at, right.size(), wrong);
+        const std::string broken = withFault(snippet, right, wrong);
         try {
             const auto found =
                 run(Language::metal, proof.job, wrapped(Language::metal, proof.job, broken));

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iostream>
 #include <vector>
 
@@ -24,8 +23,6 @@ const std::vector<SampleCase>& cases() {
     static const std::vector<SampleCase> all = sampleCases();
     return all;
 }
-
-using Run = std::function<std::vector<float>(const ShaderJob&, const std::string&)>;
 
 /// Runners of compute shaders take all jobs at once.
 std::vector<std::vector<float>> runAll(const std::vector<ShaderJob>& jobs,
@@ -151,11 +148,7 @@ void checkElevation(const SampleCase& one, const ShaderJob& job, const std::vect
 
 void prove(Language language, Run runner = {}) {
     const bool together = language != Language::glslEs;
-    if (!runner) {
-        runner = [language](const auto& job, const auto& source) {
-            return run(language, job, source);
-        };
-    }
+    if (!runner) runner = runnerOf(language);
     for (const SampleCase& one : cases()) {
         SCOPED_TRACE(one.name);
         const std::vector<ShaderJob> jobs = sampleJobs(one);

@@ -5,6 +5,7 @@
 #include <hshfit/gpu/vulkan/compute.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -48,8 +49,16 @@ std::vector<float> runStub(const ShaderJob& job, const std::string& source);
 /// The default runner of each language: Vulkan; OpenGL ES for GLSL ES; C++ for Metal and OSL.
 std::vector<float> run(gpu::Language language, const ShaderJob& job, const std::string& source);
 
+/// A runner of one language.
+using Run = std::function<std::vector<float>(const ShaderJob&, const std::string& source)>;
+/// The default one.
+Run runnerOf(gpu::Language language);
+
 /// The snippet with a main around it that evaluates every pair (tests/gpu/shaders/wrappers).
 std::string wrapped(gpu::Language language, const ShaderJob& job, const std::string& snippet);
+
+/// A snippet with a fault: `wrong` in place of the first `right`, which has to be there.
+std::string withFault(std::string snippet, const std::string& right, const std::string& wrong);
 
 /// SPIR-V by glslangValidator (GLSL, HLSL) or naga (WGSL), checked by spirv-val. Throws Refused.
 std::vector<std::uint32_t> toSpirv(gpu::Language language, const std::string& source);

@@ -5,14 +5,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <functional>
 
 namespace hshfit::shaders {
 namespace {
 
 using gpu::Language;
-
-using Run = std::function<std::vector<float>(const ShaderJob&, const std::string&)>;
 
 /// A way to check a language; the name is that of its tests.
 struct Way {
@@ -26,10 +23,7 @@ std::vector<Way> ways() {
     for (const gpu::LanguageEntry& entry : gpu::languages()) {
         std::string name(entry.name);
         std::erase_if(name, [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); });
-        result.push_back({std::move(name), entry.language,
-                          [language = entry.language](const auto& job, const auto& source) {
-                              return run(language, job, source);
-                          }});
+        result.push_back({std::move(name), entry.language, runnerOf(entry.language)});
     }
     result.push_back({"glslOnOpenGl", Language::glsl, runOpenGl});
     return result;
@@ -39,18 +33,11 @@ ShaderJob job() {
     return makeJob(std::move(variants().front().payload), 3);
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    const std::size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    if (at != std::string::npos) text.replace(at, from.size(), to);
-    return text;
-}
-
 std::string source(const Way& way, const ShaderJob& job, const std::string& from,
                    const std::string& to) {
     const std::string snippet =
         gpu::shaderSource(way.language, job.payload, {.environmentOrder = job.environment.order});
-    return wrapped(way.language, job, replaced(snippet, from, to));
+    return wrapped(way.language, job, withFault(snippet, from, to));
 }
 
 /// Each way is a test of its own, so that one with a missing tool is skipped with a message.

@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <functional>
 #include <iostream>
 
 namespace hshfit::shaders {
@@ -30,14 +29,8 @@ std::string snippetOf(Language language, const ShaderJob& job) {
     return gpu::shaderSource(language, job.payload, {.environmentOrder = job.environment.order});
 }
 
-using Run = std::function<std::vector<float>(const ShaderJob&, const std::string&)>;
-
 void prove(Language language, Run runner = {}) {
-    if (!runner) {
-        runner = [language](const auto& job, const auto& source) {
-            return run(language, job, source);
-        };
-    }
+    if (!runner) runner = runnerOf(language);
     for (Variant& variant : variants()) {
         // Payloads that OSL does not take.
         if (language == Language::osl &&

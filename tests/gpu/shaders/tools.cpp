@@ -231,6 +231,18 @@ std::vector<float> run(gpu::Language language, const ShaderJob& job, const std::
     }
 }
 
+Run runnerOf(gpu::Language language) {
+    return [language](const ShaderJob& job, const std::string& source) {
+        return run(language, job, source);
+    };
+}
+
+std::string withFault(std::string snippet, const std::string& right, const std::string& wrong) {
+    const std::size_t at = snippet.find(right);
+    if (at == std::string::npos) throw std::invalid_argument("no '" + right + "' in the snippet");
+    return snippet.replace(at, right.size(), wrong);
+}
+
 std::vector<std::uint32_t> toSpirv(gpu::Language language, const std::string& source) {
     need("spirv-val", "spirv-tools");
     const Folder folder;
