@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <filesystem>
 
 namespace hshfit::jobs {
 namespace {
@@ -46,6 +47,11 @@ std::vector<DirectionPair> bandPairs(const std::string& text) {
                                  directionFromAngles(radians(std::abs(out)), out > 0 ? pi : 0)});
         return pairs;
     }
+    if (!std::filesystem::exists(text))
+        throw InputError(
+            fmt::format("{} '{}': no such file; expected a CSV of pairs or "
+                        "plane:T[/T...], such as plane:30/60",
+                        Setting{"FitOptions::bands"}, text));
     readPairs(text, [&](const PairRow& row) {
         if (!(row.wi.z > 0 && row.wo.z > 0))
             throw InputError(fmt::format(

@@ -23,8 +23,8 @@ const Model* modelWithParts(std::string_view spec);
 struct PartTrial {
     std::vector<std::string> parts;  ///< in the model
     double loss = 0;                 ///< FitResult::loss
-    /// ModelRank::heldOut; none where the loss itself falls by less than `leastGain`, which it does
-    /// not beyond the samples that were fitted either.
+    /// ModelRank::heldOut. None where it was not measured: the loss itself falls by less than
+    /// `leastGain`, or a part that lowers it more was taken.
     std::optional<double> heldOut = {};
     bool taken = false;        ///< the search went on from here
     std::string failure = {};  ///< why there is no fit

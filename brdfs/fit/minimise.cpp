@@ -102,8 +102,8 @@ constexpr double settledTolerance = 1e-7, settledPull = 1e-3;
 /// valleys of SGD 2 takes 0.6 of the time that 1 does; with more, OpenPBR without noise ends in a
 /// minimum at a bound.
 constexpr int renewal = 2;
-/// The same where they come from fewer samples, near whose minimum a search starts: made at every
-/// point, or every other, they save no iterations that are worth their price.
+/// The same where they come from fewer samples: made more often, they cost more time than they
+/// save.
 constexpr int renewalOfFewer = 4;
 
 /// Equations whose matrix is that of the second derivatives: differences of the gradient, with

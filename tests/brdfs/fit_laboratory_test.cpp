@@ -222,6 +222,7 @@ TEST_F(Laboratory, WrongBandsAreOneLineAndLeaveNothing) {
     refused("--bands " + path("below.csv") + to, 3, "pair 2");
     refused("--bands " + path("none.csv") + to, 3, "no pair");
     refused("--bands " + path("absent.csv") + to, 3, "absent.csv");
+    refused("--bands plan:30" + to, 3, "--bands 'plan:30': no such file; expected a CSV");
 }
 
 TEST_F(Laboratory, EverySampleOfASpectralFileIsInTheAnswer) {

@@ -16,6 +16,20 @@ protected:
     void project(const std::string& spec, const std::string& file, const std::string& options) {
         ASSERT_EQ(run("project " + spec + " -o " + path(file) + " " + options).code, 0);
     }
+    /// Exports NAME.json with all models of lighting, under uniform light of radiance 2. The
+    /// answer, and the sidecar as `written`.
+    Json exported(const std::string& name, const std::string& options, Json& written) {
+        const Answer answer = run("export " + path(name + ".json") + " -o " + path("out") +
+                                  " --lighting all --target glsl,hlsl,wgsl,glsl-es --light "
+                                  "uniform:radiance=2 --json " +
+                                  options);
+        EXPECT_EQ(answer.code, 0) << answer.err;
+        EXPECT_TRUE(keepsSchema(answer.out, "lighting"));
+        const std::string sidecar = read(path("out/" + name + ".lighting.json"));
+        EXPECT_TRUE(keepsSchema(sidecar, "lighting"));
+        written = Json::parse(sidecar);
+        return Json::parse(answer.out);
+    }
     /// The number at a place of a file.
     std::uint32_t word(const std::string& bytes, std::size_t offset) const {
         std::uint32_t value = 0;
@@ -26,18 +40,11 @@ protected:
 
 TEST_F(Lighting, TablesLightAndShadersOfAFormAreWrittenWithTheirErrors) {
     project("lambert:kd=.5", "grey.json", "--order 2 --outgoing 8");
-    const Answer answer = run("export " + path("grey.json") + " -o " + path("out") +
-                              " --lighting all --target glsl,hlsl,wgsl,glsl-es --light "
-                              "uniform:radiance=2 --json");
-    ASSERT_EQ(answer.code, 0) << answer.err;
-    EXPECT_TRUE(keepsSchema(answer.out, "lighting"));
-    const std::string sidecar = read(path("out/grey.lighting.json"));
-    EXPECT_TRUE(keepsSchema(sidecar, "lighting"));
-    const Json document = Json::parse(answer.out);
+    Json written;
+    const Json document = exported("grey", "", written);
     for (const Json& file : document["files"])
         EXPECT_TRUE(fs::exists(path("out/" + file.get<std::string>()))) << file;
     // Under uniform light of radiance 2, albedo 0.5 reflects 1 everywhere.
-    const Json written = Json::parse(sidecar);
     ASSERT_EQ(written["tests"].size(), 64u);
     for (const Json& test : written["tests"])
         for (const char* model : {"coefficients", "split-sum", "ltc"})
@@ -66,14 +73,8 @@ TEST_F(Lighting, TablesLightAndShadersOfAFormAreWrittenWithTheirErrors) {
 
 TEST_F(Lighting, BrushedMaterialsHaveTablesByAzimuth) {
     project("ward:ax=.5,ay=.9", "ward.json", "--order 4 --outgoing 8x8");
-    const Answer answer = run("export " + path("ward.json") + " -o " + path("out") +
-                              " --lighting all --target glsl,hlsl,wgsl,glsl-es --light "
-                              "uniform:radiance=2 --no-error --json");
-    ASSERT_EQ(answer.code, 0) << answer.err;
-    EXPECT_TRUE(keepsSchema(answer.out, "lighting"));
-    const std::string sidecar = read(path("out/ward.lighting.json"));
-    EXPECT_TRUE(keepsSchema(sidecar, "lighting"));
-    const Json written = Json::parse(sidecar);
+    Json written;
+    exported("ward", "--no-error", written);
     EXPECT_EQ(written["rows"]["azimuths"], 9);
     // Mirror-symmetric: harmonics of m < 0, and matrices outside the plane of incidence.
     const std::size_t widths[] = {25, 3, 4};
