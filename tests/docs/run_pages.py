@@ -12,7 +12,8 @@ and that its commands of ./run and of hshfit, its scripts and its folders exist.
 Prints each breach as page:line and ends with 1 if there is one.
 
 run_pages.py --script PAGE: prints the blocks that are run, as one script for bash, to run them on
-another machine, where the program is installed.
+another machine, where the program is installed. With the language of other blocks, as in
+`run_pages.py --script docs/library.md cmake`, prints these.
 """
 import os
 import re
@@ -43,10 +44,11 @@ def is_unrun(text):
     return re.match(r"#+ Not run", text)
 
 
-def script(page):
-    """The blocks of a page that are run."""
-    return "\n".join(["set -euo pipefail"] + [text for _, kind, text in blocks(page)
-                                              if kind == "sh" and not is_unrun(text)])
+def script(page, language="sh"):
+    """The blocks of a page in a language; those in sh that are run."""
+    return "\n".join(["set -euo pipefail"] * (language == "sh") +
+                     [text for _, kind, text in blocks(page)
+                      if kind == language and not is_unrun(text)])
 
 
 def answer(program, *words):
@@ -112,9 +114,9 @@ def run_page(program, page):
 
 def main():
     if len(sys.argv) < 3:
-        sys.exit("usage: run_pages.py PROGRAM PAGE…, or run_pages.py --script PAGE")
+        sys.exit("usage: run_pages.py PROGRAM PAGE…, or run_pages.py --script PAGE [LANGUAGE]")
     if sys.argv[1] == "--script":
-        print(script(Path(sys.argv[2])))
+        print(script(Path(sys.argv[2]), *sys.argv[3:]))
         return 0
     program = Path(sys.argv[1]).resolve()
     found = [breach for name in sys.argv[2:] for breach in run_page(program, Path(name))]
