@@ -18,6 +18,8 @@ fail() {
     echo "installed: $1" >&2
     exit 1
 }
+# block LANGUAGE: the blocks of docs/library.md in a language.
+block() { "$source/tests/docs/run_pages.py" --script "$source/docs/library.md" "$1"; }
 # makeProject NAME FOLDER OPTION…: configures and builds an outside project in $work/NAME.
 makeProject() {
     name=$1
@@ -36,6 +38,30 @@ install)
     mkdir -p "$work"
     cmake --install "$build" --prefix "$work/first" >"$work/log"
     mv "$work/first" "$prefix"
+    ;;
+# After `./run demo` the target hshfit is built and nothing else: a folder with the files of this
+# target, those of the configuration and the scripts of the installation installs all but Python's.
+demo)
+    demo=$work/demo
+    rm -rf "$demo" "$work/of_demo"
+    mkdir -p "$demo"
+    cd "$build"
+    {
+        ninja -t inputs hshfit | grep -v '^/' | grep -v '\.o$'
+        find hshfit cli/share package lib/include CMakeFiles/Export -type f
+    } | while read -r file; do
+        [ ! -f "$file" ] || cp -l --parents "$file" "$demo"
+    done
+    find . -path ./installed -prune -o -name cmake_install.cmake -print | while read -r script; do
+        mkdir -p "$demo/$(dirname "$script")"
+        sed "s#$build/#$demo/#g" "$script" >"$demo/$script"
+    done
+    cmake --install "$demo" --prefix "$work/of_demo" >"$work/log"
+    # hshfit-mpi and the package for Python are other targets.
+    (cd "$prefix" && find . -type f ! -path '*/dist-packages/*' ! -path './bin/hshfit-mpi') | sort \
+        >"$work/list"
+    (cd "$work/of_demo" && find . -type f) | sort | diff "$work/list" - ||
+        fail "the installation after ./run demo differs from the whole one in the files above"
     ;;
 # Installed headers are the list of public ones and nothing else, and compile with warnings.
 headers)
@@ -81,6 +107,41 @@ examples)
         awk '{ exit !(($1 / (109 / (240 * 3.14159265358979)) - 1) ^ 2 < 1e-18 && $2 <= 1) }' ||
         fail "the energy of own_brdf.cpp differs from 109 / (240 pi)"
     ;;
+# The quick start from the text of docs/library.md, by the commands of that page.
+page)
+    rm -rf "$work/page"
+    mkdir "$work/page"
+    cd "$work/page"
+    block cpp >quick_start.cpp
+    block cmake >CMakeLists.txt
+    "$prefix"/bin/hshfit convert phong:kd=0.1,exponent=8 gold.bsdf --quiet
+    block sh | PREFIX=$prefix bash >log
+    tail -n 1 log | grep -qx '[01]\.[0-9]*'
+    "$prefix"/bin/hshfit info gold.json --quiet >log
+    ;;
+# The CMakeLists.txt of the page with another component alone, and every object of ours on its line:
+# none may miss a library. Together the components have all libraries.
+components)
+    components=$(sed -n 's/^set(hshfit_built \(.*\))/\1/p' "$prefix"/lib/cmake/hshfit/*Config.cmake)
+    rm -rf "$work/alone" "$work/linked"
+    for component in $(echo "$components" | tr ';' ' '); do
+        grep -q "^| \`$component\` | \`hshfit::$component\` |" "$source/docs/library.md" ||
+            fail "docs/library.md lacks the component $component"
+        mkdir -p "$work/alone/$component"
+        cd "$work/alone/$component"
+        block cmake | sed "s/brdfs/$component/" >CMakeLists.txt
+        echo 'int main() {}' >quick_start.cpp
+        cmake -G Ninja -B build -DCMAKE_PREFIX_PATH="$prefix" --log-level=WARNING
+        grep -o "$prefix/lib/libhshfit_[a-z_0-9]*\.a" build/build.ninja | sort -u >archives
+        cmake -B build --log-level=WARNING -DCMAKE_EXE_LINKER_FLAGS="-Wl,--whole-archive $(
+            tr '\n' ' ' <archives) -Wl,--no-whole-archive"
+        cmake --build build
+        cat archives >>"$work/linked"
+    done
+    find "$prefix/lib" -name 'libhshfit_*.a' | sort >"$work/list"
+    sort -u "$work/linked" | diff "$work/list" - ||
+        fail "no component has the libraries above"
+    ;;
 # A component looks for its own packages only, names a component that is not there, and refuses
 # another major version. Consumers get include folders, the standard and libraries, and no flag.
 outside)
@@ -104,8 +165,8 @@ outside)
     ! grep -q "$build\|$source" "$prefix"/lib/cmake/hshfit/*.cmake "$prefix"/lib/pkgconfig/*.pc ||
         fail "the package files name the build or source folder"
     ;;
-# Without CMake: the flags of pkg-config. Every object of ours is linked once, so that no library is
-# missing among the flags.
+# Without CMake: the flags of pkg-config. Every object of ours among the flags of each module is
+# linked by them alone, so that none misses a library.
 pkgconfig)
     cd "$work"
     export PKG_CONFIG_PATH="$prefix/lib/pkgconfig"
@@ -117,11 +178,13 @@ pkgconfig)
             $(pkg-config --cflags --libs hshfit-brdfs)
     }
     echo 'int main() {}' >whole.cpp
-    ours=$(pkg-config --libs hshfit hshfit-brdfs | tr ' ' '\n' | grep -E '^(-L|-lhshfit)')
-    # shellcheck disable=SC2046,SC2086  # lists of flags
-    c++ whole.cpp -o whole -Wl,--whole-archive $ours -Wl,--no-whole-archive \
-        $(pkg-config --libs hshfit hshfit-brdfs)
-    ./whole
+    for file in "$PKG_CONFIG_PATH"/*.pc; do
+        flags=$(pkg-config --libs "$(basename "$file" .pc)")
+        ours=$(echo "$flags" | tr ' ' '\n' | grep -E '^(-L|-lhshfit)')
+        # shellcheck disable=SC2086  # lists of flags
+        c++ whole.cpp -o whole -Wl,--whole-archive $ours -Wl,--no-whole-archive $flags
+        ./whole
+    done
     ./outside_by_flags | grep -qF "hshfit $(pkg-config --modversion hshfit):"
     ./quick_start_by_flags lambert by_flags.json | grep -qx '[01]\.[0-9]*'
     ;;
