@@ -5,7 +5,7 @@
 #define HWY_TARGET_INCLUDE "brdfs/lanes_cases.h"
 #include <brdfs/lanes/each_target.h>
 
-#include <brdfs/vector_targets.h>
+#include <vector_targets.h>
 
 #include <cmath>
 #include <limits>

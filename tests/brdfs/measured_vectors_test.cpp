@@ -5,7 +5,7 @@
 #include <brdfs/measured/rgl.h>
 #include <brdfs/measured_files.h>
 #include <brdfs/tensor_writer.h>
-#include <brdfs/vector_targets.h>
+#include <vector_targets.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // instruction set of the machine, over the grid of parameters and at random ones.
 
 #include <brdfs/models_grid.h>
-#include <brdfs/vector_targets.h>
+#include <vector_targets.h>
 
 #include <brdfs/analytic/term_brdf.h>
 #include <hshfit/error.h>

@@ -8,6 +8,8 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include <Imath/half.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -80,6 +82,13 @@ void mix(const Mixture& m, float* texel) {
     }
 }
 
+/// Where the processor has no instruction for it, Highway cuts halves off.
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_NEON
+constexpr bool halvesAreNearest = true;
+#else
+constexpr bool halvesAreNearest = false;
+#endif
+
 /// Floats of one texel as halves, with the largest magnitude and whether all are numbers.
 template <class D>
 std::size_t toHalves(D d, const float* from, std::size_t first, std::size_t count,
@@ -92,7 +101,11 @@ std::size_t toHalves(D d, const float* from, std::size_t first, std::size_t coun
         const auto value = hn::LoadU(d, from + first);
         largest = hn::Max(largest, hn::Abs(value));
         ordered = hn::And(ordered, hn::Eq(value, value));
-        hn::StoreU(hn::DemoteTo(half, value), half, reinterpret_cast<hwy::float16_t*>(to + first));
+        if constexpr (halvesAreNearest)
+            hn::StoreU(hn::DemoteTo(half, value), half,
+                       reinterpret_cast<hwy::float16_t*>(to + first));
+        else
+            for (std::size_t k = first; k < first + lanes; ++k) to[k] = Imath::half(from[k]).bits();
     }
     most = std::max(most, hn::GetLane(hn::MaxOfLanes(d, largest)));
     numbers = numbers && hn::AllTrue(d, ordered);
@@ -250,7 +263,7 @@ HWY_EXPORT(project);
 HWY_EXPORT(nearestOf);
 
 namespace {
-constexpr std::size_t slack = 16;
+constexpr std::size_t slack = 16;  // floats of the widest vector
 }
 
 TexelKernel::TexelKernel(const LobeGrid& table, const TexelLayout& layout, bool placesByChannel)
@@ -263,7 +276,8 @@ void TexelKernel::run(const TexelBlock& block, std::size_t first, std::size_t co
     const std::size_t places = placesByChannel_ ? channels : 1;
     const std::size_t shapesLength = lobes * shape + slack;
     std::vector<float> shapes(places * shapesLength), weights(lobes * channels);
-    std::vector<float> last(layout_.floats() + slack);
+    const std::size_t floats = layout_.floats();
+    std::vector<float> copy(floats + slack);
     float p[3];
     LobeGrid::Place place;
     const Mixture mixture{.shapes = shapes.data(),
@@ -285,11 +299,12 @@ void TexelKernel::run(const TexelBlock& block, std::size_t first, std::size_t co
             (table_.values().data(), table_.rowStride(), place, lobes * shape,
              shapes.data() + c * shapesLength);
         }
-        // Vectors write beyond a texel: into the next, or into a copy of the last.
-        float* to = t + 1 < count ? out + t * layout_.floats() : last.data();
-        HWY_DYNAMIC_DISPATCH(mix)(mixture, to);
+        // Vectors write beyond a texel: into those that come next, or into a copy near the end.
+        float* const to = out + t * floats;
+        const bool room = (count - t - 1) * floats >= slack;
+        HWY_DYNAMIC_DISPATCH(mix)(mixture, room ? to : copy.data());
+        if (!room) std::copy_n(copy.data(), floats, to);
     }
-    if (count > 0) std::copy_n(last.data(), layout_.floats(), out + (count - 1) * layout_.floats());
 }
 
 HalfRange toHalfLayers(const float* texels, std::size_t stride, std::size_t count,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <hshfit/vector_targets.h>
+
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
