@@ -1,6 +1,7 @@
 // The header of an MIT file, and the facts about its values.
 
 #include <brdfs/measured/gridded/mit.h>
+#include <hshfit/checked_product.h>
 #include <hshfit/error.h>
 
 #include <fmt/core.h>
@@ -24,6 +25,9 @@ Header headerOf(std::span<const unsigned char> bytes) {
     std::memcpy(header.data(), bytes.data(), sizeof header);
     return header;
 }
+
+static_assert(checkedProduct({MitLayout::mostBins, MitLayout::mostBins, MitLayout::mostBins,
+                              MitLayout::mostBins, 3 * sizeof(float)}));
 
 bool isBinCount(std::int32_t value) {
     return value >= 1 && value <= static_cast<std::int32_t>(MitLayout::mostBins);

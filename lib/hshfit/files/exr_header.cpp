@@ -1,4 +1,5 @@
 #include <hshfit/byte_cursor.h>
+#include <hshfit/checked_product.h>
 #include <hshfit/error.h>
 #include <hshfit/files/exr_header.h>
 #include <hshfit/files/printable.h>
@@ -135,9 +136,9 @@ private:
     }
 
     void checkInflation(const ExrHeader& header, std::size_t parts) const {
-        const std::uint64_t inflated =
-            std::uint64_t{header.width} * header.height * header.channels * sizeof(float) * parts;
-        if (inflated / maxInflation > bytes_.size()) {
+        const auto inflated =
+            checkedProduct({header.width, header.height, header.channels, sizeof(float), parts});
+        if (!inflated || *inflated / maxInflation > bytes_.size()) {
             fail(fmt::format("{} x {} pixels of {} channels cannot come out of {} bytes",
                              header.width, header.height, header.channels, bytes_.size()));
         }

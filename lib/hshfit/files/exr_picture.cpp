@@ -1,3 +1,4 @@
+#include <hshfit/checked_product.h>
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/exr_header.h>
@@ -87,7 +88,8 @@ void writeExrPicture(const ExrPicture& picture, ExrPixels pixels, AtomicFile& fi
 
 ExrPicture readExrPicture(std::string_view bytes, const std::string& file, std::size_t most) {
     const ExrHeader size = checkExrHeader(bytes, file, {.files = "pictures", .picture = true});
-    if (size.width * size.height > most / size.channels) {
+    const auto values = checkedProduct({size.width, size.height, size.channels});
+    if (!values || *values > most) {
         throw InputError(
             fmt::format("{}: {} x {} pixels of {} channels are too many; at most {} "
                         "values are read",

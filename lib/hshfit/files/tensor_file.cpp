@@ -1,4 +1,5 @@
 #include <hshfit/byte_cursor.h>
+#include <hshfit/checked_product.h>
 #include <hshfit/error.h>
 #include <hshfit/files/tensor_file.h>
 
@@ -68,16 +69,6 @@ private:
     std::size_t size_;
     const std::string& source_;
 };
-
-/// The product of the sizes; none if it overflows.
-bool multiply(std::span<const std::uint64_t> shape, std::uint64_t& product) {
-    product = 1;
-    bool overflow = false;
-    for (const std::uint64_t size : shape) {
-        overflow = __builtin_mul_overflow(product, size, &product) || overflow;
-    }
-    return !overflow;
-}
 
 TensorFile::Field takeField(Contents& contents, const std::string& source, std::uint32_t index) {
     const std::string label = fmt::format("the table of contents, field {}", index);
@@ -155,14 +146,14 @@ TensorFile::TensorFile(std::span<const unsigned char> bytes, std::string source)
     }
     for (Field& field : fields_) {
         if (!names.insert(field.name).second) fail(field, "a second field of that name");
-        std::uint64_t size = 0;
-        if (!multiply(field.shape, field.count) ||
-            __builtin_mul_overflow(field.count, bytesOf(field.type), &size) ||
-            size > bytes_.size() || field.offset > bytes_.size() - size) {
+        const auto count = checkedProduct(field.shape);
+        const auto size = count ? checkedProduct({*count, bytesOf(field.type)}) : std::nullopt;
+        if (!size || *size > bytes_.size() || field.offset > bytes_.size() - *size) {
             fail(field, fmt::format("{} values of type {} do not fit into the {} bytes of the file",
                                     shapeText(field.shape), typeName(field.type), bytes_.size()));
         }
-        if (size > 0 && field.offset < contents.position()) {
+        field.count = *count;
+        if (*size > 0 && field.offset < contents.position()) {
             fail(field, fmt::format("the data overlaps the table of contents, which ends at {}",
                                     contents.position()));
         }

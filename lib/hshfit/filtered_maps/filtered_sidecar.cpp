@@ -152,6 +152,7 @@ FilteredSidecar readFilteredSidecar(const std::string& file) {
     if (static_cast<std::size_t>(texture.integer("layers", 1, 1 << 24)) != s.layers())
         texture.fail(fmt::format("has to be {}", s.layers()), "layers");
     if (s.form == "harmonics") {
+        if (s.levels.size() < 2) texture.fail("has one level, which has no harmonics", "levels");
         const JsonFields harmonics = root.object("harmonics");
         s.harmonics = (folder / harmonics.word("file")).string();
         if (static_cast<std::size_t>(harmonics.integer("layers", 1, 1 << 24)) != s.harmonicLayers())

@@ -1,5 +1,6 @@
 #include <hshfit/material_maps/level_file.h>
 
+#include <hshfit/checked_product.h>
 #include <hshfit/error.h>
 #include <hshfit/material_maps/internal/async_writes.h>
 #include <hshfit/material_maps/internal/page_buffer.h>
@@ -27,6 +28,13 @@ bool isWholePages(std::span<const std::byte> bytes, std::size_t offset) {
 
 }  // namespace
 
+std::optional<std::uint64_t> levelBytes(const LevelSize& size, std::size_t layers,
+                                        gpu::Number number) {
+    const auto bytes =
+        checkedProduct({size.width, size.height, layers, 4, gpu::numberBytes(number)});
+    return bytes && *bytes >> 62 == 0 ? bytes : std::nullopt;
+}
+
 LevelFile::LevelFile(const std::string& path, gpu::Number number, std::size_t layers,
                      std::vector<LevelSize> sizes, const LevelFileOptions& options)
     : path_(path),
@@ -41,9 +49,14 @@ LevelFile::LevelFile(const std::string& path, gpu::Number number, std::size_t la
                          .pairs = options.pairs};
     std::size_t below = 0;  // bytes of the levels before level 0
     for (const LevelSize& size : sizes_) {
-        const std::size_t bytes = size.width * size.height * layers_ * texelBytes_;
-        image.levels.push_back({bytes, bytes});
-        below += bytes;
+        const auto bytes = levelBytes(size, layers_, number);
+        if (!bytes) {
+            throw OutputError(
+                fmt::format("{}: {} x {} texels in {} layers are more than a file holds", path_,
+                            size.width, size.height, layers_));
+        }
+        image.levels.push_back({*bytes, *bytes});
+        below += *bytes;
     }
     below -= image.levels.front().stored;
     image.pairs[paddingKey] = "";

@@ -5,9 +5,11 @@
 #include <hshfit/material_maps/texel_source.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +17,10 @@
 namespace hshfit::inline material_maps {
 
 class AsyncWrites;
+
+/// The bytes of a level. Nothing for 2^62 and more, so that all levels fit one file.
+std::optional<std::uint64_t> levelBytes(const LevelSize& size, std::size_t layers,
+                                        gpu::Number number);
 
 /// Settings of a LevelFile.
 struct LevelFileOptions {

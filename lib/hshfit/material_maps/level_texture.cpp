@@ -1,9 +1,11 @@
 #include <hshfit/material_maps/level_texture.h>
 
 #include <hshfit/error.h>
+#include <hshfit/material_maps/level_file.h>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace hshfit::inline material_maps {
@@ -18,6 +20,12 @@ std::uint64_t word(const MappedFile& file, std::size_t at, std::size_t bytes) {
     if (at + bytes > file.size()) throw InputError(fmt::format("{}: breaks off", file.path()));
     std::memcpy(&value, file.data() + at, bytes);  // little-endian, as this program needs
     return value;
+}
+
+/// Whether a level follows another one: half a side is rounded down, and at least 1.
+bool isHalf(const LevelSize& size, const LevelSize& before) {
+    const auto half = [](std::size_t side) { return std::max<std::size_t>(side / 2, 1); };
+    return before != LevelSize{1, 1} && size == LevelSize{half(before.width), half(before.height)};
 }
 
 }  // namespace
@@ -45,16 +53,26 @@ LevelTexture::LevelTexture(const std::string& path, std::vector<LevelSize> level
     require(44, 0, "supercompressionScheme");
     for (std::size_t level = 0; level < levels_.size(); ++level) {
         const LevelSize& size = levels_[level];
-        const std::size_t bytes =
-            size.width * size.height * layers_ * 4 * gpu::numberBytes(number_);
+        if (level > 0 && !isHalf(size, levels_[level - 1])) {
+            throw InputError(
+                fmt::format("{}: level {} of {} x {} texels is not half of the one before", sidecar,
+                            level, size.width, size.height));
+        }
+        const auto bytes = levelBytes(size, layers_, number_);
+        if (!bytes) {
+            throw InputError(
+                fmt::format("{}: {} x {} texels in {} layers are more than a file holds", sidecar,
+                            size.width, size.height, layers_));
+        }
         const std::uint64_t offset = word(texture_, levelIndex + level * indexEntry, 8);
         const std::uint64_t length = word(texture_, levelIndex + level * indexEntry + 8, 8);
-        if (length != bytes || offset > texture_.size() || length > texture_.size() - offset) {
+        if (length != *bytes || offset > texture_.size() || length > texture_.size() - offset) {
             throw InputError(fmt::format("{}: level {} has {} bytes at {} of {}; {} are wanted",
                                          texture_.path(), level, length, offset, texture_.size(),
-                                         bytes));
+                                         *bytes));
         }
         offsets_.push_back(offset);
+        lengths_.push_back(length);
     }
 }
 
@@ -63,9 +81,7 @@ std::span<const std::byte> LevelTexture::file() const {
 }
 
 std::span<const std::byte> LevelTexture::level(std::size_t level) const {
-    const LevelSize& size = levels_.at(level);
-    return file().subspan(offsets_[level],
-                          size.width * size.height * layers_ * 4 * gpu::numberBytes(number_));
+    return file().subspan(offsets_.at(level), lengths_[level]);
 }
 
 std::vector<double> LevelTexture::numbers(std::size_t level, std::size_t column,

@@ -14,8 +14,8 @@ namespace hshfit::inline material_maps {
 /// A written LevelFile, of which single texels are read.
 class LevelTexture {
 public:
-    /// Throws InputError for a file whose head says something else than these sizes, which
-    /// `sidecar` states.
+    /// Throws InputError for sizes, which `sidecar` states, that are not halves of each other, and
+    /// for a file whose head says something else.
     LevelTexture(const std::string& path, std::vector<LevelSize> levels, std::size_t layers,
                  gpu::Number number, const std::string& sidecar);
 
@@ -36,7 +36,7 @@ private:
     std::vector<LevelSize> levels_;
     std::size_t layers_;
     gpu::Number number_;
-    std::vector<std::size_t> offsets_;  ///< of levels
+    std::vector<std::size_t> offsets_, lengths_;  ///< of levels, in bytes
 };
 
 }  // namespace hshfit::inline material_maps

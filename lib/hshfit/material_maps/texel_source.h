@@ -31,6 +31,7 @@ public:
 /// Sizes of the levels of a map: halves as long as both sides are even or 1.
 struct LevelSize {
     std::size_t width = 1, height = 1;
+    bool operator==(const LevelSize&) const = default;
 };
 std::vector<LevelSize> levelSizes(std::size_t width, std::size_t height, bool mips = true);
 

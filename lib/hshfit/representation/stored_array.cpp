@@ -1,6 +1,7 @@
 #include <hshfit/representation/stored_array.h>
 
 #include <hshfit/byte_cursor.h>
+#include <hshfit/checked_product.h>
 #include <hshfit/error.h>
 #include <hshfit/spelling.h>
 
@@ -236,15 +237,12 @@ void unpackInto(StoredArray& array, std::span<const std::byte> bytes, bool maske
     const Row& row = rowOf(array.precision);
     // The bytes of the smallest file of this shape: nothing is allocated for more than there is.
     const std::size_t room = bytes.size() * (masked ? 8 : 1);
-    const bool none = array.shape.empty() || std::ranges::count(array.shape, 0U) > 0;
-    std::size_t count = none ? 0 : 1;
-    for (std::size_t length : array.shape) {
-        if (length > 0 && count > room / length) {
-            throw InputError(fmt::format("{}: {} bytes cannot hold an array of this shape", where,
-                                         bytes.size()));
-        }
-        count *= length;
+    const auto product = array.shape.empty() ? 0 : checkedProduct(array.shape);
+    if (!product || *product > room) {
+        throw InputError(
+            fmt::format("{}: {} bytes cannot hold an array of this shape", where, bytes.size()));
     }
+    const std::size_t count = *product;
     array.values.assign(count, 0);
     if (masked) array.kept.assign(count, false);
     const std::size_t head = overhead(array);

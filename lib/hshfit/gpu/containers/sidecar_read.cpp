@@ -1,6 +1,7 @@
 #include <hshfit/gpu/containers/sidecar.h>
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/checked_product.h>
 #include <hshfit/coefficient_files/coefficient_formats.h>
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
@@ -19,6 +20,8 @@ using Fields = JsonFields;
 constexpr int maxDepth = 8;
 constexpr int maxSide = 1 << 14;   // the limit of OutgoingSet
 constexpr double maxCount = 9e15;  // integers that a double holds
+
+static_assert(checkedProduct({maxSide, maxSide, maxLayers, 4 * sizeof(float)}));
 
 /// The head, checked as in coefficient files, and against the size of the texels.
 CoefficientHead readHeadOf(const Texels& texels, const Fields& root, const std::string& file) {
