@@ -4,6 +4,7 @@
 #include "source.h"
 
 #include <hshfit/files/atomic_file.h>
+#include <hshfit/stop_request.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -98,10 +99,10 @@ private:
 void evaluateArrays(const Brdf& brdf, const VectorArray& wi, const VectorArray& wo,
                     std::size_t count, double* out, const EvalOptions& options) {
     const std::size_t channels = brdf.channels().count();
-    constexpr std::size_t grain = 32 * UnitVectors::most;  // some 0.2 ms for the cheapest models
     const auto work = [&](const tbb::blocked_range<std::size_t>& range) {
         PairBlock block(brdf);
         UnitVectors in, from;
+        stopIfRequested();
         for (std::size_t k = range.begin(); k < range.end(); k += UnitVectors::most) {
             const std::size_t some = std::min(UnitVectors::most, range.end() - k);
             double* const values = out + k * channels;
@@ -112,7 +113,7 @@ void evaluateArrays(const Brdf& brdf, const VectorArray& wi, const VectorArray& 
                 values[j] *= in.z[j / channels];
         }
     };
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), work,
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, pairsAtOnce), work,
                       tbb::simple_partitioner());
 }
 

@@ -5,6 +5,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
+#include <hshfit/stop_request.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -62,12 +63,14 @@ void draw(const Brdf& brdf, const MixtureSampler& sampler, const SampleOptions& 
     UniformNumbers numbers(options.seed);
     const auto start = std::chrono::steady_clock::now();
     for (std::size_t k = 0; k < options.count; ++k) {
+        stopIfRequested();
         const Sample s = sampler.sample(options.outgoing, numbers.next());
         result.drawn.push_back({s.wi, s.pdf, {}});
     }
     if (options.count > 0)
         result.nanosecondsPerSample = secondsOf(start) * 1e9 / static_cast<double>(options.count);
     for (DrawnDirection& one : result.drawn) {
+        stopIfRequested();
         one.weights = evaluate(brdf, one.wi, options.outgoing);
         for (double& weight : one.weights) weight *= one.wi.z / one.pdf;
     }

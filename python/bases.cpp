@@ -1,13 +1,16 @@
 #include "arrays.h"
+#include "watched.h"
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
+#include <hshfit/stop_request.h>
 
 #include <jobs/plot.h>
 #include <jobs/rotate.h>
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -26,8 +29,18 @@ py::array_t<double> valuesOf(const Basis& basis, const py::object& directions) {
     shape.push_back(basis.slots());
     py::array_t<double> values(shape);
     double* to = values.mutable_data();
-    const py::gil_scoped_release released;
-    basis.evaluate(columns.batch(), to);
+    // A whole number of lanes, some 0.1 s at the highest orders.
+    constexpr std::size_t some = 64;
+    watched(py::none(), {}, [&](const jobs::Listener&) {
+        DirectionBatch batch = columns.batch();
+        const auto slots = static_cast<std::size_t>(basis.slots());
+        for (std::size_t first = 0; first < vectors.count; first += some, to += some * slots) {
+            stopIfRequested();
+            basis.evaluate({batch.x + first, batch.y + first, batch.z + first,
+                            std::min(some, vectors.count - first)},
+                           to);
+        }
+    });
     return values;
 }
 
@@ -62,14 +75,13 @@ py::dict plotted(const std::string& basis, const py::object& path, int order,
     requireWithin("order", order, jobs::bounds::plotOrder);
     const std::string output = pathOf(path, "path");
     jobs::Plotted done;
-    {
-        const py::gil_scoped_release released;
+    watched(py::none(), {}, [&](const jobs::Listener&) {
         done = jobs::plot(
             basis, output,
             {.order = order,
              .domain = domain == "sphere" ? FigureDomain::sphere : FigureDomain::hemisphere,
              .condonShortley = condonShortley});
-    }
+    });
     py::dict out;
     out["basis"] = done.basis;
     out["order"] = done.order;
@@ -87,6 +99,7 @@ void bindBases(py::module_& module) {
 Slot l(l+1)+m has the function of degree l and order m; see catalog("bases") for names, formulas'
 sources and the largest orders. Throws UsageError for others.)")
         .def(py::init([](const std::string& name, int order, bool condonShortley) {
+                 const py::gil_scoped_release released;
                  return bases::make(name, order, {.condonShortley = condonShortley});
              }),
              py::arg("name"), py::arg("order"), py::kw_only(), py::arg("condon_shortley") = false)

@@ -90,10 +90,14 @@ py::array_t<double> evaluated(const py::object& self, const py::object& wi, cons
     py::array_t<double> values(shape);
     double* to = values.mutable_data();
     Source* const sources[] = {&source};
-    unwatched(sources, [&, &in = in, &out = out] {
+    const auto work = [&, &in = in, &out = out] {
         jobs::evaluateArrays(source.brdf(), in.data, out.data, in.count, to, {.cosine = cosine});
         source.brdf().checkIntact();
-    });
+    };
+    if (in.count > jobs::pairsAtOnce)
+        watched(py::none(), sources, [&](const jobs::Listener&) { work(); });
+    else
+        unwatched(sources, work);
     return values;
 }
 

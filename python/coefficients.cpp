@@ -1,6 +1,7 @@
 #include "answers.h"
 #include "arrays.h"
 #include "rotation.h"
+#include "watched.h"
 
 #include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/coefficient_files/representation_file.h>
@@ -57,10 +58,7 @@ std::pair<std::shared_ptr<Coefficients>, py::dict> rotated(const Coefficients& c
     const jobs::RotateOptions options = rotateOptions(rotation, method, tolerance, tables);
     auto turned = std::make_shared<Coefficients>(c);
     jobs::Rotated done;
-    {
-        const py::gil_scoped_release released;
-        done = jobs::rotate(*turned, options);
-    }
+    watched(py::none(), {}, [&](const jobs::Listener&) { done = jobs::rotate(*turned, options); });
     return {turned, rotatedDict(done)};
 }
 
@@ -150,6 +148,7 @@ void bindPlain(py::module_& module) {
         .def(
             "brdf",
             [](const Coefficients& c) -> std::shared_ptr<Brdf> {
+                const py::gil_scoped_release released;
                 return std::make_shared<Reconstruction>(c);
             },
             "The reconstruction as a Brdf; values ring and may be negative.")
@@ -206,6 +205,7 @@ an option of forms, and by read().)");
         .def(
             "decoded",
             [](const Representation& form) {
+                const py::gil_scoped_release released;
                 return std::make_shared<Coefficients>(decoded(form));
             },
             "Plain coefficients of the kind \"outgoing\", without what is added.")

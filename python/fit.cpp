@@ -44,6 +44,7 @@ py::array_t<double> covarianceOf(const jobs::Fitted& fitted) {
 }
 
 std::shared_ptr<Brdf> brdfOf(const jobs::Fitted& fitted) {
+    const py::gil_scoped_release released;
     return brdfs::openFit(fitted.result);
 }
 
@@ -77,11 +78,10 @@ py::dict predicted(const jobs::Fitted& fitted, const py::object& wi, const py::o
     Shape shape = in.shape;
     brdfs::Prediction found;
     double simultaneous = 0;
-    {
-        const py::gil_scoped_release released;
+    watched(py::none(), {}, [&](const jobs::Listener&) {
         found = brdfs::predict(fitted.result, pairs);
         simultaneous = brdfs::simultaneousFactor(fitted.result, pairs, probability, seed);
-    }
+    });
     shape.push_back(static_cast<py::ssize_t>(found.channels));
     const auto byPair = [&](const std::vector<double>& values) {
         std::vector<double> turned(values.size());

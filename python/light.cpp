@@ -101,10 +101,9 @@ std::pair<std::shared_ptr<Lit>, py::dict> rotated(const Lit& lit, const Rotation
     const jobs::RotateOptions options = rotateOptions(rotation, method, tolerance, tables);
     auto turned = std::make_shared<Lit>(Lit{.light = lit.light});
     jobs::Rotated done;
-    {
-        const py::gil_scoped_release released;
+    watched(py::none(), {}, [&](const jobs::Listener&) {
         done = jobs::rotate(turned->light, options, lit.light.source);
-    }
+    });
     return {turned, rotatedDict(done)};
 }
 

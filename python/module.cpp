@@ -7,6 +7,7 @@
 
 #include <brdfs/fit/solver_log.h>
 
+#include <pybind11/numpy.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
@@ -38,6 +39,9 @@ PYBIND11_MODULE(_hshfit, module) {
     using namespace hshfit::python;
     namespace py = pybind11;
     hshfit::setWording(pythonWording());
+    // pybind11 loads NumPy at the first array, once, under a lock of C++: a thread that waits for
+    // this lock holds that of the interpreter, which loading needs. So it is done here.
+    py::array_t<double>(0);
     // Results of fits have the reasons of searches that fail; the log of Ceres says no more.
     hshfit::brdfs::takeSolverLog([](const std::string&) {});
     module.doc() = "The compiled part of hshfit; import hshfit instead.";

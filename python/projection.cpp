@@ -135,19 +135,20 @@ py::dict projectedAll(const py::object& brdf, const py::object& names, int order
     }
     const std::string set = outgoingText(outgoing);
     Source source(brdf, rgb);
-    std::vector<Projection> found;
+    std::vector<jobs::Projected> found;
     Source* const sources[] = {&source};
     watched(progress, sources, [&](const jobs::Listener& listener) {
-        found = hshfit::project(source.brdf(), pointers,
-                                outgoingOf({.outgoing = set}, source.brdf().laws()),
-                                {.quantity = cosine ? Quantity::brdfCosine : Quantity::brdf,
-                                 .tolerance = tolerance,
-                                 .progress = listener.part("project")});
+        for (Projection& one : hshfit::project(
+                 source.brdf(), pointers, outgoingOf({.outgoing = set}, source.brdf().laws()),
+                 {.quantity = cosine ? Quantity::brdfCosine : Quantity::brdf,
+                 .tolerance = tolerance,
+                 .progress = listener.part("project")})) {
+            found.push_back({.projection = std::move(one), .output = {}});
+            found.back().captured = jobs::capturedShare(found.back().projection, source.brdf());
+        }
     });
     py::dict results;
-    for (Projection& one : found) {
-        jobs::Projected result{.projection = std::move(one), .output = {}};
-        result.captured = jobs::capturedShare(result.projection, source.brdf());
+    for (jobs::Projected& result : found) {
         const std::string name = result.projection.coefficients.basis;
         results[py::str(name)] = std::make_shared<Result>(resultOf(std::move(result)));
     }
@@ -155,8 +156,8 @@ py::dict projectedAll(const py::object& brdf, const py::object& names, int order
 }
 
 std::shared_ptr<Brdf> brdfOf(const Result& result) {
-    if (!result.form) return std::make_shared<Reconstruction>(*result.coefficients);
     const py::gil_scoped_release released;
+    if (!result.form) return std::make_shared<Reconstruction>(*result.coefficients);
     return reconstruct(*result.form, jobs::sourceOpener());
 }
 

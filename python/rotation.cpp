@@ -1,5 +1,6 @@
 #include "rotation.h"
 #include "arrays.h"
+#include "watched.h"
 
 #include <hshfit/error.h>
 
@@ -70,10 +71,7 @@ py::array_t<double> matrixOf(const std::string& from, const std::string& to, int
     if (!rotation.is_none()) options.rotation = rotation.cast<const Rotation&>();
     options.condonShortley = condonShortley;
     std::vector<std::vector<double>> rows;
-    {
-        const py::gil_scoped_release released;
-        rows = jobs::matrix(options);
-    }
+    watched(py::none(), {}, [&](const jobs::Listener&) { rows = jobs::matrix(options); });
     std::vector<double> values;
     for (const auto& row : rows) values.insert(values.end(), row.begin(), row.end());
     return arrayOf(std::move(values), {order * order, options.fromOrder * options.fromOrder});

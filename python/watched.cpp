@@ -5,6 +5,7 @@
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
 #include <hshfit/representation/forms/represented_brdf.h>
+#include <hshfit/stop_request.h>
 
 #include <jobs/named_errors.h>
 #include <jobs/source.h>
@@ -21,10 +22,6 @@
 
 namespace hshfit::python {
 namespace {
-
-/// Thrown by reports of progress once the work is to end; no Error, so that no job takes it for a
-/// failure of one of its inputs.
-struct Stopped {};
 
 /// The meeting place of the work and the thread that watches it.
 struct Watch {
@@ -152,6 +149,7 @@ void watched(const py::object& progress, std::span<Source* const> sources,
         const py::gil_scoped_release released;
         std::thread worker([&] {
             std::exception_ptr failure;
+            stopRequest = &watch.stop;
             try {
                 openAll(sources);
                 withNames(sources, [&] { work(listenerOf(watch)); });

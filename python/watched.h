@@ -37,12 +37,13 @@ private:
 /// Does `work` on a thread of its own without the interpreter's lock, after `sources` are opened.
 /// The caller's thread meanwhile passes progress to `progress(part, done, total)`, unless that is
 /// None, and looks for signals every 50 ms. If a signal handler, `progress` or a function behind a
-/// source raises, the work ends at its next report of progress or evaluation, and the exception
-/// goes to the caller. Remarks become warnings of Python at the end.
+/// source raises, the work ends at its next report of progress, evaluation or look at
+/// hshfit::stopRequest, and the exception goes to the caller. Remarks become warnings of Python at
+/// the end.
 void watched(const py::object& progress, std::span<Source* const> sources,
              const std::function<void(const jobs::Listener&)>& work);
 
-/// The same for work that is over within a moment and reports nothing: no thread, no signals.
+/// The same for work that is over within a moment, and is done by the caller's thread: no signals.
 void unwatched(std::span<Source* const> sources, const std::function<void()>& work);
 
 }  // namespace hshfit::python

@@ -1,5 +1,7 @@
 #include <brdfs/fit/fit_search.h>
 
+#include <hshfit/stop_request.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -197,6 +199,7 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
     for (std::vector<double>& u : places) moveTo(options.from, problem.sum(), u);
     std::vector<Minimum> candidates;
     for (std::vector<double>& u : places) {
+        stopIfRequested();
         std::vector<double> best;
         Minimum candidate;
         candidate.cost = problem.eliminated(u, false, best).cost;

@@ -1,6 +1,7 @@
 #include <brdfs/fit/minimise.h>
 
 #include <hshfit/linear_algebra/decompositions.h>
+#include <hshfit/stop_request.h>
 
 #include <ceres/ceres.h>
 
@@ -199,6 +200,7 @@ public:
     explicit Settled(std::function<double()> pull) : pull_(std::move(pull)) {}
     ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
         constexpr std::size_t window = 10;
+        if (stopIsRequested()) return ceres::SOLVER_ABORT;
         costs_.push_back(summary.cost);
         if (costs_.size() <= window) return ceres::SOLVER_CONTINUE;
         const double fallen = costs_[costs_.size() - 1 - window] - summary.cost;
@@ -237,6 +239,7 @@ void solve(const SumOfSquares& equations, std::span<const double> lower,
     ceresOptions.callbacks.push_back(&settled);
     ceres::Solver::Summary summary;
     ceres::Solve(ceresOptions, &problem, &summary);
+    stopIfRequested();
     result.cost = summary.final_cost;
     const bool level = summary.termination_type == ceres::USER_SUCCESS;
     result.converged = level || summary.termination_type == ceres::CONVERGENCE;

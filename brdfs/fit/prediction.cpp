@@ -8,6 +8,7 @@
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/linear_algebra/decompositions.h>
+#include <hshfit/stop_request.h>
 
 #include <algorithm>
 #include <cmath>
@@ -149,6 +150,7 @@ Prediction predict(const FitResult& fit, std::span<const DirectionPair> pairs, b
         result.bootstrap = {std::vector<double>(count), std::vector<Interval>(count),
                             std::vector<Interval>(count)};
     for (std::size_t first = 0; first < pairs.size(); first += atOnce) {
+        stopIfRequested();
         const FitSamples samples =
             unmeasuredSamples(pairs.subspan(first, std::min(atOnce, pairs.size() - first)),
                               Channels(), fit.point.isotropic);
@@ -201,6 +203,7 @@ double simultaneousFactor(const FitResult& fit, std::span<const DirectionPair> p
     constexpr std::size_t few = 256;
     double degrees = unlimited;
     for (std::size_t first = 0; first < pairs.size(); first += few) {
+        stopIfRequested();
         const FitSamples samples =
             unmeasuredSamples(pairs.subspan(first, std::min(few, pairs.size() - first)), Channels(),
                               fit.point.isotropic);

@@ -2,6 +2,7 @@
 
 #include <hshfit/bases/sh.h>
 #include <hshfit/quadrature/quadrature.h>
+#include <hshfit/stop_request.h>
 #include <hshfit/transfer/convolution.h>
 
 #include <tbb/parallel_for.h>
@@ -75,8 +76,10 @@ std::vector<Direction> normalLattice(std::size_t count) {
 Irradiances atNormals(std::span<const Direction> normals,
                       const std::function<Rgb(const Direction&)>& irradiance) {
     Irradiances result(normals.size());
-    tbb::parallel_for(std::size_t{0}, normals.size(),
-                      [&](std::size_t k) { result[k] = irradiance(normals[k]); });
+    tbb::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t k) {
+        stopIfRequested();
+        result[k] = irradiance(normals[k]);
+    });
     return result;
 }
 

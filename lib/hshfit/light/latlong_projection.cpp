@@ -3,6 +3,7 @@
 #include <hshfit/bases/sh.h>
 #include <hshfit/light/internal/picture_spectra.h>
 #include <hshfit/projection/lane_products.h>
+#include <hshfit/stop_request.h>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -141,6 +142,7 @@ void LatlongProjection::addRows(const float* rows, std::size_t count) {
 }
 
 void LatlongProjection::addBlock(const float* rows, std::size_t count, double* spectra) {
+    stopIfRequested();
     const SpectrumColumns& columns = plans_->columns;
     std::array<std::array<double, 3>, rowsOfBlock> squares;
     tbb::parallel_for(std::size_t{0}, (count + rowsOfTask - 1) / rowsOfTask, [&](std::size_t task) {
@@ -216,6 +218,7 @@ void LatlongProjection::coefficients(double turn, double* out) const {
     const auto slots = static_cast<std::size_t>(harmonics->slots());
     const double step = 2 * pi / static_cast<double>(width_);
     tbb::parallel_for(0, order_, [&](int m) {
+        stopIfRequested();
         const std::vector<double> sums = thetaSums(*harmonics, rings, m, fourier_, plans_->columns);
         const double width =
             (m == 0 ? step : 2 * std::sin(m * step / 2) / m) / std::sqrt(m == 0 ? 2 * pi : pi);

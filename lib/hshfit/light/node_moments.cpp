@@ -1,6 +1,7 @@
 #include <hshfit/light/node_moments.h>
 
 #include <hshfit/projection/lane_products.h>
+#include <hshfit/stop_request.h>
 
 #include <tbb/parallel_for.h>
 
@@ -71,6 +72,7 @@ void addBatch(const Basis& basis, const LightNodes& nodes, std::span<const Ring>
     std::vector<double> parts(rings.size() * sides);
     double* out = sums.data();
     for (int m = 0; m < basis.order(); ++m) {
+        stopIfRequested();
         if (m > 0) azimuths.advance();
         std::fill(parts.begin(), parts.end(), 0.0);
         for (std::size_t r = 0; r < rings.size(); ++r) {

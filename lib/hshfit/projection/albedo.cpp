@@ -2,6 +2,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/projection/internal/rings.h>
+#include <hshfit/stop_request.h>
 
 #include <fmt/format.h>
 
@@ -19,6 +20,7 @@ AlbedoEstimate estimateAlbedo(const Brdf& brdf, const Direction& wo, const Albed
     const AzimuthTables azimuths(1);
     RingSpectrum spectrum;
     for (int level = 0; !result.converged; ++level) {
+        stopIfRequested();
         const HemisphereGrid grid =
             gridFor(lobes, wo, {.order = 1, .level = level, .squeezed = true}, kinks);
         if (result.evaluations + grid.points() > options.maxEvaluations) break;

@@ -5,6 +5,7 @@
 #include <hshfit/error.h>
 #include <hshfit/linear_algebra/decompositions.h>
 #include <hshfit/quadrature/quadrature.h>
+#include <hshfit/stop_request.h>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -156,6 +157,7 @@ struct BasisChange::Parts {
         const int orderOut = (transposed ? from : to)->order();
         std::fill_n(out, vectors * static_cast<std::size_t>(orderOut * orderOut), 0.0);
         tbb::parallel_for(0, blocks(), [&](int m) {
+            stopIfRequested();
             const Matrix c = gather(m, orderIn, vectors, in);
             Matrix sum = Matrix::Zero(orderOut - m, c.cols());
             if (!kept.empty()) {
@@ -195,8 +197,10 @@ BasisChange::BasisChange(const Basis& from, const Basis& to, std::optional<Basis
     if (doubles <= keptDoubles || solved) {
         parts_->kept.resize(static_cast<std::size_t>(parts_->blocks()));
         std::vector<std::vector<double>> made(parts_->kept.size());
-        tbb::parallel_for(0, parts_->blocks(),
-                          [&](int m) { made[static_cast<std::size_t>(m)] = parts_->make(m); });
+        tbb::parallel_for(0, parts_->blocks(), [&](int m) {
+            stopIfRequested();
+            made[static_cast<std::size_t>(m)] = parts_->make(m);
+        });
         parts_->kept = std::move(made);
     }
     if (solved) parts_->solve();

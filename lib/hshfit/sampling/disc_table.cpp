@@ -4,6 +4,7 @@
 #include <hshfit/sampling/folded.h>
 #include <hshfit/sampling/internal/mirror_cells.h>
 #include <hshfit/sampling/internal/target.h>
+#include <hshfit/stop_request.h>
 
 #include <tbb/parallel_for.h>
 
@@ -52,7 +53,10 @@ public:
           azimuths_(brdf.laws().isotropic ? 1 : options.azimuths),
           cells_(options.columns),
           bins_(elevations_ * azimuths_) {
-        tbb::parallel_for(std::size_t{0}, bins_.size(), [&](std::size_t bin) { fill(brdf, bin); });
+        tbb::parallel_for(std::size_t{0}, bins_.size(), [&](std::size_t bin) {
+            stopIfRequested();
+            fill(brdf, bin);
+        });
     }
 
     std::string_view name() const override { return "table"; }

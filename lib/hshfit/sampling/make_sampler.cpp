@@ -3,6 +3,7 @@
 #include <hshfit/sampling/axis_lobes.h>
 #include <hshfit/sampling/elevation_bins.h>
 #include <hshfit/sampling/internal/target.h>
+#include <hshfit/stop_request.h>
 
 #include <tbb/parallel_for.h>
 
@@ -52,6 +53,7 @@ std::unique_ptr<MixtureSampler> makeSampler(const Brdf& brdf, const SamplerOptio
     const SamplerList parts = partsOf(brdf, options);
     std::vector<MixtureRow> rows(options.elevations);
     tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t bin) {
+        stopIfRequested();
         rows[bin] = rowOf(targetsOfBin(brdf, bin, rows.size()), parts, options.leastCosine);
     });
     return std::make_unique<MixtureSampler>(parts, std::move(rows));

@@ -4,6 +4,7 @@
 #include <hshfit/sampling/folded.h>
 #include <hshfit/sampling/internal/target.h>
 #include <hshfit/sampling/visible_normals.h>
+#include <hshfit/stop_request.h>
 
 #include <tbb/parallel_for.h>
 
@@ -172,6 +173,7 @@ Proposal fitProposal(const Brdf& brdf, const ProposalOptions& options) {
     const std::size_t count = options.elevations;
     std::vector<std::array<Found, 2>> found(count);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t row) {
+        stopIfRequested();
         const Direction wo = directionOfRow(row, count);
         Search search(targetsAtHeight(brdf, wo.z, wo.x), brdf.laws().isotropic);
         if (search.reflects()) found[row] = {search.best(false), search.best(true)};

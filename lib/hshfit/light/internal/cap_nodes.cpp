@@ -3,6 +3,7 @@
 #include <hshfit/brdf/vectors.h>
 #include <hshfit/light/internal/node_levels.h>
 #include <hshfit/quadrature/quadrature.h>
+#include <hshfit/stop_request.h>
 
 #include <algorithm>
 #include <cmath>
@@ -67,6 +68,7 @@ private:
     }
 
     void ring(double chi, double arc, double weight) const {
+        stopIfRequested();
         const double s = std::sin(chi), c = std::cos(chi);
         const bool whole = arc >= pi;
         const int count = nodesAtLevel(

@@ -4,6 +4,7 @@
 #include <hshfit/brdf/kink_curve.h>
 #include <hshfit/error.h>
 #include <hshfit/projection/internal/convergence.h>
+#include <hshfit/stop_request.h>
 #include <hshfit/wording.h>
 
 #include <fmt/format.h>
@@ -141,6 +142,7 @@ private:
         sampleRings(brdf_, wo_, grid_, options_.quantity, tables_.azimuths, options_.even,
                     spectrum_);
         const auto takePanel = [&](std::size_t k) {
+            stopIfRequested();
             Panel& panel = panels_[active[k]];
             panel.before.swap(panel.moments);
             panel.moments.assign(offsets_.back(), 0.0);
@@ -187,6 +189,7 @@ private:
         totals_.assign(offsets_.back(), 0.0);
         result_.energy = {};
         for (const Panel& panel : panels_) {
+            stopIfRequested();
             for (std::size_t i = 0; i < totals_.size(); ++i) totals_[i] += panel.moments[i];
             for (std::size_t e = 0; e < result_.energy.size(); ++e)
                 result_.energy[e] += panel.energy[e];

@@ -1,6 +1,7 @@
 #include <hshfit/projection/internal/theta_products.h>
 
 #include <hshfit/projection/lane_products.h>
+#include <hshfit/stop_request.h>
 
 #include <tbb/concurrent_unordered_map.h>
 
@@ -152,6 +153,7 @@ void ThetaProducts::addMoments(const HemisphereGrid& grid, std::size_t panelInde
             continue;
         }
         for (int m = 0; m < basis.order(); ++m) {
+            stopIfRequested();
             const std::size_t lanes = thetaLanes(basis.order(), m);
             if (own.size() < lanes * panel.rings) own.resize(lanes * panel.rings);
             weightedTheta(basis, m, grid, panel, rows, own.data());

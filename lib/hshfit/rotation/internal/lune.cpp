@@ -2,6 +2,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/quadrature/quadrature.h>
+#include <hshfit/stop_request.h>
 
 #include <tbb/parallel_for.h>
 
@@ -133,6 +134,7 @@ LuneIntegrals luneIntegrals(const Basis& basis, double beta, const Matrix& c,
     tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
         LuneIntegrals& sum = partial[part];
         for (std::size_t b = part; b < chunks; b += parts) {
+            stopIfRequested();
             const std::size_t first = b * chunk, n = std::min(chunk, nodes.x.size() - first);
             const DirectionBatch to{&nodes.x[first], &nodes.y[first], &nodes.z[first], n};
             const DirectionBatch from{&nodes.fromX[first], &nodes.y[first], &nodes.fromZ[first], n};
