@@ -8,7 +8,7 @@
 # configured in their order, so that each is checked with the packages of those before it.
 set -eu
 cd "$(dirname "$0")/.."
-[ $# -gt 0 ] || set -- 'demo figures package site' bench 'test dev' 'sanitize threads' lint
+[ $# -gt 0 ] || set -- 'demo python figures package site' bench 'test dev' 'sanitize threads' lint
 
 leaveOut() {
     echo "bare_configure: left out: $1"

@@ -1,11 +1,13 @@
-"""pip installs the package into a virtual environment without a network, from outside."""
+"""The commands of docs/python.md make a virtual environment with the package, without a network."""
 import os
+import re
+import shlex
+import shutil
 import subprocess
-import sys
 import unittest
 from pathlib import Path
 
-import program
+import environment
 
 OUTSIDE = """
 import hshfit, numpy
@@ -17,28 +19,31 @@ assert abs(found.coefficients.values[0, 0, 0] - first) < 1e-9
 """
 
 
-class Install(program.InFolder):
-    def run_in(self, *words, **environment):
-        kept = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-        done = subprocess.run(words, check=False, capture_output=True, text=True,
-                              env={**kept, **environment})
-        self.assertEqual(done.returncode, 0, done.stdout[-3000:] + done.stderr[-3000:])
-        return done.stdout
-
+class Install(unittest.TestCase):
     def state_of(self, source):
         """Untracked, ignored and changed files of a checkout."""
         if not (Path(source) / ".git").exists():
             return ""
-        return self.run_in("git", "-C", source, "status", "--porcelain", "--ignored")
+        return subprocess.run(["git", "-C", source, "status", "--porcelain", "--ignored"],
+                              check=True, capture_output=True, text=True).stdout
 
-    def test_pip_install_then_import_and_project(self):
+    def test_the_commands_of_the_page_then_import_and_project(self):
         build = Path(os.environ["HSHFIT_PROGRAM"]).parent
-        source = os.environ["HSHFIT_SOURCE"]
+        source = environment.SOURCE
         before = self.state_of(source)
-        self.run_in(sys.executable, "-m", "venv", "--system-site-packages", "venv")
-        self.run_in("venv/bin/python", "-m", "pip", "install", "--no-build-isolation",
-                    "--no-index", "--no-deps", source, HSHFIT_BUILD=str(build))
-        self.run_in("venv/bin/python", "-c", OUTSIDE.format(build=str(build)))
+        # The folders and files of the checkout, without what is built there.
+        shutil.rmtree(environment.FOLDER, ignore_errors=True)
+        (environment.FOLDER / "home").mkdir(parents=True)
+        for path in source.iterdir():
+            if not re.match(r"build|out$|\.git$", path.name):
+                (environment.FOLDER / path.name).symlink_to(path)
+        configure, *commands = environment.commands()
+        known = subprocess.run([source / "run", "help"], check=True, capture_output=True, text=True)
+        self.assertIn(configure.split()[2], known.stdout)
+        for command in commands[:-1]:
+            environment.run(command, HSHFIT_BUILD=str(build), PIP_NO_INDEX="1")
+        code = OUTSIDE.format(build=f"{build}/python/")
+        environment.run(f"venv/bin/python -c {shlex.quote(code)}")
         # The source tree is as it was.
         self.assertEqual(before, self.state_of(source))
 
@@ -50,4 +55,4 @@ if __name__ == "__main__":
         import wheel  # noqa: F401
     except ImportError as missing:
         raise unittest.SkipTest(str(missing))
-    program.main()
+    unittest.main(verbosity=2)
