@@ -28,8 +28,11 @@ std::string_view scriptOf(const std::string& shell) {
 /// A line of flags that the scripts know, then a line for each word, with its help after a tab.
 std::string linesOf(const Candidates& candidates, const std::string& shell) {
     std::string flags = "words";
-    if (candidates.files == Files::folder) flags += " folders";
-    if (candidates.files == Files::read || candidates.files == Files::written) flags += " files";
+    const bool folders = candidates.files == Files::folder || candidates.files == Files::readFolder;
+    if (folders)
+        flags += " folders";
+    else if (candidates.files != Files::none)
+        flags += " files";
     if (candidates.open) flags += " open";
     std::string lines = flags + "\n";
     for (const Word& word : candidates.words) {

@@ -35,13 +35,10 @@ bool isAnyOf(std::string_view name, std::initializer_list<std::string_view> name
     return std::ranges::find(names, name) != names.end();
 }
 
-/// Whether the option names what the command writes; --records and --progress go on from run to
-/// run, and --all is read.
+/// Whether the option names what each run of the command writes anew.
 bool isOutput(const CLI::App& command, const CLI::Option& option) {
-    const std::string name = nameOf(option);
-    if (isAnyOf(name, {"--records", "--progress", "--all"})) return false;
     // With a folder for the results, convert's second argument is an input.
-    if (name == "OUT") return command.get_option("--output")->count() == 0;
+    if (nameOf(option) == "OUT") return command.get_option("--output")->count() == 0;
     const ValueRow* row = findValues(command, option);
     return row && (row->files == Files::written || row->files == Files::folder);
 }

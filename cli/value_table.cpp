@@ -195,7 +195,7 @@ constexpr ValueRow valueRows[] = {
     {"batch", "MANIFEST", nullptr, Syntax::word, Files::read, ""},
     {"batch", "--output", nullptr, Syntax::word, Files::folder},
     {"batch", "--costs", nullptr, Syntax::word, Files::read},
-    {"batch", "--progress", nullptr, Syntax::word, Files::written},
+    {"batch", "--progress", nullptr, Syntax::word, Files::added},
     {"compare", "--output", nullptr, Syntax::word, Files::folder},
     {"compare", "--sigma", sigmaWords, Syntax::word, Files::read, ".csv"},
     {"convert", "--output", nullptr, Syntax::word, Files::folder},
@@ -203,7 +203,7 @@ constexpr ValueRow valueRows[] = {
     {"completion", "--output", nullptr, Syntax::word, Files::written, ""},
     {"eval", "--output", nullptr, Syntax::word, Files::written, ".csv"},
     {"export", "--output", nullptr, Syntax::word, Files::folder},
-    {"fit", "--all", nullptr, Syntax::word, Files::folder},
+    {"fit", "--all", nullptr, Syntax::word, Files::readFolder},
     {"fit", "--at", placeWords},
     {"fit", "--dark", darkWords},
     {"fit", "--offset", fitWords},
@@ -219,6 +219,7 @@ constexpr ValueRow valueRows[] = {
     {"illuminate", "--output", nullptr, Syntax::word, Files::folder},
     {"import", "FILE", nullptr, Syntax::word, Files::read, ""},
     {"info", "SPEC", nullptr, Syntax::either, Files::read, ""},
+    {"irradiance", "--by-normal", nullptr, Syntax::word, Files::written, ".csv"},
     {"irradiance", "SPEC", nullptr, Syntax::light, Files::read, ""},
     {"light", "SPEC", nullptr, Syntax::light, Files::read, ""},
     {"list", "TEXT", presetWords},
@@ -236,6 +237,7 @@ constexpr ValueRow valueRows[] = {
     {"svbrdf", "--precision", mapPrecisionWords},
     {"tradeoff", "--output", nullptr, Syntax::word, Files::folder},
     {"tradeoff", "--halfway"},
+    {"transfer", "--material", nullptr, Syntax::brdf, Files::read},
     {"transfer", "--output", nullptr, Syntax::word, Files::folder},
     {"", "--axis", figureAxisWords},
     {"", "--basis", basisWords},
@@ -263,7 +265,7 @@ constexpr ValueRow valueRows[] = {
     {"", "--panels", panelWords},
     {"", "--precision", precisionWords},
     {"", "--precisions", precisionWords, Syntax::list},
-    {"", "--records", nullptr, Syntax::word, Files::written},
+    {"", "--records", nullptr, Syntax::word, Files::added},
     {"", "--reference", nullptr, Syntax::word, Files::read, ""},
     {"", "--repair", repairWords, Syntax::list},
     {"", "--robust", robustWords},
@@ -304,6 +306,12 @@ const ValueRow* findValues(const CLI::App& command, const CLI::Option& option) {
                     : option.get_positional() && option.get_name(true, false) == each.option);
     });
     return row == std::end(valueRows) ? nullptr : row;
+}
+
+bool isWritten(const CLI::App& command, const CLI::Option& option) {
+    const ValueRow* row = findValues(command, option);
+    return row && (row->files == Files::written || row->files == Files::folder ||
+                   row->files == Files::added);
 }
 
 std::vector<std::string> choicesOf(const CLI::Option& option) {

@@ -19,7 +19,14 @@ struct Word {
 };
 
 /// The files that an option takes beside its words.
-enum class Files { none, read, written, folder };
+enum class Files {
+    none,
+    read,
+    readFolder,
+    written,
+    folder,  ///< that is written
+    added,   ///< read if it is there, and added to from run to run
+};
 
 /// The syntax of a value.
 enum class Syntax {
@@ -48,6 +55,9 @@ std::span<const ValueRow> valueTable();
 
 /// The row of an option of a command; null if there is none.
 const ValueRow* findValues(const CLI::App& command, const CLI::Option& option);
+
+/// Whether the option names a file or a folder that the command writes.
+bool isWritten(const CLI::App& command, const CLI::Option& option);
 
 /// The choices that the option checks its value against (CLI::IsMember); none if it does not.
 std::vector<std::string> choicesOf(const CLI::Option& option);

@@ -1,5 +1,6 @@
 #include <hshfit/error.h>
 #include <hshfit/pages/gnuplot.h>
+#include <hshfit/pages/page_figures.h>
 
 #include <algorithm>
 #include <array>
@@ -145,6 +146,22 @@ std::string endOf(const std::string& path) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
+/// Blanks the dates that cairo writes into a PDF, so that equal figures have equal bytes; the
+/// length, and so the table of offsets, stays.
+void removeDates(const std::string& path) {
+    const std::string figure = fileContent(path);
+    if (!figure.starts_with("%PDF-")) return;
+    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+    for (const std::string_view key : {"/CreationDate (", "/ModDate ("}) {
+        for (std::size_t at = 0; (at = figure.find(key, at)) != figure.npos; at += key.size()) {
+            file.seekp(static_cast<std::streamoff>(at));
+            file << std::string(figure.find(')', at) + 1 - at, ' ');
+        }
+    }
+    file.close();
+    if (!file) throw OutputError(fmt::format("cannot write '{}'", path));
+}
+
 }  // namespace
 
 bool figureIsComplete(const std::string& path) {
@@ -168,7 +185,10 @@ void runGnuplot(const std::string& folder, const std::vector<std::string>& argum
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
         fail("gnuplot failed: " + lastWords(contentOf(complaints.get())));
     }
-    if (std::ranges::all_of(outputs, figureIsComplete)) return;
+    if (std::ranges::all_of(outputs, figureIsComplete)) {
+        for (const std::string& output : outputs) removeDates(output);
+        return;
+    }
     const std::string said = lastWords(contentOf(complaints.get()));
     throw OutputError(fmt::format("a figure was cut short, as on a full disk{}{}",
                                   said.empty() ? "" : ": ", said));

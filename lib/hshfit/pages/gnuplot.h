@@ -15,9 +15,10 @@ struct NoFigures : OutputError {
 };
 
 /// Runs gnuplot in `folder` with these arguments and no start-up files, in UTC. `outputs` are the
-/// files that it is to write. Throws NoFigures that names the package to install where there is no
-/// gnuplot, or with gnuplot's last words where it fails; OutputError where gnuplot ends well and
-/// one of the files is cut short, as on a full disk, which gnuplot does not report.
+/// files that it is to write; dates are taken out of those that are PDF. Throws NoFigures that
+/// names the package to install where there is no gnuplot, or with gnuplot's last words where it
+/// fails; OutputError where gnuplot ends well and one of the files is cut short, as on a full disk,
+/// which gnuplot does not report.
 ///
 /// Signals that end the process (removeTemporariesOnSignals) end gnuplot first.
 void runGnuplot(const std::string& folder, const std::vector<std::string>& arguments,

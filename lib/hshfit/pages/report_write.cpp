@@ -5,9 +5,7 @@
 #include <hshfit/pages/report_files.h>
 
 #include <filesystem>
-#include <fstream>
 #include <optional>
-#include <regex>
 
 #include <fmt/format.h>
 
@@ -15,19 +13,6 @@ namespace hshfit::inline pages {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Blanks the time at which cairo wrote a PDF; the length, and so the table of offsets, stays.
-void removeCreationDate(const std::string& path) {
-    const std::string pdf = fileContent(path);
-    static const std::regex date(R"(/CreationDate \([^)]*\))");
-    std::smatch match;
-    if (!std::regex_search(pdf, match, date)) return;
-    std::fstream out(path, std::ios::binary | std::ios::in | std::ios::out);
-    out.seekp(match.position());
-    out << std::string(static_cast<std::size_t>(match.length()), ' ');
-    out.close();
-    if (!out) throw OutputError(fmt::format("cannot write '{}'", path));
-}
 
 /// Draws from files of the set that are closed but not yet in place.
 class Drawing {
@@ -45,7 +30,6 @@ public:
             for (const char* name : {"curves.svg", "curves.pdf"}) files_.remove(name);
             throw;
         }
-        removeCreationDate(pdf.temporaryPath());
     }
 
     /// One SVG document for each BRDF, through a temporary that is never committed.

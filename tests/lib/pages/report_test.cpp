@@ -3,6 +3,7 @@
 #include <hshfit/pages/report_files.h>
 
 #include "lib/coefficient_files/coefficient_samples.h"
+#include "next_second.h"
 #include "places.h"
 
 #include <cstdlib>
@@ -184,8 +185,7 @@ protected:
 
 TEST_F(ReportFiles, WritesEveryFileTwiceTheSame) {
     writeReport(sample(), folder / "a");
-    // PDF writers note the second in which they ran.
-    std::system("sleep 1.1");
+    hshfit::test::untilNextSecond();
     writeReport(sample(), folder / "b");
     for (const char* name : files) {
         const std::string content = contentOf(folder / "a/" + name);
