@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <memory>
 
 namespace hshfit::cli {
@@ -55,20 +56,6 @@ void addOption(std::vector<std::string>& words, const std::string& key,
         words.push_back(fmt::format("--{}={}", key, jsonText(value)));
 }
 
-std::vector<std::string> wordsOf(const jobs::BatchItem& item, const std::string& output) {
-    const jobs::BatchCommand& command = items[item.command];
-    std::vector<std::string> words{std::string(command.name)};
-    for (const std::string& input : item.inputs) words.push_back(input);
-    if (command.output != Output::none) {
-        // convert takes the path by its place.
-        if (command.name != "convert") words.emplace_back("--output");
-        words.push_back(output);
-    }
-    for (const auto& [key, value] : item.options->items()) addOption(words, key, value);
-    words.insert(words.end(), {"--json", "--quiet", "--threads=1"});
-    return words;
-}
-
 /// A value that is none of the words of its option, "--basis=hhs"; empty if all are.
 std::string unknownValue(const CLI::App& command) {
     for (const CLI::Option* option : command.get_options()) {
@@ -102,6 +89,32 @@ public:
         app_.parse_complete_callback([] { throw Understood(); });
     }
 
+    bool writes(const jobs::BatchCommand& command, const std::string& option) const {
+        const CLI::App* app = app_.get_subcommand(std::string(command.name));
+        const CLI::Option* found = app->get_option_no_throw("--" + option);
+        return found && isWritten(*app, *found);
+    }
+
+    std::vector<std::string> words(const jobs::BatchItem& item, const std::string& folder) const {
+        const jobs::BatchCommand& command = items[item.command];
+        const auto within = [&](const std::string& name) {
+            return (std::filesystem::path(folder) / name).string();
+        };
+        std::vector<std::string> words{std::string(command.name)};
+        for (const std::string& input : item.inputs) words.push_back(input);
+        if (command.output != Output::none) {
+            // convert takes the path by its place.
+            if (command.name != "convert") words.emplace_back("--output");
+            words.push_back(within(item.output));
+        }
+        for (const auto& [key, value] : item.options->items())
+            addOption(
+                words, key,
+                writes(command, key) ? nlohmann::json(within(value.get<std::string>())) : value);
+        words.insert(words.end(), {"--json", "--quiet", "--threads=1"});
+        return words;
+    }
+
     std::string mistake(const std::vector<std::string>& words) {
         CLI::App* command = app_.get_subcommand(words[0]);
         for (const std::string& word : words) {
@@ -133,15 +146,19 @@ private:
 }  // namespace
 
 jobs::BatchProgram batchProgram() {
-    return {.version = version,
-            .commands = items,
-            .words = wordsOf,
-            .mistake = [check = std::make_shared<Check>()](
-                           const std::vector<std::string>& words) { return check->mistake(words); },
-            .run =
-                [](const std::vector<std::string>& words) {
-                    return runWords(words, Outputs::replaced);
-                }};
+    const auto check = std::make_shared<Check>();
+    return {
+        .version = version,
+        .commands = items,
+        .writes = [check](const jobs::BatchCommand& command,
+                          const std::string& option) { return check->writes(command, option); },
+        .words = [check](const jobs::BatchItem& item,
+                         const std::string& folder) { return check->words(item, folder); },
+        .mistake = [check](const std::vector<std::string>& words) { return check->mistake(words); },
+        .run =
+            [](const std::vector<std::string>& words) {
+                return runWords(words, Outputs::replaced);
+            }};
 }
 
 }  // namespace hshfit::cli

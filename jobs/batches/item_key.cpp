@@ -67,10 +67,11 @@ InputStamp FileSums::stamp(const std::string& path, const std::vector<InputStamp
     return stamps_[path] = now;
 }
 
-std::vector<std::string> filesOf(const BatchItem& item) {
+std::vector<std::string> filesOf(const BatchItem& item, const BatchProgram& program) {
     std::set<std::string> files;
     for (const std::string& input : item.inputs) addNamedFiles(input, files);
-    addFiles(*item.options, files);
+    for (const auto& [key, value] : item.options->items())
+        if (!program.writes(program.commands[item.command], key)) addFiles(value, files);
     return {files.begin(), files.end()};
 }
 
@@ -84,8 +85,8 @@ std::string itemKey(const BatchProgram& program, const std::vector<std::string>&
 ItemState stateOf(const BatchItem& item, const BatchProgram& program, FileSums& sums,
                   const std::optional<ItemRecord>& earlier) {
     ItemState state;
-    state.words = program.words(item, item.output);
-    for (const std::string& file : filesOf(item))
+    state.words = program.words(item, {});
+    for (const std::string& file : filesOf(item, program))
         state.inputs.push_back(
             sums.stamp(file, earlier ? earlier->inputs : std::vector<InputStamp>{}));
     state.key = itemKey(program, state.words, state.inputs);

@@ -27,8 +27,8 @@ private:
 };
 
 /// The files that an item's inputs and its options' values name, and those that these name in turn
-/// (named_files.h), each once, sorted by name.
-std::vector<std::string> filesOf(const BatchItem& item);
+/// (named_files.h), each once, sorted by name; none of those that the item writes.
+std::vector<std::string> filesOf(const BatchItem& item, const BatchProgram& program);
 
 /// SHA-256 of all that an item's result depends on: the version of the program, the words of the
 /// command line, and the bytes of the files that they name.

@@ -10,6 +10,7 @@
 #include <hshfit/spelling.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -131,6 +132,10 @@ json mergedOptions(const Reading& reading, const json& line, std::string_view co
             throw InputError(where + ": options: give an object, {\"order\": 7}");
         options.merge_patch(line["options"]);
     }
+    for (const auto& [key, value] : options.items())
+        if (key.find('=') != std::string::npos)
+            throw InputError(fmt::format(
+                "{}: options: '{}' is no name of an option; give {{\"order\": 7}}", where, key));
     return options;
 }
 
@@ -157,13 +162,25 @@ std::string outputOf(const json& line, const BatchCommand& command, const std::s
     if (output.empty())
         throw InputError(fmt::format("{}: output is missing: the name of the file that {} writes",
                                      where, command.name));
-    const bool taken = output == "answer.json" || output == "record.json";
-    if (taken || output.find('/') != std::string::npos || output[0] == '.')
-        throw InputError(
-            fmt::format("{}: output '{}': give the name of a file without a folder, "
-                        "not answer.json nor record.json",
-                        where, output));
     return output;
+}
+
+/// An item writes into its own folder, each file and folder under a name of its own.
+void requireOwnNames(const BatchItem& item, const BatchProgram& program, const std::string& where) {
+    const BatchCommand& command = program.commands[item.command];
+    std::vector<std::string> taken{"answer.json", "record.json"};
+    const auto take = [&](const std::string& key, const json& value) {
+        const std::string name = value.is_string() ? value.get<std::string>() : "";
+        if (name.empty() || name.find('/') != std::string::npos || name[0] == '.' ||
+            name[0] == '-' || std::ranges::find(taken, name) != taken.end())
+            throw InputError(fmt::format(
+                "{}: {} {}: give a name within the item's folder, without a folder, other than {}",
+                where, key, jsonText(value), fmt::join(taken, ", ")));
+        taken.push_back(name);
+    };
+    if (!item.output.empty()) take("output", item.output);
+    for (const auto& [key, value] : item.options->items())
+        if (program.writes(command, key)) take(key, value);
 }
 
 /// Adds an item after checking its input, its options and its name.
@@ -179,7 +196,7 @@ void addItem(Reading& reading, BatchItem item, const std::string& name, const st
     const std::string signature =
         fmt::format("{} {} {}", command.name, item.output, jsonText(*item.options));
     const auto [mistake, isNew] = reading.mistakesOfOptions.try_emplace(signature);
-    if (isNew) mistake->second = reading.program.mistake(reading.program.words(item, item.output));
+    if (isNew) mistake->second = reading.program.mistake(reading.program.words(item, {}));
     if (!mistake->second.empty()) throw InputError(where + ": " + mistake->second);
     const auto [other, isFree] = reading.lineOfName.try_emplace(item.name, item.line);
     if (!isFree)
@@ -219,6 +236,7 @@ void readItems(Reading& reading, json line, std::size_t number, const std::strin
     auto& shared = reading.options[jsonText(options)];
     if (!shared) shared = std::make_shared<const json>(options);
     item.options = shared;
+    requireOwnNames(item, reading.program, where);
     if (line.contains("cost")) {
         if (!line["cost"].is_number() || !(line["cost"].get<double>() > 0))
             throw InputError(where + ": cost: give a number above 0, such as seconds");

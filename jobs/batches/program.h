@@ -27,8 +27,11 @@ struct BatchCommand {
 struct BatchProgram {
     std::string version;
     std::span<const BatchCommand> commands;
-    /// The words of an item's command line whose result goes to `output`, with one thread.
-    std::function<std::vector<std::string>(const BatchItem& item, const std::string& output)> words;
+    /// Whether an option of a command, by its long name, names a file or a folder to be written.
+    std::function<bool(const BatchCommand& command, const std::string& option)> writes;
+    /// The words of an item's command line, with one thread, that writes into `folder`; with an
+    /// empty one, the names alone of what it writes.
+    std::function<std::vector<std::string>(const BatchItem& item, const std::string& folder)> words;
     /// One line about words that no command takes; empty where all is well. Nothing is run.
     std::function<std::string(const std::vector<std::string>& words)> mistake;
     /// Runs the words in this process, with the answer on standard output and one line of an error

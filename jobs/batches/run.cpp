@@ -121,8 +121,7 @@ private:
             finish(order.record, false, index);
             return {};
         }
-        order.words =
-            program_.words(item, item.output.empty() ? "" : (order.part / item.output).string());
+        order.words = program_.words(item, order.part.string());
         return order;
     }
 

@@ -1,5 +1,6 @@
 // `batch`: what is done again and what is kept, failures, mistakes, shards, kills.
 
+#include "kills.h"
 #include "program.h"
 #include "unstated.h"
 
@@ -7,11 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <random>
 #include <set>
-
-#include <signal.h>
-#include <unistd.h>
 
 namespace hshfit::test {
 namespace {
@@ -157,6 +154,36 @@ TEST_F(Batch, OnlyWhatChangedIsDoneAgain) {
     EXPECT_EQ(answerOf("--status")["done"], 3);
 }
 
+/// A file of the same name beside the manifest is neither replaced nor an input.
+TEST_F(Batch, FilesOfOptionsLieInTheFolderOfTheirItem) {
+    write("r.csv", "mine");
+    fs::create_directories(path("out/items"));
+    fs::create_directory(path("aside"));
+    fs::create_directory_symlink(path("aside"), item("linked"));
+    const std::string options = R"({"model": "lambert", "residuals": "r.csv", "figures": "drawn"})";
+    manifest(R"({"defaults": {"command": "fit", "options": )" + options + R"(}}
+{"input": "lambert:kd=.5", "name": "half"}
+{"input": "lambert:kd=.25", "name": "quarter"}
+{"input": "lambert:kd=.25", "name": "linked"}
+)");
+    batch();
+    for (const char* name : {"half", "quarter"}) {
+        EXPECT_EQ(record(name)["exit_code"], 0);
+        EXPECT_TRUE(fs::exists(item(name) + "/r.csv")) << name;
+        EXPECT_TRUE(fs::is_directory(item(name) + "/drawn")) << name;
+        EXPECT_EQ(record(name)["inputs"], json::array());
+        const std::string answer = read(item(name) + "/answer.json");
+        EXPECT_EQ(answer.find(folder_.string()), std::string::npos) << answer;
+    }
+    EXPECT_NE(read(item("half/r.csv")), read(item("quarter/r.csv")));
+    EXPECT_EQ(read(path("r.csv")), "mine");
+    EXPECT_TRUE(fs::is_empty(path("aside")));
+    write("r.csv", "mine, changed");
+    EXPECT_GE(answerOf()["kept"], 2);
+    fs::remove(item("half/r.csv"));
+    EXPECT_EQ(answerOf("--status")["stale"], 1);
+}
+
 TEST_F(Batch, AFailureIsRecordedAndTriedAgain) {
     write("broken.binary", "no MERL file");
     manifest(R"({"defaults": {"command": "project", "options": {"order": 3, "outgoing": "20,0"}}}
@@ -287,22 +314,18 @@ TEST_F(Batch, KillsLoseTheItemAtHandAlone) {
     ASSERT_EQ(batch().code, 0);
     const std::string whole = merged();
     fs::remove_all(path("out"));
-    std::mt19937 random(11);
-    const std::string name = program(), manifest = path("m.jsonl"), out = path("out");
+    const std::string items = path("out/items");
+    const auto made = [&] {
+        std::error_code error;
+        return static_cast<std::size_t>(std::ranges::count_if(
+            fs::directory_iterator(items, error),
+            [](const auto& entry) { return !entry.path().filename().string().starts_with('.'); }));
+    };
     int kills = 0, before = 0;
-    for (int attempt = 0; attempt < 12; ++attempt) {
-        const pid_t child = fork();
-        if (child == 0) {
-            execl(name.c_str(), name.c_str(), "batch", manifest.c_str(), "-o", out.c_str(),
-                  "--quiet", "--threads", "2", static_cast<char*>(nullptr));
-            _exit(127);
-        }
-        usleep(std::uniform_int_distribution<unsigned>(10'000, 60'000)(random));
-        kill(child, SIGKILL);
-        int status = 0;
-        waitpid(child, &status, 0);
-        kills += WIFSIGNALED(status) ? 1 : 0;
-        if (!fs::exists(out)) continue;
+    for (int attempt = 0; attempt < 12 && made() < 12; ++attempt) {
+        kills +=
+            killedRuns({"batch", path("m.jsonl"), "-o", path("out"), "--quiet", "--threads", "2"},
+                       made, 1, 12);
         const int done = answerOf("--status")["done"];
         EXPECT_GE(done, before) << "a result was lost";
         before = done;
