@@ -14,11 +14,6 @@ import program
 UP = [0.0, 0.0, 1.0]
 
 
-def slow(wi, wo):
-    time.sleep(0.002)
-    return np.full(len(wi), 0.1)
-
-
 class Kinds(program.InFolder):
     def test_kinds_have_the_exit_codes_of_the_program(self):
         codes = {hshfit.UsageError: 2, hshfit.InputError: 3, hshfit.NumericError: 4,
@@ -113,36 +108,43 @@ class Stopping(program.InFolder):
     # Minutes of work.
     LONG = {"order": 100, "outgoing": "256x256", "tolerance": 1e-11}
 
-    def stop_after(self, call, seconds=0.5):
-        """The time from a signal to the KeyboardInterrupt that it becomes."""
-        sent = []
+    def setUp(self):
+        super().setUp()
+        self.begun = threading.Event()
 
+    def slow(self, wi, _):
+        self.begun.set()
+        time.sleep(0.002)
+        return np.full(len(wi), 0.1)
+
+    def stop(self, call):
+        """A signal, once the work has begun, becomes a KeyboardInterrupt."""
         def interrupt():
-            sent.append(time.monotonic())
+            self.begun.wait()
             os.kill(os.getpid(), signal.SIGINT)
 
-        timer = threading.Timer(seconds, interrupt)
-        timer.start()
+        signals = threading.Thread(target=interrupt, daemon=True)
+        signals.start()
         with self.assertRaises(KeyboardInterrupt):
             call()
-        timer.join()
-        return time.monotonic() - sent[0]
+        signals.join()
 
     def test_interrupt_stops_a_long_projection(self):
         calls = []
 
         def progress(part, done, total):
             calls.append((part, done, total))
+            self.begun.set()
 
-        self.stop_after(lambda: hshfit.project("ward:ax=0.1,ay=0.3", cosine=True,
-                                               progress=progress, **self.LONG))
+        self.stop(lambda: hshfit.project("ward:ax=0.1,ay=0.3", cosine=True,
+                                         progress=progress, **self.LONG))
         # It was stopped long before its end.
         self.assertTrue(calls)
         self.assertLess(calls[-1][1], 256 * 256)
 
     def test_interrupt_stops_a_function_of_python(self):
-        brdf = hshfit.function(slow)
-        self.stop_after(lambda: hshfit.project(brdf, **self.LONG))
+        brdf = hshfit.function(self.slow)
+        self.stop(lambda: hshfit.project(brdf, **self.LONG))
 
     def test_work_that_is_stopped_leaves_no_file(self):
         calls = []
@@ -156,8 +158,8 @@ class Stopping(program.InFolder):
         brdf = hshfit.function(fails_later, isotropic=True)
         with self.assertRaisesRegex(RuntimeError, "enough"):
             brdf.write("big.binary")
-        waits = hshfit.function(slow, isotropic=True)
-        self.stop_after(lambda: waits.write("big.binary", format="merl"))
+        waits = hshfit.function(self.slow, isotropic=True)
+        self.stop(lambda: waits.write("big.binary", format="merl"))
         self.assertEqual(os.listdir("."), [])
 
     def test_an_exception_of_progress_stops_the_work(self):

@@ -205,10 +205,16 @@ async function proveDrop(page) {
 async function proveOpening(page) {
   await page.addInitScript(() => {
     const next = window.requestAnimationFrame.bind(window);
-    window.requestAnimationFrame = (draw) => setTimeout(() => next(draw), 700);
+    const held = [];
+    window.requestAnimationFrame = (draw) => held.push(draw);
+    window.showFrames = () => {
+      window.requestAnimationFrame = next;
+      held.forEach(next);
+    };
   });
   await page.goto(`${address}#frames=1&cycles=1`, { waitUntil: 'domcontentloaded' });
   expect(await page.isVisible('#rendering'), 'the page says nothing before the first picture');
+  await page.evaluate(() => window.showFrames());
   await settled(page);
   expect(await page.isHidden('#rendering'), 'the page says that it is rendering after it has');
   const { means } = await facts(page);
