@@ -3,6 +3,7 @@
 #include <brdfs/preset_json.h>
 #include <brdfs/spec.h>
 #include <hshfit/error.h>
+#include <hshfit/files/json_format.h>
 
 #include <fmt/format.h>
 
@@ -97,8 +98,7 @@ std::size_t wordDistance(const std::vector<std::string>& parts, const std::strin
 }  // namespace
 
 bool isPresetCollection(std::string_view text) {
-    const Json json = Json::parse(text, nullptr, false);
-    return json.is_object() && json.value("format", Json()) == collectionFormat;
+    return jsonFormat(text) == collectionFormat;
 }
 
 PresetCollection parsePresetCollection(std::string_view text, const std::string& where) {

@@ -137,6 +137,11 @@ void printMessage(std::string_view message) noexcept {
     }
 }
 
+void endWithoutNumbers(Globals& globals, std::string_view message) {
+    printMessage(message);
+    globals.exitCode = static_cast<int>(ExitCode::numeric);
+}
+
 void occupyStandardStreams() {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
         if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;

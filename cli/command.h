@@ -59,6 +59,10 @@ void printHelp(std::string_view text, Stream stream = Stream::output);
 /// its beginning in red on a terminal; a closed standard error is no error.
 void printMessage(std::string_view message) noexcept;
 
+/// Ends the command with the exit code of numbers that do not exist, and says which on standard
+/// error.
+void endWithoutNumbers(Globals& globals, std::string_view message);
+
 /// Keeps closed standard streams from becoming the files that are opened next: reading and writing
 /// them fails as if they were closed.
 void occupyStandardStreams();

@@ -61,7 +61,9 @@ void requireNamed(const jobs::Compared& compared, const CompareArguments& argume
                   Globals& globals) {
     if (arguments.options.metrics == "all") return;
     for (const MetricValue& result : compared.metrics)
-        if (!result.value) globals.exitCode = static_cast<int>(ExitCode::numeric);
+        if (!result.value)
+            endWithoutNumbers(
+                globals, fmt::format("{}: {}: {}", compared.a, result.metric->name, result.reason));
 }
 
 void compareTwo(const CompareArguments& arguments, Globals& globals) {

@@ -22,7 +22,8 @@ struct EvalArguments {
 void evaluateOne(const EvalArguments& arguments, const Globals& globals) {
     const Direction wi = parseDirection(arguments.wi, "--wi");
     const Direction wo = parseDirection(arguments.wo, "--wo");
-    const jobs::Evaluated found = jobs::evaluatePair(arguments.spec, wi, wo, arguments.options);
+    const jobs::Evaluated found =
+        jobs::evaluatePair(arguments.spec, wi, wo, arguments.options, listenerFor(globals));
     if (globals.json) {
         printJson({{"format", "hshfit-eval"},
                    {"version", 1},
@@ -41,9 +42,9 @@ void evaluateOne(const EvalArguments& arguments, const Globals& globals) {
     printText(text);
 }
 
-void evaluateAll(const EvalArguments& arguments) {
-    const std::string csv =
-        jobs::evaluatePairs(arguments.spec, arguments.pairs, arguments.output, arguments.options);
+void evaluateAll(const EvalArguments& arguments, const Globals& globals) {
+    const std::string csv = jobs::evaluatePairs(arguments.spec, arguments.pairs, arguments.output,
+                                                arguments.options, listenerFor(globals));
     if (arguments.output.empty()) printText(csv);
 }
 
@@ -64,7 +65,7 @@ void addEval(CLI::App& command, Globals& globals) {
     wi->needs(wo)->excludes(pairs);
     wo->needs(wi)->excludes(pairs);
     command.callback([arguments, &globals] {
-        if (!arguments->pairs.empty()) return evaluateAll(*arguments);
+        if (!arguments->pairs.empty()) return evaluateAll(*arguments, globals);
         if (arguments->wi.empty()) throw UsageError("eval: give --wi and --wo, or --pairs");
         evaluateOne(*arguments, globals);
     });

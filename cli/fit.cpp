@@ -105,7 +105,10 @@ void runAll(const FitArguments& arguments, Globals& globals) {
         lines += reason.starts_with(file) ? fmt::format("  {}\n", reason)
                                           : fmt::format("  {}: {}\n", file, reason);
     }
-    if (!outcome.failures.empty()) globals.exitCode = static_cast<int>(ExitCode::numeric);
+    if (!outcome.failures.empty())
+        endWithoutNumbers(globals,
+                          fmt::format("fit --all: {} of {} fits failed", outcome.failures.size(),
+                                      outcome.fitted + outcome.kept + outcome.failures.size()));
     if (!globals.json) return printText(lines);
     printJson({{"format", "hshfit-fit-all"},
                {"version", 1},
@@ -149,7 +152,9 @@ void runCompareModels(const FitArguments& arguments, Globals& globals) {
                                                        fit.uncertainty->reducedChiSquare()));
         if (rank.tied) lines.insert(lines.size() - 1, "  tied with the first");
         if (!fit.converged && !arguments.options.accept)
-            globals.exitCode = static_cast<int>(ExitCode::numeric);
+            endWithoutNumbers(globals,
+                              fmt::format("{}: the fit of {} did not converge; --accept takes it",
+                                          arguments.data, rank.model));
     }
     const Json document = {{"format", "hshfit-fit-models"},
                            {"version", 1},

@@ -1,4 +1,5 @@
 #include "command.h"
+#include "measured_numbers.h"
 #include "within.h"
 
 #include <hshfit/coefficients/light_coefficients.h>
@@ -116,7 +117,7 @@ std::string text(const jobs::ProjectedLight& result, const std::string& output) 
     return fmt::format("{}: {} order {}, {}, error {:.1e}\n{}{}", output, light.basis, light.order,
                        known ? fmt::format("{:.6f} of the energy captured",
                                            light.curves.front().points.back().accuracy)
-                             : "no energy to compare with",
+                             : std::string(noCapturedEnergy),
                        light.error, known ? enoughText(result) : "", waveletText(result));
 }
 

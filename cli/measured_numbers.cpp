@@ -23,8 +23,8 @@ int leadingPower(double number) {
 
 std::string withError(double value, double error) {
     constexpr int mostDigits = 8;
-    if (!std::isfinite(value) || !std::isfinite(error) || !(error > 0))
-        return fmt::format("{:.6g} +- {:.2g}", value, error);
+    if (!std::isfinite(value)) return "none";
+    if (!std::isfinite(error) || !(error > 0)) return fmt::format("{:.6g} +- {:.2g}", value, error);
     const int last = leadingPower(error) - 1;  // the power of the second digit of the error
     const int first = value == 0 ? last : std::max(leadingPower(value), last);
     const int digits = std::min(first - last + 1, mostDigits);

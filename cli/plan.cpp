@@ -53,7 +53,8 @@ void runPlan(const PlanArguments& arguments, Globals& globals) {
                                : plan::planText(result) + plannedLightingText(lighting));
     }
     for (const plan::MaterialPlan& each : result.materials) {
-        if (!each.accepted) globals.exitCode = static_cast<int>(ExitCode::numeric);
+        if (!each.accepted)
+            endWithoutNumbers(globals, fmt::format("{}: {}", each.material.name, each.refused));
     }
 }
 

@@ -1,6 +1,7 @@
 #include "command.h"
 #include "documents.h"
 #include "form_options.h"
+#include "measured_numbers.h"
 #include "within.h"
 
 #include <hshfit/error.h>
@@ -67,12 +68,13 @@ void noteQuality(const jobs::Projected& result, const std::string& prefix, const
     const bool halfway = result.kept && result.kept->kind() == Representation::Kind::halfway;
     if (!energy.finite && !halfway)
         note(globals, prefix + "the energy does not exist: " + energy.reason);
+    if (!result.remark.empty()) note(globals, result.remark);
     if (result.poor) note(globals, prefix + result.poor->line());
 }
 
 std::string capturedText(const jobs::Projected& result) {
     return result.captured ? fmt::format("{:.6f} of the energy captured", *result.captured)
-                           : "no captured energy";
+                           : std::string(noCapturedEnergy);
 }
 
 std::string line(const jobs::Projected& result) {

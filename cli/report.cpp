@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <limits>
 #include <memory>
 
 namespace hshfit::cli {
@@ -34,11 +33,14 @@ std::string summary(const ReportEntry& entry) {
                     entry.outgoing.spec(), withError(entry.energy.value, entry.energy.error));
     for (const ReportCurve& curve : entry.curves) {
         const ReportPoint& last = curve.points.back();
+        if (!last.accuracy) {
+            text += fmt::format("  {:<16} {}\n", curve.basis, noCapturedEnergy);
+            continue;
+        }
         const auto reached = firstReaching(curve, 0.99);
         text += fmt::format("  {:<16} {:.6f} at order {:<3} ({} coefficients); 99 %: {}\n",
                             curve.bestTerms ? curve.basis + ", best k" : curve.basis,
-                            last.accuracy.value_or(std::numeric_limits<double>::quiet_NaN()),
-                            last.order, last.coefficients,
+                            *last.accuracy, last.order, last.coefficients,
                             reached ? fmt::format("{} coefficients (order {})",
                                                   reached->coefficients, reached->order)
                                     : fmt::format("more than {}", last.coefficients));
@@ -60,9 +62,11 @@ void runReport(ReportArguments& arguments, Globals& globals) {
         jobs::report(arguments.specs, arguments.options, listenerFor(globals));
     const Report& report = reported.report;
     for (const ReportEntry& entry : report.reports) {
-        if (entry.energy.finite) continue;
-        globals.exitCode = static_cast<int>(ExitCode::numeric);
-        note(globals, fmt::format("{}: {}", entry.brdf, entry.energy.reason));
+        if (entry.energy.finite && entry.energy.value > 0) continue;
+        endWithoutNumbers(globals,
+                          entry.energy.finite
+                              ? fmt::format("{}: {}: it is 0", entry.brdf, noCapturedEnergy)
+                              : fmt::format("{}: {}", entry.brdf, entry.energy.reason));
     }
     const bool any = !report.reports.empty();
     stateExitCode(reported.failures.empty() ? globals.exitCode

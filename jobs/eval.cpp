@@ -3,6 +3,7 @@
 #include "pair_file.h"
 #include "source.h"
 
+#include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/stop_request.h>
 
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 
 namespace hshfit::jobs {
@@ -23,6 +25,25 @@ std::vector<double> valuesAt(const Brdf& brdf, const Direction& wi, const Direct
     std::vector<double> values = evaluate(brdf, wi, wo);
     for (double& value : values) value *= options.cosine ? wi.z : 1;
     return values;
+}
+
+void requireFinite(const std::vector<double>& values, const std::string& brdf, const Direction& wi,
+                   const Direction& wo) {
+    for (const double value : values) {
+        if (std::isfinite(value)) continue;
+        throw NumericError(
+            fmt::format("{}: f is not finite at wi = {:.4g},{:.4g} and wo = {:.4g},{:.4g} degrees",
+                        brdf, degrees(polarAngle(wi)), degrees(azimuth(wi)),
+                        degrees(polarAngle(wo)), degrees(azimuth(wo))));
+    }
+}
+
+bool isZero(const std::vector<double>& values) {
+    return std::ranges::all_of(values, [](double value) { return value == 0; });
+}
+
+void remark(const Brdf& brdf, const Listener& listener) {
+    if (const std::string why = whyZero(brdf); !why.empty()) listener.say(why);
 }
 
 std::vector<std::string> columnsOf(const Channels& channels) {
@@ -118,20 +139,26 @@ void evaluateArrays(const Brdf& brdf, const VectorArray& wi, const VectorArray& 
 }
 
 Evaluated evaluatePair(const std::string& source, const Direction& wi, const Direction& wo,
-                       const EvalOptions& options) {
+                       const EvalOptions& options, const Listener& listener) {
     const auto brdf = openSource(source, options.rgb);
     Evaluated result{brdf->name(), brdf->channels().names(), valuesAt(*brdf, wi, wo, options)};
     brdf->checkIntact();
+    requireFinite(result.values, source, wi, wo);
+    if (isZero(result.values)) remark(*brdf, listener);
     return result;
 }
 
 std::string evaluatePairs(const std::string& source, const std::string& pairs,
-                          const std::string& output, const EvalOptions& options) {
+                          const std::string& output, const EvalOptions& options,
+                          const Listener& listener) {
     const auto brdf = openSource(source, options.rgb);
     const auto columns = columnsOf(brdf->channels());
     std::string csv = fmt::format("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,{}\n", fmt::join(columns, ","));
+    bool zero = true;
     readPairs(pairs, [&](const PairRow& row) {
         const auto values = valuesAt(*brdf, row.wi, row.wo, options);
+        requireFinite(values, source, row.wi, row.wo);
+        zero = zero && isZero(values);
         fmt::format_to(std::back_inserter(csv), "{}", fmt::join(row.cells, ","));
         for (std::size_t c = 0; c < columns.size(); ++c) {
             fmt::format_to(std::back_inserter(csv), ",{}", values[std::min(c, values.size() - 1)]);
@@ -139,6 +166,7 @@ std::string evaluatePairs(const std::string& source, const std::string& pairs,
         csv += "\n";
     });
     brdf->checkIntact();
+    if (zero) remark(*brdf, listener);
     if (!output.empty()) writeFile(output, csv);
     return csv;
 }

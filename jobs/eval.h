@@ -1,5 +1,7 @@
 #pragma once
 
+#include "listener.h"
+
 #include <hshfit/brdf/brdf.h>
 
 #include <cstddef>
@@ -20,16 +22,17 @@ struct Evaluated {
     std::vector<double> values;  ///< one per channel, in 1/sr
 };
 
-/// f at a pair of directions, of a source as in openSource; 0 below the horizon. Throws
-/// InputError.
+/// f at a pair of directions, of a source as in openSource; 0 below the horizon. The listener hears
+/// why f is 0 (whyZero). Throws InputError, and NumericError where f is not finite.
 Evaluated evaluatePair(const std::string& source, const Direction& wi, const Direction& wo,
-                       const EvalOptions& options);
+                       const EvalOptions& options, const Listener& listener = {});
 
 /// f at every pair of a CSV (readPairs), as a CSV: the pairs as they stand, then one column per
 /// wavelength, or r, g and b, which are equal for a grey BRDF. The text is also written to
 /// `output`, unless that is empty. Throws InputError and OutputError.
 std::string evaluatePairs(const std::string& source, const std::string& pairs,
-                          const std::string& output, const EvalOptions& options);
+                          const std::string& output, const EvalOptions& options,
+                          const Listener& listener = {});
 
 /// Vectors in memory of the caller: component j of vector k is at data[k * stride + j * step].
 /// A stride of 0 is one vector for all k.

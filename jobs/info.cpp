@@ -100,6 +100,7 @@ BrdfInfo describeSource(const std::string& source, bool rgb, const Listener& lis
         info.census = measured->census();
         info.axes = measured->axes();
         info.bothOrders = measured->bothOrders();
+        if (std::string why = whyZero(brdf); !why.empty()) info.warnings.push_back(std::move(why));
     }
     const std::string likeness = likenessOf(brdf);
     // A picture of light is not to be repaired into a BRDF.

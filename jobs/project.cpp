@@ -102,6 +102,7 @@ public:
                 result.errors = summaryOf(brdf, *reconstruct(*result.kept, sourceOpener()));
             }
             result.captured = capturedShare(*result.kept, brdf, result.errors);
+            if (!result.captured) result.remark = whyZero(brdf);
             result.poor = judge(*result.kept, result.captured, result.errors, brdf, output);
             return result;
         }
@@ -111,6 +112,7 @@ public:
                                 ? projectSamples(brdf, *basis_, outgoing, options_, progress)
                                 : std::move(hshfit::project(brdf, one, outgoing, how)[0]);
         result.captured = capturedShare(result.projection, brdf);
+        if (!result.captured) result.remark = whyZero(brdf);
         result.poor = judge(result.projection, result.captured, brdf, output);
         return result;
     }

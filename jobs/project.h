@@ -44,6 +44,7 @@ struct Projected {
     std::optional<double> captured = {};
     std::string output;
     std::optional<Poor> poor = {};
+    std::string remark = {};  ///< whyZero of source.h
 };
 
 /// Writes the coefficients of one BRDF to `output`, .json or .exr. Throws UsageError for

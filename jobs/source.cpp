@@ -106,6 +106,15 @@ void requireReadable(const Brdf& brdf) {
         brdf.checkIntact();
 }
 
+std::string whyZero(const Brdf& brdf) {
+    const auto* measured = dynamic_cast<const brdfs::MeasuredBrdf*>(&brdf);
+    if (!measured) return {};
+    const brdfs::Census census = measured->census();
+    if (census.negative == 0 || census.greatest > 0) return {};
+    return fmt::format("{}: f is 0: of {} values none is above 0, and {} are below", brdf.name(),
+                       census.values, census.negative);
+}
+
 OutgoingSet outgoingOrDefault(const std::string& text, const Brdf& brdf) {
     if (!text.empty()) return OutgoingSet::parse(text);
     return comparedOutgoing(brdf.laws().isotropic);

@@ -25,6 +25,10 @@ BrdfOpener sourceOpener();
 /// measured file are no error here; a failed read is.
 void requireReadable(const Brdf& brdf);
 
+/// Says that f is 0 because all stored values of a measured BRDF are below 0; else empty. Reads
+/// them all.
+std::string whyZero(const Brdf& brdf);
+
 /// The set that `text` names (OutgoingSet::parse); if it is empty, 16 elevations for an isotropic
 /// BRDF and a 16x16 map otherwise.
 OutgoingSet outgoingOrDefault(const std::string& text, const Brdf& brdf);

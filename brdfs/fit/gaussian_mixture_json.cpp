@@ -1,5 +1,6 @@
 #include <brdfs/fit/gaussian_mixture_json.h>
 #include <hshfit/files/json_fields.h>
+#include <hshfit/files/json_format.h>
 
 #include <brdfs/preset_json.h>
 #include <hshfit/version.h>
@@ -128,8 +129,7 @@ std::string gaussianMixtureJson(const GaussianMixture& mixture) {
 }
 
 bool isGaussianMixture(std::string_view text) {
-    const Json json = Json::parse(text, nullptr, false);
-    return json.is_object() && json.value("format", Json()) == format;
+    return jsonFormat(text) == format;
 }
 
 std::unique_ptr<GaussianMixture> openGaussianMixture(std::string_view text,

@@ -39,7 +39,7 @@ double identity(double x) {
     return x;
 }
 double squareRoot(double x) {
-    return std::sqrt(std::max(x, 0.0));
+    return x < 0 ? 0 : std::sqrt(x);
 }
 
 constexpr double logOffset = 1e-3, rootOffset = 1e-6;
@@ -257,8 +257,7 @@ LevelValues valuesAt(const Brdf& f, const Brdf& g, const PairEvaluator& pair,
         const std::string_view name = formulas[m].metric.name;
         if (formulas[m].term) {
             const double scale = formulas[m].scale ? total.scale[m] : total.weight;
-            const double ratio = total.term[m] == 0 ? 0 : total.term[m] / scale;
-            result.value[m] = formulas[m].finish(ratio);
+            result.value[m] = formulas[m].finish(total.term[m] / scale);
         } else if (name == "maximum") {
             result.value[m] = total.maximum;
         } else if (name == "albedo") {
@@ -384,7 +383,7 @@ std::vector<MetricValue> compareSamples(std::span<const double> f, std::span<con
         double value = sums.maximum;
         if (formulas[m].term) {
             const double scale = formulas[m].scale ? sums.scale[m] : sums.weight;
-            value = formulas[m].finish(sums.term[m] == 0 ? 0 : sums.term[m] / scale);
+            value = formulas[m].finish(sums.term[m] / scale);
         }
         if (!formulas[m].term && result.metric->name != "maximum") {
             result.reason = "takes more than samples";

@@ -173,7 +173,7 @@ double PairReference::energyLeftOn(const Part& part, std::span<const double> g) 
             whole += part.weights[n] * std::pow(f * cosines, 2);
         }
     }
-    return left == 0 ? 0 : left / whole;
+    return whole > 0 ? left / whole : std::nan("");
 }
 
 PairErrors PairReference::errorsOn(const Division& division, std::span<const double> g) const {
@@ -308,6 +308,7 @@ PairSummary summaryOf(const Brdf& brdf, const Brdf& g) {
 
 std::string textOf(const PairSummary& summary) {
     const auto text = [](const PairSummary::Value& v) {
+        if (!std::isfinite(v.value)) return std::string("none");
         return fmt::format("{:.3g} +- {:.1g}", v.value, v.error);
     };
     const auto place = [](const Direction& d) {

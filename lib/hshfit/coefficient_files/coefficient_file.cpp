@@ -4,6 +4,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/exr_header.h>
+#include <hshfit/files/json_format.h>
 
 #include <algorithm>
 #include <cassert>
@@ -144,23 +145,14 @@ Representation readRepresentation(const std::string& path) {
 }
 
 bool looksLikeCoefficients(const std::string& path) {
-    std::string head;
     try {
-        head = readRegularFile(path, std::size_t{1} << 16);
+        if (!hasExrMagic(readRegularFile(path, std::size_t{1} << 16)))
+            return jsonFormatOf(path) == coefficientFormat;
         // The list of channels comes before the attribute that tells.
-        if (hasExrMagic(head)) head = readRegularFile(path, std::size_t{1} << 22);
+        return exrSaysCoefficients(readRegularFile(path, std::size_t{1} << 22));
     } catch (const InputError&) {
         return false;
     }
-    switch (formByContent(head)) {
-        case Form::json:
-            return head.find("\"hshfit-coefficients\"") != std::string::npos;
-        case Form::exr:
-            return exrSaysCoefficients(head);
-        case Form::none:
-            break;
-    }
-    return false;
 }
 
 }  // namespace hshfit::inline coefficient_files

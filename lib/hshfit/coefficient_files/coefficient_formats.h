@@ -18,6 +18,9 @@ class JsonFields;
 
 namespace hshfit::inline coefficient_files {
 
+/// The "format" of a coefficient file.
+inline constexpr const char* coefficientFormat = "hshfit-coefficients";
+
 /// No form of a coefficient file nests its JSON more deeply.
 inline constexpr int deepestJson = 8;
 

@@ -18,7 +18,6 @@ namespace {
 using Json = nlohmann::json;
 using Ordered = nlohmann::ordered_json;  // what is written keeps the order of this source
 
-constexpr const char* formatName = "hshfit-coefficients";
 constexpr int formatVersion = 1;
 constexpr const char* slotRule = "l*(l+1)+m";
 // The constants of OutgoingSet that a reader needs in order to rebuild the directions.
@@ -217,7 +216,7 @@ CoefficientMetadata metadataOf(const CoefficientHead& c) {
     const auto add = [&](const char* key, const Ordered& value) {
         metadata.emplace_back(key, text(value));
     };
-    add("format", formatName);
+    add("format", coefficientFormat);
     add("version", formatVersion);
     add("generator", c.generator.empty() ? std::string("hshfit ") + version : c.generator);
     add("source", {{"brdf", c.source}});
@@ -278,7 +277,7 @@ CoefficientHead readSharedHead(const Fields& root, std::size_t outgoingCount) {
 }
 
 CoefficientHead readHead(const Fields& root, std::size_t outgoingCount) {
-    requireFormat(root, formatName, formatVersion);
+    requireFormat(root, coefficientFormat, formatVersion);
     CoefficientHead result = readSharedHead(root, outgoingCount);
     result.tolerance = root.numberOrNull("tolerance").value_or(nullNumber);
     if (root.has("least_squares")) {

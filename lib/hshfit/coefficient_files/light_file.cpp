@@ -3,6 +3,7 @@
 #include <hshfit/coefficient_files/coefficient_formats.h>
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
+#include <hshfit/files/json_format.h>
 #include <hshfit/version.h>
 
 #include <algorithm>
@@ -186,14 +187,7 @@ LightCoefficients readLight(const std::string& path) {
 }
 
 bool isLightFile(const std::string& path) {
-    try {
-        const std::string head = readRegularFile(path, std::size_t{1} << 16);
-        const auto first = head.find_first_not_of(" \t\r\n");
-        return first != std::string::npos && head[first] == '{' &&
-               head.find("\"hshfit-light\"") != std::string::npos;
-    } catch (const InputError&) {
-        return false;
-    }
+    return jsonFormatOf(path) == lightFormat;
 }
 
 }  // namespace hshfit::inline coefficient_files

@@ -167,7 +167,12 @@ std::vector<double> JsonFields::numbersOf(const Json& array, const char* key) co
 
 double JsonFields::finite(const Json& value, const char* key) const {
     const double number = value.get<double>();
-    if (!std::isfinite(number)) fail("is not finite", key);
+    if (!(std::abs(number) <= largestNumber)) {
+        fail(std::isfinite(number) ? fmt::format("is {:g}; numbers are at most {:g} in magnitude",
+                                                 number, largestNumber)
+                                   : "is not finite",
+             key);
+    }
     return number;
 }
 

@@ -14,6 +14,9 @@
 
 namespace hshfit::inline files {
 
+/// The largest magnitude that JsonFields takes: products of three such numbers are finite.
+inline constexpr double largestNumber = 1e100;
+
 /// The number that null stands for.
 inline constexpr double nullNumber = std::numeric_limits<double>::quiet_NaN();
 
@@ -35,7 +38,7 @@ nlohmann::json parseJson(std::string_view text, const std::string& file, int max
                          const JsonFilter& filter = {});
 
 /// One object of a file, with messages that name the field: every member but `has` and `json`
-/// throws InputError. Numbers are finite.
+/// throws InputError. Numbers are at most `largestNumber` in magnitude.
 class JsonFields {
 public:
     /// `path` is what leads to the object, "" for the root; both references have to outlive this.

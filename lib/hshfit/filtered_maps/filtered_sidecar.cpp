@@ -2,19 +2,20 @@
 
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
+#include <hshfit/files/json_format.h>
 #include <hshfit/files/mapped_file.h>
+#include <hshfit/material_maps/map_sidecar.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 namespace hshfit::inline filtered_maps {
 namespace {
 
-constexpr const char* format = "hshfit-filtered-map";
+constexpr const char *format = "hshfit-filtered-map", *exportFormat = "hshfit-gpu-filtered-map";
 constexpr std::size_t mostBytes = std::size_t{1} << 28;
 constexpr int mostSide = 1 << 20;
 
@@ -122,11 +123,13 @@ FilteredSidecar readFilteredSidecar(const std::string& file) {
     const std::string_view text(reinterpret_cast<const char*>(mapped.data()), mapped.size());
     const nlohmann::json json = parseJson(text, file, 8);
     const JsonFields root(json, "", file);
-    if (root.word("format") != format) root.fail("is not hshfit-filtered-map", "format");
+    const bool exported = root.word("format") == exportFormat;
+    if (!exported && root.word("format") != format)
+        root.fail("is not hshfit-filtered-map", "format");
     if (root.integer("version", 1, 1 << 20) != 1)
         root.fail("is newer than this program", "version");
     const auto folder = std::filesystem::path(file).parent_path();
-    const JsonFields texture = root.object("texture");
+    const JsonFields texture = root.object(exported ? "map" : "texture");
     FilteredSidecar s{.form = root.word("form"),
                       .layout = {.weights = root.integer("weights", 0, SurfaceTexel::most),
                                  .albedos = root.integer("albedos", 0, SurfaceTexel::most),
@@ -134,7 +137,8 @@ FilteredSidecar readFilteredSidecar(const std::string& file) {
                       .model = root.word("model"),
                       .nodes = nodesOf(root),
                       .number = gpu::parseNumber(texture.word("number")),
-                      .texture = (folder / texture.word("file")).string()};
+                      .texture = exported ? exportedTexture(root, "map", file)
+                                          : (folder / texture.word("file")).string()};
     if (s.form != "ellipse" && s.form != "harmonics")
         root.fail("has to be ellipse or harmonics", "form");
     if (s.layout.order % 2 == 0) root.fail("has to be odd", "order");
@@ -154,7 +158,8 @@ FilteredSidecar readFilteredSidecar(const std::string& file) {
     if (s.form == "harmonics") {
         if (s.levels.size() < 2) texture.fail("has one level, which has no harmonics", "levels");
         const JsonFields harmonics = root.object("harmonics");
-        s.harmonics = (folder / harmonics.word("file")).string();
+        s.harmonics = exported ? exportedTexture(root, "harmonics", file)
+                               : (folder / harmonics.word("file")).string();
         if (static_cast<std::size_t>(harmonics.integer("layers", 1, 1 << 24)) != s.harmonicLayers())
             harmonics.fail(fmt::format("has to be {}", s.harmonicLayers()), "layers");
     }
@@ -168,14 +173,8 @@ FilteredSidecar readFilteredSidecar(const std::string& file) {
 }
 
 bool isFilteredSidecar(const std::string& file) {
-    std::error_code error;  // what a pipe holds can be read only once
-    if (!std::filesystem::is_regular_file(file, error)) return false;
-    std::ifstream stream(file, std::ios::binary);
-    std::string head(64, '\0');
-    stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-    head.resize(static_cast<std::size_t>(stream.gcount()));
-    return head.starts_with("{") &&
-           head.find(fmt::format("\"format\":\"{}\"", format)) != std::string::npos;
+    const std::string found = jsonFormatOf(file);
+    return found == format || found == exportFormat;
 }
 
 }  // namespace hshfit::inline filtered_maps

@@ -62,7 +62,8 @@ struct FilteredSidecar {
 std::string toText(const FilteredSidecar& sidecar);
 /// Throws InputError that starts with `file`.
 FilteredSidecar readFilteredSidecar(const std::string& file);
-/// Whether a file starts like one.
+/// Whether a file is one: of a map, or of an export of a map, which has the same keys beside its
+/// own.
 bool isFilteredSidecar(const std::string& file);
 
 }  // namespace hshfit::inline filtered_maps

@@ -3,17 +3,17 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
+#include <hshfit/files/json_format.h>
 #include <hshfit/files/mapped_file.h>
 
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 
 namespace hshfit::inline material_maps {
 namespace {
 
-constexpr std::string_view format = "hshfit-material-map";
+constexpr std::string_view format = "hshfit-material-map", exportFormat = "hshfit-gpu-map";
 constexpr std::size_t mostBytes = std::size_t{1} << 30;
 
 template <class T>
@@ -89,14 +89,18 @@ MapSidecar readMapSidecar(const std::string& file) {
 MapSidecar parseMapSidecar(std::string_view text, const std::string& file) {
     const nlohmann::json json = parseJson(text, file, 8);
     const JsonFields root(json, "", file);
-    if (root.word("format") != format) root.fail("is not hshfit-material-map", "format");
+    const bool exported = root.word("format") == exportFormat;
+    if (!exported && root.word("format") != format)
+        root.fail("is not hshfit-material-map", "format");
     if (root.integer("version", 1, 1 << 20) != 1)
         root.fail("is newer than this program", "version");
     const JsonFields basis = root.object("basis"), symmetry = root.object("symmetry");
-    const JsonFields texture = root.object("texture");
+    const JsonFields texture = root.object(exported ? "map" : "texture");
     MapSidecar s{
         .form = root.word("form"),
-        .texture = (std::filesystem::path(file).parent_path() / texture.word("file")).string(),
+        .texture =
+            exported ? exportedTexture(root, "map", file)
+                     : (std::filesystem::path(file).parent_path() / texture.word("file")).string(),
         .basis = basis.word("name"),
         .order = basis.integer("order", 1, 1000)};
     if (s.form != "outgoing" && s.form != "low-rank" && !s.hasMaterials())
@@ -143,14 +147,20 @@ MapSidecar parseMapSidecar(std::string_view text, const std::string& file) {
 }
 
 bool isMapSidecar(const std::string& file) {
-    std::error_code error;  // what a pipe holds can be read only once
-    if (!std::filesystem::is_regular_file(file, error)) return false;
-    std::ifstream stream(file, std::ios::binary);
-    std::string head(64, '\0');
-    stream.read(head.data(), static_cast<std::streamsize>(head.size()));
-    head.resize(static_cast<std::size_t>(stream.gcount()));
-    return head.starts_with("{") &&
-           head.find(fmt::format("\"format\":\"{}\"", format)) != std::string::npos;
+    const std::string found = jsonFormatOf(file);
+    return found == format || found == exportFormat;
+}
+
+std::string exportedTexture(const JsonFields& sidecar, std::string_view role,
+                            const std::string& file) {
+    for (const JsonFields& listed : sidecar.objects("files")) {
+        const std::filesystem::path name = listed.word("path");
+        if (listed.word("role") != role || listed.word("container") != "ktx2") continue;
+        if (name.has_parent_path()) listed.fail("has to name a file beside this one", "path");
+        return (std::filesystem::path(file).parent_path() / name).string();
+    }
+    sidecar.fail(fmt::format("has no ktx2 texture of the {}; an export to ktx2 has", role),
+                 "files");
 }
 
 }  // namespace hshfit::inline material_maps

@@ -9,6 +9,10 @@
 #include <string_view>
 #include <vector>
 
+namespace hshfit::inline files {
+class JsonFields;
+}
+
 namespace hshfit::inline material_maps {
 
 /// A map of materials as its JSON file states it, "hshfit-material-map" (docs/svbrdf.md).
@@ -43,7 +47,12 @@ std::string toText(const MapSidecar& sidecar);
 MapSidecar readMapSidecar(const std::string& file);
 /// The same of a text that is the content of `file`.
 MapSidecar parseMapSidecar(std::string_view text, const std::string& file);
-/// Whether a file starts like one.
+/// Whether a file is one: of a map, or of an export of a map, which has the same keys beside its
+/// own.
 bool isMapSidecar(const std::string& file);
+/// The KTX 2.0 file of a role that the sidecar `file` of an export lists. Throws InputError where
+/// it lists none.
+std::string exportedTexture(const JsonFields& sidecar, std::string_view role,
+                            const std::string& file);
 
 }  // namespace hshfit::inline material_maps

@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <limits>
 
 namespace hshfit::inline picture_files {
 namespace {
@@ -87,6 +89,46 @@ bool pngIsWhole(std::span<const unsigned char> bytes) {
     return false;
 }
 
+/// The next word of the head of a PNM file, with its comments left out.
+std::string_view nextWord(std::string_view& head) {
+    while (!head.empty() && std::string_view(" \t\r\n#").find(head[0]) != std::string_view::npos)
+        head.remove_prefix(head[0] == '#' ? std::min(head.find('\n'), head.size()) : 1);
+    const std::string_view word = head.substr(0, head.find_first_of(" \t\r\n#"));
+    head.remove_prefix(word.size());
+    return word;
+}
+
+/// Whether a word is one number of the kind of `least`, not beyond the bounds.
+template <class Number>
+bool isNumber(std::string_view word, Number least, Number most) {
+    Number value{};
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error == std::errc() && end == word.data() + word.size() && value >= least &&
+           value <= most;
+}
+
+/// The wrong number in the head of a PNM or PFM file; empty without one. OpenImageIO takes a
+/// largest value of 0 or 70000 and a scale of 0 or NaN.
+std::string wrongNumber(std::string_view head, bool floating) {
+    constexpr int mostSide = 1 << 28, mostCode = 65535;
+    constexpr float mostScale = std::numeric_limits<float>::max();
+    head.remove_prefix(2);
+    for (const char* side : {"width", "height"}) {
+        if (const std::string_view word = nextWord(head); !isNumber(word, 1, mostSide))
+            return fmt::format("its {} is '{}'; it has to be from 1 to {}", side,
+                               word.substr(0, 20), mostSide);
+    }
+    const std::string_view word = nextWord(head);
+    if (!floating && !isNumber(word, 1, mostCode))
+        return fmt::format("its largest value is '{}'; it has to be from 1 to {}",
+                           word.substr(0, 20), mostCode);
+    constexpr float leastScale = std::numeric_limits<float>::min();
+    if (floating && !isNumber(word.substr(word.starts_with('-') ? 1 : 0), leastScale, mostScale))
+        return fmt::format("its scale is '{}'; it has to be a number other than 0",
+                           word.substr(0, 20));
+    return {};
+}
+
 std::string firstLine(std::string text) {
     return text.substr(0, text.find('\n'));
 }
@@ -113,6 +155,12 @@ PictureFile::PictureFile(const std::string& path) : state_(std::make_unique<Stat
     if (format.name == "JPEG" && !jpegIsWhole(state_->mapped.bytes())) fail("breaks off");
     if (format.name == "PNG" && !pngIsWhole(state_->mapped.bytes()))
         fail("breaks off or is damaged");
+    if (format.plugin == std::string_view("pnm")) {
+        const std::string_view head(reinterpret_cast<const char*>(state_->mapped.data()),
+                                    state_->mapped.size());
+        const std::string wrong = wrongNumber(head, format.name == "PFM");
+        if (!wrong.empty()) fail(wrong);
+    }
     std::string error;
     state_->image.reset(imageModule()(format.plugin, path.c_str(), error));
     if (!state_->image) {

@@ -193,7 +193,7 @@ std::string stressJson(const StressReport& report) {
             {"brdf", row.brdf}, {"theta_o", row.thetaDegrees}, {"converged", row.converged}};
         if (row.converged) {
             line["error"] = row.error;
-            line["captured"] = row.captured;
+            line["captured"] = finiteOrNull(row.captured);
             line["evaluations"] = row.evaluations;
         } else {
             line["reason"] = row.reason;
@@ -251,8 +251,10 @@ std::string stressMarkdown(const StressReport& report) {
             projectionTable(report.projection,
                             [](const auto& row) { return std::to_string(row.evaluations); });
     text += "\nShare of the energy that the 49 coefficients hold:\n\n" +
-            projectionTable(report.projection,
-                            [](const auto& row) { return fmt::format("{:.4f}", row.captured); });
+            projectionTable(report.projection, [](const auto& row) {
+                return std::isfinite(row.captured) ? fmt::format("{:.4f}", row.captured)
+                                                   : std::string("none");
+            });
     return text;
 }
 

@@ -70,7 +70,7 @@ std::string waveletRows(std::span<const Tradeoff> trades) {
 std::string frontTable(const Tradeoff& trade, const std::vector<std::size_t>& front) {
     const bool timed = !trade.times.empty();
     const auto percent = [](double error, double value) {
-        return fmt::format("{:.0f}%", 100 * error / value);
+        return value > 0 ? fmt::format("{:.0f}%", 100 * error / value) : std::string("-");
     };
     std::string text =
         fmt::format("  {:>9} {:>11} {:>5} {:>9} {:>9} {:>9} {:>9} {:>9}{}  options\n", "bytes",

@@ -10,6 +10,7 @@
 #include <kainjow/mustache.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 
@@ -28,6 +29,23 @@ constexpr double tableBytes = 16384;
 
 bool isTimed(std::span<const Tradeoff> trades) {
     return !trades.empty() && !trades[0].times.empty();
+}
+
+/// The axis of errors: beyond all that are above 0, with an end below them for 0.
+struct ErrorRange {
+    double lowest = 1e-6, highest = 1;
+};
+
+ErrorRange errorRange(const Tradeoff& trade) {
+    std::vector<double> errors;
+    const auto add = [&](std::optional<double> error) {
+        if (error && std::isfinite(*error) && *error > 0) errors.push_back(*error);
+    };
+    for (std::size_t k = 0; k < trade.forms.size(); ++k) add(trade.errorOf(k));
+    for (std::size_t k = 0; k < trade.wavelets.size(); ++k) add(trade.waveletErrorOf(k));
+    if (errors.empty()) return {};
+    const auto [least, greatest] = std::ranges::minmax(errors);
+    return {least / 2, 2 * greatest};
 }
 
 /// One of the two figures, drawn from files of the set that are closed but not yet in place.
@@ -92,6 +110,9 @@ std::string tradeoffScript(std::span<const Tradeoff> trades) {
         const std::size_t channels = trades[t].channels.count();
         const auto [smallest, largest] = std::ranges::minmax(trades[t].forms, {}, &Measured::bytes);
         entry.set("channels", std::to_string(channels));
+        const ErrorRange range = errorRange(trades[t]);
+        entry.set("lowest", fmt::format("{}", range.lowest));
+        entry.set("highest", fmt::format("{}", range.highest));
         entry.set("smallest", fmt::format("{}", 0.7 * static_cast<double>(smallest.bytes)));
         entry.set("largest",
                   fmt::format("{}", std::max(1.4 * static_cast<double>(largest.bytes),

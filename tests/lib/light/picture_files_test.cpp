@@ -360,5 +360,48 @@ TEST_F(PictureFiles, SizesCurvesAndChannelsThatDoNotFitAreRefused) {
     has(folder_.string() + "/absent.hdr", "no such file");
 }
 
+TEST_F(PictureFiles, NumbersInTheHeadOfPnmAndPfmAreChecked) {
+    const std::string pixels(2 * 2 * 3 * 4, '\0');
+    const auto read = [&](const std::string& head) {
+        std::ofstream(path("picture"), std::ios::binary) << head << pixels;
+        return readPictureLight(path("picture"), 1,
+                                {.layout = PictureLayout::angular, .curve = TransferCurve::linear});
+    };
+    for (const char* head : {"P6\n2 2\n255\n", "P6 2 2 65535 ", "P6\n# 9 9 9\n2 # w\n2\n1\n"})
+        EXPECT_EQ(read(head).width, 2u) << head;
+    for (const auto& [head, word] : std::initializer_list<std::pair<std::string, std::string>>{
+             {"P6\n2 2\n0\n", "'0'; it has to be from 1 to 65535"},
+             {"P6\n2 2\n70000\n", "'70000'"},
+             {"P6\n2 2\n65536\n", "'65536'"},
+             {"P6\n2 2\n-255\n", "'-255'"},
+             {"P6\n2 2\n255.5\n", "'255.5'"},
+             {"P6\n2 2\n2e2\n", "'2e2'"},
+             {"P6\n2.9 2\n255\n", "its width is '2.9'"},
+             {"P6\n2 0\n255\n", "its height is '0'"},
+             {"P6\n2 99999999999999999999\n255\n", "its height"}}) {
+        try {
+            read(head);
+            ADD_FAILURE() << head;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+        }
+    }
+    const auto readFloats = [&](const std::string& head) {
+        std::ofstream(path("picture"), std::ios::binary) << head << pixels;
+        return readPictureLight(path("picture"), 1, {.layout = PictureLayout::angular});
+    };
+    for (const char* scale : {"-1.0", "2.5", "-1e-3"})
+        EXPECT_EQ(readFloats(std::string("PF\n2 2\n") + scale + "\n").width, 2u) << scale;
+    for (const char* scale : {"0", "-0.0", "nan", "inf", "1x", "--1"}) {
+        try {
+            readFloats(std::string("PF\n2 2\n") + scale + "\n");
+            ADD_FAILURE() << scale;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find("its scale"), std::string::npos)
+                << error.what();
+        }
+    }
+}
+
 }  // namespace
 }  // namespace hshfit

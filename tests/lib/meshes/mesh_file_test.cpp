@@ -178,10 +178,14 @@ TEST(MeshFile, BrokenFilesAreNamedWithThePlace) {
     refuse("hello\n", {"no faces"});
     refuse(triangle, {"no faces"});
     refuse("v 0 0 nan\n" + triangle + "f 1 2 3\n", {"line 1", "nan"});
-    refuse("v 0 0\n", {"line 1", "2 numbers"});
+    refuse("v 0 0\n", {"line 1", "2 words"});
     refuse("v 0 0 1e30\n" + triangle + "f 1 2 3\n", {"vertex 0", "finite"});
     refuse("v 0 0 1e999\n" + triangle + "f 1 2 3\n", {"vertex 0", "finite"});
     refuse(triangle + "f 1 2 9\n", {"vertex"});
+    for (const char* corner : {"1.9", "1e0", "1/x", "1/2/3/4", "1//", "nan", "2,"})
+        refuse(triangle + "f 1 2 " + corner + "\n", {"line 4", corner, "three corners"});
+    for (const char* number : {"1e", "1.2.3", "--1", "1-2"})
+        refuse("v 0 0 " + std::string(number) + "\n" + triangle + "f 1 2 3\n", {"line 1", number});
     refuse(triangle + "f 1 1 2\n", {"area"});
     refuse(std::string("v 0 0 0\n\0", 9), {"neither"});
     refuse("ply\n", {"header"}, ".ply");
@@ -193,6 +197,18 @@ TEST(MeshFile, BrokenFilesAreNamedWithThePlace) {
            ".ply");
     refuse(std::string(ply).replace(ply.rfind('7'), 1, "8"), {"vertex 8", "there are 8"}, ".ply");
     refuse(std::string(ply).replace(ply.find("uchar int"), 9, "float int"), {"integer"}, ".ply");
+    for (const auto& [type, value] : {std::pair{"int", "0.9"},
+                                      {"int", "2e0.5"},
+                                      {"int", "3000000000"},
+                                      {"uchar", "256"},
+                                      {"uint", "-1"},
+                                      {"short", "40000"}}) {
+        std::string wrong = ply;
+        wrong.replace(wrong.find("uchar int"), 9, std::string("uchar ") + type);
+        refuse(wrong.replace(wrong.rfind('7'), 1, value), {"element face 5", value}, ".ply");
+    }
+    refuse(std::string(ply).replace(ply.find("uchar int"), 9, "uchar float"), {"integers"}, ".ply");
+    refuse(std::string(ply).replace(ply.find("\n4 ") + 1, 1, "4.5"), {"4.5", "uchar"}, ".ply");
     refuse(ply.replace(ply.find("element face"), 12, "element vertex"), {"twice"}, ".ply");
     EXPECT_THROW(readMesh("absent.obj"), InputError);
 }

@@ -132,24 +132,26 @@ std::string filteredExportText(const FilteredMap& map, Wrap wrap,
                                std::span<const MapTextureFile> textures,
                                std::span<const MapTest> tests) {
     const FilteredSidecar& s = map.sidecar();
-    const Json document = {
-        {"format", "hshfit-gpu-filtered-map"},
-        {"version", 1},
-        {"generator", std::string("hshfit ") + version},
-        {"source", s.source},
-        {"form", s.form},
-        {"model", s.model},
-        {"parameters", parametersJson(s)},
-        {"terms", termsJson(s)},
-        {"quantity", quantityName(Quantity::brdfCosine)},
-        {"channels", s.channels.names()},
-        {"frame", Json::parse(gpu::frameText())},
-        {"uv", "u to the right, v downwards from row 0, 0 to 1 from edge to edge"},
-        {"map", mapJson(s, wrap)},
-        {"harmonics", harmonicsJson(s, wrap)},
-        {"shared", sharedJson(lobeNumbers(s))},
-        {"files", filesJson(textures)},
-        {"tests", testsJson(tests)}};
+    // All that a map's own file states, so that the export is read as that file is.
+    const Json own = Json::parse(toText(s));
+    Json document = {{"format", "hshfit-gpu-filtered-map"},
+                     {"version", 1},
+                     {"generator", std::string("hshfit ") + version},
+                     {"source", s.source},
+                     {"form", s.form},
+                     {"model", s.model},
+                     {"parameters", parametersJson(s)},
+                     {"terms", termsJson(s)},
+                     {"quantity", quantityName(Quantity::brdfCosine)},
+                     {"channels", s.channels.names()},
+                     {"frame", Json::parse(gpu::frameText())},
+                     {"uv", "u to the right, v downwards from row 0, 0 to 1 from edge to edge"},
+                     {"map", mapJson(s, wrap)},
+                     {"harmonics", harmonicsJson(s, wrap)},
+                     {"shared", sharedJson(lobeNumbers(s))},
+                     {"files", filesJson(textures)},
+                     {"tests", testsJson(tests)}};
+    for (const char* key : {"order", "weights", "albedos", "lobes"}) document[key] = own[key];
     return gpu::readableSidecar(jsonText(document));
 }
 

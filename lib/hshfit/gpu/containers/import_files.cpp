@@ -1,4 +1,5 @@
 #include <hshfit/files/checksum.h>
+#include <hshfit/files/json_format.h>
 #include <hshfit/files/mapped_file.h>
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/containers/internal/byte_fields.h>
@@ -34,9 +35,7 @@ const Container* recognised(std::string_view bytes) {
 }
 
 bool isSidecar(std::string_view bytes) {
-    const auto first = bytes.find_first_not_of(" \t\r\n");
-    return first != bytes.npos && bytes[first] == '{' &&
-           bytes.substr(0, 1 << 16).find("\"hshfit-gpu\"") != bytes.npos;
+    return jsonFormat(bytes) == "hshfit-gpu";
 }
 
 void checkSum(std::span<const std::byte> bytes, const std::string& wanted,
@@ -127,7 +126,9 @@ LoadedTexels fromSidecar(const fs::path& path, const std::string& only) {
     }
     if (!listed) {
         throw InputError(
-            fmt::format("{}: none of its files of coefficients lies beside it", sidecar.path()));
+            fmt::format("{}: none of its files of coefficients lies beside it; an export to a "
+                        "container, such as bin, has one",
+                        sidecar.path()));
     }
     const ExportedFile chosen = *listed;
     loadListed(chosen, folder, index.coefficientsSha256, index.coefficients);

@@ -149,7 +149,7 @@ Representation skeletonOf(const LoadedTexels& loaded) {
                                                                     : 0);
         row["base64"] = text;
     }
-    document["format"] = "hshfit-coefficients";
+    document["format"] = coefficientFormat;
     document["version"] = 1;
     return representationFromJson(jsonText(document), loaded.sidecar);
 }

@@ -122,7 +122,9 @@ std::string mapExportText(const MaterialMap& map, Wrap wrap,
                           std::span<const MapTextureFile> textures,
                           std::span<const MapTest> tests) {
     const MapSidecar& s = map.sidecar();
-    const Json document = {
+    // All that a map's own file states, so that the export is read as that file is.
+    const Json own = Json::parse(toText(s));
+    Json document = {
         {"format", "hshfit-gpu-map"},
         {"version", 1},
         {"generator", std::string("hshfit ") + version},
@@ -141,6 +143,8 @@ std::string mapExportText(const MaterialMap& map, Wrap wrap,
         {"shared", sharedJson(s)},
         {"files", filesJson(textures)},
         {"tests", testsJson(tests)}};
+    for (const char* key : {"symmetry", "shapes", "materials"})
+        if (own.contains(key)) document[key] = own[key];
     return gpu::readableSidecar(jsonText(document));
 }
 

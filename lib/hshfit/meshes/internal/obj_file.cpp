@@ -6,14 +6,49 @@
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
+#include <charconv>
 
 namespace hshfit::inline meshes {
 namespace {
 
 constexpr std::string_view blanks = " \t\r";
 
-/// tinyobjloader reads a word that is no number as 0, so that words are checked before it: each of
-/// a line `v` or `vn` has to be a number in digits.
+bool isNumber(std::string_view word) {
+    if (word.find_first_not_of("0123456789+-.eE") != std::string_view::npos) return false;
+    word.remove_prefix(word.starts_with('+') ? 1 : 0);
+    double value = 0;
+    return std::from_chars(word.data(), word.data() + word.size(), value).ptr ==
+               word.data() + word.size() &&
+           !word.empty();
+}
+
+/// Whether a word is VERTEX, VERTEX/TEXTURE, VERTEX//NORMAL or VERTEX/TEXTURE/NORMAL.
+bool isCorner(std::string_view word) {
+    for (int part = 0; part < 3; ++part) {
+        int index = 0;
+        const char* end = word.data() + word.size();
+        const auto [next, error] = std::from_chars(word.data(), end, index);
+        const bool left = part == 1 && word.starts_with('/');
+        if (error != std::errc() && !left) return false;
+        word.remove_prefix(left ? 0 : static_cast<std::size_t>(next - word.data()));
+        if (word.empty()) return true;
+        if (!word.starts_with('/')) return false;
+        word.remove_prefix(1);
+    }
+    return false;
+}
+
+struct Statement {
+    std::string_view keyword;
+    bool (*holds)(std::string_view word);
+    std::string_view takes;
+};
+constexpr Statement statements[] = {{"v", isNumber, "numbers, x y z"},
+                                    {"vn", isNumber, "numbers, x y z"},
+                                    {"f", isCorner, "corners, as 1, 1/2, 1//3 or 1/2/3"}};
+
+/// tinyobjloader reads a word that is no number as 0 and 1.9 as the index 1, so that words are
+/// checked before it.
 void checkNumbers(std::string_view text, const std::string& path) {
     for (std::size_t number = 1; !text.empty(); ++number) {
         const std::size_t end = std::min(text.find('\n'), text.size());
@@ -22,7 +57,8 @@ void checkNumbers(std::string_view text, const std::string& path) {
         std::size_t at = std::min(line.find_first_not_of(blanks), line.size());
         const std::size_t wordEnd = std::min(line.find_first_of(blanks, at), line.size());
         const std::string_view keyword = line.substr(at, wordEnd - at);
-        if (keyword != "v" && keyword != "vn") continue;
+        const auto* statement = std::ranges::find(statements, keyword, &Statement::keyword);
+        if (statement == std::end(statements)) continue;
         int count = 0;
         for (at = wordEnd; at < line.size(); ++count) {
             at = line.find_first_not_of(blanks, at);
@@ -30,16 +66,16 @@ void checkNumbers(std::string_view text, const std::string& path) {
             const std::size_t last = std::min(line.find_first_of(blanks, at), line.size());
             const std::string_view word = line.substr(at, last - at);
             if (word.front() == '#') break;
-            if (word.find_first_not_of("0123456789+-.eE") != std::string_view::npos) {
-                throw InputError(
-                    fmt::format("{}: line {}: '{}' is no number; '{}' takes three, x y z", path,
-                                number, word.substr(0, 40), keyword));
+            if (!statement->holds(word)) {
+                throw InputError(fmt::format("{}: line {}: '{}' is read; '{}' takes three {}", path,
+                                             number, word.substr(0, 40), keyword,
+                                             statement->takes));
             }
             at = last;
         }
         if (count < 3) {
-            throw InputError(fmt::format("{}: line {}: '{}' has {} numbers; it takes three, x y z",
-                                         path, number, keyword, count));
+            throw InputError(fmt::format("{}: line {}: '{}' has {} words; it takes three {}", path,
+                                         number, keyword, count, statement->takes));
         }
     }
 }

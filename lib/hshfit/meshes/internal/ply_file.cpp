@@ -9,6 +9,7 @@
 #include <array>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -156,6 +157,8 @@ private:
         if (words.size() == 5 && words[1] == "list") {
             properties.push_back({words[4], typeOf(words[3]), typeOf(words[2])});
             if (properties.back().count->real) fail("the length of a list has to be an integer");
+            if (isPolygon(properties.back()) && properties.back().type->real)
+                fail("the indices of vertices have to be integers");
         } else if (words.size() == 3) {
             properties.push_back({words[2], typeOf(words[1])});
         } else {
@@ -189,6 +192,9 @@ private:
         const auto at = std::ranges::find(elements_, name, &Element::name);
         return at == elements_.end() ? nullptr : &*at;
     }
+    static bool isPolygon(const Property& property) {
+        return property.name == "vertex_indices" || property.name == "vertex_index";
+    }
     static bool hasAll(const Element& element, std::initializer_list<std::string_view> names) {
         return std::ranges::all_of(names, [&](std::string_view name) {
             return std::ranges::any_of(element.properties, [&](const Property& property) {
@@ -199,7 +205,7 @@ private:
 
     // --- values -----------------------------------------------------------------------------
 
-    double asciiNumber() {
+    double asciiNumber(const Type& type) {
         while (cursor_.startsWith(' ') || cursor_.startsWith('\n') || cursor_.startsWith('\t') ||
                cursor_.startsWith('\r')) {
             cursor_.take(1);
@@ -218,7 +224,15 @@ private:
         if (error == std::errc::result_out_of_range) return value;
         if (error != std::errc() || next != word + length)
             fail(fmt::format("'{}' is no number", std::string_view(word, length)));
+        if (!type.real && !holds(type, value))
+            fail(fmt::format("'{}' is no {}", std::string_view(word, length), type.name));
         return value;
+    }
+
+    static bool holds(const Type& integer, double value) {
+        const double codes = std::ldexp(1.0, 8 * static_cast<int>(integer.bytes));
+        const double least = integer.isSigned ? -codes / 2 : 0;
+        return value >= least && value < least + codes && value == std::floor(value);
     }
 
     double binaryNumber(const Type& type) {
@@ -240,7 +254,7 @@ private:
     }
 
     double number(const Type& type) {
-        return encoding_ == Encoding::ascii ? asciiNumber() : binaryNumber(type);
+        return encoding_ == Encoding::ascii ? asciiNumber(type) : binaryNumber(type);
     }
 
     // --- elements ---------------------------------------------------------------------------
@@ -256,8 +270,7 @@ private:
             const double count = number(*property.count);
             if (!(count >= 0 && count <= mostCorners))
                 fail(fmt::format("a list of {} values; at most {} are read", count, mostCorners));
-            const bool polygon =
-                face && (property.name == "vertex_indices" || property.name == "vertex_index");
+            const bool polygon = face && isPolygon(property);
             std::array<std::uint32_t, 3> triangle{};
             for (int corner = 0; corner < count; ++corner) {
                 const double value = number(*property.type);

@@ -13,11 +13,15 @@ array rowTitle[{{rows}}]
 array channels[{{rows}}]
 array smallest[{{rows}}]
 array largest[{{rows}}]
+array lowest[{{rows}}]
+array highest[{{rows}}]
 {{#entries}}
 rowTitle[{{index}}] = {{{title}}}
 channels[{{index}}] = {{channels}}
 smallest[{{index}}] = {{smallest}}
 largest[{{index}}] = {{largest}}
+lowest[{{index}}] = {{lowest}}
+highest[{{index}}] = {{highest}}
 {{/entries}}
 metric = {{{metric}}}
 
@@ -34,6 +38,8 @@ set linetype 6 linecolor rgb '#882255' pointtype 12 pointsize 0.5{{/wavelets}}
 # Columns: brdf, series, cost, error, …; of the fronts: brdf, cost, error, knee, …
 is(row, kind) = column(1) == row && column(2) == kind
 positive(x) = x > 0 ? x : NaN
+# An error of 0 is shown at the lower edge.
+shown(x, row) = x > lowest[row] ? x : x >= 0 ? lowest[row] : NaN
 
 set border 3 linewidth 0.8 linecolor rgb 'black'
 set tics nomirror out scale 0.6
@@ -62,7 +68,9 @@ do for [pass = from:to] {
         set label 2 metric at screen 0.018, screen bottom + 0.51 * rowHeight center rotate
         set xlabel pass == 0 ? 'bytes' : 'nanoseconds a pair of directions, 4096 at a time, one thread'
         set xrange [*:*]
-        set yrange [*:*]
+        set yrange [lowest[row]:highest[row]]
+        set ytics auto
+        set ytics add ('0' lowest[row])
         if (pass == 0) {
             set xrange [smallest[row]:largest[row]]
             set xtics ('64' 64, '256' 256, '1 KiB' 1024, '4 KiB' 4096, '16 KiB' 16384, \
@@ -87,11 +95,11 @@ do for [pass = from:to] {
         set key at screen 0.80, screen bottom + 0.87 * rowHeight left top Left reverse \
             samplen 1.5 spacing 1.25 noautotitle
         plot for [kind = 1:{{kinds}}] data skip 1 \
-                using (is(row, kind) ? positive(column(3)) : NaN):(positive(column(4))) \
+                using (is(row, kind) ? positive(column(3)) : NaN):(shown(column(4), row)) \
                 title name[kind] with points linetype kind, \
-             front skip 1 using (column(1) == row ? column(2) : NaN):(positive(column(3))) \
+             front skip 1 using (column(1) == row ? column(2) : NaN):(shown(column(3), row)) \
                 title 'front' with steps linecolor rgb 'black' linewidth 1.2, \
-             front skip 1 using (column(1) == row && column(4) == 1 ? column(2) : NaN):(positive(column(3))) \
+             front skip 1 using (column(1) == row && column(4) == 1 ? column(2) : NaN):(shown(column(3), row)) \
                 title 'its knee' with points pointtype 6 pointsize 1.6 linewidth 1.8 linecolor rgb 'black'
         unset key
         unset label 1
