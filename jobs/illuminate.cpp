@@ -7,6 +7,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/pictures/rgb_picture.h>
+#include <hshfit/transport/possible_radiance.h>
 #include <hshfit/transport/radiance_cache/cached_picture.h>
 #include <hshfit/version.h>
 #include <hshfit/wording.h>
@@ -84,11 +85,18 @@ PathPicture taken(const SurfaceScene& scene, RadianceCache* cache, const Camera&
 }
 
 /// Takes the picture and adds its files to the set.
-IlluminatedCamera pictured(const SurfaceScene& scene, RadianceCache* cache, const Camera& camera,
+IlluminatedCamera pictured(const SurfaceScene& scene, std::span<const Light> lights,
+                           RadianceCache* cache, const Camera& camera,
                            const IlluminateOptions& options, const Listener& listener,
                            KeptRows* kept, FileSet& files) {
     IlluminatedCamera result{.name = camera.name, .width = camera.width, .height = camera.height};
     PathPicture traced = taken(scene, cache, camera, options, listener, kept, result);
+    requirePossible({.name = (files.folder() / (camera.name + ".exr")).string(),
+                     .width = camera.width,
+                     .radiance = traced.radiance,
+                     .error = traced.error,
+                     .samples = options.path.samples},
+                    scene, lights);
     const RgbPicture picture{camera.width, camera.height, std::move(traced.radiance)};
     const RgbPicture error{camera.width, camera.height, std::move(traced.error)};
     const auto count = static_cast<double>(picture.values.size());
@@ -217,8 +225,9 @@ Illuminated illuminate(const std::string& path, const std::string& folder,
             kept.push_back(
                 std::make_unique<KeptRows>(place.string(), inputs, *camera, options.path));
         }
-        result.cameras.push_back(pictured(scene, cache.get(), *camera, options, listener,
-                                          kept.empty() ? nullptr : kept.back().get(), files));
+        result.cameras.push_back(pictured(scene, read.lights, cache.get(), *camera, options,
+                                          listener, kept.empty() ? nullptr : kept.back().get(),
+                                          files));
     }
     if (cache && !options.records.empty()) writeKept(*cache, options.records, recordsKey);
     files.commit();

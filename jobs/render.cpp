@@ -9,6 +9,7 @@
 #include <hshfit/meshes/mesh_file.h>
 #include <hshfit/pictures/sphere_picture.h>
 #include <hshfit/projection/projection.h>
+#include <hshfit/transport/possible_radiance.h>
 
 #include <fmt/format.h>
 
@@ -190,6 +191,7 @@ public:
                 material.truth =
                     renderByIntegration(*material.brdf, points_, view_, light_,
                                         {.tolerance = options_.tolerance}, listener_.part(name));
+                check(material, material.truth->picture, 0);
             }
             material.projections = projectionsOf(*material.brdf, columns_, options_,
                                                  listener_.part("project " + name));
@@ -203,6 +205,9 @@ public:
             byCoefficients_.push_back(renderByCoefficients(
                 all, points_, view_, lights_,
                 {.tolerance = options_.tolerance / 2, .progress = listener_.part(part)}));
+            // A series of few terms is beyond the largest value at places.
+            for (std::size_t m = 0; m < materials_.size(); ++m)
+                check(materials_[m], byCoefficients_.back()[m].picture, 1);
         }
     }
 
@@ -253,6 +258,14 @@ public:
     }
 
 private:
+    void check(const Material& material, const SpherePicture& picture, int samples) const {
+        requirePossible({.name = "the picture of " + material.brdf->name(),
+                         .width = picture.size,
+                         .radiance = picture.radiance,
+                         .samples = samples},
+                        *material.brdf, lights_);
+    }
+
     const RenderOptions& options_;
     const Listener& listener_;
     Rendered& result_;

@@ -5,6 +5,7 @@
 #include <hshfit/light/light_projection.h>
 #include <hshfit/pictures/rgb_picture.h>
 #include <hshfit/transport/path_tracer.h>
+#include <hshfit/transport/possible_radiance.h>
 
 #include <fmt/format.h>
 
@@ -88,6 +89,18 @@ TransferPicture takePicture(const PictureScene& scene, const Camera& camera,
     const RgbPicture own{camera.width, camera.height, std::move(found)};
     const double stops = automaticExposure(reference);
     const std::string stem = camera.name + "_" + light.file;
+    requirePossible({.name = (files.folder() / (stem + "_path.png")).string(),
+                     .width = camera.width,
+                     .radiance = reference.values,
+                     .error = path.error,
+                     .samples = options.referenceSamples},
+                    surfaces, light.lights);
+    // Coefficients of light are beyond its radiance at places.
+    requirePossible({.name = (files.folder() / (stem + "_transfer.png")).string(),
+                     .width = camera.width,
+                     .radiance = own.values,
+                     .samples = 1},
+                    surfaces, light.lights);
     files.write(stem + "_transfer.png", rgbPng(own, stops));
     const std::string png = rgbPng(reference, stops);
     files.write(stem + "_path.png", png);

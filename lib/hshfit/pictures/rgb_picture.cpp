@@ -51,7 +51,17 @@ double automaticExposure(const RgbPicture& picture) {
     return *at > 0 ? std::round(10 * std::log2(shownAsWhite / static_cast<double>(*at))) / 10 : 0;
 }
 
+void requireFinite(const std::string& name, std::size_t width, std::span<const float> rgb) {
+    const auto bad = std::ranges::find_if_not(rgb, [](float v) { return std::isfinite(v); });
+    if (bad == rgb.end()) return;
+    const auto pixel = static_cast<std::size_t>(bad - rgb.begin()) / 3;
+    throw NumericError(
+        fmt::format("{}: the value {} of the pixel in column {}, row {} is not finite", name, *bad,
+                    pixel % width, pixel / width));
+}
+
 std::string rgbPng(const RgbPicture& picture, double stops) {
+    requireFinite("a picture", static_cast<std::size_t>(picture.width), picture.values);
     const double scale = std::exp2(stops);
     std::vector<unsigned char> pixels;
     pixels.reserve(picture.values.size() / 3 * 4);
@@ -65,6 +75,10 @@ std::string rgbPng(const RgbPicture& picture, double stops) {
 
 void writeRgbExr(const RgbPicture& picture, std::span<const NamedPicture> more, AtomicFile& file,
                  const std::map<std::string, std::string>& attributes) {
+    requireFinite(file.path(), static_cast<std::size_t>(picture.width), picture.values);
+    for (const NamedPicture& one : more)
+        requireFinite(file.path() + ": " + one.name, static_cast<std::size_t>(picture.width),
+                      one.picture->values);
     ExrPicture exr{.width = static_cast<std::size_t>(picture.width),
                    .height = static_cast<std::size_t>(picture.height),
                    .channels = {colours.begin(), colours.end()}};

@@ -23,12 +23,16 @@ struct RgbPicture {
 /// `shownAsWhite`, rounded to a tenth; 0 for black.
 double automaticExposure(const RgbPicture& picture);
 
+/// Throws NumericError, which names the picture and the pixel, for a value that is not finite.
+void requireFinite(const std::string& name, std::size_t width, std::span<const float> rgb);
+
 /// A PNG file, sRGB, 8 bits. `stops` doubles the radiance that often; values outside of [0, 1] are
-/// then clamped.
+/// then clamped. Throws NumericError for a value that is not finite.
 std::string rgbPng(const RgbPicture& picture, double stops);
 
 /// An OpenEXR file of 32-bit floats, R, G, B; pictures beside the first have channels with their
-/// name and a dot before the colour. All of the same size.
+/// name and a dot before the colour. All of the same size. Throws NumericError for a value that is
+/// not finite.
 struct NamedPicture {
     std::string name;
     const RgbPicture* picture;

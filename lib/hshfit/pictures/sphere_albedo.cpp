@@ -102,6 +102,10 @@ void AlbedoTable::lookUpRow(std::size_t row, double share, const Direction& wo,
     }
 }
 
+double AlbedoTable::largest() const {
+    return *std::max_element(values_.begin(), values_.end());
+}
+
 void AlbedoTable::at(const Direction& wo, std::span<double> albedo) const {
     assert(albedo.size() == channels_);
     std::fill(albedo.begin(), albedo.end(), 0.0);

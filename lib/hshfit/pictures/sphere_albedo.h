@@ -23,6 +23,8 @@ public:
     /// One value per channel of the BRDF, for any wo above the horizon.
     void at(const Direction& wo, std::span<double> albedo) const;
 
+    /// The largest entry of all.
+    double largest() const;
     /// The largest change from level 1 to level 2 over entries and channels.
     double error() const { return error_; }
     std::size_t notFinite() const { return notFinite_; }

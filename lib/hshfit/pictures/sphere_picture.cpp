@@ -59,6 +59,13 @@ std::size_t sizeOf(const Sheet& sheet) {
     return static_cast<std::size_t>(sheet.front().front().size);
 }
 
+void requireFiniteSheet(const std::string& name, const Sheet& sheet) {
+    for (const auto& row : sheet) {
+        for (const SpherePicture& picture : row)
+            requireFinite(name, static_cast<std::size_t>(picture.size), picture.radiance);
+    }
+}
+
 ExrPicture exrOf(const Sheet& sheet) {
     const std::size_t size = sizeOf(sheet);
     ExrPicture exr{.width = size * columnsOf(sheet),
@@ -125,6 +132,7 @@ std::string spheresPng(std::span<const SpherePicture> spheres, double stops) {
 }
 
 std::string sheetPng(const Sheet& sheet, double stops) {
+    requireFiniteSheet("a picture", sheet);
     const std::size_t size = sizeOf(sheet), width = size * columnsOf(sheet);
     const double scale = std::exp2(stops);
     std::vector<std::uint8_t> pixels(width * size * sheet.size() * 4);
@@ -161,6 +169,7 @@ void writeSpheres(std::span<const SpherePicture> spheres, double stops, AtomicFi
 void writeSheet(const Sheet& sheet, double stops, AtomicFile& file,
                 const std::map<std::string, std::string>& attributes) {
     checkSpheresPath(file.path());
+    requireFiniteSheet(file.path(), sheet);
     if (endsWith(file.path(), ".png")) {
         file.write(sheetPng(sheet, stops));
         return;
