@@ -35,8 +35,8 @@ USES = {
 # Long work: preparation and call. A sum of many models takes long to evaluate.
 SUM = "' + '.join(['ggx:alpha=0.3'] * 250)"
 WORK = {
-    "pairs": (f"import numpy\nf = hshfit.open({SUM})\nwi = numpy.tile([0, 0, 1.0], (3_000_000, 1))",
-              "f(wi, wi)"),
+    "pairs": (f"import numpy\nf = hshfit.open({SUM})\n"
+              "wo = hshfit.direction(numpy.linspace(0, 80, 3_000_000))", "f([0, 0, 1], wo)"),
     "pairs of a function": ("import time\n"
                             "f = hshfit.function(lambda wi, wo: time.sleep(0.01) or 1)\n"
                             "wi = hshfit.direction([0.01 * k % 80 for k in range(100_000)])",
