@@ -143,10 +143,9 @@ TEST_F(ValueTable, FilesThatABatchWritesByOptionsAreNamedWithinTheItem) {
 /// Two options of one item may not name one file.
 TEST_F(ValueTable, FilesOfAnItemHaveNamesOfTheirOwn) {
     const jobs::BatchProgram program = batchProgram();
-    write(
-        "m.jsonl",
-        R"({"command": "fit", "input": "lambert", "options": {"model": "lambert", "residuals": "x", "figures": "x"}}
-)");
+    const jobs::BatchCommand& fit =
+        *std::ranges::find(program.commands, "fit", &jobs::BatchCommand::name);
+    write("m.jsonl", lineOf(fit, R"({"model": "lambert", "residuals": "x", "figures": "x"})"));
     const auto mistakes = jobs::readManifest(path("m.jsonl"), program).mistakes;
     ASSERT_EQ(mistakes.size(), 1U);
     EXPECT_NE(mistakes[0].find("residuals \"x\": give a name"), std::string::npos) << mistakes[0];
