@@ -20,7 +20,8 @@ def run(command, **more):
     """In a shell, as a user without settings of their own whose python3 is this one."""
     kept = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
     path = f"{Path(sys.executable).parent}:{kept['PATH']}"
+    settings = {**kept, "PATH": path, "HOME": str(FOLDER / "home"), **more}
     done = subprocess.run(["sh", "-ec", command], cwd=FOLDER, check=False, capture_output=True,
-                          text=True, env={**kept, "PATH": path, "HOME": str(FOLDER / "home"), **more})
+                          text=True, env=settings)
     if done.returncode:
         raise AssertionError(f"{command}\n{done.stdout[-3000:]}{done.stderr[-3000:]}")

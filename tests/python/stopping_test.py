@@ -1,4 +1,4 @@
-"""Processes of their own: functions of Python are called from threads, and SIGINT ends long work."""
+"""In processes of their own: threads call functions of Python, and SIGINT ends long work."""
 import ast
 import os
 import signal
