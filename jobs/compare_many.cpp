@@ -145,6 +145,7 @@ std::string tableOf(const ManyCompared& many) {
 
 bool isTable(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
+    file.exceptions(std::ios::badbit);
     std::string line;
     return std::getline(file, line) && line.starts_with(columns);
 }

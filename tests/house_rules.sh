@@ -88,22 +88,23 @@ matches '#include *[<"](Eigen|OpenEXR|Imf|Imath|nlohmann)' 'lib/*.h' ':!lib/**/i
 # One function makes text printable (files/printable.h): everything printed goes through
 # cli/command.cpp (cli/terminal.cpp asks for the width, and the items of a batch write theirs to
 # files), everything in JSON through
-# files/json_fields.cpp, every page and every script of gnuplot through printableLines. Shaders keep
-# to ASCII by themselves.
+# files/json_fields.cpp, every page and every script of gnuplot through filledPage. Shaders keep to
+# ASCII by themselves.
 streams='[^/_[:alnum:]](stderr|stdout|STD(OUT|ERR)_FILENO)|std::(cout|cerr|clog)'
 matches "$streams|fmt::print|printf\\(" \
     'lib/*.cpp' 'lib/*.h' brdfs jobs cli ':!cli/command.cpp' ':!cli/terminal.cpp' \
     ':!lib/hshfit/pages/gnuplot.cpp' ':!lib/hshfit/files/standard_streams.cpp' \
     ':!jobs/batches/redirected_streams.cpp' |
     rule 'text is printed by printText, printMessage and note only (cli/command.h)'
+# A stream keeps its failures to itself, and a failed allocation is one of them.
+git grep -lE 'stringstream|std::ofstream|getline\(' -- lib brdfs jobs cli | while read -r file; do
+    grep -qE 'exceptions\(std::ios::badbit\)|\.bad\(\)|if \(!out\)' "$file" || echo "$file"
+done | rule 'streams of text throw or are asked whether they failed'
 matches '\.dump\(' 'lib/*.cpp' 'lib/*.h' brdfs jobs cli ':!lib/hshfit/files/json_fields.cpp' |
     rule 'JSON becomes text in jsonText only (files/json_fields.h)'
-git grep -lF '.render(' -- 'lib/*.cpp' brdfs jobs cli ':!lib/hshfit/gpu/shader.cpp' \
-    ':!lib/hshfit/gpu/forms/form_shader.cpp' ':!lib/hshfit/gpu/timing' \
-    ':!lib/hshfit/lighting/lighting_shader.cpp' ':!lib/hshfit/gpu/proposals/proposal_shader.cpp' \
-    ':!cli/completion.cpp' | while read -r file; do
-    grep -q 'return printableLines(' "$file" || echo "$file"
-done | rule 'pages and scripts are printable (files/printable.h)'
+matches '[.]render\(|mustache::mustache' 'lib/*.cpp' brdfs jobs cli \
+    ':!lib/hshfit/files/template_text.cpp' |
+    rule 'templates are filled by filledPage and filledText only (files/template_text.h)'
 matches '/(work|home|Users)/[[:alnum:]]' . | rule 'paths of one machine'
 matches '(TEST|TEST_F|TEST_P)\(.*DISABLED_|^ *#if 0' '*.h' '*.cpp' | rule 'switched-off code'
 tracked '*.h' '*.cpp' | grep -E '(^|[/_])(utils?|common|helpers?|manager)[_.]' |

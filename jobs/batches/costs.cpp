@@ -113,6 +113,7 @@ double Costs::of(const BatchItem& item, const BatchProgram& program) const {
 
 Costs Costs::fromFile(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
+    file.exceptions(std::ios::badbit);
     std::string line;
     if (!file || !std::getline(file, line))
         throw InputError(path + ": cannot be read; give the times.csv of an earlier batch");

@@ -78,6 +78,7 @@ void restartPeak() {
 
 std::uint64_t peakBytes() {
     std::ifstream status("/proc/self/status");
+    status.exceptions(std::ios::badbit);
     for (std::string line; std::getline(status, line);)
         if (line.starts_with("VmHWM:")) return std::stoull(line.substr(6)) * 1024;
     return 0;

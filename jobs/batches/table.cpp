@@ -9,11 +9,10 @@
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/checksum.h>
 #include <hshfit/files/json_fields.h>
-#include <hshfit/files/printable.h>
+#include <hshfit/files/template_text.h>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
-#include <kainjow/mustache.hpp>
 
 #include <algorithm>
 #include <array>
@@ -198,8 +197,7 @@ std::string pageText(const std::vector<ItemStatus>& items, std::vector<Json> row
     fields.set("rows", scriptText(rows));
     fields.set("columns", scriptText(columns));
     fields.set("pixels", std::to_string(options.thumbnail));
-    kainjow::mustache::mustache page{std::string(embedded::batch_html)};
-    return printableLines(page.render(fields));
+    return filledPage(embedded::batch_html, fields);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
+#include <hshfit/files/template_text.h>
 #include <hshfit/gpu/shader_data.h>
 #include <hshfit/gpu/shader_text.h>
 
@@ -23,7 +24,6 @@ namespace hshfit::gpu {
 namespace {
 
 using kainjow::mustache::data;
-using kainjow::mustache::mustache;
 using kainjow::mustache::partial;
 
 constexpr std::array table{
@@ -240,9 +240,7 @@ void setPartials(data& page) {
 }
 
 std::string rendered(std::string_view text, const data& page) {
-    mustache snippet{std::string(text)};
-    snippet.set_custom_escape([](const std::string& s) { return s; });
-    return withoutGaps(snippet.render(page));
+    return withoutGaps(filledText(text, page));
 }
 
 std::span<const LanguageEntry> languages() {

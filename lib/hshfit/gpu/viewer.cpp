@@ -4,14 +4,13 @@
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/checksum.h>
 #include <hshfit/files/json_fields.h>
-#include <hshfit/files/printable.h>
+#include <hshfit/files/template_text.h>
 #include <hshfit/gpu/shader.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/version.h>
 #include <hshfit/wording.h>
 
 #include <fmt/format.h>
-#include <kainjow/mustache.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -275,8 +274,7 @@ std::string viewerPage(const ViewerInput& input) {
     page.set("notes", notesOf(input));
     page.set("data", scriptSafe(jsonText(document)));
     page.set("script", script);
-    return printableLines(
-        kainjow::mustache::mustache(std::string(embedded::viewer_page)).render(page));
+    return filledPage(embedded::viewer_page, page);
 }
 
 void writeViewer(const std::string& path, const ViewerInput& input, bool force) {

@@ -2,6 +2,7 @@
 
 #include <hshfit/bases/basis.h>
 #include <hshfit/error.h>
+#include <hshfit/files/template_text.h>
 #include <hshfit/gpu/shader_data.h>
 #include <hshfit/gpu/shader_text.h>
 #include <hshfit/lighting/harmonics.h>
@@ -24,7 +25,6 @@ namespace {
 
 using gpu::Language;
 using kainjow::mustache::data;
-using kainjow::mustache::mustache;
 using kainjow::mustache::partial;
 
 constexpr std::array languages{Language::glslEs, Language::glsl, Language::hlsl, Language::wgsl};
@@ -185,9 +185,7 @@ std::string lightingShaderSource(Language language, const LightingShader& shader
         gpu::setFrameTurn(shader.order, page);
     }
     setPartials(page);
-    mustache text{std::string(embedded::lighting_snippet)};
-    text.set_custom_escape([](const std::string& s) { return s; });
-    return gpu::withoutGaps(text.render(page));
+    return gpu::withoutGaps(filledText(embedded::lighting_snippet, page));
 }
 
 }  // namespace hshfit::lighting

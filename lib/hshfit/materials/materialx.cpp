@@ -8,7 +8,6 @@
 
 #include <cctype>
 #include <cmath>
-#include <sstream>
 
 namespace hshfit::inline materials {
 namespace {
@@ -61,9 +60,14 @@ std::string materialXText(std::string_view name, std::string_view node,
     link.append_attribute("name") = "surfaceshader";
     link.append_attribute("type") = "surfaceshader";
     link.append_attribute("nodename") = shader.c_str();
-    std::ostringstream text;
-    document.save(text, "  ");
-    return text.str();
+    struct : pugi::xml_writer {
+        std::string text;
+        void write(const void* bytes, std::size_t count) override {
+            text.append(static_cast<const char*>(bytes), count);
+        }
+    } writer;
+    document.save(writer, "  ");
+    return writer.text;
 }
 
 }  // namespace hshfit::inline materials

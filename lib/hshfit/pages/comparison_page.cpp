@@ -1,5 +1,5 @@
 #include <hshfit/files/checksum.h>
-#include <hshfit/files/printable.h>
+#include <hshfit/files/template_text.h>
 #include <hshfit/pages/comparison_files.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/pages/report_files.h>
@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <kainjow/mustache.hpp>
 
 #include <array>
 #include <cmath>
@@ -171,8 +170,7 @@ std::string comparisonPage(const Comparison& comparison, const std::vector<std::
         for (const auto& figure : figuresOf(comparison)) files.push_back(data("file", figure.file));
     }
     page.set("files", files);
-    return printableLines(
-        kainjow::mustache::mustache(std::string(embedded::comparison_html)).render(page));
+    return filledPage(embedded::comparison_html, page);
 }
 
 }  // namespace hshfit::inline pages

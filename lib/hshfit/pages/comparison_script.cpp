@@ -1,11 +1,10 @@
-#include <hshfit/files/printable.h>
+#include <hshfit/files/template_text.h>
 #include <hshfit/pages/axis_ticks.h>
 #include <hshfit/pages/comparison_files.h>
 #include <hshfit/pages/gnuplot.h>
 #include <hshfit/pages/report_files.h>
 
 #include <fmt/format.h>
-#include <kainjow/mustache.hpp>
 
 #include <algorithm>
 #include <array>
@@ -153,8 +152,7 @@ std::string comparisonScript(const Comparison& comparison) {
         figures.push_back(figure);
     }
     fields.set("figures", figures);
-    return printableLines(
-        kainjow::mustache::mustache(std::string(embedded::comparison_gp)).render(fields));
+    return filledPage(embedded::comparison_gp, fields);
 }
 
 }  // namespace hshfit::inline pages

@@ -1,9 +1,9 @@
 #include <hshfit/files/printable.h>
+#include <hshfit/files/template_text.h>
 #include <hshfit/pages/gnuplot.h>
 #include <hshfit/pages/internal/print_layout.h>
 
 #include <fmt/format.h>
-#include <kainjow/mustache.hpp>
 
 #include <algorithm>
 #include <array>
@@ -266,8 +266,7 @@ std::string figuresScript(const std::vector<PrintFigure>& figures, const FigureS
     for (std::size_t k = 0; k < figures.size(); ++k)
         list.push_back(Script(figures[k], style, k + 1).fields());
     fields.set("figures", list);
-    return printableLines(
-        kainjow::mustache::mustache(std::string(embedded::figures_gp)).render(fields));
+    return filledPage(embedded::figures_gp, fields);
 }
 
 std::string figureCsv(const PrintFigure& figure) {

@@ -1,4 +1,4 @@
-#include <hshfit/files/printable.h>
+#include <hshfit/files/template_text.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/pages/report_files.h>
 #include <hshfit/version.h>
@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <kainjow/mustache.hpp>
 
 namespace hshfit::embedded {
 extern const std::string_view report_html;
@@ -191,8 +190,7 @@ std::string reportPage(const Report& report, const std::vector<std::string>& fig
     }
     page.set("plotter", plotter);
     page.set("entries", entries);
-    return printableLines(
-        kainjow::mustache::mustache(std::string(embedded::report_html)).render(page));
+    return filledPage(embedded::report_html, page);
 }
 
 }  // namespace hshfit::inline pages

@@ -1,5 +1,6 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/files/printable.h>
+#include <hshfit/files/template_text.h>
 #include <hshfit/pages/gnuplot.h>
 #include <hshfit/pages/report_files.h>
 
@@ -10,7 +11,6 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <kainjow/mustache.hpp>
 
 namespace hshfit::embedded {
 extern const std::string_view curves_gp;
@@ -184,8 +184,7 @@ std::string reportScript(const Report& report) {
     }
     fields.set("styles", lines);
     fields.set("bases", fmt::format("{}", fmt::join(names, " ")));
-    return printableLines(
-        kainjow::mustache::mustache(std::string(embedded::curves_gp)).render(fields));
+    return filledPage(embedded::curves_gp, fields);
 }
 
 std::string reportCsv(const Report& report) {

@@ -1,11 +1,10 @@
-#include <hshfit/files/printable.h>
+#include <hshfit/files/template_text.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/pages/report_files.h>
 #include <hshfit/plan/plan_files.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>
-#include <kainjow/mustache.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -138,8 +137,7 @@ std::string planPage(const Plan& plan) {
     data materials{data::type::list};
     for (const MaterialPlan& each : plan.materials) materials.push_back(materialData(each));
     page.set("materials", materials);
-    return printableLines(
-        kainjow::mustache::mustache(std::string(embedded::plan_html)).render(page));
+    return filledPage(embedded::plan_html, page);
 }
 
 }  // namespace hshfit::plan

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <sstream>
+#include <algorithm>
 
 namespace hshfit::plan {
 namespace {
@@ -71,8 +71,11 @@ std::string planText(const Plan& plan) {
                 : "",
             commandOf(accepted.choice, material.name + ".json"));
         out += seen;
-        std::istringstream lines(textOf(accepted.pairs));
-        for (std::string line; std::getline(lines, line);) out += "  " + line + "\n";
+        const std::string lines = textOf(accepted.pairs);
+        for (std::size_t at = 0, end = 0; at < lines.size(); at = end + 1) {
+            end = std::min(lines.find('\n', at), lines.size());
+            out += "  " + lines.substr(at, end - at) + "\n";
+        }
         if (!each.cheaper.empty()) {
             out += fmt::format("  next cheaper: {} bytes, error {:.3g}\n",
                                each.cheaper.back().bytes, each.cheaper.back().error);

@@ -4,13 +4,12 @@
 #include <hshfit/error.h>
 #include <hshfit/files/checksum.h>
 #include <hshfit/files/json_fields.h>
-#include <hshfit/files/printable.h>
+#include <hshfit/files/template_text.h>
 #include <hshfit/gpu/viewer_light.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>
-#include <kainjow/mustache.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -181,8 +180,7 @@ std::string transferPage(const TransferPageInput& input) {
     page.set("script", std::string(gpu::harmonicsScript()) +
                            std::string(embedded::transfer_renderer) +
                            std::string(embedded::transfer_main));
-    return printableLines(
-        kainjow::mustache::mustache(std::string(embedded::transfer_page)).render(page));
+    return filledPage(embedded::transfer_page, page);
 }
 
 }  // namespace hshfit::inline precomputed_transfer

@@ -1,4 +1,4 @@
-#include <hshfit/files/printable.h>
+#include <hshfit/files/template_text.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/pages/report_files.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <kainjow/mustache.hpp>
 
 #include <algorithm>
 #include <array>
@@ -241,7 +240,7 @@ std::string page(std::span<const Tradeoff> trades, const std::vector<std::string
     }
     fields.set("plotter", plotter);
     fields.set("entries", entries);
-    return printableLines(kainjow::mustache::mustache(std::string(shape)).render(fields));
+    return filledPage(shape, fields);
 }
 
 }  // namespace

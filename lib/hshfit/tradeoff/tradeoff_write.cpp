@@ -1,13 +1,12 @@
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
-#include <hshfit/files/printable.h>
+#include <hshfit/files/template_text.h>
 #include <hshfit/pages/gnuplot.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/pages/report_files.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
 
 #include <fmt/format.h>
-#include <kainjow/mustache.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -120,8 +119,7 @@ std::string tradeoffScript(std::span<const Tradeoff> trades) {
         entries.push_back(entry);
     }
     fields.set("entries", entries);
-    return printableLines(
-        kainjow::mustache::mustache(std::string(embedded::tradeoff_gp)).render(fields));
+    return filledPage(embedded::tradeoff_gp, fields);
 }
 
 void writeTradeoffs(std::span<const Tradeoff> trades, FileSet& files) {

@@ -1,6 +1,7 @@
 #include <hshfit/gpu/forms/form_shader.h>
 
 #include <hshfit/error.h>
+#include <hshfit/files/template_text.h>
 #include <hshfit/gpu/forms/form_table.h>
 #include <hshfit/gpu/forms/internal/envelope_text.h>
 #include <hshfit/gpu/forms/internal/form_text.h>
@@ -22,7 +23,6 @@ namespace hshfit::gpu::inline forms {
 namespace {
 
 using kainjow::mustache::data;
-using kainjow::mustache::mustache;
 using kainjow::mustache::partial;
 
 constexpr std::array storages{std::pair{Storage::automatic, std::string_view("auto")},
@@ -194,9 +194,7 @@ std::string formShaderSource(Language language, const FormPayload& payload,
     page.set("evalFetches", std::to_string(cost.fetches));
     page.set("evalProducts", std::to_string(cost.products));
     setPartials(row.body, page);
-    mustache frame{std::string(words.text)};
-    frame.set_custom_escape([](const std::string& s) { return s; });
-    return withoutGaps(frame.render(page));
+    return withoutGaps(filledText(words.text, page));
 }
 
 }  // namespace hshfit::gpu::inline forms

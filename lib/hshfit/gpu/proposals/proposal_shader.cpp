@@ -1,11 +1,11 @@
 #include <hshfit/gpu/proposals/proposal_shader.h>
 
+#include <hshfit/files/template_text.h>
 #include <hshfit/gpu/shader_data.h>
 #include <hshfit/gpu/shader_text.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <kainjow/mustache.hpp>
 
 #include <algorithm>
 #include <string_view>
@@ -21,7 +21,6 @@ namespace hshfit::gpu::inline proposals {
 namespace {
 
 using kainjow::mustache::data;
-using kainjow::mustache::mustache;
 using kainjow::mustache::partial;
 
 /// The words of a language beyond setLanguageWords: its template, a declaration of a whole number,
@@ -134,9 +133,7 @@ std::string proposalSource(Language language, const ProposalRecord& record,
     setTable(record.proposal, page);
     setEfficiency(record.rows, page);
     setPartials(page);
-    mustache frame{std::string(words.text)};
-    frame.set_custom_escape([](const std::string& s) { return s; });
-    return fmt::format("\n{}", withoutGaps(frame.render(page)));
+    return fmt::format("\n{}", withoutGaps(filledText(words.text, page)));
 }
 
 }  // namespace hshfit::gpu::inline proposals

@@ -4,6 +4,7 @@
 #include <hshfit/files/checksum.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/files/printable.h>
+#include <hshfit/files/template_text.h>
 #include <hshfit/gpu/shader_text.h>
 #include <hshfit/gpu/three/internal/three_input.h>
 #include <hshfit/gpu/viewer_light.h>
@@ -12,7 +13,6 @@
 #include <hshfit/version.h>
 
 #include <fmt/format.h>
-#include <kainjow/mustache.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -36,9 +36,7 @@ constexpr int sampledBands = 10;
 
 /// Omitted sections leave blank lines behind; one is kept.
 std::string rendered(std::string_view text, const data& page) {
-    kainjow::mustache::mustache frame{std::string(text)};
-    frame.set_custom_escape([](const std::string& s) { return s; });
-    std::string result = frame.render(page);
+    std::string result = filledText(text, page);
     for (std::size_t at = result.find("\n\n\n"); at != result.npos; at = result.find("\n\n\n", at))
         result.erase(at, 1);
     return result;

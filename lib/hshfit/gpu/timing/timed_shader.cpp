@@ -1,12 +1,11 @@
 #include <hshfit/gpu/timing/timed_shader.h>
 
 #include <hshfit/error.h>
+#include <hshfit/files/template_text.h>
 #include <hshfit/gpu/forms/form_shader.h>
 #include <hshfit/gpu/forms/form_table.h>
 #include <hshfit/gpu/shader.h>
 #include <hshfit/representation/named_arrays.h>
-
-#include <kainjow/mustache.hpp>
 
 #include <bit>
 #include <cstdint>
@@ -23,8 +22,7 @@ using kainjow::mustache::data;
 
 std::string render(data& page) {
     page.set("side", std::to_string(timedSide));
-    kainjow::mustache::mustache shape{std::string(embedded::timed_pixels)};
-    return shape.render(page);
+    return filledText(embedded::timed_pixels, page);
 }
 
 ComputeResource sumsBuffer() {

@@ -3,13 +3,12 @@
 #include <hshfit/error.h>
 #include <hshfit/files/checksum.h>
 #include <hshfit/files/json_fields.h>
-#include <hshfit/files/printable.h>
+#include <hshfit/files/template_text.h>
 #include <hshfit/material_maps/exports/shared_numbers.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>
-#include <kainjow/mustache.hpp>
 #include <nlohmann/json.hpp>
 
 #include <optional>
@@ -129,8 +128,7 @@ std::string mapPage(const MapPage& input, std::string_view smaller) {
     page.set("script", std::string(gpu::harmonicsScript()) +
                            std::string(embedded::map_page_renderer) +
                            std::string(embedded::map_page_main));
-    return printableLines(
-        kainjow::mustache::mustache(std::string(embedded::map_page)).render(page));
+    return filledPage(embedded::map_page, page);
 }
 
 std::string mapViewerPage(const MapViewerInput& input) {
