@@ -133,7 +133,7 @@ void printMessage(std::string_view message) noexcept {
                        ? fmt::format("\x1b[1;31m{}\x1b[0m{}", name, line.substr(name.size()))
                        : line);
     } catch (const std::exception&) {
-        // Out of memory for the message: the exit code says the rest.
+        writeError("hshfit: not enough memory\n");
     }
 }
 

@@ -11,6 +11,7 @@
 int main(int argc, char** argv) {
     hshfit::cli::occupyStandardStreams();
     hshfit::removeTemporariesOnSignals();
+    hshfit::cli::endUncaughtInOneLine();
     hshfit::setWording(hshfit::cli::optionWording());
     return hshfit::cli::runWords(std::vector<std::string>(argv + std::min(argc, 1), argv + argc));
 }

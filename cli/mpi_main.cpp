@@ -48,6 +48,7 @@ int run(std::vector<std::string> words, hshfit::jobs::MpiProcesses& processes) {
 int main(int argc, char** argv) {
     hshfit::cli::occupyStandardStreams();
     hshfit::removeTemporariesOnSignals();
+    hshfit::cli::endUncaughtInOneLine();
     hshfit::setWording(hshfit::cli::optionWording());
     const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
     try {

@@ -10,6 +10,7 @@
 
 #include <brdfs/fit/solver_log.h>
 #include <hshfit/error.h>
+#include <hshfit/files/interruption.h>
 #include <hshfit/files/output_rule.h>
 #include <hshfit/version.h>
 
@@ -18,9 +19,14 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <atomic>
+#include <exception>
+#include <memory>
 #include <new>
-#include <optional>
 #include <sstream>
+#include <system_error>
+
+#include <unistd.h>
 
 namespace hshfit::cli {
 namespace {
@@ -41,12 +47,18 @@ int run(const std::vector<std::string>& words, Outputs outputs) {
 
     Globals globals;
     brdfs::takeSolverLog([&globals](const std::string& said) { note(globals, said); });
-    std::optional<tbb::global_control> threads;
+    std::unique_ptr<tbb::global_control> threadsOfItem;
     app.parse_complete_callback([&] {
         if (globals.json && isOutputTaken())
             throw UsageError("--json: the answer and the file cannot both go to standard output");
         if (globals.threads > 0) {
-            threads.emplace(tbb::global_control::max_allowed_parallelism, globals.threads);
+            auto limit = std::make_unique<tbb::global_control>(
+                tbb::global_control::max_allowed_parallelism, globals.threads);
+            // oneTBB starts threads where a limit ends, which is too much for the end of a process.
+            if (outputs == Outputs::replaced)
+                threadsOfItem = std::move(limit);
+            else
+                limit.release();
         }
         setOutputRule({});
         takeKeptFiles();
@@ -63,6 +75,7 @@ int run(const std::vector<std::string>& words, Outputs outputs) {
         return globals.exitCode;
     } catch (const CLI::Success& success) {
         std::ostringstream text;
+        text.exceptions(std::ios::badbit);
         const int code = app.exit(success, text, text);
         printHelp(text.str());
         return code;
@@ -73,24 +86,57 @@ int run(const std::vector<std::string>& words, Outputs outputs) {
     return globals.exitCode;
 }
 
+/// Whether the system refuses a thread, in the words of the C++ library or of oneTBB.
+bool refusesThread(const std::exception& error) {
+    const auto* system = dynamic_cast<const std::system_error*>(&error);
+    return (system && system->code() == std::errc::resource_unavailable_try_again) ||
+           std::string_view(error.what()).starts_with("pthread_");
+}
+
+/// Prints a line for the exception that is being handled, and returns its exit code.
+int reported(const std::vector<std::string>& words) noexcept try {
+    throw;
+} catch (const UsageError& error) {
+    printMessage(withHelp(error.what(), words));
+    return static_cast<int>(error.code());
+} catch (const Error& error) {
+    printMessage(error.what());
+    return static_cast<int>(error.code());
+} catch (const std::bad_alloc&) {
+    printMessage("not enough memory for what was asked");
+    return static_cast<int>(ExitCode::numeric);
+} catch (const std::exception& error) {
+    if (refusesThread(error)) {
+        printMessage("the system starts no more threads; --threads 1 does with the first one");
+        return static_cast<int>(ExitCode::numeric);
+    }
+    printMessage(fmt::format("internal error: {}", error.what()));
+    return 1;
+} catch (...) {
+    printMessage("internal error");
+    return 1;
+}
+
 }  // namespace
 
 int runWords(const std::vector<std::string>& words, Outputs outputs) noexcept {
     try {
         return run(words, outputs);
-    } catch (const UsageError& error) {
-        printMessage(withHelp(error.what(), words));
-        return static_cast<int>(error.code());
-    } catch (const Error& error) {
-        printMessage(error.what());
-        return static_cast<int>(error.code());
-    } catch (const std::bad_alloc&) {
-        printMessage("not enough memory for what was asked");
-        return static_cast<int>(ExitCode::numeric);
-    } catch (const std::exception& error) {
-        printMessage(fmt::format("internal error: {}", error.what()));
-        return 1;
+    } catch (...) {
+        return reported(words);
     }
+}
+
+void endUncaughtInOneLine() {
+    std::set_terminate([] {
+        static std::atomic<bool> ending = false;
+        if (ending.exchange(true)) {
+            for (;;) ::pause();
+        }
+        if (std::current_exception()) removeTracesAndExit(reported({}));
+        printMessage("internal error");
+        removeTracesAndExit(1);
+    });
 }
 
 }  // namespace hshfit::cli

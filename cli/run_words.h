@@ -11,4 +11,9 @@ namespace hshfit::cli {
 enum class Outputs { kept, replaced };
 int runWords(const std::vector<std::string>& words, Outputs outputs = Outputs::kept) noexcept;
 
+/// Makes an exception that nothing catches, such as one of a thread of oneTBB that could start no
+/// other, end the process as an error of runWords does: with one line, an exit code and no
+/// temporary. For `main` to call once.
+void endUncaughtInOneLine();
+
 }  // namespace hshfit::cli

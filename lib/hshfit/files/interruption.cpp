@@ -64,13 +64,22 @@ void removeTraces() noexcept {
     }
 }
 
-extern "C" {
-static void removeTracesAndDie(int signal) {
-    const int error = errno;
+static void endAndRemoveTraces() noexcept {
     ending = true;
     constexpr int longest = 5000;
     for (int waited = 0; inside > 0 && waited < longest; ++waited) sleepOneMillisecond();
     removeTraces();
+}
+
+void removeTracesAndExit(int code) noexcept {
+    endAndRemoveTraces();
+    ::_exit(code);
+}
+
+extern "C" {
+static void removeTracesAndDie(int signal) {
+    const int error = errno;
+    endAndRemoveTraces();
     errno = error;
     // The default action runs once this handler returns and the signal is no longer blocked.
     std::signal(signal, SIG_DFL);

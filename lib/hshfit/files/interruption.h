@@ -14,6 +14,9 @@ namespace hshfit::inline files {
 /// `main` to call once.
 void removeTemporariesOnSignals();
 
+/// Ends the children, removes the temporaries, and ends the process without a signal.
+[[noreturn]] void removeTracesAndExit(int code) noexcept;
+
 /// While one lives, those signals wait: a step that leaves no trace half-registered, and no set of
 /// files half-renamed, stands within one. To be short; such a signal waits 5 s at most.
 class Uninterrupted {
