@@ -49,6 +49,7 @@
 #include <hshfit/brdf/colour.h>
 #include <hshfit/brdf/one_channel.h>
 #include <hshfit/error.h>
+#include <hshfit/files/json_format.h>
 
 #include <fmt/format.h>
 
@@ -90,11 +91,9 @@ std::vector<unsigned char> readHead(const std::string& path, std::size_t most) {
     return head;
 }
 
-/// Whether the first character is that of a JSON object, with which no measured format begins.
-bool beginsAsJson(const std::string& path) {
-    for (const unsigned char c : readHead(path, 64))
-        if (c != ' ' && c != '\t' && c != '\r' && c != '\n') return c == '{';
-    return false;
+bool isJson(const std::string& path) {
+    const std::vector<unsigned char> head = readHead(path, jsonStartBytes);
+    return beginsAsJson({reinterpret_cast<const char*>(head.data()), head.size()});
 }
 
 /// The format by content or, for unrecognised content, by
@@ -135,7 +134,7 @@ std::unique_ptr<Brdf> openFile(const std::string& path, std::string_view options
     const std::uint64_t size = fs::file_size(path, error);
     if (error) throw InputError(fmt::format("{}: {}", path, error.message()));
     if (size == 0) throw InputError(path + ": is empty");
-    if (fs::path(path).extension() == ".json" || beginsAsJson(path))
+    if (fs::path(path).extension() == ".json" || isJson(path))
         return openPresetFile(path, size, options);
     const Format& format = formatOf(path, size);
     return format.open(path, parseParameters(format.name, format.parameters, options));

@@ -1,5 +1,6 @@
 #include "named_files.h"
 
+#include <hshfit/files/json_format.h>
 #include <hshfit/gpu/containers/sidecar.h>
 #include <hshfit/specification/parameters.h>
 
@@ -31,8 +32,7 @@ std::string textOfJson(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     if (error || !file) return {};
     const std::string head = piece(file, 0, std::min(size, edge));
-    const std::size_t first = head.find_first_not_of(" \t\r\n");
-    if (first == std::string::npos || head[first] != '{') return {};
+    if (!beginsAsJson(head)) return {};
     if (size <= whole) return piece(file, 0, size);
     return head + "\n" + piece(file, size - edge, edge);
 }

@@ -32,8 +32,7 @@ Form formByExtension(const std::string& path) {
 
 Form formByContent(std::string_view bytes) {
     if (hasExrMagic(bytes)) return Form::exr;
-    const auto first = bytes.find_first_not_of(" \t\r\n");
-    return first != std::string_view::npos && bytes[first] == '{' ? Form::json : Form::none;
+    return beginsAsJson(bytes) ? Form::json : Form::none;
 }
 
 /// Throws UsageError where the extension is of neither.

@@ -1,5 +1,6 @@
 #include <hshfit/files/json_format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -49,6 +50,12 @@ private:
     bool expected_ = false;  ///< the value of "format" comes next
 };
 
+constexpr std::string_view blanks = " \t\r\n";
+
+std::string_view withoutBlanks(std::string_view text) {
+    return text.substr(std::min(text.find_first_not_of(blanks), text.size()));
+}
+
 template <class Input>
 std::string formatIn(Input&& input) {
     FormatFinder finder;
@@ -60,6 +67,16 @@ std::string formatIn(Input&& input) {
 
 std::string jsonFormat(std::string_view text) {
     return formatIn(text);
+}
+
+bool beginsAsJson(std::string_view bytes) {
+    const std::string_view head = withoutBlanks(bytes.substr(0, jsonStartBytes));
+    if (!head.starts_with('{')) return false;
+    const std::string_view first = withoutBlanks(head.substr(1));
+    return (first.empty() || first.starts_with('"') || first.starts_with('}')) &&
+           std::ranges::none_of(head, [](unsigned char c) {
+               return c < ' ' && blanks.find(static_cast<char>(c)) == blanks.npos;
+           });
 }
 
 std::string jsonFormatOf(const std::string& path) {

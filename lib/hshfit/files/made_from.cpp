@@ -3,6 +3,7 @@
 #include <hshfit/files/checksum.h>
 #include <hshfit/files/exr_header.h>
 #include <hshfit/files/json_fields.h>
+#include <hshfit/files/json_format.h>
 #include <hshfit/files/made_from.h>
 
 #include <zlib.h>
@@ -269,11 +270,10 @@ std::optional<MadeFrom> fromExr(std::istream& file, std::uint64_t size, const st
 enum class Kind { other, json, png, exr };
 
 Kind kindOf(std::istream& file, std::uint64_t size) {
-    const std::string head = bytesAt(file, 0, 64);
+    const std::string head = bytesAt(file, 0, jsonStartBytes);
     if (hasExrMagic(head)) return Kind::exr;
     if (head.starts_with(pngMagic) && size > pngMagic.size() + pngEnd) return Kind::png;
-    const std::size_t first = head.find_first_not_of(" \t\r\n");
-    return first != std::string::npos && head[first] == '{' ? Kind::json : Kind::other;
+    return beginsAsJson(head) ? Kind::json : Kind::other;
 }
 
 std::string extensionOf(const std::string& path) {

@@ -1,6 +1,7 @@
 #include <hshfit/meshes/mesh_file.h>
 
 #include <hshfit/error.h>
+#include <hshfit/files/json_format.h>
 #include <hshfit/files/mapped_file.h>
 #include <hshfit/meshes/internal/mesh_readers.h>
 
@@ -29,8 +30,7 @@ void checkValues(const std::vector<MeshVector>& vectors, std::string_view noun,
 }
 
 MeshFile contentOf(std::string_view bytes, const std::string& path) {
-    const std::size_t text = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
-    if (bytes.starts_with("glTF") || bytes.substr(text).starts_with("{"))
+    if (bytes.starts_with("glTF") || beginsAsJson(bytes))
         return {.mesh = readGltf(bytes, path), .yUp = true};
     const bool ply =
         bytes.starts_with("ply") && bytes.size() > 3 && (bytes[3] == '\n' || bytes[3] == '\r');
