@@ -261,6 +261,20 @@ bool exrHasParts(std::string_view bytes) {
     return hasExrMagic(bytes) && (cursor.number<std::uint32_t>().value_or(0) & multiPart) != 0;
 }
 
+bool exrHeadersAreWhole(std::string_view bytes) {
+    ByteCursor cursor(bytes);
+    cursor.take(magic.size() + sizeof(std::uint32_t));
+    const bool severalParts = exrHasParts(bytes);
+    do {
+        for (bool more = true; more;) {
+            const auto attribute = nextAttribute(cursor);
+            if (!attribute) return false;
+            more = !attribute->name.empty();
+        }
+    } while (severalParts && cursor.left() > 0 && !cursor.startsWith('\0'));
+    return true;
+}
+
 bool exrHasAttribute(std::string_view bytes, std::string_view name) {
     if (!hasExrMagic(bytes)) return false;
     ByteCursor cursor(bytes);

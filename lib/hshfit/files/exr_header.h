@@ -35,6 +35,10 @@ ExrHeader checkExrHeader(std::string_view bytes, const std::string& file,
 std::vector<ExrHeader> checkExrParts(std::string_view bytes, const std::string& file,
                                      const ExrRules& rules, std::size_t mostParts);
 
+/// Whether every attribute of every header ends within the file. OpenEXR makes room for as many
+/// bytes as an attribute states before it reads them.
+bool exrHeadersAreWhole(std::string_view bytes);
+
 /// Whether the file states several parts.
 bool exrHasParts(std::string_view bytes);
 

@@ -1,6 +1,7 @@
 #include <hshfit/picture_files/picture_file.h>
 
 #include <hshfit/error.h>
+#include <hshfit/files/exr_header.h>
 #include <hshfit/files/mapped_file.h>
 #include <hshfit/picture_files/internal/image_module.h>
 
@@ -39,17 +40,43 @@ constexpr PictureFormat formats[] = {
     {"pnm", "PFM", "Pf"},
 };
 
-/// Two letters say little: white space follows those of PNM, and zeros the length in a BMP file.
+bool isText(std::string_view text) {
+    return std::ranges::all_of(
+        text, [](unsigned char c) { return c >= ' ' || (c >= '\t' && c <= '\r'); });
+}
+
+/// The first numbers of a table can begin like a picture, so that what has to follow two or three
+/// bytes is asked for: a line of text with width and height after those of PNM, a program and a
+/// line of text in Radiance HDR, a marker in JPEG, zeros and the size of a header in BMP.
 bool starts(std::string_view head, const PictureFormat& format) {
     if (!head.starts_with(format.start)) return false;
-    if (format.start[0] == 'P') return head.size() > 2 && (head[2] == '\n' || head[2] == ' ');
-    if (format.start == "BM")
-        return head.size() > 9 && head.substr(6, 4) == std::string_view("\0\0\0\0", 4);
+    const std::string_view rest = head.substr(format.start.size());
+    if (format.start[0] == 'P') {
+        const std::size_t first = rest.find_first_not_of(" \t\r\n");
+        return first > 0 && first < rest.size() &&
+               (rest[first] == '#' || (rest[first] >= '0' && rest[first] <= '9')) &&
+               isText(rest.substr(0, rest.find('\n', first)));
+    }
+    if (format.start == "#?") {
+        const std::size_t end = rest.find('\n');
+        return end != rest.npos && end > 0 && isText(rest.substr(0, rest.find("\n\n")));
+    }
+    if (format.start == "\xff\xd8\xff")
+        return !rest.empty() && static_cast<unsigned char>(rest[0]) >= 0xc0;
+    if (format.start == "BM") {
+        constexpr std::string_view zeros("\0\0\0\0", 4), sizes = "\x0c\x10\x28\x34\x38\x40\x6c\x7c";
+        return head.size() > 17 && head.substr(6, 4) == zeros &&
+               sizes.find(head[14]) != sizes.npos && head.substr(15, 3) == zeros.substr(1);
+    }
     return true;
 }
 
+std::string_view textOf(const MappedFile& file) {
+    return {reinterpret_cast<const char*>(file.data()), file.size()};
+}
+
 const PictureFormat& formatOf(const MappedFile& file) {
-    const std::string_view head(reinterpret_cast<const char*>(file.data()), file.size());
+    const std::string_view head = textOf(file);
     for (const PictureFormat& format : formats) {
         if (starts(head, format)) return format;
     }
@@ -129,6 +156,26 @@ std::string wrongNumber(std::string_view head, bool floating) {
     return {};
 }
 
+/// The tag RowsPerStrip (TIFF 6.0) of the first picture; 0 where it is not stated or stands for
+/// all. OpenImageIO makes room for as many rows.
+std::uint32_t stripRows(std::span<const unsigned char> bytes) {
+    const bool little = bytes[0] == 'I';
+    const auto number = [&](std::uint64_t at, std::size_t size) {
+        std::uint32_t value = 0;
+        for (std::size_t k = 0; k < size && at + size <= bytes.size(); ++k)
+            value |= std::uint32_t{bytes[at + k]} << 8 * (little ? k : size - 1 - k);
+        return value;
+    };
+    constexpr std::uint32_t rowsPerStrip = 278, shortType = 3, all = 0xffffffff;
+    const std::uint64_t directory = number(4, 4);
+    for (std::uint64_t k = 0, at = directory + 2; k < number(directory, 2); ++k, at += 12) {
+        if (number(at, 2) != rowsPerStrip) continue;
+        const std::uint32_t rows = number(at + 8, number(at + 2, 2) == shortType ? 2 : 4);
+        return rows == all ? 0 : rows;
+    }
+    return 0;
+}
+
 std::string firstLine(std::string text) {
     return text.substr(0, text.find('\n'));
 }
@@ -153,12 +200,12 @@ PictureFile::PictureFile(const std::string& path) : state_(std::make_unique<Stat
     const PictureFormat& format = formatOf(state_->mapped);
     state_->format = format.name;
     if (format.name == "JPEG" && !jpegIsWhole(state_->mapped.bytes())) fail("breaks off");
+    if (format.name == "OpenEXR" && !exrHeadersAreWhole(textOf(state_->mapped)))
+        fail("breaks off in its header, or an attribute is longer than the file");
     if (format.name == "PNG" && !pngIsWhole(state_->mapped.bytes()))
         fail("breaks off or is damaged");
     if (format.plugin == std::string_view("pnm")) {
-        const std::string_view head(reinterpret_cast<const char*>(state_->mapped.data()),
-                                    state_->mapped.size());
-        const std::string wrong = wrongNumber(head, format.name == "PFM");
+        const std::string wrong = wrongNumber(textOf(state_->mapped), format.name == "PFM");
         if (!wrong.empty()) fail(wrong);
     }
     std::string error;
@@ -177,6 +224,18 @@ PictureFile::PictureFile(const std::string& path) : state_(std::make_unique<Stat
     if (i.width != i.fullWidth || i.height != i.fullHeight || i.x != i.fullX || i.y != i.fullY) {
         fail(fmt::format("holds {} x {} pixels of a picture of {} x {}; all have to be there",
                          i.width, i.height, i.fullWidth, i.fullHeight));
+    }
+    const std::uint64_t rowBytes =
+        static_cast<std::uint64_t>(i.width) * i.channels.size() * sizeof(float);
+    const std::uint64_t strip = format.name == "TIFF" ? stripRows(state_->mapped.bytes()) : 0;
+    if (strip > static_cast<std::uint64_t>(i.height) && strip > mostTileBytes / rowBytes) {
+        fail(fmt::format("has strips of {} rows; its picture has {}", strip, i.height));
+    }
+    const auto tile = static_cast<std::uint64_t>(i.tileWidth) *
+                      static_cast<std::uint64_t>(i.tileHeight) * i.channels.size() * sizeof(float);
+    if (i.tileHeight > 0 && tile > mostTileBytes) {
+        fail(fmt::format("has tiles of {} x {} pixels; at most {} bytes of a tile are read",
+                         i.tileWidth, i.tileHeight, mostTileBytes));
     }
     if (i.orientation != 1) {
         fail(fmt::format("is stored turned or mirrored (orientation {}); save it upright",

@@ -286,6 +286,54 @@ TEST_F(PictureFiles, TruncatedFilesOfEveryFormatAreRefused) {
     }
 }
 
+TEST_F(PictureFiles, AttributesLongerThanTheFileAreRefusedBeforeTheyAreRead) {
+    const std::string file = write("a.exr", 4, 2, std::vector<float>(24, 1), OIIO::TypeDesc::HALF);
+    std::ifstream in(file, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    const std::string_view mark("screenWindowWidth\0float\0", 24);
+    const std::size_t at = bytes.find(mark);
+    ASSERT_NE(at, bytes.npos);
+    for (const char* type : {"string", "floatvector", "stringvector", "float", "opaque"}) {
+        std::string changed = bytes;
+        changed.replace(at, mark.size() + 4,
+                        std::string("x\0", 2) + type + std::string("\0\xff\xff\xff\x7f", 5));
+        std::ofstream(file, std::ios::binary) << changed;
+        EXPECT_NE(messageOf(file).find("longer than the file"), std::string::npos) << type;
+    }
+}
+
+TEST_F(PictureFiles, StripsOfATiffFileFitItsPicture) {
+    const auto strips = [&](const char* compression, std::uint32_t rows) {
+        const std::string file = write("a.tif", 40, 20, std::vector<float>(2400, 0.5F),
+                                       OIIO::TypeDesc::UINT8, [&](OIIO::ImageSpec& spec) {
+                                           spec.attribute("compression", compression);
+                                           spec.attribute("tiff:RowsPerStrip", 20);
+                                       });
+        std::fstream both(file, std::ios::binary | std::ios::in | std::ios::out);
+        const std::string bytes{std::istreambuf_iterator<char>(both), {}};
+        for (const char type : {'\3', '\4'}) {  // 278, one number; any number needs four bytes
+            const std::string head{'\x16', '\1', type, '\0', '\1', '\0', '\0', '\0'};
+            const std::size_t at = bytes.find(head);
+            if (at == bytes.npos) continue;
+            both.clear();
+            both.seekp(static_cast<std::streamoff>(at + 2)).put('\4');
+            both.seekp(static_cast<std::streamoff>(at + 8));
+            for (int k = 0; k < 4; ++k) both.put(static_cast<char>(rows >> 8 * k & 255U));
+        }
+        both.close();
+        return file + ":curve=srgb";
+    };
+    for (const char* compression : {"none", "zip", "packbits", "lzw"}) {
+        for (const std::uint32_t rows : {20U, 1000U, 0xffffffffU})
+            EXPECT_EQ(messageOf(strips(compression, rows)), "no input error") << rows;
+        for (const std::uint32_t rows :
+             {1U << 30, (1U << 31) - 1, 1U << 31, (1U << 31) + 1, 0xfffffffeU}) {
+            const std::string message = messageOf(strips(compression, rows));
+            EXPECT_NE(message, "no input error") << compression << ", " << rows;
+        }
+    }
+}
+
 TEST_F(PictureFiles, InvalidPixelsAreCountedWithTheFirstPlace) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float infinity = std::numeric_limits<float>::infinity();

@@ -15,6 +15,7 @@ public:
         width = spec.width, height = spec.height, depth = spec.depth, x = spec.x, y = spec.y;
         fullWidth = spec.full_width, fullHeight = spec.full_height;
         fullX = spec.full_x, fullY = spec.full_y;
+        tileWidth = spec.tile_width;
         tileHeight = spec.tile_width > 0 ? spec.tile_height : 0;
         orientation = spec.get_int_attribute("Orientation", 1);
         deep = spec.deep;

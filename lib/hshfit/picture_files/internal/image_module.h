@@ -17,7 +17,7 @@ public:
 
     int width = 0, height = 0, depth = 1, x = 0, y = 0;
     int fullWidth = 0, fullHeight = 0, fullX = 0, fullY = 0;
-    int tileHeight = 0;  ///< 0: scan lines
+    int tileWidth = 0, tileHeight = 0;  ///< 0: scan lines
     int orientation = 1;
     bool deep = false, floating = false;
     std::string number;       ///< "half", "uint8", …
