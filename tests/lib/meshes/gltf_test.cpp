@@ -6,12 +6,14 @@
 
 #include "places.h"
 #include "temporary_file.h"
+#include "temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <random>
 
 using namespace hshfit;
@@ -389,6 +391,53 @@ TEST(GltfMesh, BrokenFilesAreNamedWithThePlace) {
     expectInputError([&] { meshFromBytes(text.substr(0, 19), "a.glb"); }, {"header"});
     text[12] = '\xff', text[13] = '\xff', text[14] = '\xff', text[15] = '\xff';
     expectInputError([&] { meshFromBytes(text, "a.glb"); }, {"announces"});
+}
+
+TEST(GltfMesh, MembersOfAnotherTypeAreNamedWithTheirType) {
+    const auto refuse = [](const char* pointer, const Json& value, const char* name,
+                           const char* type) {
+        Json json = Json::parse(cube().embedded());
+        json[Json::json_pointer(pointer)] = value;
+        expectInputError([&] { meshFromBytes(json.dump(), "a.gltf"); }, {"a.gltf", name, type});
+    };
+    for (const char* list : {"scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers"}) {
+        const std::string pointer = std::string("/") + list;
+        refuse(pointer.c_str(), 1, list, "array of objects");
+        refuse(pointer.c_str(), {{"command", 1}}, list, "array of objects");
+        refuse(pointer.c_str(), {1}, (std::string(list) + "[0]").c_str(), "object");
+    }
+    refuse("/scene", "x", "'scene'", "number");
+    refuse("/scenes/0/nodes", 0, "'scenes[0].nodes'", "array of numbers");
+    refuse("/nodes/0/mesh", "0", "'nodes[0].mesh'", "number");
+    refuse("/nodes/0/matrix", "x", "'nodes[0].matrix'", "array of numbers");
+    refuse("/meshes/0/primitives", 1, "'meshes[0].primitives'", "array of objects");
+    refuse("/meshes/0/primitives/0/attributes/POSITION", true, "attributes.POSITION'", "number");
+    refuse("/accessors/0/normalized", 1, "'accessors[0].normalized'", "true or false");
+    refuse("/accessors/0/sparse", 1, "'accessors[0].sparse'", "object");
+    refuse("/bufferViews/0/byteOffset", {0}, "'bufferViews[0].byteOffset'", "number");
+    refuse("/buffers/0/uri", 1, "'buffers[0].uri'", "string");
+}
+
+TEST(GltfMesh, BuffersStayInTheFolderOfTheFile) {
+    const test::TemporaryFolder top;
+    const Gltf gltf = cube();
+    const auto put = [&](const std::string& name, const std::string& bytes) {
+        std::filesystem::create_directories((top.path() / name).parent_path());
+        std::ofstream(top / name, std::ios::binary) << bytes;
+    };
+    for (const char* name : {"outside.bin", "mesh/in side.bin", "mesh/below/inside.bin"})
+        put(name, gltf.buffer);
+    const auto read = [&](const std::string& uri) {
+        put("mesh/a.gltf", gltf.beside(uri));
+        return readMesh(top / "mesh/a.gltf").mesh.triangles.size();
+    };
+    for (const char* uri : {"in side.bin", "in%20side.bin", "below/inside.bin", "./in side.bin"})
+        EXPECT_EQ(read(uri), 12U) << uri;
+    for (const char* uri : {"../outside.bin", "%2e%2e/outside.bin", "below/../../outside.bin",
+                            "..%2Foutside.bin", "..\\outside.bin", "../mesh/in side.bin"})
+        expectInputError([&] { read(uri); }, {"in the folder", ".."});
+    for (const std::string& uri : {top / "outside.bin", "file://" + (top / "outside.bin")})
+        EXPECT_THROW(read(uri), InputError) << uri;
 }
 
 /// A GLB file of any shorter length, and of changed bytes, is refused or gives a whole mesh.

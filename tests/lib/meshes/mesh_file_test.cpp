@@ -5,6 +5,7 @@
 #include "places.h"
 #include "temporary_file.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -211,6 +212,29 @@ TEST(MeshFile, BrokenFilesAreNamedWithThePlace) {
     refuse(std::string(ply).replace(ply.find("\n4 ") + 1, 1, "4.5"), {"4.5", "uchar"}, ".ply");
     refuse(ply.replace(ply.find("element face"), 12, "element vertex"), {"twice"}, ".ply");
     EXPECT_THROW(readMesh("absent.obj"), InputError);
+}
+
+/// A regular polygon in the plane.
+std::string polygon(int corners) {
+    std::string text, face = "f";
+    for (int k = 0; k < corners; ++k) {
+        const double turn = 2 * pi * k / corners;
+        text += fmt::format("v {} {} 0\n", std::cos(turn), std::sin(turn));
+        face += fmt::format(" {}", k + 1);
+    }
+    return text + face + "\n";
+}
+
+TEST(MeshFile, PolygonsOfManyCornersAreCutOrRefused) {
+    EXPECT_EQ(meshFromBytes(polygon(2000), "a.obj").mesh.triangles.size(), 1998U);
+    for (const int corners : {10'000, 100'000})
+        expectInputError([&] { meshFromBytes(polygon(corners), "a.obj"); },
+                         {fmt::format("line {}", corners + 1), fmt::format("{} corners", corners)});
+    // Many faces together take as long as one.
+    const std::string face = polygon(2000), line = face.substr(face.find('f'));
+    std::string many = face;
+    for (int k = 0; k < 30; ++k) many += line;
+    expectInputError([&] { meshFromBytes(many, "a.obj"); }, {"line 2017", "2000 corners"});
 }
 
 TEST(MeshFile, EveryTruncationIsRefusedOrAWholePart) {

@@ -62,6 +62,78 @@ bool isReadWith(std::string_view extension) {
            extension == "KHR_lights_punctual";
 }
 
+/// Members that describe meshes. tinygltf takes some of another type for absent ones.
+enum class MemberKind { number, numbers, word, flag };
+struct Member {
+    std::string_view of;
+    const char* key;
+    MemberKind kind = MemberKind::number;
+};
+constexpr Member members[] = {
+    {"scenes", "nodes", MemberKind::numbers},
+    {"nodes", "mesh"},
+    {"nodes", "children", MemberKind::numbers},
+    {"nodes", "matrix", MemberKind::numbers},
+    {"nodes", "rotation", MemberKind::numbers},
+    {"nodes", "scale", MemberKind::numbers},
+    {"nodes", "translation", MemberKind::numbers},
+    {"primitives", "indices"},
+    {"primitives", "mode"},
+    {"accessors", "bufferView"},
+    {"accessors", "byteOffset"},
+    {"accessors", "componentType"},
+    {"accessors", "count"},
+    {"accessors", "type", MemberKind::word},
+    {"accessors", "normalized", MemberKind::flag},
+    {"sparse", "count"},
+    {"indices", "bufferView"},
+    {"indices", "byteOffset"},
+    {"indices", "componentType"},
+    {"values", "bufferView"},
+    {"values", "byteOffset"},
+    {"bufferViews", "buffer"},
+    {"bufferViews", "byteOffset"},
+    {"bufferViews", "byteLength"},
+    {"bufferViews", "byteStride"},
+    {"buffers", "byteLength"},
+    {"buffers", "uri", MemberKind::word},
+};
+
+void checkMembers(const JsonFields& object, std::string_view of) {
+    for (const Member& member : members) {
+        if (member.of != of || !object.has(member.key)) continue;
+        if (member.kind == MemberKind::number) object.number(member.key);
+        if (member.kind == MemberKind::numbers) object.numbers(member.key);
+        if (member.kind == MemberKind::word) object.word(member.key);
+        if (member.kind == MemberKind::flag) object.flag(member.key);
+    }
+}
+
+void checkTypes(const JsonFields& root) {
+    if (root.has("scene")) root.number("scene");
+    const auto each = [&](const char* key) {
+        std::vector<JsonFields> objects;
+        if (root.has(key)) objects = root.objects(key);
+        for (const JsonFields& object : objects) checkMembers(object, key);
+        return objects;
+    };
+    for (const char* key : {"scenes", "nodes", "bufferViews", "buffers"}) each(key);
+    for (const JsonFields& mesh : each("meshes")) {
+        for (const JsonFields& primitive : mesh.objects("primitives")) {
+            checkMembers(primitive, "primitives");
+            const JsonFields attributes = primitive.object("attributes");
+            for (const auto& [name, index] : attributes.json().items())
+                attributes.number(name.c_str());
+        }
+    }
+    for (const JsonFields& accessor : each("accessors")) {
+        if (!accessor.has("sparse")) continue;
+        const JsonFields sparse = accessor.object("sparse");
+        checkMembers(sparse, "sparse");
+        for (const char* key : {"indices", "values"}) checkMembers(sparse.object(key), key);
+    }
+}
+
 /// The members that describe meshes, as text.
 std::string meshesOf(const Parts& parts, const std::string& path) {
     Json json = parseJson(parts.json, path, deepest);
@@ -78,6 +150,7 @@ std::string meshesOf(const Parts& parts, const std::string& path) {
             }
         }
     }
+    checkTypes(root);
     Json kept = Json::object();
     for (const char* key :
          {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers"})
@@ -85,7 +158,7 @@ std::string meshesOf(const Parts& parts, const std::string& path) {
     if (!kept.contains("buffers")) return jsonText(kept);
     // Each of them would hold a copy of the whole binary chunk.
     for (std::size_t k = parts.chunks ? 1 : 0; k < kept["buffers"].size(); ++k) {
-        if (!kept["buffers"][k].is_object() || !kept["buffers"][k].contains("uri"))
+        if (!kept["buffers"][k].contains("uri"))
             root.fail("has no 'uri'", fmt::format("buffers[{}]", k));
     }
     return jsonText(kept);
@@ -110,10 +183,18 @@ struct Beside {
 };
 
 bool standsBeside(const std::string& name, void* beside) {
-    // tinygltf looks in the current folder too.
-    const std::string& folder = static_cast<Beside*>(beside)->folder;
+    // tinygltf looks in the current folder too. It has decoded the percent signs of the name.
+    auto& [folder, left, problem] = *static_cast<Beside*>(beside);
+    if (!name.starts_with(folder + "/")) return false;
+    const std::filesystem::path inside = name.substr(folder.size() + 1);
+    if (inside.string().find('\\') != std::string::npos ||
+        std::find(inside.begin(), inside.end(), "..") != inside.end()) {
+        problem = fmt::format("the file '{}' of a buffer has to lie in the folder of the glTF file",
+                              printable(inside.string().substr(0, 200)));
+        return false;
+    }
     std::error_code error;
-    return name.starts_with(folder + "/") && std::filesystem::is_regular_file(name, error);
+    return std::filesystem::is_regular_file(name, error);
 }
 
 bool readBeside(std::vector<unsigned char>* bytes, std::string*, const std::string& name,

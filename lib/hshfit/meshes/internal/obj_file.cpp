@@ -47,9 +47,14 @@ constexpr Statement statements[] = {{"v", isNumber, "numbers, x y z"},
                                     {"vn", isNumber, "numbers, x y z"},
                                     {"f", isCorner, "corners, as 1, 1/2, 1//3 or 1/2/3"}};
 
+/// tinyobjloader cuts triangles off a polygon in a time that grows with the square of its corners,
+/// 1 s for 8,000 of them: squares of polygons beyond `manyCorners` are summed and bounded.
+constexpr std::size_t manyCorners = 256, mostSquared = std::size_t{1} << 26;
+
 /// tinyobjloader reads a word that is no number as 0 and 1.9 as the index 1, so that words are
 /// checked before it.
 void checkNumbers(std::string_view text, const std::string& path) {
+    std::size_t squared = 0;
     for (std::size_t number = 1; !text.empty(); ++number) {
         const std::size_t end = std::min(text.find('\n'), text.size());
         const std::string_view line = text.substr(0, end);
@@ -59,7 +64,7 @@ void checkNumbers(std::string_view text, const std::string& path) {
         const std::string_view keyword = line.substr(at, wordEnd - at);
         const auto* statement = std::ranges::find(statements, keyword, &Statement::keyword);
         if (statement == std::end(statements)) continue;
-        int count = 0;
+        std::size_t count = 0;
         for (at = wordEnd; at < line.size(); ++count) {
             at = line.find_first_not_of(blanks, at);
             if (at == std::string_view::npos) break;
@@ -76,6 +81,14 @@ void checkNumbers(std::string_view text, const std::string& path) {
         if (count < 3) {
             throw InputError(fmt::format("{}: line {}: '{}' has {} words; it takes three {}", path,
                                          number, keyword, count, statement->takes));
+        }
+        if (keyword != "f" || count <= manyCorners) continue;
+        squared += count * count;
+        if (squared > mostSquared) {
+            throw InputError(
+                fmt::format("{}: line {}: faces of {} corners take too long to cut into "
+                            "triangles; cut them before, one of 8192 is read",
+                            path, number, count));
         }
     }
 }
