@@ -48,7 +48,8 @@ std::string dataOf(const std::string& path) {
         return {};
     std::ifstream file(path, std::ios::binary);
     const Json json = Json::parse(file, nullptr, false);
-    if (!json.is_object() || json.value("format", "") != "hshfit-preset" || !json.contains("fit"))
+    if (!json.is_object() || json.value("format", Json()) != "hshfit-preset" ||
+        !json.contains("fit"))
         return {};
     const Json& fit = json["fit"];
     return fit.is_object() && fit.contains("data") && fit["data"].is_string()

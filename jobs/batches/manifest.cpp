@@ -217,6 +217,7 @@ void readDefaults(Reading& reading, const json& line, const std::string& where) 
     requireKnownKeys(defaults, keys, where);
     if (defaults.contains("options") && !defaults["options"].is_object())
         throw InputError(where + ": options: give an object, {\"order\": 7}");
+    for (const char* key : {"command", "output", "name"}) textOf(defaults, key, where);
     reading.defaults = defaults;
 }
 
