@@ -66,6 +66,12 @@ SurfaceScene::SurfaceScene(std::vector<SurfaceMaterial> materials,
         object.mesh = {};
     }
     rays_ = std::make_unique<RayScene>(all_);
+    for (const MeshVector& p : all_.positions) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double from = std::abs(static_cast<double>(p[k]) - rays_->centre()[k]);
+            rounding_ = std::max(rounding_, 32 * 0x1p-24 * from);
+        }
+    }
     double power = 0;
     for (std::uint32_t t = 0; t < all_.triangles.size(); ++t) {
         const double emitted = meanOf(objects_[objectOf_[t]].emission) * areaOf(cornersOf(all_, t));
@@ -96,6 +102,7 @@ SurfaceHit SurfaceScene::hitOf(const RayHit& hit, const Direction& direction) co
                       .frame = frameAt(smooth),
                       .wo = {},
                       .emission = {},
+                      .front = front,
                       .distance = hit.distance,
                       .triangle = hit.triangle,
                       .object = objectOf_[hit.triangle]};

@@ -39,6 +39,7 @@ struct SurfaceHit {
     Frame frame;     ///< with the interpolated normal, on the same side; frameAt (view.h)
     Direction wo;    ///< back along the ray, in the frame
     Rgb emission{};  ///< towards the ray
+    bool front = true;
     double distance = 0;
     std::uint32_t triangle = 0;  ///< of the scene
     std::size_t object = 0;
@@ -87,6 +88,8 @@ public:
     /// The density of `sampleEmitters` at a hit, per area; 0 where it emits nothing.
     double emitterPdf(const SurfaceHit& hit) const;
 
+    /// A distance that single precision does not tell from 0 in this scene.
+    double rounding() const { return rounding_; }
     std::size_t triangles() const { return all_.triangles.size(); }
     const std::vector<SurfaceObject>& objects() const { return objects_; }
     const std::vector<SurfaceMaterial>& materials() const { return materials_; }
@@ -109,6 +112,7 @@ private:
     Mesh all_;
     std::vector<std::uint32_t> objectOf_;  ///< of each triangle
     std::unique_ptr<RayScene> rays_;
+    double rounding_ = 0;
     EnvironmentSampler environment_;
     std::vector<std::uint32_t> emitters_;  ///< triangles
     std::vector<double> power_;            ///< of them, cumulative

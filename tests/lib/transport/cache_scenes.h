@@ -6,6 +6,7 @@
 
 #include <lib/transport/law_scenes.h>
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -36,10 +37,31 @@ inline std::vector<SurfaceObject> room(const Rgb& emission, bool closed, std::si
     return objects;
 }
 
+/// With a lamp below the ceiling of a room.
+inline std::vector<SurfaceObject> lamp(std::vector<SurfaceObject> objects) {
+    objects.push_back({"lamp", patch({-0.3, -0.3, 0.95}, {0, 0.6, 0}, {0.6, 0, 0}), 0, {9, 8, 7}});
+    return objects;
+}
+
+/// Two plates that reach a hundred times their distance.
+inline std::vector<SurfaceObject> plates() {
+    return {{"lower", patch({-100, -100, 0}, {200, 0, 0}, {0, 200, 0}), 0, {0.2, 0.2, 0.2}},
+            {"upper", patch({-100, -100, 1}, {0, 200, 0}, {200, 0, 0}), 0, {0.2, 0.2, 0.2}}};
+}
+
+/// A square picture whose half is `slope` high at distance 1.
+inline Camera lookingFrom(const Point& position, const Point& target, double slope, int size) {
+    return {.name = "eye",
+            .position = position,
+            .target = target,
+            .fieldOfView = 2 * std::atan(slope),
+            .width = size,
+            .height = size};
+}
+
 /// A room with a lamp, a glossy floor and a curved glossy thing.
 inline std::unique_ptr<SurfaceScene> litRoom() {
-    std::vector<SurfaceObject> objects = room({}, true, 1);
-    objects.push_back({"lamp", patch({-0.3, -0.3, 0.95}, {0, 0.6, 0}, {0.6, 0, 0}), 0, {9, 8, 7}});
+    std::vector<SurfaceObject> objects = lamp(room({}, true, 1));
     Mesh ball = sphereMesh(3);
     for (MeshVector& p : ball.positions) p = {0.3F * p[0], 0.3F * p[1] + 0.3F, 0.3F * p[2] - 0.7F};
     objects.push_back({"ball", std::move(ball), 1, {}});

@@ -30,7 +30,7 @@ std::unique_ptr<SurfaceScene> lampAbove(bool board) {
 Gathered gatheredAt(const SurfaceScene& scene, double x, double y,
                     const IncomingFunctions& functions, int rays, Gradient gradient) {
     const LightWalk walk(scene, DirectLight::gathered);
-    const SurfaceIrradiance none({}, 0);
+    const SurfaceIrradiance none({}, 0, 0);
     const HemisphereStrata strata(functions, rays, gradient == Gradient::strata);
     std::size_t traced = 0;
     const auto hit = scene.firstHit({x, y, 0.1}, {0, 0, -1});
@@ -197,6 +197,28 @@ TEST(RecordGradient, SeesWhatComesIntoSightByStrataAlone) {
     const IncomingFunctions hsh(bases::make("hsh", 5));
     EXPECT_LT(gradientError(true, hsh, Gradient::strata, 100000), 0.05);
     EXPECT_GT(gradientError(true, hsh, Gradient::hitPoints, 100000), 0.3);
+}
+
+/// A reflection in a glossy wall moves as what it shows does: beside the wall, the gradient of
+/// irradiance is small, as differences of irradiance are.
+TEST(RecordGradient, TellsReflectionsFromTheSurfaceThatShowsThem) {
+    std::vector<SurfaceObject> objects;
+    objects.push_back({"floor", patch({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}), 0, {}});
+    objects.push_back({"lamp", patch({0.5, -0.4, 1.5}, {0, 1, 0}, {1, 0, 0}), 0, {1, 1, 1}});
+    objects.push_back({"wall", patch({0, -9, 0}, {0, 18, 0}, {0, 0, 9}), 1, {}});
+    const SurfaceScene scene(
+        {materialOf("lambert:kd=0"), materialOf("phong:kd=0,ks=.8,exponent=10,normalized=true")},
+        std::move(objects), {});
+    const double x = 0.04, h = 0.02;
+    const auto irradiance = [&](double at) {
+        return static_cast<double>(
+            recordAt(scene, at, 0, {}, 100000, Gradient::none).part(0, 1)[0]);
+    };
+    const double slope = (irradiance(x + h) - irradiance(x - h)) / (2 * h);
+    const Record found = recordAt(scene, x, 0, {}, 20000, Gradient::strata);
+    const double alongX = static_cast<double>(found.part(1, 1)[0]) * found.frame.tangent.x +
+                          static_cast<double>(found.part(2, 1)[0]) * found.frame.bitangent.x;
+    EXPECT_NEAR(alongX, slope, 0.5 * irradiance(x));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <hshfit/brdf/vectors.h>
 #include <hshfit/error.h>
 #include <hshfit/rotation/hemisphere_rotation.h>
+#include <hshfit/transport/radiance_cache/internal/record_place.h>
 #include <hshfit/wording.h>
 
 #include <fmt/format.h>
@@ -128,7 +129,12 @@ RadianceCache::RadianceCache(const SurfaceScene& scene, const CacheOptions& opti
     const bool fits = stored->orders == ordersOf(materials_.kinds) &&
                       stored->functions == countsOf(materials_.kinds);
     if (!fits) throw InputError("the records are of other orders than the scene's materials");
-    surfaces_ = std::make_unique<SurfaceIrradiance>(std::move(stored->points), stored->spacing);
+    for (const IrradiancePoint& point : stored->points) {
+        if (point.side >= 2 * scene.objects().size())
+            throw InputError("the records have points on objects that the scene does not have");
+    }
+    surfaces_ = std::make_unique<SurfaceIrradiance>(std::move(stored->points), stored->spacing,
+                                                    bouncesOfSurfaces());
     for (Record& record : stored->records) store(std::move(record));
     settle();
 }
@@ -141,15 +147,20 @@ RadianceCache::RadianceCache(const SurfaceScene& scene, const CacheOptions& opti
 
 /// Light at a record's hits has one reflection there and one at the record; sampled light comes
 /// with one more.
+int RadianceCache::bouncesOfSurfaces() const {
+    return options_.mostBounces - (options_.direct == DirectLight::sampled ? 3 : 2);
+}
+
 void RadianceCache::findSurfaces() {
-    const int bounces = options_.mostBounces - (options_.direct == DirectLight::sampled ? 3 : 2);
+    const int bounces = bouncesOfSurfaces();
     const SurfaceIrradianceOptions surfaces{.points = options_.surfacePoints,
                                             .rays = options_.surfaceRays,
                                             .bounces = bounces,
                                             .seed = options_.seed,
                                             .progress = options_.progress};
-    surfaces_ = bounces < 0 ? std::make_unique<SurfaceIrradiance>(std::vector<IrradiancePoint>(), 0)
-                            : std::make_unique<SurfaceIrradiance>(walk_, surfaces);
+    surfaces_ = bounces < 0
+                    ? std::make_unique<SurfaceIrradiance>(std::vector<IrradiancePoint>(), 0, 0)
+                    : std::make_unique<SurfaceIrradiance>(walk_, surfaces);
     rays_ = surfaces_->rays();
 }
 
@@ -317,28 +328,43 @@ void RadianceCache::make(const std::vector<SurfaceHit>& hits, const std::vector<
     std::vector<Gathered> made(hits.size());
     std::vector<std::size_t> rays(hits.size());
     const std::size_t first = records_.size();
-    tbb::parallel_for(std::size_t{0}, hits.size(),
-                      [&](std::size_t k) { made[k] = gatheredAt(hits[k], first + k, rays[k]); });
+    tbb::parallel_for(std::size_t{0}, hits.size(), [&](std::size_t k) {
+        made[k] = gatheredAt(hits[k], heights[k], first + k, rays[k]);
+    });
     for (std::size_t k = 0; k < hits.size(); ++k) {
         rays_ += rays[k];
-        if (!full()) add(std::move(made[k]), heights[k]);
+        if (made[k].sound && !full()) add(std::move(made[k]), heights[k]);
     }
 }
 
-Gathered RadianceCache::gatheredAt(const SurfaceHit& hit, std::uint64_t n,
+/// The least radius of a record where the picture has that height.
+double RadianceCache::leastRadius(double height) const {
+    return std::max(options_.leastReach * height, 4 * scene().rounding()) / options_.accuracy;
+}
+
+Gathered RadianceCache::gatheredAt(const SurfaceHit& hit, double height, std::uint64_t n,
                                    std::size_t& rays) const {
     const std::uint32_t kind = materials_.materials[scene().objects()[hit.object].material].kind;
-    const GatherScene gathering{&walk_, surfaces_.get()};
+    const double least = leastRadius(height), reach = options_.accuracy * least;
+    const GatherScene gathering{&walk_, surfaces_.get(), reach};
+    std::optional<SurfaceHit> place = placeOfRecord(scene(), hit, reach / 2);
+    if (place) {
+        const Record there{.position = place->position,
+                           .frame = place->frame,
+                           .radius = least,
+                           .longRadius = least};
+        if (!(errorOf(there, hit.position, hit.frame.normal) < options_.accuracy)) place.reset();
+    }
     // Beyond those of the surfaces' points, whatever their number.
     const RandomNumbers random(options_.seed, (std::uint64_t{1} << 40) + n);
-    return gather(hit, kind, materials_.kinds[kind], strata_[kind], options_.gradient, gathering,
-                  random, rays);
+    return gather(place.value_or(hit), kind, materials_.kinds[kind], strata_[kind],
+                  options_.gradient, gathering, random, rays);
 }
 
 /// Sets the radii by the record alone; returns the least radius.
 double RadianceCache::limit(Gathered& gathered, double height) const {
     Record& record = gathered.record;
-    const double least = options_.leastReach * height / options_.accuracy;
+    const double least = leastRadius(height);
     if (gathered.bends.empty()) {
         limitByDistance(record);
     } else {
@@ -364,7 +390,7 @@ void RadianceCache::add(Gathered gathered, double height) {
 RadianceCache::Trial RadianceCache::trial(const SurfaceHit& hit, double height,
                                           std::uint64_t n) const {
     Trial trial;
-    Gathered gathered = gatheredAt(hit, n, trial.rays);
+    Gathered gathered = gatheredAt(hit, height, n, trial.rays);
     limit(gathered, height);
     trial.radius = gathered.record.radius;
     trial.longRadius = gathered.record.longRadius;
@@ -376,12 +402,11 @@ RadianceCache::Trial RadianceCache::trial(const SurfaceHit& hit, double height,
 }
 
 Rgb RadianceCache::sampled(const SurfaceHit& hit, RandomNumbers& random, std::size_t& rays) const {
-    const Walk walk = walk_.sampled(hit, options_.direct == DirectLight::gathered, random, rays);
-    Rgb found = walk.radiance;
-    if (!walk.end) return found;
-    const Rgb light = surfaces_->at(walk.end->hit);
-    for (std::size_t c = 0; c < 3; ++c) found[c] += walk.end->weight[c] * light[c];
-    return found;
+    const KnownLight known = [&](const SurfaceHit& end, bool last) {
+        return surfaces_->at(end, last);
+    };
+    return walk_.sampled(hit, known, options_.direct == DirectLight::gathered, random, rays)
+        .radiance;
 }
 
 int RadianceCache::walksAt(const SurfaceHit& hit) const {

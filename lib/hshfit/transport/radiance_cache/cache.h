@@ -76,7 +76,8 @@ public:
     Trial trial(const SurfaceHit& hit, double height, std::uint64_t n) const;
 
     /// Makes records at hits at once, in parallel, and adds them in that order. `heights` are
-    /// those of the picture there.
+    /// those of the picture there. None is added where its numbers are not finite, or its rays
+    /// would start on another surface.
     void make(const std::vector<SurfaceHit>& hits, const std::vector<double>& heights);
     /// Keeps the reach of the records as it is: what they cover stays covered when more are made.
     void settle() { settled_ = records_.size(); }
@@ -107,7 +108,10 @@ private:
     void add(Gathered gathered, double height);
     void store(Record record);
     void findSurfaces();
-    Gathered gatheredAt(const SurfaceHit& hit, std::uint64_t n, std::size_t& rays) const;
+    int bouncesOfSurfaces() const;
+    double leastRadius(double height) const;
+    Gathered gatheredAt(const SurfaceHit& hit, double height, std::uint64_t n,
+                        std::size_t& rays) const;
     double limit(Gathered& gathered, double height) const;
     void limitByDistance(Record& record) const;
     void limitByBends(Record& record, const std::vector<float>& bends, double height) const;

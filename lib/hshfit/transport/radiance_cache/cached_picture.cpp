@@ -27,7 +27,7 @@ void add(Rgb& sum, const Rgb& weight, const Rgb& radiance) {
 struct Wanted {
     SurfaceHit hit;
     double height = 0;  ///< of the picture there
-    std::uint64_t order = 0;
+    std::uint64_t pixel = 0, order = 0;
 };
 
 class Taking {
@@ -41,7 +41,8 @@ public:
           rays_(camera),
           options_(options),
           slope_(2 * std::tan(camera.fieldOfView / 2)),
-          total_(static_cast<std::size_t>(2 * camera.height)) {}
+          total_(static_cast<std::size_t>(2 * camera.height)),
+          tried_(camera.pixels()) {}
 
     CachedPicture taken() {
         const std::size_t before = cache_.records().size(), rays = cache_.rays();
@@ -63,6 +64,7 @@ private:
     void makeRecords() {
         for (int step = coarsest; step > 1; step /= 2) fill(step);
         // New records shrink the reach of others, which uncovers pixels that were seen before.
+        // A pixel that has had its turn without a record that reaches it is sampled.
         while (fill(1)) {
         }
     }
@@ -80,6 +82,7 @@ private:
             std::vector<SurfaceHit> hits;
             std::vector<double> heights;
             for (std::size_t k = 0; k < count; ++k) {
+                if (step == 1) tried_[wanted[k].pixel] = 1;
                 hits.push_back(wanted[k].hit);
                 heights.push_back(wanted[k].height);
             }
@@ -103,14 +106,15 @@ private:
                 const bool before = row % (2 * step) == 0 && column % (2 * step) == 0;
                 if (before && step < coarsest && step > 1) continue;
                 ++traced;
-                const auto hit =
-                    scene_.firstHit(rays_.origin(), rays_.direction(column + 0.5, row + 0.5));
-                if (!hit || !cache_.takesRecords(*hit) || cache_.covers(*hit)) continue;
                 const auto pixel =
                     static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(camera_.width) +
                     static_cast<std::uint64_t>(column);
+                if (tried_[pixel] != 0) continue;
+                const auto hit =
+                    scene_.firstHit(rays_.origin(), rays_.direction(column + 0.5, row + 0.5));
+                if (!hit || !cache_.takesRecords(*hit) || cache_.covers(*hit)) continue;
                 rows[static_cast<std::size_t>(k)].push_back(
-                    {*hit, heightAt(*hit),
+                    {*hit, heightAt(*hit), pixel,
                      static_cast<std::uint64_t>(RandomNumbers(settings_.seed, pixel).next() *
                                                 0x1p53)});
             }
@@ -218,6 +222,7 @@ private:
     const std::size_t total_;
     std::atomic<std::size_t> done_ = 0;
     int passes_ = 0;
+    std::vector<unsigned char> tried_;  ///< pixels that a record was made for
     CachedPicture result_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hshfit::inline transport::inline radiance_cache {
 namespace {
@@ -56,20 +57,28 @@ struct LightWalk::Going {
     }
 };
 
-/// Light sampled at a hit, and the walk's end where the surface is diffuse.
-void LightWalk::addReflected(Going& going, Walk& walk) const {
+/// Adds the light sampled at a hit and, where it is known, all further light, which ends the walk.
+/// Light samples alone are a poor way to meet a large lamp that is near: a walk that should have
+/// gone on takes one more direction for it.
+bool LightWalk::ends(Going& going, const KnownLight& known, Walk& walk) const {
     const std::size_t material = scene_.objects()[going.hit.object].material;
     const std::optional<Rgb>& f = diffuse_.at(material);
+    std::optional<Rgb> light = f ? known(going.hit, false) : std::nullopt;
+    const bool whole = light.has_value();
+    if (f && !whole && going.bounce >= sureBounces) light = known(going.hit, true);
+    if (light) {
+        for (std::size_t c = 0; c < 3; ++c) walk.endWeight[c] = going.weight[c] * (*f)[c];
+        add(walk.radiance, walk.endWeight, *light, 1);
+    }
     if (direct_ == DirectLight::sampled && lights_.any()) {
         const auto u = going.three();
         const double choice = going.random.next();
-        const auto weight = f ? LightSampling::Weight::whole : LightSampling::Weight::heuristic;
+        const auto weight = whole ? LightSampling::Weight::whole : LightSampling::Weight::heuristic;
         add(walk.radiance, going.weight,
             lights_.reflected(going.hit, {u[0], u[1], u[2], choice}, weight, going.rays), 1);
+        if (light && !whole) step(going, true, walk);
     }
-    if (!f) return;
-    for (std::size_t c = 0; c < 3; ++c) going.weight[c] *= (*f)[c];
-    walk.end = WalkEnd{going.hit, going.weight};
+    return light.has_value();
 }
 
 /// Whether the walk has come to a further surface.
@@ -85,6 +94,8 @@ bool LightWalk::step(Going& going, bool direct, Walk& walk) const {
     }
     ++going.rays;
     const auto hit = scene_.firstHit(going.hit, next->world);
+    if (going.bounce == 1)
+        walk.firstLength = hit ? hit->distance : std::numeric_limits<double>::infinity();
     const bool gathered = direct_ == DirectLight::gathered;
     if (!hit) {
         if (direct && scene_.environment().any()) {
@@ -101,13 +112,13 @@ bool LightWalk::step(Going& going, bool direct, Walk& walk) const {
     return true;
 }
 
-Walk LightWalk::from(const SurfaceHit& start, RandomNumbers& random, std::size_t& rays) const {
+Walk LightWalk::from(const SurfaceHit& start, const KnownLight& known, RandomNumbers& random,
+                     std::size_t& rays) const {
     Walk walk;
     Going going{start, random, rays};
-    for (;;) {
-        addReflected(going, walk);
-        if (walk.end || !step(going, true, walk)) return walk;
+    while (!ends(going, known, walk) && step(going, true, walk)) {
     }
+    return walk;
 }
 
 Rgb LightWalk::direct(const SurfaceHit& hit, RandomNumbers& random, std::size_t& rays) const {
@@ -122,13 +133,11 @@ Rgb LightWalk::direct(const SurfaceHit& hit, RandomNumbers& random, std::size_t&
     return walk.radiance;
 }
 
-Walk LightWalk::sampled(const SurfaceHit& start, bool direct, RandomNumbers& random,
-                        std::size_t& rays) const {
+Walk LightWalk::sampled(const SurfaceHit& start, const KnownLight& known, bool direct,
+                        RandomNumbers& random, std::size_t& rays) const {
     Walk walk;
     Going going{start, random, rays};
-    while (step(going, direct || going.bounce > 0, walk)) {
-        addReflected(going, walk);
-        if (walk.end) break;
+    while (step(going, direct || going.bounce > 0, walk) && !ends(going, known, walk)) {
     }
     return walk;
 }

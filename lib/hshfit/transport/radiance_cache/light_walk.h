@@ -5,6 +5,7 @@
 #include <hshfit/transport/surface_scene.h>
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -28,33 +29,34 @@ private:
     std::vector<std::optional<Rgb>> f_;
 };
 
-/// The end of a walk on a diffuse surface, whose further light is known by its irradiance.
-struct WalkEnd {
-    SurfaceHit hit;
-    Rgb weight{};  ///< times irradiance there: radiance at the walk's start
-};
+/// Irradiance at a hit on a diffuse surface, beside the light that is sampled there; none where it
+/// is better that a walk goes on, which it can unless `last`.
+using KnownLight = std::function<std::optional<Rgb>(const SurfaceHit& hit, bool last)>;
 
-/// Reflected radiance as a walk finds it: the light that was sampled on it and met by it, and its
-/// end, if it came to a diffuse surface.
+/// Reflected radiance as a walk finds it: the light that was sampled on it, met by it and known at
+/// its end.
 struct Walk {
     Rgb radiance{};
-    std::optional<WalkEnd> end = {};
+    Rgb endWeight{};  ///< times irradiance at the end: radiance at the walk's start
+    /// The length of its first ray, infinite where that met nothing; 0 without one.
+    double firstLength = 0;
 };
 
-/// Walks from surfaces by their materials' samplers up to the first diffuse surface. The scene has
-/// to outlive this.
+/// Walks from surfaces by their materials' samplers up to the first diffuse surface of known light,
+/// at most four reflections further than to the first. The scene has to outlive this.
 class LightWalk {
 public:
     LightWalk(const SurfaceScene& scene, DirectLight direct);
 
     /// Reflected radiance towards start.wo; adds the rays traced.
-    Walk from(const SurfaceHit& start, RandomNumbers& random, std::size_t& rays) const;
+    Walk from(const SurfaceHit& start, const KnownLight& known, RandomNumbers& random,
+              std::size_t& rays) const;
     /// Reflected direct light alone, by a sample of the lights and one of the material.
     Rgb direct(const SurfaceHit& hit, RandomNumbers& random, std::size_t& rays) const;
     /// The light that one direction of the material's sampler finds; direct light, which is
     /// weighted against that of `lights()`, only if `direct`.
-    Walk sampled(const SurfaceHit& start, bool direct, RandomNumbers& random,
-                 std::size_t& rays) const;
+    Walk sampled(const SurfaceHit& start, const KnownLight& known, bool direct,
+                 RandomNumbers& random, std::size_t& rays) const;
 
     const SurfaceScene& scene() const { return scene_; }
     const LightSampling& lights() const { return lights_; }
@@ -64,7 +66,7 @@ public:
 private:
     struct Going;
     bool step(Going& going, bool direct, Walk& walk) const;
-    void addReflected(Going& going, Walk& walk) const;
+    bool ends(Going& going, const KnownLight& known, Walk& walk) const;
 
     const SurfaceScene& scene_;
     LightSampling lights_;

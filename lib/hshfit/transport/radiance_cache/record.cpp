@@ -10,11 +10,17 @@
 namespace hshfit::inline transport::inline radiance_cache {
 namespace {
 
+constexpr auto none = static_cast<std::size_t>(-1);
+
 /// The rays of a record, cell by cell.
 struct Rays {
-    std::vector<double> x, y, z;     ///< directions in the frame
-    std::vector<Rgb> radiance;       ///< as found
-    std::vector<float> inverse;      ///< one over the distance, 0 where a ray is lost
+    std::vector<double> x, y, z;  ///< directions in the frame
+    std::vector<Rgb> radiance;    ///< as found
+    std::vector<float> inverse;   ///< one over the distance, 0 where a ray is lost
+    /// Likewise to what is seen in a surface that is not diffuse, whose number is in `glossy`.
+    std::vector<float> inverseBeyond;
+    std::vector<std::size_t> glossy;
+    std::size_t stuck = 0;           ///< rays that end where they start, to rounding
     std::vector<Direction> normals;  ///< of what was met, in the frame
     DirectionBatch directions() const { return {x.data(), y.data(), z.data(), x.size()}; }
 };
@@ -23,6 +29,10 @@ Rays traced(const SurfaceHit& hit, const HemisphereStrata& strata, const GatherS
             RandomNumbers& random, std::size_t& rays) {
     const SurfaceScene& surfaces = scene.walk->scene();
     const bool gathered = scene.walk->directLight() == DirectLight::gathered;
+    const double rounding = surfaces.rounding();
+    const KnownLight known = [&](const SurfaceHit& end, bool last) {
+        return scene.surfaces->at(end, last);
+    };
     Rays found;
     for (std::size_t cell = 0; cell < strata.cells(); ++cell) {
         const double u = random.next(), v = random.next();
@@ -30,6 +40,8 @@ Rays traced(const SurfaceHit& hit, const HemisphereStrata& strata, const GatherS
         found.x.push_back(local.x), found.y.push_back(local.y), found.z.push_back(local.z);
         Rgb& radiance = found.radiance.emplace_back();
         found.inverse.push_back(0);
+        found.inverseBeyond.push_back(0);
+        found.glossy.push_back(none);
         found.normals.push_back({0, 0, 1});
         const Direction world = aboveTriangle(hit, hit.frame.toWorld(local));
         ++rays;
@@ -39,14 +51,17 @@ Rays traced(const SurfaceHit& hit, const HemisphereStrata& strata, const GatherS
                 radiance = surfaces.environment().radiance(world);
             continue;
         }
-        found.inverse.back() = static_cast<float>(1 / std::max(met->distance, 1e-30));
+        if (met->distance < rounding) ++found.stuck;
+        found.inverse.back() =
+            static_cast<float>(1 / std::max({met->distance, scene.nearest, rounding}));
         found.normals.back() = hit.frame.toLocal(met->flat);
         if (gathered) radiance = met->emission;
-        const Walk walk = scene.walk->from(*met, random, rays);
+        const Walk walk = scene.walk->from(*met, known, random, rays);
         for (std::size_t c = 0; c < 3; ++c) radiance[c] += walk.radiance[c];
-        if (!walk.end) continue;
-        const Rgb light = scene.surfaces->at(walk.end->hit);
-        for (std::size_t c = 0; c < 3; ++c) radiance[c] += walk.end->weight[c] * light[c];
+        if (scene.walk->diffuse().at(surfaces.objects()[met->object].material)) continue;
+        found.glossy.back() = met->object;
+        found.inverseBeyond.back() = static_cast<float>(
+            1 / std::max({met->distance + walk.firstLength, scene.nearest, rounding}));
     }
     return found;
 }
@@ -88,7 +103,10 @@ template <class Visit>
 void forEachEdge(const Rays& rays, const HemisphereStrata& strata, const Visit& visit) {
     const std::size_t azimuths = strata.azimuths();
     const auto edge = [&](std::size_t cell, std::size_t other, bool ring) {
-        const double inverse = std::max(rays.inverse[cell], rays.inverse[other]);
+        // Reflections in one surface move as what they show, not as the surface does.
+        const bool reflected = rays.glossy[cell] != none && rays.glossy[cell] == rays.glossy[other];
+        const std::vector<float>& inverses = reflected ? rays.inverseBeyond : rays.inverse;
+        const double inverse = std::max(inverses[cell], inverses[other]);
         if (inverse == 0) return;
         visit(cell, ring, minus(rays.radiance[cell], rays.radiance[other]), inverse);
     };
@@ -194,6 +212,10 @@ Gathered gather(const SurfaceHit& hit, std::uint32_t kind, const IncomingFunctio
     }
     if (gradient == Gradient::hitPoints) addHitPointGradient(rays, functions, strata, record);
     if (!functions.basis() && gradient != Gradient::none) addTurns(rays, mean, strata, record);
+    const auto finite = [](float value) { return std::isfinite(value); };
+    gathered.sound = 10 * rays.stuck < strata.cells() &&
+                     std::ranges::all_of(record.values, finite) &&
+                     std::ranges::all_of(gathered.bends, finite);
     return gathered;
 }
 

@@ -51,6 +51,8 @@ struct Record {
 struct GatherScene {
     const LightWalk* walk = nullptr;
     const SurfaceIrradiance* surfaces = nullptr;
+    /// Shorter distances count as this one in derivatives: nothing that near is told apart.
+    double nearest = 0;
 };
 
 struct Gathered {
@@ -58,6 +60,7 @@ struct Gathered {
     /// [xx, xy, yy][function], if the strata have bends: second derivatives along the frame's
     /// tangent and bitangent, R, G and B together, by the edges between strata as for the gradient.
     std::vector<float> bends = {};
+    bool sound = true;  ///< numbers are finite, and rays do not start on another surface
 };
 
 /// Traces one ray into each cell and makes a record of what they find (Eq. 22, stratified): the

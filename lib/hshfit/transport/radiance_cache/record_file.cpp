@@ -76,7 +76,7 @@ std::uint64_t countOf(const TensorFile& file, const char* name, std::uint64_t of
 
 void writeRecords(const StoredRecords& stored, AtomicFile& file) {
     const nlohmann::ordered_json header = {{"format", format},
-                                           {"version", 2},
+                                           {"version", 3},
                                            {"generator", std::string("hshfit ") + version},
                                            {"key", stored.key},
                                            {"orders", stored.orders},
@@ -84,7 +84,7 @@ void writeRecords(const StoredRecords& stored, AtomicFile& file) {
                                            {"spacing", stored.spacing}};
     const std::string text = jsonText(header);
     std::vector<double> places;
-    std::vector<std::uint32_t> kinds;
+    std::vector<std::uint32_t> kinds, sides;
     std::vector<float> values, points;
     for (const Record& record : stored.records) {
         const auto all = numbersOf(record);
@@ -95,6 +95,7 @@ void writeRecords(const StoredRecords& stored, AtomicFile& file) {
     for (const IrradiancePoint& point : stored.points) {
         for (const auto* three : {&point.position, &point.normal, &point.irradiance})
             points.insert(points.end(), three->begin(), three->end());
+        sides.push_back(point.side);
     }
     TensorFileWriter writer;
     writer.add("header", text);
@@ -103,6 +104,7 @@ void writeRecords(const StoredRecords& stored, AtomicFile& file) {
     writer.add("kinds", {kinds.size()}, kinds);
     writer.add("values", {values.size()}, values);
     writer.add("points", {stored.points.size(), 9}, points);
+    writer.add("sides", {sides.size()}, sides);
     writer.write(file);
 }
 
@@ -114,7 +116,7 @@ StoredRecords readRecords(const std::string& path, const std::string& key) {
         parseJson({reinterpret_cast<const char*>(text.data()), text.size()}, path, 4);
     const JsonFields header(parsed, "", path);
     if (header.word("format") != format) header.fail("is no file of records", "format");
-    header.integer("version", 2, 2);
+    header.integer("version", 3, 3);
     StoredRecords stored;
     stored.key = header.word("key");
     if (stored.key != key) {
@@ -137,6 +139,8 @@ StoredRecords readRecords(const std::string& path, const std::string& key) {
         valuesOf<float>(file, "values", TensorFile::Type::f32, file.field("values").count);
     const auto points =
         valuesOf<float>(file, "points", TensorFile::Type::f32, 9 * countOf(file, "points", 9));
+    const auto sides =
+        valuesOf<std::uint32_t>(file, "sides", TensorFile::Type::u32, points.size() / 9);
     std::size_t used = 0;
     for (std::size_t k = 0; k < count; ++k) {
         Record record = recordOf(places.data() + k * numbers);
@@ -160,7 +164,8 @@ StoredRecords readRecords(const std::string& path, const std::string& key) {
         file.fail(file.field("points"), "it holds no numbers");
     for (std::size_t p = 0; p < points.size(); p += 9) {
         const float* n = points.data() + p;
-        stored.points.push_back({{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}});
+        stored.points.push_back(
+            {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}, sides[p / 9]});
     }
     mapped.checkIntact();
     return stored;

@@ -22,7 +22,7 @@ struct StoredRecords {
 
 /// A tensor file (tensor_file.h): `header` as JSON, and of each record position, frame, kind,
 /// radius with distance, norm and noise (float64), and values (float32); of each point nine
-/// float32. Throws OutputError.
+/// float32 and its side (uint32). Throws OutputError.
 void writeRecords(const StoredRecords& stored, AtomicFile& file);
 
 /// Throws InputError that starts with `path` for a file that is no such file, is cut off, has

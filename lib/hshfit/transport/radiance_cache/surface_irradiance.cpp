@@ -17,6 +17,9 @@ namespace {
 /// A difference of normals by 1 counts as this many spacings.
 constexpr double normalSpacings = 4;
 constexpr std::size_t neighbours = 5;
+/// A walk ends on points whose neighbours are nearer than its last ray is long, by this factor.
+constexpr double reachesOfRay = 2;
+constexpr int manyBounces = 64;
 
 double areaOf(const Mesh& mesh, std::size_t triangle) {
     const auto& t = mesh.triangles[triangle];
@@ -45,14 +48,19 @@ void addPoints(const SurfaceScene& scene, const std::vector<std::uint32_t>& tria
     }
 }
 
+std::uint32_t sideOf(const SurfaceHit& hit) {
+    return 2 * static_cast<std::uint32_t>(hit.object) + (hit.front ? 0 : 1);
+}
+
 struct Link {
-    std::uint32_t point;
-    std::array<float, 3> weight;
+    std::uint32_t point = 0;
+    std::array<float, 3> weight{};
 };
 
 }  // namespace
 
 struct SurfaceIrradiance::Tree {
+    std::vector<std::uint32_t> numbers;  ///< of its points
     std::vector<std::array<float, 6>> places;
     float normalScale = 0;
 
@@ -67,9 +75,12 @@ struct SurfaceIrradiance::Tree {
         return false;
     }
 
-    Tree(const std::vector<IrradiancePoint>& points, double spacing)
-        : normalScale(static_cast<float>(normalSpacings * spacing)) {
-        for (const IrradiancePoint& p : points) places.push_back(placeOf(p.position, p.normal));
+    explicit Tree(double spacing) : normalScale(static_cast<float>(normalSpacings * spacing)) {}
+    void add(std::uint32_t number, const IrradiancePoint& p) {
+        numbers.push_back(number);
+        places.push_back(placeOf(p.position, p.normal));
+    }
+    void build() {
         search = std::make_unique<Search>(6, *this, nanoflann::KDTreeSingleIndexAdaptorParams(8));
         search->buildIndex();
     }
@@ -85,25 +96,29 @@ struct SurfaceIrradiance::Tree {
              static_cast<float>(normal.z)};
         return placeOf(p, n);
     }
+    /// Numbers of the nearest points, the nearest first.
     std::size_t nearest(const std::array<float, 6>& place, std::size_t count, std::uint32_t* found,
                         float* squares) const {
-        return search->knnSearch(place.data(), count, found, squares);
+        const std::size_t several = search->knnSearch(place.data(), count, found, squares);
+        for (std::size_t k = 0; k < several; ++k) found[k] = numbers[found[k]];
+        return several;
     }
 };
 
-SurfaceIrradiance::SurfaceIrradiance(std::vector<IrradiancePoint> points, double spacing)
-    : points_(std::move(points)), spacing_(spacing) {
-    if (!points_.empty()) tree_ = std::make_unique<Tree>(points_, spacing_);
+SurfaceIrradiance::SurfaceIrradiance(std::vector<IrradiancePoint> points, double spacing,
+                                     int bounces)
+    : points_(std::move(points)), spacing_(spacing), bounces_(bounces) {
+    plant();
 }
 SurfaceIrradiance::~SurfaceIrradiance() = default;
 SurfaceIrradiance::SurfaceIrradiance(SurfaceIrradiance&&) noexcept = default;
 
 std::size_t SurfaceIrradiance::bytes() const {
-    return points_.size() * (sizeof(IrradiancePoint) + 6 * sizeof(float));
+    return points_.size() * (sizeof(IrradiancePoint) + 8 * sizeof(float));
 }
 
-SurfaceIrradiance::SurfaceIrradiance(const LightWalk& walk,
-                                     const SurfaceIrradianceOptions& options) {
+SurfaceIrradiance::SurfaceIrradiance(const LightWalk& walk, const SurfaceIrradianceOptions& options)
+    : bounces_(options.bounces) {
     const SurfaceScene& scene = walk.scene();
     std::vector<std::vector<std::uint32_t>> triangles(scene.objects().size());
     std::vector<double> areas(scene.objects().size());
@@ -135,9 +150,48 @@ SurfaceIrradiance::SurfaceIrradiance(const LightWalk& walk,
         const Direction& n = hit.frame.normal;
         point.normal = {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)};
         point.irradiance = {};
+        point.side = sideOf(hit);
     }
-    tree_ = std::make_unique<Tree>(points_, spacing_);
+    plant();
     solve(walk, options, hits);
+}
+
+void SurfaceIrradiance::plant() {
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+        const std::uint32_t side = points_[p].side;
+        if (trees_.size() <= side) trees_.resize(side + 1);
+        if (!trees_[side]) trees_[side] = std::make_unique<Tree>(spacing_);
+        trees_[side]->add(static_cast<std::uint32_t>(p), points_[p]);
+    }
+    for (const auto& tree : trees_)
+        if (tree) tree->build();
+    reach_.resize(points_.size());
+    tbb::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t p) {
+        const IrradiancePoint& point = points_[p];
+        const Tree& tree = *trees_[point.side];
+        std::array<std::uint32_t, neighbours> found{};
+        std::array<float, neighbours> squares{};
+        const std::size_t count = tree.nearest(tree.placeOf(point.position, point.normal),
+                                               neighbours, found.data(), squares.data());
+        for (std::size_t k = 0; k < count; ++k) {
+            const auto& other = points_[found[k]].position;
+            reach_[p] = std::max(
+                reach_[p], std::hypot(other[0] - point.position[0], other[1] - point.position[1],
+                                      other[2] - point.position[2]));
+        }
+    });
+}
+
+const SurfaceIrradiance::Tree* SurfaceIrradiance::treeAt(const SurfaceHit& hit) const {
+    const std::uint32_t side = sideOf(hit);
+    return side < trees_.size() ? trees_[side].get() : nullptr;
+}
+
+/// Whether a ray is too short for the points that it meets. Walks that go on leave no count of
+/// bounces, and so they end where these are few.
+bool SurfaceIrradiance::isClose(const SurfaceHit& hit, std::uint32_t nearest) const {
+    return bounces_ >= manyBounces &&
+           hit.distance < reachesOfRay * static_cast<double>(reach_[nearest]);
 }
 
 void SurfaceIrradiance::solve(const LightWalk& walk, const SurfaceIrradianceOptions& options,
@@ -164,17 +218,23 @@ void SurfaceIrradiance::solve(const LightWalk& walk, const SurfaceIrradianceOpti
                 for (std::size_t c = 0; c < 3; ++c) base[p][c] += strata.measure() * sky[c];
                 continue;
             }
-            const Walk found = walk.from(*met, random, rays[p]);
+            Link link{};
+            const KnownLight linked = [&](const SurfaceHit& end, bool last) -> std::optional<Rgb> {
+                const Tree& tree = *treeAt(end);
+                float square = 0;
+                tree.nearest(tree.placeOf(end), 1, &link.point, &square);
+                if (!last && isClose(end, link.point)) return {};
+                return Rgb{};
+            };
+            const Walk found = walk.from(*met, linked, random, rays[p]);
             for (std::size_t c = 0; c < 3; ++c) {
                 base[p][c] +=
                     strata.measure() * (found.radiance[c] + (gathered ? met->emission[c] : 0));
             }
-            if (!found.end) continue;
-            Link& link = links[p].emplace_back();
-            float square = 0;
-            tree_->nearest(tree_->placeOf(found.end->hit), 1, &link.point, &square);
+            if (found.endWeight == Rgb{}) continue;
             for (std::size_t c = 0; c < 3; ++c)
-                link.weight[c] = static_cast<float>(strata.measure() * found.end->weight[c]);
+                link.weight[c] = static_cast<float>(strata.measure() * found.endWeight[c]);
+            links[p].push_back(link);
         }
         if (options.progress) options.progress(++done, hits.size());
     });
@@ -204,13 +264,15 @@ void SurfaceIrradiance::solve(const LightWalk& walk, const SurfaceIrradianceOpti
     }
 }
 
-Rgb SurfaceIrradiance::at(const SurfaceHit& hit) const {
+std::optional<Rgb> SurfaceIrradiance::at(const SurfaceHit& hit, bool last) const {
     Rgb sum{};
-    if (!tree_) return sum;
+    const Tree* tree = treeAt(hit);
+    if (!tree) return sum;
     std::array<std::uint32_t, neighbours> found{};
     std::array<float, neighbours> squares{};
     const std::size_t count =
-        tree_->nearest(tree_->placeOf(hit), neighbours, found.data(), squares.data());
+        tree->nearest(tree->placeOf(hit), neighbours, found.data(), squares.data());
+    if (!last && isClose(hit, found[0])) return {};
     // The last has the weight 0, so that it can change without a step.
     const double reach = static_cast<double>(squares[count - 1]) * (1 + 1e-6) + 1e-300;
     double weights = 0;
