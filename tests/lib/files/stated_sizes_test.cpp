@@ -74,18 +74,18 @@ const Stack stacks[] = {{power(20), power(20), power(20)},
 TEST(StatedSizes, LevelsBeyond64BitsAreRefused) {
     const test::TemporaryFolder folder;
     const std::string path = folder / "t.ktx2";
-    for (const auto& [width, height, layers] : stacks) {
-        SCOPED_TRACE(fmt::format("{} x {} x {}", width, height, layers));
+    for (const Stack& s : stacks) {
+        SCOPED_TRACE(fmt::format("{} x {} x {}", s.width, s.height, s.layers));
         for (const std::uint64_t stated : {std::uint64_t{0}, std::uint64_t{16}, power(62), most}) {
             put(path, gpu::ktx2Head({.number = gpu::Number::float32,
-                                     .width = width,
-                                     .height = height,
-                                     .layers = layers,
+                                     .width = s.width,
+                                     .height = s.height,
+                                     .layers = s.layers,
                                      .levels = {{.stored = stated, .uncompressed = stated}}}));
             EXPECT_NE(refusal([&] {
-                          const LevelTexture texture(path, {{width, height}}, layers,
+                          const LevelTexture texture(path, {{s.width, s.height}}, s.layers,
                                                      gpu::Number::float32, "t.json");
-                          texture.numbers(0, width - 1, height - 1);
+                          texture.numbers(0, s.width - 1, s.height - 1);
                       }),
                       "");
         }
@@ -145,12 +145,13 @@ TEST(StatedSizes, MapsBeyond64BitsAreRefused) {
 TEST(StatedSizes, NoLevelsBeyondAFileAreWritten) {
     const test::TemporaryFolder folder;
     put(folder / "t.ktx2", "");
-    for (const auto& [width, height, layers] : stacks) {
-        if (checkedProduct({width, height, layers, 16})) continue;
-        EXPECT_NE(refusal<OutputError>([&] {
-                      LevelFile(folder / "t.ktx2", gpu::Number::float32, layers, {{width, height}});
-                  }),
-                  "");
+    for (const Stack& s : stacks) {
+        if (checkedProduct({s.width, s.height, s.layers, 16})) continue;
+        EXPECT_NE(
+            refusal<OutputError>([&] {
+                LevelFile(folder / "t.ktx2", gpu::Number::float32, s.layers, {{s.width, s.height}});
+            }),
+            "");
     }
 }
 

@@ -68,9 +68,9 @@ void checkTheta(const bases::Basis& basis, std::size_t count, Side side) {
 TEST(VectorMemory, BasesStayWithinDirectionsAndValues) {
     forEveryTarget([] {
         for (const char* family : families)
-            for (const int order : {1, 2, 3, 4, 7, 10, 11, 13, 18}) {
+            for (const int order : {1, 3, 7, 10, 11, 18}) {
                 const auto basis = bases::make(family, order);
-                for (const std::size_t count : {1, 2, 3, 4, 5, 7, 8, 9, 15, 16, 17, 31, 33, 65})
+                for (const std::size_t count : {1, 2, 3, 5, 8, 9, 16, 17, 33, 65})
                     for (const Side side : sides) {
                         checkBasis<double>(*basis, count, side);
                         checkBasis<float>(*basis, count, side);
