@@ -46,16 +46,17 @@ bool isText(std::string_view text) {
 }
 
 /// The first numbers of a table can begin like a picture, so that what has to follow two or three
-/// bytes is asked for: a line of text with width and height after those of PNM, a program and a
+/// bytes is asked for: the width or a line of text after those of PNM, a program and a
 /// line of text in Radiance HDR, a marker in JPEG, zeros and the size of a header in BMP.
 bool starts(std::string_view head, const PictureFormat& format) {
     if (!head.starts_with(format.start)) return false;
     const std::string_view rest = head.substr(format.start.size());
     if (format.start[0] == 'P') {
         const std::size_t first = rest.find_first_not_of(" \t\r\n");
-        return first > 0 && first < rest.size() &&
-               (rest[first] == '#' || (rest[first] >= '0' && rest[first] <= '9')) &&
-               isText(rest.substr(0, rest.find('\n', first)));
+        if (first == 0 || first >= rest.size()) return false;
+        const bool remark = rest[first] == '#', digit = rest[first] >= '0' && rest[first] <= '9';
+        const std::size_t end = rest.find_first_of(remark ? "\n" : " \t\r\n", first);
+        return (remark || digit) && end != rest.npos && isText(rest.substr(0, end));
     }
     if (format.start == "#?") {
         const std::size_t end = rest.find('\n');
