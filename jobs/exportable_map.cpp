@@ -83,7 +83,7 @@ public:
     LobeMap(const std::string& path, Wrap wrap)
         : map_(path),
           wrap_(wrap),
-          lobes_(map_.sidecar().model, map_.sidecar().nodes),
+          lobes_(map_.sidecar().model, map_.sidecar().nodes, path),
           text_(lobeText(lobes_, path)) {
         lobes_.checkTerms(map_.sidecar().terms.size(), path);
     }

@@ -151,7 +151,10 @@ class Trial:
         self.runs += 1
         self.refused += result.returncode == 3
         error = result.stderr.decode("utf-8", "replace")
-        named = result.returncode == 0 or path.name in error or f"hshfit: {other}:" in error
+        # A value may name another file, or the source that a file of coefficients states,
+        # and its message starts with that one.
+        names = (path.name, "r.pfm: ", "n.pfm: ", f"hshfit: {other}:", "hshfit: phong:ks=")
+        named = result.returncode == 0 or any(name in error for name in names)
         if result.returncode in codes and "internal error" not in error and named:
             return
         self.breaches += 1

@@ -68,9 +68,22 @@ FacetLobe::FacetLobe(const std::string& specification)
                     specification, fmt::join(facetModels(), ", ")));
 }
 
-FacetLobes::FacetLobes(std::string model, std::vector<LobeNodes> nodes)
+namespace {
+
+/// The model and its parameters are stated in `file`.
+const FacetLobe& firstOf(const FacetLobes& lobes, const std::string& file) {
+    try {
+        return lobes.at({0, 0});
+    } catch (const UsageError& error) {
+        throw InputError(file.empty() ? error.what() : fmt::format("{}: {}", file, error.what()));
+    }
+}
+
+}  // namespace
+
+FacetLobes::FacetLobes(std::string model, std::vector<LobeNodes> nodes, const std::string& file)
     : model_(std::move(model)), nodes_(std::move(nodes)) {
-    const brdfs::FacetNormals& normals = at({0, 0}).normals();
+    const brdfs::FacetNormals& normals = firstOf(*this, file).normals();
     for (std::size_t t = 0; t < normals.ofLobe.size(); ++t) {
         if (normals.ofLobe[t]) {
             lobeTerms_.push_back(t);

@@ -31,8 +31,8 @@ struct FacetLobe {
 /// A model whose lobe has parameters from texel to texel. Safe to use from many threads.
 class FacetLobes {
 public:
-    /// `model` is the specification without the parameters of `nodes`.
-    FacetLobes(std::string model, std::vector<LobeNodes> nodes);
+    /// `model` is the specification without the parameters of `nodes`; errors name `file`.
+    FacetLobes(std::string model, std::vector<LobeNodes> nodes, const std::string& file = {});
 
     const std::string& model() const { return model_; }
     const std::vector<LobeNodes>& nodes() const { return nodes_; }

@@ -22,7 +22,7 @@ public:
         : name_(fmt::format("{}:x={},y={},level={}", map.file(), column, row, level)),
           channels_(map.sidecar().channels),
           form_(level == 0 ? "one texel" : map.sidecar().form),
-          lobes_(map.sidecar().model, map.sidecar().nodes),
+          lobes_(map.sidecar().model, map.sidecar().nodes, map.file()),
           numbers_(map.numbers(level, column, row)),
           layout_(map.sidecar().layout) {
         const FilteredSidecar& sidecar = map.sidecar();
