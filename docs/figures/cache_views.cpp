@@ -1,4 +1,4 @@
-// cache_views [SIZE PATHS [RAYS ACCURACY]]: pictures of indirect light by the radiance cache
+// cache_views [SIZE PATHS [RAYS ACCURACY [VIEW]]]: pictures of indirect light by the radiance cache
 // against path tracing in the twelve scenes of docs/illuminate.md. Prints the rows of its table.
 
 #include <hshfit/transport/radiance_cache/cached_picture.h>
@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <string>
 
 namespace {
 
@@ -78,7 +79,10 @@ int main(int argc, char** argv) {
     fmt::print(
         "| scene | records | mean by paths | mean by records | difference | largest distance of "
         "a pixel | beyond the noise |\n|---|---|---|---|---|---|---|\n");
-    for (const test::CacheView& view : test::cacheViews(size)) {
+    const auto views = test::cacheViews(size);
+    for (std::size_t k = 0; k < views.size(); ++k) {
+        const test::CacheView& view = views[k];
+        if (argc > 5 && std::stoul(argv[5]) != k + 1) continue;
         const PathPicture reference =
             tracePaths(*view.scene, view.camera, {.samples = paths, .fewestBounces = 2});
         RadianceCache cache(*view.scene, options);

@@ -65,6 +65,31 @@ TEST(RadianceCacheViews, AreRightWhereRecordsCannotBeKept) {
     EXPECT_NEAR(means[1], means[0], 0.03 * means[0]);
 }
 
+/// Walks that go on from the wall beside a record are noisy; its gradient is not.
+TEST(RadianceCacheViews, HaveSteadyGradientsBesideEdges) {
+    const SurfaceScene room({test::materialOf("lambert:kd=.7")}, test::lamp(test::room({}, true)),
+                            {});
+    const auto hit = room.firstHit({0.985, 0.2, 0.5}, {0, 0, -1});
+    constexpr int seeds = 32;
+    double light = 0, slope = 0, squares = 0;
+    for (int seed = 1; seed <= seeds; ++seed) {
+        RadianceCache cache(room, {.rays = 500,
+                                   .surfacePoints = 200,
+                                   .surfaceRays = 64,
+                                   .seed = static_cast<std::uint64_t>(seed)});
+        cache.make({*hit}, {1});
+        ASSERT_EQ(cache.records().size(), 1U);
+        const Record& record = cache.records()[0];
+        const double along = static_cast<double>(record.part(1, 1)[0]) * record.frame.tangent.x +
+                             static_cast<double>(record.part(2, 1)[0]) * record.frame.bitangent.x;
+        light += static_cast<double>(record.part(0, 1)[0]) / seeds;
+        slope += along / seeds;
+        squares += along * along / seeds;
+    }
+    const double reach = 0.02, spread = std::sqrt(squares - slope * slope);
+    EXPECT_LT(spread * reach, 0.004 * light);
+}
+
 /// Between endless plates of emission E and albedo rho, light of two and more reflections is
 /// E rho^2 / (1 - rho). Points on these lie many times their distance apart.
 TEST(RadianceCacheViews, DoNotNeedPointsAsCloseAsSurfaces) {

@@ -116,8 +116,23 @@ Walk LightWalk::from(const SurfaceHit& start, const KnownLight& known, RandomNum
                      std::size_t& rays) const {
     Walk walk;
     Going going{start, random, rays};
-    while (!ends(going, known, walk) && step(going, true, walk)) {
+    std::optional<Rgb> smooth;
+    for (bool more = true; more && !ends(going, known, walk);) {
+        const std::optional<Rgb>& f = diffuse_.at(scene_.objects()[going.hit.object].material);
+        if (!f || smooth) {
+            more = step(going, true, walk);
+            continue;
+        }
+        Rgb weight = going.weight;
+        for (std::size_t c = 0; c < 3; ++c) weight[c] *= (*f)[c];
+        const Rgb light = known(going.hit, true).value_or(Rgb{});
+        smooth = walk.radiance;
+        more = step(going, true, walk);
+        // Gathered light is among what the points know.
+        if (direct_ == DirectLight::sampled) smooth = walk.radiance;
+        add(*smooth, weight, light, 1);
     }
+    walk.smooth = smooth.value_or(walk.radiance);
     return walk;
 }
 

@@ -37,6 +37,9 @@ using KnownLight = std::function<std::optional<Rgb>(const SurfaceHit& hit, bool 
 /// its end.
 struct Walk {
     Rgb radiance{};
+    /// With less noise, for differences: without what a walk finds that goes on beyond a diffuse
+    /// surface, whose points give that light instead.
+    Rgb smooth{};
     Rgb endWeight{};  ///< times irradiance at the end: radiance at the walk's start
     /// The length of its first ray, infinite where that met nothing; 0 without one.
     double firstLength = 0;

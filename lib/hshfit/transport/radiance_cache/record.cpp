@@ -16,6 +16,7 @@ constexpr auto none = static_cast<std::size_t>(-1);
 struct Rays {
     std::vector<double> x, y, z;  ///< directions in the frame
     std::vector<Rgb> radiance;    ///< as found
+    std::vector<Rgb> smooth;      ///< for differences (Walk)
     std::vector<float> inverse;   ///< one over the distance, 0 where a ray is lost
     /// Likewise to what is seen in a surface that is not diffuse, whose number is in `glossy`.
     std::vector<float> inverseBeyond;
@@ -39,6 +40,7 @@ Rays traced(const SurfaceHit& hit, const HemisphereStrata& strata, const GatherS
         const Direction local = strata.direction(cell, u, v);
         found.x.push_back(local.x), found.y.push_back(local.y), found.z.push_back(local.z);
         Rgb& radiance = found.radiance.emplace_back();
+        Rgb& smooth = found.smooth.emplace_back();
         found.inverse.push_back(0);
         found.inverseBeyond.push_back(0);
         found.glossy.push_back(none);
@@ -48,16 +50,19 @@ Rays traced(const SurfaceHit& hit, const HemisphereStrata& strata, const GatherS
         const auto met = surfaces.firstHit(hit, world);
         if (!met) {
             if (gathered && surfaces.environment().any())
-                radiance = surfaces.environment().radiance(world);
+                radiance = smooth = surfaces.environment().radiance(world);
             continue;
         }
         if (met->distance < rounding) ++found.stuck;
         found.inverse.back() =
             static_cast<float>(1 / std::max({met->distance, scene.nearest, rounding}));
         found.normals.back() = hit.frame.toLocal(met->flat);
-        if (gathered) radiance = met->emission;
+        if (gathered) radiance = smooth = met->emission;
         const Walk walk = scene.walk->from(*met, known, random, rays);
-        for (std::size_t c = 0; c < 3; ++c) radiance[c] += walk.radiance[c];
+        for (std::size_t c = 0; c < 3; ++c) {
+            radiance[c] += walk.radiance[c];
+            smooth[c] += walk.smooth[c];
+        }
         if (scene.walk->diffuse().at(surfaces.objects()[met->object].material)) continue;
         found.glossy.back() = met->object;
         found.inverseBeyond.back() = static_cast<float>(
@@ -108,7 +113,7 @@ void forEachEdge(const Rays& rays, const HemisphereStrata& strata, const Visit& 
         const std::vector<float>& inverses = reflected ? rays.inverseBeyond : rays.inverse;
         const double inverse = std::max(inverses[cell], inverses[other]);
         if (inverse == 0) return;
-        visit(cell, ring, minus(rays.radiance[cell], rays.radiance[other]), inverse);
+        visit(cell, ring, minus(rays.smooth[cell], rays.smooth[other]), inverse);
     };
     for (std::size_t cell = 0; cell < strata.cells(); ++cell) {
         if (cell >= azimuths) edge(cell, cell - azimuths, true);
