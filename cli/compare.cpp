@@ -5,6 +5,8 @@
 
 #include <hshfit/error.h>
 #include <hshfit/pages/pair_summary_json.h>
+#include <hshfit/pages/picture_error_json.h>
+#include <hshfit/percent.h>
 
 #include <jobs/compare.h>
 #include <jobs/kept_outputs.h>
@@ -35,8 +37,9 @@ Json answer(const jobs::Compared& compared, const CompareArguments& arguments) {
                      {"version", 1},
                      {"a", compared.a},
                      {"b", compared.b},
-                     {"outgoing", compared.outgoing.spec()},
-                     {"metrics", metricValuesJson(compared.metrics)}};
+                     {"outgoing", compared.outgoing.spec()}};
+    if (compared.picture) document["picture"] = pictureErrorJson(*compared.picture);
+    document["metrics"] = metricValuesJson(compared.metrics);
     if (compared.pairs) document["pairs"] = pairSummaryJson(*compared.pairs);
     if (!compared.files.empty())
         document["report"] = {{"folder", arguments.output}, {"files", compared.files}};
@@ -48,6 +51,7 @@ Json answer(const jobs::Compared& compared, const CompareArguments& arguments) {
 std::string text(const jobs::Compared& compared, const CompareArguments& arguments) {
     std::string out = fmt::format("{} against {}, outgoing {}\n", arguments.others[0], arguments.a,
                                   compared.outgoing.spec());
+    if (compared.picture) out += "  " + indented(textOf(*compared.picture));
     for (const MetricValue& result : compared.metrics) out += metricText(result);
     if (compared.pairs) out += "  " + indented(textOf(*compared.pairs));
     if (!compared.files.empty())
@@ -82,17 +86,22 @@ void compareTwo(const CompareArguments& arguments, Globals& globals) {
 std::string tableText(const jobs::ManyCompared& many) {
     std::size_t width = 4;
     for (const std::string& name : many.names) width = std::max(width, name.size());
-    std::string text = fmt::format("{:<{}}  {:>22}  {:>22}  {:>10}  {:>22}\n", "name", width,
-                                   "relative L2 of f c", "energy left", "largest", "albedo");
+    std::string text = fmt::format("{:<{}}  {:>5}  {:>14}  {:>22}  {:>22}  {:>10}  {:>22}\n",
+                                   "name", width, "FLIP", "false extremum", "relative L2 of f c",
+                                   "energy left", "largest", "albedo");
     for (std::size_t i = 0; i < many.names.size(); ++i) {
         if (!many.results[i]) continue;
+        const auto& picture = many.results[i]->picture;
+        text += fmt::format(
+            "{:<{}}  {:>5}  {:>14}", many.names[i], width,
+            picture ? fmt::format("{:.3f}", picture->flip.mean) : "none",
+            picture ? percent(std::max(picture->dip.value, picture->peak.value), 2) : "none");
         const auto& pairs = many.results[i]->pairs;
         if (!pairs) {
-            text += fmt::format("{:<{}}  no errors over pairs of directions: --json says why\n",
-                                many.names[i], width);
+            text += "  no errors over pairs of directions: --json says why\n";
             continue;
         }
-        text += fmt::format("{:<{}}  {:>22}  {:>22}  {:>10.4g}  {:>22}\n", many.names[i], width,
+        text += fmt::format("  {:>22}  {:>22}  {:>10.4g}  {:>22}\n",
                             withError(pairs->relativeL2.value, pairs->relativeL2.error),
                             withError(pairs->energyLeft.value, pairs->energyLeft.error),
                             pairs->maximum, withError(pairs->albedo.value, pairs->albedo.error));

@@ -9,6 +9,7 @@
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/files/output_rule.h>
+#include <hshfit/percent.h>
 
 #include <jobs/fit.h>
 
@@ -81,10 +82,10 @@ std::string text(const jobs::Fitted& fitted, const FitArguments& arguments) {
     lines += fmt::format("  rms residual {:.6g} over {} values, {} iterations, {}\n", result.loss,
                          result.values, result.iterations,
                          result.converged ? "converged" : "NOT CONVERGED");
-    lines += fmt::format("  explains {} of the data by the loss {}; relative error of f cos {}\n",
-                         jobs::percent(fitted.explained, 4),
-                         fitted.preset["fit"]["loss"].get<std::string>(),
-                         jobs::percent(fitted.relativeError));
+    lines +=
+        fmt::format("  explains {} of the data by the loss {}; relative error of f cos {}\n",
+                    percent(fitted.explained, 4), fitted.preset["fit"]["loss"].get<std::string>(),
+                    percent(fitted.relativeError));
     lines += uncertaintyText(fitted.preset["fit"]);
     if (fitted.pageFiles > 0)
         lines += fmt::format("written to {}: fit.json, comparison.html and {} files beside it\n",

@@ -3,6 +3,7 @@
 #include "within.h"
 
 #include <hshfit/error.h>
+#include <hshfit/percent.h>
 
 #include <jobs/illuminate.h>
 #include <jobs/quality.h>
@@ -27,12 +28,12 @@ std::string textOf(const jobs::LitMaterial& material) {
     std::string text;
     if (material.way == LightWay::coefficients) {
         text = fmt::format("  {}: coefficients of order {}, {} of the energy lost\n", material.name,
-                           material.order, jobs::percent(material.loss, 2));
+                           material.order, percent(material.loss, 2));
     } else {
-        text = fmt::format("  {}: sampled, {}\n", material.name,
-                           material.reason.empty()
-                               ? jobs::percent(material.loss, 2) + " of the energy lost"
-                               : material.reason);
+        text =
+            fmt::format("  {}: sampled, {}\n", material.name,
+                        material.reason.empty() ? percent(material.loss, 2) + " of the energy lost"
+                                                : material.reason);
     }
     if (!material.cost) return text;
     return text + fmt::format(
@@ -45,8 +46,8 @@ std::string textOf(const jobs::LitMaterial& material) {
 std::string errorText(const jobs::IlluminatedCamera& camera) {
     if (!camera.standardError) return "no standard error";
     return fmt::format("standard error of a pixel {} of it, at most {} at ({}, {})",
-                       jobs::percent(*camera.standardError, 2),
-                       jobs::percent(*camera.largestError, 2), camera.errorColumn, camera.errorRow);
+                       percent(*camera.standardError, 2), percent(*camera.largestError, 2),
+                       camera.errorColumn, camera.errorRow);
 }
 
 std::string textOf(const jobs::IlluminatedCamera& camera) {

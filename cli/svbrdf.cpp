@@ -4,6 +4,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/files/output_rule.h>
+#include <hshfit/percent.h>
 #include <hshfit/representation/forms/form.h>
 
 #include <jobs/quality.h>
@@ -47,10 +48,9 @@ std::string textOf(const jobs::MapChoice& choice) {
         "  {:<10} {:>6}  {:>8.4g} bytes a texel{}", choice.form, choice.count, choice.bytesOfTexel,
         choice.sharedBytes > 0 ? fmt::format(" and {:.3g} MB", megabytes(choice.sharedBytes)) : "");
     if (choice.errors) {
-        text += fmt::format(", error {} mean, {} of 99 %, {} at most",
-                            jobs::percent(choice.errors->mean, 2),
-                            jobs::percent(choice.errors->percentile99, 2),
-                            jobs::percent(choice.errors->maximum, 2));
+        text += fmt::format(
+            ", error {} mean, {} of 99 %, {} at most", percent(choice.errors->mean, 2),
+            percent(choice.errors->percentile99, 2), percent(choice.errors->maximum, 2));
     }
     if (choice.pairs) {
         const jobs::TexelPairErrors& pairs = *choice.pairs;
@@ -78,16 +78,16 @@ std::string levelText(const jobs::Svbrdf& done, std::size_t level) {
                                    done.levels[level].height);
     if (done.form != "outgoing") {
         text += fmt::format(", error of the form {} mean, {} at most at ({}, {})",
-                            jobs::percent(errors.mean, 2), jobs::percent(errors.maximum, 2),
-                            errors.column, errors.row);
+                            percent(errors.mean, 2), percent(errors.maximum, 2), errors.column,
+                            errors.row);
     }
     for (const jobs::LevelCheck& check : done.checks) {
         if (check.level != level) continue;
         text += fmt::format(
             "; against samples of the reflectance {} mean, {} at most (averaged parameters: {}, "
             "{})",
-            jobs::percent(check.stored, 2), jobs::percent(check.storedMaximum, 2),
-            jobs::percent(check.parameters, 2), jobs::percent(check.parametersMaximum, 2));
+            percent(check.stored, 2), percent(check.storedMaximum, 2), percent(check.parameters, 2),
+            percent(check.parametersMaximum, 2));
     }
     if (!done.levelPairs.empty()) {
         const jobs::TexelPairErrors& pairs = done.levelPairs[level];
@@ -104,21 +104,21 @@ std::string textOf(const jobs::Svbrdf& done) {
     if (!done.lobes.empty()) text += fmt::format("; lobes {}", fmt::join(done.lobes, ", "));
     if (!done.axes.empty()) {
         text += fmt::format(" at {} nodes over {}, error {}", done.tableNodes,
-                            fmt::join(done.axes, ", "), jobs::percent(done.tableError, 2));
+                            fmt::join(done.axes, ", "), percent(done.tableError, 2));
     }
     text += "\n";
     if (done.fit.texels > 0) {
         text += fmt::format(
             "coefficients are off the samples of {} texels by {} in the mean, {} at most at ({}, "
             "{})\n",
-            done.fit.texels, jobs::percent(done.fit.mean, 2), jobs::percent(done.fit.maximum, 2),
+            done.fit.texels, percent(done.fit.mean, 2), percent(done.fit.maximum, 2),
             done.fit.column, done.fit.row);
     }
     if (!done.leastCaptured.empty()) {
         const std::string better = betterCall(done);
         text += fmt::format(
             "the basis captures {} of the energy of {}, the least of all lobes{}{}\n",
-            jobs::percent(done.captured, 2), done.leastCaptured,
+            percent(done.captured, 2), done.leastCaptured,
             done.captured < jobs::leastCaptured && done.form != "halfway" ? ": poor" : "",
             better.empty() ? "" : "; better: " + better);
     }

@@ -1,5 +1,7 @@
 #include "svbrdf_filtered.h"
 
+#include <hshfit/percent.h>
+
 #include <jobs/quality.h>
 #include <jobs/svbrdf/map_answers.h>
 
@@ -22,12 +24,11 @@ std::string textOf(const jobs::FilteredLevel& level, std::size_t index) {
     text += fmt::format(
         "; against samples of the reflectance {}, worst texel {} at ({}, {}), albedo {:.3f} of the "
         "true one (averaged parameters: {}, worst {}, albedo {:.3f}; {:.1f} x)",
-        jobs::percent(stored.relative, 2), jobs::percent(stored.maximum, 2), stored.column,
-        stored.row, stored.albedo, jobs::percent(parameters.relative, 2),
-        jobs::percent(parameters.maximum, 2), parameters.albedo,
-        stored.relative > 0 ? parameters.relative / stored.relative : 0);
+        percent(stored.relative, 2), percent(stored.maximum, 2), stored.column, stored.row,
+        stored.albedo, percent(parameters.relative, 2), percent(parameters.maximum, 2),
+        parameters.albedo, stored.relative > 0 ? parameters.relative / stored.relative : 0);
     if (level.noise > 0)
-        text += fmt::format("; the samples' own error {}", jobs::percent(level.noise, 2));
+        text += fmt::format("; the samples' own error {}", percent(level.noise, 2));
     return text + "\n";
 }
 
@@ -35,10 +36,10 @@ std::string textOf(const jobs::FilteredMapAnswer& done) {
     std::string text = fmt::format(
         "{}: {} x {} texels of {}; lobe {}, {} factors and {} albedos a texel\n", done.description,
         done.width, done.height, done.model,
-        done.parameters.empty() ? "the same for all"
-                                : fmt::format("by {} at {} nodes, off by {} at most between them",
-                                              fmt::join(done.parameters, ", "), done.nodes,
-                                              jobs::percent(done.nodeError, 2)),
+        done.parameters.empty()
+            ? "the same for all"
+            : fmt::format("by {} at {} nodes, off by {} at most between them",
+                          fmt::join(done.parameters, ", "), done.nodes, percent(done.nodeError, 2)),
         done.weights, done.albedos);
     if (!done.choices.empty()) {
         text += "forms, by the error of their worst level:\n";
@@ -47,8 +48,8 @@ std::string textOf(const jobs::FilteredMapAnswer& done) {
                 "  {:<24} {:>5} numbers, {:>5g} bytes a texel, error {} (level {}), "
                 "worst texel {} at ({}, {}) of level {}\n",
                 formText(choice.form, choice.order), choice.numbers, choice.bytesOfTexel,
-                jobs::percent(choice.error, 2), choice.level, jobs::percent(choice.maximum, 2),
-                choice.column, choice.row, choice.maximumLevel);
+                percent(choice.error, 2), choice.level, percent(choice.maximum, 2), choice.column,
+                choice.row, choice.maximumLevel);
         }
     }
     text += fmt::format("{}, {:.4g} MB, {:.1f} s ({:.3g} texels a second)\n",

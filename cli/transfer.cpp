@@ -1,6 +1,8 @@
 #include "command.h"
 #include "within.h"
 
+#include <hshfit/percent.h>
+
 #include <jobs/quality.h>
 #include <jobs/transfer.h>
 
@@ -37,7 +39,7 @@ std::string textOf(const jobs::Transferred& done) {
             "  {} rays a vertex, {:.3g} a second, {:.0f} % of the processor time in Embree; {} "
             "buried vertices\n  noise of the vectors {}, at most {} at vertex {}\n",
             done.options.rays, jobs::raysPerSecond(done), 100 * done.embreeShare, done.buried,
-            jobs::percent(done.noise, 2), jobs::percent(done.largestNoise, 2), done.noisiest);
+            percent(done.noise, 2), percent(done.largestNoise, 2), done.noisiest);
     }
     if (!done.energy.empty()) {
         text += "  energy by pass:";
@@ -51,17 +53,16 @@ std::string textOf(const jobs::Transferred& done) {
             "  {} clusters of {} components: {} bytes, error {}, at most {} at vertex "
             "{}\n",
             done.compressed->clusters, done.compressed->components, done.compressed->bytes,
-            jobs::percent(done.compressed->relativeL2, 2),
-            jobs::percent(done.compressed->largest, 2), done.compressed->vertex);
+            percent(done.compressed->relativeL2, 2), percent(done.compressed->largest, 2),
+            done.compressed->vertex);
     }
     for (const jobs::TransferPicture& picture : done.pictures) {
         const jobs::TransferPictureError& error = picture.errors.back();
         text += fmt::format(
             "  {} under {}: error {} against path tracing (noise {}), at most {} "
             "of the mean at ({}, {})\n",
-            picture.camera, picture.light, jobs::percent(error.relativeL2, 2),
-            jobs::percent(picture.noise, 2), jobs::percent(error.maximum, 2), error.column,
-            error.row);
+            picture.camera, picture.light, percent(error.relativeL2, 2), percent(picture.noise, 2),
+            percent(error.maximum, 2), error.column, error.row);
     }
     if (done.resumed > 0)
         text += fmt::format("  {} vertices of an earlier run were taken\n", done.resumed);

@@ -1,5 +1,6 @@
 #include "compare.h"
 
+#include "picture.h"
 #include "source.h"
 
 #include <hshfit/coefficients/reconstruction.h>
@@ -86,6 +87,7 @@ Compared compareBrdfs(const Brdf& a, const Brdf& b, const std::string& output,
     Compared result{.a = a.name(), .b = b.name(), .outgoing = outgoingOf(options, a, b)};
     result.metrics =
         hshfit::compare(a, b, result.outgoing, metrics, {.progress = listener.part("compare")});
+    result.picture = pictureErrorOf(a, b);
     result.pairs = overPairs(a, b);
     const auto hasValue = [](const MetricValue& metric) { return metric.value.has_value(); };
     if (options.metrics != "all" && !std::ranges::all_of(result.metrics, hasValue))

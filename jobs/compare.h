@@ -6,6 +6,7 @@
 
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/accuracy/pair_errors.h>
+#include <hshfit/pictures/picture_error.h>
 
 #include <optional>
 #include <string>
@@ -30,7 +31,8 @@ struct Compared {
     /// Over both hemispheres, whereas the outgoing set leaves out the horizon. None where the
     /// channels differ or `a` is not finite.
     std::optional<PairSummary> pairs = {};
-    std::vector<std::string> files = {};  ///< of the page, where one was asked for
+    std::optional<PictureError> picture = {};  ///< pictureErrorOf
+    std::vector<std::string> files = {};       ///< of the page, where one was asked for
     FigureFiles figures = {};
 };
 
@@ -57,7 +59,8 @@ ManyCompared compareMany(const std::string& a, const std::vector<std::string>& o
                          const std::string& output, const CompareOptions& options,
                          const Listener& listener = {});
 /// Writes the table of all as CSV: a row for each pair, with the value and the error of each
-/// metric. An earlier table is replaced, any other file is not. Throws OutputError.
+/// metric, and FLIP, false dip and false peak of the picture error. An earlier table is replaced,
+/// any other file is not. Throws OutputError.
 void writeComparisonTable(const ManyCompared& many, const std::string& path);
 
 /// The same of BRDFs that are open; `rgb` is not used.

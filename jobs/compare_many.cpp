@@ -122,6 +122,7 @@ ManyCompared compareMany(const std::string& a, const std::vector<std::string>& o
 namespace {
 
 constexpr std::string_view columns = "name,a,b,outgoing";
+constexpr std::string_view pictureColumns = ",FLIP,false dip,false peak";
 
 std::string tableOf(const ManyCompared& many) {
     std::string table;
@@ -132,12 +133,17 @@ std::string tableOf(const ManyCompared& many) {
             table = columns;
             for (const MetricValue& metric : compared->metrics)
                 table += fmt::format(",{0},{0} error", metric.metric->name);
+            table += pictureColumns;
             table += "\n";
         }
         table += fmt::format("{},{},{},{}", cell(many.names[i]), cell(compared->a),
                              cell(compared->b), cell(compared->outgoing.spec()));
         for (const MetricValue& metric : compared->metrics)
             table += metric.value ? fmt::format(",{},{}", *metric.value, metric.error) : ",,";
+        const auto& picture = compared->picture;
+        table += picture ? fmt::format(",{},{},{}", picture->flip.mean, picture->dip.value,
+                                       picture->peak.value)
+                         : ",,,";
         table += "\n";
     }
     return table;

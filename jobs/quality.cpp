@@ -6,6 +6,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
+#include <hshfit/percent.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/representation/halfway/halfway.h>
 
@@ -189,13 +190,6 @@ bool isAboutTheMirror(const Brdf& source) {
         if (half > within) near += energy;
     }
     return 2 * near > all;
-}
-
-std::string percent(double share, int digits) {
-    const double value = 100 * share;
-    // From here on rounding would reach the next power of ten.
-    return std::abs(value) < std::pow(10, digits) - 0.5 ? fmt::format("{:.{}g} %", value, digits)
-                                                        : fmt::format("{:.0f} %", value);
 }
 
 std::string Poor::line() const {

@@ -15,9 +15,6 @@
 
 namespace hshfit::jobs {
 
-/// "0.846 %": significant digits, and all that stand before the point.
-std::string percent(double share, int digits = 3);
-
 /// A result that misses more than a tenth of the energy of its source: what is wrong with it, and
 /// the call that does better.
 struct Poor {

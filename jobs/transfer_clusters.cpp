@@ -2,6 +2,7 @@
 
 #include <hshfit/byte_cursor.h>
 #include <hshfit/files/tensor_file_writer.h>
+#include <hshfit/percent.h>
 #include <hshfit/wording.h>
 
 #include <fmt/format.h>

@@ -4,6 +4,7 @@
 #include <hshfit/error.h>
 #include <hshfit/gpu/viewer_light.h>
 #include <hshfit/light/catalog.h>
+#include <hshfit/percent.h>
 
 #include <fmt/format.h>
 

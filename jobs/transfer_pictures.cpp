@@ -3,6 +3,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/light/catalog.h>
 #include <hshfit/light/light_projection.h>
+#include <hshfit/percent.h>
 #include <hshfit/pictures/rgb_picture.h>
 #include <hshfit/transport/path_tracer.h>
 #include <hshfit/transport/possible_radiance.h>

@@ -5,6 +5,7 @@ Exit code 0: all valid; 1: the first violation of each file is printed; 77: pyth
 missing. NaN and Infinity, which Python's reader would take, are refused, and so are double keys.
 """
 import json
+import pathlib
 import sys
 
 try:
@@ -33,7 +34,10 @@ def load(path):
 def main(schema_path, *paths):
     schema = load(schema_path)
     jsonschema.Draft202012Validator.check_schema(schema)
-    validator = jsonschema.Draft202012Validator(schema)
+    # "$ref": "picture.schema.json" is a file beside this one.
+    base = pathlib.Path(schema_path).resolve().as_uri()
+    validator = jsonschema.Draft202012Validator(
+        schema, resolver=jsonschema.RefResolver(base, schema))
     valid = True
     for path in paths:
         try:

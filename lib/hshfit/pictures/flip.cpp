@@ -2,6 +2,7 @@
 
 #include <hshfit/brdf/directions.h>
 #include <hshfit/error.h>
+#include <hshfit/pictures/lab.h>
 
 #include <fmt/format.h>
 
@@ -15,35 +16,6 @@ namespace {
 
 using Triple = std::array<double, 3>;
 
-/// CIE XYZ of linear Rec. 709, and back (IEC 61966-2-1, with the digits of the primaries).
-constexpr double toXyz[3][3] = {{0.41239080, 0.35758434, 0.18048079},
-                                {0.21263901, 0.71516868, 0.07219232},
-                                {0.01933082, 0.11919478, 0.95053215}};
-constexpr double fromXyz[3][3] = {{3.24096994, -1.53738318, -0.49861076},
-                                  {-0.96924364, 1.87596750, 0.04155506},
-                                  {0.05563008, -0.20397696, 1.05697151}};
-
-Triple times(const double (&matrix)[3][3], const Triple& v) {
-    Triple result{};
-    for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j) result[i] += matrix[i][j] * v[j];
-    return result;
-}
-
-/// XYZ over that of white.
-Triple relativeXyz(const Triple& rgb) {
-    static const Triple white = times(toXyz, {1, 1, 1});
-    Triple xyz = times(toXyz, rgb);
-    for (std::size_t i = 0; i < 3; ++i) xyz[i] /= white[i];
-    return xyz;
-}
-
-Triple rgbFromRelative(Triple xyz) {
-    static const Triple white = times(toXyz, {1, 1, 1});
-    for (std::size_t i = 0; i < 3; ++i) xyz[i] *= white[i];
-    return times(fromXyz, xyz);
-}
-
 /// Linear opponent colours.
 Triple yCxCz(const Triple& rgb) {
     const auto [x, y, z] = relativeXyz(rgb);
@@ -52,18 +24,13 @@ Triple yCxCz(const Triple& rgb) {
 
 Triple rgbFromYCxCz(const Triple& c) {
     const double y = (c[0] + 16) / 116;
-    return rgbFromRelative({y + c[1] / 500, y, y - c[2] / 200});
+    return rgbOfRelativeXyz({y + c[1] / 500, y, y - c[2] / 200});
 }
 
 /// L*a*b* whose chroma falls with luminance (Hunt 1952).
 Triple huntAdjusted(const Triple& rgb) {
-    Triple f = relativeXyz(rgb);
-    constexpr double delta = 6.0 / 29;
-    for (double& t : f)
-        t = t > delta * delta * delta ? std::cbrt(t) : t / (3 * delta * delta) + 4.0 / 29;
-    const double lightness = 116 * f[1] - 16;
-    return {lightness, 0.01 * lightness * 500 * (f[0] - f[1]),
-            0.01 * lightness * 200 * (f[1] - f[2])};
+    const Lab lab = labOf(rgb);
+    return {lab.lightness, 0.01 * lab.lightness * lab.a, 0.01 * lab.lightness * lab.b};
 }
 
 double hyab(const Triple& a, const Triple& b) {

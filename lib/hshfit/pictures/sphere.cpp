@@ -1,8 +1,6 @@
-#include <hshfit/brdf/colour.h>
-#include <hshfit/error.h>
+#include <hshfit/pictures/channel_colours.h>
 #include <hshfit/pictures/sphere.h>
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <array>
@@ -13,42 +11,6 @@ namespace hshfit::inline pictures {
 namespace {
 
 using Rgb = std::array<double, 3>;
-
-/// Weights of the channels in R, G and B.
-struct ToRgb {
-    std::array<std::vector<double>, 3> weights;
-    std::string what;
-
-    Rgb operator()(const double* values, std::size_t stride) const {
-        Rgb rgb{};
-        for (std::size_t c = 0; c < 3; ++c) {
-            for (std::size_t i = 0; i < weights[c].size(); ++i) {
-                rgb[c] += weights[c][i] * values[i * stride];
-            }
-        }
-        return rgb;
-    }
-};
-
-ToRgb toRgb(const Channels& channels) {
-    switch (channels.kind) {
-        case Channels::Kind::grey:
-            return {{{{1}, {1}, {1}}}, "one value for every colour"};
-        case Channels::Kind::rgb:
-            return {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, "linear Rec. 709"};
-        case Channels::Kind::spectral:
-            break;
-    }
-    try {
-        return {rgbWeights(channels.wavelengths).weights,
-                fmt::format("{} wavelengths, CIE 1931 2 degrees, D65", channels.count())};
-    } catch (const UsageError&) {
-        const std::vector<double> equal(channels.count(),
-                                        1 / static_cast<double>(channels.count()));
-        return {{equal, equal, equal},
-                fmt::format("mean of {} wavelengths, which make no colour", channels.count())};
-    }
-}
 
 /// The local frame at a point of the sphere, in that of the picture.
 struct Frame {
@@ -73,10 +35,10 @@ public:
         : brdf_(brdf),
           albedo_(albedo),
           rig_(rig),
-          colour_(toRgb(brdf.channels())),
+          colour_(brdf.channels()),
           channels_(brdf.channels().count()) {}
 
-    const std::string& colours() const { return colour_.what; }
+    const std::string& colours() const { return colour_.what(); }
 
     /// Adds the radiance that the point (x, y) of the unit disc sends to the viewer.
     void add(double x, double y, Rgb& sum, std::size_t& notFinite) const {
@@ -116,7 +78,7 @@ private:
     const Brdf& brdf_;
     const AlbedoTable& albedo_;
     const SphereRig& rig_;
-    const ToRgb colour_;
+    const ChannelColours colour_;
     std::size_t channels_;
 };
 

@@ -1,0 +1,43 @@
+#include <hshfit/pages/picture_error_json.h>
+
+#include <hshfit/brdf/directions.h>
+
+#include <nlohmann/json.hpp>
+
+namespace hshfit::inline pages {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json overLightsJson(const OverLights& all) {
+    return {{"mean", all.mean}, {"largest", all.largest}, {"light", all.light}};
+}
+
+Json placeJson(const Direction& d) {
+    return {{"theta", degrees(polarAngle(d))}, {"phi", degrees(azimuth(d))}};
+}
+
+/// Without a place where there is no difference.
+Json differenceJson(const SeenDifference& difference) {
+    Json json = {{"value", difference.value}};
+    if (!(difference.value > 0)) return json;
+    json["channel"] = difference.channel;
+    json["wi"] = placeJson(difference.at.wi);
+    json["wo"] = placeJson(difference.at.wo);
+    return json;
+}
+
+}  // namespace
+
+Json pictureErrorJson(const PictureError& error) {
+    return {{"flip", overLightsJson(error.flip)},
+            {"ciede2000", overLightsJson(error.colour)},
+            {"channels", error.channels},
+            {"albedo", error.albedo},
+            {"last_albedo", error.lastAlbedo},
+            {"false_dip", differenceJson(error.dip)},
+            {"false_peak", differenceJson(error.peak)},
+            {"ridge", differenceJson(error.ridge)}};
+}
+
+}  // namespace hshfit::inline pages

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <hshfit/pictures/picture_error.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace hshfit::inline pages {
+
+/// The object "picture" of several answers (docs/schemas/picture.schema.json): shares, not percent;
+/// directions in degrees.
+nlohmann::ordered_json pictureErrorJson(const PictureError& error);
+
+}  // namespace hshfit::inline pages

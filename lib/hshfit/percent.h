@@ -1,0 +1,26 @@
+#pragma once
+
+// Shares as people read them; seventeen digits belong in JSON alone.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+namespace hshfit {
+
+/// "0.846 %": significant digits, and all that stand before the point.
+inline std::string percent(double share, int digits = 3) {
+    const double value = 100 * share;
+    // From here on rounding would reach the next power of ten.
+    return std::abs(value) < std::pow(10, digits) - 0.5 ? fmt::format("{:.{}g} %", value, digits)
+                                                        : fmt::format("{:.0f} %", value);
+}
+
+/// The same with its sign: "+0.846 %".
+inline std::string signedPercent(double share, int digits = 2) {
+    const std::string text = percent(std::abs(share), digits);
+    return (share < 0 ? "-" : "+") + text;
+}
+
+}  // namespace hshfit
