@@ -4,6 +4,8 @@
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/error.h>
 #include <hshfit/files/standard_streams.h>
+#include <hshfit/pages/picture_error_json.h>
+#include <hshfit/percent.h>
 
 #include <brdfs/catalog.h>
 
@@ -60,6 +62,8 @@ Json document(const jobs::Converted& converted, const std::string& output) {
                      {"altered", converted.altered},
                      {"bytes", converted.bytes},
                      {"error", converted.error ? Json(*converted.error) : Json(nullptr)}};
+    if (converted.error) document["error_over"] = converted.errorOver;
+    if (converted.picture) document["picture"] = pictureErrorJson(*converted.picture);
     if (converted.poor) document["poor"] = jobs::poorJson(*converted.poor);
     if (converted.repairs) document["repairs"] = repairsJson(*converted.repairs);
     if (const auto& loss = converted.loss) {
@@ -70,7 +74,8 @@ Json document(const jobs::Converted& converted, const std::string& output) {
     return document;
 }
 
-std::string convertText(const Json& document, const std::optional<jobs::ConversionLoss>& loss) {
+std::string convertText(const Json& document, const jobs::Converted& converted) {
+    const std::optional<jobs::ConversionLoss>& loss = converted.loss;
     std::string text = fmt::format("{}: {}", document["output"].get<std::string>(),
                                    document["written"].get<std::string>());
     const std::size_t bytes = document["bytes"];  // 0: they went to standard output
@@ -96,6 +101,10 @@ std::string convertText(const Json& document, const std::optional<jobs::Conversi
             100 * check["noise"].get<double>());
     }
     if (!loss) return text;
+    if (converted.error)
+        text += fmt::format("  read back: {} off over {}\n", percent(*converted.error),
+                            converted.errorOver);
+    if (converted.picture) text += "  " + indented(textOf(*converted.picture));
     text += fmt::format("loss, outgoing {}\n", loss->outgoing);
     for (const MetricValue& result : loss->metrics) text += metricText(result);
     return text;
@@ -109,7 +118,7 @@ void convertOne(const ConvertArguments& arguments, const Globals& globals) {
     if (globals.json) {
         printJson(answer);
     } else {
-        printText(convertText(answer, converted.loss));
+        printText(convertText(answer, converted));
     }
 }
 
@@ -129,7 +138,7 @@ void convertMany(const ConvertArguments& arguments, Globals& globals) {
         if (!converted) continue;
         if (converted->poor) note(globals, converted->poor->line());
         documents.push_back(document(*converted, many.outputs[i]));
-        text += convertText(documents.back(), converted->loss);
+        text += convertText(documents.back(), *converted);
     }
     if (globals.json)
         printJson({{"format", "hshfit-converts"},

@@ -5,6 +5,7 @@
 
 #include <hshfit/filtered_maps/filtered_sidecar.h>
 #include <hshfit/gpu/error_split.h>
+#include <hshfit/pages/picture_error_json.h>
 
 #include <jobs/export.h>
 #include <jobs/many.h>
@@ -279,7 +280,10 @@ void runLighting(const ExportArguments& arguments, const Globals& globals) {
 
 std::string answerText(const Json& answer) {
     if (isMapDocument(answer)) return mapDocumentText(answer);
-    return text(answer) + (answer.contains("proposal") ? proposalText(answer["proposal"]) : "");
+    const Json picture = answer["fit_error"].value("picture", Json());
+    return text(answer) +
+           (picture.is_null() ? "" : "picture: " + summaryOf(pictureErrorFrom(picture)) + "\n") +
+           (answer.contains("proposal") ? proposalText(answer["proposal"]) : "");
 }
 
 /// The answer for a coefficient file or a map of materials.

@@ -86,6 +86,7 @@ std::string text(const jobs::Fitted& fitted, const FitArguments& arguments) {
         fmt::format("  explains {} of the data by the loss {}; relative error of f cos {}\n",
                     percent(fitted.explained, 4), fitted.preset["fit"]["loss"].get<std::string>(),
                     percent(fitted.relativeError));
+    if (fitted.picture) lines += "  " + summaryOf(*fitted.picture) + "\n";
     lines += uncertaintyText(fitted.preset["fit"]);
     if (fitted.pageFiles > 0)
         lines += fmt::format("written to {}: fit.json, comparison.html and {} files beside it\n",

@@ -6,6 +6,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/pages/pair_summary_json.h>
+#include <hshfit/pages/picture_error_json.h>
 
 #include <jobs/kept_outputs.h>
 #include <jobs/project.h>
@@ -58,6 +59,7 @@ Json answer(const jobs::Projected& result) {
     }
     if (result.kept) document["representation"] = describeForm(*result.kept);
     if (result.poor) document["poor"] = jobs::poorJson(*result.poor);
+    if (result.picture) document["picture"] = pictureErrorJson(*result.picture);
     if (result.errors) document["pairs"] = pairSummaryJson(*result.errors);
     return document;
 }
@@ -77,7 +79,7 @@ std::string capturedText(const jobs::Projected& result) {
                            : std::string(noCapturedEnergy);
 }
 
-std::string line(const jobs::Projected& result) {
+std::string linesWithoutPicture(const jobs::Projected& result) {
     const Coefficients& c = result.projection.coefficients;
     const std::string& output = result.output;
     if (result.kept) {
@@ -98,6 +100,12 @@ std::string line(const jobs::Projected& result) {
     }
     return fmt::format("{}: {} order {}, {} directions, {}, quadrature error {:.1e}\n", output,
                        c.basis, c.order, c.outgoing.size(), capturedText(result), c.error);
+}
+
+std::string line(const jobs::Projected& result) {
+    const std::string picture =
+        result.picture ? "  " + summaryOf(*result.picture) + "\n" : std::string();
+    return linesWithoutPicture(result) + picture;
 }
 
 void projectOne(const ProjectArguments& arguments, const Globals& globals) {

@@ -5,6 +5,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/output_rule.h>
 #include <hshfit/percent.h>
+#include <hshfit/pictures/poor.h>
 #include <hshfit/representation/forms/form.h>
 
 #include <jobs/quality.h>
@@ -119,7 +120,7 @@ std::string textOf(const jobs::Svbrdf& done) {
         text += fmt::format(
             "the basis captures {} of the energy of {}, the least of all lobes{}{}\n",
             percent(done.captured, 2), done.leastCaptured,
-            done.captured < jobs::leastCaptured && done.form != "halfway" ? ": poor" : "",
+            done.captured < PoorBounds{}.captured && done.form != "halfway" ? ": poor" : "",
             better.empty() ? "" : "; better: " + better);
     }
     if (done.choices.size() > 1 || done.choices.front().pairs) text += choicesText(done.choices);

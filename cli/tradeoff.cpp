@@ -158,7 +158,7 @@ void addTradeoff(CLI::App& command, Globals& globals) {
     addSweep(command, *arguments);
     command
         .add_option("--metric", arguments->options.measurement.metric,
-                    "What the fronts weigh: hshfit list metrics")
+                    "What the fronts weigh: hshfit list metrics, or picture (FLIP)")
         ->capture_default_str();
     command.add_option("--max-bytes", arguments->maxBytes, "Leave out forms that take more")
         ->check(CLI::Range(1.0, 1e15));

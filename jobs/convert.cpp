@@ -1,12 +1,14 @@
 #include "convert.h"
 
 #include "named_errors.h"
+#include "picture.h"
 #include "source.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/files/output_rule.h>
 #include <hshfit/files/standard_streams.h>
+#include <hshfit/pictures/poor.h>
 #include <hshfit/spelling.h>
 #include <hshfit/wording.h>
 
@@ -74,25 +76,30 @@ ConversionLoss measureLoss(const Brdf& input, const brdfs::Writer& writer,
                                      {.progress = listener.part("loss")})};
 }
 
-/// Relative L2 of f c over few directions with a coarse quadrature, so that every conversion can
-/// state it. None where the channels differ.
-std::optional<double> errorOf(const Brdf& input, const std::string& output) {
+/// The loss of the file, read back, so that every conversion can state it: relative L2 of f c
+/// over few directions with a coarse quadrature, and the picture error. Nothing where the channels
+/// differ.
+void stateError(const Brdf& input, const std::string& output, Converted& result) {
     const OutgoingSet outgoing =
         input.laws().isotropic ? OutgoingSet::elevations(6) : OutgoingSet::parabolic(6, 6);
     try {
         const auto read = brdfs::open(output);
-        return compare(input, *read, outgoing, selectMetrics("relative-l2-cosine"), {.level = 1})[0]
-            .value;
+        result.error =
+            compare(input, *read, outgoing, selectMetrics("relative-l2-cosine"), {.level = 1})[0]
+                .value;
+        if (!result.error) return;
+        result.errorOver = fmt::format("f cos(theta_i) for {} outgoing {}", outgoing.spec(),
+                                       input.laws().isotropic ? "elevations" : "directions");
+        result.picture = pictureErrorOf(input, *read);
     } catch (const Error&) {
-        return std::nullopt;  // spectra that were written as colours, for one
+        result.error = {};  // spectra that were written as colours, for one
     }
-}
-
-std::optional<Poor> judgeLoss(double error, const std::string& output) {
-    if (!(error > Converted::mostLoss)) return std::nullopt;
-    return Poor{fmt::format("{} differs from its source by {:.3g} % (relative L2 of f cos)", output,
-                            100 * error),
-                fmt::format("more nodes, or another format ({})", Call{.function = "writers"})};
+    if (!result.error) return;
+    const auto reason = poorReason(1 - *result.error * *result.error, result.picture);
+    if (reason)
+        result.poor =
+            Poor{fmt::format("{}: {}", output, *reason),
+                 fmt::format("more nodes, or another format ({})", Call{.function = "writers"})};
 }
 
 /// Writes, and measures what was lost. The counts of repairs are known once all is written.
@@ -112,8 +119,7 @@ Converted converted(const Brdf& brdf, const brdfs::RepairedBrdf* repaired,
     if (options.measureLoss) {
         result.loss = measureLoss(brdf, writer, output, options, listener);
     }
-    if (writer.readBack && !isStandardOutput(output)) result.error = errorOf(brdf, output);
-    if (result.error) result.poor = judgeLoss(*result.error, output);
+    if (writer.readBack && !isStandardOutput(output)) stateError(brdf, output, result);
     brdf.checkIntact();
     return result;
 }

@@ -45,9 +45,9 @@ struct Converted {
     /// Relative L2 of f c between the file, read back, and the BRDF; none where nothing here reads
     /// the format, or the BRDF is 0.
     std::optional<double> error = {};
-    std::optional<Poor> poor = {};  ///< an error above `mostLoss`
-
-    static constexpr double mostLoss = 0.01;
+    std::string errorOver = {};                ///< the directions of `error`, in words
+    std::optional<PictureError> picture = {};  ///< of the file, read back
+    std::optional<Poor> poor = {};             ///< the energy captured is 1 - error^2
 };
 
 /// Writes a BRDF or a coefficient file to `output` in the format of another program. Throws

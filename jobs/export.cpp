@@ -3,6 +3,7 @@
 #include "export_loss.h"
 #include "export_three.h"
 #include "export_viewer.h"
+#include "picture.h"
 #include "proposal.h"
 #include "source.h"
 
@@ -17,6 +18,7 @@
 #include <hshfit/gpu/forms/form_table.h>
 #include <hshfit/gpu/proposals/proposal_shader.h>
 #include <hshfit/light/catalog.h>
+#include <hshfit/pages/picture_error_json.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/wording.h>
 
@@ -259,12 +261,14 @@ void exportForm(const Representation& stored, const std::string& path, const std
     const Source source = openSourceOf(options, stored.head);
     exported.error = errorBy(source, options, [&](const Brdf& brdf) {
         const auto again = reconstruct(exported.form->form, sourceOpener());
-        return ExportError{{}, {}, exportLoss(brdf, stored, *again)};
+        return ExportError{{}, {}, exportLoss(brdf, stored, *again), pictureErrorOf(brdf, *again)};
     });
     if (exported.error.loss && !options.allowLoss) {
         refuseLoss(*exported.error.loss, path,
                    options.number ? std::optional(Setting{"PackOptions::number"}) : std::nullopt);
     }
+    if (exported.error.picture)
+        exported.poor = judge(stored, {}, exported.error.picture, *source.brdf, path);
     addProposal(chosen, options, *reconstruct(exported.form->form, sourceOpener()), exported);
     exported.textures = gpu::writeForm(
         *exported.form, containersOf(chosen, options, exported.form->texels.number, listener),
@@ -286,22 +290,27 @@ void exportForm(const Representation& stored, const std::string& path, const std
 }  // namespace
 
 nlohmann::ordered_json errorJson(const ExportError& error) {
+    nlohmann::ordered_json json;
     if (error.loss) {
-        return {{"metric", "mean |ln(1 + f cos(theta_i)) - ln(1 + g cos(theta_i))|"},
+        json = {{"metric", "mean |ln(1 + f cos(theta_i)) - ln(1 + g cos(theta_i))|"},
                 {"pairs", error.loss->pairs},
                 {"file", error.loss->file},
                 {"mean_log", error.loss->exported}};
+    } else if (error.split) {
+        const gpu::ErrorSplit& split = *error.split;
+        json = {{"metric", "rms of the difference times cos(theta_i), over that of f"},
+                {"outgoing", split.outgoing},
+                {"truncation", split.truncation},
+                {"interpolation", split.interpolation},
+                {"form", split.form},
+                {"quantisation", split.quantisation},
+                {"total", split.total},
+                {"mean_log", split.meanLog}};
+    } else {
+        return {{"reason", error.reason}};
     }
-    if (!error.split) return {{"reason", error.reason}};
-    const gpu::ErrorSplit& split = *error.split;
-    return {{"metric", "rms of the difference times cos(theta_i), over that of f"},
-            {"outgoing", split.outgoing},
-            {"truncation", split.truncation},
-            {"interpolation", split.interpolation},
-            {"form", split.form},
-            {"quantisation", split.quantisation},
-            {"total", split.total},
-            {"mean_log", split.meanLog}};
+    if (error.picture) json["picture"] = pictureErrorJson(*error.picture);
+    return json;
 }
 
 Exported exportCoefficients(const std::string& path, const std::string& folder,
@@ -341,7 +350,9 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
         return ExportError{
             gpu::splitError(brdf, coefficients, exported.payload,
                             {.plain = given.plain, .progress = listener.part("error")}),
-            {}};
+            {},
+            {},
+            pictureErrorOf(brdf, Reconstruction(gpu::unpack(exported.payload)))};
     });
     const bool anew = stored.kind() != Representation::Kind::outgoing || !stored.added.empty();
     if (exported.error.split && anew && !options.allowLoss) {
@@ -352,7 +363,8 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
                                             : std::optional(Setting{"ExportOptions::outgoing"}));
     }
     if (exported.error.split)
-        exported.poor = judge(*exported.error.split, exported.payload, path, folder);
+        exported.poor =
+            judge(*exported.error.split, exported.error.picture, exported.payload, path, folder);
     addProposal(chosen, options, Reconstruction(gpu::unpack(exported.payload)), exported);
     exported.textures = gpu::writeContainers(
         exported.payload, containersOf(chosen, options, pack.number, listener), exported.name,

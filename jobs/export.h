@@ -66,6 +66,7 @@ struct ExportError {
     std::optional<gpu::ErrorSplit> split;
     std::string reason;
     std::optional<ExportLoss> loss = {};
+    std::optional<PictureError> picture = {};  ///< of the textures as shaders read them
 };
 /// The object "fit_error" of sidecars and answers.
 nlohmann::ordered_json errorJson(const ExportError& error);

@@ -9,6 +9,7 @@
 #include <hshfit/files/json_fields.h>
 #include <hshfit/pages/comparison.h>
 #include <hshfit/pages/gnuplot.h>
+#include <hshfit/pages/picture_error_json.h>
 #include <hshfit/wording.h>
 
 #include <brdfs/catalog.h>
@@ -195,15 +196,14 @@ std::vector<TriedModel> triedModels(const brdfs::FitSamples& samples, brdfs::Fit
 std::optional<Poor> judged(const Fitted& fitted, const brdfs::FitSamples& samples,
                            const std::string& data, const FitOptions& options,
                            const brdfs::FitOptions& how) {
-    if (!judgeFit(fitted.explained, data, {}, {})) {
-        if (how.loss == brdfs::Loss::Kind::cosine || how.loss == brdfs::Loss::Kind::l2)
-            return std::nullopt;
-        return judgePeaks(fitted.relativeError, data, options.model, brdfs::lossName(how.loss));
-    }
-    std::vector<Setting> settings;
-    if (!options.loss.empty()) settings.push_back({"FitOptions::loss", options.loss});
-    if (!options.sigma.empty()) settings.push_back({"FitOptions::sigma", options.sigma});
-    return judgeFit(fitted.explained, data, triedModels(samples, how), std::move(settings));
+    FitCall call{.data = data,
+                 .model = options.model,
+                 .explained = fitted.explained,
+                 .relativeError = fitted.relativeError,
+                 .loss = brdfs::lossName(how.loss)};
+    if (!options.loss.empty()) call.settings.push_back({"FitOptions::loss", options.loss});
+    if (!options.sigma.empty()) call.settings.push_back({"FitOptions::sigma", options.sigma});
+    return judgeFit(fitted.picture, call, [&] { return triedModels(samples, how); });
 }
 
 /// Writes a page that compares data and fit into the fit's folder. Returns the number of files.
@@ -309,7 +309,11 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
         if (metric["name"] == "relative-l2-cosine" && metric["value"].is_number())
             fitted.relativeError = metric["value"];
     fitted.explained = explainedBy(fitted.result, samples, how.loss);
+    // Between scattered samples the data are a guess: pictures of that say nothing of a fit.
+    if (!brdfs::areMeasured(brdf))
+        fitted.picture = pictureError(brdf, *brdfs::openFit(fitted.result));
     fitted.poor = judged(fitted, samples, data, options, how);
+    if (fitted.picture) fitted.preset["picture"] = pictureErrorJson(*fitted.picture);
     fitted.preset["fit"]["explained"] = fitted.explained;
     fitted.preset["fit"]["relative_error"] = fitted.relativeError;
     if (search) fitted.preset["fit"]["parts"] = searchJson(*search);

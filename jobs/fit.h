@@ -69,7 +69,8 @@ struct Fitted {
     /// Root of the integral of ((fit - data) cos(theta_i))^2 over that of (data cos(theta_i))^2,
     /// over the samples; of `picture` over the nodes of a comparison.
     double relativeError = 0;
-    std::optional<Poor> poor = {};
+    std::optional<PictureError> picture = {};  ///< of the fit against the data
+    std::optional<Poor> poor = {};             ///< the energy captured is 1 - relativeError^2
     FigureFiles figures = {};
     nlohmann::ordered_json bands = {};  ///< brdfs::bandRowsJson, where they were asked for
 };

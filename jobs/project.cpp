@@ -2,11 +2,13 @@
 
 #include "kept_outputs.h"
 #include "named_errors.h"
+#include "picture.h"
 #include "source.h"
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/coefficient_files/representation_file.h>
+#include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/projection/least_squares.h>
@@ -98,12 +100,13 @@ public:
         if (form_) {
             result.kept = represent(brdf, *form_, sourceOpener(), how);
             result.projection.coefficients = {result.kept->head};
-            if (result.kept->kind() == Representation::Kind::halfway) {
-                result.errors = summaryOf(brdf, *reconstruct(*result.kept, sourceOpener()));
-            }
+            const auto again = reconstruct(*result.kept, sourceOpener());
+            if (result.kept->kind() == Representation::Kind::halfway)
+                result.errors = summaryOf(brdf, *again);
             result.captured = capturedShare(*result.kept, brdf, result.errors);
             if (!result.captured) result.remark = whyZero(brdf);
-            result.poor = judge(*result.kept, result.captured, result.errors, brdf, output);
+            result.picture = pictureErrorOf(brdf, *again);
+            result.poor = judge(*result.kept, result.captured, result.picture, brdf, output);
             return result;
         }
         const OutgoingSet outgoing = outgoingOf({.outgoing = options_.outgoing}, brdf.laws());
@@ -113,7 +116,8 @@ public:
                                 : std::move(hshfit::project(brdf, one, outgoing, how)[0]);
         result.captured = capturedShare(result.projection, brdf);
         if (!result.captured) result.remark = whyZero(brdf);
-        result.poor = judge(result.projection, result.captured, brdf, output);
+        result.picture = pictureErrorOf(brdf, Reconstruction(result.projection.coefficients));
+        result.poor = judge(result.projection, result.captured, result.picture, brdf, output);
         return result;
     }
 

@@ -42,6 +42,7 @@ struct Projected {
     std::optional<PairSummary> errors = {};
     /// The share of the energy that is captured; none where that is not known.
     std::optional<double> captured = {};
+    std::optional<PictureError> picture = {};  ///< pictureErrorOf
     std::string output;
     std::optional<Poor> poor = {};
     std::string remark = {};  ///< whyZero of source.h

@@ -7,6 +7,7 @@
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
 #include <hshfit/percent.h>
+#include <hshfit/pictures/poor.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/representation/halfway/halfway.h>
 
@@ -23,6 +24,9 @@ namespace hshfit::jobs {
 namespace {
 
 using Kind = Representation::Kind;
+
+/// A step of a form that changes it by more than this (relative L2) is named beside the reason.
+constexpr double muchChanged = 0.3;
 
 Setting kindSetting(Kind kind) {
     return {"Form::kind", std::string(kindName(kind))};
@@ -225,42 +229,40 @@ std::string betterCall(const CoefficientHead& head, const Brdf& source, const st
 }
 
 std::optional<Poor> judge(const Projection& projection, std::optional<double> captured,
-                          const Brdf& source, const std::string& output) {
+                          const std::optional<PictureError>& picture, const Brdf& source,
+                          const std::string& output) {
     const Coefficients& c = projection.coefficients;
-    if (c.leastSquares) {
-        if (c.leastSquares->residual <= mostError) return std::nullopt;
-        return Poor{
-            fmt::format("the residual is {} of the samples", percent(c.leastSquares->residual)),
-            projectedAgain(c, {kindSetting(Kind::halfway)}, output)};
-    }
-    if (!captured || *captured >= leastCaptured) return std::nullopt;
-    return Poor{fmt::format("{} of the energy is captured", percent(std::max(*captured, 0.0))),
-                betterThan(c, nullptr, source, output)};
+    const auto reason = poorReason(captured, picture);
+    if (!reason) return std::nullopt;
+    if (c.leastSquares)
+        return Poor{*reason, projectedAgain(c, {kindSetting(Kind::halfway)}, output)};
+    return Poor{*reason, betterThan(c, nullptr, source, output)};
 }
 
 std::optional<Poor> judge(const Representation& kept, std::optional<double> captured,
-                          const std::optional<PairSummary>& pairs, const Brdf& source,
+                          const std::optional<PictureError>& picture, const Brdf& source,
                           const std::string& output) {
+    const auto reason = poorReason(captured, picture);
+    if (!reason) return std::nullopt;
     const bool halfway = kept.kind() == Kind::halfway;
     const auto worst = std::ranges::max_element(kept.steps, {}, &RepresentationStep::change);
-    if (!halfway && worst != kept.steps.end() && worst->change > mostError) {
+    if (!halfway && worst != kept.steps.end() && worst->change > muchChanged) {
         // Without any step.
         std::vector<Setting> settings = {{"Form::basis", kept.head.basis},
                                          {"Form::order", std::to_string(kept.head.order)}};
         if (kept.kind() == Kind::basis) settings.insert(settings.begin(), kindSetting(kept.kind()));
-        return Poor{fmt::format("{} changes it by {}", worst->what, percent(worst->change)),
-                    projectedAgain(kept.head, std::move(settings), output)};
+        return Poor{
+            fmt::format("{}; {} changes it by {}", *reason, worst->what, percent(worst->change)),
+            projectedAgain(kept.head, std::move(settings), output)};
     }
-    if (!captured || *captured >= leastCaptured) return std::nullopt;
-    std::string reason =
-        fmt::format("{} of the energy is captured", percent(std::max(*captured, 0.0)));
-    if (pairs) reason += fmt::format(", at a mean log error of {:.3g}", pairs->meanLog.value);
-    return Poor{reason, betterThan(kept.head, halfway ? &kept : nullptr, source, output)};
+    return Poor{*reason, betterThan(kept.head, halfway ? &kept : nullptr, source, output)};
 }
 
-std::optional<Poor> judge(const gpu::ErrorSplit& split, const gpu::Payload& payload,
-                          const std::string& path, const std::string& folder) {
-    if (split.total <= mostError) return std::nullopt;
+std::optional<Poor> judge(const gpu::ErrorSplit& split, const std::optional<PictureError>& picture,
+                          const gpu::Payload& payload, const std::string& path,
+                          const std::string& folder) {
+    const auto reason = poorReason(1 - split.total * split.total, picture);
+    if (!reason) return std::nullopt;
     const CoefficientHead& head = payload.head;
     const std::vector<Setting> plain = {{"Form::basis", head.basis},
                                         {"Form::order", std::to_string(head.order)}};
@@ -282,40 +284,38 @@ std::optional<Poor> judge(const gpu::ErrorSplit& split, const gpu::Payload& payl
           projectedAgain(head, dense, path)},
          {split.quantisation, "storage", fmt::format("{}", wider)}}};
     const auto* const worst = std::ranges::max_element(causes, {}, &Cause::share);
-    return Poor{
-        fmt::format("the error is {} of f, most of it {}", percent(split.total), worst->name),
-        worst->better};
+    return Poor{fmt::format("{}; most of the error of {} is {}", *reason, percent(split.total),
+                            worst->name),
+                worst->better};
 }
 
-std::optional<Poor> judgeFit(double explained, const std::string& data,
-                             const std::vector<TriedModel>& tried, std::vector<Setting> settings) {
-    if (explained >= leastCaptured) return std::nullopt;
+std::optional<Poor> judgeFit(const std::optional<PictureError>& picture, const FitCall& call,
+                             const std::function<std::vector<TriedModel>()>& tried) {
+    const auto reason = poorReason(1 - call.relativeError * call.relativeError, picture);
+    if (!reason) return std::nullopt;
+    const auto again = [&](std::vector<Setting> settings) {
+        return fmt::format(
+            "{}", Call{.function = "fit", .subject = call.data, .settings = std::move(settings)});
+    };
+    if (call.relativeError > 1 && call.loss != "cosine" && call.loss != "l2")
+        return Poor{fmt::format("{}; the error of f cos(theta_i) is {} of it, in peaks that the "
+                                "loss {} hardly sees",
+                                *reason, percent(call.relativeError), call.loss),
+                    again({{"FitOptions::model", call.model}, {"FitOptions::loss", "cosine"}})};
     constexpr double leastGain = 0.02;
-    std::string reason =
-        fmt::format("the fit explains {} of the data", percent(std::max(explained, 0.0)));
-    const auto best = std::ranges::max_element(tried, {}, &TriedModel::explained);
-    if (best == tried.end() || best->explained < explained + leastGain)
-        return Poor{reason, fmt::format("{}", Call{.function = "writeRepresentation",
-                                                   .subject = data,
-                                                   .settings = {kindSetting(Kind::halfway)},
-                                                   .output = "halfway.json"})};
-    reason += fmt::format(", {} {}", best->model, percent(best->explained));
+    const std::vector<TriedModel> models = tried();
+    const auto best = std::ranges::max_element(models, {}, &TriedModel::explained);
+    if (best == models.end() || best->explained < call.explained + leastGain)
+        return Poor{*reason, fmt::format("{}", Call{.function = "writeRepresentation",
+                                                    .subject = call.data,
+                                                    .settings = {kindSetting(Kind::halfway)},
+                                                    .output = "halfway.json"})};
+    std::vector<Setting> settings = call.settings;
     settings.insert(settings.begin(), {"FitOptions::model", best->model});
-    return Poor{reason, fmt::format("{}", Call{.function = "fit",
-                                               .subject = data,
-                                               .settings = std::move(settings)})};
-}
-
-std::optional<Poor> judgePeaks(double relativeError, const std::string& data,
-                               const std::string& model, std::string_view loss) {
-    if (!(relativeError > 1)) return std::nullopt;
-    return Poor{fmt::format("the error of f cos(theta_i) is {} of it, in peaks that the loss {} "
-                            "hardly sees",
-                            percent(relativeError), loss),
-                fmt::format("{}", Call{.function = "fit",
-                                       .subject = data,
-                                       .settings = {{"FitOptions::model", model},
-                                                    {"FitOptions::loss", "cosine"}}})};
+    return Poor{
+        fmt::format("{}; {} explains {} of the data, {} {}", *reason, call.model,
+                    percent(std::max(call.explained, 0.0)), best->model, percent(best->explained)),
+        again(std::move(settings))};
 }
 
 }  // namespace hshfit::jobs

@@ -2,7 +2,10 @@
 
 #include "arrays.h"
 
+#include <hshfit/pages/picture_error_json.h>
+
 #include <pybind11/stl.h>
+#include <nlohmann/json.hpp>
 
 #include <limits>
 
@@ -14,6 +17,11 @@ py::object poorDict(const std::optional<jobs::Poor>& poor) {
     out["reason"] = poor->reason;
     out["better"] = poor->better;
     return out;
+}
+
+py::object pictureDict(const std::optional<PictureError>& picture) {
+    if (!picture) return py::none();
+    return fromJson(pictureErrorJson(*picture));
 }
 
 py::dict angles(const Direction& d) {
@@ -44,6 +52,8 @@ py::dict convertedDict(const jobs::Converted& done) {
     out["altered"] = done.altered;
     out["bytes"] = done.bytes;
     out["error"] = done.error;
+    out["error_over"] = done.errorOver;
+    out["picture"] = pictureDict(done.picture);
     out["poor"] = poorDict(done.poor);
     if (done.repairs) {
         py::dict repairs;

@@ -6,6 +6,7 @@
 
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/coefficients/coefficients.h>
+#include <hshfit/pictures/picture_error.h>
 
 #include <jobs/convert.h>
 #include <jobs/quality.h>
@@ -17,6 +18,8 @@ namespace hshfit::python {
 
 /// {"reason": …, "better": …}, or None.
 py::object poorDict(const std::optional<jobs::Poor>& poor);
+/// The object "picture" of the program's --json, or None.
+py::object pictureDict(const std::optional<PictureError>& picture);
 /// {"theta": …, "phi": …} in degrees.
 py::dict angles(const Direction& d);
 /// Name to {"value", "error", "reason", "wi", "wo"}; value and error are NaN where there are none.

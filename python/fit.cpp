@@ -283,6 +283,9 @@ void bindResult(py::module_& module) {
                       "of the data about their mean.")
         .def_property_readonly("poor", [](const Fitted& f) { return poorDict(f.poor); })
         .def_property_readonly(
+            "picture", [](const Fitted& f) { return pictureDict(f.picture); },
+            "The picture error against the data; None for scattered samples.")
+        .def_property_readonly(
             "preset", [](const Fitted& f) { return fromJson(f.preset); },
             "The document of the command fit (docs/schemas/fit.schema.json).")
         .def_property_readonly(

@@ -213,8 +213,11 @@ void bindResult(py::module_& module) {
             "Errors over pairs of directions, for the halfway form; else None.")
         .def_property_readonly(
             "poor", [](const Result& r) { return poorDict(r.projected.poor); },
-            "None, or {\"reason\", \"better\"} where more than a tenth of the\n"
-            "energy is missing.")
+            "None, or {\"reason\", \"better\"} where the result is poor\n"
+            "(docs/picture_error.md).")
+        .def_property_readonly(
+            "picture", [](const Result& r) { return pictureDict(r.projected.picture); },
+            "The picture error of the result; None for one outgoing direction.")
         .def("brdf", brdfOf, "The reconstruction as a Brdf.")
         .def("save", saveResult, py::arg("path"),
              "Write .json (exact) or .exr (float32): the bytes of the command project.")

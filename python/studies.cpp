@@ -8,6 +8,7 @@
 #include <hshfit/pages/report.h>
 
 #include <jobs/compare.h>
+#include <jobs/picture.h>
 #include <jobs/report.h>
 
 #include <fmt/format.h>
@@ -178,6 +179,27 @@ std::shared_ptr<jobs::Compared> compared(const py::object& a, const py::object& 
     return result;
 }
 
+py::object pictureErrorOfPair(const py::object& a, const py::object& b,
+                              const py::object& progress) {
+    Source first(a, false, "a"), second(b, false, "b");
+    std::optional<PictureError> found;
+    Source* const sources[] = {&first, &second};
+    watched(progress, sources, [&](const jobs::Listener& /*listener*/) {
+        found = jobs::pictureErrorOf(first.brdf(), second.brdf());
+    });
+    return pictureDict(found);
+}
+
+void bindPictureError(py::module_& module) {
+    module.def("picture_error", pictureErrorOfPair, py::arg("a"), py::arg("b"), py::kw_only(),
+               py::arg("progress") = py::none(),
+               R"(How far b is from a to the eye (docs/picture_error.md), each as in compare().
+
+Returns a dict: "flip" and "ciede2000" of lit spheres ("mean", "largest", "light"), "albedo" by
+channel to 85 degrees, "last_albedo" from there, "false_dip", "false_peak" and "ridge" ("value" as
+a share, "channel", "wi", "wo"). None where one is known for one outgoing direction alone.)");
+}
+
 void bindCompare(py::module_& module) {
     py::class_<jobs::Compared, std::shared_ptr<jobs::Compared>>(
         module, "Comparison", "What compare() found: errors of b against a.")
@@ -196,6 +218,9 @@ void bindCompare(py::module_& module) {
                 return fromJson(pairSummaryJson(*c.pairs));
             },
             "Errors over both hemispheres, by zones; None where there are none.")
+        .def_property_readonly(
+            "picture", [](const jobs::Compared& c) { return pictureDict(c.picture); },
+            "The picture error of b against a, as picture_error() gives it.")
         .def_readonly("files", &jobs::Compared::files, "Of the page, where a folder was given.")
         .def_property_readonly(
             "figures", [](const jobs::Compared& c) { return c.figures.names; },
@@ -233,6 +258,7 @@ SVG for print, whose look is that of fit(); sigma the uncertainty of measured sa
 
 void bindStudies(py::module_& module) {
     bindCurves(module);
+    bindPictureError(module);
     bindCompare(module);
 }
 

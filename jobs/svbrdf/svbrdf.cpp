@@ -12,6 +12,7 @@
 #include <hshfit/files/file_set.h>
 #include <hshfit/material_maps/cluster_encoder.h>
 #include <hshfit/material_maps/material_map.h>
+#include <hshfit/pictures/poor.h>
 #include <hshfit/pictures/rgb_picture.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 
@@ -206,7 +207,8 @@ void judgeBasis(const MapWork& work, const SvbrdfOptions& options, Svbrdf& resul
     const ModelTexels& model = *work.model;
     result.captured = model.least.share;
     result.leastCaptured = model.least.brdf;
-    if (result.captured >= leastCaptured || options.form == "halfway" || !processes().isFirst())
+    if (result.captured >= PoorBounds{}.captured || options.form == "halfway" ||
+        !processes().isFirst())
         return;
     const auto brdf = brdfs::openModel(model.least.brdf);
     CoefficientHead head;

@@ -16,8 +16,8 @@ from ._hshfit import (
     Basis, Brdf, Coefficients, Comparison, Curve, Curves, Error, Fit, FittedParameter, Form,
     InputError, Light, NumericError, Outgoing, OutputError, Projection, Rotation, UsageError,
     __version__, catalog, compare, convert, curves, describe, direction, export, fit, function,
-    illuminate, import_coefficients, irradiance, light, matrix, open, plan, plot, project,
-    project_all, rank_models, read, render, sample, set_threads, svbrdf, threads, tradeoff,
+    illuminate, import_coefficients, irradiance, light, matrix, open, picture_error, plan, plot,
+    project, project_all, rank_models, read, render, sample, set_threads, svbrdf, threads, tradeoff,
     transfer)
 from . import _html
 
@@ -28,5 +28,6 @@ __all__ = [
     "FittedParameter", "Form", "InputError", "Light", "NumericError", "Outgoing", "OutputError",
     "Projection", "Rotation", "UsageError", "catalog", "compare", "convert", "curves", "describe",
     "direction", "export", "fit", "function", "illuminate", "import_coefficients", "irradiance",
-    "light", "matrix", "open", "plan", "plot", "project", "project_all", "rank_models", "read",
-    "render", "sample", "set_threads", "svbrdf", "threads", "tradeoff", "transfer"]
+    "light", "matrix", "open", "picture_error", "plan", "plot", "project", "project_all",
+    "rank_models", "read", "render", "sample", "set_threads", "svbrdf", "threads", "tradeoff",
+    "transfer"]

@@ -52,7 +52,7 @@ TEST_F(Quality, OutgoingDirectionsAreElevationsForIsotropicInput) {
     EXPECT_EQ(both[1]["outgoing"], "32x32");
 }
 
-TEST_F(Quality, ALittleEnergyCapturedIsCalledPoor) {
+TEST_F(Quality, LittleEnergyCapturedIsCalledPoor) {
     const std::string to = " --order 4 --force -o " + path("x.json");
     const Json narrow = answerOf("project ggx:alpha=.02 --outgoing 4" + to, true);
     EXPECT_LT(narrow["accuracy"], 0.9);
@@ -137,18 +137,20 @@ TEST_F(Quality, EveryFormHasAVerdictAndASuggestionThatDoesBetter) {
         ASSERT_TRUE(poor["accuracy"].is_number());
         EXPECT_GT(betterThan(poor)["accuracy"], poor["accuracy"].get<double>() + 0.05);
     }
-    for (const std::string job : {"lambert --form basis --order 3",
-                                  "oren-nayar:kd=1,sigma=20 --form halfway --halfway 4,2,2",
-                                  "lambert --order 2 --outgoing 8 --split diffuse"})
+    for (const std::string job :
+         {"lambert --form basis --order 3", "lambert:kd=.3 --form halfway --halfway 4,2,2",
+          "lambert --order 2 --outgoing 8 --split diffuse"})
         answerOf("project " + job + " --force -o " + path("x.json"), false);
 }
 
-TEST_F(Quality, AStepThatChangesMuchIsCalledPoor) {
+TEST_F(Quality, AStepThatChangesMuchIsNamed) {
     const std::string job = "project ggx:alpha=.6 --outgoing 8 --force -o " + path("x.json");
     const Json few = answerOf(job + " --keep 9", true);
     EXPECT_NE(few["poor"]["reason"].get<std::string>().find("keep 9"), std::string::npos);
     EXPECT_FALSE(betterThan(few).contains("representation"));
-    answerOf(job + " --precision half", false);
+    // Ringing of the coefficients themselves is not blamed on their rounding.
+    const Json half = answerOf(job + " --precision half", true);
+    EXPECT_EQ(half["poor"]["reason"].get<std::string>().find("half"), std::string::npos);
     // Rounded coefficients capture what plain ones do.
     const std::string narrow =
         " phong:exponent=400 --order 4 --outgoing 4 --force -o " + path("x.json");
@@ -162,7 +164,7 @@ TEST_F(Quality, ExportsNameTheLargestCauseOfAPoorError) {
     const Json document = answerOf("export " + path("x.json") + " --force -o " + path("out"), true);
     EXPECT_TRUE(keepsSchema(document.dump(), "export"));
     const std::string reason = document["poor"]["reason"];
-    EXPECT_NE(reason.find("most of it truncation"), std::string::npos) << reason;
+    EXPECT_NE(reason.find("is truncation"), std::string::npos) << reason;
     EXPECT_EQ(betterThan(document)["order"], 8);
     answerOf("project lambert --order 2 --outgoing 8 --force -o " + path("x.json"), false);
     answerOf("export " + path("x.json") + " --force -o " + path("out"), false);
@@ -214,7 +216,7 @@ TEST_F(Quality, AFitWithLargePeaksThatItsLossHardlySeesIsCalledPoor) {
     EXPECT_LT(better["fit"]["relative_error"], 1);
 }
 
-TEST_F(Quality, AConversionThatLosesMoreThanAPerCentSaysSo) {
+TEST_F(Quality, AConversionThatLosesMuchSaysSo) {
     const std::string to = " " + path("x.exr") + " --force --to slices:size=";
     const Json coarse = answerOf("convert ggx:alpha=.05" + to + "6", true);
     EXPECT_TRUE(keepsSchema(coarse.dump(), "convert"));

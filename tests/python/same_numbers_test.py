@@ -184,6 +184,9 @@ class SameNumbers(program.InFolder):
         expected = self.json_of("compare", "ggx:alpha=0.4", "beckmann:alpha=0.4", "--outgoing",
                                 "4")
         self.assertEqual(found.pairs, expected["pairs"])
+        self.assertEqual(found.picture, expected["picture"])
+        self.assertEqual(hshfit.picture_error("ggx:alpha=0.4", "beckmann:alpha=0.4"),
+                         expected["picture"])
         for row in expected["metrics"]:
             if row["value"] is None:
                 self.assertTrue(np.isnan(found[row["name"]]), row["name"])

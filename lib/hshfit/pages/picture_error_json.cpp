@@ -27,7 +27,34 @@ Json differenceJson(const SeenDifference& difference) {
     return json;
 }
 
+OverLights overLightsFrom(const Json& json) {
+    return {json["mean"], json["largest"], json["light"]};
+}
+
+Direction placeFrom(const Json& json) {
+    return directionFromAngles(radians(json["theta"]), radians(json["phi"]));
+}
+
+SeenDifference differenceFrom(const Json& json) {
+    SeenDifference difference{.value = json["value"]};
+    if (!json.contains("channel")) return difference;
+    difference.channel = json["channel"];
+    difference.at = {placeFrom(json["wi"]), placeFrom(json["wo"])};
+    return difference;
+}
+
 }  // namespace
+
+PictureError pictureErrorFrom(const Json& json) {
+    return {.channels = json["channels"],
+            .flip = overLightsFrom(json["flip"]),
+            .colour = overLightsFrom(json["ciede2000"]),
+            .albedo = json["albedo"],
+            .lastAlbedo = json["last_albedo"],
+            .dip = differenceFrom(json["false_dip"]),
+            .peak = differenceFrom(json["false_peak"]),
+            .ridge = differenceFrom(json["ridge"])};
+}
 
 Json pictureErrorJson(const PictureError& error) {
     return {{"flip", overLightsJson(error.flip)},

@@ -10,4 +10,7 @@ namespace hshfit::inline pages {
 /// directions in degrees.
 nlohmann::ordered_json pictureErrorJson(const PictureError& error);
 
+/// The picture error of such an object.
+PictureError pictureErrorFrom(const nlohmann::ordered_json& json);
+
 }  // namespace hshfit::inline pages

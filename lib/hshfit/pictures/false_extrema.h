@@ -21,7 +21,7 @@ struct LineDip {
 LineDip falseDip(std::span<const double> f, std::span<const double> g,
                  std::span<const double> angles);
 
-/// How far a value lies below another whose logarithm is larger by `depth`: 1 - exp(-depth).
+/// The share by which a value lies below one whose logarithm is larger by `depth`: 1 - exp(-depth).
 double relativeDepth(double depth);
 
 }  // namespace hshfit::inline pictures

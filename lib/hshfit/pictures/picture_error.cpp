@@ -252,10 +252,6 @@ std::string degreesOf(const Direction& d) {
 /// Shares below this are 0 to people.
 constexpr double noShare = 5e-5;
 
-std::string shareText(const SeenDifference& difference) {
-    return difference.value < noShare ? "0 %" : percent(difference.value, 2);
-}
-
 /// "91 % (B, wi 0,0, wo 0,0)"
 std::string textOf(const SeenDifference& difference) {
     if (difference.value < noShare) return "0 %";
@@ -290,6 +286,10 @@ PictureError PictureReference::errorOf(const Brdf& g) const {
 
 PictureError pictureError(const Brdf& f, const Brdf& g) {
     return PictureReference(f).errorOf(g);
+}
+
+std::string shareText(const SeenDifference& difference) {
+    return difference.value < noShare ? "0 %" : percent(difference.value, 2);
 }
 
 std::string summaryOf(const PictureError& error) {

@@ -21,7 +21,7 @@ struct SeenDifference {
     DirectionPair at = {};
 };
 
-/// How far a BRDF g is from a source f to the eye.
+/// The distance of a BRDF g from a source f to the eye.
 ///
 /// Spheres 4 degrees wide of both are drawn under `pictureLights()`. `flip` is HDR-FLIP (Andersson
 /// et al. 2021, 10.1145/3478512.3480938): in each pixel the largest FLIP (flip.h) over up to four
@@ -63,6 +63,8 @@ private:
 /// The same for one pair; the digits do not depend on the number of threads.
 PictureError pictureError(const Brdf& f, const Brdf& g);
 
+/// The value for people: "12 %", "0 %" below 0.005 %.
+std::string shareText(const SeenDifference& difference);
 /// For people: five lines without indentation, each ended, the last degrees last.
 std::string textOf(const PictureError& error);
 /// "FLIP 0.041, CIEDE2000 1.2, false dip 12 %, false peak 0 %, mirror direction off by 8 %"

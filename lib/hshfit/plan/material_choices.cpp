@@ -134,7 +134,9 @@ std::optional<Accepted> MaterialSearch::accept(const Rung& rung) {
                        result.choice.bytes <= scene_.limits.bytes;
     if (!holds) known = std::max(result.choice.error, result.verified);
     if (!holds) return std::nullopt;
-    result.pairs = summaryOf(*version.brdf, *reconstruct(result.representation, open_));
+    const auto again = reconstruct(result.representation, open_);
+    result.pairs = summaryOf(*version.brdf, *again);
+    result.picture = pictureError(*version.brdf, *again);
     return result;
 }
 

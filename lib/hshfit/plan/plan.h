@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/accuracy/pair_errors.h>
+#include <hshfit/pictures/picture_error.h>
 #include <hshfit/plan/seen_surfaces.h>
 #include <hshfit/representation/forms/form.h>
 #include <hshfit/scene/scene.h>
@@ -31,7 +32,8 @@ struct Accepted {
     std::vector<double> thetas = {}, errors = {};  ///< verified, by elevation (radians)
     /// Against the material over both hemispheres, whatever the light.
     PairSummary pairs = {};
-    std::size_t raised = 0;  ///< cheaper choices that failed only this check
+    PictureError picture = {};  ///< of the file against the material
+    std::size_t raised = 0;     ///< cheaper choices that failed only this check
 };
 
 struct MaterialPlan {

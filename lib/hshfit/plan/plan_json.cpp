@@ -1,5 +1,6 @@
 #include <hshfit/files/json_fields.h>
 #include <hshfit/pages/pair_summary_json.h>
+#include <hshfit/pages/picture_error_json.h>
 #include <hshfit/plan/plan_files.h>
 #include <hshfit/version.h>
 
@@ -32,6 +33,7 @@ Json acceptedJson(const Accepted& accepted, const std::string& file) {
         static_cast<double>(baselineBytes) / static_cast<double>(accepted.choice.bytes);
     json["verified_error"] = accepted.verified;
     json["raised"] = accepted.raised;
+    json["picture"] = pictureErrorJson(accepted.picture);
     json["pairs"] = pairSummaryJson(accepted.pairs);
     Json rows = Json::array();
     for (std::size_t k = 0; k < accepted.thetas.size(); ++k) {

@@ -1,5 +1,6 @@
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/files/file_set.h>
+#include <hshfit/pictures/poor.h>
 #include <hshfit/plan/plan_files.h>
 
 #include <fmt/format.h>
@@ -71,6 +72,9 @@ std::string planText(const Plan& plan) {
                 : "",
             commandOf(accepted.choice, material.name + ".json"));
         out += seen;
+        out += "  " + summaryOf(accepted.picture) + "\n";
+        if (const auto reason = poorReason(1 - accepted.pairs.energyLeft.value, accepted.picture))
+            out += fmt::format("  poor beyond the light of this scene: {}\n", *reason);
         const std::string lines = textOf(accepted.pairs);
         for (std::size_t at = 0, end = 0; at < lines.size(); at = end + 1) {
             end = std::min(lines.find('\n', at), lines.size());

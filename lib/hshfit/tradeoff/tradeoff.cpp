@@ -1,5 +1,6 @@
 #include <hshfit/tradeoff/tradeoff.h>
 
+#include <hshfit/pictures/poor.h>
 #include <hshfit/representation/factoring/factoring.h>
 #include <hshfit/representation/forms/pair_evaluators.h>
 #include <hshfit/representation/forms/represented_brdf.h>
@@ -19,6 +20,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <string_view>
 
 namespace hshfit::tradeoff {
 namespace {
@@ -118,8 +120,10 @@ std::size_t metricIndex(const std::string& name) {
     return static_cast<std::size_t>(selectMetrics(name).front() - metricCatalog().data());
 }
 
+constexpr std::string_view pictureMetric = "picture";
+
 double weighed(const PairErrors& errors, const std::string& metric) {
-    if (errors.values.empty()) return std::nan("");
+    if (errors.values.empty() || metric == pictureMetric) return std::nan("");
     const double value = errors.values[metricIndex(metric)].value_or(std::nan(""));
     return metric == "captured-energy" ? 1 - value : value;
 }
@@ -133,7 +137,8 @@ struct Outcome {
 };
 
 Outcome measureOne(const Form& form, const Maker& maker, const PairReference& reference,
-                   const TradeoffOptions& options, const BrdfOpener& open) {
+                   const PictureReference& pictures, const TradeoffOptions& options,
+                   const BrdfOpener& open) {
     Outcome outcome;
     Measured& measured = outcome.measured;
     measured.form = form;
@@ -148,7 +153,9 @@ Outcome measureOne(const Form& form, const Maker& maker, const PairReference& re
         measured.entropyBytes = representation.entropyBytes();
         measured.numbers = representation.numbers();
         measured.steps = representation.steps;
-        auto errors = reference.errorsOf(*reconstruct(std::move(representation), open));
+        const auto brdf = reconstruct(std::move(representation), open);
+        if (options.metric == pictureMetric) measured.picture = pictures.errorOf(*brdf);
+        auto errors = reference.errorsOf(*brdf);
         measured.summary = summaryOf(reference.pairs(), errors);
         measured.errors = std::move(errors.all);
         measured.bands = std::move(errors.bands);
@@ -264,6 +271,18 @@ void findFronts(Tradeoff& trade, const TradeoffOptions& options) {
     trade.timeKnee = kneeOf(trade.timeFront, nanoseconds, errors);
 }
 
+/// The picture errors of the forms on the fronts; those of all would take longer than the rest.
+void drawFronts(Tradeoff& trade, const Maker& maker, const PictureReference& pictures,
+                const BrdfOpener& open) {
+    std::set<std::size_t> forms(trade.byteFront.begin(), trade.byteFront.end());
+    forms.insert(trade.timeFront.begin(), trade.timeFront.end());
+    for (const std::size_t k : forms) {
+        if (trade.forms[k].picture) continue;
+        trade.forms[k].picture =
+            pictures.errorOf(*reconstruct(maker.make(trade.forms[k].form), open));
+    }
+}
+
 std::vector<Form> formsFor(const Brdf& brdf, const TradeoffOptions& options) {
     if (!options.timing && options.byTime) {
         throw UsageError(fmt::format("{} needs the times that {} leaves out",
@@ -280,8 +299,7 @@ std::vector<Form> formsFor(const Brdf& brdf, const TradeoffOptions& options) {
                                      Setting{"TradeoffOptions::maxNanoseconds"},
                                      Setting{"TradeoffOptions::byTime"}));
     }
-    const auto chosen = selectMetrics(options.metric);
-    if (chosen.size() != 1) {
+    if (options.metric != pictureMetric && selectMetrics(options.metric).size() != 1) {
         throw UsageError(fmt::format("{} takes one name: {}", Setting{"TradeoffOptions::metric"},
                                      Call{.function = "metricCatalog"}));
     }
@@ -296,6 +314,7 @@ std::vector<Form> formsFor(const Brdf& brdf, const TradeoffOptions& options) {
 }  // namespace
 
 double Tradeoff::errorOf(std::size_t form) const {
+    if (metric == pictureMetric) return forms[form].picture->flip.mean;
     return weighed(forms[form].errors, metric);
 }
 
@@ -304,7 +323,14 @@ double Tradeoff::bandErrorOf(std::size_t form, std::size_t band) const {
 }
 
 std::optional<double> Tradeoff::uncertaintyOf(std::size_t form) const {
+    if (metric == pictureMetric) return std::nullopt;
     return forms[form].errors.uncertainty[metricIndex(metric)];
+}
+
+std::optional<std::string> Tradeoff::poorReasonOf(std::size_t form) const {
+    const double left = forms[form].summary.energyLeft.value;
+    return poorReason(std::isfinite(left) ? std::optional(1 - left) : std::nullopt,
+                      forms[form].picture);
 }
 
 std::optional<double> Tradeoff::shaderTimeOf(std::size_t form) const {
@@ -341,12 +367,13 @@ Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& opti
                    .pairs = reference.pairs().size(),
                    .noSquares = reference.noSquares()};
     boundByRank(trade, brdf, options.sweep.quantity);
+    const PictureReference pictures(brdf);
     Maker maker(brdf, options, open);
     maker.prepare(forms, steps);
 
     std::vector<Outcome> outcomes(forms.size());
     tbb::parallel_for(std::size_t{0}, forms.size(), [&](std::size_t k) {
-        outcomes[k] = measureOne(forms[k], maker, reference, options, open);
+        outcomes[k] = measureOne(forms[k], maker, reference, pictures, options, open);
         steps.done();
     });
     for (Outcome& outcome : outcomes) {
@@ -373,6 +400,7 @@ Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& opti
     }
     if (options.timing) timeForms(trade, maker, open, steps);
     findFronts(trade, options);
+    drawFronts(trade, maker, pictures, open);
     if (options.gpu) timeShadersOfFronts(trade, maker, *options.gpu);
     brdf.checkIntact();
     return trade;

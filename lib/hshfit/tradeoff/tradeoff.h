@@ -3,6 +3,7 @@
 #include <hshfit/accuracy/pair_errors.h>
 #include <hshfit/error.h>
 #include <hshfit/gpu/timing/shader_time.h>
+#include <hshfit/pictures/picture_error.h>
 #include <hshfit/tradeoff/sweep.h>
 #include <hshfit/tradeoff/timing.h>
 #include <hshfit/tradeoff/wavelet_forms.h>
@@ -17,7 +18,8 @@ namespace hshfit::tradeoff {
 
 struct TradeoffOptions {
     Sweep sweep = {};
-    /// A name from metricCatalog: what the fronts weigh. Of captured-energy, 1 minus it.
+    /// A name from metricCatalog: what the fronts weigh. Of captured-energy, 1 minus it. Or
+    /// "picture": the mean FLIP of the picture error, which every form is then measured by.
     std::string metric = "nbrdf";
     std::size_t maxBytes = std::numeric_limits<std::size_t>::max();  ///< larger forms are left out
     /// Slower forms are left out of the front over time; takes `byTime`.
@@ -41,6 +43,7 @@ struct Measured {
     PairErrors errors;
     std::vector<PairErrors> bands;  ///< by elevation of wo, see bandEdges
     PairSummary summary;
+    std::optional<PictureError> picture = {};  ///< of forms on a front, or all with that metric
 };
 
 /// The cost of a form; wall-clock times of this machine.
@@ -105,7 +108,9 @@ struct Tradeoff {
 
     /// The error that the fronts weigh; NaN where it does not exist.
     double errorOf(std::size_t form) const;
-    /// Of one band; NaN likewise.
+    /// Why a form is poor (pictures/poor.h), by its picture error and the energy that is left.
+    std::optional<std::string> poorReasonOf(std::size_t form) const;
+    /// Of one band; NaN likewise, and of picture.
     double bandErrorOf(std::size_t form, std::size_t band) const;
     std::optional<double> uncertaintyOf(std::size_t form) const;
     /// Of `wavelets`.

@@ -1,5 +1,6 @@
 #include <hshfit/files/json_fields.h>
 #include <hshfit/pages/pair_summary_json.h>
+#include <hshfit/pages/picture_error_json.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
 #include <hshfit/version.h>
 #include <hshfit/wavelets/slices.h>
@@ -28,17 +29,21 @@ Json formJson(const Tradeoff& trade, std::size_t k) {
     for (const RepresentationStep& step : form.steps) {
         steps.push_back({{"what", step.what}, {"change", finiteOrNull(step.change)}});
     }
-    return {{"options", form.options},
-            {"kind", kindName(form.form.kind)},
-            {"bytes", form.bytes},
-            {"entropy_bytes", form.entropyBytes},
-            {"numbers", form.numbers},
-            {"error", finiteOrNull(trade.errorOf(k))},
-            {"uncertainty", finiteOrNull(trade.uncertaintyOf(k))},
-            {"band_errors", bands},
-            {"metrics", metricsJson(form.errors)},
-            {"pairs", pairSummaryJson(form.summary)},
-            {"steps", steps}};
+    Json json = {{"options", form.options},
+                 {"kind", kindName(form.form.kind)},
+                 {"bytes", form.bytes},
+                 {"entropy_bytes", form.entropyBytes},
+                 {"numbers", form.numbers},
+                 {"error", finiteOrNull(trade.errorOf(k))},
+                 {"uncertainty", finiteOrNull(trade.uncertaintyOf(k))},
+                 {"band_errors", bands},
+                 {"metrics", metricsJson(form.errors)},
+                 {"pairs", pairSummaryJson(form.summary)},
+                 {"steps", steps}};
+    if (!form.picture) return json;
+    json["picture"] = pictureErrorJson(*form.picture);
+    if (const auto reason = trade.poorReasonOf(k)) json["poor"] = *reason;
+    return json;
 }
 
 Json frontJson(const Tradeoff& trade) {

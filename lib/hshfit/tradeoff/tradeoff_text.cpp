@@ -69,12 +69,12 @@ std::string waveletRows(std::span<const Tradeoff> trades) {
 
 std::string frontTable(const Tradeoff& trade, const std::vector<std::size_t>& front) {
     const bool timed = !trade.times.empty();
-    const auto percent = [](double error, double value) {
+    const auto relative = [](double error, double value) {
         return value > 0 ? fmt::format("{:.0f}%", 100 * error / value) : std::string("-");
     };
     std::string text =
-        fmt::format("  {:>9} {:>11} {:>5} {:>9} {:>9} {:>9} {:>9} {:>9}{}  options\n", "bytes",
-                    "error", "+-", zoneNames[0], zoneNames[1], "maximum", "albedo",
+        fmt::format("  {:>9} {:>11} {:>5} {:>9} {:>9} {:>5} {:>6} {:>6} {:>4} {:>9}{}  options\n",
+                    "bytes", "error", "+-", zoneNames[0], zoneNames[1], "FLIP", "dip", "peak", "",
                     timed ? "ns" : "", trade.shaders ? fmt::format(" {:>10}", "gpu ns/Mpx") : "");
     for (const std::size_t k : front) {
         const std::string ns =
@@ -85,13 +85,15 @@ std::string frontTable(const Tradeoff& trade, const std::vector<std::size_t>& fr
             gpu = fmt::format(" {:>10}", time ? fmt::format("{:.3g}", *time) : "–");
         }
         const PairSummary& summary = trade.forms[k].summary;
+        const PictureError& picture = *trade.forms[k].picture;
         const double error = trade.errorOf(k);
-        text +=
-            fmt::format("  {:>9} {:>11.4g} {:>5} {:>9.3g} {:>9.3g} {:>9.3g} {:>9.2g} {:>9}{}  {}\n",
-                        trade.forms[k].bytes, error,
-                        percent(trade.uncertaintyOf(k).value_or(std::nan("")), error),
-                        summary.zones[0].value, summary.zones[1].value, summary.maximum,
-                        summary.albedo.value, ns, gpu, trade.forms[k].options);
+        text += fmt::format(
+            "  {:>9} {:>11.4g} {:>5} {:>9.3g} {:>9.3g} {:>5.3f} {:>6} {:>6} {:>4} {:>9}{}  {}\n",
+            trade.forms[k].bytes, error,
+            relative(trade.uncertaintyOf(k).value_or(std::nan("")), error), summary.zones[0].value,
+            summary.zones[1].value, picture.flip.mean, shareText(picture.dip),
+            shareText(picture.peak), trade.poorReasonOf(k) ? "poor" : "", ns, gpu,
+            trade.forms[k].options);
     }
     return text;
 }
@@ -152,6 +154,7 @@ std::optional<std::size_t> bestWithin(const Tradeoff& trade, Kind kind, std::siz
 }
 
 std::string metricText(const std::string& metric) {
+    if (metric == "picture") return "mean FLIP of lit spheres (picture)";
     const Metric& row = *selectMetrics(metric).front();
     return metric == "captured-energy"
                ? "energy that is not captured, relative-l2 squared (captured-energy)"

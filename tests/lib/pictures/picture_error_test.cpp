@@ -197,7 +197,9 @@ TEST(HighlightLines, HoldWhatTheyName) {
             bool middle = false;
             for (std::size_t k = 0; k < line.pairs.size(); ++k) {
                 const DirectionPair& pair = line.pairs[k];
-                if (k > 0) EXPECT_GT(line.angles[k], line.angles[k - 1]);
+                if (k > 0) {
+                    EXPECT_GT(line.angles[k], line.angles[k - 1]);
+                }
                 EXPECT_LE(polarAngle(pair.wi), radians(85.001));
                 EXPECT_LE(polarAngle(pair.wo), radians(85.001));
                 middle |= tanHalf(pair.wi, pair.wo) < 1e-9;
