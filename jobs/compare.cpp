@@ -43,6 +43,7 @@ void writeFiles(const Brdf& a, const Brdf& b, const std::string& folder,
     const auto page = filesIn(folder),
                figures = filesIn(options.figures ? options.figures->folder : "");
     ComparisonOptions how{.outgoing = compared.outgoing};
+    how.picture = compared.picture;
     if (options.metrics == "all") how.metrics = compared.metrics;
     how.progress = how.sphere.progress = listener.part("report");
     const Comparison comparison = makeComparison(a, b, how);

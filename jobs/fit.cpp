@@ -213,6 +213,7 @@ std::size_t writePage(const std::string& data, const Fitted& fit, const std::str
     const auto measured = openSource(data, rgb);
     const auto fitted = brdfs::openFit(fit.result);
     ComparisonOptions options;
+    options.picture = fit.picture;
     options.progress = options.sphere.progress = listener.part("report");
     const AddedComparison added = addComparison(makeComparison(*measured, *fitted, options), files);
     files.write("fit.json", presetText(fit));

@@ -107,10 +107,11 @@ std::string toMoreFunctions(const Representation& kept, const Brdf& source,
     return {};
 }
 
-/// The call that captures more, for a result of this head; `kept` where it is the halfway form.
-std::string betterThan(const CoefficientHead& head, const Representation* kept, const Brdf& source,
-                       const std::string& output) {
-    const auto order = sufficientOrder(source, head);
+/// The call that does better than a result of this head; `kept` where it is the halfway form. The
+/// trial of orders is for results that capture too little: it sees energy alone.
+std::string betterThan(const CoefficientHead& head, const Representation* kept, bool lacksEnergy,
+                       const Brdf& source, const std::string& output) {
+    const auto order = lacksEnergy ? sufficientOrder(source, head) : std::nullopt;
     if (order && *order > head.order)
         return projectedAgain(head, settingsWith(*order, head), output);
     // The halfway form holds f at every direction.
@@ -123,6 +124,10 @@ std::string betterThan(const CoefficientHead& head, const Representation* kept, 
         if (!finer.empty()) return finer;
     }
     return toTwiceTheOrder(head, output);
+}
+
+bool lacksEnergy(const std::optional<double>& captured) {
+    return captured && *captured < PoorBounds{}.captured;
 }
 
 /// By the squares of the coefficients of an orthonormal basis. None for other forms and bases.
@@ -236,7 +241,7 @@ std::optional<Poor> judge(const Projection& projection, std::optional<double> ca
     if (!reason) return std::nullopt;
     if (c.leastSquares)
         return Poor{*reason, projectedAgain(c, {kindSetting(Kind::halfway)}, output)};
-    return Poor{*reason, betterThan(c, nullptr, source, output)};
+    return Poor{*reason, betterThan(c, nullptr, lacksEnergy(captured), source, output)};
 }
 
 std::optional<Poor> judge(const Representation& kept, std::optional<double> captured,
@@ -255,7 +260,8 @@ std::optional<Poor> judge(const Representation& kept, std::optional<double> capt
             fmt::format("{}; {} changes it by {}", *reason, worst->what, percent(worst->change)),
             projectedAgain(kept.head, std::move(settings), output)};
     }
-    return Poor{*reason, betterThan(kept.head, halfway ? &kept : nullptr, source, output)};
+    return Poor{*reason, betterThan(kept.head, halfway ? &kept : nullptr, lacksEnergy(captured),
+                                    source, output)};
 }
 
 std::optional<Poor> judge(const gpu::ErrorSplit& split, const std::optional<PictureError>& picture,

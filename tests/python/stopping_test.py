@@ -24,6 +24,7 @@ USES = {
     "project_all": "hshfit.project_all(f, order=3, outgoing=16)",
     "curves": "hshfit.curves(f, max_order=3)",
     "compare": "hshfit.compare(f, 'lambert')",
+    "picture_error": "hshfit.picture_error(f, 'lambert')",
     "fit": "hshfit.fit(f, 'lambert', starts=1)",
     "rank_models": "hshfit.rank_models(f, ['lambert'], starts=1)",
     "Brdf.__call__": "f([[0, 0, 1]] * 20000, [0, 0, 1])",

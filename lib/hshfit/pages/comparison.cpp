@@ -200,6 +200,7 @@ Comparison makeComparison(const Brdf& reference, const Brdf& approximation,
     result.outgoing = options.outgoing ? *options.outgoing
                       : isotropic      ? OutgoingSet::elevations(16)
                                        : OutgoingSet::parabolic(16, 16);
+    result.picture = options.picture;
     result.metrics = allMetrics(reference, approximation, result.outgoing, options);
     const AlbedoTable f(reference), g(approximation);
     result.reference = {reference.name(), reference.channels(), reference.laws(), f.error()};

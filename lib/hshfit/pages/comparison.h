@@ -2,6 +2,7 @@
 
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/files/file_set.h>
+#include <hshfit/pictures/picture_error.h>
 #include <hshfit/pictures/sphere.h>
 
 #include <functional>
@@ -17,6 +18,7 @@ struct ComparisonOptions {
     std::optional<OutgoingSet> outgoing = {};
     /// Metrics that were computed before, over `outgoing`; empty: all of the catalog are computed.
     std::vector<MetricValue> metrics = {};
+    std::optional<PictureError> picture = {};  ///< to be shown first; none: left out
     SphereOptions sphere = {};
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
@@ -52,6 +54,7 @@ struct Comparison {
     ComparedBrdf reference, approximation;
     OutgoingSet outgoing;
     std::vector<MetricValue> metrics;
+    std::optional<PictureError> picture = {};
     Channels channels;               ///< of the comparison: those of the two with more
     std::vector<std::size_t> drawn;  ///< of these, at most 4
     /// f(theta_i) in the plane of incidence; negative angles on the side of the outgoing direction.

@@ -1,5 +1,6 @@
 #include <hshfit/files/json_fields.h>
 #include <hshfit/pages/comparison_files.h>
+#include <hshfit/pages/picture_error_json.h>
 #include <hshfit/pictures/sphere_picture.h>
 #include <hshfit/version.h>
 
@@ -79,18 +80,19 @@ std::string comparisonJson(const Comparison& comparison) {
     for (const ComparisonFigure& figure : figuresOf(comparison)) figures.push_back(figure.file);
     const auto names = comparison.channels.names();
     for (const std::size_t c : comparison.drawn) drawn.push_back(names[c]);
-    const Json document = {{"format", "hshfit-comparison"},
-                           {"version", 1},
-                           {"reference", sideJson(comparison.reference)},
-                           {"approximation", sideJson(comparison.approximation)},
-                           {"outgoing", comparison.outgoing.spec()},
-                           {"drawn", drawn},
-                           {"azimuths", azimuths},
-                           {"metrics", metricsJson(comparison.metrics)},
-                           {"residual", residualJson(comparison)},
-                           {"spheres", spheresJson(comparison)},
-                           {"figures", figures},
-                           {"generator", std::string("hshfit ") + version}};
+    Json document = {{"format", "hshfit-comparison"},
+                     {"version", 1},
+                     {"reference", sideJson(comparison.reference)},
+                     {"approximation", sideJson(comparison.approximation)},
+                     {"outgoing", comparison.outgoing.spec()},
+                     {"drawn", drawn},
+                     {"azimuths", azimuths},
+                     {"metrics", metricsJson(comparison.metrics)},
+                     {"residual", residualJson(comparison)},
+                     {"spheres", spheresJson(comparison)},
+                     {"figures", figures},
+                     {"generator", std::string("hshfit ") + version}};
+    if (comparison.picture) document["picture"] = pictureErrorJson(*comparison.picture);
     return jsonText(document, 2) + "\n";
 }
 

@@ -9,9 +9,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace hshfit::embedded {
@@ -125,6 +127,17 @@ data rigData(const SphereRig& rig) {
     return lights;
 }
 
+/// The lines of the picture error, each a sentence of a list.
+data pictureLines(const PictureError& picture) {
+    data lines{data::type::list};
+    const std::string text = textOf(picture);
+    for (std::size_t at = 0, end = 0; at < text.size(); at = end + 1) {
+        end = std::min(text.find('\n', at), text.size());
+        lines.push_back(data("text", text.substr(at, end - at)));
+    }
+    return lines;
+}
+
 }  // namespace
 
 std::string comparisonPage(const Comparison& comparison, const std::vector<std::string>& figures,
@@ -141,6 +154,8 @@ std::string comparisonPage(const Comparison& comparison, const std::vector<std::
     page.set("outgoing", outgoingText(comparison.outgoing));
     page.set("oneDirection", comparison.outgoing.map == OutgoingSet::Map::direction);
     page.set("metrics", metricRows(comparison.metrics));
+    page.set("anyPicture", comparison.picture.has_value());
+    if (comparison.picture) page.set("picture", pictureLines(*comparison.picture));
     const auto names = comparison.channels.names();
     if (comparison.drawn.size() < names.size()) {
         std::vector<std::string> drawn;
