@@ -50,6 +50,29 @@ TEST_F(PictureAgreement, OfTheHalfwayFormInProjectCompareTradeoffAndExport) {
     EXPECT_TRUE(found) << traded["tradeoffs"][0]["forms"];
 }
 
+TEST_F(PictureAgreement, OfEveryFormWhereTheFrontsWeighIt) {
+    const Json trade = answerOf(
+        "tradeoff ggx:alpha=.5,kd=.2 --metric picture --no-timing --forms halfway,outgoing --bases "
+        "hsh --orders 3,7 --ranks 0 --outgoing 8 --halfway 4,2,1 --halfway 6,3,2 --split none")
+        ["tradeoffs"][0];
+    for (const Json& form : trade["forms"])
+        EXPECT_EQ(form["error"], form["picture"]["flip"]["mean"]);
+    const Json& front = trade["front"];
+    ASSERT_GE(front.size(), 2U);
+    for (std::size_t k = 1; k < front.size(); ++k) {
+        const Json &before = trade["forms"][front[k - 1]["form"].get<std::size_t>()],
+                   &after = trade["forms"][front[k]["form"].get<std::size_t>()];
+        EXPECT_LT(after["picture"]["flip"]["mean"], before["picture"]["flip"]["mean"]);
+        EXPECT_GT(after["bytes"], before["bytes"]);
+        // docs/picture_error.md: poor by one of its three bounds.
+        const Json& p = after["picture"];
+        const bool poor = p["flip"]["mean"] > 0.1 || p["false_dip"]["value"] > 0.1 ||
+                          p["false_peak"]["value"] > 0.1 ||
+                          after["pairs"]["energy_left"]["value"] > 0.1;
+        EXPECT_EQ(after.contains("poor"), poor) << after;
+    }
+}
+
 TEST_F(PictureAgreement, OfCoefficientsFitsConversionsAndPlansWithTheirFiles) {
     const std::string spec = "ggx:alpha=.4,kd=.2", file = path("file.json");
     const Json projected = answerOf("project " + spec + " --order 4 --outgoing 8 -o " + file);

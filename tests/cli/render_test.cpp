@@ -190,6 +190,8 @@ TEST_F(Cli, CompareWritesAPage) {
     EXPECT_TRUE(keepsSchema(read(path("page/comparison.json")), "comparison"));
     const Json printed = Json::parse(answer.out);
     EXPECT_EQ(printed["metrics"], Json::parse(read(path("page/comparison.json")))["metrics"]);
+    EXPECT_EQ(printed["picture"], Json::parse(read(path("page/comparison.json")))["picture"]);
+    EXPECT_NE(read(path("page/comparison.html")).find("highest false peak"), std::string::npos);
     for (const auto& file : printed["report"]["files"]) {
         EXPECT_TRUE(fs::exists(path("page/") + file.get<std::string>())) << file;
     }

@@ -246,7 +246,8 @@ void compareSpheres(const SeenBrdf& f, const SeenBrdf& g, PictureError& error) {
 }
 
 std::string degreesOf(const Direction& d) {
-    return fmt::format("{:.3g},{:.3g}", degrees(polarAngle(d)), degrees(azimuth(d)));
+    const auto tenths = [](double radians) { return std::round(10 * degrees(radians)) / 10 + 0.0; };
+    return fmt::format("{:g},{:g}", tenths(polarAngle(d)), tenths(azimuth(d)));
 }
 
 /// Shares below this are 0 to people.

@@ -6,6 +6,9 @@
 #include <hshfit/pictures/picture_error.h>
 #include <hshfit/pictures/picture_lights.h>
 #include <hshfit/pictures/poor.h>
+#include <hshfit/pictures/sphere_albedo.h>
+#include <hshfit/representation/forms/form.h>
+#include <hshfit/representation/forms/represented_brdf.h>
 
 #include "lib/formula_brdf.h"
 
@@ -14,6 +17,7 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -157,6 +161,43 @@ TEST(PictureError, ValuesThatAreNotFiniteCountAsZero) {
     for (const double value : {error.flip.mean, error.colour.mean, error.albedo[0]})
         EXPECT_TRUE(std::isfinite(value));
     EXPECT_TRUE(std::isfinite(pictureError(scaled(0), scaled(0)).flip.mean));
+}
+
+/// The albedo for one outgoing direction by the midpoint rule, even in cos(theta_i) and azimuth.
+double albedoByMidpoints(const Brdf& brdf, const Direction& wo) {
+    constexpr int rings = 900, azimuths = 1800;
+    std::vector<double> x(azimuths), y(azimuths), z(azimuths), f(azimuths);
+    double sum = 0;
+    for (int r = 0; r < rings; ++r) {
+        const double mu = (r + 0.5) / rings, s = std::sqrt(1 - mu * mu);
+        for (std::size_t a = 0; a < azimuths; ++a) {
+            const double phi = 2 * pi * (static_cast<double>(a) + 0.5) / azimuths;
+            x[a] = s * std::cos(phi);
+            y[a] = s * std::sin(phi);
+            z[a] = mu;
+        }
+        brdf.eval(wo, {x.data(), y.data(), z.data(), azimuths}, f.data());
+        for (const double value : f) sum += mu * value;
+    }
+    return sum * 2 * pi / (double{rings} * azimuths);
+}
+
+TEST(PictureError, AlbedoTablesOfTheHalfwayFormResolveItsHighlights) {
+    const FormulaBrdf narrow([](const Direction& wi, const Direction& wo) {
+        const double t = tanHalf(wi, wo);
+        return 0.02 + 20 * std::exp(-t * t / 0.005);
+    });
+    const auto form = reconstruct(
+        represent(narrow, {.kind = Representation::Kind::halfway, .halfway = {12, 4, 1}},
+                  [](const std::string&) { return std::unique_ptr<Brdf>(); }),
+        [](const std::string&) { return std::unique_ptr<Brdf>(); });
+    const AlbedoTable table(*form);
+    for (const double theta : {0.0, 20.0, 45.0, 70.0}) {
+        const Direction wo = directionFromAngles(radians(theta), 0);
+        double albedo = 0;
+        table.at(wo, {&albedo, 1});
+        EXPECT_NEAR(albedo, albedoByMidpoints(*form, wo), 0.02 * albedo) << theta;
+    }
 }
 
 TEST(PictureError, TheSameWhateverTheThreads) {
