@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 namespace hshfit::tradeoff {
 namespace {
 
@@ -19,6 +21,12 @@ Json metricsJson(const PairErrors& errors) {
         json[std::string(metricCatalog()[m].name)] = finiteOrNull(errors.values[m]);
     }
     return json;
+}
+
+/// The picture error of a form, and why it is poor.
+void addPicture(const Tradeoff& trade, std::size_t k, Json& json) {
+    json["picture"] = pictureErrorJson(*trade.forms[k].picture);
+    if (const auto reason = trade.poorReasonOf(k)) json["poor"] = *reason;
 }
 
 Json formJson(const Tradeoff& trade, std::size_t k) {
@@ -40,9 +48,9 @@ Json formJson(const Tradeoff& trade, std::size_t k) {
                  {"metrics", metricsJson(form.errors)},
                  {"pairs", pairSummaryJson(form.summary)},
                  {"steps", steps}};
-    if (!form.picture) return json;
-    json["picture"] = pictureErrorJson(*form.picture);
-    if (const auto reason = trade.poorReasonOf(k)) json["poor"] = *reason;
+    // The front over time differs from run to run: its pictures are with the times.
+    if (trade.metric == "picture" || std::ranges::count(trade.byteFront, k) > 0)
+        addPicture(trade, k, json);
     return json;
 }
 
@@ -133,6 +141,7 @@ Json tradeTimingJson(const Tradeoff& trade) {
     }
     for (const std::size_t k : trade.timeFront) {
         front.push_back({{"form", k}, {"command", commandOf(trade, k)}});
+        addPicture(trade, k, front.back());
     }
     Json json = {{"brdf", trade.brdf},
                  {"front", front},
