@@ -55,12 +55,12 @@ std::vector<Rgb> valuesOn(const HighlightLine& line, const Brdf& brdf,
     return values;
 }
 
-/// Directions of the albedos: every degree of theta_o to 89, at eight azimuths.
+/// Directions of the albedos: every 5 degrees of theta_o to 85, and 89, at eight azimuths.
 std::vector<Direction> albedoDirections() {
     std::vector<Direction> directions;
-    for (int theta = 0; theta < 90; ++theta)
+    for (int theta = 0; theta <= 90; theta += 5)
         for (int turn = 0; turn < 8; ++turn)
-            directions.push_back(directionFromAngles(radians(theta), turn * pi / 4));
+            directions.push_back(directionFromAngles(radians(std::min(theta, 89)), turn * pi / 4));
     return directions;
 }
 
@@ -186,7 +186,7 @@ struct SeenBrdf {
             lines.push_back(valuesOn(line, brdf, colours));
         for (const HighlightLine& line : mirrorRidges(isotropic))
             ridges.push_back(valuesOn(line, brdf, colours));
-        const AlbedoTable table(brdf);
+        const AlbedoTable table(brdf, AlbedoTable::Detail::coarse);
         for (const PictureLight& light : pictureLights())
             spheres.push_back(
                 renderSphere(brdf, table, {.rig = light.rig, .size = pixels, .samples = 1}));
@@ -307,7 +307,7 @@ std::string textOf(const PictureError& error) {
         "under the {})\n"
         "highlight: deepest false dip {}, highest false peak {}\n"
         "mirror direction off by {} for elevations to 80 degrees\n"
-        "albedo of the last degrees off by {}\n",
+        "albedo at 89 degrees off by {}\n",
         textOf(error.albedo, error.channels), error.colour.mean, error.colour.largest,
         error.colour.light, error.flip.mean, error.flip.largest, error.flip.light,
         textOf(error.dip), textOf(error.peak), textOf(error.ridge),

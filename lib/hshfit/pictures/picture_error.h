@@ -40,7 +40,7 @@ struct PictureError {
     std::vector<std::string> channels = {};
     OverLights flip = {}, colour = {};
     /// The largest (albedo of g - albedo of f) / max(albedo of f, m / 20 + 0.001) per channel for
-    /// theta_o to 85 degrees, and from there to 89 degrees, with its sign.
+    /// theta_o = 0, 5, … 85 degrees, and for 89 degrees, with its sign.
     std::vector<double> albedo = {}, lastAlbedo = {};
     SeenDifference dip = {}, peak = {}, ridge = {};
 };

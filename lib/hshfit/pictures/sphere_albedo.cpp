@@ -12,7 +12,6 @@ namespace hshfit::inline pictures {
 namespace {
 
 constexpr int level = 2;
-constexpr double azimuthStep = pi / 16;  // of 32, or of 9 over a quadrant
 
 struct Albedo {
     std::vector<double> values;  ///< per channel
@@ -46,36 +45,41 @@ Albedo albedoAt(const Brdf& brdf, const Direction& wo, const std::vector<Lobe>& 
     return albedo;
 }
 
-std::vector<double> elevationsOf(bool isotropic) {
+std::vector<double> elevationsOf(bool isotropic, AlbedoTable::Detail detail) {
+    const bool coarse = detail == AlbedoTable::Detail::coarse;
+    const int step = isotropic ? (coarse ? 5 : 1) : (coarse ? 10 : 5);
     std::vector<double> thetas;
-    for (int degree = 0; degree < 90; degree += isotropic ? 1 : 5) {
-        thetas.push_back(radians(degree));
-    }
-    if (!isotropic) thetas.push_back(radians(89));
+    for (int degree = 0; degree < 90; degree += step) thetas.push_back(radians(degree));
+    if (step == 10) thetas.push_back(radians(85));
+    if (step > 1) thetas.push_back(radians(89));
     return thetas;
 }
 
 }  // namespace
 
-AlbedoTable::AlbedoTable(const Brdf& brdf)
+AlbedoTable::AlbedoTable(const Brdf& brdf, Detail detail)
     : channels_(brdf.channels().count()),
-      azimuths_(brdf.laws().isotropic         ? 1
-                : brdf.laws().mirrorSymmetric ? 9
-                                              : 32),
       mirrored_(brdf.laws().mirrorSymmetric),
-      thetas_(elevationsOf(brdf.laws().isotropic)) {
+      azimuthStep_(detail == Detail::coarse ? pi / 8 : pi / 16),
+      thetas_(elevationsOf(brdf.laws().isotropic, detail)) {
+    if (!brdf.laws().isotropic) {
+        const auto quadrant = static_cast<std::size_t>(std::lround(pi / 2 / azimuthStep_));
+        azimuths_ = mirrored_ ? quadrant + 1 : 4 * quadrant;
+    }
     const std::size_t entries = thetas_.size() * azimuths_;
+    const bool estimate = detail == Detail::fine;
     std::vector<Albedo> fine(entries), coarse(entries);
     tbb::parallel_for(std::size_t{0}, entries, [&](std::size_t i) {
-        const double phi = static_cast<double>(i % azimuths_) * azimuthStep;
+        const double phi = static_cast<double>(i % azimuths_) * azimuthStep_;
         const Direction wo = directionFromAngles(thetas_[i / azimuths_], phi);
         const std::vector<Lobe> lobes = brdf.lobes(wo);
-        coarse[i] = albedoAt(brdf, wo, lobes, level - 1);
+        if (estimate) coarse[i] = albedoAt(brdf, wo, lobes, level - 1);
         fine[i] = albedoAt(brdf, wo, lobes, level);
     });
     for (std::size_t i = 0; i < entries; ++i) {
         for (std::size_t c = 0; c < channels_; ++c) {
             values_.push_back(fine[i].values[c]);
+            if (!estimate) continue;
             error_ = std::max(error_, std::abs(fine[i].values[c] - coarse[i].values[c]));
         }
         notFinite_ += fine[i].notFinite;
@@ -90,7 +94,7 @@ void AlbedoTable::lookUpRow(std::size_t row, double share, const Direction& wo,
     if (azimuths_ > 1) {
         // Under mirror symmetry only |x| and |y| matter, and the last azimuth is 90 degrees.
         const double phi = mirrored_ ? std::atan2(std::abs(wo.y), std::abs(wo.x)) : azimuth(wo);
-        const double at = (phi < 0 ? phi + 2 * pi : phi) / azimuthStep;
+        const double at = (phi < 0 ? phi + 2 * pi : phi) / azimuthStep_;
         low = static_cast<std::size_t>(at);
         t = at - static_cast<double>(low);
         low = mirrored_ ? std::min(low, azimuths_ - 1) : low % azimuths_;

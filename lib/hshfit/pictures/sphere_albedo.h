@@ -16,16 +16,20 @@ namespace hshfit::inline pictures {
 /// Each entry is integrated with the grid of level 2 (quadrature.h), whose cost does not depend on
 /// the values; values of f that are not finite are left out and counted. Results do not depend
 /// on the number of threads.
+///
+/// Coarse, for pictures that are compared: every 5 degrees to 85 and 89 if isotropic, otherwise
+/// every 10 degrees to 80, 85 and 89 times 16 azimuths, or 5; without an estimate of the error.
 class AlbedoTable {
 public:
-    explicit AlbedoTable(const Brdf& brdf);
+    enum class Detail { fine, coarse };
+    explicit AlbedoTable(const Brdf& brdf, Detail detail = Detail::fine);
 
     /// One value per channel of the BRDF, for any wo above the horizon.
     void at(const Direction& wo, std::span<double> albedo) const;
 
     /// The largest entry of all.
     double largest() const;
-    /// The largest change from level 1 to level 2 over entries and channels.
+    /// The largest change from level 1 to level 2 over entries and channels; 0 if coarse.
     double error() const { return error_; }
     std::size_t notFinite() const { return notFinite_; }
 
@@ -35,6 +39,7 @@ private:
 
     std::size_t channels_ = 1, azimuths_ = 1;
     bool mirrored_ = false;
+    double azimuthStep_ = 0;
     std::vector<double> thetas_;
     std::vector<double> values_;  ///< [theta][azimuth][channel]
     double error_ = 0;

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 using namespace hshfit;
 using samples::contentOf;
@@ -138,14 +139,19 @@ TEST(Sphere, TheFrameIsTheDocumentedOne) {
 TEST(Sphere, DomeShowsTheAlbedo) {
     // f = a (wi.x wo.x)^2: albedo a wo.x^2 pi / 4, as the integral of cos sin^3 is 1/4. Linear
     // interpolation over h is off by h^2/8 times the second derivative, which is at most 2 for
-    // sin^2 and cos^2: h of 11.25 degrees in azimuth and 5 in elevation.
-    const double bound = (std::pow(radians(11.25), 2) + std::pow(radians(5), 2)) / 4;
+    // sin^2 and cos^2: h of 11.25 degrees in azimuth and 5 in elevation, twice as much if coarse.
+    const double fineBound = (std::pow(radians(11.25), 2) + std::pow(radians(5), 2)) / 4;
     const double a = 0.8;
-    for (const bool mirror : {false, true}) {
+    using Detail = AlbedoTable::Detail;
+    for (const auto& [mirror, detail] : {std::pair{false, Detail::fine},
+                                         {true, Detail::fine},
+                                         {false, Detail::coarse},
+                                         {true, Detail::coarse}}) {
+        const double bound = fineBound * (detail == Detail::fine ? 1 : 4);
         const FormulaBrdf f(
             [a](const Direction& wi, const Direction& wo) { return a * wi.x * wi.x * wo.x * wo.x; },
             {}, {.mirrorSymmetric = mirror});
-        const AlbedoTable table(f);
+        const AlbedoTable table(f, detail);
         for (const double theta : {3.0, 22.0, 47.0, 71.0, 86.0}) {
             for (double phi = -175; phi < 180; phi += 20) {
                 const Direction wo = directionFromAngles(radians(theta), radians(phi));
