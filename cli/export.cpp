@@ -396,10 +396,8 @@ void addExport(CLI::App& command, Globals& globals) {
                        "forms halfway and basis, the least that holds the file)");
     command
         .add_option("--storage", arguments->storage,
-                    "Numbers of these forms in shaders: constants, table (constants, and one "
-                    "uniform block for what is looked up), block (one uniform block), texture, or "
-                    "auto: texture above 4096 numbers, else table where an envelope is looked "
-                    "up and every target binds blocks, else constants")
+                    "Numbers of these forms in shaders: constants, block (one uniform block), "
+                    "texture, or auto: texture above 4096 numbers, else constants")
         ->capture_default_str();
     command
         .add_option("--packing", arguments->packing,

@@ -132,7 +132,7 @@ Words constraintWords() {
 }
 
 Words storageWords() {
-    return {{"auto"}, {"constants"}, {"table"}, {"block"}, {"texture"}};
+    return {{"auto"}, {"constants"}, {"block"}, {"texture"}};
 }
 
 Words numberWords() {

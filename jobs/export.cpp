@@ -153,21 +153,6 @@ std::string proposalTextOf(const Exported& exported) {
     return exported.proposal ? gpu::proposalText(*exported.proposal) : std::string();
 }
 
-/// The uniform block that shaders with a table read: the words as they lie in memory, low byte
-/// first.
-void writeTable(FileSet& files, Exported& exported) {
-    if (!exported.form || exported.storage != gpu::Storage::table) return;
-    std::string bytes;
-    for (const std::uint32_t word : gpu::tableWords(*exported.form)) {
-        for (unsigned shift = 0; shift < 32; shift += 8)
-            bytes += static_cast<char>(word >> shift & 255U);
-    }
-    if (bytes.empty()) return;
-    const std::string file = exported.name + ".table.bin";
-    files.write(file, bytes);
-    exported.texts.push_back({"table", "bin", file});
-}
-
 /// f of the BRDF that a form adds, per channel, where it is a Lambert term, whose f is the same for
 /// all directions. Empty where the form adds nothing, or anything else.
 std::vector<double> constantOf(const Representation& form) {
@@ -238,16 +223,6 @@ void requireFormOptions(const ExportOptions& options) {
     }
 }
 
-/// OSL has no uniform blocks, and the pages bind none for this.
-gpu::Storage storageOf(const gpu::FormPayload& form, const Targets& chosen,
-                       const ExportOptions& options) {
-    const bool blocks = std::ranges::none_of(chosen, [](const Target* target) {
-        return target->kind == Target::Kind::viewer || target->kind == Target::Kind::module ||
-               target->name == "osl";
-    });
-    return gpu::storageFor(form, options.storage, blocks);
-}
-
 /// A form with a shader of its own, as it is.
 void exportForm(const Representation& stored, const std::string& path, const std::string& folder,
                 const Targets& chosen, const std::vector<LightSpecification>& lights,
@@ -255,7 +230,7 @@ void exportForm(const Representation& stored, const std::string& path, const std
     requireFormOptions(options);
     exported.form = gpu::packForm(stored, options.number);
     exported.form->constant = constantOf(stored);
-    exported.storage = storageOf(*exported.form, chosen, options);
+    exported.storage = gpu::storageFor(*exported.form, options.storage);
     FileSet files(folder, options.force);
     refuseToReplace(folder, exported.sidecar, options.force);
     const Source source = openSourceOf(options, stored.head);
@@ -278,7 +253,6 @@ void exportForm(const Representation& stored, const std::string& path, const std
          .proposal = proposalTextOf(exported)},
         sourceOpener(), files);
     writeShaders(chosen, options, listener, files, exported);
-    writeTable(files, exported);
     if (has(chosen, Target::Kind::module)) {
         const auto again = reconstruct(exported.form->form, sourceOpener());
         writeThree(source.brdf ? *source.brdf : *again, options, listener, files, exported);

@@ -223,23 +223,6 @@ TEST_F(ExportForm, FactoredSparseAndSplitFormsAreExportedAsTheyAre) {
     }
 }
 
-/// The block of a table is a file of the export, four bytes for each of four channels and cell.
-TEST_F(ExportForm, ATableIsWrittenBesideItsShaders) {
-    const Answer answer = run("export " + path("form.json") + " -o " + path("out") +
-                              " --target bin,glsl --storage table --json");
-    ASSERT_EQ(answer.code, 0) << answer.err;
-    EXPECT_TRUE(keepsSchema(answer.out, "export"));
-    const Json form = Json::parse(read(path("form.json")));
-    for (const Json& array : form["representation"]["arrays"]) {
-        if (array["name"] != "envelope") continue;
-        const std::size_t up = array["shape"][0], along = array["shape"][1];
-        if (up * along < 2) continue;
-        const std::size_t cells =
-            (std::max<std::size_t>(up, 2) - 1) * (std::max<std::size_t>(along, 2) - 1);
-        EXPECT_EQ(fs::file_size(path("out/form.table.bin")), 16 * cells);
-    }
-}
-
 TEST_F(ExportForm, ALossOfMoreThanTwiceTheErrorIsRefusedUnlessAccepted) {
     const std::string anew = "export " + path("form.json") + " -o " + path("out") +
                              " --target bin --basis hsh --order 1 --outgoing 2";

@@ -41,7 +41,12 @@ Ordered describe(const Representation& r) {
         out["orders"] = {{"half", r.halfway.half},
                          {"difference", r.halfway.difference},
                          {"azimuth", r.halfway.azimuth}};
-        if (const auto& envelope = r.as<HalfwayArray>()->envelope) out["ridge"] = envelope->ridge;
+        const auto& content = *r.as<HalfwayArray>();
+        out["lobe"] = {{"along", content.lobe.along},
+                       {"across", content.lobe.across},
+                       {"turn", content.lobe.turn},
+                       {"shelf", content.lobe.shelf}};
+        out["ceilings"] = content.ceilings;
     }
     if (!r.added.empty()) out["added"] = r.added;
     out["bytes"] = r.bytes();
@@ -208,11 +213,16 @@ Representation representationFromJson(std::string_view text, const std::string& 
         r.halfway = {.half = orders.integer("half", 1, 256),
                      .difference = orders.integer("difference", 1, 256),
                      .azimuth = orders.integer("azimuth", 1, 256)};
-        // Files without an envelope are of before there was one.
-        if (auto& envelope = r.as<HalfwayArray>()->envelope) {
-            envelope->ridge = part.number("ridge");
-            if (!(envelope->ridge > 0)) part.fail("has to be above 0", "ridge");
+        auto& content = *r.as<HalfwayArray>();
+        if (!part.has("lobe")) {
+            part.fail("is missing: files of versions before 2 hold another halfway form; project "
+                      "the material again",
+                      "lobe");
         }
+        const JsonFields lobe = part.object("lobe");
+        content.lobe = {lobe.number("along"), lobe.number("across"), lobe.number("turn"),
+                        lobe.number("shelf")};
+        content.ceilings = part.numbers("ceilings");
     }
     if (r.kind() != Kind::halfway && r.head.basis.empty()) fields.fail("is missing", "basis");
     if (r.kind() == Kind::basis) ShapeCheck(r, part).basis();

@@ -17,9 +17,9 @@ using Kind = Representation::Kind;
 
 constexpr std::array elevationCounts{2, 3, 4, 6, 8, 12, 16, 24, 32};
 constexpr std::array mapSizes{4, 6, 8, 10, 12, 16, 20, 24, 32};
-constexpr std::array halfwaySizes{HalfwayOrders{4, 2, 1}, HalfwayOrders{6, 3, 2},
-                                  HalfwayOrders{8, 4, 2}, HalfwayOrders{12, 6, 3},
-                                  HalfwayOrders{16, 8, 3}};
+constexpr std::array halfwaySizes{HalfwayOrders{4, 3, 2}, HalfwayOrders{5, 4, 3},
+                                  HalfwayOrders{7, 6, 5}, HalfwayOrders{9, 8, 6},
+                                  HalfwayOrders{13, 12, 8}};
 constexpr std::array ranks{2, 4, 8, 16};
 constexpr int leastFactoredOrder = 5;
 /// Anisotropic matrices have order^4 terms.
@@ -71,16 +71,17 @@ public:
             form.split = split_;
             const HalfwayTerms terms(orders,
                                      {laws_.isotropic, laws_.mirrorSymmetric, form.reciprocal});
-            add(form, {{channels_, terms.size()}}, leastEnvelope());
+            add(form, {{channels_, terms.size()}}, lobeBytes());
         }
     }
 
 private:
     using Shapes = std::vector<std::vector<std::size_t>>;
 
-    /// One node, and the ridge: how many it will be shows when it is fitted.
-    std::size_t leastEnvelope() const {
-        return arrayBytes({1, 1, channels_}, Precision::unorm8) + 4;
+    /// The widths, the turn and the shelf of the lobe, and the ceilings.
+    std::size_t lobeBytes() const {
+        const std::size_t widths = laws_.isotropic ? 2 : 4;
+        return 4 * (widths + 2 * channels_);
     }
 
     void add(Form form, const Shapes& shapes, std::size_t more = 0) {

@@ -2,7 +2,6 @@
 
 #include <hshfit/representation/stored_array.h>
 
-#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -44,15 +43,17 @@ struct MatrixBlock {
 struct MatrixFactors {
     std::vector<MatrixBlock> blocks;
 };
-/// The greatest f of the halfway form by elevations: see halfway_envelope.h.
-struct EnvelopeArray {
-    StoredArray logs;  ///< [node along b][node along x][channel]
-    double ridge = 1;  ///< the width of its ridge
+/// The GGX lobe that the halfway form is built about: its roughness along an axis of the surface
+/// that is turned from x by `turn` radians, and across it, and what bounds it at the horizon. See
+/// halfway_axes.h.
+struct HalfwayLobe {
+    double along = 0.5, across = 0.5, turn = 0, shelf = 0.05;
 };
-/// Kind halfway: the expansion of ln(1 + f).
+/// Kind halfway: the two exponents of halfway.h.
 struct HalfwayArray {
-    StoredArray halfway;                         ///< [channel][term]
-    std::optional<EnvelopeArray> envelope = {};  ///< none in files from before there was one
+    StoredArray halfway;                ///< [channel][term]
+    HalfwayLobe lobe = {};              ///< equal widths and no turn where f is isotropic
+    std::vector<double> ceilings = {};  ///< [channel][smooth, lobe]: the greatest exponents
 };
 
 /// The numbers of a representation.

@@ -30,9 +30,6 @@ struct Members {
         if constexpr (requires { content.right; }) visit("right", content.right);
         if constexpr (requires { content.matrix; }) visit("matrix", content.matrix);
         if constexpr (requires { content.halfway; }) visit("halfway", content.halfway);
-        if constexpr (requires { content.envelope; }) {
-            if (content.envelope) visit("envelope", content.envelope->logs);
-        }
         if constexpr (requires { content.blocks; }) {
             for (auto& block : content.blocks) {
                 std::visit([&](auto& part) { ofPart(part, block.name, visit); }, block.part);
@@ -125,9 +122,7 @@ Content contentOf(Kind kind, Pile& pile) {
         case Kind::halfway:
             break;
     }
-    auto halfway = pile.fill<HalfwayArray>();
-    if (pile.has("envelope")) halfway.envelope = EnvelopeArray{pile.take("envelope")};
-    return halfway;
+    return pile.fill<HalfwayArray>();
 }
 
 std::string_view namesOf(Kind kind) {
@@ -140,7 +135,7 @@ std::string_view namesOf(Kind kind) {
         case Kind::halfway:
             break;
     }
-    return "'halfway' and, in newer files, 'envelope'";
+    return "'halfway'";
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace hshfit::inline representation {
 ///     outgoing  "coefficients", or "left" and "right"
 ///     basis     "matrix", or for each block "block NAME", or "left NAME" (symmetric: "core NAME")
 ///               and "right NAME"
-///     halfway   "halfway" and, if there is one, "envelope"
+///     halfway   "halfway"
 template <class Array>
 struct Named {
     std::string name;

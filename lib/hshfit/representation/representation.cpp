@@ -29,7 +29,10 @@ std::size_t countNumbers(std::string_view spec) {
 /// Numbers besides those of the arrays.
 std::size_t looseNumbers(const Representation& representation) {
     const auto* halfway = representation.as<HalfwayArray>();
-    return countNumbers(representation.added) + (halfway && halfway->envelope ? 1 : 0);
+    std::size_t own = halfway ? halfway->ceilings.size() + 2 : 0;
+    // A lobe of two widths and a turn.
+    if (halfway && !representation.head.isotropic) own += 2;
+    return countNumbers(representation.added) + own;
 }
 
 /// Slots in which any row is not 0.

@@ -19,9 +19,10 @@ struct RepresentationStep {
     double change = 0;
 };
 
-/// Number of functions along each axis of the halfway form; see halfway.h.
+/// How many functions the halfway form has along the half vector, the difference vector and the
+/// elevations; see halfway_terms.h.
 struct HalfwayOrders {
-    int half = 12, difference = 6, azimuth = 3;
+    int half = 9, difference = 8, azimuth = 6;
 };
 
 /// One way to keep a BRDF, as a coefficient file holds it.
@@ -31,7 +32,7 @@ struct HalfwayOrders {
 /// basis     q(wi, wo) = sum_t c_t P_t(wi, wo): both directions in one basis (the "two successive
 ///           transformations" of Gautron et al. 2004); terms as in basis_matrix.h.
 ///           MatrixArray or MatrixFactors
-/// halfway   ln(1 + f) expanded over the half and the difference vector; see halfway.h.
+/// halfway   a smooth part and a lobe about the half vector, two exponentials; see halfway.h.
 ///           HalfwayArray
 ///
 /// The BRDF of the specification `added`, if any, is added to f exactly.
@@ -57,8 +58,8 @@ struct Representation {
         return std::get_if<Form>(&content);
     }
 
-    /// Length of all arrays as packed, plus four bytes for each number in `added` and for `ridge`
-    /// of an envelope. Names, shapes and provenance are not counted, as in the sizes that others
+    /// Length of all arrays as packed, plus four bytes for each number in `added` and, of the halfway
+    /// form, for the widths of its lobe and its ceilings. Names, shapes and provenance are not counted, as in the sizes that others
     /// publish.
     std::size_t bytes() const;
     /// The same after Zstandard.

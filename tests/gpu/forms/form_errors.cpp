@@ -73,7 +73,6 @@ nlohmann::ordered_json errorsOf(const std::string& path) {
     job.pairs.wi = uniformDirections(random);
     job.payload.head = form.head;
     job.payload.coefficients = payload.texels;
-    job.cells = gpu::tableWords(payload);
     const std::size_t channels = job.channels();
     const std::vector<double> truth = valuesOf(*source, job.pairs);
     const auto opener = [](const std::string& spec) { return brdfs::open(spec); };
@@ -83,10 +82,7 @@ nlohmann::ordered_json errorsOf(const std::string& path) {
         {"bytes", form.bytes()},
         {"error", meanLog(truth, given, job.pairs, channels, [](std::size_t i) { return i; })}};
     for (const gpu::LanguageEntry& language : gpu::languages()) {
-        for (const gpu::Storage storage :
-             {gpu::Storage::constants, gpu::Storage::table, gpu::Storage::texture}) {
-            const bool osl = language.language == gpu::Language::osl;
-            if (osl && storage == gpu::Storage::table) continue;
+        for (const gpu::Storage storage : {gpu::Storage::constants, gpu::Storage::texture}) {
             job.form = gpu::storageName(storage);
             try {
                 const std::string snippet =

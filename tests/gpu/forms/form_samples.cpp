@@ -12,17 +12,12 @@
 namespace hshfit::samples {
 namespace {
 
-struct Envelope {
-    std::size_t alongA = 0, alongB = 0;  ///< 0: none
-    double ridge = 0.1;
-};
-
 struct Asked {
     HalfwayOrders orders;
     Channels channels;
     HalfwaySymmetry symmetry;
     Precision precision = Precision::float32;
-    Envelope envelope = {5, 4};
+    double ceiling = 1.7;  ///< that some pairs exceed
     std::size_t keep = 0;
 };
 
@@ -44,21 +39,13 @@ FormSample sample(const std::string& name, const Asked& asked, unsigned seed) {
         for (const HalfwayTerm& t : terms.list()) {
             const int degree = t.i + t.j + t.k + t.q;
             const double fall = 1 + degree * degree;
-            content.halfway.values.push_back((degree == 0 ? 1.5 : 0) + uniform(random) / fall);
+            content.halfway.values.push_back((degree == 0 ? 0.5 : 0) + uniform(random) / fall);
         }
     }
     if (asked.keep > 0) keepLargest(content.halfway, asked.keep);
     quantise(content.halfway, asked.precision);
-    if (asked.envelope.alongA > 0) {
-        EnvelopeArray envelope{
-            {.shape = {asked.envelope.alongB, asked.envelope.alongA, channels}, .values = {}},
-            asked.envelope.ridge};
-        const std::size_t count = asked.envelope.alongB * asked.envelope.alongA * channels;
-        for (std::size_t i = 0; i < count; ++i)
-            envelope.logs.values.push_back(1.5 + 1.5 * uniform(random));
-        quantise(envelope.logs, Precision::unorm8);
-        content.envelope = std::move(envelope);
-    }
+    content.lobe = {0.3, asked.symmetry.isotropic ? 0.3 : 0.12, 0};
+    content.ceilings.assign(2 * channels, asked.ceiling);
     r.content = std::move(content);
     return {name, std::move(r)};
 }
@@ -162,20 +149,20 @@ std::vector<FormSample> halfwaySamples() {
         sample("7,4,2 rgb, half", {{7, 4, 2}, rgb, measured, half}, 2),
         sample("7,4,2 rgb, unorm16", {{7, 4, 2}, rgb, measured, unorm16}, 3),
         sample("7,4,2 rgb, unorm8", {{7, 4, 2}, rgb, measured, unorm8}, 4),
-        sample("8,4,3 rgb, half, masked", {{8, 4, 3}, rgb, measured, half, {3, 3}, 60}, 5),
+        sample("8,4,3 rgb, half, masked", {{8, 4, 3}, rgb, measured, half, 1.7, 60}, 5),
         sample("8,4,2 grey, reciprocal", {{8, 4, 2}, grey, modelled}, 6),
-        sample("7,5,4 rgb, twisted", {{7, 5, 4}, rgb, {true, false, false}, half, {7, 6, 0.02}}, 7),
+        sample("7,5,4 rgb, twisted", {{7, 5, 4}, rgb, {true, false, false}, half}, 7),
         sample("7,5,4 rgb, anisotropic, half",
-               {{7, 5, 4}, rgb, {false, false, false}, half, {9, 1}}, 8),
+               {{7, 5, 4}, rgb, {false, false, false}, half}, 8),
         sample("6,4,3 grey, anisotropic, bilateral",
-               {{6, 4, 3}, grey, {false, true, false}, float32, {1, 3}}, 9),
+               {{6, 4, 3}, grey, {false, true, false}}, 9),
         sample("6,4,4 rgb, anisotropic, reciprocal",
-               {{6, 4, 4}, rgb, {false, false, true}, float32, {1, 1}}, 10),
-        sample("5,3,2 spectral, half", {{5, 3, 2}, spectrum, measured, half, {4, 3}}, 11),
+               {{6, 4, 4}, rgb, {false, false, true}}, 10),
+        sample("5,3,2 spectral, half", {{5, 3, 2}, spectrum, measured, half}, 11),
         sample("5,3,2 spectral, unorm8, masked",
-               {{5, 3, 2}, spectrum, measured, unorm8, {4, 3}, 40}, 12),
-        sample("6,3,2 rgb, no envelope", {{6, 3, 2}, rgb, modelled, half, {0, 0}}, 13),
-        sample("1,1,1 grey", {{1, 1, 1}, grey, modelled, float32, {0, 0}}, 14),
+               {{5, 3, 2}, spectrum, measured, unorm8, 1.7, 40}, 12),
+        sample("9,8,6 rgb, below its ceilings", {{9, 8, 6}, rgb, modelled, half, 20}, 13),
+        sample("1,1,1 grey", {{1, 1, 1}, grey, modelled}, 14),
     };
 }
 

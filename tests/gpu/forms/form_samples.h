@@ -13,8 +13,8 @@ struct FormSample {
     Representation form;
 };
 
-/// The halfway form with every symmetry, kind of channels, precision, mask and shape of the
-/// envelope, at orders up to 12.
+/// The halfway form with every symmetry, kind of channels, precision and mask,
+/// below and above the ceilings, at orders up to 12.
 std::vector<FormSample> halfwaySamples();
 
 /// The form basis likewise.

@@ -31,7 +31,6 @@ ShaderJob jobOf(const gpu::FormPayload& payload, Storage storage) {
     job.payload.head = payload.form.head;
     job.payload.coefficients = payload.texels;
     job.form = gpu::storageName(storage);
-    if (storage == Storage::table) job.cells = gpu::tableWords(payload);
     return job;
 }
 
@@ -79,10 +78,9 @@ void prove(Language language, const std::vector<FormSample>& samples, Run runner
         gpu::FormPayload payload = gpu::packForm(sample.form);
         if (!sample.form.added.empty())
             payload.constant.assign(payload.form.head.channels.count(), 0.25);
-        const Storage all[] = {Storage::constants, Storage::table, Storage::block,
-                               Storage::texture};
+        const Storage all[] = {Storage::constants, Storage::block, Storage::texture};
         const std::vector<double> values = expected(payload, directionPairs());
-        // Two of the four take turns; compilers need most of the time.
+        // One or two of the three take turns; compilers need most of the time.
         const std::size_t turn = index++;
         for (const Storage storage : all) {
             const bool left = (static_cast<std::size_t>(storage) + turn) % 2 == 0;

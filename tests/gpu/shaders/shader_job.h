@@ -42,7 +42,7 @@ struct ShaderJob {
     /// `shadeWorld` instead of `shade`: the surface of a pair has the normal wi and the tangent of
     /// `frameOf`, wo is in that frame, and the environment in the world.
     bool world = false;
-    /// Of a form (gpu/forms): where its numbers are, "constants", "table", "block" or "texture"; it
+    /// Of a form (gpu/forms): where its numbers are, "constants", "block" or "texture"; it
     /// has no light, and evalRaw is eval. `payload` has the head and the texels.
     std::string form = {};
     /// Three uniform numbers in place of wi; outputs are those of tests/gpu/proposals.
@@ -54,7 +54,6 @@ struct ShaderJob {
     std::vector<double> places = {};
     /// Of a map of filtered lobes with harmonics: all levels of these, from the map's level 1 on.
     std::vector<gpu::Texels> harmonics = {};
-    std::vector<std::uint32_t> cells = {};  ///< the block of a form whose numbers are in a "table"
 
     std::size_t channels() const { return payload.head.channels.count(); }
     std::size_t lights() const { return environment.colours; }

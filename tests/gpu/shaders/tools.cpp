@@ -157,12 +157,6 @@ std::vector<float> inputNumbers(const ShaderJob& job) {
 }
 
 std::vector<float> blockNumbers(const ShaderJob& job) {
-    if (job.form == "table") {
-        std::vector<float> same(job.cells.size());
-        std::copy_n(reinterpret_cast<const char*>(job.cells.data()), 4 * same.size(),
-                    reinterpret_cast<char*>(same.data()));
-        return same;
-    }
     if (job.form != "block") return {};
     const std::vector<double> values = gpu::decode(job.payload.coefficients);
     return {values.begin(), values.end()};
@@ -197,9 +191,8 @@ std::string wrapped(gpu::Language language, const ShaderJob& job, const std::str
     number("lights", job.lights());
     number("outputs", job.outputs());
     page.set("form", !job.form.empty());
-    page.set("bare", job.form == "constants" || (job.form == "table" && job.cells.empty()));
+    page.set("bare", job.form == "constants");
     page.set("block", job.form == "block");
-    page.set("table", job.form == "table" && !job.cells.empty());
     number("environment", job.form.empty() ? job.environment.values.size() / job.lights() : 0);
     number("first", 6 * job.pairs.wo.size());
     const bool map = !job.places.empty();

@@ -5,8 +5,8 @@
 #include <vector_targets.h>
 
 #include <hshfit/representation/forms/internal/pair_kernels.h>
+#include <hshfit/representation/halfway/halfway.h>
 #include <hshfit/representation/halfway/internal/halfway_gram.h>
-#include <hshfit/representation/halfway/internal/halfway_kernel.h>
 #include <hshfit/transfer/internal/shading_kernels.h>
 
 #include <cmath>
@@ -120,25 +120,34 @@ TEST(VectorMemory, GramMatricesStayWithinTheirColumns) {
     });
 }
 
-/// The first function of each axis is 1: f is expm1 of the one coefficient, at most the envelope.
+/// A halfway form of every kind of function, with coefficients that fall.
+Representation halfwayForm(std::size_t channels, bool isotropic) {
+    Representation r;
+    r.halfway = {4, 3, 3};
+    r.head.isotropic = isotropic;
+    if (channels > 1) {
+        std::vector<double> wavelengths;
+        for (std::size_t c = 0; c < channels; ++c)
+            wavelengths.push_back(400 + 40 * static_cast<double>(c));
+        r.head.channels = Channels::spectral(wavelengths);
+    }
+    const std::size_t terms = HalfwayTerms(r.halfway, halfwaySymmetryOf(r.head)).size();
+    HalfwayArray content{.halfway = {.shape = {channels, terms}, .values = {}},
+                         .lobe = {0.4, isotropic ? 0.4 : 0.2, 0},
+                         .ceilings = std::vector<double>(2 * channels, 0.1)};
+    for (std::size_t k = 0; k < channels * terms; ++k)
+        content.halfway.values.push_back(numberAt(k) / static_cast<double>(1 + k % terms));
+    r.content = std::move(content);
+    return r;
+}
+
 TEST(VectorMemory, HalfwayFormsStayWithinTheirPairs) {
     forEveryTarget([] {
-        for (const bool envelope : {false, true})
+        for (const bool isotropic : {false, true})
             for (const std::size_t channels : {1, 2, 3, 4, 7}) {
-                HalfwayLayout layout{.half = 3,
-                                     .difference = 2,
-                                     .azimuth = 2,
-                                     .harmonics = 2,
-                                     .turns = true,
-                                     .channels = channels,
-                                     .runs = {{0, 0, 0, 1, false, false, false}},
-                                     .values = {},
-                                     .logs = {},
-                                     .steps = {1, 0, 1, 1, 1, 1}};
-                for (std::size_t c = 0; c < channels; ++c) {
-                    layout.values.push_back(0.1F * static_cast<float>(c + 1));
-                    if (envelope) layout.logs.push_back(std::log(0.25F));
-                }
+                const Representation form = halfwayForm(channels, isotropic);
+                const HalfwayExpansion slow(form);
+                const auto fast = halfwayPairEvaluator(form);
                 for (const std::size_t count : counts)
                     for (const Side side : sides) {
                         const GuardedArray<double> across(count, side, [](std::size_t k) {
@@ -153,16 +162,14 @@ TEST(VectorMemory, HalfwayFormsStayWithinTheirPairs) {
                         const DirectionBatch wi{across.data(), along.data(), height.data(), count};
                         const DirectionBatch wo{along.data(), across.data(), height.data(), count};
                         GuardedArray<float> out(channels * count, side);
-                        evaluateHalfwayPairs(layout, wi, wo, count, out.data());
-                        for (std::size_t c = 0; c < channels; ++c)
-                            for (std::size_t k = 0; k < count; ++k) {
-                                const double f = std::expm1(double{layout.values[c]});
-                                ASSERT_NEAR(out[c * count + k],
-                                            k % 5 == 4 ? 0
-                                            : envelope ? std::min(f, 0.25)
-                                                       : f,
-                                            1e-6);
-                            }
+                        fast->evaluate(wi, wo, out.data());
+                        std::vector<double> f(channels);
+                        for (std::size_t k = 0; k < count; ++k) {
+                            slow.evaluate({along[k], across[k], height[k]},
+                                          {&across[k], &along[k], &height[k], 1}, f.data());
+                            for (std::size_t c = 0; c < channels; ++c)
+                                ASSERT_NEAR(out[c * count + k], f[c], 2e-5 * (1 + f[c]));
+                        }
                     }
             }
     });

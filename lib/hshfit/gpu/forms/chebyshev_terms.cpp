@@ -1,5 +1,6 @@
 #include <hshfit/gpu/forms/internal/chebyshev_terms.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -28,9 +29,9 @@ std::vector<std::vector<double>> legendreInChebyshev(int count) {
     return rows;
 }
 
-using Key = std::tuple<int, int, int, int, bool, bool, bool>;
+using Key = std::tuple<bool, int, int, int, int, bool, bool, bool>;
 Key keyOf(const HalfwayTerm& t) {
-    return {t.i, t.j, t.k, t.q, t.exchange, t.mirror, t.sine};
+    return {t.lobe, t.i, t.j, t.k, t.q, t.exchange, t.mirror, t.sine};
 }
 
 }  // namespace
@@ -38,16 +39,22 @@ Key keyOf(const HalfwayTerm& t) {
 std::vector<double> chebyshevValues(const HalfwayTerms& terms, std::vector<double> values) {
     std::map<Key, std::size_t> places;
     for (std::size_t t = 0; t < terms.size(); ++t) places[keyOf(terms.list()[t])] = t;
+    const HalfwayCounts& counts = terms.counts();
     const std::pair<int HalfwayTerm::*, int> axes[] = {
-        {&HalfwayTerm::i, terms.orders().half},
-        {&HalfwayTerm::j, terms.orders().difference},
-        {&HalfwayTerm::k, terms.orders().azimuth},
+        {&HalfwayTerm::i, std::max(counts.mean, counts.x)},
+        {&HalfwayTerm::j, counts.v},
+        {&HalfwayTerm::k, counts.product},
     };
     for (const auto& [degree, count] : axes) {
         const auto rows = legendreInChebyshev(count);
         std::vector<double> sums(values.size(), 0.0);
         for (std::size_t t = 0; t < values.size(); ++t) {
             HalfwayTerm lower = terms.list()[t];
+            // Along the third axis the lobe has powers of kappa.
+            if (lower.lobe && degree == &HalfwayTerm::k) {
+                sums[t] += values[t];
+                continue;
+            }
             const auto n = static_cast<std::size_t>(lower.*degree);
             for (std::size_t m = n % 2; m <= n; m += 2) {
                 lower.*degree = static_cast<int>(m);

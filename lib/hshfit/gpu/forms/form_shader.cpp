@@ -3,7 +3,6 @@
 #include <hshfit/error.h>
 #include <hshfit/files/template_text.h>
 #include <hshfit/gpu/forms/form_table.h>
-#include <hshfit/gpu/forms/internal/envelope_text.h>
 #include <hshfit/gpu/forms/internal/form_text.h>
 #include <hshfit/gpu/shader_text.h>
 
@@ -28,7 +27,6 @@ using kainjow::mustache::partial;
 constexpr std::array storages{std::pair{Storage::automatic, std::string_view("auto")},
                               std::pair{Storage::constants, std::string_view("constants")},
                               std::pair{Storage::block, std::string_view("block")},
-                              std::pair{Storage::table, std::string_view("table")},
                               std::pair{Storage::texture, std::string_view("texture")}};
 
 /// The words that forms need of a language beyond setLanguageWords: its template, a declaration of
@@ -57,7 +55,7 @@ FormLanguage formLanguage(Language language) {
 
 void checkLanguage(Language language, const FormPayload& payload, Storage storage) {
     if (language != Language::osl) return;
-    if (storage == Storage::block || storage == Storage::table)
+    if (storage == Storage::block)
         throw UsageError("OSL has no uniform blocks: store the form as constants or as a texture");
     if (storage == Storage::texture && isNormalised(payload.texels.number)) {
         throw UsageError(
@@ -68,10 +66,8 @@ void checkLanguage(Language language, const FormPayload& payload, Storage storag
 /// 16 KiB are what the smallest uniform block that every API promises has.
 void checkBlock(const FormPayload& payload, Storage storage) {
     constexpr std::size_t most = mostConstants * 4;
-    const std::size_t bytes = storage == Storage::block   ? 16 * payload.texelCount()
-                              : storage == Storage::table ? 4 * tableWords(payload).size()
-                                                          : 0;
-    if (bytes <= most) return;
+    const std::size_t bytes = 16 * payload.texelCount();
+    if (storage != Storage::block || bytes <= most) return;
     throw UsageError(
         fmt::format("a uniform block of {} bytes; every device takes {}: store the form as a "
                     "texture or ask for fewer numbers",
@@ -83,10 +79,8 @@ void setStorage(const FormPayload& payload, Storage storage, data& page) {
     page.set("width", std::to_string(payload.texels.width));
     page.set("height", std::to_string(payload.texels.height));
     page.set("texels", std::to_string(payload.texelCount()));
-    const bool constants = storage == Storage::constants || storage == Storage::table;
     page.set("bare", storage == Storage::constants);
-    page.set("bound", !constants);
-    page.set("cells", false);
+    page.set("bound", storage != Storage::constants);
 }
 
 void setChannels(const Channels& channels, const std::string& prefix, Language language,
@@ -152,18 +146,12 @@ Storage parseStorage(std::string_view name) {
         if (known == name) return storage;
     }
     throw UsageError(
-        fmt::format("'{}' is no storage; known: auto, constants, table, block, texture", name));
+        fmt::format("'{}' is no storage; known: auto, constants, block, texture", name));
 }
 
-std::vector<std::uint32_t> tableWords(const FormPayload& payload) {
-    return envelopeCells(payload.form);
-}
-
-Storage storageFor(const FormPayload& payload, Storage asked, bool blocks) {
+Storage storageFor(const FormPayload& payload, Storage asked) {
     if (asked != Storage::automatic) return asked;
-    if (payload.stream.size() > mostConstants) return Storage::texture;
-    if (!blocks || !hasEnvelopeCells(payload.form)) return Storage::constants;
-    return tableWords(payload).size() <= mostConstants ? Storage::table : Storage::constants;
+    return payload.stream.size() > mostConstants ? Storage::texture : Storage::constants;
 }
 
 std::string formShaderSource(Language language, const FormPayload& payload,
@@ -189,7 +177,7 @@ std::string formShaderSource(Language language, const FormPayload& payload,
     setChannels(payload.form.head.channels, options.prefix, language, page);
     setHeader(payload, page);
     ShaderCost cost;
-    FormText text{payload, storage == Storage::constants || storage == Storage::table, page, cost};
+    FormText text{payload, storage == Storage::constants, page, cost};
     row.fill(text);
     page.set("evalFetches", std::to_string(cost.fetches));
     page.set("evalProducts", std::to_string(cost.products));

@@ -3,10 +3,8 @@
 #include <hshfit/gpu/forms/form_payload.h>
 #include <hshfit/gpu/shader.h>
 
-#include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace hshfit::gpu::inline forms {
 
@@ -14,26 +12,18 @@ namespace hshfit::gpu::inline forms {
 enum class Storage {
     automatic,  ///< of storageFor
     constants,  ///< in its text, rounded to single precision: no texture, no uniform
-    table,      ///< likewise, but what is looked up by computed places in one uniform block
     block,      ///< one uniform block of float32 vectors: the texels as a sampler returns them
     texture,    ///< the texels of a container, fetched without a filter
 };
 /// As many numbers as the smallest uniform block that WebGL2, OpenGL 4.5, Vulkan, Direct3D and
 /// WebGPU promise has room for: 16 KiB of float32.
 constexpr std::size_t mostConstants = 4096;
-std::string_view storageName(Storage storage);  ///< "auto", "constants", "table", …
+std::string_view storageName(Storage storage);  ///< "auto", "constants", "block", "texture"
 /// Throws UsageError with the names.
 Storage parseStorage(std::string_view name);
 /// The storage that `automatic` stands for with this payload: above `mostConstants` numbers
-/// texture; table where `blocks` says that the caller binds uniform blocks and an envelope is
-/// looked up that fits one; else constants.
-Storage storageFor(const FormPayload& payload, Storage asked, bool blocks = false);
-
-/// The uniform block of Storage::table: the cells of the envelope of the form halfway, each with a
-/// vector of four whole numbers for every four channels, 8 bits for each corner of a channel. Empty
-/// where nothing is looked up: nothing is bound then. Throws UsageError for an envelope whose
-/// numbers are not unorm8.
-std::vector<std::uint32_t> tableWords(const FormPayload& payload);
+/// texture, else constants.
+Storage storageFor(const FormPayload& payload, Storage asked);
 
 struct FormShaderOptions {
     std::string prefix = "hsh";  ///< of every name in the snippet
@@ -45,7 +35,8 @@ struct FormShaderOptions {
 ///     0;
 ///                             0 where either direction is not above the horizon
 /// in the local frame. It has no trigonometric function and no loop. Constants of the form halfway
-/// are the stored numbers in a basis of Chebyshev polynomials. Throws UsageError, with the reason,
+/// are the stored numbers in a basis of Chebyshev polynomials, and its lobe and ceilings stand in
+/// the text in any storage. Throws UsageError, with the reason,
 /// for what the language cannot take, a block beyond 16 KiB, and a form that adds a BRDF without
 /// FormPayload::constant.
 std::string formShaderSource(Language language, const FormPayload& payload,

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 namespace hshfit::gpu::inline forms {
 namespace {
@@ -127,11 +128,15 @@ std::size_t FormText::together() const {
 
 void FormText::setSums(const std::vector<SumGroup>& groups) {
     data sums = list(), rows = list();
-    for (std::size_t c = 0; c < channels(); c += together()) {
-        data sum;
-        sum.set("g", std::to_string(c));
-        sum.set("vector", together() > 1);
-        sums.push_back(sum);
+    std::set<char> letters{'s'};
+    for (const SumGroup& group : groups) letters.insert(group.sum);
+    for (const char letter : letters) {
+        for (std::size_t c = 0; c < channels(); c += together()) {
+            data sum;
+            sum.set("name", fmt::format("{}{}", letter, c));
+            sum.set("vector", together() > 1);
+            sums.push_back(sum);
+        }
     }
     std::size_t next = 0, g = 0;
     for (const SumGroup& group : groups) {
@@ -150,7 +155,7 @@ void FormText::setSums(const std::vector<SumGroup>& groups) {
                 const data terms = termsOf(*this, run, c);
                 if (terms.is_empty_list()) continue;
                 const std::string sum =
-                    nested ? fmt::format("t{}_{}", g, c) : fmt::format("s{}", c);
+                    nested ? fmt::format("t{}_{}", g, c) : fmt::format("{}{}", group.sum, c);
                 statements.push_back(statement(*this, run, sum, nested && !begun[c], terms));
                 begun[c] = true;
             }
@@ -161,7 +166,7 @@ void FormText::setSums(const std::vector<SumGroup>& groups) {
         for (std::size_t c = 0; nested && c < channels(); c += together()) {
             if (!begun[c]) continue;
             data end;
-            end.set("sum", fmt::format("s{}", c));
+            end.set("sum", fmt::format("{}{}", group.sum, c));
             end.set("part", fmt::format("t{}_{}", g, c));
             ends.push_back(end);
             cost.products += together();

@@ -1,5 +1,4 @@
 #include <hshfit/gpu/forms/internal/chebyshev_terms.h>
-#include <hshfit/gpu/forms/internal/envelope_text.h>
 #include <hshfit/gpu/forms/internal/form_rows.h>
 #include <hshfit/gpu/forms/internal/form_text.h>
 
@@ -7,6 +6,7 @@
 #include <hshfit/representation/halfway/halfway.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,18 +17,16 @@ namespace {
 
 using kainjow::mustache::data;
 
-/// The stream: runs over i (halfway_terms.h), the channels of a term next to each other; then the
-/// nodes of the envelope, along a first, each in texels of its own.
+/// The stream: runs over i (halfway_terms.h), the channels of a term next to each other.
 struct Layout {
-    HalfwayTerms terms;
+    HalfwayExpansion expansion;
     std::vector<StreamNumber> stream;
     std::vector<std::vector<std::optional<std::size_t>>> places;  ///< [position][channel]
-    std::size_t envelope = 0;                                     ///< the first number of it
 
-    explicit Layout(const Representation& form) : terms(HalfwayExpansion(form).terms()) {
-        const std::size_t channels = form.head.channels.count(), count = terms.size();
+    explicit Layout(const Representation& form) : expansion(form) {
+        const std::size_t channels = form.head.channels.count(), count = terms().size();
         const auto& content = *form.as<HalfwayArray>();
-        for (const std::size_t t : terms.position()) {
+        for (const std::size_t t : terms().position()) {
             auto& row = places.emplace_back(channels);
             for (std::size_t c = 0; c < channels; ++c) {
                 const std::size_t value = c * count + t;
@@ -37,19 +35,8 @@ struct Layout {
                 stream.push_back({0, static_cast<std::uint32_t>(value)});
             }
         }
-        if (!content.envelope) return;
-        if (!content.envelope->logs.kept.empty())
-            throw InputError(fmt::format("{}: an envelope has to have no mask", form.head.source));
-        fillTexel();
-        envelope = stream.size();
-        for (std::size_t i = 0; i < content.envelope->logs.values.size(); ++i) {
-            if (i % channels == 0) fillTexel();
-            stream.push_back({1, static_cast<std::uint32_t>(i)});
-        }
     }
-    void fillTexel() {
-        while (stream.size() % 4 != 0) stream.push_back({});
-    }
+    const HalfwayTerms& terms() const { return expansion.terms(); }
 };
 
 std::string functionName(char axis, int n) {
@@ -91,27 +78,42 @@ std::string joined(const std::vector<std::string>& factors) {
     return text;
 }
 
+/// n of the factor x kappa^n of a term; 0: none.
+int powerOf(const HalfwayTerm& t) {
+    return t.lobe ? 2 * t.k + t.exchange : 0;
+}
+
+/// What runs that differ in j only have in common.
+SumGroup groupFor(const HalfwayTerm& t) {
+    const std::string power = powerOf(t) > 0 ? fmt::format("xk{}", powerOf(t)) : "";
+    const std::string harmonic = t.q > 0 ? fmt::format("{}{}", t.sine ? "sq" : "cq", t.q) : "";
+    const std::vector<std::string> factors{t.lobe ? power : functionName('p', t.k),
+                                           !t.lobe && t.exchange ? "gap" : "",
+                                           t.mirror ? "handed" : "", harmonic};
+    const auto count = std::ranges::count_if(factors, [](const auto& f) { return !f.empty(); });
+    SumGroup group;
+    group.factor = joined(factors);
+    group.factorProducts = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, count - 1));
+    group.sum = t.lobe ? 'l' : 's';
+    return group;
+}
+
+bool sameGroup(const HalfwayTerm& a, const HalfwayTerm& b) {
+    return a.lobe == b.lobe && a.k == b.k && a.q == b.q && a.exchange == b.exchange &&
+           a.mirror == b.mirror && a.sine == b.sine;
+}
+
 /// Runs that differ in j only, in brackets times the other factors.
 std::vector<SumGroup> groupsOf(const Layout& layout) {
     std::vector<SumGroup> groups;
     HalfwayTerm last{.k = -1};
-    for (const HalfwayRun& run : layout.terms.runs()) {
-        const HalfwayTerm& t = run.term;
-        if (t.k != last.k || t.q != last.q || t.exchange != last.exchange ||
-            t.mirror != last.mirror || t.sine != last.sine) {
-            SumGroup& group = groups.emplace_back();
-            const std::string harmonic =
-                t.q == 0 ? "" : fmt::format("{}{}", t.sine ? "sq" : "cq", t.q);
-            group.factor = joined({functionName('a', t.k), t.exchange ? "tau" : "",
-                                   t.mirror ? "kappa" : "", harmonic});
-            const int factors = (t.k > 0) + t.exchange + t.mirror + (t.q > 0);
-            group.factorProducts = static_cast<std::size_t>(std::max(0, factors - 1));
-            last = t;
-        }
-        SumRun sum{functionName('d', t.j), {}};
+    for (const HalfwayRun& run : layout.terms().runs()) {
+        if (!sameGroup(run.term, last)) groups.push_back(groupFor(run.term));
+        last = run.term;
+        SumRun sum{functionName('d', last.j), {}};
         for (std::size_t i = 0; i < run.length; ++i) {
-            sum.terms.push_back(
-                {functionName('h', static_cast<int>(i)), layout.places[run.first + i]});
+            sum.terms.push_back({functionName(last.lobe ? 'h' : 'm', static_cast<int>(i)),
+                                 layout.places[run.first + i]});
         }
         groups.back().runs.push_back(std::move(sum));
     }
@@ -122,18 +124,16 @@ std::vector<SumGroup> groupsOf(const Layout& layout) {
 /// the polynomials of the file where a mask leaves terms out.
 std::vector<double> constantsOf(const Layout& layout, const FormPayload& payload, bool chebyshev) {
     const StoredArray& array = payload.form.as<HalfwayArray>()->halfway;
-    const std::size_t count = layout.terms.size();
+    const std::size_t count = layout.terms().size();
     std::vector<double> all = array.values;
     for (std::size_t c = 0; chebyshev && c < payload.form.head.channels.count(); ++c) {
         const auto first = all.begin() + static_cast<std::ptrdiff_t>(c * count);
         const auto last = first + static_cast<std::ptrdiff_t>(count);
-        std::ranges::copy(chebyshevValues(layout.terms, {first, last}), first);
+        std::ranges::copy(chebyshevValues(layout.terms(), {first, last}), first);
     }
     std::vector<double> constants(payload.stream.size(), 0.0);
-    for (std::size_t n = 0; n < constants.size(); ++n) {
-        const StreamNumber& number = payload.stream[n];
-        if (number.array == 0) constants[n] = all[number.value] * std::numbers::log2e;
-    }
+    for (std::size_t n = 0; n < constants.size(); ++n)
+        constants[n] = all[payload.stream[n].value] * std::numbers::log2e;
     return constants;
 }
 
@@ -150,6 +150,57 @@ void setHarmonics(int count, FormText& text) {
     text.page.set("turns", count > 0);
 }
 
+/// x kappa^n.
+void setPowers(const HalfwayTerms& terms, FormText& text) {
+    int most = 0;
+    for (const HalfwayRun& run : terms.runs()) most = std::max(most, powerOf(run.term));
+    data rows{data::type::list};
+    for (int n = 1; n <= most; ++n) {
+        data row;
+        row.set("n", std::to_string(n));
+        row.set("before", n == 1 ? data("x") : data(fmt::format("xk{}", n - 1)));
+        rows.push_back(row);
+        ++text.cost.products;
+    }
+    text.page.set("powers", rows);
+    text.page.set("kappa", most > 0);
+}
+
+/// The constants of the lobe: for an isotropic one the square of its stretch alone.
+void setLobe(const Layout& layout, bool isotropic, FormText& text) {
+    const HalfwayAxes::Constants& axes = layout.expansion.axes().constants();
+    const bool round = isotropic && layout.terms().harmonics() == 0;
+    text.page.set("round", round);
+    text.page.set("stretch", shaderNumber(axes.xx * axes.xx));
+    text.page.set("xx", shaderNumber(axes.xx));
+    text.page.set("xy", shaderNumber(axes.xy));
+    text.page.set("yx", shaderNumber(axes.yx));
+    text.page.set("yy", shaderNumber(axes.yy));
+    text.page.set("perLog", shaderNumber(axes.perLog));
+    text.page.set("amplitude", shaderNumber(axes.amplitude));
+    text.page.set("shelf", shaderNumber(axes.shelf));
+    text.cost.products += round ? 13 : 17;
+}
+
+/// The ceilings of the channels of each output, to the base of the text's exponential.
+void setCeilings(const HalfwayExpansion& expansion, FormText& text) {
+    const double unit = text.constants ? std::numbers::log2e : 1;
+    data rows{data::type::list};
+    for (std::size_t c = 0; c < text.channels(); c += text.together()) {
+        data row;
+        row.set("i", std::to_string(c));
+        row.set("vector", text.together() > 1);
+        for (const std::size_t part : {0U, 1U}) {
+            std::vector<std::string> numbers;
+            for (std::size_t k = c; k < c + text.together(); ++k)
+                numbers.push_back(shaderNumber(expansion.ceilings()[2 * k + part] * unit));
+            row.set(part == 0 ? "smooth" : "lobe", fmt::format("{}", fmt::join(numbers, ", ")));
+        }
+        rows.push_back(row);
+    }
+    text.page.set("ceilings", rows);
+}
+
 }  // namespace
 
 std::vector<StreamNumber> halfwayStream(const Representation& form) {
@@ -158,37 +209,35 @@ std::vector<StreamNumber> halfwayStream(const Representation& form) {
 
 void fillHalfway(FormText& text) {
     const Layout layout(text.payload.form);
+    const HalfwayTerms& terms = layout.terms();
     const bool chebyshev =
         text.constants && text.payload.form.as<HalfwayArray>()->halfway.kept.empty();
     if (text.constants) text.values = constantsOf(layout, text.payload, chebyshev);
-    const HalfwayOrders& orders = layout.terms.orders();
+    const HalfwayCounts& counts = terms.counts();
     const auto any = [&](auto has) {
-        for (const HalfwayRun& run : layout.terms.runs()) {
-            if (has(run.term)) return true;
-        }
-        return false;
+        return std::ranges::any_of(terms.runs(), [&](const auto& run) { return has(run.term); });
     };
     data steps{data::type::list};
-    for (const auto& [axis, count] :
-         {std::pair{'h', orders.half}, std::pair{'d', orders.difference},
-          std::pair{'a', orders.azimuth}}) {
+    for (const auto& [axis, count] : {std::pair{'m', counts.mean}, std::pair{'p', counts.product},
+                                      std::pair{'d', counts.v}, std::pair{'h', counts.x}}) {
         data rows;
         rows.set("steps", axisSteps(axis, count, chebyshev, text.cost));
         steps.push_back(rows);
     }
     text.page.set("axes", steps);
-    text.page.set("doubled", chebyshev);
     text.page.set("span", chebyshev ? "4.0" : "2.0");
+    text.page.set("doubled", chebyshev);
     text.page.set("halfSpan", chebyshev ? "2.0" : "1.0");
     text.page.set("expOf", text.constants ? "exp2" : "exp");
-    text.page.set("bound", !text.constants);
-    text.page.set("tau", any([](const HalfwayTerm& t) { return t.exchange; }));
-    text.page.set("kappa", any([](const HalfwayTerm& t) { return t.mirror; }));
-    setHarmonics(layout.terms.harmonics(), text);
+    text.page.set("gap", any([](const HalfwayTerm& t) { return !t.lobe && t.exchange; }));
+    text.page.set("handed", any([](const HalfwayTerm& t) { return t.mirror; }));
+    setHarmonics(terms.harmonics(), text);
+    setPowers(terms, text);
+    setLobe(layout, text.payload.form.head.isotropic, text);
     text.page.set("rootTwo", shaderNumber(std::sqrt(2.0)));
     text.setSums(groupsOf(layout));
     text.setOutputs();
-    setEnvelope(layout.envelope, text);
+    setCeilings(layout.expansion, text);
 }
 
 }  // namespace hshfit::gpu::inline forms

@@ -7,7 +7,6 @@
 #include <hshfit/gpu/shader.h>
 #include <hshfit/representation/named_arrays.h>
 
-#include <bit>
 #include <cstdint>
 #include <string_view>
 
@@ -48,16 +47,12 @@ std::string wrapped(const std::string& snippet, const Channels& channels) {
 
 TimedShader shaderOfForm(const Representation& form) {
     const FormPayload payload = packForm(form);
-    const Storage storage = storageFor(payload, Storage::automatic, true);
+    const Storage storage = storageFor(payload, Storage::automatic);
     TimedShader shader{wrapped(formShaderSource(Language::glsl, payload, {.storage = storage}),
                                form.head.channels),
                        {sumsBuffer()}};
     using Kind = ComputeResource::Kind;
-    if (storage == Storage::table) {
-        shader.resources.push_back({.binding = 0, .kind = Kind::uniforms, .numbers = {}});
-        for (const std::uint32_t word : tableWords(payload))
-            shader.resources.back().numbers.push_back(std::bit_cast<float>(word));
-    } else if (storage == Storage::texture) {
+    if (storage == Storage::texture) {
         shader.resources.push_back(
             {.binding = 0, .kind = Kind::sampledTexture, .texels = payload.texels});
     } else if (storage == Storage::block) {

@@ -84,17 +84,11 @@ std::vector<double> valueWeights(const Representation& representation) {
     return weights;
 }
 
-/// The envelope is a bound, stored in eight bits at any precision of the other arrays.
-bool isEnvelope(const std::string& name) {
-    return name == "envelope";
-}
-
 void keep(Representation& representation, std::size_t count) {
     const Representation before = representation;
     const std::vector<double> weights = valueWeights(before);
-    for (const auto& each : namedArrays(representation)) {
-        if (!isEnvelope(each.name)) keepLargest(*each.array, count, weights);
-    }
+    for (const auto& each : namedArrays(representation))
+        keepLargest(*each.array, count, weights);
     addStep(representation, before, fmt::format("keep {}", count));
 }
 
@@ -150,7 +144,7 @@ HalfwayOrders parseHalfway(std::string_view text) {
         const bool good = at && read.ec == std::errc() && *parts[k] >= 1 && *parts[k] <= 256;
         if (!good || (k == 2 && read.ptr != end)) {
             throw UsageError(
-                fmt::format("{} '{}': give three numbers of functions from 1 to 256, as 12,6,3",
+                fmt::format("{} '{}': give three numbers of functions from 1 to 256, as 9,8,6",
                             Setting{"Form::halfway"}, text));
         }
         at = read.ptr;

@@ -10,28 +10,51 @@
 namespace hshfit::inline representation::inline halfway {
 namespace {
 
+[[noreturn]] void fail(const Representation& representation, const std::string& what) {
+    throw InputError(fmt::format("coefficients of {}: {}", representation.head.source, what));
+}
+
 HalfwayTerms termsOf(const Representation& representation) {
     try {
         return HalfwayTerms(representation.halfway, halfwaySymmetryOf(representation.head));
     } catch (const UsageError& error) {
-        throw InputError(
-            fmt::format("coefficients of {}: {}", representation.head.source, error.what()));
+        fail(representation, error.what());
     }
+}
+
+HalfwayAxes axesOf(const Representation& representation) {
+    const auto* content = representation.as<HalfwayArray>();
+    if (!content) fail(representation, "the array 'halfway' is missing");
+    const HalfwayLobe& lobe = content->lobe;
+    for (const double width : {lobe.along, lobe.across}) {
+        if (width >= narrowestLobe && width <= widestLobe) continue;
+        fail(representation, fmt::format("a lobe of the halfway form is from {} to {} wide, not {}",
+                                         narrowestLobe, widestLobe, width));
+    }
+    if (!(lobe.shelf >= leastShelf && lobe.shelf <= 1)) {
+        fail(representation, fmt::format("the shelf of the halfway form's lobe is from {} to 1, not "
+                                         "{}",
+                                         leastShelf, lobe.shelf));
+    }
+    const bool round = lobe.along == lobe.across && lobe.turn == 0;
+    if (!std::isfinite(lobe.turn) || (representation.head.isotropic && !round)) {
+        fail(representation, "the lobe of an isotropic halfway form has one width and no turn");
+    }
+    return HalfwayAxes(lobe);
 }
 
 }  // namespace
 
 HalfwayExpansion::HalfwayExpansion(const Representation& representation)
-    : terms_(termsOf(representation)), channels_(representation.head.channels.count()) {
-    const auto fail = [&](const std::string& what) {
-        throw InputError(fmt::format("coefficients of {}: {}", representation.head.source, what));
-    };
-    const auto* content = representation.as<HalfwayArray>();
-    if (!content) fail("the array 'halfway' is missing");
-    const StoredArray& array = content->halfway;
+    : terms_(termsOf(representation)),
+      axes_(axesOf(representation)),
+      channels_(representation.head.channels.count()) {
+    const auto& content = *representation.as<HalfwayArray>();
+    const StoredArray& array = content.halfway;
     const std::vector<std::size_t> shape{channels_, terms_.size()};
     if (array.shape != shape || array.values.size() != channels_ * terms_.size()) {
-        fail(fmt::format("the array 'halfway' has to be {} channels x {} terms for orders {},{},{}",
+        fail(representation,
+             fmt::format("the array 'halfway' has to be {} channels x {} terms for orders {},{},{}",
                          channels_, terms_.size(), terms_.orders().half, terms_.orders().difference,
                          terms_.orders().azimuth));
     }
@@ -41,32 +64,34 @@ HalfwayExpansion::HalfwayExpansion(const Representation& representation)
             values_[t * channels_ + c] = array.values[c * terms_.size() + t];
         }
     }
-    if (!content->envelope) return;
-    envelope_ = HalfwayEnvelope(*content->envelope, channels_, representation.head.reciprocal,
-                                fmt::format("coefficients of {}", representation.head.source));
+    ceilings_ = content.ceilings;
+    const auto finite = [](double value) { return std::isfinite(value); };
+    if (ceilings_.size() != 2 * channels_ || !std::ranges::all_of(ceilings_, finite)) {
+        fail(representation, fmt::format("the halfway form needs {} finite ceilings, two a channel",
+                                         2 * channels_));
+    }
 }
 
 void HalfwayExpansion::evaluate(const Direction& wo, DirectionBatch wi, double* out) const {
-    std::vector<double> products(terms_.size()), sums(channels_);
+    std::vector<double> products(terms_.size()), sums(2 * channels_);
     for (std::size_t k = 0; k < wi.count; ++k) {
-        const bool above = wi.z[k] > 0 && wo.z > 0;
-        std::fill(sums.begin(), sums.end(), 0.0);
-        if (above) {
-            terms_.evaluate(halfwayPoint({wi.x[k], wi.y[k], wi.z[k]}, wo), products.data());
-            for (std::size_t t = 0; t < products.size(); ++t) {
-                for (std::size_t c = 0; c < channels_; ++c) {
-                    sums[c] += values_[t * channels_ + c] * products[t];
-                }
+        if (!(wi.z[k] > 0 && wo.z > 0)) {
+            for (std::size_t c = 0; c < channels_; ++c) out[c * wi.count + k] = 0;
+            continue;
+        }
+        const HalfwayPoint point = axes_.at({wi.x[k], wi.y[k], wi.z[k]}, wo);
+        terms_.evaluate(point, products.data());
+        std::ranges::fill(sums, 0.0);
+        for (std::size_t t = 0; t < products.size(); ++t) {
+            const std::size_t part = t < terms_.smooth() ? 0 : 1;
+            for (std::size_t c = 0; c < channels_; ++c) {
+                sums[2 * c + part] += values_[t * channels_ + c] * products[t];
             }
         }
         for (std::size_t c = 0; c < channels_; ++c) {
-            out[c * wi.count + k] = std::max(0.0, std::expm1(sums[c]));
-        }
-        if (envelope_.empty() || !above) continue;
-        const auto mix = envelope_.mixAt(envelopePoint({wi.x[k], wi.y[k], wi.z[k]}, wo));
-        for (std::size_t c = 0; c < channels_; ++c) {
-            double& f = out[c * wi.count + k];
-            f = std::min(f, std::exp(envelope_.logAt(mix, c)));
+            out[c * wi.count + k] =
+                std::exp(std::min(sums[2 * c], ceilings_[2 * c])) +
+                point.weight * std::exp(std::min(sums[2 * c + 1], ceilings_[2 * c + 1]));
         }
     }
 }

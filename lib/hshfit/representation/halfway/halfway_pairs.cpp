@@ -10,41 +10,70 @@ namespace {
 /// The kernel's Legendre polynomials are those of value 1 at 1; the factors that make them
 /// orthonormal go into the coefficients.
 double norm(const HalfwayTerm& t) {
-    const double harmonic = t.q > 0 ? 2 : 1;
-    return std::sqrt((2.0 * t.i + 1) * (2.0 * t.j + 1) * (2.0 * t.k + 1) * harmonic);
+    const double harmonic = t.q > 0 ? 2 : 1, third = t.lobe ? 1 : 2.0 * t.k + 1;
+    return std::sqrt((2.0 * t.i + 1) * (2.0 * t.j + 1) * third * harmonic);
 }
 
-void addEnvelope(HalfwayLayout& layout, const HalfwayEnvelope& envelope) {
-    if (envelope.empty()) return;
-    layout.alongA = static_cast<int>(envelope.nodesAlongA());
-    layout.alongB = static_cast<int>(envelope.nodesAlongB());
-    layout.ridge = static_cast<float>(envelope.ridge());
-    layout.reciprocal = envelope.reciprocal();
-    for (const double log : envelope.logs()) layout.logs.push_back(static_cast<float>(log));
+/// n of the factor x kappa^n; 0: none.
+int powerOf(const HalfwayTerm& t) {
+    return t.lobe ? 2 * t.k + t.exchange : 0;
+}
+
+HalfwayRows rowsOf(const HalfwayTerms& terms, int powers) {
+    int next = terms.counts().mean;
+    const auto take = [&](int count) {
+        const int first = next;
+        next += count;
+        return static_cast<std::uint16_t>(first);
+    };
+    HalfwayRows rows{};
+    rows.x = take(terms.counts().x);
+    rows.v = take(terms.counts().v);
+    rows.product = take(terms.counts().product);
+    rows.powers = take(powers);
+    rows.harmonics = take(2 * terms.harmonics());
+    rows.gap = take(1);
+    rows.handed = take(1);
+    rows.above = take(1);
+    rows.weight = take(1);
+    rows.count = static_cast<std::uint16_t>(next);
+    return rows;
+}
+
+HalfwayLayout::Run runOf(const HalfwayRun& run, const HalfwayRows& rows) {
+    const HalfwayTerm& t = run.term;
+    HalfwayLayout::Run out{.first = t.lobe ? rows.x : std::uint16_t{0},
+                           .length = static_cast<std::uint16_t>(run.length),
+                           .factors = {},
+                           .factorCount = 0};
+    const auto times = [&](int row) {
+        out.factors[out.factorCount++] = static_cast<std::uint16_t>(row);
+    };
+    times(rows.v + t.j);
+    if (powerOf(t) > 0) times(rows.powers + powerOf(t) - 1);
+    // The rest of a smooth term: p_0 of the product is 1.
+    if (!t.lobe && t.k > 0) times(rows.product + t.k);
+    if (!t.lobe && t.exchange) times(rows.gap);
+    if (t.mirror) times(rows.handed);
+    if (t.q > 0) times(rows.harmonics + 2 * (t.q - 1) + (t.sine ? 1 : 0));
+    return out;
 }
 
 HalfwayLayout layoutOf(const Representation& r, const HalfwayExpansion& expansion) {
     const HalfwayTerms& terms = expansion.terms();
-    const HalfwayOrders& orders = terms.orders();
-    HalfwayLayout layout{.half = orders.half,
-                         .difference = orders.difference,
-                         .azimuth = orders.azimuth,
-                         .harmonics = terms.harmonics(),
-                         .turns = terms.harmonics() > 0,
-                         .channels = r.head.channels.count(),
-                         .runs = {},
-                         .values = {},
-                         .logs = {},
-                         .steps = {}};
-    addEnvelope(layout, expansion.envelope());
+    HalfwayLayout layout;
+    layout.counts = terms.counts();
+    layout.axes = expansion.axes().constants();
+    layout.harmonics = terms.harmonics();
+    layout.channels = r.head.channels.count();
+    for (const HalfwayRun& run : terms.runs())
+        layout.powers = std::max(layout.powers, powerOf(run.term));
+    layout.rows = rowsOf(terms, layout.powers);
     for (const HalfwayRun& run : terms.runs()) {
-        const HalfwayTerm& t = run.term;
-        layout.runs.push_back({static_cast<std::uint16_t>(t.j), static_cast<std::uint16_t>(t.k),
-                               static_cast<std::uint16_t>(t.q),
-                               static_cast<std::uint16_t>(run.length), t.exchange, t.mirror,
-                               t.sine});
+        layout.runs.push_back(runOf(run, layout.rows));
+        layout.smoothRuns += run.term.lobe ? 0 : 1;
     }
-    const std::vector<double>& values = std::get<HalfwayArray>(r.content).halfway.values;
+    const std::vector<double>& values = r.as<HalfwayArray>()->halfway.values;
     for (std::size_t first = 0; first < layout.channels; first += 3) {
         const std::size_t last = std::min(layout.channels, first + 3);
         for (const std::size_t t : terms.position()) {
@@ -54,7 +83,10 @@ HalfwayLayout layoutOf(const Representation& r, const HalfwayExpansion& expansio
             }
         }
     }
-    const int most = std::max({orders.half, orders.difference, orders.azimuth});
+    for (const double ceiling : expansion.ceilings())
+        layout.ceilings.push_back(static_cast<float>(ceiling));
+    const HalfwayCounts& counts = terms.counts();
+    const int most = std::max({counts.mean, counts.x, counts.v, counts.product});
     for (int n = 0; n < most; ++n) {
         layout.steps.push_back(static_cast<float>((2.0 * n + 1) / (n + 1)));
         layout.steps.push_back(static_cast<float>(n / (n + 1.0)));

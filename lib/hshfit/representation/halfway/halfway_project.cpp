@@ -2,94 +2,113 @@
 
 #include <hshfit/error.h>
 #include <hshfit/representation/halfway/halfway_rounding.h>
+#include <hshfit/representation/halfway/internal/halfway_albedo.h>
 #include <hshfit/representation/halfway/internal/halfway_fit.h>
-#include <hshfit/representation/halfway/internal/halfway_limit.h>
+#include <hshfit/representation/halfway/internal/halfway_lobe.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 
 namespace hshfit::inline representation::inline halfway {
 namespace {
 
-constexpr std::size_t fewestFitted = 1 << 14, mostFitted = 1 << 18, heldOutPairs = 1 << 15;
-/// Change of the error of the pairs that are held out at which their number is enough.
-constexpr double settled = 0.02;
-/// Of the mean of the diagonal, where orders are ranked.
-constexpr double rankRegularisation = 1e-6;
-/// Of albedo / pi: below that, f counts as this where it is bounded.
-constexpr double darkest = 1e-3;
+constexpr std::size_t fewestPairs = 1 << 14;
+constexpr std::size_t heldOutPairs = 1 << 15, heldOutOfAll = 1 << 13;
+/// Steps from constants to what the pairs alone say, and those that the albedos add.
+constexpr int roughSteps = 8, fineSteps = 30;
+
+/// Whether f of an isotropic BRDF changes when both directions are mirrored at a plane by more than
+/// the noise of measurements: by a fifth in the mean of |ln|, over pairs about the mirror direction
+/// and beside it.
+bool hasHandedness(const Brdf& brdf) {
+    constexpr std::size_t pairs = 2000;
+    constexpr double noise = 0.2, darkest = 1e-3;
+    HalfwaySamples samples;
+    appendSamples(brdf, HalfwayPart::heldOut, 0, pairs, samples);
+    const std::size_t channels = samples.channels();
+    std::vector<double> back(channels);
+    const double mean = std::accumulate(samples.values.begin(), samples.values.end(), 0.0) /
+                        static_cast<double>(samples.values.size());
+    if (!(mean > 0)) return false;
+    double sum = 0;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const auto [wi, wo] = samples.pairs[k];
+        const Direction beside{wi.x, -wi.y, wi.z};
+        brdf.eval({wo.x, -wo.y, wo.z}, {&beside.x, &beside.y, &beside.z, 1}, back.data());
+        for (std::size_t c = 0; c < channels; ++c) {
+            const double there = samples.values[k * channels + c] + darkest * mean;
+            sum += std::abs(std::log((std::max(0.0, back[c]) + darkest * mean) / there));
+        }
+    }
+    return sum > noise * static_cast<double>(samples.values.size());
+}
 
 CoefficientHead headFor(const Brdf& brdf, bool reciprocal) {
     CoefficientHead head;
     head.channels = brdf.channels();
     head.isotropic = brdf.laws().isotropic;
-    head.bilateral = brdf.laws().mirrorSymmetric || (reciprocal && brdf.laws().isotropic);
+    head.bilateral = brdf.laws().mirrorSymmetric ||
+                     (brdf.laws().isotropic && (reciprocal || !hasHandedness(brdf)));
     head.reciprocal = reciprocal || brdf.laws().reciprocal;
     head.source = brdf.name();
     head.generator = std::string("hshfit ") + version;
-    head.tolerance = settled;
     head.outgoing.directions.clear();
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    head.energy = {none, none, false, "the halfway form expands ln(1 + f)"};
+    head.energy = {none, none, false, "the halfway form is a sum of two exponentials"};
     return head;
 }
 
-HalfwaySamples heldOut(const Brdf& brdf) {
+HalfwaySamples heldOut(const Brdf& brdf, HalfwayPart part, std::size_t count) {
     HalfwaySamples samples;
-    appendSamples(brdf, HalfwayPart::heldOut, 0, heldOutPairs, samples);
+    appendSamples(brdf, part, 0, count, samples);
     return samples;
 }
 
-/// Orders that fill a budget, one for each pair of orders along v and the azimuth.
-std::vector<HalfwayOrders> candidates(std::size_t mostInBudget, const HalfwaySymmetry& symmetry) {
-    std::vector<HalfwayOrders> found;
-    for (int difference = 2; difference <= 8; ++difference) {
-        for (int azimuth = 1; azimuth <= 7; ++azimuth) {
-            int half = 16;
-            const auto terms = [&] {
-                return HalfwayTerms({half, difference, azimuth}, symmetry).size();
-            };
-            while (half >= 4 && terms() > std::min(mostInBudget, mostHalfwayTerms)) --half;
-            if (half >= 4) found.push_back({half, difference, azimuth});
+/// Every n-th of the samples, so that some `count` are left. `grey`: the mean of their channels.
+HalfwaySamples thinned(const HalfwaySamples& samples, std::size_t count, bool grey) {
+    const std::size_t channels = samples.channels();
+    // An odd step meets every way to draw a pair.
+    const std::size_t step = std::max<std::size_t>(1, samples.size() / count) | 1U;
+    HalfwaySamples few;
+    for (std::size_t k = 0; k < samples.size(); k += step) {
+        few.pairs.push_back(samples.pairs[k]);
+        few.spread.push_back(samples.spread[k]);
+        const auto first = samples.values.begin() + static_cast<std::ptrdiff_t>(k * channels);
+        const auto last = first + static_cast<std::ptrdiff_t>(channels);
+        if (grey) {
+            few.values.push_back(std::accumulate(first, last, 0.0) / static_cast<double>(channels));
+        } else {
+            few.values.insert(few.values.end(), first, last);
         }
     }
-    return found;
+    return few;
 }
 
-bool within(const HalfwayOrders& a, const HalfwayOrders& b) {
-    return a.half <= b.half && a.difference <= b.difference && a.azimuth <= b.azimuth;
-}
+using Progress = std::function<void(std::size_t, std::size_t)>;
 
-bool same(const HalfwayTerm& a, const HalfwayTerm& b) {
-    return a.i == b.i && a.j == b.j && a.k == b.k && a.q == b.q && a.exchange == b.exchange &&
-           a.mirror == b.mirror && a.sine == b.sine;
-}
+/// Steps in all, and those that are done.
+class Steps {
+public:
+    Steps(const Progress& call, std::size_t count) : call_(call), count_(count) {}
+    void done() {
+        if (call_ && done_ + 1 < count_) call_(++done_, count_);
+    }
+    void finish() const {
+        if (call_) call_(count_, count_);
+    }
 
-/// The weighted squares that the terms of `part` leave if the others are 0.
-double residual(const HalfwayTerms& all, const HalfwayTerms& part,
-                const std::vector<HalfwaySystem>& systems) {
-    std::vector<Eigen::Index> kept;
-    for (const HalfwayTerm& term : part.list()) {
-        const auto at = std::find_if(all.list().begin(), all.list().end(),
-                                     [&](const HalfwayTerm& t) { return same(t, term); });
-        kept.push_back(at - all.list().begin());
-    }
-    std::vector<HalfwaySystem> smaller;
-    for (const HalfwaySystem& system : systems) {
-        smaller.push_back({system.gram(kept, kept), system.right(kept), system.squares});
-    }
-    const HalfwayValues values = solveHalfway(smaller, rankRegularisation);
-    double total = 0;
-    for (std::size_t c = 0; c < smaller.size(); ++c) {
-        total +=
-            smaller[c].squares - values.col(static_cast<Eigen::Index>(c)).dot(smaller[c].right);
-    }
-    return total;
-}
+private:
+    const Progress& call_;
+    std::size_t count_, done_ = 0;
+};
 
 }  // namespace
 
@@ -98,133 +117,121 @@ Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
     Representation r;
     r.head = headFor(brdf, reciprocal);
     r.halfway = orders;
-    const HalfwayTerms terms(orders, halfwaySymmetryOf(r.head));
+    const HalfwaySymmetry symmetry = halfwaySymmetryOf(r.head);
+    const HalfwayTerms terms(orders, symmetry);
     if (terms.size() > mostHalfwayTerms) {
         throw UsageError(fmt::format(
             "orders {},{},{} of the halfway form make {} terms a channel; "
             "it fits up to {}",
             orders.half, orders.difference, orders.azimuth, terms.size(), mostHalfwayTerms));
     }
-    const HalfwaySamples left = heldOut(brdf);
-    HalfwaySamples samples;
-    HalfwayFit fit;
-    const std::size_t most = std::clamp(options.maxEvaluations, fewestFitted, mostFitted);
-    double error = 0, change = 1;
-    for (std::size_t first = 0, last = fewestFitted;; first = last, last *= 2) {
-        appendSamples(brdf, HalfwayPart::fitted, first, last, samples);
-        // A fit to fewer pairs than several times the terms says nothing: go on at once.
-        if (samples.size() < 24 * terms.size() && 2 * last <= most) continue;
-        fit = fitHalfway(terms, samples, std::move(fit.values));
-        const double before = error;
-        error = halfwayLoss(left, halfwaySums(terms, left, fit.values));
-        change = before > 0 ? std::abs(before - error) / before : 1;
-        if (options.progress) options.progress(last, most);
-        if (error == 0 || (before > 0 && change < settled) || 2 * last > most) break;
-    }
-    if (options.progress) options.progress(most, most);
+    Steps steps(options.progress, static_cast<std::size_t>(roughSteps + fineSteps + 1));
     const HalfwayAlbedo albedo = albedoOf(brdf, r.head.reciprocal);
-    fit = heldToAlbedo(terms, samples, albedo, {}, std::move(fit));
-    const HalfwayBounds bounds =
-        boundsOf(brdf, r.head.reciprocal, darkest * albedo.greatestMean() / pi);
-    EnvelopeArray limit = chooseLimit(terms, bounds, left, albedo, fit.values);
-    fit = heldToAlbedo(terms, samples, albedo, capsAt(limit, r.head.reciprocal, albedo.places),
-                       std::move(fit));
-    StoredArray array{.shape = {r.head.channels.count(), terms.size()}, .values = {}};
-    array.values.assign(fit.values.data(), fit.values.data() + fit.values.size());
-    r.head.error = halfwayLoss(left, halfwaySums(terms, left, fit.values),
-                               capsAt(limit, r.head.reciprocal, left.places));
-    r.content = HalfwayArray{std::move(array), std::move(limit)};
+    const double floor = halfwayFloor(albedo);
+    HalfwaySamples samples;
+    const std::size_t pairs = halfwayPairsFor(terms, r.head.isotropic);
+    appendSamples(brdf, HalfwayPart::fitted, 0,
+                  std::min(pairs, std::max(options.maxEvaluations, fewestPairs)), samples);
+
+    HalfwayArray content;
+    const LobeFound found =
+        chooseLobe(thinned(samples, lobePairs, true), orders, symmetry, floor);
+    content.lobe = found.lobe;
+    const HalfwayAxes axes(content.lobe);
+    const HalfwayModel model{terms, axes, floor};
+    const HalfwaySamples few = thinned(samples, 8 * std::max(terms.size(), lobePairs / 8), false);
+    const auto stepDone = [&] { steps.done(); };
+    HalfwayValues values = descended(model, {few, nullptr, fineHuber},
+                                     startFrom(found, model, few, symmetry), roughSteps, stepDone);
+    values = descended(model, {samples, &albedo, fineHuber}, std::move(values), fineSteps,
+                       stepDone);
+    content.halfway = {.shape = {r.head.channels.count(), terms.size()}, .values = {}};
+    content.halfway.values.assign(values.data(), values.data() + values.size());
+    for (const double ceiling : halfwayCeilings(model, samples, values))
+        content.ceilings.push_back(static_cast<double>(static_cast<float>(ceiling)));
+    r.content = std::move(content);
+    r.head.error = halfwayError(brdf, r);
     r.steps.push_back({fmt::format("halfway {},{},{}: mean log error over pairs held out",
                                    orders.half, orders.difference, orders.azimuth),
                        r.head.error});
+    steps.finish();
     return r;
 }
 
 double halfwayError(const Brdf& brdf, const Representation& representation) {
-    const HalfwayExpansion checked(representation);
-    const std::vector<double>& stored =
-        std::get<HalfwayArray>(representation.content).halfway.values;
-    const HalfwayValues values = Eigen::Map<const HalfwayValues>(
-        stored.data(), static_cast<Eigen::Index>(checked.terms().size()),
-        static_cast<Eigen::Index>(representation.head.channels.count()));
-    const HalfwaySamples left = heldOut(brdf);
-    std::vector<double> caps;
-    if (const auto& envelope = representation.as<HalfwayArray>()->envelope) {
-        caps = capsAt(*envelope, representation.head.reciprocal, left.places);
-    }
-    return halfwayLoss(left, halfwaySums(checked.terms(), left, values), caps);
+    const HalfwayExpansion form(representation);
+    const HalfwaySamples left = heldOut(brdf, HalfwayPart::heldOutUniform, heldOutPairs);
+    const std::size_t channels = left.channels();
+    std::vector<double> sums(left.size());
+    tbb::parallel_for(std::size_t{0}, left.size(), [&](std::size_t k) {
+        const auto& [wi, wo] = left.pairs[k];
+        std::vector<double> f(channels);
+        form.evaluate(wo, {&wi.x, &wi.y, &wi.z, 1}, f.data());
+        for (std::size_t c = 0; c < channels; ++c) {
+            sums[k] += std::abs(std::log1p(left.values[k * channels + c] * wi.z) -
+                                std::log1p(f[c] * wi.z));
+        }
+    });
+    return std::accumulate(sums.begin(), sums.end(), 0.0) /
+           static_cast<double>(sums.size() * channels);
 }
 
 namespace {
 
-/// The best orders whose expansion takes at most `room`, and what its representation takes.
-struct OrdersFound {
-    HalfwayOrders orders;
-    std::size_t bytes = 0;
-};
-
-OrdersFound ordersWithin(const Brdf& brdf, std::size_t room, Precision precision,
-                         const ProjectionOptions& options, bool reciprocal) {
-    const CoefficientHead head = headFor(brdf, reciprocal);
-    const HalfwaySymmetry symmetry = halfwaySymmetryOf(head);
-    const std::size_t channels = head.channels.count();
-    std::size_t most = 0;
-    while (storedBytes({.shape = {channels, most + 1},
-                        .precision = precision,
-                        .values = std::vector<double>(channels * (most + 1))}) <= room) {
-        ++most;
-    }
-    std::vector<HalfwayOrders> known = candidates(most, symmetry);
-    if (known.empty()) {
-        throw UsageError(fmt::format("{} bytes are too few for the halfway form of {} channels",
-                                     room, channels));
-    }
-    HalfwayOrders largest = known[0];
-    for (const HalfwayOrders& o : known) {
-        largest = {std::max(largest.half, o.half), std::max(largest.difference, o.difference),
-                   std::max(largest.azimuth, o.azimuth)};
-    }
-    const HalfwayTerms all(largest, symmetry);
-    HalfwaySamples samples;
-    appendSamples(brdf, HalfwayPart::fitted, 0, std::max(fewestFitted, 16 * all.size()), samples);
-    HalfwayPass pass = halfwayPass(all, samples, {});
-    pass = halfwayPass(all, samples, solveHalfway(pass.systems, rankRegularisation));
-
-    std::vector<std::pair<double, HalfwayOrders>> ranked;
-    for (const HalfwayOrders& o : known) {
-        const bool contained = std::any_of(known.begin(), known.end(), [&](const auto& other) {
-            return within(o, other) && !within(other, o);
-        });
-        if (!contained) ranked.push_back({residual(all, {o, symmetry}, pass.systems), o});
-    }
-    std::stable_sort(ranked.begin(), ranked.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    constexpr std::size_t fitted = 4;
-    double least = std::numeric_limits<double>::infinity();
-    OrdersFound best;
-    for (std::size_t n = 0; n < std::min(fitted, ranked.size()); ++n) {
-        Representation r = projectHalfway(brdf, ranked[n].second, options, reciprocal);
-        quantiseHalfway(r, precision, brdf);
-        const double error = halfwayError(brdf, r);
-        if (error < least) {
-            least = error;
-            best = {ranked[n].second, r.bytes()};
-        }
-    }
-    return best;
+/// The loss of a form as it is stored.
+double storedLoss(const Representation& r, const HalfwaySamples& left, double floor) {
+    const HalfwayExpansion form(r);
+    const StoredArray& array = r.as<HalfwayArray>()->halfway;
+    const HalfwayValues values = Eigen::Map<const HalfwayValues>(
+        array.values.data(), static_cast<Eigen::Index>(form.terms().size()),
+        static_cast<Eigen::Index>(r.head.channels.count()));
+    return halfwayLoss({form.terms(), form.axes(), floor}, left, fineHuber, values);
 }
+
+/// Orders that are worth a trial, in the order of what they cost.
+constexpr std::array ladder{
+    HalfwayOrders{3, 2, 1},   HalfwayOrders{4, 3, 2},   HalfwayOrders{5, 4, 3},
+    HalfwayOrders{6, 5, 4},   HalfwayOrders{7, 6, 5},   HalfwayOrders{9, 8, 6},
+    HalfwayOrders{12, 6, 6},  HalfwayOrders{9, 8, 9},   HalfwayOrders{11, 10, 7},
+    HalfwayOrders{13, 12, 8}, HalfwayOrders{16, 12, 9}, HalfwayOrders{18, 14, 11},
+    HalfwayOrders{22, 17, 13}};
 
 }  // namespace
 
 HalfwayOrders chooseHalfwayOrders(const Brdf& brdf, std::size_t bytes, Precision precision,
                                   const ProjectionOptions& options, bool reciprocal) {
-    // The envelope takes its part, which shows when it is fitted.
-    std::size_t room = bytes;
-    while (true) {
-        const OrdersFound found = ordersWithin(brdf, room, precision, options, reciprocal);
-        if (found.bytes <= bytes) return found.orders;
-        room -= std::min(room, found.bytes - bytes);
+    constexpr std::size_t tried = 3;
+    const CoefficientHead head = headFor(brdf, reciprocal);
+    const std::size_t channels = head.channels.count();
+    std::vector<HalfwayOrders> within;
+    for (const HalfwayOrders& orders : ladder) {
+        const HalfwayTerms terms(orders, halfwaySymmetryOf(head));
+        Representation empty;
+        empty.head = head;
+        empty.content = HalfwayArray{
+            .halfway = {.shape = {channels, terms.size()},
+                        .precision = precision,
+                        .values = std::vector<double>(channels * terms.size())},
+            .ceilings = std::vector<double>(2 * channels)};
+        if (terms.size() <= mostHalfwayTerms && empty.bytes() <= bytes) within.push_back(orders);
     }
+    if (within.empty()) {
+        throw UsageError(fmt::format("{} bytes are too few for the halfway form of {} channels",
+                                     bytes, channels));
+    }
+    const HalfwaySamples left = heldOut(brdf, HalfwayPart::heldOut, heldOutOfAll);
+    const double floor = halfwayFloor(albedoOf(brdf, head.reciprocal));
+    double least = std::numeric_limits<double>::infinity();
+    HalfwayOrders best = within.back();
+    for (std::size_t n = within.size() - std::min(tried, within.size()); n < within.size(); ++n) {
+        Representation r = projectHalfway(brdf, within[n], options, reciprocal);
+        quantiseHalfway(r, precision, brdf);
+        const double loss = storedLoss(r, left, floor);
+        if (!(loss < least)) continue;
+        least = loss;
+        best = within[n];
+    }
+    return best;
 }
 
 }  // namespace hshfit::inline representation::inline halfway

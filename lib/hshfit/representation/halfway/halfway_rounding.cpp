@@ -1,24 +1,19 @@
 #include <hshfit/representation/halfway/halfway_rounding.h>
 
 #include <hshfit/representation/halfway/halfway.h>
+#include <hshfit/representation/halfway/internal/halfway_albedo.h>
 #include <hshfit/representation/halfway/internal/halfway_fit.h>
-#include <hshfit/representation/halfway/internal/halfway_limit.h>
+#include <hshfit/representation/halfway/internal/halfway_lobe.h>
 
 #include <Eigen/Cholesky>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <vector>
 
 namespace hshfit::inline representation::inline halfway {
 namespace {
 
-/// Pairs of the normal equations: at least as many, and as many for each term.
-constexpr std::size_t fewestPairs = 1 << 14, pairsPerTerm = 24;
-/// Weight of the relative squares of albedo, of the loss: ten times that of the fit, since what
-/// rounding adds to the loss is small beside what the fit leaves.
-constexpr double albedoWeight = 500;
 /// Of the mean of the diagonal: directions that no pair sees are left to rounding.
 constexpr double regularisation = 1e-9;
 constexpr double greatestHalf = 65504;
@@ -97,24 +92,22 @@ void quantiseHalfway(Representation& representation, Precision precision, const 
     quantise(rounded, precision, "halfway");
     if (precision == Precision::float64 || precision == Precision::float32) return;
 
-    const bool reciprocal = representation.head.reciprocal;
     const HalfwayTerms terms(representation.halfway, halfwaySymmetryOf(representation.head));
+    const HalfwayAxes axes(content.lobe);
     const std::size_t channels = representation.head.channels.count();
     const HalfwayValues values =
         Eigen::Map<const HalfwayValues>(fitted.data(), static_cast<Eigen::Index>(terms.size()),
                                         static_cast<Eigen::Index>(channels));
     HalfwaySamples samples;
     appendSamples(brdf, HalfwayPart::fitted, 0,
-                  std::max(fewestPairs, std::bit_ceil(pairsPerTerm * terms.size())), samples);
-    HalfwayPass pass = halfwayPass(terms, samples, values);
-    const HalfwayAlbedo albedo = albedoOf(brdf, reciprocal);
-    std::vector<double> caps;
-    if (content.envelope) caps = capsAt(*content.envelope, reciprocal, albedo.places);
-    addAlbedo(terms, albedo, caps, values, albedoWeight * pass.loss, pass.systems);
+                  halfwayPairsFor(terms, representation.head.isotropic), samples);
+    const HalfwayAlbedo albedo = albedoOf(brdf, representation.head.reciprocal);
+    const std::vector<HalfwaySystem> systems = halfwaySystems(
+        {terms, axes, halfwayFloor(albedo)}, {samples, &albedo, fineHuber}, values);
     std::vector<double> found(fitted.size());
     for (std::size_t c = 0; c < channels; ++c) {
         const std::size_t first = c * terms.size();
-        roundChannel(pass.systems[c].gram, fitted.data() + first, rounded, first,
+        roundChannel(systems[c].gram, fitted.data() + first, rounded, first,
                      found.data() + first);
     }
     rounded.values = std::move(found);

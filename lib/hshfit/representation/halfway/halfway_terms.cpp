@@ -34,84 +34,105 @@ bool allowed(const HalfwayTerm& t, const HalfwaySymmetry& symmetry) {
     return t.q % 2 == 0 && t.mirror == t.sine;
 }
 
-/// Degree along the azimuth axis.
-int azimuthDegree(const HalfwayTerm& t, const HalfwaySymmetry& symmetry) {
-    return t.k + t.exchange + t.mirror + (symmetry.bilateral ? t.q / 2 : t.q);
+int turnsOf(const HalfwayTerm& t, const HalfwaySymmetry& symmetry) {
+    return symmetry.bilateral ? t.q / 2 : t.q;
 }
 
-/// The number of i that the truncation leaves for given j and d: i/H + j/D + d/A <= 7/5 in whole
-/// numbers.
-int runLength(const HalfwayOrders& n, int j, int d) {
-    const long long h = n.half, dd = n.difference, a = n.azimuth;
-    const long long room = 7 * h * dd * a - 5 * (j * h * a + d * h * dd);
-    return room < 0 ? 0 : static_cast<int>(std::min(h, room / (5 * dd * a) + 1));
+/// The degree d of a term with i = 0.
+int degreeOf(const HalfwayTerm& t, const HalfwaySymmetry& symmetry) {
+    const int turns = turnsOf(t, symmetry);
+    return t.lobe ? t.k + t.exchange + t.mirror + turns
+                  : 2 * t.k + 3 * t.exchange + 2 * t.mirror + 2 * turns;
 }
 
-}  // namespace
-
-HalfwayPoint halfwayPoint(const Direction& wi, const Direction& wo) {
-    const double x = wi.x + wo.x, y = wi.y + wo.y, z = wi.z + wo.z;
-    const double across = x * x + y * y, length = std::sqrt(across + z * z);
-    const double radius = std::sqrt(across);
-    HalfwayPoint p;
-    p.u = std::sqrt(std::sqrt(std::min(1.0, across / (length * (length + z)))));
-    p.v = std::min(1.0, length / 2);
-    p.w = std::sqrt(std::min(1.0, 2 * std::sqrt(wi.z) * std::sqrt(wo.z) / z));
-    p.tau = (wo.z - wi.z) / z;
-    p.kappa = wi.x * wo.y - wi.y * wo.x;
-    p.cosine = radius > 0 ? x / radius : 1;
-    p.sine = radius > 0 ? y / radius : 0;
-    return p;
+int smoothAlongV(const HalfwayOrders& orders) {
+    return (orders.difference + 1) / 2;
 }
 
-HalfwayTerms::HalfwayTerms(const HalfwayOrders& orders, const HalfwaySymmetry& symmetry)
-    : orders_(orders) {
-    for (const int n : {orders.half, orders.difference, orders.azimuth}) {
-        if (n < 1 || n > maxOrder) {
-            throw UsageError(
-                fmt::format("orders {},{},{} of the halfway form: each has to be from 1 to {}",
-                            orders.half, orders.difference, orders.azimuth, maxOrder));
-        }
+/// The number of i that the truncation leaves, in whole numbers.
+int runLength(const HalfwayOrders& n, const HalfwayTerm& t, int d) {
+    const long long half = n.half, along = n.difference, azimuth = n.azimuth;
+    if (!t.lobe) {
+        // i <= 6/5 A - j A / (D / 2) - d
+        const long long v = smoothAlongV(n);
+        const long long room = 6 * azimuth * v - 5 * t.j * azimuth - 5 * d * v;
+        return room < 0 ? 0 : static_cast<int>(room / (5 * v) + 1);
     }
-    const auto addRun = [&](const HalfwayTerm& term, int d) {
-        const int length = runLength(orders, term.j, d);
-        if (length == 0) return;
-        runs_.push_back({term, terms_.size(), static_cast<std::size_t>(length)});
-        if (terms_.size() + length > maxTerms) {
-            throw UsageError(
-                fmt::format("orders {},{},{} of the halfway form make more than {} "
-                            "terms: ask for fewer functions",
-                            orders.half, orders.difference, orders.azimuth, maxTerms));
-        }
-        for (int i = 0; i < length; ++i) {
-            terms_.push_back(term);
-            terms_.back().i = i;
-        }
-        harmonics_ = std::max(harmonics_, term.q);
-    };
+    // 60 H D A times 23/20 - j/D - 10 d / (3 A), over 60 D A
+    const long long room =
+        69 * half * along * azimuth - 60 * t.j * half * azimuth - 200 * d * half * along;
+    return room < 0 ? 0 : static_cast<int>(std::min(half, room / (60 * along * azimuth) + 1));
+}
+
+void checkOrders(const HalfwayOrders& orders) {
+    for (const int n : {orders.half, orders.difference, orders.azimuth}) {
+        if (n >= 1 && n <= maxOrder) continue;
+        throw UsageError(
+            fmt::format("orders {},{},{} of the halfway form: each has to be from 1 to {}",
+                        orders.half, orders.difference, orders.azimuth, maxOrder));
+    }
+}
+
+[[noreturn]] void refuseSize(const HalfwayOrders& orders) {
+    throw UsageError(
+        fmt::format("orders {},{},{} of the halfway form make more than {} terms: ask for fewer "
+                    "functions",
+                    orders.half, orders.difference, orders.azimuth, maxTerms));
+}
+
+/// Calls `add` for every product of one exponent but its i, by rising q.
+template <class Add>
+void forEachRun(const HalfwayOrders& orders, const HalfwaySymmetry& symmetry, bool lobe, Add add) {
     const int lastHarmonic =
         symmetry.isotropic ? 0 : (symmetry.bilateral ? 2 : 1) * (orders.azimuth - 1);
+    const int alongV = lobe ? orders.difference : smoothAlongV(orders);
     for (int q = 0; q <= lastHarmonic; ++q) {
         for (int bits = 0; bits < 8; ++bits) {
             for (int k = 0; k < orders.azimuth; ++k) {
-                HalfwayTerm t{.k = k,
+                HalfwayTerm t{.lobe = lobe,
+                              .k = k,
                               .q = q,
                               .exchange = (bits & 1) != 0,
                               .mirror = (bits & 2) != 0,
                               .sine = (bits & 4) != 0};
-                const int d = azimuthDegree(t, symmetry);
-                if (!allowed(t, symmetry) || d >= orders.azimuth) continue;
-                for (t.j = 0; t.j < orders.difference; ++t.j) addRun(t, d);
+                if (!allowed(t, symmetry)) continue;
+                for (t.j = 0; t.j < alongV; ++t.j) add(t);
             }
         }
+    }
+}
+
+}  // namespace
+
+HalfwayTerms::HalfwayTerms(const HalfwayOrders& orders, const HalfwaySymmetry& symmetry)
+    : orders_(orders) {
+    checkOrders(orders);
+    for (const bool lobe : {false, true}) {
+        forEachRun(orders, symmetry, lobe, [&](const HalfwayTerm& term) {
+            const int length = runLength(orders, term, degreeOf(term, symmetry));
+            if (length == 0) return;
+            if (terms_.size() + static_cast<std::size_t>(length) > maxTerms) refuseSize(orders);
+            runs_.push_back({term, terms_.size(), static_cast<std::size_t>(length)});
+            for (int i = 0; i < length; ++i) {
+                terms_.push_back(term);
+                terms_.back().i = i;
+            }
+            harmonics_ = std::max(harmonics_, term.q);
+            counts_.v = std::max(counts_.v, term.j + 1);
+            int& along = lobe ? counts_.x : counts_.mean;
+            along = std::max(along, length);
+            if (!lobe) counts_.product = std::max(counts_.product, term.k + 1);
+        });
+        if (!lobe) smooth_ = terms_.size();
     }
     // Stored by degree, so that neighbours are of like magnitude.
     std::vector<std::size_t> order(terms_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) {
         const auto key = [&](const HalfwayTerm& t) {
-            const int d = azimuthDegree(t, symmetry);
-            return std::tuple(t.i + t.j + d, d, t.j, t.i, t.q, t.exchange, t.mirror, t.sine);
+            const int d = degreeOf(t, symmetry);
+            return std::tuple(t.lobe, t.i + t.j + d, t.j, t.k, t.i, t.q, t.exchange, t.mirror,
+                              t.sine);
         };
         return key(terms_[l]) < key(terms_[r]);
     });
@@ -125,25 +146,41 @@ HalfwayTerms::HalfwayTerms(const HalfwayOrders& orders, const HalfwaySymmetry& s
 }
 
 void HalfwayTerms::evaluate(const HalfwayPoint& point, double* out) const {
-    double alongHalf[maxOrder], alongDifference[maxOrder], alongAzimuth[maxOrder];
-    legendre(point.u, orders_.half, alongHalf);
-    legendre(point.v, orders_.difference, alongDifference);
-    legendre(point.w, orders_.azimuth, alongAzimuth);
+    // The degree along the mean goes to 6/5 of an order.
+    double alongMean[maxOrder * 6 / 5 + 2], alongProduct[maxOrder], alongV[maxOrder],
+        alongX[maxOrder];
+    legendre(point.mean, counts_.mean, alongMean);
+    legendre(point.product, counts_.product, alongProduct);
+    legendre(point.v, counts_.v, alongV);
+    legendre(point.x, counts_.x, alongX);
+    const double scale = std::sqrt(2.0) * point.x;
     int q = 0;
     double harmonic[2] = {1, 0};
-    const double scale = std::sqrt(2.0) * point.u * point.u;
     for (const HalfwayRun& run : runs_) {
-        for (; q < run.term.q; ++q) {
+        const HalfwayTerm& t = run.term;
+        if (t.q < q) {  // the second exponent begins
+            q = 0;
+            harmonic[0] = 1;
+            harmonic[1] = 0;
+        }
+        for (; q < t.q; ++q) {
             const double c = harmonic[0], s = harmonic[1];
             harmonic[0] = c * point.cosine - s * point.sine;
             harmonic[1] = c * point.sine + s * point.cosine;
         }
-        double factor = alongDifference[run.term.j] * alongAzimuth[run.term.k];
-        if (run.term.exchange) factor *= point.tau;
-        if (run.term.mirror) factor *= point.kappa;
-        if (q > 0) factor *= scale * harmonic[run.term.sine ? 1 : 0];
+        double factor = alongV[t.j];
+        if (!t.lobe) {
+            factor *= alongProduct[t.k];
+            if (t.exchange) factor *= point.gap;
+        } else if (t.k > 0 || t.exchange) {
+            factor *= point.x;
+            for (int n = 0; n < 2 * t.k + t.exchange; ++n) factor *= point.kappa;
+        }
+        if (t.mirror) factor *= point.handed;
+        if (q > 0) factor *= scale * harmonic[t.sine ? 1 : 0];
+        const double* along = t.lobe ? alongX : alongMean;
         const std::size_t* place = position_.data() + run.first;
-        for (std::size_t i = 0; i < run.length; ++i) out[place[i]] = factor * alongHalf[i];
+        for (std::size_t i = 0; i < run.length; ++i) out[place[i]] = factor * along[i];
     }
 }
 

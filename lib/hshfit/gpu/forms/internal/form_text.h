@@ -28,6 +28,7 @@ struct SumGroup {
     std::string factor;
     std::size_t factorProducts = 0;  ///< multiplications that the factor takes
     std::vector<SumRun> runs;
+    char sum = 's';  ///< which of the sums of a form it adds to
 };
 
 /// The page of a template that a row of the table fills in.
@@ -44,7 +45,7 @@ struct FormText {
     std::size_t together() const;
 
     /// The sums s0, s1, … of templates/sums.mustache: one three-vector for RGB, else a number
-    /// per channel. Texels are loaded once, before the run that needs them first.
+    /// per channel; likewise for other letters that groups add to. Texels are loaded once, before the run that needs them first.
     void setSums(const std::vector<SumGroup>& groups);
     /// The outputs f0, f1, …, one for each sum.
     void setOutputs();

@@ -1,8 +1,9 @@
 #include <hshfit/representation/halfway/internal/halfway_fit.h>
 
 #include <hshfit/error.h>
-
+#include <hshfit/representation/halfway/internal/halfway_albedo.h>
 #include <hshfit/representation/halfway/internal/halfway_gram.h>
+
 #include <tbb/parallel_for.h>
 #include <Eigen/Cholesky>
 
@@ -14,263 +15,299 @@
 namespace hshfit::inline representation::inline halfway {
 namespace {
 
+using Eigen::Index;
+
 /// Samples are summed in this many parts whatever the number of threads, so that it does not show.
 constexpr std::size_t parts = 8;
 /// Samples whose terms are held at once: with a few hundred terms they stay in the cache.
 constexpr std::size_t chunk = 64;
-/// Shares of the loss that the pairs spread over the axes and towards the horizon have: without
-/// them nothing holds narrow lobes and the sum where the cosines are small.
-constexpr double axesShare = 0.02, horizonShare = 0.02;
-/// Regularisation, of the mean of the diagonal, and the share of the loss that is left where a
-/// thousandth of it is worth its larger coefficients.
-constexpr double firstRegularisation = 1e-6, worthIt = 0.95;
-/// Errors below this count as squares: a fiftieth of what fits of measured BRDFs leave.
-constexpr double smallest = 1e-4;
+/// The pull of coefficients to 0: what no sample sees stays small.
+constexpr double pull = 1e-6;
+/// Weights of the ways to draw pairs, by HalfwaySpread.
+constexpr std::array<double, halfwaySpreads> spreadWeights{1, 1, 3, 3, 0.3, 8};
 
-/// The loss ln(1 + f c) as a function of y = ln(1 + f), f not below 0.
-double metricOf(double y, double c) {
-    if (y > 30) return y + std::log(c);
-    return y > 0 ? std::log1p(std::expm1(y) * c) : 0;
+double weightOf(HalfwaySpread spread) {
+    return spreadWeights[static_cast<std::size_t>(spread)];
 }
 
-/// Slope by which a change of y changes the metric, between y and what the sum is now.
-double slopeBetween(double y, double now, double c, double difference) {
-    if (std::abs(now - y) > 1e-6) return difference / (now - y);
-    return c / (std::exp(-std::max(y, 0.0)) * (1 - c) + c);
+double weightOf(const HalfwaySamples& samples) {
+    double sum = 0;
+    for (const HalfwaySpread spread : samples.spread) sum += weightOf(spread);
+    return sum;
 }
 
-/// Weight per sample: each way to draw them has its share.
-class Weights {
-public:
-    explicit Weights(const HalfwaySamples& samples) {
-        const auto count = [&](HalfwaySpread spread) {
-            return static_cast<double>(
-                std::count(samples.spread.begin(), samples.spread.end(), spread));
-        };
-        const double axes = count(HalfwaySpread::axes), horizon = count(HalfwaySpread::horizon);
-        const double left = 1 - (axes > 0 ? axesShare : 0) - (horizon > 0 ? horizonShare : 0);
-        weights_ = {left / count(HalfwaySpread::uniform), axesShare / std::max(axes, 1.0),
-                    horizonShare / std::max(horizon, 1.0)};
-    }
-    double at(HalfwaySpread spread) const { return weights_[static_cast<std::size_t>(spread)]; }
+double huberOf(double error, double limit) {
+    const double size = std::abs(error);
+    return size <= limit ? error * error / 2 : limit * (size - limit / 2);
+}
 
-private:
-    std::array<double, 3> weights_;
+/// The exponentials of both parts at one pair.
+struct TwoParts {
+    double smooth, lobe;
 };
 
-/// The terms at samples first .. first + count - 1, one sample per column; rows are padded.
-void fillTerms(const HalfwayTerms& terms, const HalfwaySamples& samples, std::size_t first,
-               std::size_t count, Eigen::MatrixXd& out) {
-    const std::size_t rows = (terms.size() + gramPadding - 1) / gramPadding * gramPadding;
-    out.setZero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(count));
-    for (std::size_t k = 0; k < count; ++k) {
-        terms.evaluate(samples.points[first + k], out.col(static_cast<Eigen::Index>(k)).data());
-    }
-}
-
-/// Adds samples to the systems.
-class Accumulator {
+/// Evaluates the form of all channels at up to `chunk` pairs at a time.
+class Evaluation {
 public:
-    Accumulator(const HalfwayTerms& terms, const HalfwaySamples& samples,
-                const HalfwayValues& values, HalfwayPass& pass)
-        : terms_(terms),
-          samples_(samples),
+    Evaluation(const HalfwayModel& model, const HalfwayValues& values)
+        : model_(model),
           values_(values),
-          weights_(samples),
-          pass_(pass),
-          size_(static_cast<Eigen::Index>(terms.size())) {
-        fillTerms(terms, samples, 0, 1, products_);
-        const Eigen::Index n = products_.rows();
-        pass_.systems.assign(samples.channels(),
-                             {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(size_), 0.0});
-    }
+          rows_((model.terms.size() + gramPadding - 1) / gramPadding * gramPadding) {}
 
-    /// Samples first .. first + count - 1.
-    void add(std::size_t first, std::size_t count) {
-        const std::size_t channels = pass_.systems.size();
-        fillTerms(terms_, samples_, first, count, products_);
-        scaled_.resize(products_.rows(), products_.cols());
-        weight_.resize(static_cast<Eigen::Index>(count));
-        right_.resize(static_cast<Eigen::Index>(count));
-        if (values_.size() > 0) now_.noalias() = products_.topRows(size_).transpose() * values_;
+    void at(const std::vector<DirectionPair>& pairs, std::size_t first, std::size_t count) {
+        products_.setZero(static_cast<Index>(rows_), static_cast<Index>(count));
+        weights_.resize(count);
+        for (std::size_t k = 0; k < count; ++k) {
+            const HalfwayPoint point = model_.axes.at(pairs[first + k].wi, pairs[first + k].wo);
+            weights_[k] = point.weight;
+            model_.terms.evaluate(point, products_.col(static_cast<Index>(k)).data());
+        }
+        const auto smooth = static_cast<Index>(model_.terms.smooth());
+        const Index rest = values_.rows() - smooth;
+        smooth_.noalias() = values_.topRows(smooth).transpose() * products_.topRows(smooth);
+        lobe_.noalias() =
+            values_.bottomRows(rest).transpose() * products_.middleRows(smooth, rest);
+    }
+    /// Of the k-th pair.
+    TwoParts parts(std::size_t k, Index channel) const {
+        const auto at = static_cast<Index>(k);
+        return {std::exp(std::min(smooth_(channel, at), greatestExponent)),
+                weights_[k] * std::exp(std::min(lobe_(channel, at), greatestExponent))};
+    }
+    TwoParts exponents(std::size_t k, Index channel) const {
+        const auto at = static_cast<Index>(k);
+        return {smooth_(channel, at), lobe_(channel, at)};
+    }
+    /// The derivatives of f by the coefficients, times `factor`, into a column of the padded terms.
+    void derivatives(std::size_t k, const TwoParts& parts, double factor, double* out) const {
+        const double* from = products_.col(static_cast<Index>(k)).data();
+        const std::size_t smooth = model_.terms.smooth();
+        for (std::size_t t = 0; t < smooth; ++t) out[t] = factor * parts.smooth * from[t];
+        for (std::size_t t = smooth; t < rows_; ++t) out[t] = factor * parts.lobe * from[t];
+    }
+    std::size_t rows() const { return rows_; }
+
+private:
+    const HalfwayModel& model_;
+    const HalfwayValues& values_;
+    std::size_t rows_;
+    Eigen::MatrixXd products_, smooth_, lobe_;
+    std::vector<double> weights_;
+};
+
+/// Adds samples `first` .. `last` - 1 to the systems, whose matrices are padded.
+void addSamples(const HalfwayModel& model, const HalfwayData& data, const HalfwayValues& values,
+                std::size_t first, std::size_t last, std::vector<HalfwaySystem>& systems) {
+    const HalfwaySamples& samples = data.samples;
+    const std::size_t channels = samples.channels();
+    Evaluation form(model, values);
+    const auto rows = static_cast<Index>(form.rows());
+    systems.assign(channels,
+                   {Eigen::MatrixXd::Zero(rows, rows), Eigen::VectorXd::Zero(rows), 0.0});
+    Eigen::MatrixXd slopes(rows, static_cast<Index>(chunk)), scaled(rows, static_cast<Index>(chunk));
+    std::vector<double> weights(chunk);
+    Eigen::VectorXd errors(static_cast<Index>(chunk));
+    for (; first < last; first += chunk) {
+        const std::size_t count = std::min(chunk, last - first);
+        form.at(samples.pairs, first, count);
         for (std::size_t c = 0; c < channels; ++c) {
-            HalfwaySystem& system = pass_.systems[c];
+            HalfwaySystem& system = systems[c];
             for (std::size_t k = 0; k < count; ++k) {
-                const auto row = static_cast<Eigen::Index>(k);
-                const double y = std::log1p(samples_.values[(first + k) * channels + c]);
-                weight_[row] = weightOf(first + k, y, row, static_cast<Eigen::Index>(c));
-                right_[row] = weight_[row] * y;
-                system.squares += right_[row] * y;
+                const TwoParts parts = form.parts(k, static_cast<Index>(c));
+                const double now = parts.smooth + parts.lobe + model.floor;
+                const double wanted = samples.values[(first + k) * channels + c] + model.floor;
+                const double error = std::log(now / wanted);
+                const double weight = weightOf(samples.spread[first + k]);
+                system.loss += weight * huberOf(error, data.huber);
+                weights[k] = weight * std::min(1.0, data.huber / std::max(std::abs(error), 1e-300));
+                errors[static_cast<Index>(k)] = weights[k] * error;
+                form.derivatives(k, parts, 1 / now, slopes.col(static_cast<Index>(k)).data());
             }
             // Row-major for the one is column-major for the other: its lower triangle is our upper.
-            addWeightedGram(products_.data(), weight_.data(), count,
-                            static_cast<std::size_t>(products_.rows()), scaled_.data(),
+            addWeightedGram(slopes.data(), weights.data(), count, form.rows(), scaled.data(),
                             system.gram.data());
-            system.right.noalias() += products_.topRows(size_) * right_;
+            const auto n = static_cast<Index>(count);
+            system.slope.noalias() += slopes.leftCols(n) * errors.head(n);
         }
     }
-
-private:
-    double weightOf(std::size_t sample, double y, Eigen::Index row, Eigen::Index channel) {
-        const double c = samples_.cosines[sample];
-        const double weight = weights_.at(samples_.spread[sample]);
-        if (values_.size() == 0) {
-            const double slope = slopeBetween(y, y, c, 0);
-            return weight * slope * slope;
-        }
-        const double now = now_(row, channel);
-        const double difference = metricOf(now, c) - metricOf(y, c);
-        pass_.loss += weight * std::abs(difference);
-        const double slope = slopeBetween(y, now, c, difference);
-        return weight * slope * slope / std::max(std::abs(difference), smallest);
-    }
-
-    const HalfwayTerms& terms_;
-    const HalfwaySamples& samples_;
-    const HalfwayValues& values_;
-    Weights weights_;
-    HalfwayPass& pass_;
-    Eigen::Index size_;
-    Eigen::MatrixXd products_, scaled_, now_;
-    Eigen::VectorXd right_, weight_;
-};
-
-/// Reweighted least squares from `values`, or from none, down to the least loss.
-struct Descent {
-    const HalfwayTerms& terms;
-    const HalfwaySamples& samples;
-    HalfwayValues values;
-    double loss = std::numeric_limits<double>::infinity();
-    std::vector<HalfwaySystem> systems = {};  ///< at `values`
-
-    void run(double regularisation) {
-        constexpr int maxSteps = 12;
-        constexpr double settled = 1.0 / 300;
-        HalfwayValues next = values;
-        for (int step = 0; step <= maxSteps; ++step) {
-            HalfwayPass pass = halfwayPass(terms, samples, next);
-            const bool done = next.size() > 0 && pass.loss > loss * (1 - settled);
-            if (next.size() > 0 && pass.loss < loss) {
-                loss = pass.loss;
-                values = next;
-                systems = pass.systems;
-            }
-            if (done) break;
-            next = solveHalfway(pass.systems, regularisation);
-        }
-    }
-};
-
-/// The loss of values as half precision would keep them.
-double lossInHalf(const HalfwayTerms& terms, const HalfwaySamples& samples, HalfwayValues values) {
-    StoredArray array{.shape = {static_cast<std::size_t>(values.size())},
-                      .values = {values.data(), values.data() + values.size()}};
-    constexpr double most = 65504;
-    for (double& value : array.values) value = std::clamp(value, -most, most);
-    quantise(array, Precision::half);
-    values = Eigen::Map<const HalfwayValues>(array.values.data(), values.rows(), values.cols());
-    return halfwayLoss(samples, halfwaySums(terms, samples, values));
 }
+
+/// One channel on its way down.
+struct Descent {
+    Eigen::VectorXd values;
+    HalfwaySystem system;
+    double damping = 1e-2;
+    bool done = false;
+
+    Eigen::VectorXd next() const {
+        Eigen::MatrixXd matrix = system.gram;
+        const double mean = matrix.diagonal().mean();
+        matrix.diagonal() *= 1 + damping;
+        matrix.diagonal().array() += pull + 1e-9 * damping * mean + 1e-300;
+        const Eigen::LDLT<Eigen::MatrixXd> factor(matrix);
+        return values - factor.solve(system.slope + pull * values);
+    }
+    double penalised(const HalfwaySystem& of, const Eigen::VectorXd& at) const {
+        return of.loss + pull / 2 * at.squaredNorm();
+    }
+    void judge(Eigen::VectorXd tried, HalfwaySystem found) {
+        constexpr double settled = 5e-4, hopeless = 1e6;
+        const double before = penalised(system, values), now = penalised(found, tried);
+        if (!(now < before)) {
+            damping *= 8;
+            done = damping > hopeless;
+            return;
+        }
+        done = now > before * (1 - settled) && damping < 1;
+        damping = std::max(damping / 5, 1e-7);
+        values = std::move(tried);
+        system = std::move(found);
+    }
+};
 
 }  // namespace
 
-HalfwayPass halfwayPass(const HalfwayTerms& terms, const HalfwaySamples& samples,
-                        const HalfwayValues& values) {
-    std::vector<HalfwayPass> passes(parts);
+std::vector<HalfwaySystem> halfwaySystems(const HalfwayModel& model, const HalfwayData& data,
+                                          const HalfwayValues& values) {
+    std::vector<std::vector<HalfwaySystem>> sums(parts);
     tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
-        Accumulator sums(terms, samples, values, passes[part]);
-        const std::size_t end = samples.size() * (part + 1) / parts;
-        for (std::size_t k = samples.size() * part / parts; k < end; k += chunk) {
-            sums.add(k, std::min(chunk, end - k));
-        }
+        const std::size_t size = data.samples.size();
+        addSamples(model, data, values, size * part / parts, size * (part + 1) / parts, sums[part]);
     });
-    HalfwayPass total = std::move(passes[0]);
-    for (std::size_t part = 1; part < parts; ++part) {
-        total.loss += passes[part].loss;
-        for (std::size_t c = 0; c < total.systems.size(); ++c) {
-            total.systems[c].gram += passes[part].systems[c].gram;
-            total.systems[c].right += passes[part].systems[c].right;
-            total.systems[c].squares += passes[part].systems[c].squares;
+    const auto n = static_cast<Index>(model.terms.size());
+    const double share = 1 / weightOf(data.samples);
+    std::vector<HalfwaySystem> total(sums[0].size());
+    for (std::size_t c = 0; c < total.size(); ++c) {
+        Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(sums[0][c].gram.rows(), sums[0][c].gram.cols());
+        total[c].slope = Eigen::VectorXd::Zero(n);
+        for (const auto& part : sums) {
+            gram += part[c].gram;
+            total[c].slope += share * part[c].slope.head(n);
+            total[c].loss += share * part[c].loss;
         }
+        gram *= share;
+        total[c].gram = gram.topLeftCorner(n, n).selfadjointView<Eigen::Upper>();
     }
-    const auto n = static_cast<Eigen::Index>(terms.size());
-    for (HalfwaySystem& system : total.systems) {
-        const Eigen::MatrixXd whole =
-            system.gram.topLeftCorner(n, n).selfadjointView<Eigen::Upper>();
-        system.gram = whole;
-    }
-    total.loss /= static_cast<double>(total.systems.size());
+    if (data.albedo) addAlbedo(model, *data.albedo, values, total);
     return total;
 }
 
-HalfwayValues solveHalfway(const std::vector<HalfwaySystem>& systems, double regularisation) {
-    const Eigen::Index terms = systems[0].right.size();
-    HalfwayValues values(terms, static_cast<Eigen::Index>(systems.size()));
-    for (std::size_t c = 0; c < systems.size(); ++c) {
-        Eigen::MatrixXd gram = systems[c].gram;
-        gram.diagonal().array() += regularisation * gram.diagonal().mean() + 1e-300;
-        const Eigen::LDLT<Eigen::MatrixXd> factor(gram);
-        values.col(static_cast<Eigen::Index>(c)) = factor.solve(systems[c].right);
+double halfwayLoss(const HalfwayModel& model, const HalfwaySamples& samples, double huber,
+                   const HalfwayValues& values) {
+    const std::size_t channels = samples.channels();
+    const std::vector<double> f = halfwayAt(model, samples.pairs, values);
+    double sum = 0;
+    for (std::size_t k = 0; k < f.size(); ++k) {
+        const double error = std::log((f[k] + model.floor) / (samples.values[k] + model.floor));
+        sum += weightOf(samples.spread[k / channels]) * huberOf(error, huber);
     }
-    if (!values.allFinite()) throw NumericError("the halfway form has no solution: f is too large");
+    return sum / (weightOf(samples) * static_cast<double>(channels));
+}
+
+HalfwayValues halfwayStart(const HalfwayModel& model, const HalfwaySamples& samples) {
+    const std::size_t channels = samples.channels();
+    HalfwayValues values = HalfwayValues::Zero(static_cast<Index>(model.terms.size()),
+                                               static_cast<Index>(channels));
+    const auto quantile = [](std::vector<double>& of, double share) {
+        const auto at = of.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(of.size() - 1));
+        std::nth_element(of.begin(), at, of.end());
+        return *at;
+    };
+    for (std::size_t c = 0; c < channels; ++c) {
+        std::vector<double> smooth, lobe;
+        for (std::size_t k = 0; k < samples.size(); ++k) {
+            if (samples.spread[k] == HalfwaySpread::uniform)
+                smooth.push_back(samples.values[k * channels + c]);
+        }
+        const double base = quantile(smooth, 0.3);
+        for (std::size_t k = 0; k < samples.size(); ++k) {
+            const HalfwayPoint point = model.axes.at(samples.pairs[k].wi, samples.pairs[k].wo);
+            if (point.x > 0.2) continue;
+            const double left = samples.values[k * channels + c] - base;
+            lobe.push_back(std::max(left, 1e-3 * (base + model.floor)) / point.weight);
+        }
+        const auto column = static_cast<Index>(c);
+        values(0, column) = std::log(base + 1e-2 * model.floor);
+        values(static_cast<Index>(model.terms.smooth()), column) =
+            lobe.empty() ? values(0, column) : std::log(quantile(lobe, 0.5));
+    }
     return values;
 }
 
-HalfwayFit fitHalfway(const HalfwayTerms& terms, const HalfwaySamples& samples,
-                      HalfwayValues values) {
-    double regularisation = firstRegularisation;
-    // Values that were found with less regularisation would leave no step to take.
-    if (values.size() > 0) {
-        values = solveHalfway(halfwayPass(terms, samples, values).systems, regularisation);
+HalfwayValues descended(const HalfwayModel& model, const HalfwayData& data, HalfwayValues values,
+                        int steps, const std::function<void()>& stepDone) {
+    std::vector<Descent> channels(static_cast<std::size_t>(values.cols()));
+    std::vector<HalfwaySystem> systems = halfwaySystems(model, data, values);
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        channels[c].values = values.col(static_cast<Index>(c));
+        channels[c].system = std::move(systems[c]);
     }
-    Descent descent{terms, samples, std::move(values)};
-    descent.run(regularisation);
-    // Small coefficients survive coarse storage: larger ones have to be worth it, in half precision
-    // too.
-    for (int lower = 0; lower < 2 && descent.loss > 0; ++lower) {
-        const double next = regularisation * 1e-3;
-        Descent freer{terms, samples, solveHalfway(descent.systems, next)};
-        freer.run(next);
-        if (freer.loss > worthIt * descent.loss ||
-            lossInHalf(terms, samples, freer.values) > lossInHalf(terms, samples, descent.values)) {
-            break;
+    for (int step = 0; step < steps; ++step) {
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            values.col(static_cast<Index>(c)) = channels[c].next();
+        if (!values.allFinite())
+            throw NumericError("the halfway form has no solution: f is too large");
+        systems = halfwaySystems(model, data, values);
+        bool done = true;
+        for (std::size_t c = 0; c < channels.size(); ++c) {
+            if (!channels[c].done)
+                channels[c].judge(values.col(static_cast<Index>(c)), std::move(systems[c]));
+            done = done && channels[c].done;
         }
-        regularisation = next;
-        descent.values = std::move(freer.values);
-        descent.systems = std::move(freer.systems);
-        descent.loss = freer.loss;
+        if (stepDone) stepDone();
+        if (done) break;
     }
-    return {std::move(descent.values), descent.loss, regularisation};
+    for (std::size_t c = 0; c < channels.size(); ++c)
+        values.col(static_cast<Index>(c)) = channels[c].values;
+    return values;
 }
 
-std::vector<double> halfwaySums(const HalfwayTerms& terms, const HalfwaySamples& samples,
-                                const HalfwayValues& values) {
+std::vector<double> halfwayCeilings(const HalfwayModel& model, const HalfwaySamples& samples,
+                                    const HalfwayValues& values) {
+    constexpr double counts = 1e-2, nothing = -1e4;
+    const std::size_t channels = samples.channels();
+    std::vector<double> ceilings(2 * channels, nothing);
+    std::vector<bool> zero(channels, true);
+    for (std::size_t k = 0; k < samples.values.size(); ++k)
+        if (samples.values[k] > 0) zero[k % channels] = false;
+    Evaluation form(model, values);
+    for (std::size_t first = 0; first < samples.size(); first += chunk) {
+        const std::size_t count = std::min(chunk, samples.size() - first);
+        form.at(samples.pairs, first, count);
+        for (std::size_t c = 0; c < channels; ++c) {
+            for (std::size_t k = 0; k < count && !zero[c]; ++k) {
+                const TwoParts parts = form.parts(k, static_cast<Index>(c));
+                const TwoParts exponents = form.exponents(k, static_cast<Index>(c));
+                const double least = counts * (parts.smooth + parts.lobe + model.floor);
+                if (parts.smooth > least)
+                    ceilings[2 * c] = std::max(ceilings[2 * c], exponents.smooth);
+                if (parts.lobe > least)
+                    ceilings[2 * c + 1] = std::max(ceilings[2 * c + 1], exponents.lobe);
+            }
+        }
+    }
+    return ceilings;
+}
+
+std::vector<double> halfwayAt(const HalfwayModel& model, const std::vector<DirectionPair>& pairs,
+                              const HalfwayValues& values) {
     const auto channels = static_cast<std::size_t>(values.cols());
-    std::vector<double> sums(samples.size() * channels);
+    std::vector<double> f(pairs.size() * channels);
     tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
-        Eigen::MatrixXd products, now;
-        const std::size_t end = samples.size() * (part + 1) / parts;
-        for (std::size_t first = samples.size() * part / parts; first < end; first += chunk) {
+        Evaluation form(model, values);
+        const std::size_t end = pairs.size() * (part + 1) / parts;
+        for (std::size_t first = pairs.size() * part / parts; first < end; first += chunk) {
             const std::size_t count = std::min(chunk, end - first);
-            fillTerms(terms, samples, first, count, products);
-            now.noalias() = values.transpose() * products.topRows(values.rows());
-            std::copy_n(now.data(), count * channels, sums.data() + first * channels);
+            form.at(pairs, first, count);
+            for (std::size_t k = 0; k < count; ++k) {
+                for (std::size_t c = 0; c < channels; ++c) {
+                    const TwoParts parts = form.parts(k, static_cast<Index>(c));
+                    f[(first + k) * channels + c] = parts.smooth + parts.lobe;
+                }
+            }
         }
     });
-    return sums;
-}
-
-double halfwayLoss(const HalfwaySamples& samples, const std::vector<double>& sums,
-                   const std::vector<double>& caps) {
-    const std::size_t channels = samples.channels();
-    double total = 0;
-    for (std::size_t k = 0; k < sums.size(); ++k) {
-        const double c = samples.cosines[k / channels];
-        double now = metricOf(sums[k], c);
-        if (!caps.empty()) now = std::min(now, std::log1p(std::exp(caps[k]) * c));
-        total += std::abs(std::log1p(samples.values[k] * c) - now);
-    }
-    return total / static_cast<double>(sums.size());
+    return f;
 }
 
 }  // namespace hshfit::inline representation::inline halfway

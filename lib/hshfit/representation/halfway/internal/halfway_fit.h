@@ -1,55 +1,68 @@
 #pragma once
 
+#include <hshfit/representation/halfway/halfway_axes.h>
 #include <hshfit/representation/halfway/halfway_terms.h>
 #include <hshfit/representation/halfway/internal/halfway_samples.h>
 
 #include <Eigen/Core>
 
+#include <functional>
 #include <vector>
 
 namespace hshfit::inline representation::inline halfway {
 
-/// The weighted normal equations of one channel: gram c = right, |y|^2 = squares.
-struct HalfwaySystem {
-    Eigen::MatrixXd gram;
-    Eigen::VectorXd right;
-    double squares = 0;
-};
+struct HalfwayAlbedo;
 
-/// Coefficients [term][channel] of ln(1 + f).
+/// exp of more than that is cut off: a step of the descent may go astray.
+inline constexpr double greatestExponent = 60;
+
+/// Coefficients [term][channel].
 using HalfwayValues = Eigen::MatrixXd;
 
-/// One pass over the samples: the systems of the next step, one per channel, and the loss of
-/// `values`, the coefficients now; none (0 x 0) before the first step.
-struct HalfwayPass {
-    std::vector<HalfwaySystem> systems;
+/// What does not change while a form is fitted.
+struct HalfwayModel {
+    const HalfwayTerms& terms;
+    const HalfwayAxes& axes;
+    double floor;  ///< e of ln(f + e)
+};
+
+/// Of one channel at given coefficients: the loss, its gradient and Gauss and Newton's matrix.
+struct HalfwaySystem {
+    Eigen::MatrixXd gram;
+    Eigen::VectorXd slope;
     double loss = 0;
 };
-HalfwayPass halfwayPass(const HalfwayTerms& terms, const HalfwaySamples& samples,
-                        const HalfwayValues& values);
 
-/// The coefficients that solve the systems, with `regularisation` times the mean of the diagonal
-/// added to it.
-HalfwayValues solveHalfway(const std::vector<HalfwaySystem>& systems, double regularisation);
-
-struct HalfwayFit {
-    HalfwayValues values;
-    double loss = 0;            ///< over the samples, by their weights
-    double regularisation = 0;  ///< that it was found with
+/// Which samples, and how errors count: as squares up to `huber`, beyond it as themselves.
+struct HalfwayData {
+    const HalfwaySamples& samples;
+    const HalfwayAlbedo* albedo;  ///< none: only pairs
+    double huber;
 };
 
-/// Steps until the loss changes by less than a part in 300, from `values` if there are any, with
-/// as much regularisation as costs little (worthIt in halfway_fit.cpp).
-HalfwayFit fitHalfway(const HalfwayTerms& terms, const HalfwaySamples& samples,
-                      HalfwayValues values);
+/// The systems of all channels; the same for any number of threads.
+std::vector<HalfwaySystem> halfwaySystems(const HalfwayModel& model, const HalfwayData& data,
+                                          const HalfwayValues& values);
 
-/// The sum of the expansion, ln(1 + f), at every sample: [sample][channel].
-std::vector<double> halfwaySums(const HalfwayTerms& terms, const HalfwaySamples& samples,
-                                const HalfwayValues& values);
+/// The mean over samples, by their weights, and channels, of Huber's function of
+/// ln(g + e) - ln(f + e).
+double halfwayLoss(const HalfwayModel& model, const HalfwaySamples& samples, double huber,
+                   const HalfwayValues& values);
 
-/// Mean of |ln(1 + f c) - ln(1 + g c)| over samples and channels, of sums as above. `caps`: ln of
-/// what g is cut off at, likewise, or empty.
-double halfwayLoss(const HalfwaySamples& samples, const std::vector<double>& sums,
-                   const std::vector<double>& caps = {});
+/// Coefficients to begin with: constants.
+HalfwayValues halfwayStart(const HalfwayModel& model, const HalfwaySamples& samples);
+
+/// At most `steps` steps of Levenberg and Marquardt's method; `stepDone` is called after each.
+HalfwayValues descended(const HalfwayModel& model, const HalfwayData& data, HalfwayValues values,
+                        int steps, const std::function<void()>& stepDone = {});
+
+/// The greatest exponents over the samples where their part of f counts: [channel][smooth, lobe].
+/// A channel of zeros has such as make it 0.
+std::vector<double> halfwayCeilings(const HalfwayModel& model, const HalfwaySamples& samples,
+                                    const HalfwayValues& values);
+
+/// f at pairs, [pair][channel], without ceilings.
+std::vector<double> halfwayAt(const HalfwayModel& model, const std::vector<DirectionPair>& pairs,
+                              const HalfwayValues& values);
 
 }  // namespace hshfit::inline representation::inline halfway

@@ -1,33 +1,42 @@
 #pragma once
 
 #include <hshfit/brdf/directions.h>
+#include <hshfit/representation/halfway/halfway_axes.h>
 #include <hshfit/representation/halfway/halfway_terms.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace hshfit::inline representation::inline halfway {
 
+/// Which row of a block's table holds which function of its pairs: first those of the mean from 0
+/// on, then those of the other axes and the factors.
+struct HalfwayRows {
+    std::uint16_t x, v, product, powers, harmonics, gap, handed, above, weight, count;
+};
+
 /// The halfway form laid out for vector code: runs over i, each with its coefficients for groups of
 /// up to three channels.
 struct HalfwayLayout {
     struct Run {
-        std::uint16_t j, k, q, length;
-        bool exchange, mirror, sine;
+        std::uint16_t first, length;           ///< the rows of its functions
+        std::array<std::uint16_t, 5> factors;  ///< rows of the functions that all have
+        std::uint16_t factorCount;
     };
-    int half = 0, difference = 0, azimuth = 0, harmonics = 0;
-    bool turns = false;  ///< the azimuth of h is used
+    HalfwayCounts counts;
+    HalfwayAxes::Constants axes;
+    HalfwayRows rows;
+    int powers = 0;     ///< x kappa^n, n from 1 to this
+    int harmonics = 0;  ///< the largest q
     std::size_t channels = 0;
     std::vector<Run> runs;
+    std::size_t smoothRuns = 0;  ///< those of the smooth exponent, which come first
     /// [group of three channels][run][i][channel of the group]
     std::vector<float> values;
-    /// The envelope, if `logs` is not empty: ln E, [node along b][node along x][channel].
-    int alongA = 1, alongB = 1;
-    float ridge = 1;
-    bool reciprocal = true;
-    std::vector<float> logs;
-    /// sqrt(2 n + 1) and the recurrence p_{n+1} = a_n t p_n - b_n p_{n-1}, [n] = {a, b}.
+    std::vector<float> ceilings;  ///< [channel][smooth, lobe]
+    /// The recurrence of Legendre's polynomials, p_{n+1} = a_n t p_n - b_n p_{n-1}, [n] = {a, b}.
     std::vector<float> steps;
 };
 

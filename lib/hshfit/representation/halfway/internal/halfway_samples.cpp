@@ -13,8 +13,8 @@
 namespace hshfit::inline representation::inline halfway {
 namespace {
 
-/// The start of the pairs held out in the sequence: no fit gets that far.
-constexpr std::size_t heldOutStart = std::size_t{1} << 32;
+/// Where the parts begin in the sequence: no fit gets that far.
+constexpr std::size_t partStart = std::size_t{1} << 32;
 
 /// Coordinate `axis` of point n of the sequence in `dimensions` dimensions.
 class Sequence {
@@ -43,7 +43,13 @@ Direction onHemisphere(double height, double turn) {
 }
 
 /// Cosines and slopes from the greatest down by so many powers of ten.
-constexpr double horizonDecades = 4, slopeDecades = 5, greatestSlope = 10;
+constexpr double horizonDecades = 4, slopeDecades = 5, greatestSlope = 10, mirrorDecades = 4;
+
+/// The mirror image of wo at h.
+Direction mirrored(const Direction& wo, const Direction& h) {
+    const double twice = 2 * dot(wo, h);
+    return {twice * h.x - wo.x, twice * h.y - wo.y, twice * h.z - wo.z};
+}
 
 /// wo towards the horizon; wi likewise, or the mirror image of wo at a half vector about the
 /// normal.
@@ -52,26 +58,53 @@ DirectionPair towardsHorizon(double a, double b, double c, double d, bool mirror
     const Direction wo = onHemisphere(low(a), d);
     if (!mirror) return {onHemisphere(low(b), c), wo};
     const double slope = greatestSlope * std::pow(10, -slopeDecades * b);
-    const Direction h = directionFromAngles(std::atan(slope), 2 * pi * c);
-    const double twice = 2 * dot(wo, h);
-    return {{twice * h.x - wo.x, twice * h.y - wo.y, twice * h.z - wo.z}, wo};
+    return {mirrored(wo, directionFromAngles(std::atan(slope), 2 * pi * c)), wo};
 }
 
+/// h moves from the normal to the horizon, half of the way within a tenth of it, in the plane of
+/// incidence or across it.
+DirectionPair onLine(double a, double b, double c, double d) {
+    const double thetaHalf = pi / 2 * a * a * a;
+    const double phiDifference = std::floor(4 * c) * pi / 2;
+    return fromHalfDifference(thetaHalf, 2 * pi * d, pi / 2 * b, phiDifference);
+}
+
+/// What the numbers of a sequence are spread as, in turns of 16: five uniform, seven about the
+/// mirror direction, two on lines, one each of the rest; every sixth of the ridge is at normal
+/// incidence.
 HalfwaySpread spreadOf(HalfwayPart part, std::size_t n) {
-    if (part == HalfwayPart::heldOut) return HalfwaySpread::uniform;
-    if (n % 4 == 3) return HalfwaySpread::axes;
-    return n % 8 == 2 ? HalfwaySpread::horizon : HalfwaySpread::uniform;
+    using enum HalfwaySpread;
+    if (part == HalfwayPart::heldOutUniform) return uniform;
+    constexpr std::array turns{uniform, mirror, uniform, mirror, line,   mirror, uniform, mirror,
+                               ridge,   mirror, uniform, line,   grazing, mirror, uniform, mirror};
+    const HalfwaySpread spread = turns[n % turns.size()];
+    return spread == ridge && n / turns.size() % 6 == 5 ? normal : spread;
 }
 
 DirectionPair pairAt(const Sequence& sequence, std::size_t n, bool isotropic,
                      HalfwaySpread spread) {
     const double a = sequence.at(n, 0), b = sequence.at(n, 1), c = sequence.at(n, 2);
     const double d = isotropic ? 0 : sequence.at(n, 3);
-    if (spread == HalfwaySpread::uniform) return {onHemisphere(a, c), onHemisphere(b, d)};
-    if (spread == HalfwaySpread::horizon) return towardsHorizon(a, b, c, d, n / 8 % 2 == 1);
-    const double u = 1 - std::cos(pi / 2 * a);
-    const double thetaHalf = 2 * std::asin(std::min(1.0, u * u / std::sqrt(2.0)));
-    return fromHalfDifference(thetaHalf, 2 * pi * d, std::acos(b), 2 * pi * c);
+    switch (spread) {
+        case HalfwaySpread::uniform:
+            break;
+        case HalfwaySpread::mirror: {
+            const Direction wo = onHemisphere(a, d);
+            const double sine = std::pow(10, -mirrorDecades * b);
+            return {mirrored(wo, directionFromAngles(std::asin(sine), 2 * pi * c)), wo};
+        }
+        case HalfwaySpread::line:
+            return onLine(a, b, c, d);
+        case HalfwaySpread::ridge: {
+            const Direction wo = directionFromAngles(pi / 2 * a, 2 * pi * d);
+            return {{-wo.x, -wo.y, wo.z}, wo};
+        }
+        case HalfwaySpread::grazing:
+            return towardsHorizon(a, b, c, d, n / 16 % 2 == 1);
+        case HalfwaySpread::normal:
+            return {directionFromAngles(pi / 2 * a, 2 * pi * c), {0, 0, 1}};
+    }
+    return {onHemisphere(a, c), onHemisphere(b, d)};
 }
 
 [[noreturn]] void refuse(const Brdf& brdf, const DirectionPair& pair, double value) {
@@ -88,31 +121,29 @@ void appendSamples(const Brdf& brdf, HalfwayPart part, std::size_t first, std::s
                    HalfwaySamples& samples) {
     const bool isotropic = brdf.laws().isotropic;
     const Sequence sequence(isotropic ? 3 : 4);
-    std::vector<DirectionPair> pairs;
+    const std::size_t before = samples.size();
     for (std::size_t n = first; n < last; ++n) {
         const HalfwaySpread spread = spreadOf(part, n);
-        const std::size_t place = part == HalfwayPart::fitted ? n : heldOutStart + n;
+        const std::size_t place = static_cast<std::size_t>(part) * partStart + n;
         const DirectionPair pair = pairAt(sequence, place, isotropic, spread);
         if (!(pair.wi.z > 0 && pair.wo.z > 0)) continue;
-        pairs.push_back(pair);
+        samples.pairs.push_back(pair);
         samples.spread.push_back(spread);
-        samples.cosines.push_back(pair.wi.z);
-        samples.points.push_back(halfwayPoint(pair.wi, pair.wo));
-        samples.places.push_back(envelopePoint(pair.wi, pair.wo));
     }
-    const std::size_t channels = brdf.channels().count(), start = samples.values.size();
-    samples.values.resize(start + pairs.size() * channels);
-    double* values = samples.values.data() + start;
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, pairs.size(), 256), [&](const auto& range) {
-            for (std::size_t k = range.begin(); k < range.end(); ++k) {
-                const Direction& wi = pairs[k].wi;
-                brdf.eval(pairs[k].wo, {&wi.x, &wi.y, &wi.z, 1}, values + k * channels);
-            }
-        });
-    for (std::size_t k = 0; k < pairs.size() * channels; ++k) {
-        if (!std::isfinite(values[k] * values[k])) refuse(brdf, pairs[k / channels], values[k]);
-        values[k] = std::max(values[k], 0.0);
+    const std::size_t channels = brdf.channels().count();
+    samples.values.resize(samples.size() * channels);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(before, samples.size(), 256),
+                      [&](const auto& range) {
+                          for (std::size_t k = range.begin(); k < range.end(); ++k) {
+                              const auto& [wi, wo] = samples.pairs[k];
+                              brdf.eval(wo, {&wi.x, &wi.y, &wi.z, 1},
+                                        samples.values.data() + k * channels);
+                          }
+                      });
+    for (std::size_t k = before * channels; k < samples.values.size(); ++k) {
+        double& value = samples.values[k];
+        if (!std::isfinite(value * value)) refuse(brdf, samples.pairs[k / channels], value);
+        value = std::max(value, 0.0);
     }
 }
 

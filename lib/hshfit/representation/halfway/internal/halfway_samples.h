@@ -1,34 +1,36 @@
 #pragma once
 
 #include <hshfit/brdf/brdf.h>
-#include <hshfit/representation/halfway/halfway_envelope.h>
-#include <hshfit/representation/halfway/halfway_terms.h>
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
 namespace hshfit::inline representation::inline halfway {
 
-/// The way in which a pair was drawn: uniform on both hemispheres; uniform in arccos(1 - u), v and
-/// the azimuths, the axes of the expansion; or by powers of ten of the cosines from 1 to 1e-4, wi
-/// likewise or about the mirror direction, with slopes of h by powers of ten from 1e-4 to 10.
-enum class HalfwaySpread : unsigned char { uniform, axes, horizon };
+/// The way in which a pair was drawn:
+///     uniform  both directions uniform on their hemispheres
+///     mirror   wo uniform, wi about its mirror direction, sin(theta_h) by powers of ten from 1e-4
+///     line     theta_d fixed, h moving in the plane of incidence or across it
+///     ridge    wi the mirror direction of wo
+///     grazing  cosines by powers of ten from 1e-4, wi likewise or about the mirror direction
+///     normal   wo the normal
+enum class HalfwaySpread : unsigned char { uniform, mirror, line, ridge, grazing, normal };
+inline constexpr std::size_t halfwaySpreads = 6;
 
 /// Pairs of directions with f at each.
 struct HalfwaySamples {
-    std::vector<HalfwayPoint> points;
-    std::vector<EnvelopePoint> places;
-    std::vector<double> cosines;  ///< cos(theta_i)
+    std::vector<DirectionPair> pairs;
     std::vector<HalfwaySpread> spread;
     std::vector<double> values;  ///< f, [sample][channel]; negative values are 0
 
-    std::size_t size() const { return cosines.size(); }
-    std::size_t channels() const { return size() == 0 ? 0 : values.size() / size(); }
+    std::size_t size() const { return pairs.size(); }
+    std::size_t channels() const { return pairs.empty() ? 0 : values.size() / size(); }
 };
 
-/// Two disjoint sequences of pairs. Of eight fitted pairs, two are spread over the axes and one
-/// towards the horizon; all pairs held out are uniform.
-enum class HalfwayPart { fitted, heldOut };
+/// Three disjoint sequences of pairs: those that are fitted, pairs of all spreads that take no part,
+/// and uniform pairs that take no part.
+enum class HalfwayPart { fitted, heldOut, heldOutUniform };
 
 /// Appends pairs number `first` .. `last` - 1 of the sequence of a part, those below the horizon
 /// left out. The sequence is Roberts' R_d, frac(1/2 + n / phi_d^j) with phi_d^{d+1} = phi_d + 1

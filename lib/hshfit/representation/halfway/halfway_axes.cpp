@@ -1,0 +1,51 @@
+#include <hshfit/representation/halfway/halfway_axes.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hshfit::inline representation::inline halfway {
+namespace {
+
+double stretchOf(double roughness) {
+    return std::sqrt(1 / (roughness * roughness) - 1);
+}
+
+}  // namespace
+
+HalfwayAxes::HalfwayAxes(const HalfwayLobe& lobe) {
+    const double c = std::cos(lobe.turn), s = std::sin(lobe.turn);
+    const double along = stretchOf(lobe.along), across = stretchOf(lobe.across);
+    const double least = std::min(lobe.along, lobe.across);
+    constants_ = {.xx = along * c,
+                  .xy = along * s,
+                  .yx = -across * s,
+                  .yy = across * c,
+                  .perLog = 1 / (-2 * std::log(least)),
+                  .amplitude = 1 / (2 * pi * lobe.along * lobe.across),
+                  .shelf = lobe.shelf};
+}
+
+HalfwayPoint HalfwayAxes::at(const Direction& wi, const Direction& wo) const {
+    const Constants& k = constants_;
+    const double hx = wi.x + wo.x, hy = wi.y + wo.y, hz = wi.z + wo.z;
+    const double across = hx * hx + hy * hy, square = across + hz * hz;
+    const double gx = k.xx * hx + k.xy * hy, gy = k.yx * hx + k.yy * hy;
+    const double stretched = gx * gx + gy * gy, radius = std::sqrt(stretched);
+    const double q = stretched / square;
+    const double ei = std::cbrt(wi.z), eo = std::cbrt(wo.z);
+    HalfwayPoint p;
+    p.mean = (ei + eo) / 2;
+    p.product = ei * eo;
+    p.gap = eo - ei;
+    p.v = std::min(1.0, std::sqrt(square) / 2);
+    p.x = std::log1p(q) * k.perLog;
+    p.kappa = (wo.z - wi.z) / (2 * std::sqrt(across / square) + 1e-9);
+    p.handed = wi.x * wo.y - wi.y * wo.x;
+    p.cosine = radius > 0 ? gx / radius : 1;
+    p.sine = radius > 0 ? gy / radius : 0;
+    const double denominator = wi.z * wo.z + (wi.z + wo.z) / 2 + k.shelf;
+    p.weight = k.amplitude / ((1 + q) * (1 + q) * denominator);
+    return p;
+}
+
+}  // namespace hshfit::inline representation::inline halfway

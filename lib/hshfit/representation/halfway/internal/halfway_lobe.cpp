@@ -1,0 +1,150 @@
+#include <hshfit/representation/halfway/internal/halfway_lobe.h>
+
+#include <hshfit/representation/halfway/internal/halfway_albedo.h>
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace hshfit::inline representation::inline halfway {
+namespace {
+
+constexpr std::size_t isotropicPairs = 3 << 14, anisotropicPairs = 3 << 16, pairsPerTerm = 24;
+constexpr double floorOfAlbedo = 1e-3;
+/// f of no albedo at all has a floor too.
+constexpr double leastFloor = 1e-30;
+/// The orders that lobes are tried with, and the steps.
+constexpr HalfwayOrders few{8, 4, 4};
+constexpr int trialSteps = 7;
+constexpr std::array widths{1e-4, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.06, 0.12, 0.25, 0.5, 0.9};
+constexpr double finer = 1.4;
+constexpr std::array shelves{0.01, 0.002, 0.05};
+constexpr std::array ratios{1.5, 2.5, 4.0, 7.0, 12.0};
+constexpr int turns = 8;
+
+double inSingle(double value) {
+    return static_cast<double>(static_cast<float>(value));
+}
+
+HalfwayLobe lobeOf(double width, double ratio, double turn, double shelf) {
+    const auto held = [](double w) { return inSingle(std::clamp(w, 2e-5, 0.89)); };
+    const double root = std::sqrt(ratio);
+    return {held(width * root), held(width / root), inSingle(turn), inSingle(shelf)};
+}
+
+/// The best of some lobes.
+class Trials {
+public:
+    Trials(const HalfwaySamples& grey, const HalfwayTerms& terms, double floor)
+        : grey_(grey), terms_(terms), floor_(floor) {}
+
+    void add(const std::vector<HalfwayLobe>& lobes) {
+        std::vector<double> losses(lobes.size());
+        std::vector<HalfwayValues> values(lobes.size());
+        tbb::parallel_for(std::size_t{0}, lobes.size(),
+                          [&](std::size_t k) { losses[k] = fit(lobes[k], values[k]); });
+        for (std::size_t k = 0; k < lobes.size(); ++k) {
+            if (!(losses[k] < least_)) continue;
+            least_ = losses[k];
+            best_ = {lobes[k], terms_.orders(), std::move(values[k])};
+        }
+    }
+    const LobeFound& best() const { return best_; }
+
+private:
+    double fit(const HalfwayLobe& lobe, HalfwayValues& values) const {
+        const HalfwayAxes axes(lobe);
+        const HalfwayModel model{terms_, axes, floor_};
+        values = descended(model, {grey_, nullptr, roughHuber}, halfwayStart(model, grey_),
+                           trialSteps);
+        values = descended(model, {grey_, nullptr, fineHuber}, std::move(values), trialSteps);
+        return halfwayLoss(model, grey_, fineHuber, values);
+    }
+
+    const HalfwaySamples& grey_;
+    const HalfwayTerms& terms_;
+    double floor_, least_ = std::numeric_limits<double>::infinity();
+    LobeFound best_;
+};
+
+bool same(const HalfwayTerm& a, const HalfwayTerm& b) {
+    return a.lobe == b.lobe && a.i == b.i && a.j == b.j && a.k == b.k && a.q == b.q &&
+           a.exchange == b.exchange && a.mirror == b.mirror && a.sine == b.sine;
+}
+
+}  // namespace
+
+double halfwayFloor(const HalfwayAlbedo& albedo) {
+    return std::max(leastFloor, floorOfAlbedo * albedo.greatestMean());
+}
+
+std::size_t halfwayPairsFor(const HalfwayTerms& terms, bool isotropic) {
+    return std::max(isotropic ? isotropicPairs : anisotropicPairs, pairsPerTerm * terms.size());
+}
+
+LobeFound chooseLobe(const HalfwaySamples& grey, const HalfwayOrders& orders,
+                     const HalfwaySymmetry& symmetry, double floor) {
+    const HalfwayOrders smaller{std::min(orders.half, few.half),
+                                std::min(orders.difference, few.difference),
+                                std::min(orders.azimuth, few.azimuth)};
+    const HalfwayTerms terms(smaller, symmetry);
+    Trials trials(grey, terms, floor);
+    std::vector<HalfwayLobe> tried;
+    for (const double width : widths) tried.push_back(lobeOf(width, 1, 0, shelves[0]));
+    trials.add(tried);
+    if (!symmetry.isotropic) {
+        const double width = trials.best().lobe.along;
+        tried.clear();
+        for (const double ratio : ratios) {
+            for (int n = 0; n < (symmetry.bilateral ? 2 : turns); ++n) {
+                const double turn = symmetry.bilateral ? 0 : pi * n / turns;
+                const double along = symmetry.bilateral && n == 1 ? 1 / ratio : ratio;
+                tried.push_back(lobeOf(width, along, turn, shelves[0]));
+            }
+        }
+        trials.add(tried);
+    }
+    const HalfwayLobe near = trials.best().lobe;
+    const double width = std::sqrt(near.along * near.across), ratio = near.along / near.across;
+    tried.clear();
+    for (const double factor : {1 / finer, 1.0, finer}) {
+        for (const double shelf : shelves)
+            tried.push_back(lobeOf(width * factor, ratio, near.turn, shelf));
+    }
+    trials.add(tried);
+    return trials.best();
+}
+
+HalfwayValues startFrom(const LobeFound& found, const HalfwayModel& model,
+                        const HalfwaySamples& samples, const HalfwaySymmetry& symmetry) {
+    const HalfwayTerms few(found.orders, symmetry);
+    const std::size_t channels = samples.channels();
+    HalfwayValues values = HalfwayValues::Zero(static_cast<Eigen::Index>(model.terms.size()),
+                                               static_cast<Eigen::Index>(channels));
+    for (std::size_t t = 0; t < few.size(); ++t) {
+        const auto place = std::ranges::find_if(
+            model.terms.list(), [&](const HalfwayTerm& term) { return same(term, few.list()[t]); });
+        values.row(place - model.terms.list().begin())
+            .setConstant(found.values(static_cast<Eigen::Index>(t), 0));
+    }
+    // Each channel in the median of its ratios to what the mean channel has.
+    const std::vector<double> now = halfwayAt(model, samples.pairs, values);
+    for (std::size_t c = 0; c < channels; ++c) {
+        std::vector<double> ratios;
+        for (std::size_t k = c; k < now.size(); k += channels)
+            ratios.push_back((samples.values[k] + 1e-2 * model.floor) / (now[k] + model.floor));
+        const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+        std::nth_element(ratios.begin(), middle, ratios.end());
+        const double shift = std::log(*middle);
+        const auto column = static_cast<Eigen::Index>(c);
+        values(0, column) += shift;
+        values(static_cast<Eigen::Index>(model.terms.smooth()), column) += shift;
+    }
+    return values;
+}
+
+}  // namespace hshfit::inline representation::inline halfway

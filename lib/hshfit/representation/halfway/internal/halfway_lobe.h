@@ -1,0 +1,39 @@
+#pragma once
+
+#include <hshfit/representation/halfway/internal/halfway_fit.h>
+
+#include <cstddef>
+
+namespace hshfit::inline representation::inline halfway {
+
+/// Where errors of the logarithm begin to count as themselves, not as squares: on the way from
+/// constants, and in the end.
+inline constexpr double roughHuber = 1, fineHuber = 0.05;
+/// Pairs that the lobe is chosen by.
+inline constexpr std::size_t lobePairs = 6000;
+
+/// e of ln(f + e): a thousandth of the greatest mean albedo.
+double halfwayFloor(const HalfwayAlbedo& albedo);
+
+/// As many pairs as the coefficients need: at least 24 for a term.
+std::size_t halfwayPairsFor(const HalfwayTerms& terms, bool isotropic);
+
+/// A lobe, and the coefficients of few terms that it was chosen with, of one channel.
+struct LobeFound {
+    HalfwayLobe lobe;
+    HalfwayOrders orders;
+    HalfwayValues values;
+};
+
+/// The lobe whose form of few terms has the least loss over samples of one channel: of widths from
+/// 1e-4 to 0.9, then, where f is not isotropic, of ratios of the widths to 12, and where it is not
+/// bilateral, of turns; then of shelves. All are numbers of single precision.
+LobeFound chooseLobe(const HalfwaySamples& grey, const HalfwayOrders& orders,
+                     const HalfwaySymmetry& symmetry, double floor);
+
+/// Coefficients of all terms and channels to begin with: those that the lobe was chosen with, in
+/// the brightness of each channel.
+HalfwayValues startFrom(const LobeFound& found, const HalfwayModel& model,
+                        const HalfwaySamples& samples, const HalfwaySymmetry& symmetry);
+
+}  // namespace hshfit::inline representation::inline halfway
