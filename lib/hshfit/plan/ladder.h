@@ -18,8 +18,7 @@ using scene::Scene;
 struct Rung {
     Form form;
     std::size_t source = 0;  ///< which of the material's versions (all channels, one channel)
-    /// Expected size of the numbers. Factors of low rank take less, an envelope of more than one
-    /// node takes more.
+    /// Expected size of the numbers. Factors of low rank take less.
     std::size_t bytes = 0;
 };
 

@@ -86,7 +86,7 @@ TEST(FormPayload, EveryKeptNumberIsInTheStreamOnce) {
         // The lobe and the ceilings are numbers beside the arrays.
         std::size_t beside = 0;
         if (sample.form.as<HalfwayArray>()) {
-            beside = 2 * sample.form.head.channels.count() + (sample.form.head.isotropic ? 1 : 3);
+            beside = 2 * sample.form.head.channels.count() + (sample.form.head.isotropic ? 2 : 4);
         }
         EXPECT_EQ(places.size(), sample.form.numbers() - beside);
     }
@@ -132,8 +132,9 @@ TEST(FormFiles, ChangedSidecarsAreRefused) {
         {"\"precision\":\"half\"", "\"precision\":\"unorm8\""},
         {"\"precision\":\"half\"", "\"precision\":\"quarter\""},
         {"\"numbers\":", "\"numbers\":1"},
-        {"\"ridge\":0.1", "\"ridge\":-1"},
-        {"\"width\":64", "\"width\":63"},
+        {"\"along\":0.3", "\"along\":-1"},
+        {"\"across\":0.3", "\"across\":0.2"},
+        {"\"width\":51", "\"width\":50"},
         {"\"head\":\"\"", "\"head\":\"AAAA\""},
         {"\"version\": 2", "\"version\": 3"},
         {"\"isotropic\":true", "\"isotropic\":false"},

@@ -6,6 +6,8 @@
 namespace hshfit::inline representation::inline halfway {
 namespace {
 
+constexpr double leastSquare = 1e-280;
+
 double stretchOf(double roughness) {
     return std::sqrt(1 / (roughness * roughness) - 1);
 }
@@ -28,7 +30,9 @@ HalfwayAxes::HalfwayAxes(const HalfwayLobe& lobe) {
 HalfwayPoint HalfwayAxes::at(const Direction& wi, const Direction& wo) const {
     const Constants& k = constants_;
     const double hx = wi.x + wo.x, hy = wi.y + wo.y, hz = wi.z + wo.z;
-    const double across = hx * hx + hy * hy, square = across + hz * hz;
+    const double across = hx * hx + hy * hy;
+    // wi = -wo at the horizon has no half vector.
+    const double square = std::max(across + hz * hz, leastSquare);
     const double gx = k.xx * hx + k.xy * hy, gy = k.yx * hx + k.yy * hy;
     const double stretched = gx * gx + gy * gy, radius = std::sqrt(stretched);
     const double q = stretched / square;

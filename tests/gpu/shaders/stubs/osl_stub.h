@@ -69,6 +69,12 @@ inline float exp(float a) {
 inline float exp2(float a) {
     return __builtin_exp2f(a);
 }
+inline float log(float a) {
+    return __builtin_logf(a);
+}
+inline float pow(float a, float b) {
+    return __builtin_powf(a, b);
+}
 inline vector exp(vector a) {
     return {exp(a.x), exp(a.y), exp(a.z)};
 }
