@@ -46,7 +46,9 @@ Ordered describe(const Representation& r) {
                        {"across", content.lobe.across},
                        {"turn", content.lobe.turn},
                        {"shelf", content.lobe.shelf}};
-        out["ceilings"] = content.ceilings;
+        Ordered& ceilings = out["ceilings"] = Ordered::array();
+        for (const HalfwayCeiling& each : content.ceilings)
+            ceilings.push_back({{"smooth", each.smooth}, {"lobe", each.lobe}, {"top", each.top}});
     }
     if (!r.added.empty()) out["added"] = r.added;
     out["bytes"] = r.bytes();
@@ -222,7 +224,10 @@ Representation representationFromJson(std::string_view text, const std::string& 
         const JsonFields lobe = part.object("lobe");
         content.lobe = {lobe.number("along"), lobe.number("across"), lobe.number("turn"),
                         lobe.number("shelf")};
-        content.ceilings = part.numbers("ceilings");
+        for (const JsonFields& each : part.objects("ceilings")) {
+            content.ceilings.push_back(
+                {each.number("smooth"), each.number("lobe"), each.number("top")});
+        }
     }
     if (r.kind() != Kind::halfway && r.head.basis.empty()) fields.fail("is missing", "basis");
     if (r.kind() == Kind::basis) ShapeCheck(r, part).basis();

@@ -81,7 +81,7 @@ private:
     /// The widths, the turn and the shelf of the lobe, and the ceilings.
     std::size_t lobeBytes() const {
         const std::size_t widths = laws_.isotropic ? 2 : 4;
-        return 4 * (widths + 2 * channels_);
+        return 4 * (widths + 3 * channels_);
     }
 
     void add(Form form, const Shapes& shapes, std::size_t more = 0) {

@@ -29,7 +29,7 @@ std::size_t countNumbers(std::string_view spec) {
 /// Numbers besides those of the arrays.
 std::size_t looseNumbers(const Representation& representation) {
     const auto* halfway = representation.as<HalfwayArray>();
-    std::size_t own = halfway ? halfway->ceilings.size() + 2 : 0;
+    std::size_t own = halfway ? 3 * halfway->ceilings.size() + 2 : 0;
     // A lobe of two widths and a turn.
     if (halfway && !representation.head.isotropic) own += 2;
     return countNumbers(representation.added) + own;

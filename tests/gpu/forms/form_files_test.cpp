@@ -86,7 +86,7 @@ TEST(FormPayload, EveryKeptNumberIsInTheStreamOnce) {
         // The lobe and the ceilings are numbers beside the arrays.
         std::size_t beside = 0;
         if (sample.form.as<HalfwayArray>()) {
-            beside = 2 * sample.form.head.channels.count() + (sample.form.head.isotropic ? 2 : 4);
+            beside = 3 * sample.form.head.channels.count() + (sample.form.head.isotropic ? 2 : 4);
         }
         EXPECT_EQ(places.size(), sample.form.numbers() - beside);
     }

@@ -45,7 +45,7 @@ FormSample sample(const std::string& name, const Asked& asked, unsigned seed) {
     if (asked.keep > 0) keepLargest(content.halfway, asked.keep);
     quantise(content.halfway, asked.precision);
     content.lobe = {0.3, asked.symmetry.isotropic ? 0.3 : 0.12, 0};
-    content.ceilings.assign(2 * channels, asked.ceiling);
+    content.ceilings.assign(channels, {asked.ceiling, asked.ceiling, std::exp(asked.ceiling + 1)});
     r.content = std::move(content);
     return {name, std::move(r)};
 }

@@ -83,7 +83,7 @@ Representation inSpan(const HalfwayOrders& orders, const HalfwaySymmetry& symmet
         row[0] = row[terms.smooth()] = -0.5;
         array.values.insert(array.values.end(), row.begin(), row.end());
     }
-    r.content = HalfwayArray{array, lobeFor(symmetry), std::vector<double>(2 * count, 1.0)};
+    r.content = HalfwayArray{array, lobeFor(symmetry), std::vector<HalfwayCeiling>(count, {1, 1, 100})};
     return r;
 }
 
@@ -331,7 +331,7 @@ TEST(Halfway, HeldOutErrorIsTheMetricOverUniformPairs) {
     const FormulaBrdf constant(
         [=](const Direction& wi, const Direction& wo) { return wi.z > 0 && wo.z > 0 ? f : 0.0; });
     Representation none = inSpan({1, 1, 1}, {.isotropic = true}, 1);
-    none.as<HalfwayArray>()->ceilings = {-1e4, -1e4};
+    none.as<HalfwayArray>()->ceilings = {{-1e4, -1e4, 1}};
     const double mean = (1 + f) * std::log(1 + f) / f - 1;
     EXPECT_NEAR(halfwayError(constant, none), mean, 1e-4);
     const Representation fitted = projectHalfway(constant, {4, 2, 2});

@@ -134,7 +134,7 @@ Representation halfwayForm(std::size_t channels, bool isotropic) {
     const std::size_t terms = HalfwayTerms(r.halfway, halfwaySymmetryOf(r.head)).size();
     HalfwayArray content{.halfway = {.shape = {channels, terms}, .values = {}},
                          .lobe = {0.4, isotropic ? 0.4 : 0.2, 0},
-                         .ceilings = std::vector<double>(2 * channels, 0.1)};
+                         .ceilings = std::vector<HalfwayCeiling>(channels, {0.1, 0.1, 2})};
     for (std::size_t k = 0; k < channels * terms; ++k)
         content.halfway.values.push_back(numberAt(k) / static_cast<double>(1 + k % terms));
     r.content = std::move(content);

@@ -17,7 +17,7 @@ namespace hshfit::gpu::inline forms {
 std::span<const FormRow> formTable() {
     static const std::array rows{
         FormRow{Representation::Kind::halfway,
-                "f = exp(min(a, sum_t c_t P_t)) + L exp(min(b, sum_u c_u P_u))", "",
+                "f = min(t, exp(min(a, sum_t c_t P_t)) + L exp(min(b, sum_u c_u P_u)))", "",
                 halfwayStream, embedded::form_halfway, fillHalfway},
         FormRow{Representation::Kind::basis, "f = sum_t c_t P_t(wi, wo)",
                 "f = q / cos(theta_i), q = f cos(theta_i) = sum_t c_t P_t(wi, wo)", basisStream,

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 namespace hshfit::gpu::inline forms {
 namespace {
@@ -182,19 +183,23 @@ void setLobe(const Layout& layout, bool isotropic, FormText& text) {
     text.cost.products += round ? 13 : 17;
 }
 
-/// The ceilings of the channels of each output, to the base of the text's exponential.
+/// The ceilings of the channels of each output; exponents to the base of the text's exponential.
 void setCeilings(const HalfwayExpansion& expansion, FormText& text) {
     const double unit = text.constants ? std::numbers::log2e : 1;
+    const std::tuple<const char*, double HalfwayCeiling::*, double> parts[] = {
+        {"smooth", &HalfwayCeiling::smooth, unit},
+        {"lobe", &HalfwayCeiling::lobe, unit},
+        {"top", &HalfwayCeiling::top, 1}};
     data rows{data::type::list};
     for (std::size_t c = 0; c < text.channels(); c += text.together()) {
         data row;
         row.set("i", std::to_string(c));
         row.set("vector", text.together() > 1);
-        for (const std::size_t part : {0U, 1U}) {
+        for (const auto& [name, member, scale] : parts) {
             std::vector<std::string> numbers;
             for (std::size_t k = c; k < c + text.together(); ++k)
-                numbers.push_back(shaderNumber(expansion.ceilings()[2 * k + part] * unit));
-            row.set(part == 0 ? "smooth" : "lobe", fmt::format("{}", fmt::join(numbers, ", ")));
+                numbers.push_back(shaderNumber(expansion.ceilings()[k].*member * scale));
+            row.set(name, fmt::format("{}", fmt::join(numbers, ", ")));
         }
         rows.push_back(row);
     }

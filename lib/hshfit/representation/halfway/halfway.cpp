@@ -65,10 +65,14 @@ HalfwayExpansion::HalfwayExpansion(const Representation& representation)
         }
     }
     ceilings_ = content.ceilings;
-    const auto finite = [](double value) { return std::isfinite(value); };
-    if (ceilings_.size() != 2 * channels_ || !std::ranges::all_of(ceilings_, finite)) {
-        fail(representation, fmt::format("the halfway form needs {} finite ceilings, two a channel",
-                                         2 * channels_));
+    const auto holds = [](const HalfwayCeiling& ceiling) {
+        return std::isfinite(ceiling.smooth) && std::isfinite(ceiling.lobe) && ceiling.top >= 0 &&
+               std::isfinite(ceiling.top);
+    };
+    if (ceilings_.size() != channels_ || !std::ranges::all_of(ceilings_, holds)) {
+        fail(representation,
+             fmt::format("the halfway form needs {} ceilings of finite numbers, one a channel",
+                         channels_));
     }
 }
 
@@ -89,9 +93,11 @@ void HalfwayExpansion::evaluate(const Direction& wo, DirectionBatch wi, double* 
             }
         }
         for (std::size_t c = 0; c < channels_; ++c) {
-            out[c * wi.count + k] =
-                std::exp(std::min(sums[2 * c], ceilings_[2 * c])) +
-                point.weight * std::exp(std::min(sums[2 * c + 1], ceilings_[2 * c + 1]));
+            const HalfwayCeiling& ceiling = ceilings_[c];
+            const double f =
+                std::exp(std::min(sums[2 * c], ceiling.smooth)) +
+                point.weight * std::exp(std::min(sums[2 * c + 1], ceiling.lobe));
+            out[c * wi.count + k] = std::min(f, ceiling.top);
         }
     }
 }

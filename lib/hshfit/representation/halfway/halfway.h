@@ -14,9 +14,9 @@
 namespace hshfit::inline representation::inline halfway {
 
 /// The halfway form in double precision, without `added`: a smooth part and a lobe, each positive,
-///     f = exp(min(A, a)) + L exp(min(B, b)),
+///     f = min(exp(min(A, a)) + L exp(min(B, b)), t),
 /// where A and B are sums of coefficients times the smooth terms and those of the lobe
-/// (halfway_terms.h), L is the lobe of halfway_axes.h, and a, b are the ceilings of the channel.
+/// (halfway_terms.h), L is the lobe of halfway_axes.h, and a, b, t are the ceilings of the channel.
 /// Immutable; safe to use from many threads.
 class HalfwayExpansion {
 public:
@@ -25,8 +25,7 @@ public:
 
     const HalfwayTerms& terms() const { return terms_; }
     const HalfwayAxes& axes() const { return axes_; }
-    /// [channel][smooth, lobe]
-    const std::vector<double>& ceilings() const { return ceilings_; }
+    const std::vector<HalfwayCeiling>& ceilings() const { return ceilings_; }
 
     /// Laid out as for `Brdf::eval`: out[channel * wi.count + k], 1/sr, 0 below the horizon.
     void evaluate(const Direction& wo, DirectionBatch wi, double* out) const;
@@ -36,7 +35,7 @@ private:
     HalfwayAxes axes_;
     std::size_t channels_;
     std::vector<double> values_;  ///< [term][channel]
-    std::vector<double> ceilings_;
+    std::vector<HalfwayCeiling> ceilings_;
 };
 
 /// More terms a channel than that take too long to fit: time goes with the square of their number.
@@ -50,7 +49,7 @@ std::unique_ptr<PairEvaluator> halfwayPairEvaluator(const Representation& repres
 /// mirror direction, on its ridge, on lines through the highlight, towards the horizon and at
 /// normal incidence (halfway_samples.h), with the directional albedos as residuals of their own
 /// (halfway_albedo.h), by Levenberg and Marquardt's method. The lobe's width is the best of a set.
-/// f < 0 counts as 0. The ceilings are the greatest exponents over the pairs. `head.error` and the
+/// f < 0 counts as 0. The ceilings are the greatest exponents, and the greatest f, over the pairs. `head.error` and the
 /// last step are the error over pairs that took no part, as halfwayError has it. Results do not
 /// depend on threads. Terms keep the symmetries of `brdf.laws()`; `reciprocal` asks for those only
 /// that are symmetric in wi and wo, and for an isotropic BRDF mirror symmetric. Of `options` only

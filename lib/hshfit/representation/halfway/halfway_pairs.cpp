@@ -83,8 +83,10 @@ HalfwayLayout layoutOf(const Representation& r, const HalfwayExpansion& expansio
             }
         }
     }
-    for (const double ceiling : expansion.ceilings())
-        layout.ceilings.push_back(static_cast<float>(ceiling));
+    for (const HalfwayCeiling& ceiling : expansion.ceilings()) {
+        for (const double value : {ceiling.smooth, ceiling.lobe, ceiling.top})
+            layout.ceilings.push_back(static_cast<float>(value));
+    }
     const HalfwayCounts& counts = terms.counts();
     const int most = std::max({counts.mean, counts.x, counts.v, counts.product});
     for (int n = 0; n < most; ++n) {

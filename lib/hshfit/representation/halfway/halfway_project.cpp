@@ -147,8 +147,7 @@ Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
                        stepDone);
     content.halfway = {.shape = {r.head.channels.count(), terms.size()}, .values = {}};
     content.halfway.values.assign(values.data(), values.data() + values.size());
-    for (const double ceiling : halfwayCeilings(model, samples, values))
-        content.ceilings.push_back(static_cast<double>(static_cast<float>(ceiling)));
+    content.ceilings = halfwayCeilings(model, samples, values);
     r.content = std::move(content);
     r.head.error = halfwayError(brdf, r);
     r.steps.push_back({fmt::format("halfway {},{},{}: mean log error over pairs held out",
@@ -212,7 +211,7 @@ HalfwayOrders chooseHalfwayOrders(const Brdf& brdf, std::size_t bytes, Precision
             .halfway = {.shape = {channels, terms.size()},
                         .precision = precision,
                         .values = std::vector<double>(channels * terms.size())},
-            .ceilings = std::vector<double>(2 * channels)};
+            .ceilings = std::vector<HalfwayCeiling>(channels)};
         if (terms.size() <= mostHalfwayTerms && empty.bytes() <= bytes) within.push_back(orders);
     }
     if (within.empty()) {

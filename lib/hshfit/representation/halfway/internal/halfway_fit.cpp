@@ -24,7 +24,7 @@ constexpr std::size_t chunk = 64;
 /// The pull of coefficients to 0: what no sample sees stays small.
 constexpr double pull = 1e-6;
 /// Weights of the ways to draw pairs, by HalfwaySpread.
-constexpr std::array<double, halfwaySpreads> spreadWeights{1, 1, 3, 3, 0.3, 8};
+constexpr std::array<double, halfwaySpreads> spreadWeights{1, 1, 3, 3, 1, 8};
 
 double weightOf(HalfwaySpread spread) {
     return spreadWeights[static_cast<std::size_t>(spread)];
@@ -262,29 +262,35 @@ HalfwayValues descended(const HalfwayModel& model, const HalfwayData& data, Half
     return values;
 }
 
-std::vector<double> halfwayCeilings(const HalfwayModel& model, const HalfwaySamples& samples,
-                                    const HalfwayValues& values) {
+std::vector<HalfwayCeiling> halfwayCeilings(const HalfwayModel& model,
+                                            const HalfwaySamples& samples,
+                                            const HalfwayValues& values) {
     constexpr double counts = 1e-2, nothing = -1e4;
     const std::size_t channels = samples.channels();
-    std::vector<double> ceilings(2 * channels, nothing);
-    std::vector<bool> zero(channels, true);
-    for (std::size_t k = 0; k < samples.values.size(); ++k)
-        if (samples.values[k] > 0) zero[k % channels] = false;
+    std::vector<HalfwayCeiling> ceilings(channels, {nothing, nothing, 0});
+    for (std::size_t k = 0; k < samples.values.size(); ++k) {
+        double& top = ceilings[k % channels].top;
+        top = std::max(top, samples.values[k]);
+    }
     Evaluation form(model, values);
     for (std::size_t first = 0; first < samples.size(); first += chunk) {
         const std::size_t count = std::min(chunk, samples.size() - first);
         form.at(samples.pairs, first, count);
         for (std::size_t c = 0; c < channels; ++c) {
-            for (std::size_t k = 0; k < count && !zero[c]; ++k) {
+            HalfwayCeiling& ceiling = ceilings[c];
+            for (std::size_t k = 0; k < count; ++k) {
                 const TwoParts parts = form.parts(k, static_cast<Index>(c));
                 const TwoParts exponents = form.exponents(k, static_cast<Index>(c));
                 const double least = counts * (parts.smooth + parts.lobe + model.floor);
                 if (parts.smooth > least)
-                    ceilings[2 * c] = std::max(ceilings[2 * c], exponents.smooth);
-                if (parts.lobe > least)
-                    ceilings[2 * c + 1] = std::max(ceilings[2 * c + 1], exponents.lobe);
+                    ceiling.smooth = std::max(ceiling.smooth, exponents.smooth);
+                if (parts.lobe > least) ceiling.lobe = std::max(ceiling.lobe, exponents.lobe);
             }
         }
+    }
+    for (HalfwayCeiling& ceiling : ceilings) {
+        for (double* value : {&ceiling.smooth, &ceiling.lobe, &ceiling.top})
+            *value = static_cast<double>(static_cast<float>(*value));
     }
     return ceilings;
 }

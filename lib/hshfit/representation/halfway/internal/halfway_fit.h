@@ -56,9 +56,9 @@ HalfwayValues halfwayStart(const HalfwayModel& model, const HalfwaySamples& samp
 HalfwayValues descended(const HalfwayModel& model, const HalfwayData& data, HalfwayValues values,
                         int steps, const std::function<void()>& stepDone = {});
 
-/// The greatest exponents over the samples where their part of f counts: [channel][smooth, lobe].
-/// A channel of zeros has such as make it 0.
-std::vector<double> halfwayCeilings(const HalfwayModel& model, const HalfwaySamples& samples,
+/// The greatest exponents over the samples where their part counts, and the greatest f of the BRDF:
+/// for each channel, in single precision.
+std::vector<HalfwayCeiling> halfwayCeilings(const HalfwayModel& model, const HalfwaySamples& samples,
                                     const HalfwayValues& values);
 
 /// f at pairs, [pair][channel], without ceilings.

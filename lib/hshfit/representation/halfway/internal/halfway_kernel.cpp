@@ -179,7 +179,7 @@ void sumChannels(const HalfwayLayout& layout, const float* table, std::size_t fi
         addRuns<Channels>(layout, 0, layout.smoothRuns, table, k, value, total[0]);
         addRuns<Channels>(layout, layout.smoothRuns, layout.runs.size(), table, k, value, total[1]);
         for (std::size_t c = 0; c < Channels; ++c) {
-            const float* ceilings = layout.ceilings.data() + 2 * (firstChannel + c);
+            const float* ceilings = layout.ceilings.data() + 3 * (firstChannel + c);
             for (std::size_t n = 0; n < unroll; ++n) {
                 const std::size_t place = k + n * step;
                 const auto load = [&](std::uint16_t row) {
@@ -189,7 +189,8 @@ void sumChannels(const HalfwayLayout& layout, const float* table, std::size_t fi
                     return hn::Exp(lanes,
                                    hn::Min(total[which][c][n], hn::Set(lanes, ceilings[which])));
                 };
-                const Vector f = hn::MulAdd(load(layout.rows.weight), part(1), part(0));
+                const Vector f = hn::Min(hn::MulAdd(load(layout.rows.weight), part(1), part(0)),
+                                         hn::Set(lanes, ceilings[2]));
                 const auto above = hn::Gt(load(layout.rows.above), hn::Zero(lanes));
                 hn::Store(hn::IfThenElseZero(above, f), lanes, out[c] + place);
             }

@@ -35,7 +35,7 @@ struct HalfwayLayout {
     std::size_t smoothRuns = 0;  ///< those of the smooth exponent, which come first
     /// [group of three channels][run][i][channel of the group]
     std::vector<float> values;
-    std::vector<float> ceilings;  ///< [channel][smooth, lobe]
+    std::vector<float> ceilings;  ///< [channel][smooth, lobe, top]
     /// The recurrence of Legendre's polynomials, p_{n+1} = a_n t p_n - b_n p_{n-1}, [n] = {a, b}.
     std::vector<float> steps;
 };

@@ -69,14 +69,14 @@ DirectionPair onLine(double a, double b, double c, double d) {
     return fromHalfDifference(thetaHalf, 2 * pi * d, pi / 2 * b, phiDifference);
 }
 
-/// What the numbers of a sequence are spread as, in turns of 16: five uniform, seven about the
-/// mirror direction, two on lines, one each of the rest; every sixth of the ridge is at normal
+/// What the numbers of a sequence are spread as, in turns of 16: five uniform, six about the
+/// mirror direction, two on lines, two towards the horizon, one on the ridge; every sixth of the ridge is at normal
 /// incidence.
 HalfwaySpread spreadOf(HalfwayPart part, std::size_t n) {
     using enum HalfwaySpread;
     if (part == HalfwayPart::heldOutUniform) return uniform;
     constexpr std::array turns{uniform, mirror, uniform, mirror, line,   mirror, uniform, mirror,
-                               ridge,   mirror, uniform, line,   grazing, mirror, uniform, mirror};
+                               ridge,   mirror, uniform, line,   grazing, grazing, uniform, mirror};
     const HalfwaySpread spread = turns[n % turns.size()];
     return spread == ridge && n / turns.size() % 6 == 5 ? normal : spread;
 }
