@@ -217,9 +217,10 @@ Representation representationFromJson(std::string_view text, const std::string& 
                      .azimuth = orders.integer("azimuth", 1, 256)};
         auto& content = *r.as<HalfwayArray>();
         if (!part.has("lobe")) {
-            part.fail("is missing: files of versions before 2 hold another halfway form; project "
-                      "the material again",
-                      "lobe");
+            part.fail(
+                "is missing: files of versions before 2 hold another halfway form; project "
+                "the material again",
+                "lobe");
         }
         const JsonFields lobe = part.object("lobe");
         content.lobe = {lobe.number("along"), lobe.number("across"), lobe.number("turn"),

@@ -49,14 +49,14 @@ struct MatrixFactors {
 struct HalfwayLobe {
     double along = 0.5, across = 0.5, turn = 0, shelf = 0.05;
 };
-/// What one channel of the halfway form is cut off at: the exponents of both parts, and f.
+/// The bounds of one channel of the halfway form: of the exponents of both parts, and of f.
 struct HalfwayCeiling {
     double smooth = 0, lobe = 0, top = 0;
 };
 /// Kind halfway: the two exponents of halfway.h.
 struct HalfwayArray {
-    StoredArray halfway;                ///< [channel][term]
-    HalfwayLobe lobe = {};              ///< equal widths and no turn where f is isotropic
+    StoredArray halfway;                        ///< [channel][term]
+    HalfwayLobe lobe = {};                      ///< equal widths and no turn where f is isotropic
     std::vector<HalfwayCeiling> ceilings = {};  ///< [channel]
 };
 

@@ -19,8 +19,8 @@ struct RepresentationStep {
     double change = 0;
 };
 
-/// How many functions the halfway form has along the half vector, the difference vector and the
-/// elevations; see halfway_terms.h.
+/// The numbers of functions of the halfway form along the half vector, the difference vector and
+/// the elevations; see halfway_terms.h.
 struct HalfwayOrders {
     int half = 9, difference = 8, azimuth = 6;
 };
@@ -58,9 +58,9 @@ struct Representation {
         return std::get_if<Form>(&content);
     }
 
-    /// Length of all arrays as packed, plus four bytes for each number in `added` and, of the halfway
-    /// form, for the widths of its lobe and its ceilings. Names, shapes and provenance are not counted, as in the sizes that others
-    /// publish.
+    /// Length of all arrays as packed, plus four bytes for each number in `added` and, of the
+    /// halfway form, for the widths of its lobe and its ceilings. Names, shapes and provenance are
+    /// not counted, as in the sizes that others publish.
     std::size_t bytes() const;
     /// The same after Zstandard.
     std::size_t entropyBytes() const;

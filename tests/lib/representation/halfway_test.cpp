@@ -83,7 +83,8 @@ Representation inSpan(const HalfwayOrders& orders, const HalfwaySymmetry& symmet
         row[0] = row[terms.smooth()] = -0.5;
         array.values.insert(array.values.end(), row.begin(), row.end());
     }
-    r.content = HalfwayArray{array, lobeFor(symmetry), std::vector<HalfwayCeiling>(count, {1, 1, 100})};
+    r.content =
+        HalfwayArray{array, lobeFor(symmetry), std::vector<HalfwayCeiling>(count, {1, 1, 100})};
     return r;
 }
 

@@ -84,7 +84,7 @@ int powerOf(const HalfwayTerm& t) {
     return t.lobe ? 2 * t.k + t.exchange : 0;
 }
 
-/// What runs that differ in j only have in common.
+/// The factors that runs have in common that differ in j only.
 SumGroup groupFor(const HalfwayTerm& t) {
     const std::string power = powerOf(t) > 0 ? fmt::format("xk{}", powerOf(t)) : "";
     const std::string harmonic = t.q > 0 ? fmt::format("{}{}", t.sine ? "sq" : "cq", t.q) : "";

@@ -87,8 +87,7 @@ std::vector<double> valueWeights(const Representation& representation) {
 void keep(Representation& representation, std::size_t count) {
     const Representation before = representation;
     const std::vector<double> weights = valueWeights(before);
-    for (const auto& each : namedArrays(representation))
-        keepLargest(*each.array, count, weights);
+    for (const auto& each : namedArrays(representation)) keepLargest(*each.array, count, weights);
     addStep(representation, before, fmt::format("keep {}", count));
 }
 

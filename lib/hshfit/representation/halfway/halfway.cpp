@@ -32,9 +32,10 @@ HalfwayAxes axesOf(const Representation& representation) {
                                          narrowestLobe, widestLobe, width));
     }
     if (!(lobe.shelf >= leastShelf && lobe.shelf <= 1)) {
-        fail(representation, fmt::format("the shelf of the halfway form's lobe is from {} to 1, not "
-                                         "{}",
-                                         leastShelf, lobe.shelf));
+        fail(representation,
+             fmt::format("the shelf of the halfway form's lobe is from {} to 1, not "
+                         "{}",
+                         leastShelf, lobe.shelf));
     }
     const bool round = lobe.along == lobe.across && lobe.turn == 0;
     if (!std::isfinite(lobe.turn) || (representation.head.isotropic && !round)) {
@@ -94,9 +95,8 @@ void HalfwayExpansion::evaluate(const Direction& wo, DirectionBatch wi, double* 
         }
         for (std::size_t c = 0; c < channels_; ++c) {
             const HalfwayCeiling& ceiling = ceilings_[c];
-            const double f =
-                std::exp(std::min(sums[2 * c], ceiling.smooth)) +
-                point.weight * std::exp(std::min(sums[2 * c + 1], ceiling.lobe));
+            const double f = std::exp(std::min(sums[2 * c], ceiling.smooth)) +
+                             point.weight * std::exp(std::min(sums[2 * c + 1], ceiling.lobe));
             out[c * wi.count + k] = std::min(f, ceiling.top);
         }
     }

@@ -49,12 +49,13 @@ std::unique_ptr<PairEvaluator> halfwayPairEvaluator(const Representation& repres
 /// mirror direction, on its ridge, on lines through the highlight, towards the horizon and at
 /// normal incidence (halfway_samples.h), with the directional albedos as residuals of their own
 /// (halfway_albedo.h), by Levenberg and Marquardt's method. The lobe's width is the best of a set.
-/// f < 0 counts as 0. The ceilings are the greatest exponents, and the greatest f, over the pairs. `head.error` and the
-/// last step are the error over pairs that took no part, as halfwayError has it. Results do not
-/// depend on threads. Terms keep the symmetries of `brdf.laws()`; `reciprocal` asks for those only
-/// that are symmetric in wi and wo, and for an isotropic BRDF mirror symmetric. Of `options` only
-/// `progress` (steps done and in all) and `maxEvaluations` (of f by pairs) are used. Throws NumericError where f is not finite,
-/// UsageError for more than mostHalfwayTerms a channel.
+/// f < 0 counts as 0. The ceilings are the greatest exponents, and the greatest f, over the pairs.
+/// `head.error` and the last step are the error over pairs that took no part, as halfwayError has
+/// it. Results do not depend on threads. Terms keep the symmetries of `brdf.laws()`; `reciprocal`
+/// asks for those only that are symmetric in wi and wo, and for an isotropic BRDF mirror symmetric.
+/// Of `options` only `progress` (steps done and in all) and `maxEvaluations` (of f by pairs) are
+/// used. Throws NumericError where f is not finite, UsageError for more than mostHalfwayTerms a
+/// channel.
 Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
                               const ProjectionOptions& options = {}, bool reciprocal = false);
 

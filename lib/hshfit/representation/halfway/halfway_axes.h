@@ -35,7 +35,7 @@ public:
     /// wi and wo above the horizon.
     HalfwayPoint at(const Direction& wi, const Direction& wo) const;
 
-    /// What the formula above needs of the lobe: g_x = xx h_x + xy h_y, g_y = yx h_x + yy h_y;
+    /// The numbers of the lobe in the formula above: g_x = xx h_x + xy h_y, g_y = yx h_x + yy h_y;
     /// 1 / ln(1 + max Q); 1 / (2 pi a b); s.
     struct Constants {
         double xx, xy, yx, yy, perLog, amplitude, shelf;

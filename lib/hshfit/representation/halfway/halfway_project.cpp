@@ -134,8 +134,7 @@ Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
                   std::min(pairs, std::max(options.maxEvaluations, fewestPairs)), samples);
 
     HalfwayArray content;
-    const LobeFound found =
-        chooseLobe(thinned(samples, lobePairs, true), orders, symmetry, floor);
+    const LobeFound found = chooseLobe(thinned(samples, lobePairs, true), orders, symmetry, floor);
     content.lobe = found.lobe;
     const HalfwayAxes axes(content.lobe);
     const HalfwayModel model{terms, axes, floor};
@@ -143,8 +142,8 @@ Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
     const auto stepDone = [&] { steps.done(); };
     HalfwayValues values = descended(model, {few, nullptr, fineHuber},
                                      startFrom(found, model, few, symmetry), roughSteps, stepDone);
-    values = descended(model, {samples, &albedo, fineHuber}, std::move(values), fineSteps,
-                       stepDone);
+    values =
+        descended(model, {samples, &albedo, fineHuber}, std::move(values), fineSteps, stepDone);
     content.halfway = {.shape = {r.head.channels.count(), terms.size()}, .values = {}};
     content.halfway.values.assign(values.data(), values.data() + values.size());
     content.ceilings = halfwayCeilings(model, samples, values);
@@ -207,11 +206,11 @@ HalfwayOrders chooseHalfwayOrders(const Brdf& brdf, std::size_t bytes, Precision
         const HalfwayTerms terms(orders, halfwaySymmetryOf(head));
         Representation empty;
         empty.head = head;
-        empty.content = HalfwayArray{
-            .halfway = {.shape = {channels, terms.size()},
-                        .precision = precision,
-                        .values = std::vector<double>(channels * terms.size())},
-            .ceilings = std::vector<HalfwayCeiling>(channels)};
+        empty.content =
+            HalfwayArray{.halfway = {.shape = {channels, terms.size()},
+                                     .precision = precision,
+                                     .values = std::vector<double>(channels * terms.size())},
+                         .ceilings = std::vector<HalfwayCeiling>(channels)};
         if (terms.size() <= mostHalfwayTerms && empty.bytes() <= bytes) within.push_back(orders);
     }
     if (within.empty()) {

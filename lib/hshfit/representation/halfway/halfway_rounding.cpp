@@ -102,13 +102,12 @@ void quantiseHalfway(Representation& representation, Precision precision, const 
     appendSamples(brdf, HalfwayPart::fitted, 0,
                   halfwayPairsFor(terms, representation.head.isotropic), samples);
     const HalfwayAlbedo albedo = albedoOf(brdf, representation.head.reciprocal);
-    const std::vector<HalfwaySystem> systems = halfwaySystems(
-        {terms, axes, halfwayFloor(albedo)}, {samples, &albedo, fineHuber}, values);
+    const std::vector<HalfwaySystem> systems =
+        halfwaySystems({terms, axes, halfwayFloor(albedo)}, {samples, &albedo, fineHuber}, values);
     std::vector<double> found(fitted.size());
     for (std::size_t c = 0; c < channels; ++c) {
         const std::size_t first = c * terms.size();
-        roundChannel(systems[c].gram, fitted.data() + first, rounded, first,
-                     found.data() + first);
+        roundChannel(systems[c].gram, fitted.data() + first, rounded, first, found.data() + first);
     }
     rounded.values = std::move(found);
 }

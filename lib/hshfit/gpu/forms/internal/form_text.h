@@ -45,7 +45,8 @@ struct FormText {
     std::size_t together() const;
 
     /// The sums s0, s1, … of templates/sums.mustache: one three-vector for RGB, else a number
-    /// per channel; likewise for other letters that groups add to. Texels are loaded once, before the run that needs them first.
+    /// per channel; likewise for other letters that groups add to. Texels are loaded once, before
+    /// the run that needs them first.
     void setSums(const std::vector<SumGroup>& groups);
     /// The outputs f0, f1, …, one for each sum.
     void setOutputs();

@@ -13,6 +13,9 @@ constexpr int outgoingStrata = 12, incomingPairs = 512;
 /// Azimuths of wo in a stratum where f depends on them.
 constexpr int azimuthStrata = 6;
 constexpr double albedoWeight = 10;
+/// Cosines of theta_o below that of 85 degrees do not count: what measured files have there would
+/// rule the rest.
+constexpr double leastCosine = 0.0872;
 
 /// Albedo of one stratum and its derivatives by the coefficients, [term][channel].
 void sumStratum(const HalfwayModel& model, const HalfwayAlbedo& albedo, const HalfwayValues& values,
@@ -100,6 +103,7 @@ void addAlbedo(const HalfwayModel& model, const HalfwayAlbedo& albedo, const Hal
         sumStratum(model, albedo, values, s, sums.data() + s * channels, slopes[s]);
     });
     for (std::size_t s = 0; s < albedo.strata(); ++s) {
+        if (albedo.pairs[albedo.first[s]].wo.z < leastCosine) continue;
         for (std::size_t c = 0; c < channels; ++c) {
             const double target = albedo.targets[s * channels + c];
             if (!(target > 0)) continue;

@@ -24,7 +24,7 @@ constexpr std::size_t chunk = 64;
 /// The pull of coefficients to 0: what no sample sees stays small.
 constexpr double pull = 1e-6;
 /// Weights of the ways to draw pairs, by HalfwaySpread.
-constexpr std::array<double, halfwaySpreads> spreadWeights{1, 1, 3, 3, 1, 8};
+constexpr std::array<double, halfwaySpreads> spreadWeights{1, 1, 3, 3, 0.3, 8};
 
 double weightOf(HalfwaySpread spread) {
     return spreadWeights[static_cast<std::size_t>(spread)];
@@ -65,8 +65,7 @@ public:
         const auto smooth = static_cast<Index>(model_.terms.smooth());
         const Index rest = values_.rows() - smooth;
         smooth_.noalias() = values_.topRows(smooth).transpose() * products_.topRows(smooth);
-        lobe_.noalias() =
-            values_.bottomRows(rest).transpose() * products_.middleRows(smooth, rest);
+        lobe_.noalias() = values_.bottomRows(rest).transpose() * products_.middleRows(smooth, rest);
     }
     /// Of the k-th pair.
     TwoParts parts(std::size_t k, Index channel) const {
@@ -102,9 +101,9 @@ void addSamples(const HalfwayModel& model, const HalfwayData& data, const Halfwa
     const std::size_t channels = samples.channels();
     Evaluation form(model, values);
     const auto rows = static_cast<Index>(form.rows());
-    systems.assign(channels,
-                   {Eigen::MatrixXd::Zero(rows, rows), Eigen::VectorXd::Zero(rows), 0.0});
-    Eigen::MatrixXd slopes(rows, static_cast<Index>(chunk)), scaled(rows, static_cast<Index>(chunk));
+    systems.assign(channels, {Eigen::MatrixXd::Zero(rows, rows), Eigen::VectorXd::Zero(rows), 0.0});
+    Eigen::MatrixXd slopes(rows, static_cast<Index>(chunk)),
+        scaled(rows, static_cast<Index>(chunk));
     std::vector<double> weights(chunk);
     Eigen::VectorXd errors(static_cast<Index>(chunk));
     for (; first < last; first += chunk) {
@@ -178,7 +177,8 @@ std::vector<HalfwaySystem> halfwaySystems(const HalfwayModel& model, const Halfw
     const double share = 1 / weightOf(data.samples);
     std::vector<HalfwaySystem> total(sums[0].size());
     for (std::size_t c = 0; c < total.size(); ++c) {
-        Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(sums[0][c].gram.rows(), sums[0][c].gram.cols());
+        Eigen::MatrixXd gram =
+            Eigen::MatrixXd::Zero(sums[0][c].gram.rows(), sums[0][c].gram.cols());
         total[c].slope = Eigen::VectorXd::Zero(n);
         for (const auto& part : sums) {
             gram += part[c].gram;
@@ -206,10 +206,11 @@ double halfwayLoss(const HalfwayModel& model, const HalfwaySamples& samples, dou
 
 HalfwayValues halfwayStart(const HalfwayModel& model, const HalfwaySamples& samples) {
     const std::size_t channels = samples.channels();
-    HalfwayValues values = HalfwayValues::Zero(static_cast<Index>(model.terms.size()),
-                                               static_cast<Index>(channels));
+    HalfwayValues values =
+        HalfwayValues::Zero(static_cast<Index>(model.terms.size()), static_cast<Index>(channels));
     const auto quantile = [](std::vector<double>& of, double share) {
-        const auto at = of.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(of.size() - 1));
+        const auto at =
+            of.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(of.size() - 1));
         std::nth_element(of.begin(), at, of.end());
         return *at;
     };

@@ -19,7 +19,7 @@ inline constexpr double greatestExponent = 60;
 /// Coefficients [term][channel].
 using HalfwayValues = Eigen::MatrixXd;
 
-/// What does not change while a form is fitted.
+/// The parts that do not change while a form is fitted.
 struct HalfwayModel {
     const HalfwayTerms& terms;
     const HalfwayAxes& axes;
@@ -33,7 +33,8 @@ struct HalfwaySystem {
     double loss = 0;
 };
 
-/// Which samples, and how errors count: as squares up to `huber`, beyond it as themselves.
+/// The samples, and the way in which errors count: as squares up to `huber`, beyond it as
+/// themselves.
 struct HalfwayData {
     const HalfwaySamples& samples;
     const HalfwayAlbedo* albedo;  ///< none: only pairs
@@ -58,8 +59,9 @@ HalfwayValues descended(const HalfwayModel& model, const HalfwayData& data, Half
 
 /// The greatest exponents over the samples where their part counts, and the greatest f of the BRDF:
 /// for each channel, in single precision.
-std::vector<HalfwayCeiling> halfwayCeilings(const HalfwayModel& model, const HalfwaySamples& samples,
-                                    const HalfwayValues& values);
+std::vector<HalfwayCeiling> halfwayCeilings(const HalfwayModel& model,
+                                            const HalfwaySamples& samples,
+                                            const HalfwayValues& values);
 
 /// f at pairs, [pair][channel], without ceilings.
 std::vector<double> halfwayAt(const HalfwayModel& model, const std::vector<DirectionPair>& pairs,

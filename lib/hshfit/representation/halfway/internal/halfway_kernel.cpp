@@ -121,8 +121,7 @@ void fillTable(const HalfwayLayout& layout, const Pairs& pairs, std::size_t k, f
                   row(layout.rows.harmonics));
     }
     const Vector tail = hn::Add(one, q);
-    const Vector denominator =
-        hn::MulAdd(mi, mo, hn::MulAdd(half, sum, set(constants.shelf)));
+    const Vector denominator = hn::MulAdd(mi, mo, hn::MulAdd(half, sum, set(constants.shelf)));
     hn::Store(hn::Div(set(constants.amplitude), hn::Mul(hn::Mul(tail, tail), denominator)), lanes,
               row(layout.rows.weight));
 }

@@ -11,8 +11,8 @@
 
 namespace hshfit::inline representation::inline halfway {
 
-/// Which row of a block's table holds which function of its pairs: first those of the mean from 0
-/// on, then those of the other axes and the factors.
+/// The rows of a block's table, one for each function of its pairs: those of the mean from 0 on,
+/// then those of the other axes and the factors.
 struct HalfwayRows {
     std::uint16_t x, v, product, powers, harmonics, gap, handed, above, weight, count;
 };

@@ -18,11 +18,13 @@ constexpr double floorOfAlbedo = 1e-3;
 /// f of no albedo at all has a floor too.
 constexpr double leastFloor = 1e-30;
 /// The orders that lobes are tried with, and the steps.
-constexpr HalfwayOrders few{8, 4, 4};
-constexpr int trialSteps = 7;
-constexpr std::array widths{1e-4, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.06, 0.12, 0.25, 0.5, 0.9};
+constexpr HalfwayOrders few{9, 7, 5};
+constexpr int trialSteps = 8;
+constexpr std::array widths{0.9, 0.5, 0.25, 0.12, 0.06, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4};
 constexpr double finer = 1.4;
-constexpr std::array shelves{0.01, 0.002, 0.05};
+/// Lobes are no narrower than a part of the half width of the peak.
+constexpr double narrower = 2;
+constexpr std::array shelves{0.05, 0.01, 0.002};
 constexpr std::array ratios{1.5, 2.5, 4.0, 7.0, 12.0};
 constexpr int turns = 8;
 
@@ -47,11 +49,11 @@ public:
         std::vector<HalfwayValues> values(lobes.size());
         tbb::parallel_for(std::size_t{0}, lobes.size(),
                           [&](std::size_t k) { losses[k] = fit(lobes[k], values[k]); });
-        for (std::size_t k = 0; k < lobes.size(); ++k) {
-            if (!(losses[k] < least_)) continue;
-            least_ = losses[k];
-            best_ = {lobes[k], terms_.orders(), std::move(values[k])};
-        }
+        const auto least = std::ranges::min_element(losses);
+        if (!(*least < least_)) return;
+        const auto k = static_cast<std::size_t>(least - losses.begin());
+        least_ = *least;
+        best_ = {lobes[k], terms_.orders(), std::move(values[k])};
     }
     const LobeFound& best() const { return best_; }
 
@@ -59,8 +61,8 @@ private:
     double fit(const HalfwayLobe& lobe, HalfwayValues& values) const {
         const HalfwayAxes axes(lobe);
         const HalfwayModel model{terms_, axes, floor_};
-        values = descended(model, {grey_, nullptr, roughHuber}, halfwayStart(model, grey_),
-                           trialSteps);
+        values =
+            descended(model, {grey_, nullptr, roughHuber}, halfwayStart(model, grey_), trialSteps);
         values = descended(model, {grey_, nullptr, fineHuber}, std::move(values), trialSteps);
         return halfwayLoss(model, grey_, fineHuber, values);
     }
@@ -70,6 +72,36 @@ private:
     double floor_, least_ = std::numeric_limits<double>::infinity();
     LobeFound best_;
 };
+
+/// sin(theta_h) where f about the mirror direction has fallen to half between its peak and its
+/// base, in the medians of the samples by powers of ten; 1 where there is no peak.
+double halfWidth(const HalfwaySamples& grey) {
+    constexpr int perDecade = 5, decades = 4;
+    std::array<std::vector<double>, perDecade * decades> bins;
+    for (std::size_t k = 0; k < grey.size(); ++k) {
+        if (grey.spread[k] != HalfwaySpread::mirror) continue;
+        const auto& [wi, wo] = grey.pairs[k];
+        const double x = wi.x + wo.x, y = wi.y + wo.y, z = wi.z + wo.z;
+        const double across = x * x + y * y;
+        const double decade = decades + 0.5 * std::log10(across / (across + z * z) + 1e-30);
+        const auto bin = static_cast<std::ptrdiff_t>(std::floor(decade * perDecade));
+        bins[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(bin, 0, std::ssize(bins) - 1))]
+            .push_back(grey.values[k]);
+    }
+    double peak = 0, base = 0;
+    for (auto& bin : bins) {
+        if (bin.empty()) bin.push_back(base);
+        std::ranges::nth_element(bin, bin.begin() + std::ssize(bin) / 2);
+        base = bin[bin.size() / 2];
+        peak = std::max(peak, base);
+    }
+    if (peak < 1.5 * base) return 1;
+    for (std::size_t b = bins.size(); b-- > 0;) {
+        if (bins[b][bins[b].size() / 2] > (peak + base) / 2)
+            return std::pow(10, (static_cast<double>(b) + 1) / perDecade - decades);
+    }
+    return 1;
+}
 
 bool same(const HalfwayTerm& a, const HalfwayTerm& b) {
     return a.lobe == b.lobe && a.i == b.i && a.j == b.j && a.k == b.k && a.q == b.q &&
@@ -94,7 +126,10 @@ LobeFound chooseLobe(const HalfwaySamples& grey, const HalfwayOrders& orders,
     const HalfwayTerms terms(smaller, symmetry);
     Trials trials(grey, terms, floor);
     std::vector<HalfwayLobe> tried;
-    for (const double width : widths) tried.push_back(lobeOf(width, 1, 0, shelves[0]));
+    const double least = halfWidth(grey) / narrower;
+    for (const double width : widths) {
+        if (width >= least || tried.empty()) tried.push_back(lobeOf(width, 1, 0, shelves[0]));
+    }
     trials.add(tried);
     if (!symmetry.isotropic) {
         const double width = trials.best().lobe.along;
@@ -111,7 +146,7 @@ LobeFound chooseLobe(const HalfwaySamples& grey, const HalfwayOrders& orders,
     const HalfwayLobe near = trials.best().lobe;
     const double width = std::sqrt(near.along * near.across), ratio = near.along / near.across;
     tried.clear();
-    for (const double factor : {1 / finer, 1.0, finer}) {
+    for (const double factor : {finer, 1.0, 1 / finer}) {
         for (const double shelf : shelves)
             tried.push_back(lobeOf(width * factor, ratio, near.turn, shelf));
     }

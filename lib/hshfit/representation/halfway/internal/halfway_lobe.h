@@ -10,7 +10,7 @@ namespace hshfit::inline representation::inline halfway {
 /// constants, and in the end.
 inline constexpr double roughHuber = 1, fineHuber = 0.05;
 /// Pairs that the lobe is chosen by.
-inline constexpr std::size_t lobePairs = 6000;
+inline constexpr std::size_t lobePairs = 10000;
 
 /// e of ln(f + e): a thousandth of the greatest mean albedo.
 double halfwayFloor(const HalfwayAlbedo& albedo);
@@ -26,8 +26,9 @@ struct LobeFound {
 };
 
 /// The lobe whose form of few terms has the least loss over samples of one channel: of widths from
-/// 1e-4 to 0.9, then, where f is not isotropic, of ratios of the widths to 12, and where it is not
-/// bilateral, of turns; then of shelves. All are numbers of single precision.
+/// half of the half width of the peak to 0.9, then, where f is not isotropic, of ratios of the
+/// widths to 12, and where it is not bilateral, of turns; then of shelves. All are numbers of
+/// single precision.
 LobeFound chooseLobe(const HalfwaySamples& grey, const HalfwayOrders& orders,
                      const HalfwaySymmetry& symmetry, double floor);
 

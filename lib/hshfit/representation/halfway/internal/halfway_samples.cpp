@@ -13,7 +13,7 @@
 namespace hshfit::inline representation::inline halfway {
 namespace {
 
-/// Where the parts begin in the sequence: no fit gets that far.
+/// The distance of the parts in the sequence: no fit gets that far.
 constexpr std::size_t partStart = std::size_t{1} << 32;
 
 /// Coordinate `axis` of point n of the sequence in `dimensions` dimensions.
@@ -43,7 +43,7 @@ Direction onHemisphere(double height, double turn) {
 }
 
 /// Cosines and slopes from the greatest down by so many powers of ten.
-constexpr double horizonDecades = 4, slopeDecades = 5, greatestSlope = 10, mirrorDecades = 4;
+constexpr double horizonDecades = 3, slopeDecades = 5, greatestSlope = 10, mirrorDecades = 4;
 
 /// The mirror image of wo at h.
 Direction mirrored(const Direction& wo, const Direction& h) {
@@ -61,21 +61,26 @@ DirectionPair towardsHorizon(double a, double b, double c, double d, bool mirror
     return {mirrored(wo, directionFromAngles(std::atan(slope), 2 * pi * c)), wo};
 }
 
-/// h moves from the normal to the horizon, half of the way within a tenth of it, in the plane of
-/// incidence or across it.
+/// Half of the lines: h moves from the normal to the horizon, half of the way within a tenth of it,
+/// in the plane of incidence or across it. The other half: wi stays, wo moves in their plane.
 DirectionPair onLine(double a, double b, double c, double d) {
+    if (c >= 0.5) {
+        const double side = c >= 0.75 ? pi : 0;
+        return {directionFromAngles(pi / 2 * a, 2 * pi * d),
+                directionFromAngles(pi / 2 * b, 2 * pi * d + side)};
+    }
     const double thetaHalf = pi / 2 * a * a * a;
-    const double phiDifference = std::floor(4 * c) * pi / 2;
+    const double phiDifference = std::floor(8 * c) * pi / 2;
     return fromHalfDifference(thetaHalf, 2 * pi * d, pi / 2 * b, phiDifference);
 }
 
-/// What the numbers of a sequence are spread as, in turns of 16: five uniform, six about the
-/// mirror direction, two on lines, two towards the horizon, one on the ridge; every sixth of the ridge is at normal
-/// incidence.
+/// The spread of a number of a sequence, in turns of 16: five uniform, six about the
+/// mirror direction, two on lines, two towards the horizon, one on the ridge; every sixth of the
+/// ridge is at normal incidence.
 HalfwaySpread spreadOf(HalfwayPart part, std::size_t n) {
     using enum HalfwaySpread;
     if (part == HalfwayPart::heldOutUniform) return uniform;
-    constexpr std::array turns{uniform, mirror, uniform, mirror, line,   mirror, uniform, mirror,
+    constexpr std::array turns{uniform, mirror, uniform, mirror, line,    mirror,  uniform, mirror,
                                ridge,   mirror, uniform, line,   grazing, grazing, uniform, mirror};
     const HalfwaySpread spread = turns[n % turns.size()];
     return spread == ridge && n / turns.size() % 6 == 5 ? normal : spread;
@@ -101,8 +106,10 @@ DirectionPair pairAt(const Sequence& sequence, std::size_t n, bool isotropic,
         }
         case HalfwaySpread::grazing:
             return towardsHorizon(a, b, c, d, n / 16 % 2 == 1);
-        case HalfwaySpread::normal:
-            return {directionFromAngles(pi / 2 * a, 2 * pi * c), {0, 0, 1}};
+        case HalfwaySpread::normal: {
+            const Direction other = directionFromAngles(pi / 2 * a, 2 * pi * c), top{0, 0, 1};
+            return n / 96 % 2 == 0 ? DirectionPair{other, top} : DirectionPair{top, other};
+        }
     }
     return {onHemisphere(a, c), onHemisphere(b, d)};
 }
@@ -132,14 +139,13 @@ void appendSamples(const Brdf& brdf, HalfwayPart part, std::size_t first, std::s
     }
     const std::size_t channels = brdf.channels().count();
     samples.values.resize(samples.size() * channels);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(before, samples.size(), 256),
-                      [&](const auto& range) {
-                          for (std::size_t k = range.begin(); k < range.end(); ++k) {
-                              const auto& [wi, wo] = samples.pairs[k];
-                              brdf.eval(wo, {&wi.x, &wi.y, &wi.z, 1},
-                                        samples.values.data() + k * channels);
-                          }
-                      });
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(before, samples.size(), 256), [&](const auto& range) {
+            for (std::size_t k = range.begin(); k < range.end(); ++k) {
+                const auto& [wi, wo] = samples.pairs[k];
+                brdf.eval(wo, {&wi.x, &wi.y, &wi.z, 1}, samples.values.data() + k * channels);
+            }
+        });
     for (std::size_t k = before * channels; k < samples.values.size(); ++k) {
         double& value = samples.values[k];
         if (!std::isfinite(value * value)) refuse(brdf, samples.pairs[k / channels], value);

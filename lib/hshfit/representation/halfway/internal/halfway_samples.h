@@ -11,10 +11,11 @@ namespace hshfit::inline representation::inline halfway {
 /// The way in which a pair was drawn:
 ///     uniform  both directions uniform on their hemispheres
 ///     mirror   wo uniform, wi about its mirror direction, sin(theta_h) by powers of ten from 1e-4
-///     line     theta_d fixed, h moving in the plane of incidence or across it
+///     line     theta_d fixed, h moving in the plane of incidence or across it; or wi fixed, wo
+///              moving in the plane of incidence
 ///     ridge    wi the mirror direction of wo
-///     grazing  cosines by powers of ten from 1e-4, wi likewise or about the mirror direction
-///     normal   wo the normal
+///     grazing  cosines by powers of ten from 1e-3, wi likewise or about the mirror direction
+///     normal   wi or wo the normal
 enum class HalfwaySpread : unsigned char { uniform, mirror, line, ridge, grazing, normal };
 inline constexpr std::size_t halfwaySpreads = 6;
 
@@ -28,8 +29,8 @@ struct HalfwaySamples {
     std::size_t channels() const { return pairs.empty() ? 0 : values.size() / size(); }
 };
 
-/// Three disjoint sequences of pairs: those that are fitted, pairs of all spreads that take no part,
-/// and uniform pairs that take no part.
+/// Three disjoint sequences of pairs: those that are fitted, pairs of all spreads that take no
+/// part, and uniform pairs that take no part.
 enum class HalfwayPart { fitted, heldOut, heldOutUniform };
 
 /// Appends pairs number `first` .. `last` - 1 of the sequence of a part, those below the horizon
