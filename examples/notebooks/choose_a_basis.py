@@ -32,8 +32,8 @@ forms = {
     "order 8, half": dict(order=8, cosine=True, precision="half"),
     "order 8, rank 4": dict(order=8, cosine=True, rank=4, precision="half"),
     "order 12, half": dict(order=12, cosine=True, precision="half"),
-    "halfway 8,4,2": dict(form="halfway", halfway=(8, 4, 2), precision="half"),
-    "halfway 12,6,3": dict(form="halfway", halfway=(12, 6, 3), precision="half"),
+    "halfway 7,6,5": dict(form="halfway", halfway=(7, 6, 5), precision="half"),
+    "halfway 9,8,6": dict(form="halfway", halfway=(9, 8, 6), precision="half"),
 }
 rows = {}
 for name, options in forms.items():
