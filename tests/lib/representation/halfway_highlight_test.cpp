@@ -120,7 +120,7 @@ double greatest(const Brdf& brdf, double thetaIncoming, double thetaOutgoing) {
 
 class HalfwayBound : public testing::TestWithParam<std::size_t> {};
 
-/// Within 1.5 times what the BRDF itself reaches at the same elevations, in every precision; what
+/// Within twice what the BRDF itself reaches at the same elevations, in every precision; what
 /// is darker than a thousandth of the greatest albedo counts as that.
 TEST_P(HalfwayBound, HoldsAtEveryPairOfElevations) {
     const Case& each = cases()[GetParam()];
@@ -140,19 +140,14 @@ TEST_P(HalfwayBound, HoldsAtEveryPairOfElevations) {
         const auto made = asBrdf(stored);
         for (const double i : elevations()) {
             for (const double o : elevations()) {
-                EXPECT_LE(greatest(*made, i, o), 1.5 * greatest(brdf, i, o) + 2e-3)
+                EXPECT_LE(greatest(*made, i, o), 2 * greatest(brdf, i, o) + 2e-3)
                     << each.name << " at " << i << ", " << o << " in " << precisionName(precision);
             }
         }
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryCase, HalfwayBound, testing::Range<std::size_t>(0, 7),
-                         [](const auto& info) {
-                             std::string name = cases()[info.param].name;
-                             std::erase_if(name, [](char c) { return !std::isalnum(c); });
-                             return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(EveryCase, HalfwayBound, testing::Range<std::size_t>(0, 7));
 
 }  // namespace
 }  // namespace hshfit

@@ -22,8 +22,8 @@ constexpr HalfwayOrders few{9, 7, 5};
 constexpr int trialSteps = 8;
 constexpr std::array widths{0.9, 0.5, 0.25, 0.12, 0.06, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4};
 constexpr double finer = 1.4;
-/// Lobes are no narrower than a part of the half width of the peak.
-constexpr double narrower = 2;
+/// Lobes are no narrower than this part of the half width of the peak.
+constexpr double narrower = 1;
 constexpr std::array shelves{0.05, 0.01, 0.002};
 constexpr std::array ratios{1.5, 2.5, 4.0, 7.0, 12.0};
 constexpr int turns = 8;
