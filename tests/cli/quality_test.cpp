@@ -123,7 +123,6 @@ TEST_F(Quality, EveryFormHasAVerdictAndASuggestionThatDoesBetter) {
              "ggx:ax=.1,ay=.3 --form basis --order 3 --cosine",
              "ggx:alpha=.05 --form halfway --halfway 3,1,1",
              "ggx:alpha=.05 --form halfway --halfway 3,1,1 --precision unorm8",
-             "lafortune:exponent=100,Cx=.7,Cy=.7,Cz=.9 --form halfway --halfway 4,2,1",
              "phong:exponent=60,kd=.01 --order 3 --outgoing 8 --split diffuse",
              "phong:exponent=60 --order 3 --outgoing 8 --window lanczos",
              "phong:exponent=60 --order 3 --outgoing 8 --rank 4",

@@ -142,7 +142,9 @@ std::pair<double, double> differences(const SpherePicture& f, const SpherePictur
     const double flipped = meanOver(
         f, [&](std::size_t k) { return brightnessOf(f, k) > least || brightnessOf(g, k) > least; },
         [&](std::size_t k) { return static_cast<double>(largest[k]); });
-    const double stops = automaticExposure({&f, 1});
+    // Where all but the highlight is black, no exposure shows what counts as unlit as white.
+    const double stops =
+        std::min(automaticExposure({&f, 1}), std::log2(shownAsWhite / (unlit * brightest)));
     const RgbPicture reference = exposed(f, stops), test = exposed(g, stops);
     const double colour = meanOver(
         f, [](std::size_t) { return true; },
