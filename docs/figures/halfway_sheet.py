@@ -36,10 +36,10 @@ def pictures(program, source, form, folder, stem):
         run(program, 'render', source, form, '-o', both, '--by', 'integration', '--size', SIZE,
             *light, '--force', '--quiet')
         own, other, off = (folder / f'{stem}-{n}-{what}.png' for what in 'abc')
-        run('oiiotool', both, '--cut', f'{SIZE}x{SIZE}+0+0', '-o', own)
-        run('oiiotool', both, '--cut', f'{SIZE}x{SIZE}+0+{SIZE}', '-o', other)
-        run('oiiotool', own, other, '--absdiff', '--mulc', '8', '--ch', 'R,G,B', '-d', 'uint8',
-            '-o', off)
+        run('oiiotool', both, '--cut', f'{SIZE}x{SIZE}+0+0', '--ch', 'R,G,B', '-o', own)
+        run('oiiotool', both, '--cut', f'{SIZE}x{SIZE}+0+{SIZE}', '--ch', 'R,G,B',
+            '-o', other)
+        run('oiiotool', own, other, '--absdiff', '--mulc', '8', '-d', 'uint8', '-o', off)
         cells += [own, other, off]
     return cells
 

@@ -134,7 +134,7 @@ TEST(FormFiles, ChangedSidecarsAreRefused) {
         {"\"numbers\":", "\"numbers\":1"},
         {"\"along\":0.3", "\"along\":-1"},
         {"\"across\":0.3", "\"across\":0.2"},
-        {"\"width\":51", "\"width\":50"},
+        {"\"width\":21", "\"width\":20"},
         {"\"head\":\"\"", "\"head\":\"AAAA\""},
         {"\"version\": 2", "\"version\": 3"},
         {"\"isotropic\":true", "\"isotropic\":false"},
