@@ -229,6 +229,8 @@ Representation representationFromJson(std::string_view text, const std::string& 
             content.ceilings.push_back(
                 {each.number("smooth"), each.number("lobe"), each.number("top")});
         }
+        if (content.ceilings.size() != r.head.channels.count())
+            part.fail("has to have one object a channel", "ceilings");
     }
     if (r.kind() != Kind::halfway && r.head.basis.empty()) fields.fail("is missing", "basis");
     if (r.kind() == Kind::basis) ShapeCheck(r, part).basis();

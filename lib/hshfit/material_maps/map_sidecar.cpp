@@ -46,6 +46,14 @@ std::vector<LevelSize> readLevels(const JsonFields& texture) {
     return levels;
 }
 
+gpu::Number numberIn(const JsonFields& texture) {
+    try {
+        return gpu::parseNumber(texture.word("number"));
+    } catch (const UsageError& error) {
+        texture.fail(fmt::format("is invalid: {}", error.what()), "number");
+    }
+}
+
 }  // namespace
 
 std::size_t MapSidecar::layers() const {
@@ -122,7 +130,7 @@ MapSidecar parseMapSidecar(std::string_view text, const std::string& file) {
     if (s.layout.slots.empty()) root.fail("is empty", "slots");
     s.isotropic = symmetry.flag("isotropic");
     s.bilateral = symmetry.flag("bilateral");
-    s.number = gpu::parseNumber(texture.word("number"));
+    s.number = numberIn(texture);
     s.levels = readLevels(texture);
     if (s.form != "outgoing") s.shapes = flat(root, "shapes", s.layout.shape());
     if (s.hasMaterials()) {
