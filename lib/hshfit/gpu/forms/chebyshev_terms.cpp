@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
 
 namespace hshfit::gpu::inline forms {
 namespace {
@@ -29,16 +28,11 @@ std::vector<std::vector<double>> legendreInChebyshev(int count) {
     return rows;
 }
 
-using Key = std::tuple<bool, int, int, int, int, bool, bool, bool>;
-Key keyOf(const HalfwayTerm& t) {
-    return {t.lobe, t.i, t.j, t.k, t.q, t.exchange, t.mirror, t.sine};
-}
-
 }  // namespace
 
 std::vector<double> chebyshevValues(const HalfwayTerms& terms, std::vector<double> values) {
-    std::map<Key, std::size_t> places;
-    for (std::size_t t = 0; t < terms.size(); ++t) places[keyOf(terms.list()[t])] = t;
+    std::map<HalfwayTerm, std::size_t> places;
+    for (std::size_t t = 0; t < terms.size(); ++t) places[terms.list()[t]] = t;
     const HalfwayCounts& counts = terms.counts();
     const std::pair<int HalfwayTerm::*, int> axes[] = {
         {&HalfwayTerm::i, std::max(counts.mean, counts.x)},
@@ -58,7 +52,7 @@ std::vector<double> chebyshevValues(const HalfwayTerms& terms, std::vector<doubl
             const auto n = static_cast<std::size_t>(lower.*degree);
             for (std::size_t m = n % 2; m <= n; m += 2) {
                 lower.*degree = static_cast<int>(m);
-                sums[places.at(keyOf(lower))] += rows[n][m] * values[t];
+                sums[places.at(lower)] += rows[n][m] * values[t];
             }
         }
         values = std::move(sums);

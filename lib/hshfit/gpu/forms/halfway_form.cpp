@@ -79,14 +79,9 @@ std::string joined(const std::vector<std::string>& factors) {
     return text;
 }
 
-/// n of the factor x kappa^n of a term; 0: none.
-int powerOf(const HalfwayTerm& t) {
-    return t.lobe ? 2 * t.k + t.exchange : 0;
-}
-
 /// The factors that runs have in common that differ in j only.
 SumGroup groupFor(const HalfwayTerm& t) {
-    const std::string power = powerOf(t) > 0 ? fmt::format("xk{}", powerOf(t)) : "";
+    const std::string power = t.power() > 0 ? fmt::format("xk{}", t.power()) : "";
     const std::string harmonic = t.q > 0 ? fmt::format("{}{}", t.sine ? "sq" : "cq", t.q) : "";
     const std::vector<std::string> factors{t.lobe ? power : functionName('p', t.k),
                                            !t.lobe && t.exchange ? "gap" : "",
@@ -99,9 +94,10 @@ SumGroup groupFor(const HalfwayTerm& t) {
     return group;
 }
 
-bool sameGroup(const HalfwayTerm& a, const HalfwayTerm& b) {
-    return a.lobe == b.lobe && a.k == b.k && a.q == b.q && a.exchange == b.exchange &&
-           a.mirror == b.mirror && a.sine == b.sine;
+bool sameGroup(const HalfwayTerm& a, HalfwayTerm b) {
+    b.i = a.i;
+    b.j = a.j;
+    return a == b;
 }
 
 /// Runs that differ in j only, in brackets times the other factors.
@@ -154,7 +150,7 @@ void setHarmonics(int count, FormText& text) {
 /// x kappa^n.
 void setPowers(const HalfwayTerms& terms, FormText& text) {
     int most = 0;
-    for (const HalfwayRun& run : terms.runs()) most = std::max(most, powerOf(run.term));
+    for (const HalfwayRun& run : terms.runs()) most = std::max(most, run.term.power());
     data rows{data::type::list};
     for (int n = 1; n <= most; ++n) {
         data row;

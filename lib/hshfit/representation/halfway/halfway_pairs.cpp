@@ -14,11 +14,6 @@ double norm(const HalfwayTerm& t) {
     return std::sqrt((2.0 * t.i + 1) * (2.0 * t.j + 1) * third * harmonic);
 }
 
-/// n of the factor x kappa^n; 0: none.
-int powerOf(const HalfwayTerm& t) {
-    return t.lobe ? 2 * t.k + t.exchange : 0;
-}
-
 HalfwayRows rowsOf(const HalfwayTerms& terms, int powers) {
     int next = terms.counts().mean;
     const auto take = [&](int count) {
@@ -50,7 +45,7 @@ HalfwayLayout::Run runOf(const HalfwayRun& run, const HalfwayRows& rows) {
         out.factors[out.factorCount++] = static_cast<std::uint16_t>(row);
     };
     times(rows.v + t.j);
-    if (powerOf(t) > 0) times(rows.powers + powerOf(t) - 1);
+    if (t.power() > 0) times(rows.powers + t.power() - 1);
     // The rest of a smooth term: p_0 of the product is 1.
     if (!t.lobe && t.k > 0) times(rows.product + t.k);
     if (!t.lobe && t.exchange) times(rows.gap);
@@ -67,7 +62,7 @@ HalfwayLayout layoutOf(const Representation& r, const HalfwayExpansion& expansio
     layout.harmonics = terms.harmonics();
     layout.channels = r.head.channels.count();
     for (const HalfwayRun& run : terms.runs())
-        layout.powers = std::max(layout.powers, powerOf(run.term));
+        layout.powers = std::max(layout.powers, run.term.power());
     layout.rows = rowsOf(terms, layout.powers);
     for (const HalfwayRun& run : terms.runs()) {
         layout.runs.push_back(runOf(run, layout.rows));

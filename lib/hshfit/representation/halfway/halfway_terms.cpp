@@ -172,9 +172,9 @@ void HalfwayTerms::evaluate(const HalfwayPoint& point, double* out) const {
         if (!t.lobe) {
             factor *= alongProduct[t.k];
             if (t.exchange) factor *= point.gap;
-        } else if (t.k > 0 || t.exchange) {
+        } else if (t.power() > 0) {
             factor *= point.x;
-            for (int n = 0; n < 2 * t.k + t.exchange; ++n) factor *= point.kappa;
+            for (int n = 0; n < t.power(); ++n) factor *= point.kappa;
         }
         if (t.mirror) factor *= point.handed;
         if (q > 0) factor *= scale * harmonic[t.sine ? 1 : 0];

@@ -3,6 +3,7 @@
 #include <hshfit/representation/halfway/halfway_axes.h>
 #include <hshfit/representation/representation.h>
 
+#include <compare>
 #include <cstddef>
 #include <vector>
 
@@ -22,6 +23,10 @@ struct HalfwayTerm {
     bool lobe = false;
     int i = 0, j = 0, k = 0, q = 0;
     bool exchange = false, mirror = false, sine = false;
+
+    /// n of the factor x kappa^n of a term of the lobe; 0: none.
+    int power() const { return lobe ? 2 * k + exchange : 0; }
+    auto operator<=>(const HalfwayTerm&) const = default;
 };
 
 /// A run of terms that differ in i only; i = 0 .. length - 1.

@@ -103,11 +103,6 @@ double halfWidth(const HalfwaySamples& grey) {
     return 1;
 }
 
-bool same(const HalfwayTerm& a, const HalfwayTerm& b) {
-    return a.lobe == b.lobe && a.i == b.i && a.j == b.j && a.k == b.k && a.q == b.q &&
-           a.exchange == b.exchange && a.mirror == b.mirror && a.sine == b.sine;
-}
-
 }  // namespace
 
 double halfwayFloor(const HalfwayAlbedo& albedo) {
@@ -161,8 +156,7 @@ HalfwayValues startFrom(const LobeFound& found, const HalfwayModel& model,
     HalfwayValues values = HalfwayValues::Zero(static_cast<Eigen::Index>(model.terms.size()),
                                                static_cast<Eigen::Index>(channels));
     for (std::size_t t = 0; t < few.size(); ++t) {
-        const auto place = std::ranges::find_if(
-            model.terms.list(), [&](const HalfwayTerm& term) { return same(term, few.list()[t]); });
+        const auto place = std::ranges::find(model.terms.list(), few.list()[t]);
         values.row(place - model.terms.list().begin())
             .setConstant(found.values(static_cast<Eigen::Index>(t), 0));
     }
