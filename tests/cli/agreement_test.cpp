@@ -1,8 +1,8 @@
 // Commands that state the error of one form agree with each other, with independent samples, and
 // with quadratures that know nothing of the pairs, within the errors that they state.
 
+#include "json_answers.h"
 #include "places.h"
-#include "program.h"
 
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/projection/albedo.h>
@@ -41,14 +41,8 @@ std::vector<std::string> materials() {
     return all;
 }
 
-class Agreement : public Cli {
+class Agreement : public JsonAnswers {
 protected:
-    Json answerOf(const std::string& arguments) const {
-        const bool writes = arguments.find(" -o ") != std::string::npos;
-        const Answer answer = run(arguments + (writes ? " --force --json" : " --json"));
-        EXPECT_EQ(answer.code, 0) << arguments << "\n" << answer.err;
-        return answer.code == 0 ? Json::parse(answer.out) : Json();
-    }
     std::unique_ptr<RepresentedBrdf> made(const std::string& file) const {
         return reconstruct(readRepresentation(file),
                            [](const std::string& spec) { return brdfs::open(spec); });

@@ -1,6 +1,6 @@
 // The picture error of one pair of BRDFs has the same digits in every command that states it.
 
-#include "program.h"
+#include "json_answers.h"
 
 #include <nlohmann/json.hpp>
 
@@ -12,14 +12,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-class PictureAgreement : public Cli {
+class PictureAgreement : public JsonAnswers {
 protected:
-    Json answerOf(const std::string& arguments) const {
-        const bool writes = arguments.find(" -o ") != std::string::npos;
-        const Answer answer = run(arguments + (writes ? " --force --json" : " --json"));
-        EXPECT_EQ(answer.code, 0) << arguments << "\n" << answer.err;
-        return answer.code == 0 ? Json::parse(answer.out) : Json();
-    }
     Json comparedTo(const std::string& spec, const std::string& file) const {
         return answerOf("compare " + spec + " " + file + " --metrics log --outgoing 2")["picture"];
     }
