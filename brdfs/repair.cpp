@@ -2,6 +2,7 @@
 #include <brdfs/repair.h>
 #include <brdfs/spec.h>
 #include <hshfit/brdf/kink_curve.h>
+#include <hshfit/brdf/steps.h>
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/projection/albedo.h>
@@ -40,10 +41,10 @@ std::string reciprocityReason(const Brdf&, const Health& health) {
 }
 
 std::string energyReason(const Brdf&, const Health& health) {
-    if (!health.isAboveOne()) return {};
-    const double largest = health.largestAlbedo();
-    return largest < 1e4 ? fmt::format("the largest albedo is {:.4f}", largest)
-                         : fmt::format("the largest albedo is {:.4g}", largest);
+    if (!health.createsEnergy()) return {};
+    const double largest = health.largestReflectance();
+    return largest < 1e4 ? fmt::format("the largest reflectance is {:.4f}", largest)
+                         : fmt::format("the largest reflectance is {:.4g}", largest);
 }
 
 Chosen parseNames(std::string_view names) {
@@ -68,32 +69,40 @@ Chosen parseNames(std::string_view names) {
     return chosen;
 }
 
-/// The factor that keeps albedos at or below 1: 1 / max(1, albedo), by direction and channel.
+/// The factor that keeps reflectances at or below 1: 1 / max(1, reflectance), by direction and
+/// channel.
 class EnergyScale {
 public:
     EnergyScale() = default;
 
-    EnergyScale(const Brdf& brdf, const std::function<void(std::size_t, std::size_t)>& progress)
+    EnergyScale(const Brdf& brdf, const HasSteps* steps,
+                const std::function<void(std::size_t, std::size_t)>& progress)
         : channels_(brdf.channels().count()) {
+        const std::size_t cells = steps ? steps->cells() : 0;
+        if (cells > 0 && cells <= mostCells) steps_ = steps;
         const bool isotropic = brdf.laws().isotropic;
         thetas_ = isotropic ? 61 : 21;
         azimuths_ = isotropic ? 1 : 24;
-        albedo_.resize(channels_ * thetas_ * azimuths_);
+        const std::size_t nodes = steps_ ? cells : thetas_ * azimuths_;
+        reflectance_.resize(channels_ * nodes);
         std::atomic<std::size_t> done = 0;
-        eachInParallel(thetas_ * azimuths_, [&](std::size_t node) {
-            const double theta = thetaStep() * static_cast<double>(node / azimuths_);
-            const double phi =
-                2 * pi * static_cast<double>(node % azimuths_) / static_cast<double>(azimuths_);
-            // f is 0 by definition at 90 degrees, so that the albedo there is that of 89.9 degrees.
-            const auto albedo =
-                directionalAlbedo(brdf, directionFromAngles(std::min(theta, radians(89.9)), phi));
-            for (std::size_t c = 0; c < channels_; ++c) albedo_[node * channels_ + c] = albedo[c];
-            if (progress) progress(++done, thetas_ * azimuths_);
+        eachInParallel(nodes, [&](std::size_t node) {
+            const Direction wi = steps_ ? steps_->cellCentre(node) : directionOf(node);
+            const AlbedoEstimate found =
+                estimateReflectance(brdf, wi, {.tolerance = tolerance, .absolute = tolerance});
+            if (!found.converged)
+                throw NumericError(
+                    fmt::format("{}: the reflectance at theta_i = {:.6g} degrees did not converge",
+                                brdf.name(), degrees(polarAngle(wi))));
+            for (std::size_t c = 0; c < channels_; ++c)
+                reflectance_[node * channels_ + c] = found.values[c];
+            if (progress) progress(++done, nodes);
         });
     }
 
     /// s(w), one value per channel.
     void at(const Direction& w, double* scale) const {
+        if (steps_) return ofCell(steps_->cellOf(w), scale);
         const double row = polarAngle(w) / thetaStep();
         const double turns = azimuth(w) / (2 * pi);
         const double column = (turns - std::floor(turns)) * static_cast<double>(azimuths_);
@@ -103,23 +112,40 @@ public:
         const double u = column - std::floor(column);
         for (std::size_t c = 0; c < channels_; ++c) {
             const auto node = [&](std::size_t i, std::size_t j) {
-                return albedo_[(i * azimuths_ + j) * channels_ + c];
+                return reflectance_[(i * azimuths_ + j) * channels_ + c];
             };
-            const double albedo = (1 - t) * ((1 - u) * node(r, p) + u * node(r, q)) +
-                                  t * ((1 - u) * node(r + 1, p) + u * node(r + 1, q));
-            scale[c] = 1 / std::max(1.0, albedo);
+            const double reflectance = (1 - t) * ((1 - u) * node(r, p) + u * node(r, q)) +
+                                       t * ((1 - u) * node(r + 1, p) + u * node(r + 1, q));
+            scale[c] = 1 / std::max(1.0, reflectance);
         }
     }
 
 private:
+    static constexpr double tolerance = 1e-4;
+    /// A tensor tree of seven levels has as many; finer ones are interpolated.
+    static constexpr std::size_t mostCells = 16384;
+
+    /// f is 0 by definition at 90 degrees, so that the reflectance there is that of 89.9 degrees.
+    Direction directionOf(std::size_t node) const {
+        const double theta = thetaStep() * static_cast<double>(node / azimuths_);
+        const double phi =
+            2 * pi * static_cast<double>(node % azimuths_) / static_cast<double>(azimuths_);
+        return directionFromAngles(std::min(theta, radians(89.9)), phi);
+    }
+    void ofCell(std::size_t cell, double* scale) const {
+        const bool known = (cell + 1) * channels_ <= reflectance_.size() && cell + 1 > 0;
+        for (std::size_t c = 0; c < channels_; ++c)
+            scale[c] = known ? 1 / std::max(1.0, reflectance_[cell * channels_ + c]) : 1;
+    }
     double thetaStep() const { return pi / 2 / static_cast<double>(thetas_ - 1); }
 
+    const HasSteps* steps_ = nullptr;  ///< of a table whose cells are known
     std::size_t channels_ = 0, thetas_ = 0, azimuths_ = 0;
-    std::vector<double> albedo_;
+    std::vector<double> reflectance_;
 };
 
 /// Evaluates single pairs, or several of the same wo, with the channels of a pair side by side.
-class Repaired : public RepairedBrdf, public HasKinkCurves {
+class Repaired : public RepairedBrdf, public HasKinkCurves, public HasSteps {
 public:
     Repaired(std::unique_ptr<Brdf> brdf, Chosen chosen,
              const std::function<void(std::size_t, std::size_t)>& progress)
@@ -128,8 +154,8 @@ public:
         laws_.reciprocal |= chosen[reciprocity];
         if (chosen[holes]) filler_.emplace(*brdf_, progress);
         if (!chosen[energy]) return;
-        chosen_[energy] = false;  // the table holds albedos after the other repairs
-        scale_ = EnergyScale(*this, progress);
+        chosen_[energy] = false;  // the table holds reflectances after the other repairs
+        scale_ = EnergyScale(*this, dynamic_cast<const HasSteps*>(brdf_.get()), progress);
         chosen_[energy] = true;
         laws_.energyConserving = true;
         evaluated_ = 0;
@@ -142,10 +168,19 @@ public:
     const Channels& channels() const override { return brdf_->channels(); }
     const Laws& laws() const override { return laws_; }
     std::vector<Lobe> lobes(const Direction& wo) const override { return brdf_->lobes(wo); }
-    std::vector<double> kinks(const Direction& wo) const override { return brdf_->kinks(wo); }
-    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
-        return kinkCurvesOf(*brdf_, wo);
+    std::vector<double> kinks(const Direction& wo) const override {
+        return both(brdf_->kinks(wo), outgoingKinksOf(*brdf_, wo));
     }
+    std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
+        return both(kinkCurvesOf(*brdf_, wo), outgoingKinkCurvesOf(*brdf_, wo));
+    }
+    std::vector<double> outgoingKinks(const Direction& wi) const override {
+        return both(outgoingKinksOf(*brdf_, wi), brdf_->kinks(wi));
+    }
+    std::vector<KinkCurve> outgoingKinkCurves(const Direction& wi) const override {
+        return both(outgoingKinkCurvesOf(*brdf_, wi), kinkCurvesOf(*brdf_, wi));
+    }
+    int squareLevels() const override { return squareLevelsOf(*brdf_); }
     double defaultTolerance() const override { return brdf_->defaultTolerance(); }
     std::vector<Fact> facts() const override { return brdf_->facts(); }
     void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override {
@@ -178,6 +213,13 @@ private:
         std::array<std::uint64_t, 9> byAngle{};
     };
 
+    /// The kinks of f(wi, wo), and if f is averaged with f(wo, wi), of that, unless they are equal.
+    template <class Kink>
+    std::vector<Kink> both(std::vector<Kink> own, const std::vector<Kink>& exchanged) const {
+        const bool other = chosen_[reciprocity] && dynamic_cast<const HasSteps*>(brdf_.get());
+        if (other) own.insert(own.end(), exchanged.begin(), exchanged.end());
+        return own;
+    }
     bool covered(const Direction& wi, const Direction& wo) const;
     std::vector<double> continued(const Direction& wi, const Direction& wo, Tally& tally) const;
     std::vector<double> filled(const Direction& wi, const Direction& wo, bool isCovered,
@@ -318,7 +360,7 @@ std::span<const Repair> repairs() {
          missingReason},
         {"negative", "raise values below 0 to 0", negativeReason},
         {"reciprocity", "average f over exchanged directions", reciprocityReason},
-        {"energy", "scale f down where an albedo is above 1", energyReason},
+        {"energy", "scale f down where more light is reflected than arrives", energyReason},
     }};
     return table;
 }

@@ -47,10 +47,12 @@ struct RepairCount {
 ///              vector smoothly from all sides (hole_filler.h); left as it is if none is near
 /// negative     values below 0 become 0
 /// reciprocity  (f(wi, wo) + f(wo, wi)) / 2; where only one of the two is covered, that one
-/// energy       f min(s(wi), s(wo)) with s(w) = 1 / max(1, albedo(w)) in each channel, so that
-///              reciprocity is kept. Albedos are tabulated every 1.5 degrees of theta (anisotropic:
-///              every 4.5 and, in phi, 15 degrees) and interpolated linearly: where they bend
-///              downwards, up to about 0.004 above 1 is left.
+/// energy       f min(s(wi), s(wo)) with s(w) = 1 / max(1, R(w)) in each channel, so that
+///              reciprocity is kept; R(w) is the share of the light from w that is reflected
+///              (estimateReflectance). It is tabulated every 1.5 degrees of theta (anisotropic:
+///              every 4.5 and, in phi, 15 degrees) and interpolated linearly: where it bends
+///              downwards, up to about 0.004 above 1 is left. Tables with cells (HasSteps) have one
+///              R for each.
 class RepairedBrdf : public Brdf {
 public:
     virtual std::uint64_t evaluated() const = 0;  ///< values
@@ -58,7 +60,8 @@ public:
 };
 
 /// `names`: "missing,energy" and the like, or "all". Throws UsageError for an unknown name and
-/// NumericError if an albedo that `energy` needs does not converge. `progress` is for its table.
+/// NumericError if a reflectance that `energy` needs does not converge. `progress` is for its
+/// table.
 std::unique_ptr<RepairedBrdf> repaired(
     std::unique_ptr<Brdf> brdf, std::string_view names,
     const std::function<void(std::size_t, std::size_t)>& progress = {});

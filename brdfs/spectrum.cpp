@@ -66,6 +66,20 @@ std::vector<KinkCurve> Spectrum::kinkCurves(const Direction& wo) const {
     return kinkCurvesOf(*lines_.front().brdf, wo);
 }
 
+std::vector<double> Spectrum::outgoingKinks(const Direction& wi) const {
+    return outgoingKinksOf(*lines_.front().brdf, wi);
+}
+
+std::vector<KinkCurve> Spectrum::outgoingKinkCurves(const Direction& wi) const {
+    return outgoingKinkCurvesOf(*lines_.front().brdf, wi);
+}
+
+int Spectrum::squareLevels() const {
+    int most = 0;
+    for (const Line& line : lines_) most = std::max(most, squareLevelsOf(*line.brdf));
+    return most;
+}
+
 double Spectrum::defaultTolerance() const {
     double largest = 0;
     for (const Line& line : lines_) largest = std::max(largest, line.brdf->defaultTolerance());

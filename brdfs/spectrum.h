@@ -2,6 +2,7 @@
 
 #include <hshfit/brdf/brdf.h>
 #include <hshfit/brdf/kink_curve.h>
+#include <hshfit/brdf/steps.h>
 
 #include <memory>
 #include <string>
@@ -13,7 +14,7 @@ namespace hshfit::brdfs {
 ///   laws, coverage   what all lines keep; where all are covered
 ///   lobes, kinks     those of all lines, equal ones once; the tolerance is the largest
 /// Lines are by ascending wavelengths in nm; `name` opens the BRDF again (a path).
-class Spectrum final : public Brdf, public HasKinkCurves {
+class Spectrum final : public Brdf, public HasKinkCurves, public HasSteps {
 public:
     struct Line {
         double wavelength = 0;
@@ -30,6 +31,9 @@ public:
     std::vector<double> kinks(const Direction& wo) const override;
     /// Those of the first line: the models of a fit have the same at every wavelength.
     std::vector<KinkCurve> kinkCurves(const Direction& wo) const override;
+    std::vector<double> outgoingKinks(const Direction& wi) const override;
+    std::vector<KinkCurve> outgoingKinkCurves(const Direction& wi) const override;
+    int squareLevels() const override;
     double defaultTolerance() const override;
     /// The model of each wavelength: "550nm".
     std::vector<Fact> facts() const override;

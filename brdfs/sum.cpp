@@ -199,6 +199,26 @@ std::vector<double> Sum::kinks(const Direction& wo) const {
     return all;
 }
 
+std::vector<double> Sum::outgoingKinks(const Direction& wi) const {
+    std::vector<double> all;
+    for (const Term& term : terms_)
+        for (const double height : outgoingKinksOf(*term.brdf, wi)) all.push_back(height);
+    return all;
+}
+
+std::vector<KinkCurve> Sum::outgoingKinkCurves(const Direction& wi) const {
+    std::vector<KinkCurve> all;
+    for (const Term& term : terms_)
+        for (const KinkCurve& curve : outgoingKinkCurvesOf(*term.brdf, wi)) all.push_back(curve);
+    return all;
+}
+
+int Sum::squareLevels() const {
+    int most = 0;
+    for (const Term& term : terms_) most = std::max(most, squareLevelsOf(*term.brdf));
+    return most;
+}
+
 HasSamplers::Known Sum::samplers() const {
     Known all{.all = true, .samplers = {}};
     for (const Term& term : terms_) {

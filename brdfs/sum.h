@@ -2,6 +2,7 @@
 
 #include <hshfit/brdf/brdf.h>
 #include <hshfit/brdf/kink_curve.h>
+#include <hshfit/brdf/steps.h>
 #include <hshfit/sampling/sampler.h>
 
 #include <cstddef>
@@ -38,7 +39,7 @@ std::vector<WeightedSpec> splitSum(std::string_view spec, bool (*isWhole)(std::s
 ///   coverage   where all terms are covered
 ///   lobes, kinks, facts   those of all terms; the tolerance is the largest
 /// Throws UsageError for rgb with spectral terms and for spectra of different wavelengths.
-class Sum final : public Brdf, public HasKinkCurves, public HasSamplers {
+class Sum final : public Brdf, public HasKinkCurves, public HasSteps, public HasSamplers {
 public:
     struct Term {
         double weight = 1;
@@ -54,6 +55,9 @@ public:
     std::vector<Lobe> lobes(const Direction& wo) const override;
     std::vector<double> kinks(const Direction& wo) const override;
     std::vector<KinkCurve> kinkCurves(const Direction& wo) const override;
+    std::vector<double> outgoingKinks(const Direction& wi) const override;
+    std::vector<KinkCurve> outgoingKinkCurves(const Direction& wi) const override;
+    int squareLevels() const override;
     double defaultTolerance() const override;
     /// The densities of all terms; `all` is false if a term has none of its own. More than 8
     /// densities give an empty list.

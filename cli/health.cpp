@@ -40,10 +40,10 @@ Json axesJson(const std::vector<brdfs::Axis>& axes) {
     return rows;
 }
 
-Json albedoJson(const Health& health) {
+Json albedoJson(const std::vector<Health::Albedo>& integrals) {
     Json rows = Json::array();
-    for (const auto& albedo : health.albedos) {
-        Json row = directionJson(albedo.wo);
+    for (const auto& albedo : integrals) {
+        Json row = directionJson(albedo.at);
         row["theta"] = std::round(row["theta"].get<double>());  // asked for in whole degrees
         row["phi"] = std::round(row["phi"].get<double>());
         row["values"] = albedo.values.empty() ? Json(nullptr) : Json(albedo.values);
@@ -92,9 +92,16 @@ Json healthJson(const jobs::BrdfInfo& info) {
             {"negative", health.negative},
             {"not_finite", health.notFinite},
             {"reciprocity", reciprocityJson(info)},
+            {"largest_reflectance", health.largestReflectance()},
             {"largest_albedo", health.largestAlbedo()},
             {"albedo_tolerance", health.albedoTolerance},
             {"suggested_repairs", repairs}};
+}
+
+/// Four digits: behind the point, or where a value is dark or huge, all of them.
+std::string shareText(double value) {
+    const bool plain = value == 0 || (std::abs(value) >= 0.01 && std::abs(value) < 1e4);
+    return plain ? fmt::format("{:.4f}", value) : fmt::format("{:.4g}", value);
 }
 
 std::string albedoText(const Json& row) {
@@ -102,13 +109,22 @@ std::string albedoText(const Json& row) {
     std::vector<double> shown = row["values"];
     const bool many = shown.size() > 8;
     if (many) shown.resize(8);
-    const bool huge = *std::ranges::max_element(shown) >= 1e4;
-    std::string text = huge ? fmt::format("{:.4g}", fmt::join(shown, " "))
-                            : fmt::format("{:.4f}", fmt::join(shown, " "));
+    std::string text;
+    for (const double value : shown) text += (text.empty() ? "" : " ") + shareText(value);
     if (many) text += " …";
     if (!row.contains("reason")) return text;
     return row["error"].is_null() ? text + " (one sum, of unknown error)"
                                   : fmt::format("{} +- {:.2g}", text, row["error"].get<double>());
+}
+
+std::string integralsText(const char* what, const Json& rows) {
+    std::string text;
+    for (const Json& row : rows) {
+        std::string name = fmt::format("{} at {:g}", what, row["theta"].get<double>());
+        if (row["phi"] != 0.0) name += fmt::format(",{:g}", row["phi"].get<double>());
+        text += factLine(name + " degrees", albedoText(row));
+    }
+    return text;
 }
 
 std::string censusText(const Json& census) {
@@ -149,7 +165,8 @@ void describeHealth(const jobs::BrdfInfo& info, Json& document) {
         document["census"] = censusJson(*info.census);
         document["axes"] = axesJson(info.axes);
     }
-    document["albedo"] = albedoJson(info.health);
+    document["reflectance"] = albedoJson(info.health.reflectances);
+    document["albedo"] = albedoJson(info.health.albedos);
     document["health"] = healthJson(info);
 }
 
@@ -159,11 +176,10 @@ std::string healthText(const Json& document) {
     for (const Json& axis : document.value("axes", Json::array())) {
         text += factLine("sampled " + axis["name"].get<std::string>(), axisText(axis));
     }
-    for (const Json& row : document["albedo"]) {
-        std::string name = fmt::format("albedo at {:g}", row["theta"].get<double>());
-        if (row["phi"] != 0.0) name += fmt::format(",{:g}", row["phi"].get<double>());
-        text += factLine(name + " degrees", albedoText(row));
-    }
+    // Of a reciprocal BRDF both are the same numbers.
+    const bool both = document["reflectance"] != document["albedo"];
+    if (both) text += integralsText("reflectance", document["reflectance"]);
+    text += integralsText("albedo", document["albedo"]);
     const Json& health = document["health"];
     text += factLine("measured directions",
                      fmt::format("{:.1f} % of the pairs", 100 * health["coverage"].get<double>()));
@@ -181,9 +197,8 @@ std::string healthText(const Json& document) {
     }
     text += factLine("reciprocity defect", defect);
     if (reciprocity.contains("samples")) text += bothOrdersText(reciprocity["samples"]);
-    const double largest = health["largest_albedo"];
-    text += factLine("largest albedo", largest >= 1e4 ? fmt::format("{:.4g}", largest)
-                                                      : fmt::format("{:.4f}", largest));
+    if (both) text += factLine("largest reflectance", shareText(health["largest_reflectance"]));
+    text += factLine("largest albedo", shareText(health["largest_albedo"]));
     for (const Json& repair : health["suggested_repairs"]) {
         text +=
             factLine("suggested repair", fmt::format("{} ({})", repair["name"].get<std::string>(),

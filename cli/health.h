@@ -10,7 +10,8 @@
 
 namespace hshfit::cli {
 
-/// The members "albedo", "health", and for a measured BRDF "census" and "axes".
+/// The members "reflectance" (over wo, by wi), "albedo" (over wi, by wo), "health", and for a
+/// measured BRDF "census" and "axes".
 void describeHealth(const jobs::BrdfInfo& info, nlohmann::ordered_json& document);
 
 /// The same members as indented lines.

@@ -101,19 +101,22 @@ py::array_t<double> evaluated(const py::object& self, const py::object& wi, cons
     return values;
 }
 
-py::array_t<double> albedos(const py::object& self, const py::object& wo, double tolerance,
-                            const py::object& progress) {
+/// An integral over one hemisphere for directions of the other.
+py::array_t<double> integrals(const py::object& self, const py::object& fixed, const char* name,
+                              const char* what, double tolerance, const py::object& progress,
+                              std::vector<double> (*integral)(const Brdf&, const Direction&,
+                                                              double)) {
     Source source(self);
-    const Vectors vectors = vectorsOf(wo, "wo");
-    const std::vector<Direction> directions = directionsIn(vectors, "wo");
+    const Vectors vectors = vectorsOf(fixed, name);
+    const std::vector<Direction> directions = directionsIn(vectors, name);
     std::vector<double> values;
     Source* const sources[] = {&source};
     watched(progress, sources, [&](const jobs::Listener& listener) {
-        const auto report = listener.part("albedo");
+        const auto report = listener.part(what);
         std::vector<std::vector<double>> found(directions.size());
         std::atomic<std::size_t> done = 0;
         eachInParallel(directions.size(), [&](std::size_t k) {
-            found[k] = directionalAlbedo(source.brdf(), directions[k], tolerance);
+            found[k] = integral(source.brdf(), directions[k], tolerance);
             report(++done, directions.size());
         });
         for (const auto& one : found) values.insert(values.end(), one.begin(), one.end());
@@ -121,6 +124,16 @@ py::array_t<double> albedos(const py::object& self, const py::object& wo, double
     Shape shape = vectors.shape;
     shape.push_back(static_cast<py::ssize_t>(source.brdf().channels().count()));
     return arrayOf(std::move(values), shape);
+}
+
+py::array_t<double> albedos(const py::object& self, const py::object& wo, double tolerance,
+                            const py::object& progress) {
+    return integrals(self, wo, "wo", "albedo", tolerance, progress, directionalAlbedo);
+}
+
+py::array_t<double> reflectances(const py::object& self, const py::object& wi, double tolerance,
+                                 const py::object& progress) {
+    return integrals(self, wi, "wi", "reflectance", tolerance, progress, directionalReflectance);
 }
 
 SpherePicture sphereOf(const py::object& self, int size, int samples, const py::object& progress) {
@@ -255,6 +268,11 @@ command eval, bit for bit; all threads work, without the interpreter's lock.)")
             py::arg("progress") = py::none(),
             R"(Directional albedo, the integral of f cos(theta_i) over wi: (..., channels) for wo of
 shape (..., 3), to a relative tolerance. NumericError where it does not converge.)")
+        .def("reflectance", reflectances, py::arg("wi"), py::kw_only(), py::arg("tolerance") = 1e-4,
+             py::arg("progress") = py::none(),
+             R"(Directional-hemispherical reflectance, the integral of f cos(theta_o) over wo: the
+share of the light from wi that is reflected, at most 1 where energy is conserved. Shapes and
+tolerance as of albedo, which it equals for a reciprocal BRDF.)")
         .def("sphere", sphereArray, py::arg("size") = SphereOptions{}.size, py::kw_only(),
              py::arg("samples") = SphereOptions{}.samples, py::arg("progress") = py::none(),
              R"(Radiance of a lit sphere of the material, float32 (size, size, 3), linear Rec. 709,

@@ -159,6 +159,7 @@ py::dict described(const py::object& spec, bool rgb, const py::object& progress)
     health["negative"] = info.health.negative;
     health["not_finite"] = info.health.notFinite;
     health["reciprocity_defect"] = info.health.reciprocityDefect;
+    health["largest_reflectance"] = info.health.largestReflectance();
     health["largest_albedo"] = info.health.largestAlbedo();
     out["health"] = health;
     py::dict repairs;
@@ -244,7 +245,8 @@ open() takes, a Brdf. Raises InputError that names the file and the field.)");
     module.def("describe", described, py::arg("spec"), py::kw_only(), py::arg("rgb") = false,
                py::arg("progress") = py::none(),
                R"(The health of a BRDF, measured by evaluating it: a dict with "brdf", "min", "max",
-"warnings", "health" (coverage, negative values, reciprocity, largest albedo) and "repairs".)");
+"warnings", "health" (coverage, negative values, reciprocity, largest reflectance over wo,
+largest albedo over wi) and "repairs".)");
     const jobs::SampleOptions samples;
     module.def(
         "sample", sampled, py::arg("spec"), py::arg("wo"), py::kw_only(),

@@ -140,13 +140,26 @@ std::vector<double> KlemsBrdf::kinks(const Direction&) const {
     return incident_.boundaryCosines();
 }
 
+std::vector<double> KlemsBrdf::outgoingKinks(const Direction&) const {
+    return outgoing_.boundaryCosines();
+}
+
 std::vector<KinkCurve> KlemsBrdf::kinkCurves(const Direction&) const {
-    std::vector<double> heights = incident_.boundaryCosines();
+    return meridians(incident_);
+}
+
+std::vector<KinkCurve> KlemsBrdf::outgoingKinkCurves(const Direction&) const {
+    return meridians(outgoing_);
+}
+
+// A plane through the pole is the same for (x, y) and (-x, -y).
+std::vector<KinkCurve> KlemsBrdf::meridians(const AngleBasis& basis) const {
+    std::vector<double> heights = basis.boundaryCosines();
     heights.insert(heights.begin(), 1);
     heights.push_back(0);
     std::vector<KinkCurve> curves;
-    for (std::size_t r = 0; r < incident_.rings().size(); ++r) {
-        const std::size_t n = incident_.rings()[r].azimuths;
+    for (std::size_t r = 0; r < basis.rings().size(); ++r) {
+        const std::size_t n = basis.rings()[r].azimuths;
         if (n == 1) continue;
         // A plane through the pole crosses the ring at two opposite azimuths.
         for (std::size_t j = 0; j < (n % 2 == 0 ? n / 2 : n); ++j) {
@@ -158,6 +171,15 @@ std::vector<KinkCurve> KlemsBrdf::kinkCurves(const Direction&) const {
         }
     }
     return curves;
+}
+
+Direction KlemsBrdf::cellCentre(std::size_t cell) const {
+    const AngleBasis::Ring& ring = incident_.rings()[incident_.ringOf(cell)];
+    const double theta = ring.azimuths == 1 ? ring.lower : (ring.lower + ring.upper) / 2;
+    const Direction from =
+        directionFromAngles(radians(theta), 2 * pi * static_cast<double>(cell - ring.first) /
+                                                static_cast<double>(ring.azimuths));
+    return {-selection_.fileX(from.x), -from.y, from.z};
 }
 
 double KlemsBrdf::directionalReflectance(std::size_t channel, std::size_t incident) const {

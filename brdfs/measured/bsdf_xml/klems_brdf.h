@@ -5,6 +5,7 @@
 #include <brdfs/measured/bsdf_xml/selection.h>
 #include <brdfs/measured/measured_brdf.h>
 #include <hshfit/brdf/kink_curve.h>
+#include <hshfit/brdf/steps.h>
 
 #include <string>
 #include <vector>
@@ -19,7 +20,7 @@ namespace hshfit::brdfs {
 /// Negative values are taken as 0, as in Radiance. So are NaN and infinite values, for which
 /// checkIntact() throws InputError. f is 0 beyond a basis that ends above the
 /// horizon. Laws are claimed where the matrix has them exactly.
-class KlemsBrdf : public MeasuredBrdf, public HasKinkCurves {
+class KlemsBrdf : public MeasuredBrdf, public HasKinkCurves, public HasSteps {
 public:
     /// Throws InputError for unknown bases, matrices of wrong size, and words among the
     /// numbers.
@@ -34,6 +35,13 @@ public:
     std::vector<double> kinks(const Direction& wo) const override;
     /// The meridians between patches of the incident basis.
     std::vector<KinkCurve> kinkCurves(const Direction& wo) const override;
+    std::vector<double> outgoingKinks(const Direction& wi) const override;
+    std::vector<KinkCurve> outgoingKinkCurves(const Direction& wi) const override;
+    int squareLevels() const override { return 0; }
+    /// The patches, where both bases are the same and turning by 180 degrees keeps them.
+    std::size_t cells() const override { return movable() ? incident_.patches() : 0; }
+    std::size_t cellOf(const Direction& wi) const override { return incidentPatch(wi); }
+    Direction cellCentre(std::size_t cell) const override;
     double defaultTolerance() const override { return selection_.tolerance; }
     std::vector<Fact> facts() const override;
     void checkIntact() const override { selection_.checkIntact(); }
@@ -55,6 +63,8 @@ private:
     std::vector<double> readMatrix(const BsdfDocument& document, const BsdfBlock& block);
     void combineColours(std::vector<std::vector<double>> xyz);
     void findLaws();
+    bool movable() const;
+    std::vector<KinkCurve> meridians(const AngleBasis& basis) const;
     bool sameUnder(int sign, int turn, bool exchanged) const;
     bool dependsOnRingsOnly() const;
     std::size_t incidentPatch(const Direction& wi) const;

@@ -73,27 +73,24 @@ bool KlemsBrdf::dependsOnRingsOnly() const {
 // Reciprocity, f(wi, wo) = f(wo, wi), exchanges wi and wo. Patches are those of wo and -wi, so
 // that the matrix is transposed and both patches are turned by 180 degrees.
 void KlemsBrdf::findLaws() {
-    const bool movable = incident_.symmetric() && outgoing_.symmetric();
-    bool sameBasis = incident_.patches() == outgoing_.patches() &&
-                     incident_.rings().size() == outgoing_.rings().size();
-    for (std::size_t k = 0; sameBasis && k < incident_.rings().size(); ++k) {
-        sameBasis = incident_.rings()[k].azimuths == outgoing_.rings()[k].azimuths &&
-                    incident_.rings()[k].upper == outgoing_.rings()[k].upper;
-    }
-    laws_.reciprocal = movable && sameBasis && sameUnder(1, 1, true);
-    laws_.mirrorSymmetric = movable && sameUnder(-1, 0, false) && sameUnder(-1, 1, false);
+    laws_.reciprocal = movable() && sameUnder(1, 1, true);
+    laws_.mirrorSymmetric = incident_.symmetric() && outgoing_.symmetric() &&
+                            sameUnder(-1, 0, false) && sameUnder(-1, 1, false);
     laws_.isotropic = dependsOnRingsOnly();
     double most = 0;
-    for (std::size_t c = 0; c < channels_.count(); ++c) {
-        for (std::size_t o = 0; o < outgoing_.patches(); ++o) {
-            double sum = 0;
-            for (std::size_t i = 0; i < incident_.patches(); ++i) {
-                sum += value(c, i, o) * incident_.projectedSolidAngle(incident_.ringOf(i));
-            }
-            most = std::max(most, sum);
-        }
-    }
-    laws_.energyConserving = most <= 1;
+    for (std::size_t c = 0; c < channels_.count(); ++c)
+        for (std::size_t i = 0; i < incident_.patches(); ++i)
+            most = std::max(most, directionalReflectance(c, i));
+    laws_.energyConserving = most <= 1 + roundingOfFiles;
+}
+
+/// Whether both bases have the same patches, and directions may be exchanged patch by patch.
+bool KlemsBrdf::movable() const {
+    if (!incident_.symmetric() || !outgoing_.symmetric()) return false;
+    return std::ranges::equal(incident_.rings(), outgoing_.rings(),
+                              [](const AngleBasis::Ring& a, const AngleBasis::Ring& b) {
+                                  return a.azimuths == b.azimuths && a.upper == b.upper;
+                              });
 }
 
 std::vector<Axis> KlemsBrdf::axes() const {

@@ -55,6 +55,9 @@ std::array<double, 3> rgbOfXyz(double x, double y, double z);
 /// The same of luminance and CIE 1976 (u', v'), taken as at most 1; neutral for v' below 1e-3.
 std::array<double, 3> rgbOfYuv(double y, double u, double v);
 
+/// A file whose numbers have six or seven digits may exceed a reflectance of 1 by this much.
+inline constexpr double roundingOfFiles = 1e-6;
+
 /// The value that `eval` uses: 0 in place of a negative one or NaN.
 inline double asReflectance(double value) {
     return value > 0 ? value : 0;

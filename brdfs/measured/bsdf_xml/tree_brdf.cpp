@@ -73,18 +73,44 @@ void TreeBrdf::findLaws() {
                   : all(same, {true, false, true, false}) && all(same, {false, true, false, true});
     laws_.reciprocal = !isotropic && all(exchanged, {true, true, true, true});
     if (trees_.size() > 1) return;
-    if (isotropic) {
-        // A bound: the albedo is no more than pi times the greatest value.
-        double most = 0;
-        trees_[0].forEachLeaf([&](const TensorTree::Leaf& leaf) {
-            if (leaf.corner[0] < 0.5) most = std::max(most, trees_[0].values()[leaf.value]);
-        });
-        laws_.energyConserving = pi * most <= 1;
-        return;
+    const std::vector<double> reflectances = directionalReflectances();
+    laws_.energyConserving =
+        std::ranges::all_of(reflectances, [](double r) { return r <= 1 + roundingOfFiles; });
+}
+
+int TreeBrdf::squareLevels() const {
+    int most = 0;
+    for (const TensorTree& tree : trees_) most = std::max(most, tree.levels());
+    return most;
+}
+
+std::size_t TreeBrdf::cells() const {
+    const std::size_t side = std::size_t{1} << squareLevels();
+    return trees_[0].rank() == 4 ? side * side : std::max<std::size_t>(side / 2, 1);
+}
+
+std::size_t TreeBrdf::cellOf(const Direction& wi) const {
+    const std::size_t side = std::size_t{1} << squareLevels();
+    const TensorTree::Point at = pointFor({0, 0, 1}, wi.x, wi.y);
+    const auto step = [&](double u) {
+        return std::min(static_cast<std::size_t>(std::max(u, 0.0) * static_cast<double>(side)),
+                        side - 1);
+    };
+    return trees_[0].rank() == 4 ? step(at[1]) * side + step(at[0])
+                                 : std::min(step(at[0]), cells() - 1);
+}
+
+Direction TreeBrdf::cellCentre(std::size_t cell) const {
+    const auto side = static_cast<std::size_t>(1) << squareLevels();
+    const auto centre = [&](std::size_t k) {
+        return (static_cast<double>(k) + 0.5) / static_cast<double>(side);
+    };
+    if (trees_[0].rank() == 4) {
+        const Direction to = directionFromSquare({centre(cell % side), centre(cell / side)});
+        return {-selection_.fileX(to.x), -to.y, to.z};
     }
-    double most = 0;
-    for (const double average : trees_[0].averagesOverFirst(2)) most = std::max(most, average);
-    laws_.energyConserving = pi * most <= 1;
+    const double sine = std::max(1 - 2 * centre(cell), 0.0);
+    return {-selection_.fileX(sine), 0, std::sqrt((1 - sine) * (1 + sine))};
 }
 
 TensorTree::Point TreeBrdf::pointFor(const Direction& wo, double x, double y) const {

@@ -4,6 +4,7 @@
 #include <brdfs/measured/bsdf_xml/selection.h>
 #include <brdfs/measured/bsdf_xml/tensor_tree.h>
 #include <brdfs/measured/measured_brdf.h>
+#include <hshfit/brdf/steps.h>
 
 #include <string>
 #include <vector>
@@ -20,7 +21,7 @@ namespace hshfit::brdfs {
 /// checkIntact() throws InputError. With trees for CIE u' and v' the BRDF is RGB. Laws are
 /// claimed if the tree has them exactly. Rank 3 never claims reciprocity, and a coloured tree
 /// never claims conservation of energy.
-class TreeBrdf : public MeasuredBrdf {
+class TreeBrdf : public MeasuredBrdf, public HasSteps {
 public:
     /// Throws InputError as TensorTree does.
     TreeBrdf(const BsdfDocument& document, BsdfSelection selection);
@@ -32,6 +33,13 @@ public:
     void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
     /// The brightest cells, if they are far above the average: quadrature could miss narrow ones.
     std::vector<Lobe> lobes(const Direction& wo) const override;
+    std::vector<double> outgoingKinks(const Direction&) const override { return {}; }
+    std::vector<KinkCurve> outgoingKinkCurves(const Direction&) const override { return {}; }
+    int squareLevels() const override;
+    /// The finest cells of the incident square; of rank 3 the rings.
+    std::size_t cells() const override;
+    std::size_t cellOf(const Direction& wi) const override;
+    Direction cellCentre(std::size_t cell) const override;
     double defaultTolerance() const override { return selection_.tolerance; }
     std::vector<Fact> facts() const override;
     void checkIntact() const override { selection_.checkIntact(); }

@@ -122,20 +122,28 @@ void examinePairs(const Brdf& brdf, std::size_t count, Health& health) {
     if (sum > 0) health.reciprocityDefect = difference / sum;
 }
 
-}  // namespace
-
-double Health::largestAlbedo() const {
+double largestOf(const std::vector<Health::Albedo>& integrals) {
     double largest = 0;
-    for (const Albedo& albedo : albedos) {
-        for (double value : albedo.values) largest = std::max(largest, value);
-    }
+    for (const Health::Albedo& integral : integrals)
+        for (const double value : integral.values) largest = std::max(largest, value);
     return largest;
 }
 
-bool Health::isAboveOne() const {
-    return std::ranges::any_of(albedos, [&](const Albedo& albedo) {
-        const double margin = std::max(albedo.error, 2 * albedoTolerance);
-        return std::ranges::any_of(albedo.values, [&](double value) { return value > 1 + margin; });
+}  // namespace
+
+double Health::largestAlbedo() const {
+    return largestOf(albedos);
+}
+
+double Health::largestReflectance() const {
+    return largestOf(reflectances);
+}
+
+bool Health::createsEnergy() const {
+    return std::ranges::any_of(reflectances, [&](const Albedo& reflectance) {
+        const double margin = std::max(reflectance.error, 2 * albedoTolerance);
+        return std::ranges::any_of(reflectance.values,
+                                   [&](double value) { return value > 1 + margin; });
     });
 }
 
@@ -143,28 +151,35 @@ Health examine(const Brdf& brdf, const HealthOptions& options) {
     Health health;
     health.albedoTolerance = options.albedoTolerance;
     examinePairs(brdf, options.pairs, health);
+    std::vector<Health::Albedo> directions;
     for (double theta : albedoAngles) {
         for (double phi : albedoAzimuths) {
             if (phi > 0 && (theta == 0 || brdf.laws().isotropic)) break;
-            health.albedos.push_back({.wo = directionFromAngles(radians(theta), radians(phi))});
+            directions.push_back({.at = directionFromAngles(radians(theta), radians(phi))});
         }
     }
+    const std::size_t count = directions.size();
+    const bool reciprocal = brdf.laws().reciprocal;
     const AlbedoOptions how{.tolerance = options.albedoTolerance,
-                            .maxEvaluations = options.albedoEvaluations / health.albedos.size()};
+                            .maxEvaluations = options.albedoEvaluations / count};
+    const std::size_t all = reciprocal ? count : 2 * count;
+    health.albedos = health.reflectances = directions;
     std::atomic<std::size_t> done = 0, evaluations = 0;
-    eachInParallel(health.albedos.size(), [&](std::size_t i) {
-        Health::Albedo& albedo = health.albedos[i];
+    eachInParallel(all, [&](std::size_t i) {
+        Health::Albedo& integral = i < count ? health.albedos[i] : health.reflectances[i - count];
         try {
-            AlbedoEstimate found = estimateAlbedo(brdf, albedo.wo, how);
+            AlbedoEstimate found = i < count ? estimateAlbedo(brdf, integral.at, how)
+                                             : estimateReflectance(brdf, integral.at, how);
             evaluations += found.evaluations;
-            albedo.values = std::move(found.values);
-            albedo.error = found.error;
-            albedo.converged = found.converged;
+            integral.values = std::move(found.values);
+            integral.error = found.error;
+            integral.converged = found.converged;
         } catch (const NumericError&) {
-            albedo.values.clear();  // reported as not finite
+            integral.values.clear();  // reported as not finite
         }
-        if (options.progress) options.progress(++done, health.albedos.size());
+        if (options.progress) options.progress(++done, all);
     });
+    if (reciprocal) health.reflectances = health.albedos;
     health.albedoEvaluations = evaluations;
     return health;
 }

@@ -33,28 +33,33 @@ struct Health {
     };
     std::optional<Exchange> worstExchange;
 
-    /// Directional albedos, by theta and, for an anisotropic BRDF, four azimuths.
+    /// An integral over one hemisphere, with the direction that is fixed.
     struct Albedo {
-        Direction wo;
+        Direction at;
         std::vector<double> values = {};  ///< one per channel; empty where f is not finite
         double error = 0;                 ///< of the quadrature, absolute
         bool converged = false;           ///< to the tolerance
     };
-    std::vector<Albedo> albedos;
+    /// By theta and, for an anisotropic BRDF, four azimuths. Albedos are integrals over wi for a wo
+    /// (estimateAlbedo), reflectances over wo for a wi (estimateReflectance): the share of light
+    /// that is reflected. Both are the same numbers for a BRDF that claims reciprocity.
+    std::vector<Albedo> albedos, reflectances;
     double albedoTolerance = 0;  ///< of the quadrature, relative (AlbedoOptions)
     std::size_t albedoEvaluations = 0;
-    /// The largest of them.
+    /// The largest of each.
     double largestAlbedo() const;
-    /// Whether one of them is above 1 by more than its error and twice the tolerance: the surface
+    double largestReflectance() const;
+    /// Whether a reflectance is above 1 by more than its error and twice the tolerance: the surface
     /// reflects more than it receives.
-    bool isAboveOne() const;
+    bool createsEnergy() const;
 };
 
 struct HealthOptions {
     std::size_t pairs = 16384;
     double albedoTolerance = 1e-3;
-    /// Of all albedos together; they share them evenly. Where they do not do, albedos have the
-    /// error that is left. Two million take seconds where f is a search among samples.
+    /// Of all albedos together, and of all reflectances together; they share them evenly. Where
+    /// they do not do, the error that is left is stated. Two million take seconds where f is a
+    /// search among samples.
     std::size_t albedoEvaluations = std::size_t{1} << 21;
     std::function<void(std::size_t, std::size_t)> progress = {};
 };

@@ -21,7 +21,7 @@ struct Laws {
     bool isotropic = false;         ///< unchanged when both directions turn about the normal
     bool mirrorSymmetric = false;   ///< unchanged when both directions are mirrored at the xz plane
                                     ///< or both at the yz plane
-    bool energyConserving = false;  ///< directional albedo at most 1 for every outgoing direction
+    bool energyConserving = false;  ///< integral of f cos(theta_o) over wo at most 1 for every wi
 };
 
 /// A hint for placing quadrature nodes: where f peaks for a given wo, and how fast it varies there.

@@ -2,6 +2,7 @@
 
 #include <hshfit/brdf/brdf.h>
 #include <hshfit/brdf/kink_curve.h>
+#include <hshfit/brdf/steps.h>
 
 #include <memory>
 #include <span>
@@ -13,7 +14,7 @@ namespace hshfit::inline brdf {
 /// A BRDF whose channels are weighted sums of another's at the same directions: the colours of a
 /// spectrum, or the mean of the channels. The samples behind the other BRDF, converted value by
 /// value, are therefore the samples behind this one.
-class ChannelView final : public Brdf, public HasKinkCurves {
+class ChannelView final : public Brdf, public HasKinkCurves, public HasSteps {
 public:
     /// Everything that differs from the BRDF that is seen.
     struct Look {
@@ -42,6 +43,13 @@ public:
     std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
         return kinkCurvesOf(*seen_, wo);
     }
+    std::vector<double> outgoingKinks(const Direction& wi) const override {
+        return outgoingKinksOf(*seen_, wi);
+    }
+    std::vector<KinkCurve> outgoingKinkCurves(const Direction& wi) const override {
+        return outgoingKinkCurvesOf(*seen_, wi);
+    }
+    int squareLevels() const override { return squareLevelsOf(*seen_); }
     double defaultTolerance() const override { return seen_->defaultTolerance(); }
     std::vector<Fact> facts() const override;
     void checkIntact() const override { seen_->checkIntact(); }

@@ -1,6 +1,7 @@
 #include <hshfit/precomputed_transfer/transfer_material.h>
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/brdf/steps.h>
 #include <hshfit/brdf/vectors.h>
 #include <hshfit/error.h>
 #include <hshfit/projection/albedo.h>
@@ -32,18 +33,29 @@ std::optional<std::vector<double>> constantOf(const Brdf& brdf) {
     return first;
 }
 
-/// The integral of the directional albedo times 2 mu d mu, by Gauss-Legendre.
+/// The integral of the directional albedo times 2 mu d mu, by Gauss-Legendre between the heights at
+/// which f has kinks over wo. Patches of tables are at most 24 on a ring.
 std::vector<double> meanAlbedo(const Brdf& brdf) {
-    const GaussRule& rule = gaussLegendre(10);
-    const int azimuths = brdf.laws().isotropic ? 1 : 8;
+    const Direction normal{0, 0, 1};
+    const bool patches = !outgoingKinkCurvesOf(brdf, normal).empty() || squareLevelsOf(brdf) > 0;
+    const int azimuths = brdf.laws().isotropic ? 1 : patches ? 48 : 8;
+    std::vector<double> ends = {0, 1};
+    if (dynamic_cast<const HasSteps*>(&brdf))
+        for (const double height : outgoingKinksOf(brdf, normal)) ends.push_back(height);
+    std::ranges::sort(ends);
+    const GaussRule& rule = gaussLegendre(ends.size() > 2 ? 3 : 10);
     std::vector<double> mean(brdf.channels().count());
-    for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
-        const double mu = (1 + rule.nodes[k]) / 2;
-        for (int a = 0; a < azimuths; ++a) {
-            const Direction wo = directionFromAngles(std::acos(mu), 2 * pi * (a + 0.5) / azimuths);
-            const std::vector<double> albedo = directionalAlbedo(brdf, wo);
-            for (std::size_t c = 0; c < mean.size(); ++c)
-                mean[c] += rule.weights[k] * mu * albedo[c] / azimuths;
+    for (std::size_t e = 0; e + 1 < ends.size(); ++e) {
+        const double width = ends[e + 1] - ends[e];
+        for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
+            const double mu = ends[e] + width * (1 + rule.nodes[k]) / 2;
+            for (int a = 0; a < azimuths; ++a) {
+                const Direction wo =
+                    directionFromAngles(std::acos(mu), 2 * pi * (a + 0.5) / azimuths);
+                const std::vector<double> albedo = directionalAlbedo(brdf, wo);
+                for (std::size_t c = 0; c < mean.size(); ++c)
+                    mean[c] += width * rule.weights[k] * mu * albedo[c] / azimuths;
+            }
         }
     }
     return mean;

@@ -211,12 +211,15 @@ void appendPanel(HemisphereGrid& grid, double a, double b, const AzimuthPeaks& p
 }
 
 HemisphereGrid gridFor(const std::vector<Lobe>& lobes, const Direction& wo,
-                       const GridOptions& options, const std::vector<double>& kinks) {
-    const std::vector<double> breaks = panelBreaks(lobes, wo, kinks);
+                       const GridOptions& options, const std::vector<double>& kinks,
+                       const std::vector<KinkCurve>& curves) {
+    std::vector<double> heights = kinks;
+    for (const double height : curveEnds(curves)) heights.push_back(height);
+    const std::vector<double> breaks = panelBreaks(lobes, wo, heights);
     HemisphereGrid grid;
     for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
         const double a = breaks[k], b = breaks[k + 1];
-        appendPanel(grid, a, b, AzimuthPeaks(lobes, wo, a, b), options);
+        appendPanel(grid, a, b, AzimuthPeaks(lobes, wo, a, b), options, {curves, a, b});
     }
     return grid;
 }

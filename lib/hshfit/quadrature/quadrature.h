@@ -66,9 +66,10 @@ std::vector<double> panelBreaks(const std::vector<Lobe>& lobes, const Direction&
 void appendPanel(HemisphereGrid& grid, double a, double b, const AzimuthPeaks& peaks,
                  const GridOptions& options, const PanelCurves& curves = {});
 
-/// All panels at one level: a grid for integrands made of a BRDF with these lobes and kinks at
-/// `wo`, its square, and basis functions.
+/// All panels at one level: a grid for integrands made of a BRDF with these lobes, kinks and kink
+/// curves at `wo`, its square, and basis functions.
 HemisphereGrid gridFor(const std::vector<Lobe>& lobes, const Direction& wo,
-                       const GridOptions& options, const std::vector<double>& kinks = {});
+                       const GridOptions& options, const std::vector<double>& kinks = {},
+                       const std::vector<KinkCurve>& curves = {});
 
 }  // namespace hshfit::inline quadrature

@@ -64,10 +64,12 @@ std::vector<double> albedoBounds(const Brdf& source, const std::vector<Direction
     tbb::parallel_for(std::size_t{0}, distinct.size(), [&](std::size_t k) {
         albedos[k] = directionalAlbedo(source, distinct[k], tolerance);
     });
+    // Conservation of energy bounds the reflectance, which is the albedo of a reciprocal BRDF only.
+    const bool atMostOne = source.laws().energyConserving && source.laws().reciprocal;
     std::vector<double> bounds;
     for (const std::size_t place : placeOf) {
         for (const double albedo : albedos[place]) {
-            bounds.push_back(source.laws().energyConserving ? std::min(albedo, 1.0) : albedo);
+            bounds.push_back(atMostOne ? std::min(albedo, 1.0) : albedo);
         }
     }
     return bounds;

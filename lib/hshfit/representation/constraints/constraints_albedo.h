@@ -16,8 +16,8 @@ inline constexpr double lowestRing = 89 * (pi / 180);
 std::vector<double> albedoMoments(const Basis& basis, Quantity quantity);
 
 /// [direction][channel]: the directional albedo of `source`, to the larger of 1e-6 and a tenth of
-/// its tolerance; at most 1 where it conserves energy. Directions that its symmetries make alike
-/// are evaluated once.
+/// its tolerance; at most 1 where it is reciprocal and conserves energy. Directions that its
+/// symmetries make alike are evaluated once.
 std::vector<double> albedoBounds(const Brdf& source, const std::vector<Direction>& directions);
 
 /// Upper limits of the albedos of one channel at the stored directions, under which albedos that
