@@ -58,7 +58,7 @@ hshfit_package(development libhshfit-dev libdevel
   "BRDFs as coefficients of hemispherical harmonics, library"
   "libfmt-dev, libtbb-dev, libhwy-dev, libimath-dev, libzstd-dev, libopenexr-dev, libpng-dev, \
 zlib1g-dev, nettle-dev, glslang-dev, glslang-tools, libpugixml-dev, libembree-dev, \
-libtinygltf-dev, libtinyobjloader-dev, libceres-dev"
+libtinygltf-dev, libceres-dev"
   "" "hshfit-doc, hshfit-pictures ${same}"
   "${about}\n.\nThis package has the static libraries, their headers, and files for
 CMake and pkg-config.")

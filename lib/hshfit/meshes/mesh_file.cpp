@@ -30,6 +30,8 @@ void checkValues(const std::vector<MeshVector>& vectors, std::string_view noun,
 }
 
 MeshFile contentOf(std::string_view bytes, const std::string& path) {
+    constexpr std::string_view byteOrderMark = "\xef\xbb\xbf";
+    if (bytes.starts_with(byteOrderMark)) bytes.remove_prefix(byteOrderMark.size());
     if (bytes.starts_with("glTF") || beginsAsJson(bytes))
         return {.mesh = readGltf(bytes, path), .yUp = true};
     const bool ply =

@@ -21,9 +21,10 @@ constexpr std::size_t largestMeshFile = std::size_t{1} << 30;
 
 /// Reads a Wavefront OBJ, a PLY (ascii, binary of either byte order) or a glTF 2.0 file (.gltf,
 /// .glb), by its content: a PLY file starts with "ply", a glTF file with "glTF" or "{". Of an OBJ
-/// file, `v`, `vn` and `f` count; of a PLY file x, y, z and nx, ny, nz of `vertex` and
-/// `vertex_indices` (or `vertex_index`) of `face`. Polygons become triangles: those of PLY files as
-/// fans, which is right where they are convex. Of a glTF file, the nodes of its scene with their
+/// file, `v`, `vn` and `f` count, over as many lines as it likes; of a PLY file x, y, z and nx, ny,
+/// nz of `vertex` and `vertex_indices` (or `vertex_index`) of `face` and of `tristrips`. Every face
+/// is in the mesh, or the file is refused; polygons become triangles, convex or not (a byte-order
+/// mark before text is left out). Of a glTF file, the nodes of its scene with their
 /// transforms, and of their meshes triangles, strips and fans, POSITION and NORMAL, in floats or
 /// integers, count; skins, morph targets, materials and cameras do not, and compressed meshes are
 /// refused. Its +y is up. Buffers in other files lie beside `path`. Throws InputError, which names

@@ -1,104 +1,204 @@
 #include <hshfit/meshes/internal/mesh_readers.h>
 
 #include <hshfit/error.h>
+#include <hshfit/meshes/internal/polygon.h>
 
 #include <fmt/format.h>
-#include <tiny_obj_loader.h>
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <limits>
+#include <span>
+
+// Wavefront's text format, of which v, vn and f count (and fo, the older word for f).
 
 namespace hshfit::inline meshes {
 namespace {
 
-constexpr std::string_view blanks = " \t\r";
+constexpr std::string_view blanks = " \t\r\v\f";
 
-bool isNumber(std::string_view word) {
-    if (word.find_first_not_of("0123456789+-.eE") != std::string_view::npos) return false;
-    word.remove_prefix(word.starts_with('+') ? 1 : 0);
-    double value = 0;
-    return std::from_chars(word.data(), word.data() + word.size(), value).ptr ==
-               word.data() + word.size() &&
-           !word.empty();
-}
-
-/// Whether a word is VERTEX, VERTEX/TEXTURE, VERTEX//NORMAL or VERTEX/TEXTURE/NORMAL.
-bool isCorner(std::string_view word) {
-    for (int part = 0; part < 3; ++part) {
-        int index = 0;
-        const char* end = word.data() + word.size();
-        const auto [next, error] = std::from_chars(word.data(), end, index);
-        const bool left = part == 1 && word.starts_with('/');
-        if (error != std::errc() && !left) return false;
-        word.remove_prefix(left ? 0 : static_cast<std::size_t>(next - word.data()));
-        if (word.empty()) return true;
-        if (!word.starts_with('/')) return false;
-        word.remove_prefix(1);
-    }
-    return false;
-}
-
-struct Statement {
-    std::string_view keyword;
-    bool (*holds)(std::string_view word);
-    std::string_view takes;
-};
-constexpr Statement statements[] = {{"v", isNumber, "numbers, x y z"},
-                                    {"vn", isNumber, "numbers, x y z"},
-                                    {"f", isCorner, "corners, as 1, 1/2, 1//3 or 1/2/3"}};
-
-/// tinyobjloader cuts triangles off a polygon in a time that grows with the square of its corners,
-/// 1 s for 8,000 of them: squares of polygons beyond `manyCorners` are summed and bounded.
+/// Ears are cut in a time that grows with the square of the corners: squares of polygons beyond
+/// `manyCorners` are summed and bounded.
 constexpr std::size_t manyCorners = 256, mostSquared = std::size_t{1} << 26;
 
-/// tinyobjloader reads a word that is no number as 0 and 1.9 as the index 1, so that words are
-/// checked before it.
-void checkNumbers(std::string_view text, const std::string& path) {
-    std::size_t squared = 0;
-    for (std::size_t number = 1; !text.empty(); ++number) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        const std::string_view line = text.substr(0, end);
-        text.remove_prefix(std::min(end + 1, text.size()));
-        std::size_t at = std::min(line.find_first_not_of(blanks), line.size());
-        const std::size_t wordEnd = std::min(line.find_first_of(blanks, at), line.size());
-        const std::string_view keyword = line.substr(at, wordEnd - at);
-        const auto* statement = std::ranges::find(statements, keyword, &Statement::keyword);
-        if (statement == std::end(statements)) continue;
-        std::size_t count = 0;
-        for (at = wordEnd; at < line.size(); ++count) {
-            at = line.find_first_not_of(blanks, at);
-            if (at == std::string_view::npos) break;
-            const std::size_t last = std::min(line.find_first_of(blanks, at), line.size());
-            const std::string_view word = line.substr(at, last - at);
-            if (word.front() == '#') break;
-            if (!statement->holds(word)) {
-                throw InputError(fmt::format("{}: line {}: '{}' is read; '{}' takes three {}", path,
-                                             number, word.substr(0, 40), keyword,
-                                             statement->takes));
+/// Corners as the file has them, from 1 or, below 0, from the last one before the face.
+struct Corner {
+    std::int64_t vertex = 0, normal = 0;  ///< 0: no normal
+};
+
+class ObjReader {
+public:
+    ObjReader(std::string_view text, const std::string& path) : text_(text), path_(path) {}
+
+    Mesh read() {
+        while (nextLine()) {
+            if (words_.empty()) continue;
+            const std::string_view keyword = words_.front();
+            if (keyword == "v") {
+                mesh_.positions.push_back(vector(keyword));
+            } else if (keyword == "vn") {
+                normals_.push_back(vector(keyword));
+            } else if (keyword == "f" || keyword == "fo") {
+                readFace();
             }
-            at = last;
         }
-        if (count < 3) {
-            throw InputError(fmt::format("{}: line {}: '{}' has {} words; it takes three {}", path,
-                                         number, keyword, count, statement->takes));
+        // Vertices may come after the faces that name them.
+        for (const Face& face : faces_) addFace(face);
+        return std::move(mesh_);
+    }
+
+private:
+    struct Face {
+        std::size_t line = 0, first = 0, count = 0;  ///< among corners_
+    };
+
+    [[noreturn]] void fail(const std::string& reason) const {
+        throw InputError(fmt::format("{}: line {}: {}", path_, line_, reason));
+    }
+
+    /// The words of the next statement. A backslash at the end of a line, with blanks behind it or
+    /// not, continues the statement in the next line, in a word of its own.
+    bool nextLine() {
+        if (text_.empty()) return false;
+        words_.clear();
+        line_ = nextNumber_;
+        bool remark = false;
+        for (bool more = true; more;) {
+            const std::size_t end = std::min(text_.find_first_of("\n\r"), text_.size());
+            std::string_view line = text_.substr(0, end);
+            const bool both = text_.substr(end).starts_with("\r\n");
+            text_.remove_prefix(std::min(end + (both ? 2 : 1), text_.size()));
+            ++nextNumber_;
+            const std::size_t last = line.find_last_not_of(blanks);
+            more = last != std::string_view::npos && line[last] == '\\' && !text_.empty();
+            if (more) line = line.substr(0, last);
+            for (std::size_t at = line.find_first_not_of(blanks);
+                 at != std::string_view::npos && !remark;) {
+                const std::size_t stop = std::min(line.find_first_of(blanks, at), line.size());
+                const std::string_view word = line.substr(at, stop - at);
+                remark = word.front() == '#';
+                if (!remark) words_.push_back(word);
+                at = line.find_first_not_of(blanks, stop);
+            }
         }
-        if (keyword != "f" || count <= manyCorners) continue;
-        squared += count * count;
-        if (squared > mostSquared) {
-            throw InputError(
-                fmt::format("{}: line {}: faces of {} corners take too long to cut into "
-                            "triangles; cut them before, one of 8192 is read",
-                            path, number, count));
+        return true;
+    }
+
+    void requireThree(std::string_view keyword, std::string_view takes) const {
+        if (words_.size() > 3) return;
+        fail(
+            fmt::format("'{}' has {} words; it takes three {}", keyword, words_.size() - 1, takes));
+    }
+    [[noreturn]] void failWord(std::string_view word, std::string_view keyword,
+                               std::string_view takes) const {
+        fail(fmt::format("'{}' is read; '{}' takes three {}", word.substr(0, 40), keyword, takes));
+    }
+
+    /// Three numbers; others behind them are weights or colours, and have to be numbers as well.
+    MeshVector vector(std::string_view keyword) const {
+        constexpr std::string_view takes = "numbers, x y z";
+        MeshVector result{};
+        for (std::size_t k = 1; k < words_.size(); ++k) {
+            std::string_view word = words_[k];
+            if (word.starts_with('+')) word.remove_prefix(1);
+            double value = 0;
+            const char* end = word.data() + word.size();
+            const auto [next, error] = std::from_chars(word.data(), end, value);
+            const bool letters =
+                word.find_first_not_of("0123456789+-.eE") != std::string_view::npos;
+            if (letters || word.empty() || next != end || error == std::errc::invalid_argument)
+                failWord(words_[k], keyword, takes);
+            if (error == std::errc::result_out_of_range) {
+                const bool small = word.find("e-") != word.npos || word.find("E-") != word.npos;
+                value = small ? 0 : std::numeric_limits<double>::infinity();
+            }
+            if (k <= 3) result[k - 1] = static_cast<float>(value);
+        }
+        requireThree(keyword, takes);
+        return result;
+    }
+
+    void readFace() {
+        constexpr std::string_view takes = "corners, as 1, 1/2, 1//3 or 1/2/3";
+        Face face{.line = line_, .first = corners_.size()};
+        for (std::size_t k = 1; k < words_.size(); ++k) {
+            Corner corner;
+            if (!parseCorner(words_[k], corner)) failWord(words_[k], words_.front(), takes);
+            if (corner.vertex < 0)
+                corner.vertex += static_cast<std::int64_t>(mesh_.positions.size()) + 1;
+            if (corner.normal < 0) corner.normal += static_cast<std::int64_t>(normals_.size()) + 1;
+            corners_.push_back(corner);
+        }
+        requireThree(words_.front(), takes);
+        face.count = corners_.size() - face.first;
+        if (face.count > manyCorners) squared_ += face.count * face.count;
+        if (squared_ > mostSquared)
+            fail(
+                fmt::format("faces of {} corners take too long to cut into triangles; cut them "
+                            "before, one of 8192 is read",
+                            face.count));
+        faces_.push_back(face);
+    }
+
+    /// VERTEX, VERTEX/TEXTURE, VERTEX//NORMAL or VERTEX/TEXTURE/NORMAL.
+    static bool parseCorner(std::string_view word, Corner& corner) {
+        for (int part = 0; part < 3; ++part) {
+            std::int64_t index = 0;
+            const char* end = word.data() + word.size();
+            const auto [next, error] = std::from_chars(word.data(), end, index);
+            const bool left = part == 1 && word.starts_with('/');
+            if (error != std::errc() && !left) return false;
+            word.remove_prefix(left ? 0 : static_cast<std::size_t>(next - word.data()));
+            if (part == 0) corner.vertex = index;
+            if (part == 2) corner.normal = index;
+            if (word.empty()) return true;
+            if (!word.starts_with('/')) return false;
+            word.remove_prefix(1);
+        }
+        return false;
+    }
+
+    void addFace(const Face& face) {
+        const auto vertices = static_cast<std::int64_t>(mesh_.positions.size());
+        const auto normals = static_cast<std::int64_t>(normals_.size());
+        const auto corners = std::span(corners_).subspan(face.first, face.count);
+        outline_.clear();
+        for (const Corner& corner : corners) {
+            if (corner.vertex < 1 || corner.vertex > vertices || corner.normal < 0 ||
+                corner.normal > normals) {
+                line_ = face.line;
+                fail(fmt::format("a face names vertex {} and normal {}; there are {} and {}",
+                                 corner.vertex, corner.normal, vertices, normals));
+            }
+            outline_.push_back(mesh_.positions[static_cast<std::size_t>(corner.vertex - 1)]);
+        }
+        cut_.clear();
+        cutPolygon(outline_, cut_);  // `mostSquared` allows for no more than it cuts
+        for (const auto& triangle : cut_) {
+            std::array<std::uint32_t, 3> indices{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Corner& corner = corners[triangle[k]];
+                indices[k] = static_cast<std::uint32_t>(corner.vertex - 1);
+                mesh_.normals.push_back(
+                    corner.normal == 0 ? MeshVector{}
+                                       : normals_[static_cast<std::size_t>(corner.normal - 1)]);
+            }
+            mesh_.triangles.push_back(indices);
         }
     }
-}
 
-template <class Number>
-MeshVector vectorAt(const std::vector<Number>& numbers, int index) {
-    const auto at = 3 * static_cast<std::size_t>(index);
-    return {static_cast<float>(numbers[at]), static_cast<float>(numbers[at + 1]),
-            static_cast<float>(numbers[at + 2])};
-}
+    std::string_view text_;
+    const std::string& path_;
+    std::size_t line_ = 1, nextNumber_ = 1, squared_ = 0;
+    std::vector<std::string_view> words_;
+    std::vector<MeshVector> normals_;
+    std::vector<Corner> corners_;
+    std::vector<Face> faces_;
+    Mesh mesh_;
+    std::vector<MeshVector> outline_;
+    std::vector<std::array<std::uint32_t, 3>> cut_;
+};
 
 }  // namespace
 
@@ -107,44 +207,7 @@ Mesh readObj(std::string_view text, const std::string& path) {
         throw InputError(
             fmt::format("{}: is neither a PLY file nor text, as a Wavefront OBJ file", path));
     }
-    checkNumbers(text, path);
-    tinyobj::ObjReaderConfig config;
-    config.triangulate = true;
-    config.vertex_color = false;
-    tinyobj::ObjReader reader;
-    if (!reader.ParseFromString(std::string(text), "", config)) {
-        std::string reason = reader.Error();
-        std::ranges::replace(reason, '\n', ' ');
-        throw InputError(fmt::format("{}: is no Wavefront OBJ file: {}", path,
-                                     reason.empty() ? "it cannot be read" : reason));
-    }
-    const tinyobj::attrib_t& attributes = reader.GetAttrib();
-    Mesh mesh;
-    const auto vertices = static_cast<int>(attributes.vertices.size() / 3);
-    const auto normals = static_cast<int>(attributes.normals.size() / 3);
-    for (int v = 0; v < vertices; ++v) mesh.positions.push_back(vectorAt(attributes.vertices, v));
-    for (const tinyobj::shape_t& shape : reader.GetShapes()) {
-        const auto& indices = shape.mesh.indices;
-        for (std::size_t k = 0; k + 2 < indices.size(); k += 3) {
-            std::array<std::uint32_t, 3> triangle{};
-            for (std::size_t corner = 0; corner < 3; ++corner) {
-                const tinyobj::index_t& index = indices[k + corner];
-                if (index.vertex_index < 0 || index.vertex_index >= vertices ||
-                    index.normal_index >= normals) {
-                    throw InputError(fmt::format(
-                        "{}: face {} names vertex {} and normal {}; there are {} and {}", path,
-                        mesh.triangles.size(), index.vertex_index + 1, index.normal_index + 1,
-                        vertices, normals));
-                }
-                triangle[corner] = static_cast<std::uint32_t>(index.vertex_index);
-                mesh.normals.push_back(index.normal_index < 0
-                                           ? MeshVector{}
-                                           : vectorAt(attributes.normals, index.normal_index));
-            }
-            mesh.triangles.push_back(triangle);
-        }
-    }
-    return mesh;
+    return ObjReader(text, path).read();
 }
 
 }  // namespace hshfit::inline meshes

@@ -2,6 +2,7 @@
 
 #include <hshfit/byte_cursor.h>
 #include <hshfit/error.h>
+#include <hshfit/meshes/internal/polygon.h>
 
 #include <fmt/format.h>
 
@@ -48,6 +49,8 @@ struct Element {
 /// Most properties that elements of a file have, and most corners of a polygon.
 constexpr std::size_t mostProperties = 256;
 constexpr double mostCorners = 65536;
+/// Most indices of one list of triangle strips, which holds whole meshes.
+constexpr std::int32_t largestList = 1 << 30;
 
 class PlyReader {
 public:
@@ -61,6 +64,7 @@ public:
                 readElement(element, k);
             }
         }
+        cutPolygons();
         if (vertexNormals_.empty()) return std::move(mesh_);
         for (const auto& triangle : mesh_.triangles) {
             for (const std::uint32_t v : triangle) mesh_.normals.push_back(vertexNormals_[v]);
@@ -260,7 +264,8 @@ private:
     // --- elements ---------------------------------------------------------------------------
 
     void readElement(const Element& element, std::size_t k) {
-        const bool vertex = element.name == "vertex", face = element.name == "face";
+        const bool vertex = element.name == "vertex", face = element.name == "face",
+                   strip = element.name == "tristrips";
         for (const Property& property : element.properties) {
             if (!property.count) {
                 const double value = number(*property.type);
@@ -268,20 +273,80 @@ private:
                 continue;
             }
             const double count = number(*property.count);
-            if (!(count >= 0 && count <= mostCorners))
-                fail(fmt::format("a list of {} values; at most {} are read", count, mostCorners));
-            const bool polygon = face && isPolygon(property);
-            std::array<std::uint32_t, 3> triangle{};
-            for (int corner = 0; corner < count; ++corner) {
-                const double value = number(*property.type);
-                if (!polygon) continue;
-                if (!(value >= 0 && value < static_cast<double>(vertices_)))
-                    fail(fmt::format("vertex {}; there are {}, from 0 on", value, vertices_));
-                triangle[std::min(corner, 2)] = static_cast<std::uint32_t>(value);
-                if (corner < 2) continue;
-                mesh_.triangles.push_back(triangle);
-                triangle[1] = triangle[2];
+            const double most = strip ? static_cast<double>(largestList) : mostCorners;
+            if (!(count >= 0 && count <= most))
+                fail(fmt::format("a list of {} values; at most {} are read", count, most));
+            const bool indices = isPolygon(property);
+            if (face && indices) {
+                polygons_.push_back({k, corners_.size()});
+                readIndices(property, count, [&](std::uint32_t v) { corners_.push_back(v); });
+            } else if (strip && indices) {
+                readStrips(property, count);
+            } else {
+                for (int corner = 0; corner < count; ++corner) number(*property.type);
             }
+        }
+    }
+
+    /// Calls `take` with each index of a list, and `restart` where it is below 0.
+    template <class Take, class Restart>
+    void readIndices(const Property& property, double count, Take take, Restart restart) {
+        for (int corner = 0; corner < count; ++corner) {
+            const double value = number(*property.type);
+            if (value < 0 && restart()) continue;
+            if (!(value >= 0 && value < static_cast<double>(vertices_)))
+                fail(fmt::format("vertex {}; there are {}, from 0 on", value, vertices_));
+            take(static_cast<std::uint32_t>(value));
+        }
+    }
+    template <class Take>
+    void readIndices(const Property& property, double count, Take take) {
+        readIndices(property, count, take, [] { return false; });
+    }
+
+    /// Triangles of neighbouring indices, of which every second one is turned; an index below 0
+    /// begins a new strip.
+    void readStrips(const Property& property, double count) {
+        std::array<std::uint32_t, 2> last{};
+        std::size_t length = 0;
+        readIndices(
+            property, count,
+            [&](std::uint32_t v) {
+                if (length >= 2) {
+                    const bool turned = length % 2 == 1;
+                    mesh_.triangles.push_back({last[turned ? 1 : 0], last[turned ? 0 : 1], v});
+                }
+                last = {last[1], v};
+                ++length;
+            },
+            [&] {
+                length = 0;
+                return true;
+            });
+    }
+
+    /// Faces may come before the vertices that they name, and are cut at the end.
+    void cutPolygons() {
+        std::vector<MeshVector> outline;
+        std::vector<std::array<std::uint32_t, 3>> cut;
+        for (std::size_t p = 0; p < polygons_.size(); ++p) {
+            const std::size_t first = polygons_[p].firstCorner;
+            const std::size_t last =
+                p + 1 < polygons_.size() ? polygons_[p + 1].firstCorner : corners_.size();
+            where_ = fmt::format("element face {}", polygons_[p].face);
+            if (last - first < 3)
+                fail(fmt::format("{} corners, expected three or more", last - first));
+            outline.clear();
+            cut.clear();
+            for (std::size_t k = first; k < last; ++k)
+                outline.push_back(mesh_.positions[corners_[k]]);
+            if (!cutPolygon(outline, cut))
+                fail(fmt::format("{} corners of a polygon that is not convex; at most {} are cut",
+                                 last - first, mostEars));
+            for (const auto& triangle : cut)
+                mesh_.triangles.push_back({corners_[first + triangle[0]],
+                                           corners_[first + triangle[1]],
+                                           corners_[first + triangle[2]]});
         }
     }
 
@@ -300,6 +365,11 @@ private:
     std::size_t line_ = 0, vertices_ = 0;
     Encoding encoding_ = Encoding::ascii;
     std::vector<Element> elements_;
+    struct Polygon {
+        std::size_t face, firstCorner;
+    };
+    std::vector<Polygon> polygons_;
+    std::vector<std::uint32_t> corners_;
     std::vector<MeshVector> vertexNormals_;
     Mesh mesh_;
 };
