@@ -23,7 +23,7 @@ constexpr std::string_view blanks = " \t\r\v\f";
 constexpr std::size_t manyCorners = 256, mostSquared = std::size_t{1} << 26;
 
 /// Corners as the file has them, from 1 or, below 0, from the last one before the face.
-struct Corner {
+struct ObjCorner {
     std::int64_t vertex = 0, normal = 0;  ///< 0: no normal
 };
 
@@ -123,7 +123,7 @@ private:
         constexpr std::string_view takes = "corners, as 1, 1/2, 1//3 or 1/2/3";
         Face face{.line = line_, .first = corners_.size()};
         for (std::size_t k = 1; k < words_.size(); ++k) {
-            Corner corner;
+            ObjCorner corner;
             if (!parseCorner(words_[k], corner)) failWord(words_[k], words_.front(), takes);
             if (corner.vertex < 0)
                 corner.vertex += static_cast<std::int64_t>(mesh_.positions.size()) + 1;
@@ -142,7 +142,7 @@ private:
     }
 
     /// VERTEX, VERTEX/TEXTURE, VERTEX//NORMAL or VERTEX/TEXTURE/NORMAL.
-    static bool parseCorner(std::string_view word, Corner& corner) {
+    static bool parseCorner(std::string_view word, ObjCorner& corner) {
         for (int part = 0; part < 3; ++part) {
             std::int64_t index = 0;
             const char* end = word.data() + word.size();
@@ -164,7 +164,7 @@ private:
         const auto normals = static_cast<std::int64_t>(normals_.size());
         const auto corners = std::span(corners_).subspan(face.first, face.count);
         outline_.clear();
-        for (const Corner& corner : corners) {
+        for (const ObjCorner& corner : corners) {
             if (corner.vertex < 1 || corner.vertex > vertices || corner.normal < 0 ||
                 corner.normal > normals) {
                 line_ = face.line;
@@ -178,7 +178,7 @@ private:
         for (const auto& triangle : cut_) {
             std::array<std::uint32_t, 3> indices{};
             for (std::size_t k = 0; k < 3; ++k) {
-                const Corner& corner = corners[triangle[k]];
+                const ObjCorner& corner = corners[triangle[k]];
                 indices[k] = static_cast<std::uint32_t>(corner.vertex - 1);
                 mesh_.normals.push_back(
                     corner.normal == 0 ? MeshVector{}
@@ -193,7 +193,7 @@ private:
     std::size_t line_ = 1, nextNumber_ = 1, squared_ = 0;
     std::vector<std::string_view> words_;
     std::vector<MeshVector> normals_;
-    std::vector<Corner> corners_;
+    std::vector<ObjCorner> corners_;
     std::vector<Face> faces_;
     Mesh mesh_;
     std::vector<MeshVector> outline_;
