@@ -88,6 +88,15 @@ std::string JsonFields::word(const char* key) const {
     return at(key).get<std::string>();
 }
 
+std::string JsonFields::fileName(const char* key) const {
+    std::string name = word(key);
+    if (name.empty() || name == "." || name == ".." ||
+        name.find_first_of(std::string_view("/\\\0", 3)) != std::string::npos) {
+        fail("has to be a plain file name, of a file beside this one", key);
+    }
+    return name;
+}
+
 std::vector<std::string> JsonFields::words(const char* key) const {
     const auto isWord = [](const Json& element) { return element.is_string(); };
     if (!at(key).is_array() || !std::all_of(at(key).begin(), at(key).end(), isWord)) {

@@ -53,6 +53,8 @@ public:
     std::vector<JsonFields> objects(const char* key) const;
     std::string word(const char* key) const;
     std::vector<std::string> words(const char* key) const;
+    /// The name of a file beside the one with this object: of one part, and neither "." nor "..".
+    std::string fileName(const char* key) const;
     bool flag(const char* key) const;
     double number(const char* key) const;
     double number(const char* key, double min, double max) const;

@@ -61,14 +61,6 @@ std::vector<std::vector<LobeWeight>> termsOf(const JsonFields& root, const MipLa
     return terms;
 }
 
-gpu::Number numberIn(const JsonFields& texture) {
-    try {
-        return gpu::parseNumber(texture.word("number"));
-    } catch (const UsageError& error) {
-        texture.fail(fmt::format("is invalid: {}", error.what()), "number");
-    }
-}
-
 }  // namespace
 
 double LobeNodes::placeOf(double value) const {
@@ -144,7 +136,7 @@ FilteredSidecar readFilteredSidecar(const std::string& file) {
                                  .order = root.integer("order", 1, 301)},
                       .model = root.word("model"),
                       .nodes = nodesOf(root),
-                      .number = numberIn(texture),
+                      .number = gpu::numberIn(texture, "number"),
                       .texture = exported ? exportedTexture(root, "map", file)
                                           : (folder / texture.word("file")).string()};
     if (s.form != "ellipse" && s.form != "harmonics")

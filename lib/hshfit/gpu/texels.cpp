@@ -1,6 +1,7 @@
 #include <hshfit/gpu/texels.h>
 
 #include <hshfit/error.h>
+#include <hshfit/files/json_fields.h>
 
 #include <Imath/half.h>
 #include <fmt/format.h>
@@ -122,6 +123,14 @@ Number parseNumber(std::string_view name) {
     }
     throw UsageError(
         fmt::format("number type '{}'; known: float16, float32, unorm16, unorm8", name));
+}
+
+Number numberIn(const JsonFields& fields, const char* key) {
+    try {
+        return parseNumber(fields.word(key));
+    } catch (const UsageError& error) {
+        fields.fail(fmt::format("is invalid: {}", error.what()), key);
+    }
 }
 
 Texels encode(std::span<const double> values, int width, int height, std::size_t layers,

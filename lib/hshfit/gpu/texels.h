@@ -7,6 +7,10 @@
 #include <string_view>
 #include <vector>
 
+namespace hshfit::inline files {
+class JsonFields;
+}
+
 namespace hshfit::gpu {
 
 /// The encoding of a number in a texel; little-endian.
@@ -21,6 +25,8 @@ std::size_t numberBytes(Number number);
 bool isNormalised(Number number);
 /// Throws UsageError with the four names.
 Number parseNumber(std::string_view name);
+/// The number type that a file names; throws InputError with the field and the four names.
+Number numberIn(const JsonFields& fields, const char* key);
 
 /// value = stored * scale + offset.
 struct LaneScale {

@@ -46,14 +46,6 @@ std::vector<LevelSize> readLevels(const JsonFields& texture) {
     return levels;
 }
 
-gpu::Number numberIn(const JsonFields& texture) {
-    try {
-        return gpu::parseNumber(texture.word("number"));
-    } catch (const UsageError& error) {
-        texture.fail(fmt::format("is invalid: {}", error.what()), "number");
-    }
-}
-
 }  // namespace
 
 std::size_t MapSidecar::layers() const {
@@ -130,7 +122,7 @@ MapSidecar parseMapSidecar(std::string_view text, const std::string& file) {
     if (s.layout.slots.empty()) root.fail("is empty", "slots");
     s.isotropic = symmetry.flag("isotropic");
     s.bilateral = symmetry.flag("bilateral");
-    s.number = numberIn(texture);
+    s.number = gpu::numberIn(texture, "number");
     s.levels = readLevels(texture);
     if (s.form != "outgoing") s.shapes = flat(root, "shapes", s.layout.shape());
     if (s.hasMaterials()) {
@@ -162,10 +154,8 @@ bool isMapSidecar(const std::string& file) {
 std::string exportedTexture(const JsonFields& sidecar, std::string_view role,
                             const std::string& file) {
     for (const JsonFields& listed : sidecar.objects("files")) {
-        const std::filesystem::path name = listed.word("path");
         if (listed.word("role") != role || listed.word("container") != "ktx2") continue;
-        if (name.has_parent_path()) listed.fail("has to name a file beside this one", "path");
-        return (std::filesystem::path(file).parent_path() / name).string();
+        return (std::filesystem::path(file).parent_path() / listed.fileName("path")).string();
     }
     sidecar.fail(fmt::format("has no ktx2 texture of the {}; an export to ktx2 has", role),
                  "files");

@@ -61,11 +61,7 @@ Texels readTexels(const Fields& data) {
     texels.height = data.integer("height", 1, maxSide);
     texels.layers =
         static_cast<std::size_t>(data.integer("layers", 1, static_cast<int>(maxLayers)));
-    try {
-        texels.number = parseNumber(data.word("type"));
-    } catch (const UsageError& error) {
-        data.fail(fmt::format("is invalid: {}", error.what()), "type");
-    }
+    texels.number = numberIn(data, "type");
     if (data.word("endian") != "little") data.fail("has to be 'little'", "endian");
     const double bytes = static_cast<double>(texels.count() * numberBytes(texels.number));
     if (data.number("bytes") != bytes) {
@@ -142,7 +138,7 @@ std::vector<ExportedFile> readFiles(const Fields& root) {
     for (const Fields& row : root.objects("files")) {
         ExportedFile file{.role = readRole(row, "role"),
                           .container = row.word("container"),
-                          .path = row.word("path"),
+                          .path = row.fileName("path"),
                           .bytes = 0,
                           .sha256 = readSha256(row)};
         const double bytes = row.number("bytes");
@@ -153,10 +149,6 @@ std::vector<ExportedFile> readFiles(const Fields& root) {
                          [&](const Container& c) { return c.name == file.container; })) {
             row.fail(fmt::format("is '{}', which is no container", file.container.substr(0, 40)),
                      "container");
-        }
-        if (file.path.empty() || file.path == "." || file.path == ".." ||
-            file.path.find_first_of(std::string("/\\\0", 3)) != std::string::npos) {
-            row.fail("has to be a plain file name", "path");
         }
         files.push_back(std::move(file));
     }
