@@ -112,18 +112,20 @@ void RglBrdf::Block::set(const RglTables& tables, Direction wo, const DirectionB
     }
 }
 
-RglBrdf::RglBrdf(std::span<const unsigned char> bytes, std::string name) : name_(std::move(name)) {
+RglBrdf::RglBrdf(std::span<const unsigned char> bytes, std::string name, RglReading reading)
+    : name_(std::move(name)) {
     tables_ = RglTables::load(TensorFile(bytes, name_));
+    if (reading == RglReading::smooth) tables_.smooth();
     laws_.nonNegative = true;
     laws_.isotropic = tables_.isotropic;
     laws_.mirrorSymmetric = tables_.reduction == 4;
     lobeWidth_ = widthOf(tables_.ndf);
 }
 
-std::unique_ptr<RglBrdf> RglBrdf::open(const std::string& path) {
+std::unique_ptr<RglBrdf> RglBrdf::open(const std::string& path, RglReading reading) {
     const MappedFile file(path);
     try {
-        auto brdf = std::make_unique<RglBrdf>(file.bytes(), path);
+        auto brdf = std::make_unique<RglBrdf>(file.bytes(), path, reading);
         file.checkIntact();
         return brdf;
     } catch (const InputError&) {

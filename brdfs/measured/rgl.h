@@ -31,6 +31,12 @@ struct RglTables {
     /// Throws InputError naming the field and its offset.
     static RglTables load(const TensorFile& file);
 
+    /// Takes out two defects of files that pictures show (docs/measured.md): detail of ndf that is
+    /// finer than the vertices of the colours, which these cannot make up for in between (ln ndf is
+    /// smoothed along elevation, and f stays at every vertex), and, for isotropic materials, the
+    /// azimuths of the slice at the normal, of which the mean is taken.
+    void smooth();
+
     /// The meaning of a vertex of a colour slice: f(wi, wo) wo.z = value * factor. A value with
     /// wo below the horizon only takes part in the interpolation.
     struct Node {
@@ -43,6 +49,9 @@ struct RglTables {
     double factor(std::size_t slice, const Direction& wi, const Direction& wo) const;
     double factorAt(double u, double v, double thetaIncident, double phiIncident) const;
 };
+
+/// The tables of a file as Dupuy & Jakob evaluate them, or after RglTables::smooth.
+enum class RglReading { published, smooth };
 
 /// A measured BRDF in an RGL `.bsdf` file (see rgl_tables.h and tensor_file.h). With h the half
 /// vector, u(theta) = sqrt(2 theta / pi), v(phi) = phi / 2 pi + 1/2, and phi_h - phi_i in place of
@@ -59,8 +68,10 @@ struct RglTables {
 class RglBrdf : public MeasuredBrdf {
 public:
     /// `name` is the path of the file, for messages. Throws InputError for invalid bytes.
-    RglBrdf(std::span<const unsigned char> bytes, std::string name);
-    static std::unique_ptr<RglBrdf> open(const std::string& path);
+    RglBrdf(std::span<const unsigned char> bytes, std::string name,
+            RglReading reading = RglReading::published);
+    static std::unique_ptr<RglBrdf> open(const std::string& path,
+                                         RglReading reading = RglReading::published);
 
     std::string name() const override { return name_; }
     const Channels& channels() const override { return tables_.channels; }

@@ -11,8 +11,9 @@ bool looksLikeRgl(std::span<const unsigned char> head, std::uint64_t) {
            std::equal(TensorFile::magic.begin(), TensorFile::magic.end(), head.begin());
 }
 
-std::unique_ptr<Brdf> openRgl(const std::string& path, const Parameters&) {
-    return RglBrdf::open(path);
+std::unique_ptr<Brdf> openRgl(const std::string& path, const Parameters& parameters) {
+    const bool smooth = parameters.choice("reading") == "smooth";
+    return RglBrdf::open(path, smooth ? RglReading::smooth : RglReading::published);
 }
 
 }  // namespace
@@ -23,7 +24,12 @@ const Format& rglFormat() {
         .help = "RGL adaptive parameterisation, isotropic or not, RGB or spectral",
         .extension = ".bsdf",
         .recognises = looksLikeRgl,
-        .parameters = {},
+        .parameters = {{.name = "reading",
+                        .help = "smooth: without the ripple of the file's normals, and one value "
+                                "over azimuth where wi is the normal",
+                        .kind = Parameter::Kind::choice,
+                        .fallback = {},
+                        .choices = {"published", "smooth"}}},
         .open = openRgl,
     };
     return format;
