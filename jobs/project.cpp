@@ -5,6 +5,7 @@
 #include "picture.h"
 #include "source.h"
 
+#include <hshfit/accuracy/exchange.h>
 #include <hshfit/bases/catalog.h>
 #include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/coefficient_files/representation_file.h>
@@ -43,6 +44,23 @@ std::optional<Form> formOf(const ProjectOptions& options) {
     form->quantity = quantityOf(options);
     form->outgoing = options.outgoing;
     return form;
+}
+
+std::string anglesOf(const Direction& d) {
+    return fmt::format("{:.3g},{:.3g}", degrees(polarAngle(d)), degrees(azimuth(d)));
+}
+
+/// The exchange that a reciprocal form of this BRDF gets wrong; empty where there is none to see.
+std::string whyNotReciprocal(const Brdf& brdf) {
+    constexpr double least = 1.25;
+    const ExchangeAtHorizon worst = exchangeAtHorizon(brdf);
+    if (worst.ratio() < least) return {};
+    return fmt::format(
+        "{}: f is {:.3g} for wi {} and wo {} degrees, and {:.3g} with both "
+        "exchanged; {} keeps their mean, which is wrong towards the horizon: leave "
+        "it out",
+        brdf.name(), worst.value, anglesOf(worst.wi), anglesOf(worst.wo), worst.exchanged,
+        Setting{"Form::reciprocal"});
 }
 
 /// Projects scattered samples by least squares, without interpolating between them.
@@ -104,7 +122,10 @@ public:
             if (result.kept->kind() == Representation::Kind::halfway)
                 result.errors = summaryOf(brdf, *again);
             result.captured = capturedShare(*result.kept, brdf, result.errors);
-            if (!result.captured) result.remark = whyZero(brdf);
+            if (!result.captured)
+                result.remark = whyZero(brdf);
+            else if (form_->reciprocal && !brdf.laws().reciprocal)
+                result.remark = whyNotReciprocal(brdf);
             result.picture = pictureErrorOf(brdf, *again);
             result.poor = judge(*result.kept, result.captured, result.picture, brdf, output);
             return result;

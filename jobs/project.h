@@ -45,7 +45,7 @@ struct Projected {
     std::optional<PictureError> picture = {};  ///< pictureErrorOf
     std::string output;
     std::optional<Poor> poor = {};
-    std::string remark = {};  ///< whyZero of source.h
+    std::string remark = {};  ///< on the source: f is 0, or not reciprocal where the form is
 };
 
 /// Writes the coefficients of one BRDF to `output`, .json or .exr. Throws UsageError for

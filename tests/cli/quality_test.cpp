@@ -186,6 +186,21 @@ TEST_F(Quality, AWindowIsNoInterpolation) {
     EXPECT_GT(window["form"], 3 * window["interpolation"].get<double>());
 }
 
+// paper_white is five times brighter from 60 to 85 degrees than the other way round.
+TEST_F(Quality, ReciprocalTermsOfAFileThatIsNotReciprocalAreCalledWrong) {
+    const std::string paper = test::sharedFolder() + "/data/rgl/paper_white_rgb.bsdf";
+    if (!std::filesystem::exists(paper)) GTEST_SKIP() << "no " << paper;
+    const std::string to = " --form halfway --halfway 4,3,2 --force -o " + path("x.json");
+    const auto speaksOfExchange = [&](const std::string& arguments) {
+        const Answer answer = run("project " + arguments + to);
+        EXPECT_EQ(answer.code, 0) << answer.err;
+        return answer.err.find("with both exchanged; --reciprocal keeps") != std::string::npos;
+    };
+    EXPECT_TRUE(speaksOfExchange(paper + " --reciprocal"));
+    EXPECT_FALSE(speaksOfExchange(paper));
+    EXPECT_FALSE(speaksOfExchange("ggx:alpha=.5 --reciprocal"));
+}
+
 TEST_F(Quality, AFitThatExplainsLittleIsCalledPoor) {
     const std::string job = "fit ggx:alpha=.2 --samples 500 --starts 4 --model ";
     const Json poor = answerOf(job + "lambert", true);
