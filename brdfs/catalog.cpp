@@ -41,6 +41,7 @@
 #include <brdfs/measured/scattered/cornell.h>
 #include <brdfs/measured/scattered/nist.h>
 #include <brdfs/measured/scattered/scatmech.h>
+#include <brdfs/measured/scattered/scattered.h>
 #include <brdfs/metal_spec.h>
 #include <brdfs/preset.h>
 #include <brdfs/preset_collection.h>
@@ -163,6 +164,16 @@ std::unique_ptr<Brdf> openTerm(std::string_view spec) {
     throw unknownModel(spec.substr(0, spec.find(':')));
 }
 
+/// One term with a factor: samples stay samples, so that fits and projections see them alone.
+std::unique_ptr<Brdf> scaledTerm(const WeightedSpec& term) {
+    std::vector<Sum::Term> one;
+    one.push_back({term.weight, openTerm(term.spec)});
+    const auto* scattered = dynamic_cast<const Scattered*>(one.front().brdf.get());
+    auto sum = std::make_unique<Sum>(std::move(one));
+    if (scattered) return scattered->scaled(term.weight, sum->name());
+    return sum;
+}
+
 std::unique_ptr<Brdf> openPrefixed(std::string_view spec, int depth) {
     if (spec.empty())
         throw UsageError(
@@ -183,6 +194,7 @@ std::unique_ptr<Brdf> openPrefixed(std::string_view spec, int depth) {
         return asGrey(openPrefixed(spec.substr(grey.size()), depth + 1), greyWeights(grey));
     const std::vector<WeightedSpec> specs = splitSum(spec, isFile);
     if (specs.size() == 1 && specs.front().weight == 1) return openTerm(specs.front().spec);
+    if (specs.size() == 1) return scaledTerm(specs.front());
     std::vector<Sum::Term> terms;
     for (const WeightedSpec& term : specs) terms.push_back({term.weight, openTerm(term.spec)});
     return std::make_unique<Sum>(std::move(terms));

@@ -41,6 +41,9 @@ Json answer(const jobs::Compared& compared, const CompareArguments& arguments) {
     if (compared.picture) document["picture"] = pictureErrorJson(*compared.picture);
     document["metrics"] = metricValuesJson(compared.metrics);
     if (compared.pairs) document["pairs"] = pairSummaryJson(*compared.pairs);
+    if (compared.samples)
+        document["samples"] = {{"count", compared.samples->count},
+                               {"metrics", metricValuesJson(compared.samples->metrics)}};
     if (!compared.files.empty())
         document["report"] = {{"folder", arguments.output}, {"files", compared.files}};
     if (!compared.figures.names.empty())
@@ -54,6 +57,12 @@ std::string text(const jobs::Compared& compared, const CompareArguments& argumen
     if (compared.picture) out += "  " + indented(textOf(*compared.picture));
     for (const MetricValue& result : compared.metrics) out += metricText(result);
     if (compared.pairs) out += "  " + indented(textOf(*compared.pairs));
+    if (compared.samples) {
+        out += fmt::format("  at the {} measured pairs of {} alone:\n", compared.samples->count,
+                           arguments.a);
+        for (const MetricValue& result : compared.samples->metrics)
+            if (result.value) out += metricText(result);
+    }
     if (!compared.files.empty())
         out += fmt::format("written to {}: comparison.html and {} files beside it\n",
                            arguments.output, compared.files.size() - 1);

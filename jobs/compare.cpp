@@ -3,6 +3,7 @@
 #include "picture.h"
 #include "source.h"
 
+#include <brdfs/measured/scattered/scattered.h>
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
 #include <hshfit/files/output_rule.h>
@@ -11,6 +12,7 @@
 #include <hshfit/representation/forms/represented_brdf.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <utility>
 
@@ -72,6 +74,61 @@ std::optional<PairSummary> overPairs(const Brdf& a, const Brdf& b) {
     }
 }
 
+/// None where nobody measured pairs, or where channels differ.
+std::optional<AtSamples> atSamples(const Brdf& a, const Brdf& b,
+                                   const std::vector<const Metric*>& asked) {
+    const auto measured = brdfs::measuredPairs(a);
+    const std::size_t channels = a.channels().count(), others = b.channels().count();
+    if (!measured || measured->samples.chart != brdfs::Chart::anisotropic) return std::nullopt;
+    if (others != channels && others != 1) return std::nullopt;
+    const brdfs::Samples& samples = measured->samples;
+    const std::size_t count = samples.size();
+    std::vector<double> f(channels * count), g(channels * count), cosines, weights(count, 1.0);
+    for (std::size_t k = 0; k < count; ++k) {
+        const std::vector<double> there = evaluate(b, samples.wi[k], samples.wo[k]);
+        for (std::size_t c = 0; c < channels; ++c) {
+            f[c * count + k] = samples.values[k * channels + c];
+            g[c * count + k] = there[others == 1 ? 0 : c];
+        }
+        cosines.push_back(samples.wi[k].z);
+    }
+    AtSamples result{count, compareSamples(f, g, cosines, weights)};
+    std::erase_if(result.metrics, [&](const MetricValue& value) {
+        return std::ranges::find(asked, value.metric) == asked.end();
+    });
+    return result;
+}
+
+/// A coefficient file has the name of its source; messages are about the file.
+std::string messageName(const std::string& spec, const Brdf& brdf) {
+    const auto* plain = dynamic_cast<const Reconstruction*>(&brdf);
+    const auto* form = dynamic_cast<const RepresentedBrdf*>(&brdf);
+    if (!plain && !form) return brdf.name();
+    const Quantity quantity =
+        plain ? plain->coefficients().quantity : form->representation().head.quantity;
+    return quantity == Quantity::brdf
+               ? spec
+               : spec + " (coefficients of f cos(theta_i), divided by the cosine)";
+}
+
+Compared compareNamed(const Brdf& a, const Brdf& b, const std::array<std::string, 2>& names,
+                      const std::string& output, const CompareOptions& options,
+                      const Listener& listener) {
+    const auto metrics = selectMetrics(options.metrics);
+    Compared result{.a = a.name(), .b = b.name(), .outgoing = outgoingOf(options, a, b)};
+    result.metrics = hshfit::compare(
+        a, b, result.outgoing, metrics,
+        {.reference = names[0], .approximation = names[1], .progress = listener.part("compare")});
+    result.picture = pictureErrorOf(a, b);
+    result.pairs = overPairs(a, b);
+    result.samples = atSamples(a, b, metrics);
+    const auto hasValue = [](const MetricValue& metric) { return metric.value.has_value(); };
+    if (options.metrics != "all" && !std::ranges::all_of(result.metrics, hasValue))
+        stateExitCode(static_cast<int>(ExitCode::numeric));
+    if (!output.empty() || options.figures) writeFiles(a, b, output, options, listener, result);
+    return result;
+}
+
 }  // namespace
 
 Compared compare(const std::string& a, const std::string& b, const std::string& output,
@@ -79,22 +136,14 @@ Compared compare(const std::string& a, const std::string& b, const std::string& 
     selectMetrics(options.metrics);  // a word that is none fails before any file is opened
     if (options.figures) checkFigures(*options.figures);
     const auto reference = openSource(a, options.rgb), approximation = openSource(b, options.rgb);
-    return compareBrdfs(*reference, *approximation, output, options, listener);
+    return compareNamed(*reference, *approximation,
+                        {messageName(a, *reference), messageName(b, *approximation)}, output,
+                        options, listener);
 }
 
 Compared compareBrdfs(const Brdf& a, const Brdf& b, const std::string& output,
                       const CompareOptions& options, const Listener& listener) {
-    const auto metrics = selectMetrics(options.metrics);
-    Compared result{.a = a.name(), .b = b.name(), .outgoing = outgoingOf(options, a, b)};
-    result.metrics =
-        hshfit::compare(a, b, result.outgoing, metrics, {.progress = listener.part("compare")});
-    result.picture = pictureErrorOf(a, b);
-    result.pairs = overPairs(a, b);
-    const auto hasValue = [](const MetricValue& metric) { return metric.value.has_value(); };
-    if (options.metrics != "all" && !std::ranges::all_of(result.metrics, hasValue))
-        stateExitCode(static_cast<int>(ExitCode::numeric));
-    if (!output.empty() || options.figures) writeFiles(a, b, output, options, listener, result);
-    return result;
+    return compareNamed(a, b, {a.name(), b.name()}, output, options, listener);
 }
 
 }  // namespace hshfit::jobs

@@ -24,6 +24,13 @@ struct CompareOptions {
     std::string sigma = {};
 };
 
+/// The metrics asked for over the measured pairs of the reference alone, each counted once: those
+/// that take more than samples have no value.
+struct AtSamples {
+    std::size_t count = 0;  ///< pairs
+    std::vector<MetricValue> metrics = {};
+};
+
 struct Compared {
     std::string a, b;  ///< names of the BRDFs
     OutgoingSet outgoing;
@@ -31,6 +38,9 @@ struct Compared {
     /// Over both hemispheres, whereas the outgoing set leaves out the horizon. None where the
     /// channels differ or `a` is not finite.
     std::optional<PairSummary> pairs = {};
+    /// Where the reference is made of scattered samples, between which it is interpolated and
+    /// beyond which it is 0.
+    std::optional<AtSamples> samples = {};
     std::optional<PictureError> picture = {};  ///< pictureErrorOf
     std::vector<std::string> files = {};       ///< of the page, where one was asked for
     FigureFiles figures = {};

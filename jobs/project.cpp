@@ -66,13 +66,13 @@ std::string whyNotReciprocal(const Brdf& brdf) {
 /// Projects scattered samples by least squares, without interpolating between them.
 Projection projectSamples(const Brdf& brdf, const Basis& basis, const OutgoingSet& outgoing,
                           const ProjectOptions& options, ProgressCall progress) {
-    const auto* scattered = dynamic_cast<const brdfs::Scattered*>(&brdf);
-    if (!scattered) {
+    const std::optional<brdfs::MeasuredPairs> measured = brdfs::measuredPairs(brdf);
+    if (!measured) {
         throw UsageError(
             fmt::format("{}: {} is for files of scattered samples; project others without it",
                         brdf.name(), Setting{"ProjectOptions::leastSquares"}));
     }
-    LeastSquaresProjection fit = projectLeastSquares(scattered->directionSamples(), basis, outgoing,
+    LeastSquaresProjection fit = projectLeastSquares(measured->directionSamples(), basis, outgoing,
                                                      {.quantity = quantityOf(options),
                                                       .regularisation = options.regularise,
                                                       .kernel = radians(options.kernel),

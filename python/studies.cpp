@@ -219,6 +219,19 @@ void bindCompare(py::module_& module) {
             },
             "Errors over both hemispheres, by zones; None where there are none.")
         .def_property_readonly(
+            "samples",
+            [](const jobs::Compared& c) -> py::object {
+                if (!c.samples) return py::none();
+                py::dict out;
+                out["count"] = c.samples->count;
+                out["metrics"] = metricsDict(c.samples->metrics);
+                return std::move(out);
+            },
+            "The metrics at the measured pairs of a alone (\"count\", \"metrics\"); None where a "
+            "is "
+            "not\n"
+            "made of scattered samples.")
+        .def_property_readonly(
             "picture", [](const jobs::Compared& c) { return pictureDict(c.picture); },
             "The picture error of b against a, as picture_error() gives it.")
         .def_readonly("files", &jobs::Compared::files, "Of the page, where a folder was given.")

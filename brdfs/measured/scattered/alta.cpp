@@ -4,6 +4,7 @@
 #include <brdfs/measured/scattered/scattered.h>
 #include <brdfs/measured/scattered/text_file.h>
 #include <brdfs/measured/text_reader.h>
+#include <brdfs/sum.h>
 
 #include <fmt/format.h>
 
@@ -276,7 +277,12 @@ const Format& altaFormat() {
             if (!function && input != "file")
                 throw UsageError(fmt::format(
                     "{}: input is for fitted functions; this is a file of samples", path));
-            return function ? std::move(function) : openScattered(path, parameters, readAlta);
+            if (!function) return openScattered(path, parameters, readAlta);
+            const double scale = scaleOf(parameters);
+            if (scale == 1) return function;
+            std::vector<Sum::Term> terms;
+            terms.push_back({scale, std::move(function)});
+            return std::make_unique<Sum>(std::move(terms));
         },
     };
     return format;

@@ -104,8 +104,8 @@ std::vector<std::string> writeAlta(const Brdf& brdf, const std::string& path,
             "wavelengths; convert with --rgb",
             brdf.name(), brdf.channels().count()));
     }
-    const auto* scattered = dynamic_cast<const Scattered*>(&brdf);
-    const bool samplesOfPairs = scattered && scattered->samples().chart == Chart::anisotropic;
+    const std::optional<MeasuredPairs> measured = measuredPairs(brdf);
+    const bool samplesOfPairs = measured && measured->samples.chart == Chart::anisotropic;
     const std::string wanted = parameters.choice("grid");
     if (wanted == "samples" && !samplesOfPairs) {
         throw UsageError(
@@ -118,7 +118,7 @@ std::vector<std::string> writeAlta(const Brdf& brdf, const std::string& path,
     Rows rows(brdf, file);
     std::vector<std::string> notes;
     if (samplesOfPairs && wanted != "angles") {
-        const Samples& samples = scattered->samples();
+        const Samples& samples = measured->samples;
         const std::size_t channels = samples.channels.count();
         for (std::size_t k = 0; k < samples.size(); ++k) {
             rows.add(samples.wi[k], samples.wo[k], samples.values.data() + k * channels);

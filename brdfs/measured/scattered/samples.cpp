@@ -23,6 +23,13 @@ void Samples::count(std::span<const double> f, const Row& row) {
     }
 }
 
+void Samples::scale(double factor) {
+    for (double& value : values) value *= factor;
+    for (double& sigma : sigmas) sigma *= factor;
+    census.least *= factor;
+    census.greatest *= factor;
+}
+
 void Samples::leaveOut(std::span<const double> f, const Row& row) {
     count(f, row);
     census.belowHorizon += f.size();

@@ -50,6 +50,8 @@ struct Samples {
     /// than 1e-6 in z). Values below zero are kept and counted. Throws InputError for a value that
     /// is no finite number.
     void add(const Direction& in, const Direction& out, std::span<const double> f, const Row& row);
+    /// Multiplies values and their uncertainties, and what the census says of them.
+    void scale(double factor);
     /// Counts a sample among those below the horizon. Throws likewise.
     void leaveOut(std::span<const double> f, const Row& row);
 

@@ -1,4 +1,5 @@
 #include <brdfs/measured/scattered/scattered.h>
+#include <hshfit/brdf/channel_view.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -107,6 +108,18 @@ std::vector<Parameter> scatteredParameters(std::vector<Parameter> more) {
          .fallback = 10,
          .min = 0.01,
          .max = 180},
+        {.name = "scale",
+         .help = "factor on the values of the file",
+         .kind = Parameter::Kind::number,
+         .fallback = 1,
+         .min = 0,
+         .max = 1e9},
+        {.name = "quantity",
+         .help =
+             "the values of the file: brdf, f in 1/sr; radiance-factor, pi f, which is 1 for an "
+             "ideal Lambert surface",
+         .kind = Parameter::Kind::choice,
+         .choices = {"brdf", "radiance-factor"}},
     };
     parameters.insert(parameters.end(), more.begin(), more.end());
     return parameters;
@@ -116,7 +129,13 @@ ScatteredOptions scatteredOptions(const Parameters& parameters) {
     return {.isotropic = answer(parameters.choice("isotropic")),
             .mirror = answer(parameters.choice("mirror")),
             .exchange = parameters.choice("exchange") == "yes",
-            .reach = radians(parameters.number("reach"))};
+            .reach = radians(parameters.number("reach")),
+            .scale = scaleOf(parameters)};
+}
+
+double scaleOf(const Parameters& parameters) {
+    const bool factor = parameters.choice("quantity") == "radiance-factor";
+    return parameters.number("scale") * (factor ? 1 / pi : 1);
 }
 
 Scattered::Scattered(Samples samples, const ScatteredOptions& options, std::string name)
@@ -125,6 +144,7 @@ Scattered::Scattered(Samples samples, const ScatteredOptions& options, std::stri
         throw InputError(fmt::format("{}: no sample is above the horizon ({} are below it)", name_,
                                      samples_.census.belowHorizon / samples_.channels.count()));
     }
+    if (options_.scale != 1) samples_.scale(options_.scale);
     chart_ = chartOf(samples_, options_);
     const bool ofPairs = chart_ == Chart::isotropic || chart_ == Chart::anisotropic;
     folding_.exchange = options_.exchange && ofPairs;
@@ -224,18 +244,44 @@ std::optional<BothOrders> Scattered::bothOrders() const {
     return both;
 }
 
-DirectionSamples Scattered::directionSamples() const {
-    if (samples_.chart != Chart::anisotropic) {
-        throw UsageError(fmt::format("{}: holds a function of {}, not of pairs of directions",
-                                     name_, chartName(chart_)));
+std::unique_ptr<Scattered> Scattered::scaled(double factor, std::string name) const {
+    ScatteredOptions options = options_;
+    options.scale = factor;  // the samples have the one of the file
+    return std::make_unique<Scattered>(samples_, options, std::move(name));
+}
+
+DirectionSamples MeasuredPairs::directionSamples() const {
+    if (samples.chart != Chart::anisotropic) {
+        throw UsageError(fmt::format("{}: holds a function of {}, not of pairs of directions", name,
+                                     chartName(samples.chart)));
     }
-    DirectionSamples view{.wi = samples_.wi,
-                          .wo = samples_.wo,
-                          .values = samples_.values,
-                          .channels = samples_.channels,
-                          .symmetry = laws_,
-                          .name = name_};
-    return view;
+    return {.wi = samples.wi,
+            .wo = samples.wo,
+            .values = samples.values,
+            .channels = samples.channels,
+            .symmetry = laws,
+            .name = name};
+}
+
+std::optional<MeasuredPairs> measuredPairs(const Brdf& brdf) {
+    if (const auto* scattered = dynamic_cast<const Scattered*>(&brdf))
+        return MeasuredPairs{scattered->samples(), scattered->laws(), scattered->name()};
+    const auto* view = dynamic_cast<const ChannelView*>(&brdf);
+    if (!view) return std::nullopt;
+    auto pairs = measuredPairs(view->seen());
+    if (!pairs) return std::nullopt;
+    const std::size_t from = pairs->samples.channels.count(), to = view->channels().count();
+    std::vector<double> values(pairs->samples.size() * to);
+    for (std::size_t k = 0; k < pairs->samples.size(); ++k)
+        view->convert(std::span(pairs->samples.values).subspan(k * from, from),
+                      std::span(values).subspan(k * to, to));
+    pairs->samples.values = std::move(values);
+    pairs->samples.channels = view->channels();
+    pairs->samples.sigmas.clear();  // of the channels that are seen
+    pairs->samples.rows.clear();
+    pairs->laws = view->laws();
+    pairs->name = view->name();
+    return pairs;
 }
 
 std::vector<Fact> Scattered::facts() const {

@@ -22,12 +22,16 @@ struct ScatteredOptions {
     std::optional<bool> mirror = {};
     bool exchange = true;  ///< a sample stands for the exchanged pair, unless that was measured
     double reach = radians(10);  ///< distance from a sample within which f rests on it
+    double scale = 1;            ///< f over the values of the file
 };
 
-/// The options `isotropic`, `mirror`, `exchange` and `reach` of every scattered format, followed by
-/// `more`.
+/// The options `isotropic`, `mirror`, `exchange`, `reach`, `scale` and `quantity` of every
+/// scattered format, followed by `more`. With quantity=radiance-factor the values are pi f, 1 for
+/// an ideal Lambert surface.
 std::vector<Parameter> scatteredParameters(std::vector<Parameter> more = {});
 ScatteredOptions scatteredOptions(const Parameters& parameters);
+/// f over the values of the file: by `scale` and `quantity`.
+double scaleOf(const Parameters& parameters);
 
 /// A BRDF interpolated between scattered samples: `ScatterInterpolant` in the coordinates of
 /// `Chart`. Within `reach` of the nearest sample (or of its image under the symmetries) f is
@@ -59,9 +63,8 @@ public:
     std::vector<Lobe> lobes(const Direction& wo) const override;
 
     const Samples& samples() const { return samples_; }
-    /// A view of the samples, values below zero included. Throws UsageError for data that were
-    /// reduced to fewer coordinates than a pair of directions has.
-    DirectionSamples directionSamples() const;
+    /// The same samples times a factor of at least 0, under another name.
+    std::unique_ptr<Scattered> scaled(double factor, std::string name) const;
 
 private:
     Samples samples_;
@@ -74,5 +77,17 @@ private:
     SampleLobes lobes_;
     std::unique_ptr<ScatterInterpolant> interpolant_;
 };
+
+/// The measured pairs behind a BRDF, without those of the interpolation between them.
+struct MeasuredPairs {
+    Samples samples;  ///< in the channels of the BRDF
+    Laws laws;        ///< of the BRDF
+    std::string name;
+    /// A view of the samples, values below zero included. Throws UsageError for data that were
+    /// reduced to fewer coordinates than a pair of directions has.
+    DirectionSamples directionSamples() const;
+};
+/// Those of scattered samples, also as seen through a ChannelView; none for any other BRDF.
+std::optional<MeasuredPairs> measuredPairs(const Brdf& brdf);
 
 }  // namespace hshfit::brdfs

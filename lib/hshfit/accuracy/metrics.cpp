@@ -270,8 +270,10 @@ LevelValues valuesAt(const Brdf& f, const Brdf& g, const PairEvaluator& pair,
 }
 
 /// The reason why integrals of f^2 and g^2 without a cosine do not exist, or empty.
-std::string whyNoSquares(const Brdf& f, const Brdf& g, const OutgoingSet& outgoing) {
+std::string whyNoSquares(const Brdf& f, const Brdf& g, const OutgoingSet& outgoing,
+                         const CompareOptions& options) {
     for (const Brdf* brdf : {&f, &g}) {
+        const std::string& given = brdf == &f ? options.reference : options.approximation;
         for (std::size_t k = 0; k < outgoing.size(); ++k) {
             if (outgoing.solidAngles[k] == 0) continue;
             const Direction& wo = outgoing.directions[k];
@@ -280,7 +282,7 @@ std::string whyNoSquares(const Brdf& f, const Brdf& g, const OutgoingSet& outgoi
                 return fmt::format(
                     "{} grows like cos(theta_i)^-{:.2f} towards the horizon: the integral of its "
                     "square does not exist; relative-l2-cosine does",
-                    brdf->name(), behaviour.exponent);
+                    given.empty() ? brdf->name() : given, behaviour.exponent);
             }
         }
     }
@@ -328,7 +330,7 @@ std::vector<MetricValue> compare(const Brdf& f, const Brdf& g, const OutgoingSet
                                  std::span<const Metric* const> metrics,
                                  const CompareOptions& options) {
     const PairEvaluator pair(f, g);
-    const std::string noSquares = whyNoSquares(f, g, outgoing);
+    const std::string noSquares = whyNoSquares(f, g, outgoing, options);
     std::atomic<std::size_t> done = 0;
     const auto progress = [&] {
         const std::size_t now = ++done;

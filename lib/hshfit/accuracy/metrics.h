@@ -45,6 +45,9 @@ OutgoingSet comparedOutgoing(bool isotropic);
 struct CompareOptions {
     /// Two quadrature levels are compared; each level has 2.25 times the points of the one before.
     int level = 3;
+    /// Names of f and g in reasons; their own if empty. A coefficient file has the name of its
+    /// source.
+    std::string reference = {}, approximation = {};
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
 
