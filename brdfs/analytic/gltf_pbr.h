@@ -16,6 +16,10 @@ namespace hshfit::brdfs {
 /// Anisotropy widens alpha along its direction to 1 + (alpha - 1)(1 - strength^2); the rotation
 /// turns it from the tangent towards the bitangent, in radians.
 ///
+/// G is of correlated heights, as in the Khronos Sample Viewer (V_GGX), three.js
+/// (V_GGX_SmithCorrelated) and Babylon.js (smithVisibility_GGXCorrelated); appendix B prints the
+/// product of both directions' masking, which is darker towards grazing angles.
+///
 /// Not reciprocal with a clearcoat. The albedo of a dielectric may exceed 1 towards grazing. alpha
 /// is at least 1e-4 and sheenRoughness acts as at least 0.1. ior = 0, which glTF allows, is not
 /// accepted. Without transmission, volume, iridescence and dispersion.

@@ -1,6 +1,6 @@
 // The materials of glTF and OpenPBR against their specifications' formulas, written as they are
-// printed: glTF 2.0 appendix B with its extensions' "Implementation" sections, and the reference
-// graph of OpenPBR 1.1 in MaterialX 1.39.
+// printed: glTF 2.0 appendix B, but for its masking, with its extensions' "Implementation"
+// sections, and the reference graph of OpenPBR 1.1 in MaterialX 1.39.
 
 #include "models_angles.h"
 
@@ -33,7 +33,7 @@ double mix(double a, double b, double t) {
     return a * (1 - t) + b * t;
 }
 
-/// D V of the listing in KHR_materials_anisotropy; at = ab is appendix B's.
+/// D V of the listing in KHR_materials_anisotropy; at = ab is that of the viewers without it.
 double anisotropicLobe(const Pair& p, double at, double ab, double rotation) {
     const Vector t{std::cos(rotation), std::sin(rotation), 0},
         b{-std::sin(rotation), std::cos(rotation), 0};
@@ -48,12 +48,22 @@ double anisotropicLobe(const Pair& p, double at, double ab, double rotation) {
     return d * 0.5 / (l[2] * length(v) + v[2] * length(l));
 }
 
-/// Appendix B's D and V, whose masking is of correlated heights.
-double appendixLobe(const Pair& p, double alpha) {
+/// Appendix B's D with the V of its viewers, whose masking is of correlated heights.
+double viewerLobe(const Pair& p, double alpha) {
     const double a2 = alpha * alpha, nh = halfOf(p)[2], nl = p.wi.z, nv = p.wo.z;
     const double d = a2 / (pi * square(nh * nh * (a2 - 1) + 1));
     return d * 0.5 /
            (nl * std::sqrt(a2 + (1 - a2) * nv * nv) + nv * std::sqrt(a2 + (1 - a2) * nl * nl));
+}
+
+/// Appendix B's D and V as printed: G is the product of 2 n.w / (n.w + sqrt(a^2 + (1 - a^2)
+/// (n.w)^2)) over both directions w.
+double printedLobe(const Pair& p, double alpha) {
+    const double a2 = alpha * alpha, nh = halfOf(p)[2];
+    double visibility = 0.25;
+    for (const double c : {p.wi.z, p.wo.z})
+        visibility *= 2 / (c + std::sqrt(a2 + (1 - a2) * c * c));
+    return visibility * a2 / (pi * square(nh * nh * (a2 - 1) + 1));
 }
 
 double schlick(double f0, double cosine) {
@@ -73,6 +83,18 @@ void expectClose(const std::string& spec, const std::function<Vector(const Pair&
     }
 }
 
+// At 80 degrees on either side of the normal and roughness 1: D = 1/pi, and with c = cos 80 degrees
+// V is 1 / (4 c) of correlated heights and 1 / (1 + c)^2 as printed.
+TEST(GltfPbr, MaskingIsThatOfTheViewersAndNotTheOneOfAppendixB) {
+    const double c = std::cos(radians(80));
+    const Pair p{directionFromAngles(radians(80), pi), directionFromAngles(radians(80), 0)};
+    EXPECT_NEAR(viewerLobe(p, 1), 1 / (4 * c * pi), 1e-12);
+    EXPECT_NEAR(printedLobe(p, 1), 1 / ((1 + c) * (1 + c) * pi), 1e-12);
+    const auto metal = open("gltf-pbr:metallicFactor=1,roughnessFactor=1");
+    EXPECT_NEAR(evaluate(*metal, p.wi, p.wo)[0], 0.4583, 5e-5);
+    EXPECT_NEAR(printedLobe(p, 1), 0.2311, 5e-5);
+}
+
 TEST(StandardMaterials, GltfBaseIsAppendixB) {
     const Vector base{0.9, 0.5, 0.1};
     for (const double metallic : {0., 0.3, 1.}) {
@@ -82,7 +104,7 @@ TEST(StandardMaterials, GltfBaseIsAppendixB) {
                                     metallic, roughness),
                         [&](const Pair& p) {
                             const double cosine = dotOf(vectorOf(p.wo), halfOf(p));
-                            const double lobe = appendixLobe(p, roughness * roughness);
+                            const double lobe = viewerLobe(p, roughness * roughness);
                             Vector f;
                             for (int c = 0; c < 3; ++c) {
                                 const double metal = lobe * schlick(base[c], cosine);
@@ -136,14 +158,14 @@ TEST(StandardMaterials, GltfSheenAndClearcoatAreTheExtensions) {
         [&](const Pair& p) {
             const double cosine = dotOf(vectorOf(p.wo), halfOf(p));
             const double base =
-                mix(0.6 / pi, appendixLobe(p, roughness * roughness), schlick(0.04, cosine));
+                mix(0.6 / pi, viewerLobe(p, roughness * roughness), schlick(0.04, cosine));
             const double scale = std::min(1 - 0.8 * albedo(p.wo), 1 - 0.8 * albedo(p.wi));
             const double cloth = evaluate(*lobe, p.wi, p.wo)[0];
             const double coat = clearcoat * schlick(0.04, p.wo.z);
             Vector f;
             for (int c = 0; c < 3; ++c)
                 f[c] = mix(sheen[c] * cloth + base * scale,
-                           appendixLobe(p, coatRoughness * coatRoughness), coat);
+                           viewerLobe(p, coatRoughness * coatRoughness), coat);
             return f;
         },
         2e-3);
@@ -191,7 +213,7 @@ TEST(StandardMaterials, OpenpbrDielectricIsLayeredByAlbedo) {
         "specular_color=1/.8/.6,specular_ior=1.7,specular_roughness=.5",
         [&](const Pair& p) {
             const double c = dotOf(vectorOf(p.wo), halfOf(p));
-            const double lobe = appendixLobe(p, roughness * roughness) * dielectric(c, eta);
+            const double lobe = viewerLobe(p, roughness * roughness) * dielectric(c, eta);
             const double left = 1 - directionalAlbedo(*facets, p.wo, 1e-4)[0];
             const std::vector<double> under = evaluate(*eon, p.wi, p.wo);
             Vector f;
@@ -233,9 +255,9 @@ TEST(StandardMaterials, OpenpbrCoatAndFuzzLieAboveTheBase) {
             const double squared = square(a * wx + b * p.wi.z) + square(a * wy) + square(p.wi.z);
             const double fuzz = cloth * square(a / squared) / pi;
             const double coat =
-                coatWeight * appendixLobe(p, square(coatRoughness)) * dielectric(c, coatIor);
+                coatWeight * viewerLobe(p, square(coatRoughness)) * dielectric(c, coatIor);
             const double left = 1 - coatWeight * directionalAlbedo(*facets, p.wo, 1e-4)[0];
-            const double metal = appendixLobe(p, square(rough)) * schlick(base, c);
+            const double metal = viewerLobe(p, square(rough)) * schlick(base, c);
             const double dark = mix(1, (1 - inside) / (1 - base * inside), coatWeight * darkening);
             Vector f;
             for (int k = 0; k < 3; ++k) {
