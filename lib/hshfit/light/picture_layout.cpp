@@ -248,6 +248,22 @@ double PictureGeometry::solidAngle(std::size_t column, std::size_t row) const {
     return discSolidAngle(*this, column, row);
 }
 
+double PictureGeometry::density(double column, double row) const {
+    const auto w = static_cast<double>(width), h = static_cast<double>(height);
+    if (layout == PictureLayout::latlong) return std::sin(pi * row / h) * (pi / h) * (2 * pi / w);
+    if (const std::size_t n = faceSize(); n > 0) {
+        const auto size = static_cast<double>(n);
+        const auto cellColumn = static_cast<std::size_t>(below(column, width) / size);
+        const auto cellRow = static_cast<std::size_t>(below(row, height) / size);
+        if (faceAt(*this, cellColumn, cellRow) < 0) return 0;
+        const double a = 2 * (column / size - static_cast<double>(cellColumn)) - 1;
+        const double b = 2 * (row / size - static_cast<double>(cellRow)) - 1;
+        return std::pow(1 + a * a + b * b, -1.5) * 4 / (size * size);
+    }
+    const double u = 2 * column / w - 1, v = 1 - 2 * row / h;
+    return std::hypot(u, v) < 1 ? discDensity(layout, u, v) * 4 / (w * h) : 0;
+}
+
 double PictureGeometry::pixelAngle() const {
     if (const std::size_t n = faceSize(); n > 0) return pi / 2 / static_cast<double>(n);
     const double perDiameter = layout == PictureLayout::latlong ? pi : 2 * pi;

@@ -37,6 +37,8 @@ struct PictureGeometry {
     /// Of a pixel; 0 outside of the used area. Exact for latlong, mirror balls inside the rim and
     /// cubes; from two Gauss nodes each way for angular maps.
     double solidAngle(std::size_t column, std::size_t row) const;
+    /// Solid angle per pixel at a position in pixels; 0 outside of the used area.
+    double density(double column, double row) const;
     /// The angle under which a pixel of average size is seen, radians.
     double pixelAngle() const;
     /// Width or height of one of the cube's faces in pixels; 0 for other layouts.

@@ -5,6 +5,7 @@
 #include <hshfit/error.h>
 #include <hshfit/light/latlong_projection.h>
 #include <hshfit/light/light_projection.h>
+#include <hshfit/light/picture_layout.h>
 #include <hshfit/quadrature/quadrature.h>
 
 #include <gsl/gsl_sf_legendre.h>
@@ -399,6 +400,86 @@ TEST(LightProjection, ResultsDoNotDependOnTheNumberOfThreads) {
 TEST(LightProjection, SphereIsForSphericalHarmonics) {
     EXPECT_THROW(project({SkyLight{}}, "hsh", 3), UsageError);
     EXPECT_THROW(project({}, "sh", 3), UsageError);
+}
+
+/// A cube's face as Gauss nodes in each of its n x n pixels: on the cube of half-size 1 with X to
+/// the right, Y up, Z forward, a to the right and b down, the solid angle of da db is
+/// (1 + a^2 + b^2)^(-3/2); the world has z up and looks along x.
+void addFace(int face, const PictureLight& picture, std::size_t n, const Basis& basis,
+             std::vector<double>& sums) {
+    const GaussRule& rule = gaussLegendre(12);
+    const auto slots = static_cast<std::size_t>(basis.slots());
+    std::vector<double> values(slots);
+    const double half = 1 / static_cast<double>(n);
+    const auto rows = static_cast<std::size_t>(face) * n;
+    for (std::size_t pixel = 0; pixel < n * n; ++pixel) {
+        const std::size_t row = pixel / n, column = pixel % n;
+        const float* rgb = picture.rgb.data() + 3 * ((rows + row) * n + column);
+        for (std::size_t node = 0; node < 144; ++node) {
+            const double a =
+                half * (1 + 2 * static_cast<double>(column) + rule.nodes[node % 12]) - 1;
+            const double b = half * (1 + 2 * static_cast<double>(row) + rule.nodes[node / 12]) - 1;
+            const double places[6][3] = {{1, -b, -a}, {-1, -b, a}, {a, 1, b},
+                                         {a, -1, -b}, {a, -b, 1},  {-a, -b, -1}};
+            const double* at = places[face];
+            const double length = std::sqrt(1 + a * a + b * b);
+            const double weight = half * half * rule.weights[node % 12] * rule.weights[node / 12] /
+                                  (length * length * length);
+            basis.evaluate({at[2] / length, -at[0] / length, at[1] / length}, values.data());
+            for (std::size_t c = 0; c < 3; ++c)
+                for (std::size_t k = 0; k < slots; ++k)
+                    sums[c * slots + k] += weight * static_cast<double>(rgb[c]) * values[k];
+        }
+    }
+}
+
+// The solid angle within a pixel is not spread evenly: of a cube with 5 x 5 pixels a face, even
+// shares miss coefficients by more than 1e-3.
+TEST(LightProjection, StatedErrorsOfCubesHoldAgainstIntegralsOverTheirPixels) {
+    std::mt19937_64 random(8);
+    std::uniform_real_distribution<float> value(0, 2);
+    for (const std::size_t n : {3, 5, 16}) {
+        PictureLight picture{
+            .file = "", .width = n, .height = 6 * n, .rgb = {}, .layout = PictureLayout::faces};
+        for (std::size_t k = 0; k < 18 * n * n; ++k) picture.rgb.push_back(value(random));
+        const auto basis = bases::make("sh", 5);
+        std::vector<double> expected(75, 0.0);
+        for (int face = 0; face < 6; ++face) addFace(face, picture, n, *basis, expected);
+        const LightCoefficients found =
+            projectLight(std::vector<Light>{picture}, *basis, {.domain = {}, .tolerance = 1e-9});
+        double missed = 0, all = 0;
+        for (std::size_t k = 0; k < expected.size(); ++k) {
+            missed += std::pow(found.values[k] - expected[k], 2);
+            all += expected[k] * expected[k];
+        }
+        EXPECT_LE(std::sqrt(missed / all), std::max(found.error, 1e-13)) << n;
+        EXPECT_LE(found.error, 1e-6) << n;
+    }
+}
+
+// The density of every layout has the solid angle of the pixel as its mean over it.
+TEST(LightProjection, DensitiesIntegrateToSolidAngles) {
+    const GaussRule& rule = gaussLegendre(20);
+    const PictureGeometry geometries[] = {
+        {PictureLayout::latlong, 20, 10},    {PictureLayout::angular, 11, 11},
+        {PictureLayout::mirrorBall, 11, 11}, {PictureLayout::cross, 16, 12},
+        {PictureLayout::cross, 12, 16},      {PictureLayout::faces, 5, 30}};
+    for (const PictureGeometry& g : geometries) {
+        for (std::size_t pixel = 0; pixel < g.width * g.height; ++pixel) {
+            const std::size_t row = pixel / g.width, column = pixel % g.width;
+            double sum = 0;
+            bool whole = true;
+            for (std::size_t k = 0; k < 400; ++k) {
+                const double density =
+                    g.density(static_cast<double>(column) + (1 + rule.nodes[k % 20]) / 2,
+                              static_cast<double>(row) + (1 + rule.nodes[k / 20]) / 2);
+                whole = whole && density > 0;
+                sum += density * rule.weights[k % 20] * rule.weights[k / 20] / 4;
+            }
+            if (!whole) continue;  // beside the light, or on the rim of a disc
+            EXPECT_NEAR(sum, g.solidAngle(column, row), 2e-3 * sum) << column << " " << row;
+        }
+    }
 }
 
 }  // namespace

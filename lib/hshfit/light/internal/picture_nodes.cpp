@@ -216,26 +216,40 @@ private:
     std::size_t block_, nodes_;
 };
 
-/// Pictures of other layouts: Gauss nodes of each pixel, in equal shares of its solid angle.
-void addPixelNodes(const PictureLight& light, const LightDomain& domain, int level,
+/// Pictures of other layouts: Gauss nodes of each pixel, weighted with the solid angle there, which
+/// is not the same all over a pixel, and scaled so that they add up to that of the pixel.
+/// Functions that turn within a pixel take more of them.
+void addPixelNodes(const PictureLight& light, const LightDomain& domain, int order, int level,
                    LightNodes& nodes) {
     const PictureGeometry geometry = geometryOf(light);
     const Frame frame = domain.frame();
-    const GaussRule& rule = gaussLegendre(level + 1);
+    const GaussRule& rule =
+        gaussLegendre(level + 1 + static_cast<int>(order * geometry.pixelAngle()));
+    const std::size_t side = rule.nodes.size();
+    std::vector<double> shares(side * side);
     for (std::size_t row = 0; row < light.height; ++row) {
         for (std::size_t column = 0; column < light.width; ++column) {
             const float* rgb = light.rgb.data() + 3 * (row * light.width + column);
             const double solidAngle = geometry.solidAngle(column, row);
             if (!(solidAngle * (rgb[0] + rgb[1] + rgb[2]) > 0)) continue;
-            for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-                for (std::size_t j = 0; j < rule.nodes.size(); ++j) {
-                    const double across = static_cast<double>(column) + (1 + rule.nodes[j]) / 2;
-                    const double down = static_cast<double>(row) + (1 + rule.nodes[i]) / 2;
-                    const Direction d = frame.toLocal(directionOf(light, across, down));
-                    if (domain.normal && !(d.z > 0)) continue;
-                    nodes.add(d, {rgb[0], rgb[1], rgb[2]},
-                              solidAngle * rule.weights[i] * rule.weights[j] / 4);
-                }
+            const auto place = [&](std::size_t from, std::size_t node) {
+                return static_cast<double>(from) + (1 + rule.nodes[node]) / 2;
+            };
+            double sum = 0;
+            for (std::size_t k = 0; k < shares.size(); ++k) {
+                const std::size_t i = k / side, j = k % side;
+                shares[k] = rule.weights[i] * rule.weights[j] *
+                            geometry.density(place(column, j), place(row, i));
+                sum += shares[k];
+            }
+            // A pixel of which the rim of a disc leaves a corner without nodes.
+            if (!(sum > 0)) std::ranges::fill(shares, 1.0), sum = static_cast<double>(side * side);
+            for (std::size_t k = 0; k < shares.size(); ++k) {
+                if (!(shares[k] > 0)) continue;
+                const Direction d = frame.toLocal(
+                    directionOf(light, place(column, k % side), place(row, k / side)));
+                if (domain.normal && !(d.z > 0)) continue;
+                nodes.add(d, {rgb[0], rgb[1], rgb[2]}, solidAngle * shares[k] / sum);
             }
         }
     }
@@ -245,7 +259,8 @@ void addPixelNodes(const PictureLight& light, const LightDomain& domain, int lev
 
 void addPictureNodes(const PictureLight& light, const LightDomain& domain, int order, int level,
                      LightNodes& nodes) {
-    if (light.layout != PictureLayout::latlong) return addPixelNodes(light, domain, level, nodes);
+    if (light.layout != PictureLayout::latlong)
+        return addPixelNodes(light, domain, order, level, nodes);
     const Pictured pictured(light, domain, order, level);
     const std::size_t rows = (light.height + pictured.block() - 1) / pictured.block();
     std::vector<LightNodes> parts(rows);
