@@ -42,13 +42,26 @@ struct LightJson {
     }
     Json operator()(const PictureLight& light) const {
         const PictureGeometry file = fileGeometryOf(light);
-        return {{"file", light.file},
-                {"layout", layoutName(light.layout)},
-                {"width", file.width},
-                {"height", file.height},
-                {"held_width", light.width},
-                {"held_height", light.height},
-                {"curve", curveName(light.curve)}};
+        Json json = {{"file", light.file},
+                     {"layout", layoutName(light.layout)},
+                     {"width", file.width},
+                     {"height", file.height},
+                     {"held_width", light.width},
+                     {"held_height", light.height},
+                     {"curve", curveName(light.curve)}};
+        PictureOptions options{.layout = light.layout, .part = light.part, .layer = light.layer};
+        if (light.curve != TransferCurve::linear) options.curve = light.curve;
+        const PictureFacts facts = PictureReader(light.file, options).facts();
+        json["parts"] = Json::array();
+        for (const PicturePart& part : facts.parts)
+            json["parts"].push_back({{"name", part.name}, {"channels", part.channels}});
+        json["part"] = facts.part + 1;
+        if (!facts.layer.empty()) json["layer"] = facts.layer;
+        if (facts.colour.primaries) json["primaries"] = *facts.colour.primaries;
+        if (facts.colour.exposure != 1) json["exposure"] = facts.colour.exposure;
+        if (facts.colour.correction != std::array<double, 3>{1, 1, 1})
+            json["colour_correction"] = facts.colour.correction;
+        return json;
     }
     Json operator()(const DirectionalLight& light) const {
         return {{"direction", placeJson(light.towards)}};
@@ -84,11 +97,36 @@ std::string placeText(const Json& place) {
                        place["azimuth"].get<double>());
 }
 
+/// "channels R, G, B", or of several parts "part 2 of 3: 1 'depth' Z; 2 'rgba' R, G, B; …".
+std::string partsText(const Json& parts, std::size_t chosen) {
+    const auto names = [](const Json& part) {
+        std::string text;
+        for (const Json& name : part["channels"])
+            text += (text.empty() ? "" : ", ") + name.get<std::string>();
+        return text;
+    };
+    if (parts.size() == 1) return "channels " + names(parts[0]);
+    std::string text = fmt::format("part {} of {}:", chosen, parts.size());
+    for (std::size_t k = 0; k < parts.size(); ++k)
+        text += fmt::format("{} {} '{}' {}", k > 0 ? ";" : "", k + 1,
+                            parts[k]["name"].get<std::string>(), names(parts[k]));
+    return text;
+}
+
 std::string lightLine(const Json& light) {
     std::string text;
     for (const auto& [key, value] : light.items()) {
-        if (key == "kind" || key.starts_with("held_")) continue;
-        if (value.is_object()) {
+        if (key == "kind" || key.starts_with("held_") || key == "part") continue;
+        if (key == "parts") {
+            text += "; " + partsText(value, light["part"].get<std::size_t>());
+        } else if (value.is_array()) {
+            text += fmt::format("; {} ", key);
+            for (const Json& number : value) text += fmt::format("{:g} ", number.get<double>());
+            text.pop_back();
+            text += key == "primaries" ? ", converted to Rec. 709" : ", divided out";
+        } else if (key == "exposure") {
+            text += fmt::format("; exposure {:g}, divided out", value.get<double>());
+        } else if (value.is_object()) {
             text += (text.empty() ? "" : "; ") + placeText(value);
         } else if (value.is_string()) {
             text += (text.empty() ? "" : ", ") + value.get<std::string>();

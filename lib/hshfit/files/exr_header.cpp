@@ -307,6 +307,25 @@ std::optional<std::array<std::size_t, 2>> exrSize(std::string_view bytes) {
     }
 }
 
+std::optional<std::array<std::size_t, 2>> exrDisplaySize(std::string_view bytes) {
+    if (!hasExrMagic(bytes)) return std::nullopt;
+    ByteCursor cursor(bytes);
+    cursor.take(magic.size() + sizeof(std::uint32_t));
+    for (;;) {
+        const auto attribute = nextAttribute(cursor);
+        if (!attribute || attribute->name.empty()) return std::nullopt;
+        if (attribute->name != "displayWindow") continue;
+        ByteCursor box(attribute->value);
+        const auto left = box.number<std::int32_t>(), top = box.number<std::int32_t>();
+        const auto right = box.number<std::int32_t>(), bottom = box.number<std::int32_t>();
+        if (!bottom || *right < *left || *bottom < *top) return std::nullopt;
+        const auto length = [](std::int32_t from, std::int32_t to) {
+            return static_cast<std::size_t>(std::int64_t{to} - from + 1);
+        };
+        return std::array{length(*left, *right), length(*top, *bottom)};
+    }
+}
+
 bool exrSaysSize(std::string_view bytes, std::int32_t width, std::int32_t height) {
     return exrSize(bytes) ==
            std::array{static_cast<std::size_t>(width), static_cast<std::size_t>(height)};

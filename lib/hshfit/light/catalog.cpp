@@ -226,7 +226,9 @@ std::vector<Parameter> pictureParameters() {
             {.name = "curve",
              .help = "code of the values; has to be given for whole-number formats",
              .kind = Parameter::Kind::choice,
-             .choices = curves}};
+             .choices = curves},
+            words("part", "of OpenEXR: the name or number of one of several", "rgba"),
+            words("layer", "of OpenEXR: the words before .R, .G and .B", "ViewLayer.Combined")};
 }
 
 PictureOptions pictureOptions(const Parameters& p) {
@@ -235,6 +237,8 @@ PictureOptions pictureOptions(const Parameters& p) {
         if (row.name == p.choice("layout")) options.layout = row.layout;
     for (const auto& row : curveNames())
         if (row.name == p.choice("curve")) options.curve = row.curve;
+    options.part = p.choice("part");
+    options.layer = p.choice("layer");
     return options;
 }
 
@@ -440,7 +444,9 @@ bool looksLikeLight(const std::string& text) {
         options.find("curve=") != std::string_view::npos) {
         return true;
     }
-    const auto size = exrSize(head);
+    for (const char* key : {"part=", "layer="})
+        if (options.find(key) != std::string_view::npos) return true;
+    const auto size = exrDisplaySize(head);
     return size && (*size)[0] == 2 * (*size)[1];
 }
 

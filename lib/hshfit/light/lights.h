@@ -84,6 +84,7 @@ struct PictureLight {
     /// all of it, and the way from the file's values to radiance.
     std::size_t fileWidth = 0, fileHeight = 0;
     TransferCurve curve = TransferCurve::linear;
+    std::string part = {}, layer = {};  ///< of the file, as asked for
     double scale = 1;
     PictureCensus census = {};  ///< of pixels that count as 0
 };

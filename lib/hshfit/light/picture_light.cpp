@@ -168,6 +168,8 @@ PictureLight readPictureLight(const std::string& path, double scale, const Pictu
                        .rgb = reduction.result(),
                        .layout = file.layout,
                        .curve = reader.facts().curve,
+                       .part = options.part,
+                       .layer = options.layer,
                        .scale = scale,
                        .census = scaling.census()};
     if (light.width != file.width) light.fileWidth = file.width, light.fileHeight = file.height;
@@ -191,7 +193,7 @@ void forEachRow(const PictureLight& light, const RowVisitor& visit) {
         }
         return;
     }
-    PictureOptions options{.layout = light.layout};
+    PictureOptions options{.layout = light.layout, .part = light.part, .layer = light.layer};
     if (light.curve != TransferCurve::linear) options.curve = light.curve;
     PictureReader reader(light.file, options);
     const PictureGeometry file = reader.facts().geometry;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/light/picture_layout.h>
+#include <hshfit/picture_files/picture_file.h>
 
 #include <array>
 #include <functional>
@@ -28,6 +29,15 @@ double decoded(TransferCurve curve, double value);
 struct PictureOptions {
     std::optional<PictureLayout> layout = {};  ///< none: by the size
     std::optional<TransferCurve> curve = {};   ///< none: linear, for floating-point files only
+    /// Of an OpenEXR file: the name or the number, from 1, of a part, and the words before ".R" of
+    /// its channels. Empty: the only one with R, G and B; of several, the one without such words.
+    std::string part = {}, layer = {};
+};
+
+/// A part of a picture file and its channels.
+struct PicturePart {
+    std::string name;
+    std::vector<std::string> channels;
 };
 
 struct PictureFacts {
@@ -35,6 +45,11 @@ struct PictureFacts {
     std::string number;  ///< "half", "float", "uint8", …
     TransferCurve curve = TransferCurve::linear;
     PictureGeometry geometry;
+    /// Of the file, or of the first of six.
+    std::vector<PicturePart> parts = {};
+    std::size_t part = 0;  ///< the one that is read
+    std::string layer = {};
+    PictureColour colour = {};  ///< of the file; the rows have it taken into account
 };
 
 /// Rows of a picture, [column][R, G, B].
@@ -44,6 +59,7 @@ using RowVisitor = std::function<void(std::size_t row, std::span<const float> rg
 /// JPEG, TIFF, BMP, PNM and PFM, told apart by their first bytes; colour, or grey for all three
 /// channels; at most 2^28 pixels. Six files are one picture of faces in a column: `path` with
 /// "{face}" or "%s" for the names of one of `faceNames()`. Row 0 is at the top; alpha is ignored.
+/// Primaries other than those of Rec. 709 are converted, EXPOSURE and COLORCORR divided out.
 ///
 /// Throws InputError that starts with the path for a file that is absent, broken or of no known
 /// format, a size that fits no layout, or not the one asked for, and whole numbers without a curve.

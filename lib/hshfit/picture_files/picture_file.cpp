@@ -3,6 +3,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/exr_header.h>
 #include <hshfit/files/mapped_file.h>
+#include <hshfit/files/printable.h>
 #include <hshfit/picture_files/internal/image_module.h>
 
 #include <fmt/format.h>
@@ -177,6 +178,56 @@ std::uint32_t stripRows(std::span<const unsigned char> bytes) {
     return 0;
 }
 
+/// All numbers of a text, or none where it holds anything else.
+std::vector<double> numbersIn(std::string_view text) {
+    std::vector<double> numbers;
+    for (;;) {
+        const std::size_t begin = text.find_first_not_of(" \t\r");
+        if (begin == text.npos) return numbers;
+        text.remove_prefix(begin);
+        double value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error != std::errc()) return {};
+        numbers.push_back(value);
+        text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    }
+}
+
+/// The lines of a Radiance header that change the meaning of the pixels. Returns the first one that
+/// cannot be followed, with the reason.
+std::string readRadianceHeader(std::string_view text, PictureColour& colour) {
+    text = text.substr(0, text.find("\n\n"));
+    const auto positive = [](const std::vector<double>& values) {
+        return std::ranges::all_of(values, [](double v) { return v > 0 && v < 1e30; });
+    };
+    while (!text.empty()) {
+        const std::string_view line = text.substr(0, text.find('\n'));
+        text.remove_prefix(std::min(line.size() + 1, text.size()));
+        const std::size_t equals = line.find('=');
+        if (equals == line.npos) continue;
+        const std::string_view key = line.substr(0, equals);
+        if (key == "FORMAT" && line.find("32-bit_rle_xyze") != line.npos)
+            return "holds CIE XYZ (FORMAT=32-bit_rle_xyze), expected 32-bit_rle_rgbe; convert it "
+                   "with Radiance's ra_xyze -r";
+        const bool primaries = key == "PRIMARIES", each = key == "COLORCORR";
+        if (!primaries && !each && key != "EXPOSURE") continue;
+        const std::vector<double> values = numbersIn(line.substr(equals + 1));
+        const std::size_t expected = primaries ? 8 : each ? 3 : 1;
+        if (values.size() != expected || (!primaries && !positive(values)))
+            return fmt::format("has {} '{}' in its header, expected {} {}", key,
+                               printable(std::string(line.substr(equals + 1)).substr(0, 60)),
+                               expected, expected == 1 ? "number above 0" : "numbers");
+        if (primaries) {
+            colour.primaries.emplace();
+            std::ranges::copy(values, colour.primaries->begin());
+        }
+        if (each)
+            for (std::size_t c = 0; c < 3; ++c) colour.correction[c] *= values[c];
+        if (!primaries && !each) colour.exposure *= values[0];
+    }
+    return {};
+}
+
 std::string firstLine(std::string text) {
     return text.substr(0, text.find('\n'));
 }
@@ -195,9 +246,12 @@ struct PictureFile::State {
     MappedFile mapped;
     std::string_view format;
     std::unique_ptr<ImageModulePicture> image;
+    int left = 0, above = 0;         ///< stored columns and rows before those of the picture
+    std::vector<float> stored = {};  ///< of some rows, where more is stored than the picture
 };
 
-PictureFile::PictureFile(const std::string& path) : state_(std::make_unique<State>(path)) {
+PictureFile::PictureFile(const std::string& path, std::size_t part)
+    : state_(std::make_unique<State>(path)) {
     const PictureFormat& format = formatOf(state_->mapped);
     state_->format = format.name;
     if (format.name == "JPEG" && !jpegIsWhole(state_->mapped.bytes())) fail("breaks off");
@@ -209,8 +263,12 @@ PictureFile::PictureFile(const std::string& path) : state_(std::make_unique<Stat
         const std::string wrong = wrongNumber(textOf(state_->mapped), format.name == "PFM");
         if (!wrong.empty()) fail(wrong);
     }
+    if (format.name == "Radiance HDR") {
+        const std::string wrong = readRadianceHeader(textOf(state_->mapped), colour_);
+        if (!wrong.empty()) fail(wrong);
+    }
     std::string error;
-    state_->image.reset(imageModule()(format.plugin, path.c_str(), error));
+    state_->image.reset(imageModule()(format.plugin, path.c_str(), static_cast<int>(part), error));
     if (!state_->image) {
         fail(fmt::format("is no valid {} file{}{}", format.name, error.empty() ? "" : ": ",
                          firstLine(error)));
@@ -222,9 +280,20 @@ PictureFile::PictureFile(const std::string& path) : state_(std::make_unique<Stat
     if (pixels > mostPixels) {
         fail(fmt::format("has {} x {} pixels; at most {} are read", i.width, i.height, mostPixels));
     }
-    if (i.width != i.fullWidth || i.height != i.fullHeight || i.x != i.fullX || i.y != i.fullY) {
-        fail(fmt::format("holds {} x {} pixels of a picture of {} x {}; all have to be there",
-                         i.width, i.height, i.fullWidth, i.fullHeight));
+    state_->left = i.fullX - i.x;
+    state_->above = i.fullY - i.y;
+    const bool covered = state_->left >= 0 && state_->above >= 0 && i.fullWidth >= 1 &&
+                         i.fullHeight >= 1 && i.width - state_->left >= i.fullWidth &&
+                         i.height - state_->above >= i.fullHeight;
+    if (!covered) {
+        fail(
+            fmt::format("holds {} x {} pixels from ({}, {}) of a picture of {} x {} from ({}, "
+                        "{}); all have to be there",
+                        i.width, i.height, i.x, i.y, i.fullWidth, i.fullHeight, i.fullX, i.fullY));
+    }
+    if (i.chromaticities.size() == 8) {
+        colour_.primaries.emplace();
+        std::ranges::copy(i.chromaticities, colour_.primaries->begin());
     }
     const std::uint64_t rowBytes =
         static_cast<std::uint64_t>(i.width) * i.channels.size() * sizeof(float);
@@ -250,10 +319,10 @@ const std::string& PictureFile::path() const {
     return state_->mapped.path();
 }
 std::size_t PictureFile::width() const {
-    return static_cast<std::size_t>(state_->image->width);
+    return static_cast<std::size_t>(state_->image->fullWidth);
 }
 std::size_t PictureFile::height() const {
-    return static_cast<std::size_t>(state_->image->height);
+    return static_cast<std::size_t>(state_->image->fullHeight);
 }
 std::string PictureFile::format() const {
     return std::string(state_->format);
@@ -269,6 +338,17 @@ std::string PictureFile::environment() const {
 }
 const std::vector<std::string>& PictureFile::channels() const {
     return state_->image->channels;
+}
+
+std::size_t PictureFile::parts() const {
+    return std::max<std::size_t>(state_->image->partNames.size(), 1);
+}
+std::string PictureFile::partName(std::size_t part) const {
+    return part < state_->image->partNames.size() ? state_->image->partNames[part] : std::string();
+}
+const std::vector<std::string>& PictureFile::partChannels(std::size_t part) const {
+    return part < state_->image->partChannels.size() ? state_->image->partChannels[part]
+                                                     : state_->image->channels;
 }
 
 int PictureFile::find(std::string_view channel) const {
@@ -297,10 +377,36 @@ std::size_t PictureFile::blockRows(std::size_t channels) const {
 
 void PictureFile::read(std::size_t top, std::size_t bottom, int first, int last, float* out) {
     ImageModulePicture& image = *state_->image;
-    if (image.read(static_cast<int>(top), static_cast<int>(bottom), first, last, out)) return;
-    const std::string message = firstLine(image.error);
-    fail(fmt::format("breaks off or is damaged in rows {} to {}{}{}", top, bottom - 1,
-                     message.empty() ? "" : ": ", message));
+    const auto stride = static_cast<std::size_t>(last - first);
+    const auto storedWidth = static_cast<std::size_t>(image.width);
+    const auto left = static_cast<std::size_t>(state_->left);
+    // Stored rows; tiles are read whole.
+    auto from = static_cast<int>(top) + state_->above,
+         to = static_cast<int>(bottom) + state_->above;
+    const int asked = from;
+    if (image.tileHeight > 0 && state_->above > 0) {
+        from -= from % image.tileHeight;
+        to = std::min((to + image.tileHeight - 1) / image.tileHeight * image.tileHeight,
+                      image.height);
+    }
+    const bool same =
+        from == asked && storedWidth == width() && to - from == static_cast<int>(bottom - top);
+    float* values = out;
+    if (!same) {
+        state_->stored.resize(static_cast<std::size_t>(to - from) * storedWidth * stride);
+        values = state_->stored.data();
+    }
+    if (!image.read(from, to, first, last, values)) {
+        const std::string message = firstLine(image.error);
+        fail(fmt::format("breaks off or is damaged in rows {} to {}{}{}", top, bottom - 1,
+                         message.empty() ? "" : ": ", message));
+    }
+    if (same) return;
+    for (std::size_t row = 0; row < bottom - top; ++row) {
+        const std::size_t at = row + static_cast<std::size_t>(asked - from);
+        const float* begin = values + (at * storedWidth + left) * stride;
+        std::copy_n(begin, width() * stride, out + row * width() * stride);
+    }
 }
 
 void PictureFile::checkIntact() const {

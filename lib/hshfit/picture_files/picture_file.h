@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,17 +11,28 @@
 
 namespace hshfit::inline picture_files {
 
+/// The meaning of R, G and B in a file of floating-point numbers.
+struct PictureColour {
+    /// x and y of red, green, blue and white: `chromaticities` of OpenEXR, PRIMARIES of Radiance.
+    std::optional<std::array<double, 8>> primaries = {};
+    /// EXPOSURE and COLORCORR of Radiance, products over all lines of the header: radiance is the
+    /// stored value divided by both.
+    double exposure = 1;
+    std::array<double, 3> correction{1, 1, 1};
+};
+
 /// A flat picture file through OpenImageIO, a few rows in memory at a time: OpenEXR, Radiance HDR,
 /// PNG, JPEG, TIFF, BMP, PNM and PFM, told apart by their first bytes; at most 2^28 pixels,
-/// upright, with a data window that is the whole picture. Row 0 is at the top. One thread at a
-/// time.
+/// upright. The picture is the display window of OpenEXR, all of which has to be stored; pixels
+/// beside it are left out. Row 0 is at the top. One thread at a time.
 ///
 /// Throws InputError that starts with the path for a file that is absent, of no known format, cut
 /// short or damaged as far as its header, its checksums (PNG) and its end (JPEG) tell; `read`
 /// finds the rest.
 class PictureFile {
 public:
-    explicit PictureFile(const std::string& path);
+    /// Part number `part` of an OpenEXR file of several.
+    explicit PictureFile(const std::string& path, std::size_t part = 0);
     ~PictureFile();
     PictureFile(const PictureFile&) = delete;
     PictureFile& operator=(const PictureFile&) = delete;
@@ -32,6 +45,10 @@ public:
     bool wholeNumbers() const;        ///< values are fractions of the largest code, 0 to 1
     std::string environment() const;  ///< of an OpenEXR environment map: the kind
     const std::vector<std::string>& channels() const;
+    std::size_t parts() const;
+    std::string partName(std::size_t part) const;  ///< "" where it has none
+    const std::vector<std::string>& partChannels(std::size_t part) const;
+    const PictureColour& colour() const { return colour_; }
     /// The index of a channel, by its name in any case or, for R, G, B and A, by "red", …; none
     /// where there is no such channel.
     int find(std::string_view channel) const;
@@ -50,6 +67,7 @@ public:
 private:
     struct State;
     std::unique_ptr<State> state_;
+    PictureColour colour_;
 };
 
 /// Whether a file that starts with `head` is of a format that is read.

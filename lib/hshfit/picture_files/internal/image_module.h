@@ -12,7 +12,8 @@ class ImageModulePicture {
 public:
     virtual ~ImageModulePicture() = default;
 
-    /// Rows [top, bottom), channels [first, last): [row][column][channel]. False with `error`.
+    /// Rows [top, bottom) from the first stored one, channels [first, last):
+    /// [row][column][channel]. False with `error`.
     virtual bool read(int top, int bottom, int first, int last, float* values) = 0;
 
     int width = 0, height = 0, depth = 1, x = 0, y = 0;
@@ -23,13 +24,16 @@ public:
     std::string number;       ///< "half", "uint8", …
     std::string environment;  ///< of an OpenEXR environment map
     std::vector<std::string> channels;
+    std::vector<float> chromaticities;   ///< of OpenEXR: x, y of red, green, blue, white; or none
+    std::vector<std::string> partNames;  ///< of every part of the file
+    std::vector<std::vector<std::string>> partChannels;  ///< likewise
     std::string error;
 };
 
-/// The name and the type of the module's only function: opens `path` by the plug-in of a format;
-/// null, with the reason in `error`, where that fails.
+/// The name and the type of the module's only function: opens part `part` of `path` by the plug-in
+/// of a format; null, with the reason in `error`, where that fails.
 inline constexpr const char* imageModuleFunction = "hshfitOpenImage";
-using ImageModuleFunction = ImageModulePicture*(const char* plugin, const char* path,
+using ImageModuleFunction = ImageModulePicture*(const char* plugin, const char* path, int part,
                                                 std::string& error);
 
 /// That function. Throws InputError where the module, a file beside the program, is missing.
