@@ -18,6 +18,7 @@ void addGaussians(CLI::App& command, Globals& globals);
 void addTradeoff(CLI::App& command, Globals& globals);
 void addIlluminate(CLI::App& command, Globals& globals);
 void addPlan(CLI::App& command, Globals& globals);
+void addChoose(CLI::App& command, Globals& globals);
 void addStress(CLI::App& command, Globals& globals);
 void addImport(CLI::App& command, Globals& globals);
 void addMatrix(CLI::App& command, Globals& globals);
@@ -138,6 +139,13 @@ constexpr Command table[] = {
      .file = "plan.cpp",
      .example = "hshfit plan examples/scenes/car_paint.json -o plan",
      .add = addPlan},
+    {.name = "choose",
+     .group = studies,
+     .help = "The smallest faithful material for a renderer: the model itself, lobes, glTF, "
+             "OpenPBR or coefficients, with what each loses to the eye",
+     .file = "choose.cpp",
+     .example = "hshfit choose ggx:alpha=.3,F0=.9/.6/.3 --for gltf -o choose",
+     .add = addChoose},
     {.name = "stress",
      .group = studies,
      .help = "Where the program's numbers stop being good: bases by degree, lobes by width and "

@@ -13,6 +13,7 @@
 #include <brdfs/preset.h>
 #include <brdfs/preset_collection.h>
 #include <brdfs/repair.h>
+#include <jobs/choose_renderers.h>
 #include <jobs/lighting_models.h>
 
 #include <CLI/CLI.hpp>
@@ -83,6 +84,14 @@ Words lossWords() {
 
 Words lightingWords() {
     return withAll(summariesOf(jobs::lightingModels()));
+}
+
+Words rendererWords() {
+    return wordsOf(jobs::renderers());
+}
+
+Words kindWords() {
+    return wordsOf(jobs::candidateKinds());
 }
 
 Words conventionWords() {
@@ -196,6 +205,9 @@ constexpr ValueRow valueRows[] = {
     {"batch", "--output", nullptr, Syntax::word, Files::folder},
     {"batch", "--costs", nullptr, Syntax::word, Files::read},
     {"batch", "--progress", nullptr, Syntax::word, Files::added},
+    {"choose", "--for", rendererWords},
+    {"choose", "--kinds", kindWords, Syntax::list},
+    {"choose", "--output", nullptr, Syntax::word, Files::folder},
     {"compare", "--output", nullptr, Syntax::word, Files::folder},
     {"compare", "--sigma", sigmaWords, Syntax::word, Files::read, ".csv"},
     {"convert", "--output", nullptr, Syntax::word, Files::folder},

@@ -25,9 +25,11 @@ constexpr OptionRow options[] = {
     {"ExportOptions::allowLoss", "--allow-loss"},
     {"ExportOptions::force", "--force"},
     {"ExportOptions::lights", "--light"},
+    {"ExportOptions::name", "--name"},
     {"ExportOptions::outgoing", "--outgoing"},
     {"ExportOptions::source", "--source"},
     {"ExportOptions::storage", "--storage"},
+    {"ExportOptions::targets", "--target"},
     {"FileSet::force", "--force"},
     {"FitOptions::accept", "--accept"},
     {"FitOptions::bands", "--bands"},
@@ -141,6 +143,11 @@ std::string again(const std::string& output) {
     return " -o " + forShell(output) + (output.starts_with("OUT.") ? "" : " --force");
 }
 
+/// The output of a command that is the first to write it.
+std::string newly(const std::string& output) {
+    return output.empty() ? output : " -o " + forShell(output);
+}
+
 struct CommandRow {
     std::string_view function;
     std::string (*command)(const Call& call);
@@ -148,18 +155,32 @@ struct CommandRow {
 
 const CommandRow commandsOfFunctions[] = {
     {"asRgb", [](const Call&) -> std::string { return "--rgb"; }},
+    {"convert",
+     [](const Call& call) {
+         return "hshfit convert " + forShell(call.subject) + " " + forShell(call.output) +
+                optionsOf(call);
+     }},
+    {"export",
+     [](const Call& call) {
+         return "hshfit export " + forShell(call.subject) + optionsOf(call) + newly(call.output);
+     }},
     {"exportCoefficients",
      [](const Call& call) {
          return "hshfit export " + forShell(call.subject) + optionsOf(call) + again(call.output);
      }},
     {"fit",
      [](const Call& call) {
-         return call.settings.empty() ? "hshfit fit '" + call.subject + "' --model ggx -o fit.json"
-                                      : "hshfit fit " + forShell(call.subject) + optionsOf(call);
+         return call.settings.empty()
+                    ? "hshfit fit '" + call.subject + "' --model ggx -o fit.json"
+                    : "hshfit fit " + forShell(call.subject) + optionsOf(call) + newly(call.output);
      }},
     {"formats", [](const Call&) -> std::string { return "hshfit list formats"; }},
     {"linearlyTransformedCosines", [](const Call&) -> std::string { return "hshfit ltc"; }},
     {"metricCatalog", [](const Call&) -> std::string { return "hshfit list metrics"; }},
+    {"project",
+     [](const Call& call) {
+         return "hshfit project " + forShell(call.subject) + optionsOf(call) + newly(call.output);
+     }},
     {"represent",
      [](const Call& call) {
          return "hshfit project " + quoted(call.subject) + optionsOf(call) + again(call.output);

@@ -282,8 +282,8 @@ Json lossJson(const PairSummary& loss) {
               {"theta_to", degrees(loss.albedoTo)}}}};
 }
 
-ExportedMaterials exportMaterials(const std::string& text, const std::string& folder,
-                                  const MaterialExportOptions& options, const Listener& listener) {
+ExportedMaterials makeMaterials(const std::string& text, const MaterialExportOptions& options,
+                                const Listener& listener) {
     if (!areMaterials(options.targets))
         throw UsageError(fmt::format("'{}': no standard material", options.targets));
     const Surface surface =
@@ -294,27 +294,34 @@ ExportedMaterials exportMaterials(const std::string& text, const std::string& fo
                                .vertices = surface.positions.size(),
                                .triangles = surface.indices.size() / 3,
                                .files = {}};
-    FileSet files(folder, options.force);
     for (const Target* target : gpu::selectTargets(options.targets)) {
         ExportedMaterial material = materialFor(target->name, input, options, listener);
         const Parameters parameters = parametersOf(material.spec);
-        std::string bytes;
         if (target->name == "gltf") {
             material.path = exported.name + ".glb";
             const Json extras = {{"hshfit", statement(material, input.source)}};
-            bytes = glbBytes(gltfOf(exported.name, parameters), surface, jsonText(extras));
+            material.content =
+                glbBytes(gltfOf(exported.name, parameters), surface, jsonText(extras));
         } else {
             const std::string_view model = modelOf(material.spec);
             material.path = exported.name + ".mtlx";
-            bytes =
+            material.content =
                 materialXText(exported.name, model == "openpbr" ? "open_pbr_surface" : "gltf_pbr",
                               inputsOf(model, parameters), sentence(material, input.source));
         }
-        material.bytes = bytes.size();
-        files.write(material.path, bytes);
+        material.bytes = material.content.size();
         exported.files.push_back(std::move(material));
     }
     if (input.brdf) requireReadable(*input.brdf);
+    return exported;
+}
+
+ExportedMaterials exportMaterials(const std::string& text, const std::string& folder,
+                                  const MaterialExportOptions& options, const Listener& listener) {
+    FileSet files(folder, options.force);
+    ExportedMaterials exported = makeMaterials(text, options, listener);
+    for (const ExportedMaterial& material : exported.files)
+        files.write(material.path, material.content);
     files.commit();
     return exported;
 }

@@ -37,6 +37,7 @@ struct ExportedMaterial {
     std::optional<brdfs::PartSearch> search = {};
     std::optional<PairSummary> loss = {};  ///< against the source
     std::string reason = {};               ///< why there is no loss
+    std::string content = {};              ///< of the file
 };
 
 struct ExportedMaterials {
@@ -50,6 +51,10 @@ bool areMaterials(const std::string& targets);
 
 /// The loss of a material as JSON: mean log error, maximum with its directions, albedo.
 nlohmann::ordered_json lossJson(const PairSummary& loss);
+
+/// The materials of exportMaterials, without a file.
+ExportedMaterials makeMaterials(const std::string& input, const MaterialExportOptions& options,
+                                const Listener& listener = {});
 
 /// Writes `input` as standard materials to `folder`: all files or none. A specification or preset
 /// of the models gltf-pbr and openpbr is written as it is; anything else, and the source of a

@@ -1,0 +1,162 @@
+#include <hshfit/choice/choice.h>
+
+#include <hshfit/accuracy/pair_errors.h>
+#include <hshfit/error.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <utility>
+
+namespace hshfit::choice {
+namespace {
+
+/// Rows this close to the least mean FLIP are as good as the best where all are poor.
+constexpr double nearBest = 1.1;
+
+/// Processor time of all threads of this process.
+double processorSeconds() {
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+std::optional<double> capturedBy(const Brdf& g, const std::optional<PairReference>& reference,
+                                 const Brdf& source) {
+    if (!reference || g.channels().count() != source.channels().count()) return std::nullopt;
+    const double left = reference->errorsOf(g).energyLeft;
+    return std::isfinite(left) ? std::optional(1 - left) : std::nullopt;
+}
+
+std::optional<PairReference> referenceOf(const Brdf& source) {
+    try {
+        return PairReference(source, spreadPairs());
+    } catch (const NumericError&) {
+        return std::nullopt;
+    }
+}
+
+/// The source with its pictures and pairs, against which rows are measured.
+struct Measurement {
+    const Brdf& source;
+    const ChoiceOptions& options;
+    PoorBounds bounds;
+    PictureReference pictures;
+    std::optional<PairReference> pairs;
+
+    Measurement(const Brdf& brdf, const ChoiceOptions& how)
+        : source(brdf), options(how), pictures(brdf), pairs(referenceOf(brdf)) {
+        if (how.error) bounds.flip = *how.error;
+    }
+
+    Row rowOf(const Candidate& candidate, Made made) const {
+        Row row{.kind = candidate.kind, .name = candidate.name, .made = std::move(made)};
+        const Brdf& g = row.made.brdf ? *row.made.brdf : source;
+        row.picture = pictures.errorOf(g);
+        row.captured = capturedBy(g, pairs, source);
+        row.poor = poorReason(row.captured, row.picture, bounds);
+        row.lost = lossSentence(row.picture);
+        const std::vector<std::string>& kinds = options.kinds;
+        if (!kinds.empty() && std::ranges::find(kinds, row.kind) == kinds.end())
+            row.unfit = fmt::format("not for {}", options.renderer);
+        else if (options.bytes && row.made.bytes > *options.bytes)
+            row.unfit = fmt::format("more than {} bytes", *options.bytes);
+        return row;
+    }
+};
+
+std::size_t countedBytes(const Row& row) {
+    return std::max(row.made.bytes, smallestBytes);
+}
+
+bool isBetter(const Row& a, const Row& b) {
+    return std::pair(countedBytes(a), a.picture.flip.mean) <
+           std::pair(countedBytes(b), b.picture.flip.mean);
+}
+
+/// The best of the rows that `counts` takes.
+template <class Counts>
+std::optional<std::size_t> bestOf(const std::vector<Row>& rows, const Counts& counts) {
+    std::optional<std::size_t> best;
+    for (std::size_t k = 0; k < rows.size(); ++k)
+        if (counts(rows[k]) && (!best || isBetter(rows[k], rows[*best]))) best = k;
+    return best;
+}
+
+bool isFaithful(const Row& row) {
+    return row.unfit.empty() && !row.poor;
+}
+
+void recommend(Choice& choice, bool errorStated) {
+    choice.recommended = bestOf(choice.rows, isFaithful);
+    choice.faithful = choice.recommended.has_value();
+    if (choice.faithful) {
+        choice.why = "the fewest bytes of those that look like the source";
+        return;
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (const Row& row : choice.rows)
+        if (row.unfit.empty()) least = std::min(least, row.picture.flip.mean);
+    if (!std::isfinite(least)) {
+        choice.why = "no candidate is within the bounds";
+    } else if (errorStated) {
+        choice.why = fmt::format(
+            "none keeps to FLIP {:g} without a false dip or peak; the least "
+            "FLIP is {:.3f}",
+            choice.error, least);
+    } else {
+        choice.recommended = bestOf(choice.rows, [&](const Row& row) {
+            return row.unfit.empty() && row.picture.flip.mean <= nearBest * least;
+        });
+        choice.why = fmt::format("none is faithful, this is the nearest: {}",
+                                 *choice.rows[*choice.recommended].poor);
+    }
+}
+
+}  // namespace
+
+Choice choose(const Brdf& source, std::vector<Candidate> candidates, const ChoiceOptions& options) {
+    const double begin = processorSeconds();
+    const Measurement measurement(source, options);
+    Choice choice{.source = source.name(),
+                  .renderer = options.renderer,
+                  .maxBytes = options.bytes,
+                  .error = measurement.bounds.flip};
+    std::optional<Row*> best;
+    choice.rows.reserve(candidates.size());
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+        const Candidate& candidate = candidates[k];
+        if (options.progress) options.progress(k, candidates.size());
+        const double spent = processorSeconds() - begin;
+        if (spent + candidate.seconds > options.cpuSeconds) {
+            choice.leftOut.push_back(
+                {candidate.kind, candidate.name,
+                 fmt::format("about {:g} seconds of the processor; {:.0f} of {:g} are spent",
+                             candidate.seconds, spent, options.cpuSeconds)});
+            continue;
+        }
+        try {
+            Row& row = choice.rows.emplace_back(measurement.rowOf(candidate, candidate.make()));
+            if (!isFaithful(row) || (best && !isBetter(row, **best))) continue;
+            best = &row;
+            if (options.found) options.found(row);
+        } catch (const OutputError&) {
+            throw;
+        } catch (const Error& error) {
+            choice.leftOut.push_back({candidate.kind, candidate.name, error.what()});
+        }
+    }
+    source.checkIntact();
+    if (choice.rows.empty()) {
+        throw NumericError(
+            fmt::format("{}: there is no candidate: {}", source.name(),
+                        choice.leftOut.empty() ? "none was asked for" : choice.leftOut[0].reason));
+    }
+    std::ranges::stable_sort(choice.rows, std::less{},
+                             [](const Row& row) { return row.made.bytes; });
+    recommend(choice, options.error.has_value());
+    return choice;
+}
+
+}  // namespace hshfit::choice

@@ -1,0 +1,150 @@
+// `hshfit choose` as a user runs it: its rows are held to `compare`, to the files that their
+// commands write, and to the bounds that are asked for.
+
+#include "places.h"
+#include "program.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace hshfit::test {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Grey, so that fits are quick.
+constexpr const char* matte = "'lambert:kd=.3 + ggx:alpha=.4,F0=.05'";
+constexpr const char* plastic = "'lambert:kd=.35/.02/.03 + ggx:alpha=.3,F0=.05'";
+
+class ChooseCommand : public Cli {
+protected:
+    Json choose(const std::string& arguments) const {
+        const Answer answer = run("choose " + arguments + " --json");
+        EXPECT_EQ(answer.code, 0) << answer.err;
+        EXPECT_TRUE(keepsSchema(answer.out, "choose"));
+        return Json::parse(answer.out, nullptr, false);
+    }
+
+    /// Runs a command line of an answer in this test's folder.
+    void runLine(std::string line) const {
+        const std::string word = "hshfit ";
+        for (std::size_t at = 0; (at = line.find(word, at)) != line.npos;
+             at += test::program().size() + 1)
+            line.replace(at, word.size(), test::program() + " ");
+        const std::string all =
+            "(cd " + folder_.string() + " && " + line + ") >" + path("said") + " 2>&1";
+        EXPECT_EQ(std::system(all.c_str()), 0) << line << "\n" << read(path("said"));
+        fs::remove(path("said"));
+    }
+};
+
+constexpr const char* quick = " --kinds model,lobes,gltf";
+
+/// FLIP, false dip and peak of each row are those of `compare` for what its command writes, and
+/// bytes of coefficients those that `project` states.
+TEST_F(ChooseCommand, StatesTheErrorsAndBytesOfWhatItsCommandsWrite) {
+    const Json answer = choose(matte);
+    std::set<std::string> kinds;
+    for (const Json& row : answer["rows"]) {
+        kinds.insert(row["kind"]);
+        std::string written = row["spec"];
+        if (!row["command"].is_null()) {
+            std::string line = row["command"];
+            if (line.find("hshfit project ") == 0) line += " --json > projected.json";
+            fs::remove_all(path("out"));
+            fs::create_directory(path("out"));
+            runLine("cd out && " + line);
+            if (line.find("hshfit export ") == std::string::npos) {
+                for (const auto& file : fs::directory_iterator(path("out")))
+                    if (file.path().filename() != "projected.json") written = file.path();
+            }
+        }
+        if (fs::exists(path("out/projected.json"))) {
+            const Json projected = Json::parse(read(path("out/projected.json")));
+            EXPECT_EQ(projected["representation"]["bytes"], row["bytes"]) << row["name"];
+        }
+        const Answer compared =
+            run(std::string("compare ") + matte + " '" + written + "' --metrics nbrdf --json");
+        ASSERT_EQ(compared.code, 0) << compared.err;
+        const Json picture = Json::parse(compared.out)["picture"];
+        for (const char* key : {"flip", "ciede2000"})
+            EXPECT_NEAR(picture[key]["mean"].get<double>(),
+                        row["picture"][key]["mean"].get<double>(), 1e-6)
+                << row["name"] << key;
+        for (const char* key : {"false_dip", "false_peak", "ridge"})
+            EXPECT_NEAR(picture[key]["value"].get<double>(),
+                        row["picture"][key]["value"].get<double>(), 1e-6)
+                << row["name"] << key;
+        fs::remove_all(path("out"));
+    }
+    EXPECT_EQ(kinds, (std::set<std::string>{"model", "lobes", "gltf", "openpbr", "halfway",
+                                            "coefficients"}));
+}
+
+/// kd has three numbers, alpha and F0 one each; a model is its own best stand-in.
+TEST_F(ChooseCommand, TakesAModelForItself) {
+    const Json answer = choose(plastic + std::string(quick));
+    const Json& row = answer["rows"][answer["recommended"].get<std::size_t>()];
+    EXPECT_EQ(row["kind"], "model");
+    EXPECT_EQ(row["bytes"], 4 * 5);
+    EXPECT_EQ(row["picture"]["flip"]["mean"], 0);
+    EXPECT_EQ(row["lost"], "nothing that is seen");
+}
+
+TEST_F(ChooseCommand, TakesWhatTheRendererReadsWithinTheBounds) {
+    const Json gltf = choose(plastic + std::string(quick) + " --for gltf");
+    EXPECT_EQ(gltf["rows"][gltf["recommended"].get<std::size_t>()]["kind"], "gltf");
+    const Json three =
+        choose(std::string(matte) + " --for three --kinds lobes,halfway --bytes 150 --error .2");
+    const Json& row = three["rows"][three["recommended"].get<std::size_t>()];
+    EXPECT_LE(row["bytes"], 150);
+    for (const Json& each : three["rows"]) {
+        const std::string kind = each["kind"];
+        const bool taken = kind == "gltf" || kind == "halfway" || kind == "coefficients";
+        EXPECT_EQ(each["unfit"].is_null(), taken && each["bytes"] <= 150) << each["name"];
+    }
+    // No faithful row of the kinds and bounds has fewer bytes above those that count alike.
+    for (const Json& each : three["rows"])
+        if (each["unfit"].is_null() && each["poor"].is_null()) {
+            EXPECT_GE(std::max(128, each["bytes"].get<int>()),
+                      std::max(128, row["bytes"].get<int>()));
+        }
+}
+
+TEST_F(ChooseCommand, WritesThePageAndTheMaterial) {
+    const Answer answer =
+        run(std::string("choose ") + plastic + quick + " --for gltf -o " + path("out"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    std::set<std::string> names;
+    for (const auto& file : fs::directory_iterator(path("out")))
+        names.insert(file.path().extension());
+    EXPECT_EQ(names, (std::set<std::string>{".html", ".json", ".glb"}));
+    EXPECT_TRUE(keepsSchema(read(path("out/choice.json")), "choose"));
+    const std::string page = read(path("out/choice.html"));
+    const Json document = Json::parse(read(path("out/choice.json")));
+    std::size_t strips = 0;
+    for (std::size_t at = 0; (at = page.find("data:image/png", at)) != page.npos; ++at) ++strips;
+    EXPECT_EQ(strips, 2 * document["rows"].size());
+}
+
+TEST_F(ChooseCommand, RecommendsNothingBeyondTheStatedError) {
+    const Answer answer =
+        run(std::string("choose ") + plastic + quick + " --for gltf --error 0 -o " + path("out"));
+    EXPECT_EQ(answer.code, 4);
+    EXPECT_NE(answer.err.find("the least FLIP is"), std::string::npos) << answer.err;
+    for (const auto& file : fs::directory_iterator(path("out")))
+        EXPECT_NE(file.path().extension(), ".glb");
+}
+
+TEST_F(ChooseCommand, RefusesWhatItDoesNotKnow) {
+    expectError("choose lambert --for thre", 2, "did you mean 'three'", 0);
+    expectError("choose lambert --kinds model,lobe", 2, "did you mean 'lobes'", 0);
+    expectError("choose lambert --error 2", 2, "--error", 0);
+    expectError("choose nowhere.bsdf", 3, "nowhere.bsdf", 0);
+}
+
+}  // namespace
+}  // namespace hshfit::test
