@@ -228,7 +228,11 @@ std::vector<Parameter> pictureParameters() {
              .kind = Parameter::Kind::choice,
              .choices = curves},
             words("part", "of OpenEXR: the name or number of one of several", "rgba"),
-            words("layer", "of OpenEXR: the words before .R, .G and .B", "ViewLayer.Combined")};
+            words("layer", "of OpenEXR: the words before .R, .G and .B", "ViewLayer.Combined"),
+            {.name = "invalid",
+             .help = "of pixels below 0, infinite or not a number; clamp: 0, 65504 and 0",
+             .kind = Parameter::Kind::choice,
+             .choices = {"refuse", "clamp"}}};
 }
 
 PictureOptions pictureOptions(const Parameters& p) {
@@ -393,7 +397,10 @@ Light parseTerm(std::string_view term, const std::string& folder, InvalidPixels 
                         "light",
                         path));
     const Parameters p = parseParameters(path, pictureKind().parameters, after(end));
-    return placed(readPictureLight(path, 1, pictureOptions(p), invalid), p);
+    // A report counts them either way.
+    const bool clamp = p.choice("invalid") == "clamp" && invalid == InvalidPixels::refused;
+    return placed(
+        readPictureLight(path, 1, pictureOptions(p), clamp ? InvalidPixels::clamped : invalid), p);
 }
 
 }  // namespace

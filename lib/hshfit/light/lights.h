@@ -85,6 +85,7 @@ struct PictureLight {
     std::size_t fileWidth = 0, fileHeight = 0;
     TransferCurve curve = TransferCurve::linear;
     std::string part = {}, layer = {};  ///< of the file, as asked for
+    bool clamped = false;               ///< pixels that are no radiance are clamped
     double scale = 1;
     PictureCensus census = {};  ///< of pixels that count as 0
 };

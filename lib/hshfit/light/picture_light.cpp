@@ -15,7 +15,8 @@ namespace {
 /// Radiance from the values of a row, with pixels that are none as 0, counted.
 class Scaling {
 public:
-    Scaling(const PictureGeometry& geometry, double scale) : geometry_(geometry), scale_(scale) {}
+    Scaling(const PictureGeometry& geometry, double scale, bool clamped = false)
+        : geometry_(geometry), scale_(scale), clamped_(clamped) {}
 
     void apply(std::size_t row, std::span<const float> from, std::span<float> to) {
         for (std::size_t column = 0; column < geometry_.width; ++column) {
@@ -27,23 +28,35 @@ public:
                 valid &= out[c] >= 0 && out[c] <= std::numeric_limits<float>::max();
             }
             if (valid) continue;
-            std::fill(out, out + 3, 0.F);
+            if (clamped_)
+                std::transform(value, value + 3, out, [&](float v) { return clamped(v); });
+            else
+                std::fill(out, out + 3, 0.F);
             if (geometry_.solidAngle(column, row) > 0) count(column, row, value);
         }
     }
 
     const PictureCensus& census() const { return census_; }
 
-    void requireNone(const std::string& path) const {
+    /// `converted`: from other primaries, which may have made values negative.
+    void requireNone(const std::string& path, bool converted = false) const {
         if (census_.total() == 0) return;
         throw InputError(fmt::format(
             "{}: {} pixels below 0, {} infinite, {} not a number; the first is {} at column {}, "
-            "row {}; radiance has to be finite and not below 0",
+            "row {}; radiance has to be finite and not below 0{}; invalid=clamp goes on",
             path, census_.negative, census_.infinite, census_.notANumber, firstValue_, firstColumn_,
-            firstRow_));
+            firstRow_,
+            converted ? " (colours of the file's primaries may lie outside of Rec. 709)" : ""));
     }
 
 private:
+    float clamped(float value) const {
+        constexpr float largestHalf = 65504;
+        const auto scaled = static_cast<float>(value * scale_);
+        if (!(scaled > 0)) return 0;
+        return std::isfinite(scaled) ? scaled : largestHalf;
+    }
+
     void count(std::size_t column, std::size_t row, const float* value) {
         const float* worst = std::find_if(value, value + 3, [&](float v) {
             return !(v >= 0 && std::isfinite(static_cast<float>(v * scale_)));
@@ -60,6 +73,7 @@ private:
 
     PictureGeometry geometry_;
     double scale_;
+    bool clamped_;
     PictureCensus census_;
     float firstValue_ = 0;
     std::size_t firstColumn_ = 0, firstRow_ = 0;
@@ -155,13 +169,15 @@ PictureLight readPictureLight(const std::string& path, double scale, const Pictu
     PictureReader reader(path, options);
     const PictureGeometry& file = reader.facts().geometry;
     PictureReduction reduction(file, mostHeldPixels);
-    Scaling scaling(file, scale);
+    const bool clamped = invalid == InvalidPixels::clamped;
+    Scaling scaling(file, scale, clamped);
     std::vector<float> row(3 * file.width);
     reader.forEachRow([&](std::size_t at, std::span<const float> values) {
         scaling.apply(at, values, row);
         reduction.add(at, row);
     });
-    if (invalid == InvalidPixels::refused) scaling.requireNone(path);
+    if (invalid == InvalidPixels::refused)
+        scaling.requireNone(path, reader.facts().colour.primaries.has_value());
     PictureLight light{.file = path,
                        .width = reduction.geometry().width,
                        .height = reduction.geometry().height,
@@ -170,6 +186,7 @@ PictureLight readPictureLight(const std::string& path, double scale, const Pictu
                        .curve = reader.facts().curve,
                        .part = options.part,
                        .layer = options.layer,
+                       .clamped = clamped,
                        .scale = scale,
                        .census = scaling.census()};
     if (light.width != file.width) light.fileWidth = file.width, light.fileHeight = file.height;
@@ -200,7 +217,7 @@ void forEachRow(const PictureLight& light, const RowVisitor& visit) {
     if (file.width != light.fileWidth || file.height != light.fileHeight) {
         throw InputError(fmt::format("{}: changed while it was in use", light.file));
     }
-    Scaling scaling(file, light.scale);
+    Scaling scaling(file, light.scale, light.clamped);
     std::vector<float> scaled(3 * file.width);
     reader.forEachRow([&](std::size_t row, std::span<const float> values) {
         scaling.apply(row, values, scaled);

@@ -12,8 +12,10 @@ namespace hshfit::inline light {
 /// are whole fractions of the file's, or next to them.
 inline constexpr std::size_t mostHeldPixels = std::size_t{1} << 23;
 
-/// The treatment of pixels below 0, infinite or not a number.
-enum class InvalidPixels { refused, zero };
+/// The treatment of pixels below 0, infinite or not a number. zero: as 0 in all channels, for
+/// reports; clamped: components below 0 or not a number as 0, infinite ones as 65504, the largest
+/// half.
+enum class InvalidPixels { refused, zero, clamped };
 
 /// Reads a picture (picture_reader.h) and multiplies it by `scale`. Pixels outside of the layout's
 /// used area do not count. Throws InputError, which names the file, for invalid pixels, with their

@@ -212,6 +212,22 @@ TEST_F(PictureColours, PrimariesAreConvertedToRec709) {
               {"span no colours"});
 }
 
+TEST_F(PictureColours, InvalidPixelsAreRefusedWithAWayOutOrClamped) {
+    const std::string file = path("i.exr");
+    OIIO::ImageSpec spec(8, 4, 3, OIIO::TypeDesc::FLOAT);
+    std::vector<float> values(96, 1.0F);
+    values[0] = -0.25F, values[4] = std::nanf(""), values[8] = HUGE_VALF;
+    auto out = OIIO::ImageOutput::create(file);
+    ASSERT_TRUE(out->open(file, spec));
+    ASSERT_TRUE(out->write_image(OIIO::TypeDesc::FLOAT, values.data()));
+    out->close();
+    expectHas(file, {"1 pixels below 0", "invalid=clamp"});
+    const auto light =
+        std::get<PictureLight>(parseLights(file + ":invalid=clamp,scale=2").lights.front());
+    const std::vector<float> expected{0, 2, 2, 2, 0, 2, 2, 2, 131008};
+    for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_EQ(light.rgb[k], expected[k]) << k;
+}
+
 // Light of a radiance of 2 from everywhere, in pixels of any proportion: the first coefficient is
 // 2 sqrt(4 pi), and all others are 0.
 TEST_F(PictureColours, StatedPanoramasHaveAnyProportion) {
