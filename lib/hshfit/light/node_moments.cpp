@@ -11,7 +11,7 @@
 namespace hshfit::inline light {
 namespace {
 
-constexpr std::size_t sides = 8;  ///< cosine R, G, B, 0, sine R, G, B, 0
+constexpr std::size_t momentSides = 8;  ///< cosine R, G, B, 0, sine R, G, B, 0
 constexpr std::size_t ringsOfBatch = 256;
 /// Sums that run at a time, whatever the number of threads.
 constexpr std::size_t groups = 8;
@@ -69,14 +69,14 @@ void addBatch(const Basis& basis, const LightNodes& nodes, std::span<const Ring>
     }
     Azimuths azimuths(nodes, first, last);
     std::vector<double> theta(static_cast<std::size_t>(basis.order()) * rings.size());
-    std::vector<double> parts(rings.size() * sides);
+    std::vector<double> parts(rings.size() * momentSides);
     double* out = sums.data();
     for (int m = 0; m < basis.order(); ++m) {
         stopIfRequested();
         if (m > 0) azimuths.advance();
         std::fill(parts.begin(), parts.end(), 0.0);
         for (std::size_t r = 0; r < rings.size(); ++r) {
-            double* to = parts.data() + r * sides;
+            double* to = parts.data() + r * momentSides;
             const double weight = projected ? elevations[r].mu : 1;
             for (std::size_t k = rings[r].first; k < rings[r].last; ++k) {
                 const double c = weight * azimuths.cosine(k - first);
@@ -89,9 +89,9 @@ void addBatch(const Basis& basis, const LightNodes& nodes, std::span<const Ring>
         }
         const auto degrees = static_cast<std::size_t>(basis.order() - m);
         basis.analysisTheta(m, elevations, theta.data());
-        addProducts({theta.data(), degrees, rings.size()}, {parts.data(), sides, sides},
-                    rings.size(), out, sides);
-        out += degrees * sides;
+        addProducts({theta.data(), degrees, rings.size()}, {parts.data(), momentSides, momentSides},
+                    rings.size(), out, momentSides);
+        out += degrees * momentSides;
     }
 }
 
@@ -104,7 +104,7 @@ void addNodeMoments(const Basis& basis, const LightNodes& nodes, std::vector<dou
     const std::size_t batches = (rings.size() + ringsOfBatch - 1) / ringsOfBatch;
     std::vector<std::vector<double>> sums(std::min(groups, batches));
     tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t group) {
-        sums[group].assign(order * (order + 1) / 2 * sides, 0.0);
+        sums[group].assign(order * (order + 1) / 2 * momentSides, 0.0);
         for (std::size_t batch = group; batch < batches; batch += sums.size()) {
             const std::size_t first = batch * ringsOfBatch;
             const std::size_t count = std::min(ringsOfBatch, rings.size() - first);
@@ -116,7 +116,7 @@ void addNodeMoments(const Basis& basis, const LightNodes& nodes, std::vector<dou
         for (int m = 0; m < basis.order(); ++m) {
             const double norm =
                 azimuthSign(m, basis.condonShortley()) / std::sqrt(m == 0 ? 2 * pi : pi);
-            for (int l = m; l < basis.order(); ++l, from += sides) {
+            for (int l = m; l < basis.order(); ++l, from += momentSides) {
                 for (std::size_t c = 0; c < 3; ++c) {
                     double* to = moments.data() + c * slots;
                     to[slotOf(l, m)] += norm * from[c];
