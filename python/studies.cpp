@@ -225,12 +225,10 @@ void bindCompare(py::module_& module) {
                 py::dict out;
                 out["count"] = c.samples->count;
                 out["metrics"] = metricsDict(c.samples->metrics);
-                return std::move(out);
+                return out;
             },
             "The metrics at the measured pairs of a alone (\"count\", \"metrics\"); None where a "
-            "is "
-            "not\n"
-            "made of scattered samples.")
+            "is not\nmade of scattered samples.")
         .def_property_readonly(
             "picture", [](const jobs::Compared& c) { return pictureDict(c.picture); },
             "The picture error of b against a, as picture_error() gives it.")

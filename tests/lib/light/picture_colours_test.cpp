@@ -8,6 +8,7 @@
 #include <hshfit/light/picture_light.h>
 
 #include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -138,7 +139,7 @@ TEST_F(PictureColours, AChannelAloneIsLightIfItIsLuminance) {
 TEST_F(PictureColours, TheDisplayWindowIsThePicture) {
     // 2 columns and 1 row beside the picture on every side; values grow by row and column.
     for (const int origin : {0, 7, -9}) {
-        const std::string file = path("w" + std::to_string(origin) + ".exr");
+        const std::string file = path(fmt::format("w{}.exr", origin));
         OIIO::ImageSpec spec(12, 6, 3, OIIO::TypeDesc::FLOAT);
         spec.x = origin - 2, spec.y = origin - 1;
         spec.full_x = origin, spec.full_y = origin, spec.full_width = 8, spec.full_height = 4;
