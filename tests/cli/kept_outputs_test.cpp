@@ -63,6 +63,7 @@ constexpr Row rows[] = {
      "lambert --forms outgoing --bases hsh --ranks 0 --precisions float32 --outgoing 4 "
      "--no-timing --pair-count 256",
      "--orders 2", "--orders 3", "trade"},
+    {"choose", "lambert --kinds model", "--for any", "--for glsl", "choice"},
     {"plan", "budget.json --bases hsh", "--max-order 2", "--max-order 3", "plan"},
     {"stress", "--max-order 2 --bases hsh --of lambert", "--trials 1", "--trials 2", "stress"},
     {"illuminate", "scene.json --samples 1", "--seed 1", "--seed 2", "pictures"},
