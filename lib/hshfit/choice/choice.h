@@ -45,6 +45,7 @@ struct Row {
     std::string unfit = {};                ///< why this renderer and these bounds do not take it
 };
 
+/// A candidate that was not measured, and why: an error, or no time left.
 struct LeftOut {
     std::string kind, name, reason;
 };
