@@ -1,5 +1,4 @@
 #include <hshfit/error.h>
-#include <hshfit/gpu/vulkan/compiler.h>
 #include <hshfit/gpu/vulkan/compute.h>
 #include <hshfit/gpu/vulkan/spirv.h>
 
@@ -39,17 +38,6 @@ double ComputeProgram::run(std::uint32_t) {
     refuse();
 }
 std::vector<float> ComputeProgram::read(std::uint32_t) const {
-    refuse();
-}
-
-struct ShaderCompiler::Parts {};
-
-ShaderCompiler::ShaderCompiler(const std::string&) {
-    refuse();
-}
-ShaderCompiler::~ShaderCompiler() = default;
-ShaderCost ShaderCompiler::costOf(std::span<const std::uint32_t>,
-                                  std::span<const ComputeResource>) const {
     refuse();
 }
 
