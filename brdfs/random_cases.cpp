@@ -3,11 +3,11 @@
 #include <brdfs/spec.h>
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
+#include <hshfit/files/temporary_file.h>
 #include <hshfit/spelling.h>
 
 #include <fmt/format.h>
 
-#include <unistd.h>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -67,26 +67,6 @@ std::string_view smallOptions(std::string_view writer) {
     return {};
 }
 
-/// A path that has no file any more at the end.
-class TemporaryPath {
-public:
-    explicit TemporaryPath(const std::string& extension)
-        : path_((std::filesystem::temp_directory_path() /
-                 fmt::format("hshfit-trial-{}{}", ::getpid(), extension))
-                    .string()) {}
-    ~TemporaryPath() { clear(); }
-    TemporaryPath(const TemporaryPath&) = delete;
-    TemporaryPath& operator=(const TemporaryPath&) = delete;
-    const std::string& text() const { return path_; }
-    void clear() const {
-        std::error_code error;
-        std::filesystem::remove(path_, error);
-    }
-
-private:
-    std::string path_;
-};
-
 /// A table and the command that writes it.
 struct Table {
     std::shared_ptr<const Brdf> brdf;
@@ -95,7 +75,7 @@ struct Table {
 
 /// A table of a random model, opened from a file that is then removed. Mapped bytes stay readable.
 Table randomTable(const Writer& writer, Draws& draws, std::size_t number) {
-    const TemporaryPath path(std::string(writer.extension));
+    const TemporaryFile path(fmt::format("trial{}", writer.extension));
     const std::string file = fmt::format("{}-{}{}", writer.name, number + 1, writer.extension);
     const std::string_view chosen = smallOptions(writer.name);
     constexpr int attempts = 100;
@@ -105,9 +85,10 @@ Table randomTable(const Writer& writer, Draws& draws, std::size_t number) {
         const std::string spec = randomSpec(model, draws, DrawFrom::typical);
         try {
             const Parameters options = parseParameters(writer.name, writer.parameters, chosen);
-            path.clear();  // one that did not open: rules for files that exist would keep it
-            writer.write(*open(spec), path.text(), options, {.force = true});
-            return {open(path.text()), file,
+            std::filesystem::remove(
+                path.path());  // one that did not open: rules for files that exist would keep it
+            writer.write(*open(spec), path.path(), options, {.force = true});
+            return {open(path.path()), file,
                     fmt::format("hshfit convert {} {} --to {}{}{}", spec, file, writer.name,
                                 chosen.empty() ? "" : ":", chosen)};
         } catch (const OutputError&) {

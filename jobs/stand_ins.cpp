@@ -8,6 +8,8 @@
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
+#include <hshfit/files/mapped_file.h>
+#include <hshfit/files/temporary_file.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/tradeoff/projection_cache.h>
 #include <hshfit/tradeoff/sweep.h>
@@ -18,10 +20,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <set>
 #include <utility>
@@ -129,33 +128,6 @@ Made standardMaterial(const CandidateSource& source, const char* target) {
             .write = [=](FileSet& files) { files.write(made.path, made.content); }};
 }
 
-/// A file that goes when the last BRDF that reads it does.
-class TemporaryFile {
-public:
-    explicit TemporaryFile(const std::string& name)
-        : folder_(std::filesystem::temp_directory_path() / "hshfit-XXXXXX") {
-        std::string text = folder_.string();
-        if (!mkdtemp(text.data())) throw OutputError(text + ": no temporary folder can be made");
-        folder_ = text;
-        path_ = folder_ / name;
-    }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-    ~TemporaryFile() {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder_, ignored);
-    }
-    std::string path() const { return path_.string(); }
-
-private:
-    std::filesystem::path folder_, path_;
-};
-
-std::string contentOf(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
 Made converted(const CandidateSource& source) {
     const std::string file = source.name + ".bsdf";
     const auto kept = std::make_shared<TemporaryFile>(file);
@@ -166,20 +138,18 @@ Made converted(const CandidateSource& source) {
             .spec = file,
             .bytes = made.bytes,
             .commands = {command("convert", source.spec, {}, file)},
-            .write = [=](FileSet& files) { files.write(file, contentOf(kept->path())); }};
+            .write = [=](FileSet& files) {
+                const MappedFile content(kept->path());
+                files.write(file, std::string(content.bytes().begin(), content.bytes().end()));
+            }};
 }
 
 /// The path of a source that is a file of the RGL format; empty for any other.
-std::string rglPathOf(const std::string& spec) {
-    const std::string path(pathIn(spec));
-    if (path.empty() || path.size() != spec.size()) return {};
-    const auto rgl = std::ranges::find(brdfs::formats(), "rgl", &brdfs::Format::name);
-    std::ifstream file(path, std::ios::binary);
-    std::array<unsigned char, 64> head{};
-    file.read(reinterpret_cast<char*>(head.data()), head.size());
-    std::error_code error;
-    const auto size = std::filesystem::file_size(path, error);
-    return !error && file && rgl->recognises(head, size) ? path : std::string();
+std::string rglPathOf(const CandidateSource& source) {
+    const std::string path(pathIn(source.spec));
+    const Fact rgl{"format", std::string("rgl")};
+    const std::vector<Fact> facts = source.brdf.facts();
+    return path == source.spec && std::ranges::find(facts, rgl) != facts.end() ? path : "";
 }
 
 std::string nameOf(const Form& form) {
@@ -291,7 +261,7 @@ std::vector<Candidate> formulaCandidates(const CandidateSource& source) {
 }
 
 Candidate bsdfCandidate(const CandidateSource& source) {
-    const std::string path = rglPathOf(source.spec);
+    const std::string path = rglPathOf(source);
     if (path.empty())
         return {"bsdf", "converted to .bsdf", [&source] { return converted(source); }};
     return {"bsdf", "the measured file", [path] {
