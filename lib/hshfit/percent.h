@@ -17,7 +17,12 @@ inline std::string percent(double share, int digits = 3) {
                                                         : fmt::format("{:.0f} %", value);
 }
 
-/// The same with its sign: "+0.846 %".
+/// "7 %", and from tenfold on "12 times", which a share in percent would hide behind its digits.
+inline std::string percentOrTimes(double share) {
+    return share < 10 ? percent(share, 2) : fmt::format("{:.3g} times", share);
+}
+
+/// A share in percent with its sign: "+0.846 %".
 inline std::string signedPercent(double share, int digits = 2) {
     const std::string text = percent(std::abs(share), digits);
     return (share < 0 ? "-" : "+") + text;

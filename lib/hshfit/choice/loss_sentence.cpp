@@ -30,14 +30,9 @@ std::size_t farthest(const std::vector<double>& shares) {
     return static_cast<std::size_t>(at - shares.begin());
 }
 
-/// "7 %", from tenfold on "12 times".
-std::string amount(double share) {
-    return share < 10 ? percent(share, 2) : fmt::format("{:.3g} times", share);
-}
-
 std::string brightness(double share, const std::string& channel) {
-    return fmt::format("{} too {}{}", amount(std::abs(share)), share < 0 ? "dark" : "bright",
-                       channel == "grey" ? "" : " in " + channel);
+    return fmt::format("{} too {}{}", percentOrTimes(std::abs(share)),
+                       share < 0 ? "dark" : "bright", channel == "grey" ? "" : " in " + channel);
 }
 
 std::string angleOf(const SeenDifference& difference) {
@@ -58,9 +53,8 @@ std::string lossSentence(const PictureError& error) {
                                                     shareText(error.dip), angleOf(error.dip)));
     add(error.peak.value / seenExtremum, fmt::format("a false peak of {} in the highlight at {}",
                                                      shareText(error.peak), angleOf(error.peak)));
-    add(error.ridge.value / seenRidge,
-        fmt::format("the mirror direction off by {} at {}", amount(error.ridge.value),
-                    angleOf(error.ridge)));
+    add(error.ridge.value / seenRidge, fmt::format("the mirror direction off by {} at {}",
+                                                   shareText(error.ridge), angleOf(error.ridge)));
     add(error.colour.mean / seenColour,
         fmt::format("colours off by CIEDE2000 {:.2g}, most under the {}", error.colour.mean,
                     error.colour.light));

@@ -292,7 +292,7 @@ PictureError pictureError(const Brdf& f, const Brdf& g) {
 }
 
 std::string shareText(const SeenDifference& difference) {
-    return difference.value < noShare ? "0 %" : percent(difference.value, 2);
+    return difference.value < noShare ? "0 %" : percentOrTimes(difference.value);
 }
 
 std::string summaryOf(const PictureError& error) {

@@ -63,7 +63,7 @@ private:
 /// The same for one pair; the digits do not depend on the number of threads.
 PictureError pictureError(const Brdf& f, const Brdf& g);
 
-/// The value for people: "12 %", "0 %" below 0.005 %.
+/// The value for people: "12 %", "0 %" below 0.005 %, "12 times" from tenfold on.
 std::string shareText(const SeenDifference& difference);
 /// For people: five lines without indentation, each ended, the last degrees last.
 std::string textOf(const PictureError& error);
