@@ -16,6 +16,11 @@ struct ChooseArguments {
     jobs::ChooseOptions options;
 };
 
+/// Whether what is taken has files; a measured file that is there already has none.
+bool writesFiles(const choice::Choice& choice) {
+    return choice.recommended && choice.rows[*choice.recommended].made.write;
+}
+
 void runChoose(const ChooseArguments& arguments, Globals& globals) {
     jobs::ChooseOptions options = arguments.options;
     if (arguments.bytes > 0) options.bytes = static_cast<std::size_t>(arguments.bytes);
@@ -27,7 +32,7 @@ void runChoose(const ChooseArguments& arguments, Globals& globals) {
         std::string text = choice::choiceText(choice);
         if (!arguments.output.empty())
             text += fmt::format("written to {}: choice.html, choice.json{}\n", arguments.output,
-                                choice.recommended ? ", and the files of what is taken" : "");
+                                writesFiles(choice) ? ", and the files of what is taken" : "");
         printText(text);
     }
     if (!choice.recommended) endWithoutNumbers(globals, choice.why);
