@@ -154,19 +154,19 @@ std::string contentsOf(const PictureFile& file) {
 /// The channels that a file is read by.
 ChannelGroup chosenGroup(const PictureFile& file, const PictureOptions& options) {
     std::vector<ChannelGroup> groups;
+    const auto wanted = [&](std::size_t part) {
+        return options.part.empty() || options.part == file.partName(part) ||
+               options.part == std::to_string(part + 1);
+    };
     for (std::size_t part = 0; part < file.parts(); ++part) {
-        const bool wanted = options.part.empty() || options.part == file.partName(part) ||
-                            options.part == std::to_string(part + 1);
-        if (!wanted) continue;
+        if (!wanted(part)) continue;
         for (ChannelGroup& group : colourGroups(file, part))
             if (options.layer.empty() || options.layer == group.layer)
                 groups.push_back(std::move(group));
     }
     for (std::size_t part = 0; groups.empty() && options.layer.empty() && part < file.parts();
          ++part) {
-        if (!options.part.empty() && options.part != file.partName(part) &&
-            options.part != std::to_string(part + 1))
-            continue;
+        if (!wanted(part)) continue;
         if (const auto grey = greyGroup(file, part)) groups.push_back(*grey);
     }
     if (groups.empty()) {
