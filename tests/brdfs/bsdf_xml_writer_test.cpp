@@ -129,6 +129,93 @@ TEST(BsdfXmlWriters, KlemsValuesAreAveragesOfPatches) {
     }
 }
 
+/// The share of each patch of `to` that lies in each patch of `from`, by projected solid angle:
+/// [to][from].
+std::vector<std::vector<double>> overlaps(const std::vector<KlemsRing>& to,
+                                          const std::vector<KlemsRing>& from) {
+    const auto square = [](double angle) { return std::pow(std::sin(radians(angle)), 2); };
+    std::vector<std::vector<double>> shares;
+    for (const KlemsRing& a : to) {
+        for (int i = 0; i < a.azimuths; ++i) {
+            std::vector<double> row;
+            for (const KlemsRing& b : from) {
+                const double high = std::min(a.upper, b.upper), low = std::max(a.lower, b.lower);
+                const double ring =
+                    high > low ? (square(high) - square(low)) / (square(a.upper) - square(a.lower))
+                               : 0;
+                for (int j = 0; j < b.azimuths; ++j) {
+                    // In turns about the middle of the patch of `to`.
+                    const double own = 1.0 / a.azimuths, other = 1.0 / b.azimuths;
+                    const double away = static_cast<double>(j) * other - i * own;
+                    double common = 0;
+                    for (const double turn : {-1.0, 0.0, 1.0}) {
+                        common += std::max(0.0, std::min(own / 2, away + turn + other / 2) -
+                                                    std::max(-own / 2, away + turn - other / 2));
+                    }
+                    row.push_back(ring * common / own);
+                }
+            }
+            shares.push_back(row);
+        }
+    }
+    return shares;
+}
+
+TEST(BsdfXmlWriters, AMatrixBecomesAMatrixOfOverlaps) {
+    const TemporaryFile file("", ".xml");
+    std::mt19937 random(4);
+    for (const bool full : {true, false}) {
+        const std::vector<KlemsRing>& rings = full ? klemsFull : klemsQuarter;
+        const int patches = patchesOf(rings);
+        std::vector<double> values;
+        for (int k = 0; k < patches * patches; ++k)
+            values.push_back(static_cast<double>(random() % 1000) / 1e4);
+        for (const std::string side : {"Front", "Back"}) {
+            SCOPED_TRACE(side + (full ? " full" : " quarter"));
+            const BsdfSide at = side == "Front" ? BsdfSide::front : BsdfSide::back;
+            const auto source = openBytes(
+                bsdfXml("Columns", "",
+                        blockXml("Reflection " + side,
+                                 matrixText(patches,
+                                            [&](int o, int i) { return values[o * patches + i]; }),
+                                 full ? "LBNL/Klems Full" : "LBNL/Klems Quarter")),
+                at);
+            const std::string option = at == BsdfSide::front ? "side=front" : "side=back";
+            EXPECT_TRUE(write(*source, "bsdf-klems:" + option, file.path()).empty());
+            const auto read = brdfs::open(file.path() + ":" + option);
+            const auto& klems = dynamic_cast<const KlemsBrdf&>(*read);
+            const auto shares = overlaps(klemsFull, rings);
+            double worst = 0;
+            for (std::size_t o = 0; o < 145; ++o) {
+                // First over incident patches, then over outgoing ones.
+                std::vector<double> row(static_cast<std::size_t>(patches), 0.0);
+                for (int from = 0; from < patches; ++from) {
+                    for (int i = 0; i < patches; ++i)
+                        row[static_cast<std::size_t>(i)] +=
+                            shares[o][static_cast<std::size_t>(from)] * values[from * patches + i];
+                }
+                for (std::size_t i = 0; i < 145; ++i) {
+                    double expected = 0;
+                    for (std::size_t j = 0; j < row.size(); ++j) expected += shares[i][j] * row[j];
+                    worst = std::max(worst, std::abs(klems.value(0, i, o) - expected));
+                }
+            }
+            EXPECT_LT(worst, 2e-8);  // seven digits of 0.1 are written
+        }
+    }
+}
+
+TEST(BsdfXmlWriters, EvaluationsBoundTheWorkAndTheRestIsStated) {
+    const TemporaryFile file("", ".xml");
+    const auto brdf = brdfs::open("ggx:alpha=0.02,F0=0.8");
+    const std::vector<std::string> none = write(*brdf, "bsdf-klems:evaluations=0", file.path());
+    const std::vector<std::string> some = write(*brdf, "bsdf-klems:evaluations=3e6", file.path());
+    ASSERT_EQ(none.size(), 1U);
+    ASSERT_EQ(some.size(), 1U);
+    EXPECT_GT(std::stoi(none[0]), std::stoi(some[0]));
+    EXPECT_NE(none[0].find("more evaluations="), std::string::npos);
+}
+
 TEST(BsdfXmlWriters, ReflectancesAreKept) {
     const TemporaryFile file("", ".xml");
     for (const std::string spec : {"lambert:kd=0.4", "ggx:alpha=0.4,F0=0.8",

@@ -15,16 +15,20 @@ struct CellNodes {
     void add(const Direction& d, double w);
 };
 
-/// A hemisphere cut into cells: `nodes(cell, points)` is a Gauss-Legendre rule with that many
-/// points along each coordinate.
+/// A hemisphere cut into cells.
 struct CellSet {
     std::size_t count = 0;
+    /// A Gauss-Legendre rule with that many points along each coordinate.
     std::function<CellNodes(std::size_t cell, int points)> nodes;
+    /// The unit square onto a cell: equal areas are equal projected solid angles.
+    std::function<Direction(std::size_t cell, double u, double v)> at;
 };
 
 struct CellAverageOptions {
     double tolerance = 1e-3;
-    int firstPoints = 1, mostPoints = 8;
+    int firstPoints = 1;
+    /// Evaluations of f after which no pair is refined; the first two rules are always taken.
+    double evaluations = 2e7;
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
 
@@ -32,15 +36,20 @@ struct CellAverages {
     std::vector<double> values;  ///< [outgoing][incident], f or luminance in 1/sr
     std::size_t uncertain = 0;   ///< pairs that did not converge to the tolerance
     double worstChange = 0;      ///< of these, relative as below
+    double typicalChange = 0;    ///< over all pairs: sum of last changes over the sum of values
 };
 
 /// The average of f over every pair of cells, weighted with projected solid angle on both sides, so
 /// that sums over cells are the directional reflectances of f. Channels are weighted (see
-/// luminanceWeights). Two rules are compared for every pair, and points are doubled until they
-/// agree to the tolerance, relative to the pair's value or, if that is greater, to the average of
-/// the outgoing cell. A lobe between the nodes of the first two rules is missed.
+/// luminanceWeights). Two Gauss rules are compared for every pair, the second with twice the points
+/// along each coordinate. Where they differ by more than the tolerance, relative to the pair's
+/// value or, if that is greater, to the average of the outgoing cell, a third rule follows, and
+/// then points in a low-discrepancy order, four times as many in each round, since Gauss rules gain
+/// nothing where f has steps within a cell. Pairs with the greatest changes go first, until all
+/// agree or the evaluations are spent. A lobe between the nodes of the first two rules is missed.
 ///
-/// Parallel over outgoing cells. Throws NumericError where f is negative or not finite.
+/// Parallel; the averages do not depend on the number of threads. Throws NumericError where f is
+/// negative or not finite.
 CellAverages averageOverCells(const Brdf& brdf, const std::vector<double>& weights,
                               const CellSet& incident, const CellSet& outgoing,
                               const CellAverageOptions& options);

@@ -35,6 +35,15 @@ CellNodes squareNodes(std::size_t cell, int levels, int points, BsdfSide side, i
     return nodes;
 }
 
+Direction squarePoint(std::size_t cell, int levels, double u, double v, BsdfSide side, int sign) {
+    const std::size_t steps = std::size_t{1} << levels;
+    const double width = 1 / static_cast<double>(steps);
+    return seenFrom(side,
+                    directionFromSquare({width * (static_cast<double>(cell % steps) + u),
+                                         width * (static_cast<double>(cell / steps) + v)}),
+                    sign);
+}
+
 /// Cell of the first coordinate of rank 3, (1 - sin(theta_i)) / 2: a line of directions that go
 /// towards azimuth 0, with weight sin(theta_i).
 CellNodes radiusNodes(std::size_t cell, int levels, int points, BsdfSide side) {
@@ -51,6 +60,14 @@ CellNodes radiusNodes(std::size_t cell, int levels, int points, BsdfSide side) {
     }
     for (double& weight : nodes.weight) weight /= sum;
     return nodes;
+}
+
+/// A point of that line: equal stretches of `u` have equal weight.
+Direction radiusPoint(std::size_t cell, int levels, double u, BsdfSide side) {
+    const double width = std::ldexp(2.0, -levels);
+    const double most = 1 - width * static_cast<double>(cell), least = most - width;
+    const double r = std::sqrt(least * least + (most - least) * (most + least) * u);
+    return seenFrom(side, {r, 0, std::sqrt((1 - r) * (1 + r))}, -1);
 }
 
 /// Prints a full grid of averages as a tree.
@@ -140,18 +157,24 @@ std::vector<std::string> write(const Brdf& brdf, const std::string& path,
     const std::vector<double> weights = luminanceWeights(brdf, alterations);
     const std::size_t steps = std::size_t{1} << levels;
     const auto square = [=](int sign) {
-        return CellSet{steps * steps, [=](std::size_t cell, int points) {
-                           return squareNodes(cell, levels, points, side, sign);
-                       }};
+        return CellSet{
+            .count = steps * steps,
+            .nodes = [=](std::size_t cell,
+                         int points) { return squareNodes(cell, levels, points, side, sign); },
+            .at = [=](std::size_t cell, double u,
+                      double v) { return squarePoint(cell, levels, u, v, side, sign); }};
     };
-    const CellSet radius{steps / 2, [=](std::size_t cell, int points) {
-                             return radiusNodes(cell, levels, points, side);
-                         }};
+    const CellSet radius{
+        .count = steps / 2,
+        .nodes = [=](std::size_t cell,
+                     int points) { return radiusNodes(cell, levels, points, side); },
+        .at = [=](std::size_t cell, double u,
+                  double) { return radiusPoint(cell, levels, u, side); }};
     const CellAverages averages =
         averageOverCells(brdf, weights, rank == 4 ? square(-1) : radius, square(1),
                          {.tolerance = parameters.number("tolerance"),
                           .firstPoints = 1,
-                          .mostPoints = 8,
+                          .evaluations = parameters.number("evaluations"),
                           .progress = options.progress});
     reportUncertain(averages, alterations);
     writeBsdfXml(

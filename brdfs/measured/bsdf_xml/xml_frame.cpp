@@ -104,7 +104,12 @@ std::vector<Parameter> commonWriterParameters() {
              .help = "of averages over a cell, relative",
              .fallback = 1e-3,
              .min = 1e-6,
-             .max = 0.1}};
+             .max = 0.1},
+            {.name = "evaluations",
+             .help = "of f, after which averages are taken as they are",
+             .fallback = 2e7,
+             .min = 0,
+             .max = 1e12}};
 }
 
 BsdfSide sideOf(const Parameters& parameters) {
@@ -113,10 +118,11 @@ BsdfSide sideOf(const Parameters& parameters) {
 
 void reportUncertain(const CellAverages& averages, std::vector<std::string>& alterations) {
     if (averages.uncertain == 0) return;
-    alterations.push_back(
-        fmt::format("{} of {} averages did not settle within the tolerance; the last doubling of "
-                    "points changed the worst by {:.2g}",
-                    averages.uncertain, averages.values.size(), averages.worstChange));
+    alterations.push_back(fmt::format(
+        "{} of {} averages did not settle within the tolerance: their last rounds "
+        "changed the worst by {:.2g} and the sum of all by at most {:.2g}, relative; "
+        "more evaluations= come closer",
+        averages.uncertain, averages.values.size(), averages.worstChange, averages.typicalChange));
 }
 
 }  // namespace hshfit::brdfs

@@ -25,7 +25,7 @@ struct BsdfXmlContent {
 void writeBsdfXml(const BsdfXmlContent& content, const std::string& path,
                   const WriteOptions& options);
 
-/// "side" and "tolerance", which all writers of this format have.
+/// "side", "tolerance" and "evaluations", which all writers of this format have.
 std::vector<Parameter> commonWriterParameters();
 BsdfSide sideOf(const Parameters& parameters);
 
