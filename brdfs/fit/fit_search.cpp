@@ -2,8 +2,11 @@
 
 #include <hshfit/stop_request.h>
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
 #include <random>
 
@@ -197,16 +200,16 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
     std::vector<std::vector<double>> places =
         startsOf(problem.sum(), one ? 1 : 4 * starts, options.seed);
     for (std::vector<double>& u : places) moveTo(options.from, problem.sum(), u);
-    std::vector<Minimum> candidates;
-    for (std::vector<double>& u : places) {
+    // Starts go their ways side by side: each on few samples, which leave cores idle.
+    std::vector<Minimum> candidates(places.size());
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
         stopIfRequested();
         std::vector<double> best;
-        Minimum candidate;
-        candidate.cost = problem.eliminated(u, false, best).cost;
-        if (!linear) candidate.cost = problem.joint(joined(u, best), false).cost;
-        candidate.x = std::move(u);
-        candidates.push_back(std::move(candidate));
-    }
+        Minimum& candidate = candidates[i];
+        candidate.cost = problem.eliminated(places[i], false, best).cost;
+        if (!linear) candidate.cost = problem.joint(joined(places[i], best), false).cost;
+        candidate.x = std::move(places[i]);
+    });
     std::ranges::stable_sort(candidates, byCost);
     candidates.resize(std::min(candidates.size(), starts));
     // Of measured samples and cells, fits keep the minima that they had in earlier versions.
@@ -219,21 +222,25 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
                         .stepTolerance = 1e-7,
                         .curvature = false};
     const Search search(problem, linear);
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
+    std::mutex mutex;
+    std::size_t done = 0;
+    tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
         const std::vector<double> u = candidates[i].x;
         candidates[i] = search.fromShapes(u, few);
         if (lifts) {
             auto lifted = search.lifted(u, candidates[i], few);
             if (lifted && byCost(*lifted, candidates[i])) candidates[i] = std::move(*lifted);
         }
-        if (options.progress) options.progress(i + 1, candidates.size() + 1);
-    }
+        const std::scoped_lock lock(mutex);
+        if (options.progress) options.progress(++done, candidates.size() + 1);
+    });
     if (pixels) {
         std::ranges::stable_sort(candidates, byCost);
         candidates.resize(std::min(candidates.size(), heatWinners));
         few.iterations = most - heatIterations;
-        for (Minimum& candidate : candidates)
-            if (!candidate.converged) candidate = search.from(candidate, few);
+        tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
+            if (!candidates[i].converged) candidates[i] = search.from(candidates[i], few);
+        });
     }
     std::ranges::stable_sort(candidates, byCost);
     return candidates;
