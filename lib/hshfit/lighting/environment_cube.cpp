@@ -64,43 +64,127 @@ Rgb bilinear(const EnvironmentCube::Level& level, const CubePoint& point) {
     return sum;
 }
 
-/// Nodes beyond a number as one for each cell of a cube's faces, at the middle of their flux: cells
-/// are an eighth of a kernel's width, so that what is lost is of the order of a hundredth of its
-/// curvature.
-LightNodes merged(LightNodes nodes, std::size_t width) {
-    const std::size_t cells = 6 * width * width;
-    if (nodes.count() <= 2 * cells) return nodes;
-    struct Cell {
-        Direction sum{0, 0, 0};
-        Rgb flux{};
-    };
-    std::vector<Cell> grid(cells);
-    for (std::size_t k = 0; k < nodes.count(); ++k) {
-        const Direction d{nodes.x[k], nodes.y[k], nodes.z[k]};
-        const CubePoint point = cubePoint(d);
-        const auto place = [&](double a) {
-            return std::min(static_cast<std::size_t>((a + 1) / 2 * static_cast<double>(width)),
-                            width - 1);
-        };
-        Cell& cell = grid[(point.face * width + place(point.b)) * width + place(point.a)];
-        double flux = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-            cell.flux[c] += nodes.flux[c][k];
-            flux += std::abs(nodes.flux[c][k]);
+/// Light as a pyramid over the cells of a cube's faces. Far from an axis a kernel about it varies
+/// slowly, so that a cell is one node at the middle of its flux if it is small beside its distance.
+class LightPyramid {
+public:
+    /// `width`: cells along a face in the finest level. Nodes that are many more than those cells
+    /// are not kept: cells are an eighth of a kernel's width, so that what is lost is of the order
+    /// of a hundredth of its curvature.
+    LightPyramid(const LightNodes& nodes, std::size_t width) {
+        const std::size_t cells = 6 * width * width;
+        std::vector<std::size_t> cellOf(nodes.count());
+        std::vector<Cell> finest(cells);
+        for (std::size_t k = 0; k < nodes.count(); ++k) {
+            const Direction d{nodes.x[k], nodes.y[k], nodes.z[k]};
+            const CubePoint point = cubePoint(d);
+            const auto place = [&](double a) {
+                return std::min(static_cast<std::size_t>((a + 1) / 2 * static_cast<double>(width)),
+                                width - 1);
+            };
+            cellOf[k] = (point.face * width + place(point.b)) * width + place(point.a);
+            finest[cellOf[k]].add(d, {nodes.flux[0][k], nodes.flux[1][k], nodes.flux[2][k]});
         }
-        cell.sum.x += flux * d.x;
-        cell.sum.y += flux * d.y;
-        cell.sum.z += flux * d.z;
+        if (nodes.count() <= 2 * cells) keep(nodes, cellOf, cells);
+        levels_.push_back({width, std::move(finest)});
+        while (levels_.back().width > 1) {
+            const Level& below = levels_.back();
+            Level level{(below.width + 1) / 2, {}};
+            level.cells.resize(6 * level.width * level.width);
+            for (std::size_t k = 0; k < below.cells.size(); ++k) {
+                const std::size_t column = k % below.width, row = k / below.width % below.width,
+                                  face = k / (below.width * below.width);
+                level.cells[(face * level.width + row / 2) * level.width + column / 2].add(
+                    below.cells[k]);
+            }
+            levels_.push_back(std::move(level));
+        }
+        for (Level& level : levels_)
+            for (Cell& cell : level.cells) cell.centre();
     }
-    LightNodes result;
-    for (const Cell& cell : grid) {
-        const double length = std::sqrt(dot(cell.sum, cell.sum));
-        if (length > 0)
-            result.add({cell.sum.x / length, cell.sum.y / length, cell.sum.z / length}, cell.flux,
-                       1);
+
+    /// The sum of flux times kernel(cosine) about an axis.
+    Rgb sum(const Direction& axis, const LobeKernel::Scaled& kernel) const {
+        Rgb sum{};
+        for (std::size_t face = 0; face < 6; ++face)
+            add(axis, kernel, levels_.size() - 1, face, 0, 0, sum);
+        return sum;
     }
-    return result;
-}
+
+private:
+    /// The size of a cell over its distance from the axis, at which it is one node.
+    static constexpr double slender = 1.0 / 7;
+
+    struct Cell {
+        Direction sum{0, 0, 0};  ///< of |flux| times direction; after `centre` the direction
+        Rgb flux{};
+        bool any = false;
+
+        void add(const Direction& d, const Rgb& f) {
+            const double size = std::abs(f[0]) + std::abs(f[1]) + std::abs(f[2]);
+            add({.sum = {size * d.x, size * d.y, size * d.z}, .flux = f});
+        }
+        void add(const Cell& other) {
+            sum.x += other.sum.x, sum.y += other.sum.y, sum.z += other.sum.z;
+            for (std::size_t c = 0; c < 3; ++c) flux[c] += other.flux[c];
+        }
+        void centre() {
+            const double length = std::sqrt(dot(sum, sum));
+            any = length > 0;
+            if (any) sum = {sum.x / length, sum.y / length, sum.z / length};
+        }
+    };
+    struct Level {
+        std::size_t width = 0;
+        std::vector<Cell> cells;  ///< [face][row][column]
+    };
+
+    void keep(const LightNodes& nodes, const std::vector<std::size_t>& cellOf, std::size_t cells) {
+        first_.assign(cells + 1, 0);
+        for (const std::size_t cell : cellOf) ++first_[cell + 1];
+        for (std::size_t k = 0; k < cells; ++k) first_[k + 1] += first_[k];
+        nodes_.resize(nodes.count());
+        std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+        for (std::size_t k = 0; k < nodes.count(); ++k)
+            nodes_[next[cellOf[k]]++] = {{nodes.x[k], nodes.y[k], nodes.z[k]},
+                                         {nodes.flux[0][k], nodes.flux[1][k], nodes.flux[2][k]},
+                                         true};
+    }
+
+    static void addNode(const Direction& axis, const LobeKernel::Scaled& kernel, const Cell& node,
+                        Rgb& sum) {
+        const double weight =
+            kernel.at(axis.x * node.sum.x + axis.y * node.sum.y + axis.z * node.sum.z);
+        for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * node.flux[c];
+    }
+
+    void add(const Direction& axis, const LobeKernel::Scaled& kernel, std::size_t level,
+             std::size_t face, std::size_t row, std::size_t column, Rgb& sum) const {
+        const Level& own = levels_[level];
+        const std::size_t place = (face * own.width + row) * own.width + column;
+        const Cell& cell = own.cells[place];
+        if (!cell.any) return;
+        const double size = 2 / static_cast<double>(own.width);
+        // Of the chord, squared.
+        const double squared =
+            2 - 2 * (axis.x * cell.sum.x + axis.y * cell.sum.y + axis.z * cell.sum.z);
+        if (size * size <= slender * slender * squared) return addNode(axis, kernel, cell, sum);
+        if (level == 0) {
+            if (first_.empty()) return addNode(axis, kernel, cell, sum);
+            for (std::size_t k = first_[place]; k < first_[place + 1]; ++k)
+                addNode(axis, kernel, nodes_[k], sum);
+            return;
+        }
+        const std::size_t width = levels_[level - 1].width;
+        for (std::size_t j = 2 * row; j < std::min(width, 2 * row + 2); ++j)
+            for (std::size_t i = 2 * column; i < std::min(width, 2 * column + 2); ++i)
+                add(axis, kernel, level - 1, face, j, i, sum);
+    }
+
+    std::vector<Level> levels_;  ///< the finest first
+    std::vector<Cell> nodes_;    ///< by cells of the finest level
+    std::vector<std::size_t> first_;
+};
 
 }  // namespace
 
@@ -140,10 +224,9 @@ Rgb EnvironmentCube::at(const Direction& world, double level) const {
 }
 
 EnvironmentCube::Level convolve(std::span<const Light> lights, std::size_t face, int order,
-                                const std::function<double(double)>& kernel) {
-    std::vector<LightNodes> nodes;
-    for (const Light& light : lights)
-        nodes.push_back(merged(nodesOf(light, {}, order, 0), 2 * face));
+                                const LobeKernel::Scaled& kernel) {
+    std::vector<LightPyramid> pyramids;
+    for (const Light& light : lights) pyramids.emplace_back(nodesOf(light, {}, order, 0), 2 * face);
     EnvironmentCube::Level level{.face = face, .rgb = std::vector<float>(18 * face * face)};
     tbb::parallel_for(std::size_t{0}, 6 * face, [&](std::size_t line) {
         for (std::size_t column = 0; column < face; ++column) {
@@ -152,12 +235,9 @@ EnvironmentCube::Level convolve(std::span<const Light> lights, std::size_t face,
             const double length = std::sqrt(dot(d, d));
             d = {d.x / length, d.y / length, d.z / length};
             Rgb sum{};
-            for (const LightNodes& part : nodes) {
-                for (std::size_t k = 0; k < part.count(); ++k) {
-                    const double weight =
-                        kernel(d.x * part.x[k] + d.y * part.y[k] + d.z * part.z[k]);
-                    for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * part.flux[c][k];
-                }
+            for (const LightPyramid& part : pyramids) {
+                const Rgb own = part.sum(d, kernel);
+                for (std::size_t c = 0; c < 3; ++c) sum[c] += own[c];
             }
             for (std::size_t c = 0; c < 3; ++c)
                 level.rgb[3 * (line * face + column) + c] = static_cast<float>(sum[c]);

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <hshfit/light/lights.h>
+#include <hshfit/lighting/lobe_kernel.h>
 
 #include <cstddef>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -31,6 +31,6 @@ Direction cubeDirection(std::size_t face, double a, double b);
 ///     P(d) = integral of L(w) K(d . w) d omega   at the centre of each texel.
 /// Nodes of the lights resolve functions of `order` bands. Runs on all threads.
 EnvironmentCube::Level convolve(std::span<const Light> lights, std::size_t face, int order,
-                                const std::function<double(double)>& kernel);
+                                const LobeKernel::Scaled& kernel);
 
 }  // namespace hshfit::lighting

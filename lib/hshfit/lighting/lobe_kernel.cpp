@@ -125,12 +125,4 @@ LobeKernel::Scaled LobeKernel::scaled(double scale) const {
     return result;
 }
 
-double LobeKernel::Scaled::at(double cosine) const {
-    const double place =
-        std::sqrt(std::clamp((1 - cosine) / 2, 0.0, 1.0)) * static_cast<double>(entries);
-    const auto k = std::min(static_cast<std::size_t>(place), entries - 1);
-    const double share = place - static_cast<double>(k);
-    return table_[k] + share * (table_[k + 1] - table_[k]);
-}
-
 }  // namespace hshfit::lighting

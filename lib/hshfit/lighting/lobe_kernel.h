@@ -2,6 +2,9 @@
 
 #include <hshfit/brdf/brdf.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace hshfit::lighting {
@@ -34,7 +37,14 @@ public:
     /// The kernel at one scale, tabulated for many lookups.
     class Scaled {
     public:
-        double at(double cosine) const;  ///< per steradian
+        /// Per steradian.
+        double at(double cosine) const {
+            const auto last = static_cast<double>(table_.size() - 1);
+            const double place = std::sqrt(std::clamp((1 - cosine) / 2, 0.0, 1.0)) * last;
+            const auto k = std::min(static_cast<std::size_t>(place), table_.size() - 2);
+            const double share = place - static_cast<double>(k);
+            return table_[k] + share * (table_[k + 1] - table_[k]);
+        }
 
     private:
         friend class LobeKernel;

@@ -204,8 +204,7 @@ EnvironmentCube prefilter(const SplitSumTable& table, std::span<const Light> lig
         const LobeKernel::Scaled kernel = table.kernel.scaled(scale);
         const double width = std::acos(table.kernel.meanCosine(scale));
         const int order = static_cast<int>(std::clamp(5 / width, 10.0, 128.0));
-        cube.levels.push_back(
-            convolve(lights, face >> k, order, [&](double cosine) { return kernel.at(cosine); }));
+        cube.levels.push_back(convolve(lights, face >> k, order, kernel));
     }
     return cube;
 }
