@@ -28,7 +28,8 @@ struct RenderArguments {
     std::vector<int> orders;
     std::string output, exposure = "auto", mesh, up = "y", by = "both", view = "75,0", outgoing;
     int size = SphereOptions{}.size, samples = 0;
-    double fieldOfView = 0, dome = SphereRig{}.dome, tolerance = jobs::RenderOptions{}.tolerance;
+    double fieldOfView = 0, dome = SphereRig{}.dome;
+    std::optional<double> tolerance;
     bool cosine = false;
     /// Whether an option was given that the spheres under point lights do not have.
     bool surface = false, domeGiven = false;
@@ -167,7 +168,8 @@ std::string surfaceText(const RenderArguments& arguments, const jobs::Rendered& 
                 picture.amplification, picture.difference->relativeL2, picture.difference->maximum,
                 picture.difference->meanRadiance);
         } else if (picture.kind == Kind::integration) {
-            text += fmt::format(": error {:.2g}", picture.error);
+            text += fmt::format(": error {:.2g}, of a pixel at most {:.2g} at {},{}", picture.error,
+                                picture.largest.error, picture.largest.column, picture.largest.row);
         }
         text += "\n";
     }
@@ -231,9 +233,12 @@ void addSurfaceOptions(CLI::App& command, RenderArguments& arguments) {
     command.add_option(exposuresOption, arguments.exposures, "Stops, a column each: -2,0,2")
         ->delimiter(',')
         ->each(given);
-    command.add_option("--tolerance", arguments.tolerance, "Bound of the integration's error")
-        ->check(within(jobs::bounds::pictureTolerance))
-        ->capture_default_str();
+    command
+        .add_option("--tolerance,--error", arguments.tolerance,
+                    "Bound of the integration's error, as 1% or 0.01 (default: 5% by integration "
+                    "alone, 0.5% beside coefficients)")
+        ->transform(percents())
+        ->check(within(jobs::bounds::pictureTolerance));
 }
 
 }  // namespace

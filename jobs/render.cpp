@@ -174,7 +174,7 @@ public:
           columns_(columnsOf(options)),
           lights_(lightsOf(options, view_)),
           points_(pointsOf(options, view_, result)),
-          light_(lights_) {
+          light_(lights_, options.bound()) {
         result.points = points_.count();
     }
 
@@ -190,7 +190,7 @@ public:
             if (options_.by != RenderOptions::By::coefficients) {
                 material.truth =
                     renderByIntegration(*material.brdf, points_, view_, light_,
-                                        {.tolerance = options_.tolerance}, listener_.part(name));
+                                        {.tolerance = options_.bound()}, listener_.part(name));
                 check(material, material.truth->picture, 0);
             }
             material.projections = projectionsOf(*material.brdf, columns_, options_,
@@ -204,7 +204,7 @@ public:
                 fmt::format("{} {}", columns_[k]->name(), columns_[k]->order());
             byCoefficients_.push_back(renderByCoefficients(
                 all, points_, view_, lights_,
-                {.tolerance = options_.tolerance / 2, .progress = listener_.part(part)}));
+                {.tolerance = options_.bound() / 2, .progress = listener_.part(part)}));
             // A series of few terms is beyond the largest value at places.
             for (std::size_t m = 0; m < materials_.size(); ++m)
                 check(materials_[m], byCoefficients_.back()[m].picture, 1);
@@ -231,6 +231,8 @@ public:
                 RenderedPicture facts{.brdf = name,
                                       .basis = {},
                                       .error = material.truth->error,
+                                      .largest = material.truth->largest,
+                                      .evaluations = material.truth->evaluations,
                                       .cut = material.truth->cut,
                                       .notFinite = material.truth->picture.notFinite};
                 remark(facts, points_.count(), listener_);

@@ -34,7 +34,14 @@ struct RenderOptions {
     int samples = 2;                     ///< n: n x n a pixel
     double viewTheta = 75, viewPhi = 0;  ///< direction to the viewer in the world, degrees
     double fieldOfView = 0;              ///< of perspective, degrees; 0: parallel lines of sight
-    double tolerance = IntegrationOptions{}.tolerance;
+    /// Bound of the estimated relative error of integration at a point; none: 5 % of a picture by
+    /// integration alone, whose error is well below, and 0.5 % beside coefficients.
+    std::optional<double> tolerance = {};
+
+    double bound() const {
+        constexpr double alone = 0.05;
+        return tolerance.value_or(by == By::integration ? alone : IntegrationOptions{}.tolerance);
+    }
 };
 
 /// One square of the sheet.
@@ -44,9 +51,11 @@ struct RenderedPicture {
     std::string brdf;
     std::string basis;  ///< of coefficients and differences
     int order = 0;
-    double exposure = 0;              ///< stops beside those of the sheet
-    std::size_t row = 0, column = 0;  ///< of its first pixel
-    double error = 0;                 ///< LitPicture::error
+    double exposure = 0;               ///< stops beside those of the sheet
+    std::size_t row = 0, column = 0;   ///< of its first pixel
+    double error = 0;                  ///< LitPicture::error
+    LitPicture::Largest largest = {};  ///< of integration
+    double evaluations = 0;            ///< of f, the mean over the points of integration
     std::size_t cut = 0, notFinite = 0;
     double amplification = 1;  ///< of a difference, in .png files
     /// Of coefficients and differences, where there is a picture by integration.

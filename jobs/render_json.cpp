@@ -36,6 +36,10 @@ Json pictureJson(const RenderedPicture& picture) {
     if (picture.kind == Kind::difference) json["amplification"] = picture.amplification;
     if (picture.kind != Kind::difference) json["error"] = picture.error;
     if (picture.kind == Kind::integration) {
+        json["evaluations"] = picture.evaluations;
+        json["largest_error"] = picture.largest.error;
+        json["largest_error_at"] = {{"column", picture.largest.column},
+                                    {"row", picture.largest.row}};
         json["cut_points"] = picture.cut;
         return json;
     }

@@ -570,7 +570,7 @@ def render(
     exposure: Optional[float] = ...,
     size: int = ...,
     samples: Optional[int] = ...,
-    tolerance: float = ...,
+    tolerance: Optional[float] = ...,
     progress: Progress = ...,
 ) -> Row: ...
 def illuminate(

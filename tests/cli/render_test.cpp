@@ -129,6 +129,28 @@ TEST_F(Cli, RenderSaysThatAnOrderWhichIsEnoughMissesThePicture) {
     EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1);
 }
 
+TEST_F(Cli, RenderByIntegrationStatesTheErrorsOfItsPixels) {
+    const std::string job =
+        "render ggx:alpha=.3 --light sky:type=12,elevation=40 --by integration --size 16 "
+        "--samples 1 --json --force -o " +
+        path("s.exr");
+    double before = 1;
+    for (const char* error : {"10%", "0.005"}) {
+        const Answer answer = run(job + " --error " + error);
+        ASSERT_EQ(answer.code, 0) << answer.err;
+        EXPECT_TRUE(keepsSchema(answer.out, "render"));
+        const Json picture = Json::parse(answer.out)["pictures"][0];
+        EXPECT_LE(picture["error"], picture["largest_error"]);
+        EXPECT_LT(picture["largest_error"], before);
+        before = picture["largest_error"];
+        // A layer of the file has the errors.
+        EXPECT_NE(read(path("s.exr")).find("error.Y"), std::string::npos);
+    }
+    EXPECT_LE(before, 0.005);
+    fs::remove(path("s.exr"));
+    expectError("render ggx --light uniform --error 1x -o " + path("t.png"), 2, "--tolerance", 0);
+}
+
 TEST_F(Cli, RenderInPerspective) {
     const Answer answer = run(
         "render lambert --light uniform --by integration --size 16 --samples 1 --field-of-view 60 "

@@ -42,6 +42,8 @@ struct SpherePicture {
     std::vector<float> coverage;  ///< [row][column], the share of samples on the sphere
     std::string colours;          ///< the conversion of channels to R, G and B
     std::size_t notFinite = 0;    ///< values of f that were left out
+    /// [row][column], the relative error of a pixel; empty where it is not known.
+    std::vector<float> error = {};
 };
 
 /// The sphere's radius in half edges of the picture.

@@ -71,7 +71,11 @@ ExrPicture exrOf(const Sheet& sheet) {
     ExrPicture exr{.width = size * columnsOf(sheet),
                    .height = size * sheet.size(),
                    .channels = {"R", "G", "B", "A"}};
-    exr.values.resize(exr.width * exr.height * 4);
+    const bool errors = std::ranges::any_of(sheet, [](const auto& row) {
+        return std::ranges::any_of(row, [](const SpherePicture& s) { return !s.error.empty(); });
+    });
+    if (errors) exr.channels.emplace_back("error.Y");
+    exr.values.resize(exr.width * exr.height * exr.channels.size());
     forEachPixel(
         sheet, size,
         [&](const SpherePicture& sphere, std::size_t i, std::size_t row, std::size_t column) {
@@ -80,6 +84,7 @@ ExrPicture exrOf(const Sheet& sheet) {
                 exr.at(row, column, c) = coverage * sphere.radiance[3 * i + c];
             }
             exr.at(row, column, 3) = coverage;
+            if (!sphere.error.empty()) exr.at(row, column, 4) = sphere.error[i];
         });
     return exr;
 }
@@ -94,6 +99,7 @@ double automaticExposure(std::span<const SpherePicture> spheres) {
 SpherePicture sphereDifference(const SpherePicture& reference, const SpherePicture& approximation) {
     assert(reference.size == approximation.size);
     SpherePicture difference = approximation;
+    difference.error.clear();
     for (std::size_t i = 0; i < difference.radiance.size(); ++i) {
         difference.radiance[i] -= reference.radiance[i];
     }

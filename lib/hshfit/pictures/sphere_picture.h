@@ -32,7 +32,8 @@ double amplificationFor(const SpherePicture& difference, double stops);
 std::string spheresPng(std::span<const SpherePicture> spheres, double stops);
 
 /// Writes the spheres side by side to `path`, a .png as spheresPng does or an .exr: channels
-/// R, G, B (radiance times coverage, unexposed), A (coverage), 32-bit float. Throws UsageError for
+/// R, G, B (radiance times coverage, unexposed), A (coverage), and where pictures have errors
+/// error.Y (relative), 32-bit float. Throws UsageError for
 /// another extension, OutputError where it cannot be written.
 void writeSpheres(std::span<const SpherePicture> spheres, double stops, const std::string& path,
                   const std::map<std::string, std::string>& attributes = {});

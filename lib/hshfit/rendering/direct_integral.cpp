@@ -26,22 +26,21 @@ std::vector<Peak> peaksOf(const Brdf& brdf, const Direction& wo) {
     return peaks;
 }
 
-double between(const Direction& a, const Direction& b) {
-    const double x = a.y * b.z - a.z * b.y, y = a.z * b.x - a.x * b.z, z = a.x * b.y - a.y * b.x;
-    return std::atan2(std::sqrt(x * x + y * y + z * z), dot(a, b));
+/// Four parts of a cell may all have their middles below the horizon, and light above it, so that
+/// cells on the horizon are cut to this width, radians, in any case. Even light from cells of that
+/// width about the horizon makes 2 width^2 of the irradiance.
+double widestAtHorizon(double tolerance) {
+    return std::min(0.2, 0.42 * std::sqrt(tolerance));
 }
 
-/// Four parts of a cell may all have their middles below the horizon, and light above it, so that
-/// cells on the horizon are cut to this width, radians, in any case.
-constexpr double widestAtHorizon = 0.03;
-
-/// Whether a cell is too wide beside a lobe, or on the horizon, for its four parts to show what
-/// is there.
+/// Whether a cell is too wide beside a lobe for its four parts to show what is there.
 bool tooWide(double width, const Direction& local, std::span<const Peak> peaks) {
-    if (width > widestAtHorizon && std::abs(local.z) < width) return true;
     return std::ranges::any_of(peaks, [&](const Peak& peak) {
         if (width <= peak.width) return false;
-        return width > std::max(peak.width, 0.7 * between(local, peak.towards));
+        // The chord, which is no longer than the arc.
+        const double x = local.x - peak.towards.x, y = local.y - peak.towards.y,
+                     z = local.z - peak.towards.z;
+        return width * width > 0.49 * (x * x + y * y + z * z);
     });
 }
 
@@ -111,6 +110,7 @@ public:
         : cells_(cells),
           frame_(frame),
           options_(options),
+          horizon_(widestAtHorizon(options.tolerance)),
           peaks_(peaksOf(brdf, wo)),
           evaluator_(brdf, wo, result),
           result_(result) {}
@@ -141,6 +141,7 @@ private:
     /// are returned.
     std::vector<Item> refined(const std::vector<Item>& whole) {
         std::vector<Item> parts;
+        parts.reserve(4 * whole.size());
         std::vector<std::size_t> first = {0};
         std::array<LightCell, 4> four;
         for (const Item& item : whole) {
@@ -160,7 +161,9 @@ private:
         for (std::size_t k = 0; k < whole.size(); ++k) {
             for (std::size_t i = first[k]; i < first[k + 1]; ++i) {
                 add(sums[k], parts[i].value);
-                if (tooWide(parts[i].cell.width, parts[i].local, peaks_)) forced[k] = 1;
+                const double width = parts[i].cell.width;
+                const bool onHorizon = width > horizon_ && std::abs(parts[i].local.z) < width;
+                if (onHorizon || tooWide(width, parts[i].local, peaks_)) forced[k] = 1;
             }
             if (first[k + 1] == first[k] + 1 && parts[first[k]].cell.width == whole[k].cell.width)
                 forced[k] = 0;  // a cell that is not cut
@@ -189,6 +192,7 @@ private:
     const LightCells& cells_;
     const Frame& frame_;
     const IntegrationOptions& options_;
+    const double horizon_;
     const std::vector<Peak> peaks_;
     Evaluator evaluator_;
     PointRadiance& result_;
@@ -205,6 +209,9 @@ double extentOf(const Light& light) {
 
 constexpr int mostLevel = 12;
 
+/// Share of a picture's flux times width, in radians, of its coarse cells, over the tolerance.
+constexpr double finestPerTolerance = 0.1;
+
 /// The level at which nodes are as close as the narrowest lobe is wide.
 int firstLevel(double extent, std::span<const Peak> peaks) {
     double narrowest = 1;
@@ -218,7 +225,8 @@ int firstLevel(double extent, std::span<const Peak> peaks) {
 }  // namespace
 
 struct DirectIntegral::Parts {
-    explicit Parts(std::span<const Light> lights) : cells(withSkyPictures(lights)) {
+    Parts(std::span<const Light> lights, double tolerance)
+        : cells(withSkyPictures(lights), finestPerTolerance * tolerance) {
         for (const Light& light : lights) {
             if (!std::holds_alternative<PictureLight>(light) &&
                 !std::holds_alternative<SkyLight>(light)) {
@@ -230,8 +238,8 @@ struct DirectIntegral::Parts {
     std::vector<Light> compact;  ///< discs, panels, directional lights, series
 };
 
-DirectIntegral::DirectIntegral(std::span<const Light> lights)
-    : parts_(std::make_unique<Parts>(lights)) {}
+DirectIntegral::DirectIntegral(std::span<const Light> lights, double tolerance)
+    : parts_(std::make_unique<Parts>(lights, tolerance)) {}
 DirectIntegral::~DirectIntegral() = default;
 
 PointRadiance DirectIntegral::at(const Brdf& brdf, const Frame& frame, const Direction& wo,

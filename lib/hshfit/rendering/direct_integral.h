@@ -36,7 +36,9 @@ struct PointRadiance {
 /// safe to use from many threads.
 class DirectIntegral {
 public:
-    explicit DirectIntegral(std::span<const Light> lights);
+    /// `tolerance`: the least that `at` is asked for, which decides how coarse its first cells are.
+    explicit DirectIntegral(std::span<const Light> lights,
+                            double tolerance = IntegrationOptions{}.tolerance);
     ~DirectIntegral();
     DirectIntegral(const DirectIntegral&) = delete;
     DirectIntegral& operator=(const DirectIntegral&) = delete;

@@ -163,6 +163,35 @@ ChosenLight chooseLight(const CoefficientShader& shader, std::size_t materials,
     return chosen;
 }
 
+double sumOf(const Rgb& value) {
+    return value[0] + value[1] + value[2];
+}
+
+/// The errors of pixels from those of their points.
+void addPixelErrors(const SurfacePoints& points, const std::vector<PointRadiance>& facts,
+                    LitPicture& result) {
+    constexpr double darkest = 0.05;
+    double mean = 0;
+    for (const PointRadiance& fact : facts) mean += std::abs(sumOf(fact.radiance));
+    mean /= std::max<double>(1, static_cast<double>(facts.size()));
+    std::vector<float>& errors = result.picture.error;
+    errors.assign(points.coverage.size(), 0.0F);
+    for (std::size_t pixel = 0; pixel < errors.size(); ++pixel) {
+        const std::size_t first = points.first[pixel], last = points.first[pixel + 1];
+        double error = 0, radiance = 0;
+        for (std::size_t k = first; k < last; ++k) {
+            error += facts[k].error;
+            radiance += std::abs(sumOf(facts[k].radiance));
+        }
+        const double scale = std::max(radiance, darkest * mean * static_cast<double>(last - first));
+        if (!(scale > 0)) continue;
+        errors[pixel] = static_cast<float>(error / scale);
+        if (error / scale <= result.largest.error) continue;
+        const auto size = static_cast<std::size_t>(points.size);
+        result.largest = {error / scale, pixel % size, pixel / size};
+    }
+}
+
 }  // namespace
 
 LitPicture renderByIntegration(const Brdf& brdf, const SurfacePoints& points, const View& view,
@@ -190,6 +219,7 @@ LitPicture renderByIntegration(const Brdf& brdf, const SurfacePoints& points, co
         result.picture.notFinite += fact.notFinite;
     }
     result.error = total > 0 ? std::sqrt(error / total) : 0;
+    addPixelErrors(points, facts, result);
     result.evaluations /= std::max<double>(1, static_cast<double>(points.count()));
     return result;
 }

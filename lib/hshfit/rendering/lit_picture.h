@@ -23,6 +23,13 @@ struct LitPicture {
     /// upper estimate of the quadrature; by coefficients the change from one level of light samples
     /// to the next, for the given coefficients.
     double error = 0;
+    /// By integration, the largest estimated error of a pixel, over its radiance or, if that is
+    /// more, a twentieth of the picture's mean; `picture.error` has that of every pixel.
+    struct Largest {
+        double error = 0;
+        std::size_t column = 0, row = 0;
+    };
+    Largest largest = {};
     std::size_t cut = 0;     ///< points at which integration was ended by its bound of evaluations
     double evaluations = 0;  ///< of f or of light samples in the basis, the mean over points
 };

@@ -15,8 +15,8 @@ namespace {
 constexpr std::size_t skyColumns = 1024;
 
 constexpr double widest = 0.35;
-/// Share of a light's flux times width, in radians, of a coarse cell.
-constexpr double finest = 5e-4;
+/// Pixels of a picture whose directions are kept.
+constexpr std::size_t mostKept = std::size_t{1} << 22;
 /// Pixels are cut in two this often, in each direction.
 constexpr double narrowest = 1.0 / 16;
 
@@ -50,8 +50,8 @@ std::vector<Light> withSkyPictures(std::span<const Light> lights) {
     return result;
 }
 
-LightCells::LightCells(std::vector<Light> lights)
-    : lights_(std::move(lights)), trees_(lights_.size()) {
+LightCells::LightCells(std::vector<Light> lights, double finest)
+    : finest_(finest), lights_(std::move(lights)), trees_(lights_.size()) {
     for (std::size_t k = 0; k < lights_.size(); ++k) {
         const auto* picture = std::get_if<PictureLight>(&lights_[k]);
         if (!picture) continue;
@@ -65,7 +65,7 @@ void LightCells::addCoarse(const LightCell& cell, double total) {
     const double share = total > 0 ? grey(cell.flux) / total : 0;
     if (!(share > 0)) return;
     std::array<LightCell, 4> parts;
-    const bool cut = cell.width > widest || share * cell.width > finest;
+    const bool cut = cell.width > widest || share * cell.width > finest_;
     // Pixels stay whole: coarser ones are cut by need.
     if (cut && cell.level > 0) {
         const std::size_t count = split(cell, parts);
@@ -94,6 +94,14 @@ LightCells::Sum LightCells::pixelSum(const PictureLight& light, const PictureGeo
     return sum;
 }
 
+LightCells::Sum LightCells::towards(Sum sum) {
+    float* d = sum.direction;
+    const double x = d[0], y = d[1], z = d[2], length = std::sqrt(x * x + y * y + z * z);
+    for (std::size_t c = 0; c < 3; ++c)
+        d[c] = length > 0 ? static_cast<float>(d[c] / length) : 0.0F;
+    return sum;
+}
+
 void LightCells::addPyramid(const PictureLight& light, Tree& tree) const {
     tree.geometry = geometryOf(light);
     std::size_t width = light.width, height = light.height;
@@ -116,6 +124,16 @@ void LightCells::addPyramid(const PictureLight& light, Tree& tree) const {
         height = level.height;
         tree.levels.push_back(std::move(level));
     }
+    for (Level& level : tree.levels)
+        std::ranges::transform(level.sums, level.sums.begin(), towards);
+    if (light.width * light.height <= mostKept) {
+        for (std::size_t row = 0; row < light.height; ++row) {
+            for (std::size_t column = 0; column < light.width; ++column)
+                tree.pixels.push_back(towards(pixelSum(light, tree.geometry, column, row)));
+        }
+    }
+    for (std::size_t k = 0; k <= tree.levels.size(); ++k)
+        tree.widths.push_back(tree.geometry.pixelAngle() * std::exp2(static_cast<double>(k)));
 }
 
 LightCell LightCells::pictureCell(std::size_t light, int level, std::size_t column,
@@ -123,22 +141,21 @@ LightCell LightCells::pictureCell(std::size_t light, int level, std::size_t colu
     const auto& picture = std::get<PictureLight>(lights_[light]);
     const Tree& tree = trees_[light];
     Sum sum{};
-    if (level == 0) {
-        sum = pixelSum(picture, tree.geometry, column, row);
+    if (level == 0 && tree.pixels.empty()) {
+        sum = towards(pixelSum(picture, tree.geometry, column, row));
+    } else if (level == 0) {
+        sum = tree.pixels[row * picture.width + column];
     } else {
         const Level& from = tree.levels[static_cast<std::size_t>(level - 1)];
         sum = from.sums[row * from.width + column];
     }
-    const float* d = sum.direction;
-    const double length = std::hypot(double{d[0]}, double{d[1]}, double{d[2]});
-    LightCell cell{.flux = {sum.flux[0], sum.flux[1], sum.flux[2]},
-                   .width = tree.geometry.pixelAngle() * std::exp2(level),
-                   .light = light,
-                   .level = level,
-                   .u = static_cast<double>(column),
-                   .v = static_cast<double>(row)};
-    if (length > 0) cell.direction = {d[0] / length, d[1] / length, d[2] / length};
-    return cell;
+    return {.direction = {sum.direction[0], sum.direction[1], sum.direction[2]},
+            .flux = {sum.flux[0], sum.flux[1], sum.flux[2]},
+            .width = tree.widths[static_cast<std::size_t>(level)],
+            .light = light,
+            .level = level,
+            .u = static_cast<double>(column),
+            .v = static_cast<double>(row)};
 }
 
 std::size_t LightCells::splitPixel(const LightCell& cell, std::array<LightCell, 4>& parts) const {

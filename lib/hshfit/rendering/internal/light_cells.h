@@ -30,11 +30,12 @@ std::vector<Light> withSkyPictures(std::span<const Light> lights);
 /// within which radiance is constant. The flux of a picture's cells is the same at each level.
 class LightCells {
 public:
-    /// Other lights than pictures are left out.
-    explicit LightCells(std::vector<Light> lights);
+    /// Other lights than pictures are left out. `finest`: the share of a light's flux times width,
+    /// in radians, that a coarse cell has at most.
+    LightCells(std::vector<Light> lights, double finest);
 
-    /// Cells of all lights, none wider than 0.35 or with more than a small part of the flux unless
-    /// it is narrow. Dark ones are left out.
+    /// Cells of all lights, none wider than 0.35 or with more of the flux than that. Dark ones are
+    /// left out.
     const std::vector<LightCell>& coarse() const { return coarse_; }
 
     /// Writes the parts of a cell, and returns their number: 0 for a cell that is not cut.
@@ -42,7 +43,7 @@ public:
 
 private:
     struct Sum {
-        float flux[3], direction[3];  ///< of flux times direction
+        float flux[3], direction[3];  ///< of flux times direction; in trees, that direction
     };
     struct Level {
         std::size_t width = 0, height = 0;
@@ -50,16 +51,21 @@ private:
     };
     struct Tree {
         PictureGeometry geometry;
+        std::vector<double> widths;  ///< of cells by level, from single pixels on
+        /// Single pixels, where they are not too many to keep; empty if they are.
+        std::vector<Sum> pixels;
         std::vector<Level> levels;  ///< from 2 x 2 pixels on; the last has one cell
     };
 
     void addPyramid(const PictureLight& light, Tree& tree) const;
     Sum pixelSum(const PictureLight& light, const PictureGeometry& geometry, std::size_t column,
                  std::size_t row) const;
+    static Sum towards(Sum sum);
     LightCell pictureCell(std::size_t light, int level, std::size_t column, std::size_t row) const;
     std::size_t splitPixel(const LightCell& cell, std::array<LightCell, 4>& parts) const;
     void addCoarse(const LightCell& cell, double total);
 
+    double finest_;
     std::vector<Light> lights_;
     std::vector<Tree> trees_;  ///< by light; empty for other lights
     std::vector<LightCell> coarse_;
