@@ -209,7 +209,9 @@ public:
         first_ = *std::ranges::min_element(group_.channels);
         last_ = *std::ranges::max_element(group_.channels) + 1;
         const PictureColour& colour = picture_->colour();
-        if (colour.primaries) {
+        // Photoshop writes eight zeros where it states none.
+        const auto isZero = [](double value) { return value == 0; };
+        if (colour.primaries && !std::ranges::all_of(*colour.primaries, isZero)) {
             const auto matrix = toRec709(*colour.primaries);
             if (!matrix)
                 picture_->fail(fmt::format("has primaries that span no colours: {}",

@@ -209,6 +209,8 @@ TEST_F(PictureColours, PrimariesAreConvertedToRec709) {
     for (const float value : firstPixel(path("g.hdr"))) EXPECT_NEAR(value, 0.5, 1e-6);
     const std::string own = "PRIMARIES=0.64 0.33 0.29 0.6 0.15 0.06 0.3333 0.3333\n";
     EXPECT_EQ(firstPixel(radiance("o.hdr", own)), (Pixel{0.5F, 0.25F, 0.125F}));
+    EXPECT_EQ(firstPixel(radiance("n.hdr", "PRIMARIES=0 0 0 0 0 0 0 0\n")),
+              (Pixel{0.5F, 0.25F, 0.125F}));
     expectHas(radiance("s.hdr", "PRIMARIES=0.3 0.3 0.3 0.3 0.3 0.3 0.3 0.3\n"),
               {"span no colours"});
 }
