@@ -39,6 +39,7 @@
 #include <brdfs/measured/scattered/alta_writer.h>
 #include <brdfs/measured/scattered/astm.h>
 #include <brdfs/measured/scattered/cornell.h>
+#include <brdfs/measured/scattered/csv.h>
 #include <brdfs/measured/scattered/nist.h>
 #include <brdfs/measured/scattered/scatmech.h>
 #include <brdfs/measured/scattered/scattered.h>
@@ -235,9 +236,9 @@ std::span<const Model> models() {
 
 std::span<const Format> formats() {
     static const std::vector<Format> table{
-        merlFormat(), pbsdfFormat(),   rglFormat(),      bsdfXmlFormat(),  altaFormat(),
-        astmFormat(), cornellFormat(), nistFormat(),     scatmechFormat(), mitFormat(),
-        utiaFormat(), slicesFormat(),  merlSliceFormat()};
+        merlFormat(), pbsdfFormat(),   rglFormat(),    bsdfXmlFormat(),  altaFormat(),
+        astmFormat(), cornellFormat(), csvFormat(),    nistFormat(),     scatmechFormat(),
+        mitFormat(),  utiaFormat(),    slicesFormat(), merlSliceFormat()};
     return table;
 }
 

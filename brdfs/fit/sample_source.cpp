@@ -119,10 +119,11 @@ void sigmasOfFile(const SigmaStatement& sigma, const SampleSource& source, FitSa
 
 void sigmasOfColumn(const SampleSource& source, FitSamples& samples) {
     if (!source.samples || source.samples->sigmas.empty())
-        throw UsageError(fmt::format(
-            "{}: states no uncertainties; ASTM files do in a column sigma, or sigma_NAME for each "
-            "channel",
-            source.name));
+        throw UsageError(
+            fmt::format("{}: states no uncertainties; ASTM files and tables with named columns do "
+                        "in a column sigma, or sigma_NAME for each "
+                        "channel",
+                        source.name));
     refuseConverted(source);
     const std::size_t channels = samples.channels.count();
     for (std::size_t c = 0; c < channels; ++c)
@@ -176,9 +177,10 @@ std::vector<double> scanColumn(const SigmaStatement& sigma, const SampleSource& 
         }
     }
     if (!source.samples || source.samples->scans.empty())
-        throw UsageError(fmt::format(
-            "{}: has no column scan; ASTM files and companion files of uncertainties may have one",
-            source.name));
+        throw UsageError(
+            fmt::format("{}: has no column scan; ASTM files, tables with named columns and "
+                        "companion files of uncertainties may have one",
+                        source.name));
     for (const std::size_t place : source.places) result.push_back(source.samples->scans[place]);
     return result;
 }

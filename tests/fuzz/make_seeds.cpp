@@ -292,6 +292,10 @@ void scatteredFiles(const std::filesystem::path& folder) {
     write(folder / "fuzz_astm" / "spectral",
           "NUM_POINTS 1\nVARS theta_i,phi_i,theta_s,phi_s,400nm\n0.1,0,0.2,0,1\n");
     write(folder / "fuzz_cornell" / "two", "# x\n2\n400 500\n0.1 0 0.2 0.3 1 2\n");
+    write(folder / "fuzz_csv" / "rows",
+          "wavelength (um),theta_i (deg),phi_i,theta_o,phi_o,brf,sigma (%),scan\n"
+          "0.5,30,0,40,180,1,2,1\n0.6,30,0,40,180,1,2,1\n");
+    write(folder / "fuzz_csv" / "plane", "BRF\nAOI;View_angle;500nm;600nm\n10;-10;0,5;0,25\n");
     write(folder / "fuzz_nist" / "two", "lambda,thetai,phi,thetar,phir\n0.633,-30,0,45,10,0.3" +
                                             mueller + "0.532,-30,0,45,10,0.3" + mueller);
     write(folder / "fuzz_scatmech" / "three",

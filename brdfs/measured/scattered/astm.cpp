@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <optional>
 
@@ -24,23 +23,11 @@ struct Columns {
     std::size_t count = 0;
 };
 
-std::string lower(std::string_view word) {
-    std::string text(word);
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-}
-
-std::string_view trimmed(std::string_view text) {
-    const std::size_t begin = text.find_first_not_of(" \t");
-    if (begin == std::string_view::npos) return {};
-    return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
-}
-
 std::vector<std::string> splitNames(std::string_view list) {
     std::vector<std::string> names;
     while (true) {
         const std::size_t comma = list.find(',');
-        names.emplace_back(trimmed(list.substr(0, comma)));
+        names.emplace_back(withoutBlanks(list.substr(0, comma)));
         if (comma == std::string_view::npos) return names;
         list.remove_prefix(comma + 1);
     }
@@ -49,7 +36,7 @@ std::vector<std::string> splitNames(std::string_view list) {
 /// "400nm" or "400 nm".
 std::optional<double> wavelengthOf(std::string_view name) {
     double nm = 0;
-    if (!takeNumber(name, nm) || lower(trimmed(name)) != "nm") return std::nullopt;
+    if (!takeNumber(name, nm) || lowerCase(withoutBlanks(name)) != "nm") return std::nullopt;
     return nm;
 }
 
@@ -69,7 +56,7 @@ Channels channelsOf(const std::vector<std::string>& names, const TextReader& rea
     }
     if (names.size() == 3) {
         const std::string initials = {names[0][0], names[1][0], names[2][0]};
-        if (lower(initials) == "rgb") return Channels::rgb();
+        if (lowerCase(initials) == "rgb") return Channels::rgb();
     }
     throw reader.error(
         fmt::format("the channels '{}' of VARS are neither one, nor R,G,B, nor wavelengths in nm",
@@ -85,7 +72,7 @@ void takeSigmas(const std::vector<std::string>& names, std::vector<std::string>&
     std::vector<std::pair<std::string, std::size_t>> stated;
     std::vector<std::string> kept;
     for (const std::size_t k : columns.values) {
-        const std::string name = lower(names[k]);
+        const std::string name = lowerCase(names[k]);
         if (columns.values.size() > 1 && name == "scan" && !columns.scan) {
             columns.scan = k;
         } else if (columns.values.size() > 1 && (name == "sigma" || name.starts_with(prefix))) {
@@ -103,7 +90,7 @@ void takeSigmas(const std::vector<std::string>& names, std::vector<std::string>&
         return;
     }
     for (const std::string& name : kept) {
-        const auto found = std::ranges::find(stated, std::string(prefix) + lower(name),
+        const auto found = std::ranges::find(stated, std::string(prefix) + lowerCase(name),
                                              &std::pair<std::string, std::size_t>::first);
         if (found == stated.end() || stated.size() != kept.size())
             throw reader.error(
@@ -121,7 +108,7 @@ Columns readColumns(std::string_view list, const TextReader& reader, Channels& c
     std::vector<std::string> channelNames;
     for (std::size_t k = 0; k < names.size(); ++k) {
         if (names[k].empty()) throw reader.error(fmt::format("name {} of VARS is empty", k + 1));
-        const auto found = std::ranges::find(angleNames, lower(names[k]));
+        const auto found = std::ranges::find(angleNames, lowerCase(names[k]));
         if (found == angleNames.end()) {
             columns.values.push_back(k);
             channelNames.push_back(names[k]);
@@ -160,7 +147,7 @@ bool looksLikeAstm(std::span<const unsigned char> head, std::uint64_t) {
     TextReader reader(text, "");
     while (reader.next()) {
         if (reader.takeWord() != "VARS") continue;
-        const std::string names = lower(reader.line());
+        const std::string names = lowerCase(reader.line());
         return names.find("theta_i") != std::string::npos &&
                names.find("theta_s") != std::string::npos;
     }
@@ -179,17 +166,17 @@ Samples readAstm(std::string_view text, const std::string& where, bool inDegrees
         const std::string_view keyword = reader.takeWord();
         if (keyword.empty() || keyword[0] == '#') continue;
         const std::size_t at = static_cast<std::size_t>(keyword.data() - reader.line().data());
-        std::string_view rest = trimmed(reader.line().substr(at + keyword.size()));
+        std::string_view rest = withoutBlanks(reader.line().substr(at + keyword.size()));
         if (keyword == "VARS") {
             columns = readColumns(rest, reader, samples.channels);
         } else if (keyword == "NUM_POINTS") {
             double count = 0;
-            if (!takeNumber(rest, count) || !trimmed(rest).empty() || !(count >= 0)) {
+            if (!takeNumber(rest, count) || !withoutBlanks(rest).empty() || !(count >= 0)) {
                 throw reader.error("NUM_POINTS has to be a number from 0");
             }
             announced = count;
         } else if (keyword == "SAMPLE_NAME" || keyword == "LAB_NAME") {
-            samples.facts.emplace_back(lower(keyword), std::string(rest.substr(0, 200)));
+            samples.facts.emplace_back(lowerCase(keyword), std::string(rest.substr(0, 200)));
         }
     }
     if (!columns) throw reader.error("the file ends without a line VARS that names its columns");

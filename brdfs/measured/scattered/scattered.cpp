@@ -43,6 +43,15 @@ bool oneSided(const Samples& samples) {
     return !(left && right);
 }
 
+/// Whether wi, wo and the normal of every pair lie in one plane.
+bool inPlaneAlone(const Samples& samples) {
+    if (samples.chart != Chart::anisotropic) return false;
+    for (std::size_t k = 0; k < samples.size(); ++k)
+        if (std::fabs(chartPoint(Chart::isotropic, samples.wi[k], samples.wo[k])[2]) > 1e-3)
+            return false;
+    return true;
+}
+
 Laws lawsOf(Chart chart, const Folding& folding) {
     Laws laws;
     laws.nonNegative = true;
@@ -292,6 +301,9 @@ std::vector<Fact> Scattered::facts() const {
     facts.emplace_back("exchanged", folding_.exchange);
     facts.emplace_back("mirrored", folding_.mirror);
     facts.emplace_back("reach_degrees", degrees(options_.reach));
+    if (inPlaneAlone(samples_))
+        facts.emplace_back("in_plane",
+                           "all samples; f out of the plane of incidence takes a fitted model");
     if (!samples_.leftOut.empty()) {
         facts.emplace_back("not_read", fmt::format("{}", fmt::join(samples_.leftOut, "; ")));
     }

@@ -27,4 +27,10 @@ std::string_view asText(std::span<const unsigned char> head);
 /// The line that starts at the front of `text`, without its end (LF, CR LF or CR).
 std::string_view firstLine(std::string_view text);
 
+/// ASCII letters in lower case.
+std::string lowerCase(std::string_view text);
+
+/// The text without blanks and tabs at its ends.
+std::string_view withoutBlanks(std::string_view text);
+
 }  // namespace hshfit::brdfs
