@@ -26,6 +26,7 @@
 #include <brdfs/measured/bsdf_xml/bsdf_xml.h>
 #include <brdfs/measured/bsdf_xml/klems_writer.h>
 #include <brdfs/measured/bsdf_xml/tree_writer.h>
+#include <brdfs/measured/foreign.h>
 #include <brdfs/measured/gridded/mit.h>
 #include <brdfs/measured/gridded/slice.h>
 #include <brdfs/measured/gridded/slice_writer.h>
@@ -40,9 +41,14 @@
 #include <brdfs/measured/scattered/astm.h>
 #include <brdfs/measured/scattered/cornell.h>
 #include <brdfs/measured/scattered/csv.h>
+#include <brdfs/measured/scattered/fred.h>
 #include <brdfs/measured/scattered/nist.h>
 #include <brdfs/measured/scattered/scatmech.h>
 #include <brdfs/measured/scattered/scattered.h>
+#include <brdfs/measured/scattered/speos.h>
+#include <brdfs/measured/scattered/xompt.h>
+#include <brdfs/measured/scattered/zemax.h>
+#include <brdfs/measured/scattered/zemax_writer.h>
 #include <brdfs/metal_spec.h>
 #include <brdfs/preset.h>
 #include <brdfs/preset_collection.h>
@@ -93,23 +99,52 @@ std::vector<unsigned char> readHead(const std::string& path, std::size_t most) {
     return head;
 }
 
-bool isJson(const std::string& path) {
-    const std::vector<unsigned char> head = readHead(path, jsonStartBytes);
-    return beginsAsJson({reinterpret_cast<const char*>(head.data()), head.size()});
+constexpr std::size_t headBytes = 4096;
+static_assert(headBytes >= jsonStartBytes);
+
+/// JSON of this program. The key "format" may come behind the head of a long file.
+bool isPreset(std::span<const unsigned char> head) {
+    const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
+    return beginsAsJson(text) &&
+           (head.size() == headBytes || jsonFormat(text).starts_with("hshfit"));
 }
 
-/// The format by content or, for unrecognised content, by
-/// extension.
-const Format& formatOf(const std::string& path, std::uint64_t size) {
-    constexpr std::size_t headSize = 4096;
-    const std::vector<unsigned char> head = readHead(path, headSize);
+/// The format by content; null for content that none knows.
+const Format* recognisedFormat(std::span<const unsigned char> head, std::uint64_t size) {
     for (const Format& format : formats())
-        if (format.recognises(head, size)) return format;
+        if (format.recognises(head, size)) return &format;
+    return nullptr;
+}
+
+/// Formats that are text or may be; the others are bytes.
+constexpr std::string_view textFormats[] = {"bsdf-xml", "astm", "zemax", "fred",    "cornell",
+                                            "xompt",    "csv",  "nist",  "scatmech"};
+constexpr std::string_view eitherFormats[] = {"alta", "speos"};
+
+/// The format by extension, for content that none recognises. Content that looks like something
+/// else is named instead.
+const Format& formatByExtension(const std::string& path, std::span<const unsigned char> head,
+                                std::uint64_t size) {
+    const std::string start = fmt::format("{}: of no known format", path);
+    if (const auto foreign = foreignContent(head, false))
+        throw InputError(fmt::format("{}: it looks like {}", start, *foreign));
     const std::string extension = fs::path(path).extension().string();
-    for (const Format& format : formats())
-        if (format.extension == extension) return format;
-    throw InputError(fmt::format("{}: of no known format ({} bytes); known: {}, preset (.json)",
-                                 path, size, joined(namesOf(formats()))));
+    const bool plain = isPlainText(head);
+    const Format* misfit = nullptr;
+    for (const Format& format : formats()) {
+        if (format.extension != extension) continue;
+        const bool either =
+            std::ranges::find(eitherFormats, format.name) != std::end(eitherFormats);
+        const bool text = std::ranges::find(textFormats, format.name) != std::end(textFormats);
+        if (either || plain == text) return format;
+        misfit = &format;
+    }
+    if (misfit)
+        throw InputError(fmt::format("{}: it holds {}, while '{}' ({}) is {}", start,
+                                     plain ? "text" : "bytes that are no text", misfit->name,
+                                     extension, plain ? "binary" : "text"));
+    throw InputError(fmt::format("{} ({} bytes); known: {}, preset (.json)", start, size,
+                                 joined(namesOf(formats()))));
 }
 
 std::unique_ptr<Brdf> openPresetFile(const std::string& path, std::uint64_t size,
@@ -136,10 +171,16 @@ std::unique_ptr<Brdf> openFile(const std::string& path, std::string_view options
     const std::uint64_t size = fs::file_size(path, error);
     if (error) throw InputError(fmt::format("{}: {}", path, error.message()));
     if (size == 0) throw InputError(path + ": is empty");
-    if (fs::path(path).extension() == ".json" || isJson(path))
+    const std::vector<unsigned char> head = readHead(path, headBytes);
+    if (const auto foreign = foreignContent(head, true))
+        throw InputError(fmt::format("{}: of no known format: it looks like {}", path, *foreign));
+    const Format* format = recognisedFormat(head, size);
+    const std::string extension = fs::path(path).extension().string();
+    if (!format && extension == xomptFormat().extension) format = &xomptFormat();
+    if (!format && (extension == ".json" || isPreset(head)))
         return openPresetFile(path, size, options);
-    const Format& format = formatOf(path, size);
-    return format.open(path, parseParameters(format.name, format.parameters, options));
+    if (!format) format = &formatByExtension(path, head, size);
+    return format->open(path, parseParameters(format->name, format->parameters, options));
 }
 
 /// Whether a text is a path rather than a misspelt model: it has a folder or an extension.
@@ -236,15 +277,17 @@ std::span<const Model> models() {
 
 std::span<const Format> formats() {
     static const std::vector<Format> table{
-        merlFormat(), pbsdfFormat(),   rglFormat(),    bsdfXmlFormat(),  altaFormat(),
-        astmFormat(), cornellFormat(), csvFormat(),    nistFormat(),     scatmechFormat(),
-        mitFormat(),  utiaFormat(),    slicesFormat(), merlSliceFormat()};
+        merlFormat(),  pbsdfFormat(),  rglFormat(),      bsdfXmlFormat(),  altaFormat(),
+        astmFormat(),  zemaxFormat(),  fredFormat(),     speosFormat(),    cornellFormat(),
+        xomptFormat(), csvFormat(),    nistFormat(),     scatmechFormat(), mitFormat(),
+        utiaFormat(),  slicesFormat(), merlSliceFormat()};
     return table;
 }
 
 std::span<const Writer> writers() {
     static const std::vector<Writer> table{merlWriter(),   rglWriter(),       altaWriter(),
-                                           slicesWriter(), bsdfKlemsWriter(), bsdfTreeWriter()};
+                                           slicesWriter(), bsdfKlemsWriter(), bsdfTreeWriter(),
+                                           zemaxWriter()};
     return table;
 }
 

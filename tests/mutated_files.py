@@ -33,7 +33,8 @@ from pathlib import Path
 
 # Fuzz target -> extension of the files that its inputs are; None: those of the names of the seeds.
 TARGETS = {"alta": ".alta", "astm": ".astm", "cornell": ".brdf", "csv": ".csv", "nist": ".csv",
-           "scatmech": ".csv",
+           "scatmech": ".csv", "fred": ".txt", "zemax": ".bsdf", "speos": ".brdf",
+           "xompt": ".xompt",
            "mit": ".dat", "pbsdf": ".pbsdf", "rgl": ".bsdf", "presets": ".json",
            "gaussians": ".json", "bsdf_xml": ".xml", "merl_slice": ".slice", "utia": ".bin",
            "merl": ".binary", "coefficients": ".json", "gpu_containers": None}

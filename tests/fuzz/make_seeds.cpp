@@ -302,6 +302,26 @@ void scatteredFiles(const std::filesystem::path& folder) {
           "1, 1, 2, 0, 0, 0, 0, 0.5\n1, 1, 3, 1, 1, 1, 1, 0.5\n2, 2, 1, 1, -1, 1, 0, 3\n");
 }
 
+/// Small files of the formats of optical design programs.
+void opticsFiles(const std::filesystem::path& folder) {
+    write(folder / "fuzz_fred" / "two",
+          "type bsdf_data\nformat angles=deg bsdf=value scale=1\n10 0\n0 0 0.5\n20 90 0.4\n");
+    const std::string zemax =
+        "# x\nSource Measured\nSymmetry PlaneSymmetrical\nSpectralContent Monochrome\n"
+        "ScatterType BRDF\nSampleRotation 1\n0\nAngleOfIncidence 1\n10\nScatterAzimuth 2\n0 180\n"
+        "ScatterRadial 2\n0 90\n\nMonochrome\nDataBegin\nTIS 0.1\n0.03 0.03\n0.03 0\nDataEnd\n";
+    write(folder / "fuzz_zemax" / "plane", zemax);
+    write(folder / "fuzz_speos" / "spectral",
+          "OPTIS - brdf surface file v8.0\n0\nown\n2\nab\n1 0\n1\n1 1\n30\n550\n20\n2 3\n"
+          "0 180 360\n0 1 1 1\n90 1 1 1\nEnd of file\n");
+    write(folder / "fuzz_speos" / "anisotropic",
+          "OPTIS - Anisotropic BSDF surface file v8.0\n0\nown\n2\nab\n0 1 0\n1 0\n0\n1\n0\n1\n30\n"
+          "30 0\n\n2\n400 10\n500 20\n2 2\n0 180\n0 1 1\n60 1 1\nEnd of file\n");
+    write(folder / "fuzz_xompt" / "two",
+          R"({"metadata": {"name": "a"}, "brdf": {"wavelengths": [5e-7],)"
+          R"( "lookupTable": [[5e-7, 0, 0, 0, 0.3], [5e-7, 0.1, 0, 0, null]]}})");
+}
+
 /// Presets, a collection of them, and mixtures of Gaussians of either kind.
 void presetFiles(const std::filesystem::path& folder) {
     const std::string head = R"({"format": "hshfit-preset", "version": 1, )";
@@ -402,6 +422,7 @@ int main(int count, char** arguments) {
     lightFiles(folder / "fuzz_light");
     gpuFiles(folder / "fuzz_gpu_containers");
     scatteredFiles(folder);
+    opticsFiles(folder);
     presetFiles(folder);
     bsdfXmlFiles(folder / "fuzz_bsdf_xml");
     lightPictures(folder / "fuzz_pictures");

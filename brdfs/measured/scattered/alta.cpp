@@ -24,6 +24,7 @@ struct Header {
     std::size_t in = 0, out = 0, bounds = 0;
     std::string parameters = "UNKNOWN_INPUT", output;
     bool binary = false, bigEndian = false;
+    bool marked = true;        ///< the stream stands between #BEGIN_STREAM and #END_STREAM
     std::size_t count = 0;     ///< of samples, binary
     std::size_t streamAt = 0;  ///< offset of the first byte of the stream
     std::string sample;
@@ -172,16 +173,25 @@ void readStream(std::string_view text, const std::string& where, const Header& h
                 const AltaParameters& parameters, const TextReader& reader, Samples& samples) {
     constexpr std::string_view end = "\n#END_STREAM";
     const std::size_t rowBytes = header.columns() * sizeof(double);
-    const std::size_t present = text.size() - header.streamAt;
+    const std::size_t present = text.size() - std::min(text.size(), header.streamAt);
     if (header.count > present / rowBytes) {
         throw reader.error(
             fmt::format("the stream (offset {}) has {} bytes, too few for {} samples of {} doubles",
                         header.streamAt, present, header.count, header.columns()));
     }
-    if (!text.substr(header.streamAt + header.count * rowBytes).starts_with(end)) {
+    if (header.marked && !text.substr(header.streamAt + header.count * rowBytes).starts_with(end)) {
         throw reader.error(fmt::format("no #END_STREAM after {} samples of {} doubles (offset {})",
                                        header.count, header.columns(),
                                        header.streamAt + header.count * rowBytes));
+    }
+    if (!header.marked && header.count == 0) {
+        throw reader.error(
+            "#FORMAT binary, but neither #SAMPLE_COUNT nor #BEGIN_STREAM before this");
+    }
+    if (!header.marked && present - header.count * rowBytes > 1) {
+        throw reader.error(fmt::format(
+            "{} bytes after {} samples of {} doubles (offset {}), expected the end of the file",
+            present - header.count * rowBytes, header.count, header.columns(), header.streamAt));
     }
     std::vector<double> row(header.columns());
     const char* from = text.data() + header.streamAt;
@@ -196,6 +206,15 @@ void readStream(std::string_view text, const std::string& where, const Header& h
         }
         addRow(header, parameters, row, {where, "sample", k}, samples);
     }
+}
+
+/// Whether the stream of a file without marks begins after the line that was read: ALTA takes the
+/// first byte that is no '#' as data.
+bool streamBegins(std::string_view text, const Header& header, const TextReader& reader) {
+    if (!header.binary || text.find("\n#BEGIN_STREAM") != std::string_view::npos) return false;
+    const auto next = static_cast<std::size_t>(reader.line().end() - text.begin()) + 1;
+    const bool ended = reader.line().starts_with("#ALTA_END_HEADER");
+    return ended || (next < text.size() && text[next] != '#');
 }
 
 bool looksLikeAlta(std::span<const unsigned char> head, std::uint64_t) {
@@ -231,7 +250,10 @@ Samples readAlta(std::string_view text, const std::string& where) {
     while (reader.next()) {
         if (reader.blank()) continue;
         if (reader.line().starts_with('#')) {
-            if (parameters || !readKey(reader, header)) continue;
+            if (parameters) continue;
+            const bool begins = readKey(reader, header);
+            header.marked = begins;
+            if (!begins && !streamBegins(text, header, reader)) continue;
             samples = declare(header, reader, parameters);
             if (!header.binary) throw reader.error("#BEGIN_STREAM, but no #FORMAT binary");
             header.streamAt = static_cast<std::size_t>(reader.line().end() - text.begin()) + 1;

@@ -12,7 +12,8 @@ namespace hshfit::brdfs {
 ///     #DIM in out   #PARAM_IN NAME   #PARAM_OUT NAME   #VS k
 /// count (PARAM_IN: alta_parameters.h), then rows of `in` coordinates, `out` values and the bounds
 /// of vertical segments (#VS; not read). With #FORMAT binary the rows are doubles between
-/// #BEGIN_STREAM and #END_STREAM, #SAMPLE_COUNT rows, #ENDIAN little or big.
+/// #BEGIN_STREAM and #END_STREAM, or without these marks after the last line with '#',
+/// #SAMPLE_COUNT rows, #ENDIAN little or big.
 /// Values are 1/sr; INV_STERADIAN_COSINE_FACTOR is divided by the cosine of the view direction;
 /// XYZ_COLOR becomes linear Rec. 709. One value is grey, three are R, G, B.
 /// Throws InputError, with `where` and the line or the sample, for any other content.

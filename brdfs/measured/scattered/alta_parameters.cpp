@@ -246,7 +246,11 @@ void altaDirections(const AltaParameters& parameters, const double* x, const Row
     }
     if (!parameters.directions(x, wi, wo)) {
         throw row.error(
-            fmt::format("no pair of unit vectors has these {} coordinates", parameters.name));
+            fmt::format("no pair of unit vectors above the horizon has the {} coordinates {}{}",
+                        parameters.name, fmt::join(x, x + parameters.count, ", "),
+                        parameters.name.starts_with("STARK")
+                            ? "; expected x^2 + y^2 up to 1 for x, y = |H_p|, |B|"
+                            : ""));
     }
 }
 

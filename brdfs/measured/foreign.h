@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace hshfit::brdfs {
+
+/// The looks of a file that no format takes, and what to do: "a Git LFS pointer, not the file
+/// itself; fetch that with 'git lfs pull'". By the first bytes of the file; none if they look like
+/// nothing known. `certain`: only what no format can be, before the formats are asked.
+std::optional<std::string> foreignContent(std::span<const unsigned char> head, bool certain);
+
+/// Whether the bytes are text: no control characters but white space.
+bool isPlainText(std::span<const unsigned char> head);
+
+}  // namespace hshfit::brdfs

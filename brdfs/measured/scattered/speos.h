@@ -1,0 +1,31 @@
+#pragma once
+
+#include <brdfs/catalog.h>
+#include <brdfs/measured/scattered/samples.h>
+
+#include <string>
+#include <string_view>
+
+namespace hshfit::brdfs {
+
+/// Reads the text form of Ansys Speos' surface files, "OPTIS - brdf surface file" (.brdf: a table
+/// for each incidence and wavelength) and "OPTIS - Anisotropic BSDF surface file"
+/// (.anisotropicbsdf: a table for each anisotropy angle and incidence, and a spectrum), by Ansys'
+/// own description of their rows. Tables are over theta and phi of the outgoing direction in
+/// degrees, phi counterclockwise from the specular side.
+///
+/// Values are in proportion to f (type 1) or to f cos(theta) (type 0), and percentages R give the
+/// scale. With I = the integral of the bilinear table v cos(theta) (type 0: v) over the hemisphere,
+///     f = R v / I            .brdf: R and I of the same table
+///     f = R(lambda) v / I0   .anisotropicbsdf: I0 of the incidence at which R was measured, or
+///                            weighted between its neighbours
+/// and for type 0 divided by cos(theta). The anisotropy vector is the tangent +x: at an anisotropy
+/// angle of p the light comes from azimuth 180 - p degrees. A spectrum of one percentage is grey.
+/// Tables of transmission are left out. Throws InputError, with `where` and the line, for other
+/// content, binary files and files of transmission alone.
+Samples readSpeos(std::string_view text, const std::string& where);
+
+/// The row of the table of formats.
+const Format& speosFormat();
+
+}  // namespace hshfit::brdfs
