@@ -1,6 +1,7 @@
 #include <brdfs/catalog.h>
 
 #include <brdfs/analytic/abc.h>
+#include <brdfs/analytic/abg.h>
 #include <brdfs/analytic/ashikhmin_shirley.h>
 #include <brdfs/analytic/beckmann.h>
 #include <brdfs/analytic/blinn_phong.h>
@@ -11,6 +12,8 @@
 #include <brdfs/analytic/ggx.h>
 #include <brdfs/analytic/gltf_pbr.h>
 #include <brdfs/analytic/gtr.h>
+#include <brdfs/analytic/hapke.h>
+#include <brdfs/analytic/harvey_shack.h>
 #include <brdfs/analytic/he.h>
 #include <brdfs/analytic/lafortune.h>
 #include <brdfs/analytic/lambert.h>
@@ -18,6 +21,8 @@
 #include <brdfs/analytic/openpbr.h>
 #include <brdfs/analytic/oren_nayar.h>
 #include <brdfs/analytic/phong.h>
+#include <brdfs/analytic/ross_li.h>
+#include <brdfs/analytic/rpv.h>
 #include <brdfs/analytic/sg.h>
 #include <brdfs/analytic/sgd.h>
 #include <brdfs/analytic/ward.h>
@@ -270,6 +275,11 @@ std::span<const Model> models() {
         openpbrModel(),
         charlieModel(),
         sgModel(),
+        abgModel(),
+        harveyShackModel(),
+        rossLiModel(),
+        rpvModel(),
+        hapkeModel(),
     };
     // clang-format on
     return table;

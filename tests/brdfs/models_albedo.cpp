@@ -171,6 +171,11 @@ TEST(Albedo, ExceedsOneSomewhereWhereNotClaimed) {
         {"sg", {"sg:sharpness=2"}},
         {"beckmann", {"beckmann:kd=1,alpha=.3", .3, .3}},
         {"ggx", {"ggx:kd=1,alpha=.3", .3, .3}},
+        {"abg", {"abg:A=1,B=.1,g=2", .2, .2}},
+        {"harvey-shack", {"harvey-shack:b0=9,l=.3,s=-2", .2, .2}},
+        {"ross-li", {"ross-li:iso=1,vol=1"}},
+        {"rpv", {"rpv:rho0=1,k=.8"}},
+        {"hapke", {"hapke:w=1,B0=1,h=1"}},
     };
     for (const Model& model : models()) {
         if (model.laws.energyConserving) continue;

@@ -3,6 +3,7 @@
 #include <brdfs/catalog.h>
 #include <hshfit/brdf/directions.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
@@ -142,6 +143,35 @@ inline void addFitted(std::vector<Case>& grid) {
         }
 }
 
+/// Scatter of polished surfaces, and land surfaces.
+inline void addScatter(std::vector<Case>& grid) {
+    for (const char* b : {"1e-12", "1e-4", ".1", "1e3"})
+        for (const char* g : {"0", "1", "2.5", "20"})
+            for (const char* rest : {"A=.01", "A=.02/.01/.005,kd=.3"}) {
+                const double width = std::pow(std::stod(b), 1 / std::max(1e-3, std::stod(g)));
+                grid.push_back({"abg:B=" + std::string(b) + ",g=" + g + "," + rest,
+                                std::clamp(width, 1e-3, 1.), std::clamp(width, 1e-3, 1.)});
+            }
+    for (const char* l : {"1e-5", "1e-2", ".3", "1e3"})
+        for (const char* s : {"0", "-1.5", "-4", "-100"})
+            for (const char* rest : {"b0=.1", "b0=9/5/1,kd=.2", "b0=.3,variant=classic"}) {
+                const double width = std::clamp(std::stod(l), 1e-3, 1.);
+                grid.push_back(
+                    {"harvey-shack:l=" + std::string(l) + ",s=" + s + "," + rest, width, width});
+            }
+    for (const char* spec :
+         {"ross-li", "ross-li:iso=.1/.2/.3,vol=.05,geo=.02", "ross-li:iso=0,vol=1",
+          "ross-li:geo=.1,hb=.1,br=10", "ross-li:iso=.5,vol=2/1/0,geo=.3,hb=10,br=.1"})
+        grid.push_back({spec});
+    for (const char* k : {"0", ".7", "1", "1.3", "10"})
+        for (const char* rest : {"", ",Theta=-.99", ",Theta=.3,rhoc=1", ",rhoc=.5/.2/.9"})
+            grid.push_back({"rpv:rho0=.2,k=" + std::string(k) + rest});
+    for (const char* w : {"0", ".3", "1"})
+        for (const char* rest : {"", ",b=.99,c=1", ",b=.3,c=-.7,h-function=2002", ",B0=1,h=.01",
+                                 ",ks=.3/.2/.1,B0=10,h=10,b=.5"})
+            grid.push_back({"hapke:w=" + std::string(w) + rest});
+}
+
 /// Every model of the table, over its parameters and the ends of their ranges.
 inline std::vector<Case> modelGrid() {
     std::vector<Case> grid{{"lambert"}, {"lambert:kd=0"}, {"lambert:kd=.8/.5/.1"}};
@@ -204,6 +234,7 @@ inline std::vector<Case> modelGrid() {
     addLobes(grid);
     addStandard(grid);
     addFitted(grid);
+    addScatter(grid);
     return grid;
 }
 
