@@ -13,7 +13,9 @@ bool looksLikeBsdfXml(std::span<const unsigned char> head, std::uint64_t) {
 
 std::unique_ptr<Brdf> openFile(const std::string& path, const Parameters& parameters) {
     const MappedFile file(path);
-    const BsdfSide side = parameters.choice("side") == "back" ? BsdfSide::back : BsdfSide::front;
+    const std::string word = parameters.choice("side");
+    std::optional<BsdfSide> side;
+    if (word != "auto") side = word.ends_with("back") ? BsdfSide::back : BsdfSide::front;
     std::unique_ptr<Brdf> brdf =
         openBsdfXml(file.bytes(), path, side, parameters.choice("wavelength"));
     file.checkIntact();
@@ -23,7 +25,8 @@ std::unique_ptr<Brdf> openFile(const std::string& path, const Parameters& parame
 }  // namespace
 
 std::unique_ptr<MeasuredBrdf> openBsdfXml(std::span<const unsigned char> bytes, std::string name,
-                                          BsdfSide side, std::string_view wavelength) {
+                                          std::optional<BsdfSide> side,
+                                          std::string_view wavelength) {
     const BsdfDocument document(bytes, std::move(name));
     BsdfSelection selection = selectBlocks(document, side, wavelength);
     if (document.isTree()) return std::make_unique<TreeBrdf>(document, std::move(selection));
@@ -37,15 +40,19 @@ const Format& bsdfXmlFormat() {
         .extension = ".xml",
         .recognises = looksLikeBsdfXml,
         .parameters = {{.name = "side",
-                        .help = "as the file calls it; Radiance calls the back front",
+                        .help = "as the file calls it, Radiance calls the back front; auto: front, "
+                                "or the only reflection there is",
                         .kind = Parameter::Kind::choice,
                         .fallback = {},
-                        .choices = {"front", "back"}},
+                        .choices = {"auto", "front", "back", "reflection-front",
+                                    "reflection-back"}},
                        {.name = "wavelength",
-                        .help = "part of the spectrum; visible comes in colour where the file does",
-                        .kind = Parameter::Kind::choice,
+                        .help =
+                            "visible (in colour where the file is), solar, nir, a wavelength in "
+                            "nm, or spectrum for all of them; left out: visible, else spectrum",
+                        .kind = Parameter::Kind::text,
                         .fallback = {},
-                        .choices = {"visible", "solar", "nir"}}},
+                        .choices = {"solar"}}},
         .open = openFile,
     };
     return format;

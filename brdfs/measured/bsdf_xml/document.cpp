@@ -200,11 +200,30 @@ void BsdfDocument::readBases() {
     }
 }
 
+/// The wavelength of a block for one of them alone, in nm; 0 for a part of the spectrum. LBNL's
+/// schema has the units Integral and Nanometer.
+double BsdfDocument::nanometresOf(std::size_t offset, std::string_view unit,
+                                  std::string_view word) const {
+    const bool micrometres = sameWord(unit, "Micron") || sameWord(unit, "Micrometer");
+    if (!micrometres && !sameWord(unit, "Nanometer") && !sameWord(unit, "nm")) return 0;
+    std::string_view rest = word;
+    double value = 0;
+    if (!takeNumber(rest, value) || !rest.empty() || !(value > 0 && value <= 1e6)) {
+        throw error(offset, fmt::format("Wavelength is '{}' {}, expected a number above 0",
+                                        quoted(word), quoted(unit)));
+    }
+    return micrometres ? std::round(value * 1e6) / 1e3 : value;
+}
+
 void BsdfDocument::readBlocks() {
     for (const auto& data : parsed_->layer.children("WavelengthData")) {
+        const std::string wavelength = wordOf(data, "Wavelength");
+        const double nanometres = nanometresOf(
+            offsetOf(data), data.child("Wavelength").attribute("unit").value(), wavelength);
         for (const auto& node : data.children("WavelengthDataBlock")) {
             BsdfBlock block;
-            block.wavelength = wordOf(data, "Wavelength");
+            block.wavelength = nanometres > 0 ? fmt::format("{} nm", nanometres) : wavelength;
+            block.nanometres = nanometres;
             block.direction = wordOf(node, "WavelengthDataDirection");
             block.columnBasis = wordOf(node, "ColumnAngleBasis");
             block.rowBasis = wordOf(node, "RowAngleBasis");

@@ -14,7 +14,8 @@ namespace hshfit::brdfs {
 
 /// One WavelengthDataBlock: the scattering from one side of a surface in one part of the spectrum.
 struct BsdfBlock {
-    std::string wavelength;  ///< "Visible", "Solar", "CIE-X", …
+    std::string wavelength;  ///< "Visible", "Solar", "CIE-X", …, or "550 nm"
+    double nanometres = 0;   ///< of a block for one wavelength; 0: none
     std::string direction;   ///< "Reflection Front", "Transmission Back", …
     std::string columnBasis, rowBasis;
     std::string squareBasis;     ///< "LBNL/Shirley-Chiu" in tensor trees
@@ -64,6 +65,7 @@ private:
     void readStructure();
     void readBases();
     void readBlocks();
+    double nanometresOf(std::size_t offset, std::string_view unit, std::string_view word) const;
 
     std::string where_;
     std::unique_ptr<Parsed> parsed_;

@@ -30,6 +30,7 @@ KlemsBrdf::KlemsBrdf(const BsdfDocument& document, BsdfSelection selection)
     : selection_(std::move(selection)) {
     laws_.nonNegative = true;
     values_ = readMatrix(document, *selection_.main);
+    if (!selection_.spectrum.empty()) readSpectrum(document);
     if (selection_.coloured()) {
         std::vector<std::vector<double>> xyz;
         xyz.push_back(readMatrix(document, *selection_.colour[0]));
@@ -39,6 +40,18 @@ KlemsBrdf::KlemsBrdf(const BsdfDocument& document, BsdfSelection selection)
     }
     selection_.forgetBlocks();
     findLaws();
+}
+
+/// The matrices of further wavelengths, after that of the first.
+void KlemsBrdf::readSpectrum(const BsdfDocument& document) {
+    std::vector<double> nanometres;
+    for (const BsdfBlock* block : selection_.spectrum) {
+        nanometres.push_back(block->nanometres);
+        if (block == selection_.main) continue;
+        const std::vector<double> matrix = readMatrix(document, *block);
+        values_.insert(values_.end(), matrix.begin(), matrix.end());
+    }
+    channels_ = Channels::spectral(std::move(nanometres));
 }
 
 /// One matrix as [outgoing][incident], with a census of its values and 0 in place of invalid ones.
@@ -70,7 +83,7 @@ std::vector<double> KlemsBrdf::readMatrix(const BsdfDocument& document, const Bs
     }
     if (missing_.empty()) missing_.resize(read.size());
     if (missing_.size() != read.size()) {
-        throw document.error(block.offset, "colours in another angle basis than Visible");
+        throw document.error(block.offset, "another angle basis than that of the first matrix");
     }
     const bool transposed = document.structure() == BsdfDocument::Structure::rows;
     const std::size_t incidents = incident_.patches(), outgoings = outgoing_.patches();

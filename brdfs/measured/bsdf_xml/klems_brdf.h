@@ -61,6 +61,7 @@ public:
 
 private:
     std::vector<double> readMatrix(const BsdfDocument& document, const BsdfBlock& block);
+    void readSpectrum(const BsdfDocument& document);
     void combineColours(std::vector<std::vector<double>> xyz);
     void findLaws();
     bool movable() const;

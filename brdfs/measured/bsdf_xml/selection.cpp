@@ -1,9 +1,12 @@
 #include <brdfs/measured/bsdf_xml/selection.h>
+#include <brdfs/measured/text_reader.h>
 
 #include <fmt/format.h>
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <set>
 
 namespace hshfit::brdfs {
@@ -32,14 +35,69 @@ const BsdfBlock* findBlock(const BsdfDocument& document, BsdfSide side,
     return found;
 }
 
-InputError absent(const BsdfDocument& document, BsdfSide side, std::string_view wavelength) {
+InputError absent(const BsdfDocument& document, std::optional<BsdfSide> side,
+                  std::string_view wavelength) {
     std::set<std::string> here;
+    bool reflects = false;
     for (const BsdfBlock& block : document.blocks()) {
         here.insert(block.direction + " " + block.wavelength);
+        reflects =
+            reflects || isReflection(block, BsdfSide::front) || isReflection(block, BsdfSide::back);
     }
+    if (!reflects)
+        return InputError(fmt::format("{}: no reflection, and transmission is not read; it has: {}",
+                                      document.where(), list(here)));
     return InputError(fmt::format(
-        "{}: no block Reflection {} for {} light; it has: {} (options: side, wavelength)",
-        document.where(), side == BsdfSide::front ? "Front" : "Back", wavelength, list(here)));
+        "{}: no block Reflection{} for {}; it has: {} (options: side, wavelength)",
+        document.where(), side ? *side == BsdfSide::front ? " Front" : " Back" : "",
+        wavelength.empty() ? "visible light or single wavelengths" : wavelength, list(here)));
+}
+
+/// The wavelength that an option states, in nm; none for a word.
+std::optional<double> nanometresIn(std::string_view wavelength) {
+    double nm = 0;
+    if (!takeNumber(wavelength, nm) || (!wavelength.empty() && !sameWord(wavelength, "nm")))
+        return std::nullopt;
+    return nm;
+}
+
+/// All blocks of single wavelengths, or of the one that is asked for, ascending.
+std::vector<const BsdfBlock*> findSpectrum(const BsdfDocument& document, BsdfSide side,
+                                           std::optional<double> nanometres) {
+    std::vector<const BsdfBlock*> found;
+    for (const BsdfBlock& block : document.blocks())
+        if (block.nanometres > 0 && isReflection(block, side) &&
+            (!nanometres || std::fabs(block.nanometres - *nanometres) < 1e-6))
+            found.push_back(&block);
+    std::ranges::stable_sort(found, {}, &BsdfBlock::nanometres);
+    for (std::size_t k = 1; k < found.size(); ++k)
+        if (found[k]->nanometres == found[k - 1]->nanometres)
+            throw document.error(found[k]->offset,
+                                 fmt::format("a second block {}, {}; expected one",
+                                             found[k]->direction, found[k]->wavelength));
+    return found;
+}
+
+/// Fills in the blocks for one side; false if the file has none.
+bool takeSide(BsdfSelection& selection, const BsdfDocument& document, BsdfSide side,
+              std::string_view wavelength) {
+    selection.side = side;
+    const std::optional<double> nanometres = nanometresIn(wavelength);
+    const bool bySpectrum = nanometres || sameWord(wavelength, "spectrum");
+    if (!bySpectrum)
+        selection.main = findBlock(document, side, wavelength.empty() ? "visible" : wavelength);
+    if (bySpectrum || (!selection.main && wavelength.empty())) {
+        selection.spectrum = findSpectrum(document, side, nanometres);
+        if (!selection.spectrum.empty()) selection.main = selection.spectrum.front();
+    }
+    return selection.main != nullptr;
+}
+
+std::string optionsOf(const BsdfSelection& selection, std::string_view wavelength) {
+    std::string options = selection.side == BsdfSide::back ? "side=back" : "";
+    if (!wavelength.empty() && !sameWord(wavelength, "visible"))
+        options += fmt::format("{}wavelength={}", options.empty() ? "" : ",", wavelength);
+    return options;
 }
 
 void addFacts(BsdfSelection& selection, const BsdfDocument& document) {
@@ -49,7 +107,8 @@ void addFacts(BsdfSelection& selection, const BsdfDocument& document) {
     std::int64_t transmission = 0;
     for (const BsdfBlock& block : document.blocks()) {
         const bool used = &block == selection.main || &block == selection.colour[0] ||
-                          &block == selection.colour[1];
+                          &block == selection.colour[1] ||
+                          std::ranges::find(selection.spectrum, &block) != selection.spectrum.end();
         if (used) continue;
         const bool through =
             block.direction.size() >= 12 &&
@@ -84,24 +143,26 @@ Eigen::Matrix3d rgbToXyz() {
 
 }  // namespace
 
-BsdfSelection selectBlocks(const BsdfDocument& document, BsdfSide side,
+BsdfSelection selectBlocks(const BsdfDocument& document, std::optional<BsdfSide> side,
                            std::string_view wavelength) {
     BsdfSelection selection;
-    selection.side = side;
-    selection.main = findBlock(document, side, wavelength);
-    if (!selection.main) throw absent(document, side, wavelength);
-    selection.wavelength = selection.main->wavelength;
+    const bool front =
+        side != BsdfSide::back && takeSide(selection, document, BsdfSide::front, wavelength);
+    const bool any = front || (side != BsdfSide::front &&
+                               takeSide(selection, document, BsdfSide::back, wavelength));
+    if (!any) throw absent(document, side, wavelength);
+    const bool spectral = !selection.spectrum.empty();
+    selection.wavelength = !spectral ? selection.main->wavelength
+                           : selection.spectrum.size() == 1
+                               ? selection.main->wavelength
+                               : fmt::format("{} wavelengths", selection.spectrum.size());
     selection.name = document.where();
-    const bool visible = sameWord(wavelength, "visible");
-    std::string options = side == BsdfSide::back ? "side=back" : "";
-    if (!visible) {
-        options += fmt::format("{}wavelength={}", options.empty() ? "" : ",", wavelength);
-    }
-    if (!options.empty()) selection.name += ":" + options;
-    if (visible) {
+    if (const std::string options = optionsOf(selection, wavelength); !options.empty())
+        selection.name += ":" + options;
+    if (!spectral && sameWord(selection.main->wavelength, "visible")) {
         const bool tree = document.isTree();
-        selection.colour = {findBlock(document, side, tree ? "CIE-u" : "CIE-X"),
-                            findBlock(document, side, tree ? "CIE-v" : "CIE-Z")};
+        selection.colour = {findBlock(document, selection.side, tree ? "CIE-u" : "CIE-X"),
+                            findBlock(document, selection.side, tree ? "CIE-v" : "CIE-Z")};
         if (!selection.colour[0] || !selection.colour[1]) selection.colour = {};
     }
     addFacts(selection, document);

@@ -4,6 +4,7 @@
 #include <hshfit/brdf/brdf.h>
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,8 @@ struct BsdfSelection {
     const BsdfBlock* main = nullptr;
     /// CIE-X and CIE-Z for a matrix, CIE-u and CIE-v for a tree; null: grey.
     std::array<const BsdfBlock*, 2> colour{};
+    /// Blocks for one wavelength each, ascending, `main` the first; empty: a part of the spectrum.
+    std::vector<const BsdfBlock*> spectrum;
     double tolerance = 1e-2;  ///< of quadrature: f is a step function
     std::vector<Fact> facts;  ///< format, side, unused blocks, …
     std::string corrupt;      ///< message of checkIntact(); empty: none
@@ -34,6 +37,7 @@ struct BsdfSelection {
     void forgetBlocks() {
         main = nullptr;
         colour = {};
+        spectrum.clear();
     }
     bool coloured() const { return colour[0] != nullptr; }
     /// x in the file's frame.
@@ -43,9 +47,12 @@ struct BsdfSelection {
     }
 };
 
-/// Finds the blocks for the side and the part of the spectrum ("visible": with colours if the file
-/// has them). Throws InputError for missing blocks, naming those in the file, and for duplicates.
-BsdfSelection selectBlocks(const BsdfDocument& document, BsdfSide side,
+/// Finds the blocks of a reflection. Without a side it is the front's, or the back's where the file
+/// has no other. `wavelength`: a word of the file ("visible": with colours if the file has them), a
+/// wavelength in nm, "spectrum" for all blocks of single wavelengths, or empty: visible if the
+/// file has it, else the spectrum. Throws InputError for missing blocks, naming those in the file,
+/// and for duplicates.
+BsdfSelection selectBlocks(const BsdfDocument& document, std::optional<BsdfSide> side,
                            std::string_view wavelength);
 
 /// Linear RGB of CIE XYZ with the primaries of Rec. 709 and the white of equal energy, which these

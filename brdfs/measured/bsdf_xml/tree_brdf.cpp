@@ -21,6 +21,14 @@ TreeBrdf::TreeBrdf(const BsdfDocument& document, BsdfSelection selection)
         for (const BsdfBlock* block : selection_.colour) addTree(document, *block);
         channels_ = Channels::rgb();
     }
+    if (!selection_.spectrum.empty()) {
+        std::vector<double> nanometres;
+        for (const BsdfBlock* block : selection_.spectrum) {
+            nanometres.push_back(block->nanometres);
+            if (block != selection_.main) addTree(document, *block);
+        }
+        channels_ = Channels::spectral(std::move(nanometres));
+    }
     selection_.forgetBlocks();
     findLaws();
 }
@@ -141,8 +149,9 @@ void TreeBrdf::eval(const Direction& wo, DirectionBatch wi, double* out) const {
         }
         const TensorTree::Point point = pointFor(wo, wi.x[k], wi.y[k]);
         const double y = trees_[0].at(point);
-        if (count == 1) {
+        if (channels_.kind != Channels::Kind::rgb) {
             out[k] = y;
+            for (std::size_t c = 1; c < count; ++c) out[c * wi.count + k] = trees_[c].at(point);
             continue;
         }
         const std::array<double, 3> rgb = rgbOfYuv(y, trees_[1].at(point), trees_[2].at(point));

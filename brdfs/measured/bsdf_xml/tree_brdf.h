@@ -18,9 +18,9 @@ namespace hshfit::brdfs {
 /// Half of the cube of rank 3 has no directions. A mirror lies on the diagonal of rank 4.
 ///
 /// Negative values are taken as 0, as in Radiance. So are NaN and infinite values, for which
-/// checkIntact() throws InputError. With trees for CIE u' and v' the BRDF is RGB. Laws are
-/// claimed if the tree has them exactly. Rank 3 never claims reciprocity, and a coloured tree
-/// never claims conservation of energy.
+/// checkIntact() throws InputError. With trees for CIE u' and v' the BRDF is RGB, with trees for
+/// wavelengths spectral. Laws are claimed if the trees have them exactly. Rank 3 never claims
+/// reciprocity, and several trees never claim conservation of energy.
 class TreeBrdf : public MeasuredBrdf, public HasSteps {
 public:
     /// Throws InputError as TensorTree does.
@@ -47,7 +47,7 @@ public:
     Census census() const override { return census_; }
     std::vector<Axis> axes() const override;
 
-    /// The tree of f, or of luminance.
+    /// The tree of f, of luminance, or of the first wavelength.
     const TensorTree& tree() const { return trees_[0]; }
     /// Directional-hemispherical reflectances as the file defines them: pi times the average over
     /// the outgoing square, for each cell of the finest grid of incident coordinates, first
@@ -63,7 +63,7 @@ private:
     Channels channels_;
     Laws laws_;
     Census census_;
-    std::vector<TensorTree> trees_;       ///< one, or Y, u' and v'
+    std::vector<TensorTree> trees_;       ///< one, Y, u' and v', or one a wavelength
     std::vector<unsigned char> missing_;  ///< leaves of the first that are NaN or infinite
 };
 
