@@ -137,7 +137,8 @@ const Format& formatByExtension(const std::string& path, std::span<const unsigne
     const bool plain = isPlainText(head);
     const Format* misfit = nullptr;
     for (const Format& format : formats()) {
-        if (format.extension != extension) continue;
+        // FRED's extension is that of any text.
+        if (format.extension != extension || extension == ".txt") continue;
         const bool either =
             std::ranges::find(eitherFormats, format.name) != std::end(eitherFormats);
         const bool text = std::ranges::find(textFormats, format.name) != std::end(textFormats);

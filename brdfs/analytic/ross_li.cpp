@@ -20,7 +20,6 @@ namespace {
 using namespace HWY_NAMESPACE;
 
 HWY_EXPORT(evalRossLi);
-HWY_EXPORT(rossLiColumns);
 
 constexpr Laws claims{
     .nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true};
@@ -36,7 +35,8 @@ void evalByVectors(const RossLiShape& shape, const TermBatch& batch) {
     HWY_DYNAMIC_DISPATCH(evalRossLi)(shape, batch);
 }
 
-/// The hot spot, where wi nears wo, is a cusp of K_geo.
+/// The hot spot, where wi nears wo, is a cusp of K_geo. Without columns: f is cut at 0, so that it
+/// is not linear in its weights, and fits take differences.
 class RossLi final
     : public ShapedBrdf<RossLiShape, evalByVectors, evalAll<double, RossLiTerms, RossLiShape>> {
 public:
@@ -53,19 +53,14 @@ std::unique_ptr<Brdf> make(const Parameters& p) {
     return std::make_unique<RossLi>(p);
 }
 
-std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
-    return HWY_DYNAMIC_DISPATCH(rossLiColumns)(request);
-}
-
-Parameter kernel(std::string_view name, std::string_view help, double fallback) {
+Parameter kernel(std::string_view name, std::string_view help, double fallback, FitRange fit) {
     return {.name = name,
             .help = help,
             .kind = Parameter::Kind::colour,
             .fallback = fallback,
             .min = 0,
             .max = 1e6,
-            .fit = {{.low = 0, .high = 1}},
-            .linear = alwaysLinear};
+            .fit = {fit}};
 }
 
 }  // namespace
@@ -75,9 +70,12 @@ const Model& rossLiModel() {
         .name = "ross-li",
         .help = "land surfaces as MODIS has them: RossThick and LiSparse kernels",
         .source = "Lucht, Schaaf & Strahler 2000, 10.1109/36.841980",
-        .parameters = {kernel("iso", "weight of the isotropic kernel, 1", 1),
-                       kernel("vol", "weight of RossThick, scatter in a canopy", 0),
-                       kernel("geo", "weight of LiSparse, crowns and their shadows", 0),
+        .parameters = {kernel("iso", "weight of the isotropic kernel, 1", 1,
+                              {.low = 0.05, .high = 1}),
+                       kernel("vol", "weight of RossThick, scatter in a canopy", 0,
+                              {.low = 0, .high = 0.3}),
+                       kernel("geo", "weight of LiSparse, crowns and their shadows", 0,
+                              {.low = 0, .high = 0.05}),
                        {.name = "hb",
                         .help = "height of the crowns' centres over their half height",
                         .fallback = 2,
@@ -89,8 +87,7 @@ const Model& rossLiModel() {
                         .min = 0.1,
                         .max = 10}},
         .laws = claims,
-        .make = make,
-        .columns = columns};
+        .make = make};
     return model;
 }
 

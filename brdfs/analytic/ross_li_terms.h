@@ -83,9 +83,6 @@ struct RossLiFormula {
 void evalRossLi(const RossLiShape& shape, const TermBatch& batch) {
     evalLanes<RossLiTerms>(shape, batch);
 }
-std::unique_ptr<ModelColumns> rossLiColumns(const ColumnRequest& request) {
-    return columnsOf<RossLiFormula, 0>(request);
-}
 
 }  // namespace hshfit::brdfs::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
