@@ -1,10 +1,12 @@
 #include <hshfit/representation/halfway/halfway.h>
 
 #include <hshfit/error.h>
+#include <hshfit/representation/halfway/internal/halfway_kernel.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hshfit::inline representation::inline halfway {
@@ -75,30 +77,21 @@ HalfwayExpansion::HalfwayExpansion(const Representation& representation)
              fmt::format("the halfway form needs {} ceilings of finite numbers, one a channel",
                          channels_));
     }
+    layout_ = std::make_shared<const HalfwayLayout<double>>(halfwayLayoutOf<double>(*this));
 }
 
 void HalfwayExpansion::evaluate(const Direction& wo, DirectionBatch wi, double* out) const {
-    std::vector<double> products(terms_.size()), sums(2 * channels_);
-    for (std::size_t k = 0; k < wi.count; ++k) {
-        if (!(wi.z[k] > 0 && wo.z > 0)) {
-            for (std::size_t c = 0; c < channels_; ++c) out[c * wi.count + k] = 0;
-            continue;
-        }
-        const HalfwayPoint point = axes_.at({wi.x[k], wi.y[k], wi.z[k]}, wo);
-        terms_.evaluate(point, products.data());
-        std::ranges::fill(sums, 0.0);
-        for (std::size_t t = 0; t < products.size(); ++t) {
-            const std::size_t part = t < terms_.smooth() ? 0 : 1;
-            for (std::size_t c = 0; c < channels_; ++c) {
-                sums[2 * c + part] += values_[t * channels_ + c] * products[t];
-            }
-        }
-        for (std::size_t c = 0; c < channels_; ++c) {
-            const HalfwayCeiling& ceiling = ceilings_[c];
-            const double f = std::exp(std::min(sums[2 * c], ceiling.smooth)) +
-                             point.weight * std::exp(std::min(sums[2 * c + 1], ceiling.lobe));
-            out[c * wi.count + k] = std::min(f, ceiling.top);
-        }
+    constexpr std::size_t most = 64;
+    std::array<std::array<double, most>, 3> one;
+    const std::size_t filled = std::min(most, wi.count);
+    std::fill_n(one[0].begin(), filled, wo.x);
+    std::fill_n(one[1].begin(), filled, wo.y);
+    std::fill_n(one[2].begin(), filled, wo.z);
+    for (std::size_t first = 0; first < wi.count; first += most) {
+        const std::size_t count = std::min(most, wi.count - first);
+        evaluateHalfwayPairs(*layout_, {wi.x + first, wi.y + first, wi.z + first, count},
+                             {one[0].data(), one[1].data(), one[2].data(), count}, wi.count,
+                             out + first);
     }
 }
 

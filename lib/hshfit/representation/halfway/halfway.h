@@ -13,6 +13,9 @@
 
 namespace hshfit::inline representation::inline halfway {
 
+template <class T>
+struct HalfwayLayout;
+
 /// The halfway form in double precision, without `added`: a smooth part and a lobe, each positive,
 ///     f = min(exp(min(A, a)) + L exp(min(B, b)), t),
 /// where A and B are sums of coefficients times the smooth terms and those of the lobe
@@ -26,6 +29,10 @@ public:
     const HalfwayTerms& terms() const { return terms_; }
     const HalfwayAxes& axes() const { return axes_; }
     const std::vector<HalfwayCeiling>& ceilings() const { return ceilings_; }
+    std::size_t channels() const { return channels_; }
+    double value(std::size_t term, std::size_t channel) const {
+        return values_[term * channels_ + channel];
+    }
 
     /// Laid out as for `Brdf::eval`: out[channel * wi.count + k], 1/sr, 0 below the horizon.
     void evaluate(const Direction& wo, DirectionBatch wi, double* out) const;
@@ -36,6 +43,7 @@ private:
     std::size_t channels_;
     std::vector<double> values_;  ///< [term][channel]
     std::vector<HalfwayCeiling> ceilings_;
+    std::shared_ptr<const HalfwayLayout<double>> layout_;  ///< the same, for vector code
 };
 
 /// More terms a channel than that take too long to fit: time goes with the square of their number.

@@ -35,12 +35,12 @@ HalfwayRows rowsOf(const HalfwayTerms& terms, int powers) {
     return rows;
 }
 
-HalfwayLayout::Run runOf(const HalfwayRun& run, const HalfwayRows& rows) {
+HalfwayRunLayout runOf(const HalfwayRun& run, const HalfwayRows& rows) {
     const HalfwayTerm& t = run.term;
-    HalfwayLayout::Run out{.first = t.lobe ? rows.x : std::uint16_t{0},
-                           .length = static_cast<std::uint16_t>(run.length),
-                           .factors = {},
-                           .factorCount = 0};
+    HalfwayRunLayout out{.first = t.lobe ? rows.x : std::uint16_t{0},
+                         .length = static_cast<std::uint16_t>(run.length),
+                         .factors = {},
+                         .factorCount = 0};
     const auto times = [&](int row) {
         out.factors[out.factorCount++] = static_cast<std::uint16_t>(row);
     };
@@ -54,13 +54,29 @@ HalfwayLayout::Run runOf(const HalfwayRun& run, const HalfwayRows& rows) {
     return out;
 }
 
-HalfwayLayout layoutOf(const Representation& r, const HalfwayExpansion& expansion) {
+class HalfwayPairs final : public PairEvaluator {
+public:
+    explicit HalfwayPairs(const Representation& r)
+        : layout_(halfwayLayoutOf<float>(HalfwayExpansion(r))) {}
+
+    void evaluate(DirectionBatch wi, DirectionBatch wo, float* out) const override {
+        evaluateHalfwayPairs(layout_, wi, wo, wi.count, out);
+    }
+
+private:
+    HalfwayLayout<float> layout_;
+};
+
+}  // namespace
+
+template <class T>
+HalfwayLayout<T> halfwayLayoutOf(const HalfwayExpansion& expansion) {
     const HalfwayTerms& terms = expansion.terms();
-    HalfwayLayout layout;
+    HalfwayLayout<T> layout;
     layout.counts = terms.counts();
     layout.axes = expansion.axes().constants();
     layout.harmonics = terms.harmonics();
-    layout.channels = r.head.channels.count();
+    layout.channels = expansion.channels();
     for (const HalfwayRun& run : terms.runs())
         layout.powers = std::max(layout.powers, run.term.power());
     layout.rows = rowsOf(terms, layout.powers);
@@ -68,42 +84,29 @@ HalfwayLayout layoutOf(const Representation& r, const HalfwayExpansion& expansio
         layout.runs.push_back(runOf(run, layout.rows));
         layout.smoothRuns += run.term.lobe ? 0 : 1;
     }
-    const std::vector<double>& values = r.as<HalfwayArray>()->halfway.values;
     for (std::size_t first = 0; first < layout.channels; first += 3) {
         const std::size_t last = std::min(layout.channels, first + 3);
         for (const std::size_t t : terms.position()) {
             for (std::size_t c = first; c < last; ++c) {
-                const double value = values[c * terms.size() + t] * norm(terms.list()[t]);
-                layout.values.push_back(static_cast<float>(value));
+                const double value = expansion.value(t, c) * norm(terms.list()[t]);
+                layout.values.push_back(static_cast<T>(value));
             }
         }
     }
     for (const HalfwayCeiling& ceiling : expansion.ceilings()) {
         for (const double value : {ceiling.smooth, ceiling.lobe, ceiling.top})
-            layout.ceilings.push_back(static_cast<float>(value));
+            layout.ceilings.push_back(static_cast<T>(value));
     }
     const HalfwayCounts& counts = terms.counts();
     const int most = std::max({counts.mean, counts.x, counts.v, counts.product});
     for (int n = 0; n < most; ++n) {
-        layout.steps.push_back(static_cast<float>((2.0 * n + 1) / (n + 1)));
-        layout.steps.push_back(static_cast<float>(n / (n + 1.0)));
+        layout.steps.push_back(static_cast<T>((2.0 * n + 1) / (n + 1)));
+        layout.steps.push_back(static_cast<T>(n / (n + 1.0)));
     }
     return layout;
 }
-
-class HalfwayPairs final : public PairEvaluator {
-public:
-    explicit HalfwayPairs(const Representation& r) : layout_(layoutOf(r, HalfwayExpansion(r))) {}
-
-    void evaluate(DirectionBatch wi, DirectionBatch wo, float* out) const override {
-        evaluateHalfwayPairs(layout_, wi, wo, wi.count, out);
-    }
-
-private:
-    HalfwayLayout layout_;
-};
-
-}  // namespace
+template HalfwayLayout<float> halfwayLayoutOf(const HalfwayExpansion&);
+template HalfwayLayout<double> halfwayLayoutOf(const HalfwayExpansion&);
 
 std::unique_ptr<PairEvaluator> halfwayPairEvaluator(const Representation& representation) {
     return std::make_unique<HalfwayPairs>(representation);

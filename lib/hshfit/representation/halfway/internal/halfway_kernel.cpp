@@ -17,86 +17,97 @@ namespace hshfit::inline representation::inline halfway::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using Lanes = hn::ScalableTag<float>;
-using Vector = hn::Vec<Lanes>;
+template <class T>
+using Lanes = hn::ScalableTag<T>;
+template <class T>
+using Vector = hn::Vec<Lanes<T>>;
 
 /// Vectors of pairs that share every coefficient loaded.
 constexpr std::size_t unroll = 2;
-constexpr std::size_t block = unroll * hn::MaxLanes(Lanes());
+template <class T>
+constexpr std::size_t block = unroll* hn::MaxLanes(Lanes<T>());
 
-/// One block's directions in single precision.
+/// One block's directions.
+template <class T>
 struct Pairs {
-    HWY_ALIGN float values[6][block];
+    HWY_ALIGN T values[6][block<T>];
 
     void load(const DirectionBatch& wi, const DirectionBatch& wo, std::size_t first) {
         const double* from[] = {wi.x, wi.y, wi.z, wo.x, wo.y, wo.z};
-        const std::size_t count = std::min(block, wi.count - first);
+        const std::size_t count = std::min(block<T>, wi.count - first);
         for (std::size_t c = 0; c < 6; ++c) {
             for (std::size_t k = 0; k < count; ++k) {
-                values[c][k] = static_cast<float>(from[c][first + k]);
+                values[c][k] = static_cast<T>(from[c][first + k]);
             }
-            for (std::size_t k = count; k < block; ++k) values[c][k] = c % 3 == 2 ? 1.0F : 0.0F;
+            for (std::size_t k = count; k < block<T>; ++k) values[c][k] = c % 3 == 2 ? T{1} : T{0};
         }
     }
 };
 
-Vector set(double value) {
-    return hn::Set(Lanes(), static_cast<float>(value));
+template <class T>
+Vector<T> set(double value) {
+    return hn::Set(Lanes<T>(), static_cast<T>(value));
 }
 
 /// Rows out, out + block, … at one vector of pairs.
-void legendre(const float* steps, Vector x, int count, float* out) {
-    const Lanes lanes;
-    const Vector one = set(1), t = hn::Sub(hn::Add(x, x), one);
-    Vector before = hn::Zero(lanes), now = one;
+template <class T>
+void legendre(const T* steps, Vector<T> x, int count, T* out) {
+    const Lanes<T> lanes;
+    const Vector<T> one = set<T>(1), t = hn::Sub(hn::Add(x, x), one);
+    Vector<T> before = hn::Zero(lanes), now = one;
     for (int n = 0; n < count; ++n) {
-        hn::Store(now, lanes, out + block * n);
-        const Vector next = hn::NegMulAdd(hn::Set(lanes, steps[2 * n + 1]), before,
-                                          hn::Mul(hn::Mul(hn::Set(lanes, steps[2 * n]), t), now));
+        hn::Store(now, lanes, out + block<T> * n);
+        const Vector<T> next =
+            hn::NegMulAdd(hn::Set(lanes, steps[2 * n + 1]), before,
+                          hn::Mul(hn::Mul(hn::Set(lanes, steps[2 * n]), t), now));
         before = now;
         now = next;
     }
 }
 
-void harmonics(Vector cosine, Vector sine, Vector scale, int count, float* out) {
-    const Lanes lanes;
-    Vector c = scale, s = hn::Zero(lanes);
+template <class T>
+void harmonics(Vector<T> cosine, Vector<T> sine, Vector<T> scale, int count, T* out) {
+    const Lanes<T> lanes;
+    Vector<T> c = scale, s = hn::Zero(lanes);
     for (int q = 0; q < count; ++q) {
-        const Vector turned = hn::NegMulAdd(s, sine, hn::Mul(c, cosine));
+        const Vector<T> turned = hn::NegMulAdd(s, sine, hn::Mul(c, cosine));
         s = hn::MulAdd(c, sine, hn::Mul(s, cosine));
         c = turned;
-        hn::Store(c, lanes, out + 2 * block * q);
-        hn::Store(s, lanes, out + 2 * block * q + block);
+        hn::Store(c, lanes, out + 2 * block<T> * q);
+        hn::Store(s, lanes, out + 2 * block<T> * q + block<T>);
     }
 }
 
-Vector cubeRoot(Vector x) {
-    const Lanes lanes;
-    return hn::Exp(lanes, hn::Mul(hn::Log(lanes, x), set(1.0 / 3)));
+template <class T>
+Vector<T> cubeRoot(Vector<T> x) {
+    const Lanes<T> lanes;
+    return hn::Exp(lanes, hn::Mul(hn::Log(lanes, x), set<T>(1.0 / 3)));
 }
 
 /// HalfwayAxes::at, and the functions along each axis, for the vector of pairs at k.
-void fillTable(const HalfwayLayout& layout, const Pairs& pairs, std::size_t k, float* table) {
-    const Lanes lanes;
+template <class T>
+void fillTable(const HalfwayLayout<T>& layout, const Pairs<T>& pairs, std::size_t k, T* table) {
+    const Lanes<T> lanes;
     const auto at = [&](int c) { return hn::Load(lanes, pairs.values[c] + k); };
-    const auto row = [&](std::uint16_t n) { return table + block * n + k; };
+    const auto row = [&](std::uint16_t n) { return table + block<T> * n + k; };
     const HalfwayAxes::Constants& constants = layout.axes;
-    const Vector zero = hn::Zero(lanes), one = set(1), half = set(0.5), tiny = set(1e-30);
+    const Vector<T> zero = hn::Zero(lanes), one = set<T>(1), half = set<T>(0.5),
+                    tiny = set<T>(1e-30);
     const auto above = hn::And(hn::Gt(at(2), zero), hn::Gt(at(5), zero));
     hn::Store(hn::IfThenElseZero(above, one), lanes, row(layout.rows.above));
-    const Vector mi = hn::Max(at(2), tiny), mo = hn::Max(at(5), tiny), sum = hn::Add(mi, mo);
+    const Vector<T> mi = hn::Max(at(2), tiny), mo = hn::Max(at(5), tiny), sum = hn::Add(mi, mo);
 
-    const Vector hx = hn::Add(at(0), at(3)), hy = hn::Add(at(1), at(4));
-    const Vector across = hn::MulAdd(hx, hx, hn::Mul(hy, hy));
-    const Vector square = hn::Max(hn::MulAdd(sum, sum, across), tiny);
-    const Vector gx = hn::MulAdd(set(constants.xx), hx, hn::Mul(set(constants.xy), hy));
-    const Vector gy = hn::MulAdd(set(constants.yx), hx, hn::Mul(set(constants.yy), hy));
-    const Vector stretched = hn::MulAdd(gx, gx, hn::Mul(gy, gy));
-    const Vector q = hn::Div(stretched, square);
-    const Vector x = hn::Mul(hn::Log1p(lanes, q), set(constants.perLog));
-    const Vector ei = cubeRoot(mi), eo = cubeRoot(mo);
+    const Vector<T> hx = hn::Add(at(0), at(3)), hy = hn::Add(at(1), at(4));
+    const Vector<T> across = hn::MulAdd(hx, hx, hn::Mul(hy, hy));
+    const Vector<T> square = hn::Max(hn::MulAdd(sum, sum, across), tiny);
+    const Vector<T> gx = hn::MulAdd(set<T>(constants.xx), hx, hn::Mul(set<T>(constants.xy), hy));
+    const Vector<T> gy = hn::MulAdd(set<T>(constants.yx), hx, hn::Mul(set<T>(constants.yy), hy));
+    const Vector<T> stretched = hn::MulAdd(gx, gx, hn::Mul(gy, gy));
+    const Vector<T> q = hn::Div(stretched, square);
+    const Vector<T> x = hn::Mul(hn::Log1p(lanes, q), set<T>(constants.perLog));
+    const Vector<T> ei = cubeRoot<T>(mi), eo = cubeRoot<T>(mo);
 
-    const float* steps = layout.steps.data();
+    const T* steps = layout.steps.data();
     legendre(steps, hn::Mul(half, hn::Add(ei, eo)), layout.counts.mean, row(0));
     legendre(steps, x, layout.counts.x, row(layout.rows.x));
     legendre(steps, hn::Min(one, hn::Mul(half, hn::Sqrt(square))), layout.counts.v,
@@ -105,54 +116,55 @@ void fillTable(const HalfwayLayout& layout, const Pairs& pairs, std::size_t k, f
     hn::Store(hn::Sub(eo, ei), lanes, row(layout.rows.gap));
     hn::Store(hn::NegMulAdd(at(1), at(3), hn::Mul(at(0), at(4))), lanes, row(layout.rows.handed));
 
-    const Vector sine = hn::Sqrt(hn::Div(across, square));
-    const Vector kappa = hn::Div(hn::Sub(mo, mi), hn::MulAdd(set(2), sine, set(1e-9)));
-    Vector power = x;
+    const Vector<T> sine = hn::Sqrt(hn::Div(across, square));
+    const Vector<T> kappa = hn::Div(hn::Sub(mo, mi), hn::MulAdd(set<T>(2), sine, set<T>(1e-9)));
+    Vector<T> power = x;
     for (int n = 0; n < layout.powers; ++n) {
         power = hn::Mul(power, kappa);
-        hn::Store(power, lanes, row(layout.rows.powers) + block * n);
+        hn::Store(power, lanes, row(layout.rows.powers) + block<T> * n);
     }
     if (layout.harmonics > 0) {
-        const Vector radius = hn::Sqrt(stretched);
+        const Vector<T> radius = hn::Sqrt(stretched);
         const auto pole = hn::Le(radius, tiny);
-        const Vector inverse = hn::Div(one, hn::Max(radius, tiny));
+        const Vector<T> inverse = hn::Div(one, hn::Max(radius, tiny));
         harmonics(hn::IfThenElse(pole, one, hn::Mul(gx, inverse)),
                   hn::IfThenZeroElse(pole, hn::Mul(gy, inverse)), x, layout.harmonics,
                   row(layout.rows.harmonics));
     }
-    const Vector tail = hn::Add(one, q);
-    const Vector denominator = hn::MulAdd(mi, mo, hn::MulAdd(half, sum, set(constants.shelf)));
-    hn::Store(hn::Div(set(constants.amplitude), hn::Mul(hn::Mul(tail, tail), denominator)), lanes,
-              row(layout.rows.weight));
+    const Vector<T> tail = hn::Add(one, q);
+    const Vector<T> denominator =
+        hn::MulAdd(mi, mo, hn::MulAdd(half, sum, set<T>(constants.shelf)));
+    hn::Store(hn::Div(set<T>(constants.amplitude), hn::Mul(hn::Mul(tail, tail), denominator)),
+              lanes, row(layout.rows.weight));
 }
 
 /// The sums of runs first .. last - 1 at the vectors from k on; `value` moves on.
-template <std::size_t Channels>
-void addRuns(const HalfwayLayout& layout, std::size_t first, std::size_t last, const float* table,
-             std::size_t k, const float*& value, Vector (&total)[Channels][unroll]) {
-    const Lanes lanes;
+template <std::size_t Channels, class T>
+void addRuns(const HalfwayLayout<T>& layout, std::size_t first, std::size_t last, const T* table,
+             std::size_t k, const T*& value, Vector<T> (&total)[Channels][unroll]) {
+    const Lanes<T> lanes;
     const std::size_t step = hn::Lanes(lanes);
     const auto load = [&](std::size_t row, std::size_t n) {
-        return hn::Load(lanes, table + block * row + k + n * step);
+        return hn::Load(lanes, table + block<T> * row + k + n * step);
     };
     for (std::size_t r = first; r < last; ++r) {
-        const HalfwayLayout::Run& run = layout.runs[r];
-        Vector part[Channels][unroll];
+        const typename HalfwayLayout<T>::Run& run = layout.runs[r];
+        Vector<T> part[Channels][unroll];
         for (auto& row : part) {
             for (auto& p : row) p = hn::Zero(lanes);
         }
         for (std::size_t i = 0; i < run.length; ++i, value += Channels) {
-            Vector along[unroll];
+            Vector<T> along[unroll];
             for (std::size_t n = 0; n < unroll; ++n) along[n] = load(run.first + i, n);
             for (std::size_t c = 0; c < Channels; ++c) {
-                const Vector coefficient = hn::Set(lanes, value[c]);
+                const Vector<T> coefficient = hn::Set(lanes, value[c]);
                 for (std::size_t n = 0; n < unroll; ++n) {
                     part[c][n] = hn::MulAdd(coefficient, along[n], part[c][n]);
                 }
             }
         }
         for (std::size_t n = 0; n < unroll; ++n) {
-            Vector factor = load(run.factors[0], n);
+            Vector<T> factor = load(run.factors[0], n);
             for (std::size_t m = 1; m < run.factorCount; ++m)
                 factor = hn::Mul(factor, load(run.factors[m], n));
             for (std::size_t c = 0; c < Channels; ++c) {
@@ -162,34 +174,35 @@ void addRuns(const HalfwayLayout& layout, std::size_t first, std::size_t last, c
     }
 }
 
-template <std::size_t Channels>
-void sumChannels(const HalfwayLayout& layout, const float* table, std::size_t firstChannel,
-                 const float* values, float (*out)[block]) {
-    const Lanes lanes;
+template <std::size_t Channels, class T>
+void sumChannels(const HalfwayLayout<T>& layout, const T* table, std::size_t firstChannel,
+                 const T* values, T (*out)[block<T>]) {
+    const Lanes<T> lanes;
     const std::size_t step = hn::Lanes(lanes);
-    for (std::size_t k = 0; k < block; k += unroll * step) {
-        const float* value = values;
-        Vector total[2][Channels][unroll];
+    for (std::size_t k = 0; k < block<T>; k += unroll * step) {
+        const T* value = values;
+        Vector<T> total[2][Channels][unroll];
         for (auto& part : total) {
             for (auto& row : part) {
                 for (auto& t : row) t = hn::Zero(lanes);
             }
         }
-        addRuns<Channels>(layout, 0, layout.smoothRuns, table, k, value, total[0]);
-        addRuns<Channels>(layout, layout.smoothRuns, layout.runs.size(), table, k, value, total[1]);
+        addRuns<Channels, T>(layout, 0, layout.smoothRuns, table, k, value, total[0]);
+        addRuns<Channels, T>(layout, layout.smoothRuns, layout.runs.size(), table, k, value,
+                             total[1]);
         for (std::size_t c = 0; c < Channels; ++c) {
-            const float* ceilings = layout.ceilings.data() + 3 * (firstChannel + c);
+            const T* ceilings = layout.ceilings.data() + 3 * (firstChannel + c);
             for (std::size_t n = 0; n < unroll; ++n) {
                 const std::size_t place = k + n * step;
                 const auto load = [&](std::uint16_t row) {
-                    return hn::Load(lanes, table + block * row + place);
+                    return hn::Load(lanes, table + block<T> * row + place);
                 };
                 const auto part = [&](std::size_t which) {
                     return hn::Exp(lanes,
                                    hn::Min(total[which][c][n], hn::Set(lanes, ceilings[which])));
                 };
-                const Vector f = hn::Min(hn::MulAdd(load(layout.rows.weight), part(1), part(0)),
-                                         hn::Set(lanes, ceilings[2]));
+                const Vector<T> f = hn::Min(hn::MulAdd(load(layout.rows.weight), part(1), part(0)),
+                                            hn::Set(lanes, ceilings[2]));
                 const auto above = hn::Gt(load(layout.rows.above), hn::Zero(lanes));
                 hn::Store(hn::IfThenElseZero(above, f), lanes, out[c] + place);
             }
@@ -197,28 +210,27 @@ void sumChannels(const HalfwayLayout& layout, const float* table, std::size_t fi
     }
 }
 
-}  // namespace
-
-void EvaluateHalfway(const HalfwayLayout& layout, const DirectionBatch& wi,
-                     const DirectionBatch& wo, std::size_t stride, float* out) {
-    const auto table = hwy::AllocateAligned<float>(block * layout.rows.count);
-    Pairs pairs;
-    HWY_ALIGN float sums[3][block];
+template <class T>
+void evaluateHalfway(const HalfwayLayout<T>& layout, const DirectionBatch& wi,
+                     const DirectionBatch& wo, std::size_t stride, T* out) {
+    const auto table = hwy::AllocateAligned<T>(block<T> * layout.rows.count);
+    Pairs<T> pairs;
+    HWY_ALIGN T sums[3][block<T>];
     const std::size_t perChannel = layout.values.size() / std::max<std::size_t>(layout.channels, 1);
-    for (std::size_t first = 0; first < wi.count; first += block) {
+    for (std::size_t first = 0; first < wi.count; first += block<T>) {
         pairs.load(wi, wo, first);
-        for (std::size_t k = 0; k < block; k += hn::Lanes(Lanes()))
+        for (std::size_t k = 0; k < block<T>; k += hn::Lanes(Lanes<T>()))
             fillTable(layout, pairs, k, table.get());
-        const std::size_t count = std::min(block, wi.count - first);
+        const std::size_t count = std::min(block<T>, wi.count - first);
         for (std::size_t c = 0; c < layout.channels; c += 3) {
-            const float* values = layout.values.data() + c * perChannel;
+            const T* values = layout.values.data() + c * perChannel;
             const std::size_t group = std::min<std::size_t>(3, layout.channels - c);
             if (group == 3) {
-                sumChannels<3>(layout, table.get(), c, values, sums);
+                sumChannels<3, T>(layout, table.get(), c, values, sums);
             } else if (group == 2) {
-                sumChannels<2>(layout, table.get(), c, values, sums);
+                sumChannels<2, T>(layout, table.get(), c, values, sums);
             } else {
-                sumChannels<1>(layout, table.get(), c, values, sums);
+                sumChannels<1, T>(layout, table.get(), c, values, sums);
             }
             for (std::size_t n = 0; n < group; ++n) {
                 std::copy_n(sums[n], count, out + (c + n) * stride + first);
@@ -227,17 +239,34 @@ void EvaluateHalfway(const HalfwayLayout& layout, const DirectionBatch& wi,
     }
 }
 
+}  // namespace
+
+void HalfwayInSingle(const HalfwayLayout<float>& layout, const DirectionBatch& wi,
+                     const DirectionBatch& wo, std::size_t stride, float* out) {
+    evaluateHalfway(layout, wi, wo, stride, out);
+}
+void HalfwayInDouble(const HalfwayLayout<double>& layout, const DirectionBatch& wi,
+                     const DirectionBatch& wo, std::size_t stride, double* out) {
+    evaluateHalfway(layout, wi, wo, stride, out);
+}
+
 }  // namespace hshfit::inline representation::inline halfway::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace hshfit::inline representation::inline halfway {
 
-HWY_EXPORT(EvaluateHalfway);
+HWY_EXPORT(HalfwayInSingle);
+HWY_EXPORT(HalfwayInDouble);
 
-void evaluateHalfwayPairs(const HalfwayLayout& layout, const DirectionBatch& wi,
+void evaluateHalfwayPairs(const HalfwayLayout<float>& layout, const DirectionBatch& wi,
                           const DirectionBatch& wo, std::size_t stride, float* out) {
-    HWY_DYNAMIC_DISPATCH(EvaluateHalfway)(layout, wi, wo, stride, out);
+    HWY_DYNAMIC_DISPATCH(HalfwayInSingle)(layout, wi, wo, stride, out);
+}
+
+void evaluateHalfwayPairs(const HalfwayLayout<double>& layout, const DirectionBatch& wi,
+                          const DirectionBatch& wo, std::size_t stride, double* out) {
+    HWY_DYNAMIC_DISPATCH(HalfwayInDouble)(layout, wi, wo, stride, out);
 }
 
 }  // namespace hshfit::inline representation::inline halfway

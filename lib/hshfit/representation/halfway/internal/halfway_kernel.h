@@ -11,20 +11,26 @@
 
 namespace hshfit::inline representation::inline halfway {
 
+class HalfwayExpansion;
+
 /// The rows of a block's table, one for each function of its pairs: those of the mean from 0 on,
 /// then those of the other axes and the factors.
 struct HalfwayRows {
     std::uint16_t x, v, product, powers, harmonics, gap, handed, above, weight, count;
 };
 
+/// A run over i: its functions, and those that all of them are multiplied with.
+struct HalfwayRunLayout {
+    std::uint16_t first, length;           ///< the rows of its functions
+    std::array<std::uint16_t, 5> factors;  ///< rows of the functions that all have
+    std::uint16_t factorCount;
+};
+
 /// The halfway form laid out for vector code: runs over i, each with its coefficients for groups of
-/// up to three channels.
+/// up to three channels, in single or double precision.
+template <class T>
 struct HalfwayLayout {
-    struct Run {
-        std::uint16_t first, length;           ///< the rows of its functions
-        std::array<std::uint16_t, 5> factors;  ///< rows of the functions that all have
-        std::uint16_t factorCount;
-    };
+    using Run = HalfwayRunLayout;
     HalfwayCounts counts;
     HalfwayAxes::Constants axes;
     HalfwayRows rows;
@@ -34,15 +40,21 @@ struct HalfwayLayout {
     std::vector<Run> runs;
     std::size_t smoothRuns = 0;  ///< those of the smooth exponent, which come first
     /// [group of three channels][run][i][channel of the group]
-    std::vector<float> values;
-    std::vector<float> ceilings;  ///< [channel][smooth, lobe, top]
+    std::vector<T> values;
+    std::vector<T> ceilings;  ///< [channel][smooth, lobe, top]
     /// The recurrence of Legendre's polynomials, p_{n+1} = a_n t p_n - b_n p_{n-1}, [n] = {a, b}.
-    std::vector<float> steps;
+    std::vector<T> steps;
 };
+
+/// That of an expansion.
+template <class T>
+HalfwayLayout<T> halfwayLayoutOf(const HalfwayExpansion& expansion);
 
 /// f at pairs k < count, out[channel * stride + k]. Runs code for the best instruction set that the
 /// machine has.
-void evaluateHalfwayPairs(const HalfwayLayout& layout, const DirectionBatch& wi,
+void evaluateHalfwayPairs(const HalfwayLayout<float>& layout, const DirectionBatch& wi,
                           const DirectionBatch& wo, std::size_t stride, float* out);
+void evaluateHalfwayPairs(const HalfwayLayout<double>& layout, const DirectionBatch& wi,
+                          const DirectionBatch& wo, std::size_t stride, double* out);
 
 }  // namespace hshfit::inline representation::inline halfway
