@@ -193,6 +193,7 @@ TEST(CsvAttack, FieldsAreChecked) {
     refused("theta_i,theta_o,brdf,brf\n", {"2 columns of values"});
     refused("theta_i,theta_o,500nm,500nm\n", {"two columns for 500 nm"});
     refused("theta_i,theta_o,btdf\n", {"'btdf' is no BRDF"});
+    refused("theta_i,theta_o,phi_d,brdf\n", {"'phi_d'", "unknown kind"});
     refused("wi_x,wi_y,wi_z,wo_z,brdf\n", {"all of wi_x"});
     refused("theta_i,theta_o,brdf,sigma_500nm\n", {"sigma_NAME"});
     refused(names + "30,0,30,180\n", {"line 2", "4 cells", "5 columns"});

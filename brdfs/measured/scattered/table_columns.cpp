@@ -23,7 +23,7 @@ constexpr std::string_view thetaINames =
     "angleofincidence aoi incidentzenith incidencezenith incidentzenithangle incidentpolar "
     "incidentpolarangle zenithi zenithin srcz sourcezenith sourceangle sza solarzenith "
     "solarzenithangle sunzenith illuminationangle illuminationzenith lightangle lightzenith "
-    "thetainc thetaincident thetasrc thetal";
+    "thetainc thetaincident thetasrc thetal polarin polari";
 constexpr std::string_view phiINames =
     "phii phiin phi1 incidentazimuth incidenceazimuth azimuthi azimuthin srca sourceazimuth "
     "saa solarazimuth solarazimuthangle sunazimuth illuminationazimuth lightazimuth phiinc "
@@ -34,7 +34,8 @@ constexpr std::string_view thetaONames =
     "detectorangle detectorzenith receiverangle receiverzenith scatterangle scatteredangle "
     "scatterzenith scatterpolarangle reflectedangle reflectionangle reflectedzenith exitangle "
     "exitzenith exitzenithangle observationangle observerangle emissionangle outgoingangle "
-    "outgoingzenith zenitho zenithout zenithr thetareflected thetascatter thetaview thetadet";
+    "outgoingzenith zenitho zenithout zenithr thetareflected thetascatter thetaview thetadet "
+    "polarout polaro polarr";
 constexpr std::string_view phiONames =
     "phio phiout phir phis phiv phi2 viewazimuth viewingazimuth viewazimuthangle viewa vaa "
     "azimutho azimuthout azimuthr detectorazimuth receiverazimuth scatterazimuth "
@@ -433,6 +434,14 @@ TableColumns tableColumns(std::string_view line, const Row& row) {
             throw row.error(fmt::format("the column '{}' is no BRDF; expected f in 1/sr or pi f",
                                         quotedName(cells[k])));
         } else if (!takeValue(name, k, columns, found)) {
+            // An angle that is not read would make each sample a wrong one.
+            for (const std::string_view part :
+                 {"theta", "phi", "azimuth", "zenith", "angle", "polar"})
+                if (name.word.find(part) != std::string::npos)
+                    throw row.error(fmt::format(
+                        "the column '{}' looks like an angle of an unknown kind; expected theta_i, "
+                        "phi_i, theta_o, phi_o, a relative azimuth phi, or out_of_plane",
+                        quotedName(cells[k])));
             columns.unread.push_back(quotedName(cells[k]));
         }
     }
