@@ -52,6 +52,7 @@
 #include <brdfs/measured/scattered/scattered.h>
 #include <brdfs/measured/scattered/speos.h>
 #include <brdfs/measured/scattered/xompt.h>
+#include <brdfs/measured/scattered/xompt_writer.h>
 #include <brdfs/measured/scattered/zemax.h>
 #include <brdfs/measured/scattered/zemax_writer.h>
 #include <brdfs/metal_spec.h>
@@ -298,7 +299,7 @@ std::span<const Format> formats() {
 std::span<const Writer> writers() {
     static const std::vector<Writer> table{merlWriter(),   rglWriter(),       altaWriter(),
                                            slicesWriter(), bsdfKlemsWriter(), bsdfTreeWriter(),
-                                           zemaxWriter()};
+                                           zemaxWriter(),  xomptWriter()};
     return table;
 }
 
