@@ -269,6 +269,7 @@ void runLighting(const ExportArguments& arguments, const Globals& globals) {
                                         .prefix = shared.shader.prefix,
                                         .measureError = !arguments.noError,
                                         .force = shared.force};
+    if (!arguments.number.empty()) options.number = gpu::parseNumber(arguments.number);
     options.errors.tables.order = shared.shader.environmentOrder;
     if (!shared.lights.empty()) options.light = fmt::format("{}", fmt::join(shared.lights, "+"));
     // Errors under the light that is written, and under those of the catalog.
@@ -393,7 +394,8 @@ void addExport(CLI::App& command, Globals& globals) {
                        "What the files' names begin with (default: that of COEFFS)");
     command.add_option("--number", arguments->number,
                        "float16, float32, unorm16 or unorm8 (default: float16; for the "
-                       "forms halfway and basis, the least that holds the file)");
+                       "forms halfway and basis, the least that holds the file; with --lighting "
+                       "float16 or float32 of the cube, by default float32 beyond 65504)");
     command
         .add_option("--storage", arguments->storage,
                     "Numbers of these forms in shaders: constants, block (one uniform block), "

@@ -42,16 +42,17 @@ struct LightJson {
     }
     Json operator()(const PictureLight& light) const {
         const PictureGeometry file = fileGeometryOf(light);
+        PictureOptions options{
+            .layout = light.fileLayout, .part = light.part, .layer = light.layer};
+        if (light.curve != TransferCurve::linear) options.curve = light.curve;
+        const PictureFacts facts = PictureReader(light.file, options).facts();
         Json json = {{"file", light.file},
-                     {"layout", layoutName(light.layout)},
+                     {"layout", layoutName(light.fileLayout)},
                      {"width", file.width},
-                     {"height", file.height},
+                     {"height", facts.fileHeight},
                      {"held_width", light.width},
                      {"held_height", light.height},
                      {"curve", curveName(light.curve)}};
-        PictureOptions options{.layout = light.layout, .part = light.part, .layer = light.layer};
-        if (light.curve != TransferCurve::linear) options.curve = light.curve;
-        const PictureFacts facts = PictureReader(light.file, options).facts();
         json["parts"] = Json::array();
         for (const PicturePart& part : facts.parts)
             json["parts"].push_back({{"name", part.name}, {"channels", part.channels}});

@@ -111,6 +111,7 @@ std::string text(const jobs::LitSurface& lit, const IrradianceArguments& argumen
 void runIrradiance(const IrradianceArguments& arguments, const Globals& globals) {
     selectConventions(arguments.convention);
     const jobs::LitSurface lit = jobs::irradianceOfLight(arguments.specs, arguments.options);
+    for (const std::string& remark : lit.remarks) note(globals, remark);
     if (globals.json)
         printJson(answer(lit, arguments));
     else

@@ -129,6 +129,7 @@ void runLight(LightArguments& arguments, Globals& globals) {
     }
     const jobs::ProjectedLight result =
         jobs::light(arguments.specs, arguments.output, arguments.options);
+    for (const std::string& remark : result.remarks) note(globals, remark);
     const Energy& energy = result.light.energy;
     if (!energy.finite) note(globals, "the energy does not exist: " + energy.reason);
     if (globals.json)

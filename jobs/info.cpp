@@ -120,10 +120,11 @@ BrdfInfo describeSource(const std::string& source, bool rgb, const Listener& lis
 LightInfo describeLight(const std::string& specification) {
     LightInfo info{.lights = parseLights(specification, "", InvalidPixels::zero).lights};
     info.health = examine(info.lights);
+    info.warnings = remarksOf(info.lights);
     if (const auto invalid = info.health.invalid.total(); invalid > 0)
         info.warnings.push_back(
-            fmt::format("{} pixels are no radiance and count as 0 here; "
-                        "commands that use the light refuse it",
+            fmt::format("{} pixels are no radiance and count as 0 here; commands "
+                        "that use the light refuse it without invalid=clamp or invalid=inpaint",
                         invalid));
     return info;
 }

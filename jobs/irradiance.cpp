@@ -6,6 +6,7 @@
 #include <hshfit/irradiance/direct_irradiance.h>
 #include <hshfit/light/catalog.h>
 #include <hshfit/light/light_projection.h>
+#include <hshfit/light/picture_light.h>
 #include <hshfit/transfer/convolution.h>
 #include <hshfit/transfer/windows.h>
 
@@ -78,6 +79,7 @@ LitSurface irradianceOfLight(const std::vector<std::string>& specs,
         projectLight(specification.lights, *bases::makeSh(options.order, {}), {.tolerance = 1e-6});
     LitSurface result;
     result.light = specification.text;
+    result.remarks = remarksOf(specification.lights);
     applyWindow(light, result, options.window);
     result.radiance = nineFrom(light, options.order);
     result.irradiance = irradianceOf(result.radiance);

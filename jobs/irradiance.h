@@ -25,6 +25,7 @@ struct LitSurface {
     IrradianceErrors error;            ///< of the order that was asked for
     ZonalForm zonal;                   ///< of `radiance`
     IrradianceErrors zonalError;
+    std::vector<std::string> remarks = {};  ///< on the files of the light
 };
 
 /// The irradiance of the sum of all specifications by coefficients, and its error against direct

@@ -6,6 +6,7 @@
 #include <hshfit/light/light_energy.h>
 #include <hshfit/light/light_projection.h>
 #include <hshfit/light/light_wavelets.h>
+#include <hshfit/light/picture_light.h>
 #include <hshfit/wavelets/slices.h>
 
 #include <fmt/format.h>
@@ -55,6 +56,7 @@ ProjectedLight light(const std::vector<std::string>& specs, const std::string& o
         projectLight(specification.lights, *basis,
                      {.domain = {.normal = options.normal}, .tolerance = options.tolerance});
     result.light.source = specification.text;
+    result.remarks = remarksOf(specification.lights);
     result.bands = bandEnergies(result.light);
     for (const double share : lightShares)
         result.enough.push_back(orderReaching(result.light.curves.front(), share));

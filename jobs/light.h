@@ -29,6 +29,7 @@ struct ProjectedLight {
     double waveletError = 0;
     /// The least number of wavelets among those that captures each share.
     std::vector<std::optional<int>> enoughWavelets = {};
+    std::vector<std::string> remarks = {};  ///< on the files of the light
 };
 
 /// Shares of the energy, one for each order in `enough`.

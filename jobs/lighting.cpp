@@ -75,7 +75,22 @@ Json rgbRows(std::span<const Rgb> values) {
     return rows;
 }
 
-Json writeCube(const lighting::EnvironmentCube& cube, const std::string& light, Output& output) {
+/// The number of the cube's texels: as asked for, or the least that holds the light.
+gpu::Number cubeNumber(const LightingEnvironment& light, const LightingExportOptions& options,
+                       const Listener& listener) {
+    if (options.number == gpu::Number::float16 && !light.fitsHalf())
+        throw NumericError(
+            "the cube of the light is brighter than float16 holds (65504); write it as float32, or "
+            "scale the light down");
+    if (options.number) return *options.number;
+    if (light.fitsHalf()) return gpu::Number::float16;
+    listener.say(
+        "the cube is brighter than float16 holds (65504) and written as float32; a light with "
+        "scale=1e-3 and an exposure in its place fits float16");
+    return gpu::Number::float32;
+}
+
+Json writeCube(const lighting::EnvironmentCube& cube, gpu::Number number, Output& output) {
     std::vector<Bytes> levels;
     Json places = Json::array();
     Bytes all;
@@ -86,22 +101,23 @@ Json writeCube(const lighting::EnvironmentCube& cube, const std::string& light, 
             rgba.push_back(1);
         }
         const auto face = static_cast<int>(level.face);
-        levels.push_back(gpu::encode(rgba, face, face, 6, gpu::Number::float16).bytes);
+        levels.push_back(gpu::encode(rgba, face, face, 6, number).bytes);
         places.push_back({{"face", face}, {"offset", all.size()}, {"bytes", levels.back().size()}});
         all.insert(all.end(), levels.back().begin(), levels.back().end());
     }
     const std::size_t face = cube.levels.front().face;
-    const gpu::Ktx2Image image{.number = gpu::Number::float16,
+    const gpu::Ktx2Image image{.number = number,
                                .width = face,
                                .height = face,
                                .faces = 6,
-                               .pairs = {{"hshfit:light", light}}};
-    return {{"number", "float16"},
+                               .pairs = {{"hshfit:light", output.options.light}}};
+    const char* bits = number == gpu::Number::float16 ? "16" : "32";
+    return {{"number", gpu::numberName(number)},
             {"faces", "+x -x +y -y +z -z of the world, as OpenGL 4.6, section 8.13"},
             {"levels", places},
             {"files",
              {output.add(".split-sum.cube.ktx2", gpu::ktx2File(image, levels)),
-              output.add(".split-sum.cube.f16.bin", lightingBytes(all))}}};
+              output.add(fmt::format(".split-sum.cube.f{}.bin", bits), lightingBytes(all))}}};
 }
 
 Json pointJson(const Direction& d) {
@@ -109,13 +125,14 @@ Json pointJson(const Direction& d) {
 }
 
 /// The light as the model takes it.
-void describeLighting(const LightingModel& model, const LightingEnvironment& light, Output& output,
-                      Json& document) {
+void describeLighting(const LightingModel& model, const LightingEnvironment& light,
+                      const Listener& listener, Output& output, Json& document) {
     if (model.kind == Kind::coefficients) {
         document["light"] = rgbRows(light.harmonics->light());
     } else if (model.kind == Kind::splitSum) {
         document["irradiance"] = rgbRows(light.irradiance);
-        document["cube"] = writeCube(light.cube, output.options.light, output);
+        document["cube"] =
+            writeCube(light.cube, cubeNumber(light, output.options, listener), output);
     } else {
         document["areas"] = Json::array();
         for (const lighting::AreaLight& area : light.areas) {
@@ -220,6 +237,9 @@ std::unique_ptr<Brdf> truthOf(const std::string& path, const LightingExportOptio
 LightingExport exportLighting(const std::string& path, const std::string& folder,
                               const LightingExportOptions& options, const Listener& listener) {
     const auto models = selectLightingModels(options.models);
+    if (options.number && gpu::isNormalised(*options.number))
+        throw UsageError(fmt::format("{}: the cube of a light takes float16 or float32",
+                                     gpu::numberName(*options.number)));
     const std::vector<Light> lights = parseLights(options.light).lights;
     const auto brdf = openSource(path, true);
     Output output{options,
@@ -268,7 +288,7 @@ LightingExport exportLighting(const std::string& path, const std::string& folder
             }
         }
         entry["table"] = writeTable(*model, tableOf(model->kind, tables), output);
-        describeLighting(*model, light, output, entry);
+        describeLighting(*model, light, listener, output, entry);
         entry["shaders"] = writeLightingShaders(*model, tables, truthName, listener, output);
         document["models"].push_back(entry);
     }

@@ -2,8 +2,11 @@
 
 #include "lighting_errors.h"
 
+#include <hshfit/gpu/texels.h>
+
 #include <nlohmann/json.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +21,8 @@ struct LightingExportOptions {
     /// The BRDF that errors are measured against; empty: the one that the coefficients name.
     std::string source = {};
     std::string prefix = "hsh";  ///< of every name in a shader
+    /// Of the cube, float16 or float32; none: float16, or float32 for a light beyond 65504.
+    std::optional<gpu::Number> number = {};
     bool measureError = true;
     bool force = false;                ///< replace existing files
     LightingErrorOptions errors = {};  ///< `tables` has the options of the tables

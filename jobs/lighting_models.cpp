@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -108,11 +109,18 @@ std::size_t LightingEnvironment::bytes(Kind kind) const {
         case Kind::coefficients:
             return harmonics->light().size() * 3 * single;
         case Kind::splitSum:
-            return cube.texels() * 4 * half + 9 * 3 * single;
+            return cube.texels() * 4 * (fitsHalf() ? half : single) + 9 * 3 * single;
         case Kind::cosines:
             break;
     }
     return areas.size() * 5 * 3 * single;
+}
+
+bool LightingEnvironment::fitsHalf() const {
+    constexpr float largestHalf = 65504;
+    return std::ranges::all_of(cube.levels, [&](const lighting::EnvironmentCube::Level& level) {
+        return std::ranges::all_of(level.rgb, [&](float v) { return std::abs(v) <= largestHalf; });
+    });
 }
 
 LightingEnvironment lightFor(const LightingTables& tables, std::span<const Light> lights,

@@ -60,8 +60,10 @@ struct LightingEnvironment {
     double seconds[3] = {0, 0, 0};
 
     /// Bytes of the light: float32 of coefficients and of quadrilaterals (five texels of R, G, B),
-    /// float16 RGBA of the cube.
+    /// RGBA of the cube in float16, or in float32 where it is brighter than that holds.
     std::size_t bytes(LightingModel::Kind kind) const;
+    /// Whether the cube fits float16, up to 65504.
+    bool fitsHalf() const;
 };
 LightingEnvironment lightFor(const LightingTables& tables, std::span<const Light> lights,
                              const LightingTableOptions& options);

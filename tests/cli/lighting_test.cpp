@@ -135,6 +135,44 @@ TEST_F(Lighting, TradeAndPlanChooseAmongTheModels) {
     EXPECT_LE(choice["relative_l2"].get<double>(), 0.02);
 }
 
+/// A sun in lux: prefiltered by a lobe of alpha 0.3 it is brighter than 65504. The cube is then
+/// float32 and says it; one that is dim stays float16, or is float32 where that is asked for.
+TEST_F(Lighting, CubesOfSunsInLuxAreFloat32) {
+    project("ggx:alpha=.3", "ggx3.json", "--order 5 --outgoing 8");
+    const std::string base = "export " + path("ggx3.json") + " --lighting split-sum --no-error " +
+                             "--target glsl-es --light sun:elevation=40,irradiance=";
+    const auto cubeOf = [&](const std::string& folder) {
+        return Json::parse(read(path(folder + "/ggx3.lighting.json")))["models"][0]["cube"];
+    };
+    const Answer bright = run(base + "100000 -o " + path("bright"));
+    ASSERT_EQ(bright.code, 0) << bright.err;
+    EXPECT_NE(bright.err.find("float32"), std::string::npos);
+    const Json cube = cubeOf("bright");
+    EXPECT_EQ(cube["number"], "float32");
+    const std::string ktx = read(path("bright/ggx3.split-sum.cube.ktx2"));
+    EXPECT_EQ(word(ktx, 12), 109u);  // VK_FORMAT_R32G32B32A32_SFLOAT
+    const std::string bin = read(path("bright/ggx3.split-sum.cube.f32.bin"));
+    const std::size_t face = cube["levels"][0]["face"];
+    EXPECT_EQ(cube["levels"][0]["bytes"], face * face * 6 * 16);
+    float most = 0;
+    for (std::size_t k = 0; k + 4 <= bin.size(); k += 4) {
+        float value = 0;
+        std::memcpy(&value, bin.data() + k, 4);
+        most = std::max(most, value);
+    }
+    EXPECT_GT(most, 65504);
+
+    const Answer dim = run(base + "10 -o " + path("dim"));
+    ASSERT_EQ(dim.code, 0) << dim.err;
+    EXPECT_EQ(cubeOf("dim")["number"], "float16");
+    const Answer asked = run(base + "10 --number float32 -o " + path("asked"));
+    ASSERT_EQ(asked.code, 0) << asked.err;
+    EXPECT_EQ(cubeOf("asked")["number"], "float32");
+    expectError(base + "100000 --number float16 -o " + path("half"), 4, "float32", 4);
+    expectError(base + "10 --number unorm16 -o " + path("whole"), 2, "float16 or float32", 4);
+    EXPECT_FALSE(fs::exists(path("half")) || fs::exists(path("whole")));
+}
+
 TEST_F(Lighting, BadInputIsRefused) {
     project("lambert", "plain.json", "--order 2 --outgoing 4");
     const std::string out = " -o " + path("out");

@@ -92,13 +92,13 @@ examples)
     ./project_example phong:exponent=22 phong.json >/dev/null
     # Without its module beside it the program says where that belongs; cli_install_test has it.
     {
-        printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n'
-        printf '\200\200\200\200%.0s' 1 2 3 4 5 6 7 8
-    } >grey.hdr
+        printf 'Pf\n4 2\n-1.0\n'
+        printf '\000\000\000\077%.0s' 1 2 3 4 5 6 7 8
+    } >grey.pfm
     mkdir -p alone
     cp "$prefix"/bin/hshfit alone/
     code=0
-    alone/hshfit irradiance grey.hdr --quiet >alone/log 2>&1 || code=$?
+    alone/hshfit irradiance grey.pfm --quiet >alone/log 2>&1 || code=$?
     grep -q 'libhshfit_openimageio.so .* belongs beside' alone/log || code=$code,
     [ "$code" = 3 ] || [ -e /usr/lib/hshfit ] || [ -e /usr/local/lib/hshfit ] ||
         fail "a program without its module ends with $code: $(cat alone/log)"

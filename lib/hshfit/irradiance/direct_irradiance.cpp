@@ -74,7 +74,7 @@ private:
         return (pixels + pixelsOfBlock - 1) / pixelsOfBlock;
     }
 
-    /// Integral of w d omega over a pixel, without the turn for latitude-longitude pictures.
+    /// Integral of w d omega over a pixel.
     Direction vectorOf(std::size_t row, std::size_t column) const {
         if (light_.layout != PictureLayout::latlong) {
             const double omega = geometry_.solidAngle(column, row);
@@ -91,7 +91,7 @@ private:
             (rowSine_[row + 1] * rowSine_[row + 1] - rowSine_[row] * rowSine_[row]) / 2;
         const double x = -across * (columnSine_[column + 1] - columnSine_[column]);
         const double y = across * (columnCosine_[column] - columnCosine_[column + 1]);
-        return rotateAboutZ({x, y, up * 2 * pi / static_cast<double>(light_.width)}, light_.turn);
+        return toWorld(light_, {x, y, up * 2 * pi / static_cast<double>(light_.width)});
     }
     Moments pixel(std::size_t row, std::size_t column) const {
         const Direction d = vectorOf(row, column);

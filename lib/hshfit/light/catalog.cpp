@@ -5,6 +5,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/exr_header.h>
 #include <hshfit/light/coefficient_light.h>
+#include <hshfit/light/internal/picture_terms.h>
 #include <hshfit/light/picture_light.h>
 #include <hshfit/light/placement.h>
 #include <hshfit/light/sky.h>
@@ -215,37 +216,6 @@ Light preetham(std::string_view owner, const Parameters& p) {
     return sky;
 }
 
-std::vector<Parameter> pictureParameters() {
-    std::vector<std::string_view> layouts{"by-size"}, curves{"by-format"};
-    for (const auto& row : layoutNames()) layouts.push_back(row.name);
-    for (const auto& row : curveNames()) curves.push_back(row.name);
-    return {{.name = "layout",
-             .help = "of directions; has to be given where the size does not tell",
-             .kind = Parameter::Kind::choice,
-             .choices = layouts},
-            {.name = "curve",
-             .help = "code of the values; has to be given for whole-number formats",
-             .kind = Parameter::Kind::choice,
-             .choices = curves},
-            words("part", "of OpenEXR: the name or number of one of several", "rgba"),
-            words("layer", "of OpenEXR: the words before .R, .G and .B", "ViewLayer.Combined"),
-            {.name = "invalid",
-             .help = "of pixels below 0, infinite or not a number; clamp: 0, 65504 and 0",
-             .kind = Parameter::Kind::choice,
-             .choices = {"refuse", "clamp"}}};
-}
-
-PictureOptions pictureOptions(const Parameters& p) {
-    PictureOptions options;
-    for (const auto& row : layoutNames())
-        if (row.name == p.choice("layout")) options.layout = row.layout;
-    for (const auto& row : curveNames())
-        if (row.name == p.choice("curve")) options.curve = row.curve;
-    options.part = p.choice("part");
-    options.layer = p.choice("layer");
-    return options;
-}
-
 LightKind kind(std::string_view name, std::string_view help, std::string_view source,
                std::string_view example, const std::vector<Parameter>& parameters,
                Light (*make)(std::string_view, const Parameters&)) {
@@ -389,7 +359,7 @@ Light parseTerm(std::string_view term, const std::string& folder, InvalidPixels 
     const std::string path = within(folder, withoutSpaces(term.substr(0, end)));
     if (isLightFile(path)) {
         const Parameters p = parseParameters(path, coefficientsKind().parameters, after(end));
-        return placed(readCoefficientLight(path), p);
+        return placed(tilted(path, readCoefficientLight(path), p), p);
     }
     if (looksLikeCoefficients(path))
         throw InputError(
@@ -397,10 +367,10 @@ Light parseTerm(std::string_view term, const std::string& folder, InvalidPixels 
                         "light",
                         path));
     const Parameters p = parseParameters(path, pictureKind().parameters, after(end));
-    // A report counts them either way.
-    const bool clamp = p.choice("invalid") == "clamp" && invalid == InvalidPixels::refused;
+    // A report counts invalid pixels in any case.
     return placed(
-        readPictureLight(path, 1, pictureOptions(p), clamp ? InvalidPixels::clamped : invalid), p);
+        tilted(path, readPictureLight(path, 1, pictureOptions(p), invalidPixels(p, invalid)), p),
+        p);
 }
 
 }  // namespace
@@ -411,16 +381,16 @@ std::span<const LightKind> lightKinds() {
 }
 
 const LightKind& pictureKind() {
-    static const LightKind row =
-        kind("PATH", "a picture: OpenEXR, Radiance HDR; PNG, JPEG, TIFF and others with a curve",
-             "", "studio.hdr:turn=90,scale=2", pictureParameters(), nullptr);
+    static const LightKind row = kind(
+        "PATH", "a picture: OpenEXR, Radiance HDR; PNG, JPEG, TIFF and others with a curve", "",
+        "studio.hdr:turn=90,scale=2", both(pictureParameters(), tiltParameters()), nullptr);
     return row;
 }
 
 const LightKind& coefficientsKind() {
     static const LightKind row =
         kind("FILE", "coefficients of light, a JSON file of the format hshfit-light", "",
-             "sky.json:turn=90,scale=2", {}, nullptr);
+             "sky.json:turn=90,scale=2", tiltParameters(), nullptr);
     return row;
 }
 

@@ -1,8 +1,10 @@
 #include <hshfit/light/coefficient_light.h>
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/brdf/vectors.h>
 #include <hshfit/coefficient_files/light_file.h>
 #include <hshfit/light/light_samples.h>
+#include <hshfit/rotation/sh_rotation.h>
 
 #include <algorithm>
 #include <cassert>
@@ -79,25 +81,42 @@ Rgb radianceOf(const CoefficientLight& light, const Direction& world) {
     return radianceOf(light, std::vector<Direction>{world}).front();
 }
 
+void exchangeSides(int order, std::vector<double>& coefficients) {
+    const auto slots = static_cast<std::size_t>(order) * static_cast<std::size_t>(order);
+    for (std::size_t first = 0; first < coefficients.size(); first += slots)
+        for (int l = 1; l < order; ++l)
+            for (int m = -l; m < 0; ++m) {
+                double& value = coefficients[first + static_cast<std::size_t>(slotOf(l, m))];
+                value = -value;
+            }
+}
+
 std::vector<double> harmonicsOf(const CoefficientLight& light, int order, bool condonShortley) {
     const LightCoefficients& c = *light.coefficients;
     assert(c.domain == Domain::sphere);
-    const double turn = azimuth(light.tangent);
     const auto slots = static_cast<std::size_t>(order) * static_cast<std::size_t>(order);
     std::vector<double> values(3 * slots, 0.0);
     for (std::size_t channel = 0; channel < 3; ++channel) {
         const double* from = c.at(c.channels.count() == 1 ? 0 : channel);
         double* to = values.data() + channel * slots;
-        for (int l = 0; l < std::min(order, c.order); ++l) {
-            for (int m = 0; m <= l; ++m) {
-                const double sign =
-                    light.scale * azimuthSign(m, condonShortley) * azimuthSign(m, c.condonShortley);
-                const double a = sign * from[slotOf(l, m)], b = sign * from[slotOf(l, -m)];
-                to[slotOf(l, m)] = std::cos(m * turn) * a - (m > 0 ? std::sin(m * turn) * b : 0);
-                if (m > 0) to[slotOf(l, -m)] = std::sin(m * turn) * a + std::cos(m * turn) * b;
-            }
-        }
+        for (int l = 0; l < std::min(order, c.order); ++l)
+            for (int m = -l; m <= l; ++m)
+                to[slotOf(l, m)] =
+                    light.scale * azimuthSign(m, c.condonShortley) * from[slotOf(l, m)];
     }
+    const Direction &x = light.tangent, &y = light.bitangent, &z = light.normal;
+    const bool mirrored = dot(cross(x, y), z) < 0;
+    const double side = mirrored ? -1 : 1;
+    if (mirrored) exchangeSides(order, values);
+    const Rotation placed =
+        Rotation::fromMatrix({x.x, side * y.x, z.x, x.y, side * y.y, z.y, x.z, side * y.z, z.z});
+    if (!isIdentity(placed))
+        ShRotation(order).rotate({&placed, 1}, 3, values.data(), values.data());
+    for (std::size_t channel = 0; channel < 3; ++channel)
+        for (int l = 0; l < order; ++l)
+            for (int m = -l; m <= l; ++m)
+                values[channel * slots + static_cast<std::size_t>(slotOf(l, m))] *=
+                    azimuthSign(m, condonShortley);
     return values;
 }
 

@@ -25,4 +25,8 @@ std::vector<Rgb> radianceOf(const CoefficientLight& light, const std::vector<Dir
 /// bands: cut off or filled with 0, turned and scaled with the light, exact but for rounding.
 std::vector<double> harmonicsOf(const CoefficientLight& light, int order, bool condonShortley);
 
+/// Exchanges y with -y in spherical harmonics, [channel][slot] of `order` bands: functions of
+/// negative m change their sign.
+void exchangeSides(int order, std::vector<double>& coefficients);
+
 }  // namespace hshfit::inline light

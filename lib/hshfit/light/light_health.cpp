@@ -12,7 +12,7 @@ namespace {
 
 constexpr double largestHalf = 65504;
 constexpr double brightestPart = 1e-3 * 4 * pi;
-constexpr double narrow = 4 * (pi / 180);  ///< from side to side of a shape beside the grid
+constexpr double narrowShape = 4 * (pi / 180);  ///< from side to side of a shape beside the grid
 /// Parts of a pixel on the edge of a shape, in each direction.
 constexpr std::size_t edgeParts = 8;
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -158,16 +158,16 @@ private:
 /// A light that the pixels of the grid would miss.
 bool besideTheGrid(const Light& light) {
     const auto shape = shapeOf(light);
-    return (shape && shape->width < narrow) || std::holds_alternative<DirectionalLight>(light);
+    return (shape && shape->width < narrowShape) || std::holds_alternative<DirectionalLight>(light);
 }
 
 /// Pixels, or their parts, with the shapes in front of them. Their edges cross pixels: what those
 /// count of a shape's flux is made up for by its exact flux.
 class Pixels {
 public:
-    Pixels(Examination& examination, const PictureGeometry& geometry, double turn,
+    Pixels(Examination& examination, const PictureGeometry& geometry, const PictureLight* picture,
            const std::vector<Light>& others)
-        : examination_(examination), geometry_(geometry), turn_(turn) {
+        : examination_(examination), geometry_(geometry), picture_(picture) {
         for (const Light& light : others) (shapeOf(light) ? shapes_ : smooth_).push_back(light);
     }
     ~Pixels() {
@@ -179,6 +179,8 @@ public:
     }
     Pixels(const Pixels&) = delete;
     Pixels& operator=(const Pixels&) = delete;
+
+    void setGeometry(const PictureGeometry& geometry) { geometry_ = geometry; }
 
     void add(std::size_t column, std::size_t row, const Rgb& own, double solidAngle) {
         const auto x = static_cast<double>(column), y = static_cast<double>(row);
@@ -192,7 +194,8 @@ public:
 
 private:
     Direction direction(double x, double y) const {
-        return rotateAboutZ(geometry_.direction(x, y), turn_);
+        const Direction d = geometry_.direction(x, y);
+        return picture_ ? toWorld(*picture_, d) : d;
     }
     bool onEdge(double x, double y) const {
         const Rgb middle = radianceFrom(shapes_, direction(x + 0.5, y + 0.5));
@@ -216,8 +219,8 @@ private:
     }
 
     Examination& examination_;
-    const PictureGeometry geometry_;
-    const double turn_;
+    PictureGeometry geometry_;
+    const PictureLight* picture_;
     std::vector<Light> smooth_, shapes_;
     Rgb missing_{};
 };
@@ -225,23 +228,27 @@ private:
 /// The pixels of a picture, or of a grid, with what `others` add.
 void addPixels(Examination& examination, const PictureLight* picture,
                const std::vector<Light>& others) {
-    const PictureGeometry g =
-        picture ? fileGeometryOf(*picture) : PictureGeometry{PictureLayout::latlong, 1024, 512};
-    Pixels pixels(examination, g, picture ? picture->turn : 0, others);
+    const PictureGeometry grid{PictureLayout::latlong, 1024, 512};
+    const PictureGeometry g = picture ? fileGeometryOf(*picture) : grid;
+    Pixels pixels(examination, g, picture, others);
     const auto addRow = [&](std::size_t row, std::span<const float> rgb) {
         const bool latlong = g.layout == PictureLayout::latlong;
         const double ofRow = latlong ? g.solidAngle(0, row) : 0;
         for (std::size_t column = 0; column < g.width; ++column) {
             Rgb own{};
-            for (std::size_t c = 0; c < 3 && !rgb.empty(); ++c) own[c] = rgb[3 * column + c];
+            for (std::size_t c = 0; c < 3; ++c) own[c] = rgb[3 * column + c];
             pixels.add(column, row, own, latlong ? ofRow : g.solidAngle(column, row));
         }
     };
-    if (picture) {
-        forEachRow(*picture, addRow);
-    } else {
-        for (std::size_t row = 0; row < g.height; ++row) addRow(row, {});
-    }
+    const auto addDark = [&](std::size_t first) {
+        pixels.setGeometry(grid);
+        for (std::size_t row = first; row < grid.height; ++row)
+            for (std::size_t column = 0; column < grid.width; ++column)
+                pixels.add(column, row, {}, grid.solidAngle(0, row));
+    };
+    if (!picture) return addDark(0);
+    forEachRow(*picture, addRow);
+    if (g.layout == PictureLayout::dome) addDark(grid.height / 2);
 }
 
 }  // namespace

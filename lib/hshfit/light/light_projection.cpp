@@ -7,6 +7,7 @@
 #include <hshfit/light/light_energy.h>
 #include <hshfit/light/node_moments.h>
 #include <hshfit/light/picture_light.h>
+#include <hshfit/rotation/sh_rotation.h>
 #include <hshfit/version.h>
 #include <hshfit/wording.h>
 
@@ -75,7 +76,15 @@ struct ExactMoments {
         addAllRows(light, projection);
         energy = projection.energy()[0] + projection.energy()[1] + projection.energy()[2];
         Moments own(moments.size());
-        projection.coefficients(light.turn, own.data());
+        // A mirrored picture turns the other way before the mirror.
+        const bool still = isIdentity(light.tilt);
+        projection.coefficients(still ? (light.mirrored ? -light.turn : light.turn) : 0,
+                                own.data());
+        if (light.mirrored) exchangeSides(basis.order(), own);
+        if (!still) {
+            const Rotation whole = Rotation::aboutAxis({0, 0, 1}, light.turn) * light.tilt;
+            ShRotation(basis.order()).rotate({&whole, 1}, 3, own.data(), own.data());
+        }
         for (std::size_t c = 0; c < 3; ++c) {
             for (int l = 0; l < basis.order(); ++l) {
                 for (int m = -l; m <= l; ++m) {

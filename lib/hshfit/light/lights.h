@@ -2,6 +2,7 @@
 
 #include <hshfit/brdf/directions.h>
 #include <hshfit/coefficients/light_coefficients.h>
+#include <hshfit/rotation/rotation.h>
 
 #include <array>
 #include <cstddef>
@@ -60,7 +61,7 @@ struct SkyLight {
 };
 
 /// The place of directions in a picture (picture_layout.h).
-enum class PictureLayout { latlong, angular, mirrorBall, cross, faces };
+enum class PictureLayout { latlong, angular, mirrorBall, cross, faces, dome, equalArea };
 
 /// The code of a picture's values, which decodes to linear ones (picture_reader.h).
 enum class TransferCurve { linear, srgb, rec709, gamma18, gamma22, gamma24 };
@@ -69,6 +70,12 @@ enum class TransferCurve { linear, srgb, rec709, gamma18, gamma22, gamma24 };
 struct PictureCensus {
     std::size_t negative = 0, notANumber = 0, infinite = 0;
     std::size_t total() const { return negative + notANumber + infinite; }
+};
+
+/// A pixel of a file in place of one that is no radiance; not scaled.
+struct FilledPixel {
+    std::size_t row = 0, column = 0;
+    std::array<float, 3> rgb{};
 };
 
 /// A picture of radiance, constant within a pixel. In a latitude-longitude picture, row 0 is around
@@ -87,7 +94,15 @@ struct PictureLight {
     std::string part = {}, layer = {};  ///< of the file, as asked for
     bool clamped = false;               ///< pixels that are no radiance are clamped
     double scale = 1;
-    PictureCensus census = {};  ///< of pixels that count as 0
+    PictureCensus census = {};  ///< of pixels that are no radiance in the file
+    /// In the picture's frame left and right are exchanged first, then it is tilted, then turned.
+    bool mirrored = false;
+    Rotation tilt = {};
+    /// The layout as specifications name it: a dome of rows is held as a latlong picture.
+    PictureLayout fileLayout = PictureLayout::latlong;
+    std::shared_ptr<const std::vector<FilledPixel>> filled =
+        {};                   ///< by row and column; may be null
+    std::string remark = {};  ///< a fault of the file that does not stop its use
 };
 
 /// Light from one direction alone. Its radiance is infinite there and 0 elsewhere; `irradiance` is

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 namespace hshfit::inline light {
 namespace {
@@ -13,6 +14,8 @@ constexpr LayoutName names[] = {
     {PictureLayout::mirrorBall, "mirror-ball", "photograph of a mirrored ball"},
     {PictureLayout::cross, "cross", "unfolded cube"},
     {PictureLayout::faces, "faces", "six faces of a cube in a row or a column"},
+    {PictureLayout::dome, "dome", "the upper hemisphere, a fisheye or the half of latlong"},
+    {PictureLayout::equalArea, "equal-area", "pbrt's octahedron in a square"},
 };
 
 /// `value` within [0, limit), by so much that it stays below after whole faces are added.
@@ -55,12 +58,23 @@ DiscPoint toMirrorBall(const Direction& d) {
     return {-d.y / length, d.z / length};
 }
 
+Direction fromDome(DiscPoint p) {
+    const double r = std::hypot(p.u, p.v), theta = pi / 2 * std::min(r, 1.0);
+    const double across = r > 0 ? std::sin(theta) / r : pi / 2;
+    return {-across * p.v, -across * p.u, std::cos(theta)};
+}
+DiscPoint toDome(const Direction& d) {
+    const double across = std::hypot(d.x, d.y), r = std::atan2(across, d.z) / (pi / 2);
+    if (!(across > 0)) return {d.z > 0 ? 0.0 : 1.0, 0};
+    return {-d.y / across * r, -d.x / across * r};
+}
+
 /// Solid angle per area of the unit disc.
 double discDensity(PictureLayout layout, double u, double v) {
     if (layout == PictureLayout::mirrorBall) return 4;
-    const double r = std::hypot(u, v);
+    const double r = std::hypot(u, v), rim = layout == PictureLayout::dome ? pi / 2 : pi;
     if (r >= 1) return 0;
-    return r > 0 ? pi * std::sin(pi * r) / r : pi * pi;
+    return r > 0 ? rim * std::sin(rim * r) / r : rim * rim;
 }
 
 double discSolidAngle(const PictureGeometry& g, std::size_t column, std::size_t row) {
@@ -92,6 +106,32 @@ double discSolidAngle(const PictureGeometry& g, std::size_t column, std::size_t 
         if (high > low) sum += (high - low) * discDensity(g.layout, x, (low + high) / 2);
     }
     return sum * w / strips;
+}
+
+// --- the square of equal area ---------------------------------------------------------------
+
+/// A quarter of the square is a quarter of a hemisphere: with r the distance from the zenith as
+/// |u| + |v|, 1 - |z| is r^2, and the azimuth grows evenly along lines of constant r. The lower
+/// hemisphere is folded over the diagonals, so that r is the distance from the nearest corner.
+Direction fromSquare(DiscPoint p) {
+    const double u = std::abs(p.u), v = std::abs(p.v), above = 1 - (u + v);
+    const double r = 1 - std::abs(above);
+    const double phi = (r > 0 ? (v - u) / r + 1 : 1) * (pi / 4);
+    const double across = r * std::sqrt(2 - r * r);
+    // pbrt's x is -x, and its y grows downwards.
+    return {std::copysign(across * std::cos(phi), -p.u),
+            std::copysign(across * std::sin(phi), -p.v), std::copysign(1 - r * r, above)};
+}
+DiscPoint toSquare(const Direction& d) {
+    const double x = std::abs(d.x), y = std::abs(d.y), squared = x * x + y * y;
+    // sqrt(1 - |z|) without cancellation.
+    const double r = std::sqrt(squared / (1 + std::abs(d.z)));
+    double v = r * std::atan2(y, x) / (pi / 2), u = r - v;
+    if (d.z < 0) {
+        std::swap(u, v);
+        u = 1 - u, v = 1 - v;
+    }
+    return {std::copysign(u, -d.x), std::copysign(v, -d.y)};
 }
 
 // --- cubes ----------------------------------------------------------------------------------
@@ -183,6 +223,22 @@ std::array<double, 2> cubePosition(const PictureGeometry& g, const Direction& d)
             static_cast<double>(cell.row) * size + below((p.b + 1) / 2 * size, n)};
 }
 
+/// The pixel of the next face: the middle of the pixel beyond the edge, seen from the middle of the
+/// cube.
+std::array<std::size_t, 2> cubeNeighbour(const PictureGeometry& g, std::size_t column,
+                                         std::size_t row, int right, int down) {
+    const std::size_t n = g.faceSize();
+    const auto middle = [&](std::size_t at, int step) {
+        return 2 * (static_cast<double>(at % n) + 0.5 + step) / static_cast<double>(n) - 1;
+    };
+    const int face = faceAt(g, column / n, row / n);
+    double a = middle(column, right), b = middle(row, down);
+    if (cellsOf(g)[static_cast<std::size_t>(face)].turned) a = -a, b = -b;
+    const auto [x, y, z] = onCube({face, a, b});
+    const auto place = cubePosition(g, {z, -x, y});
+    return {static_cast<std::size_t>(place[0]), static_cast<std::size_t>(place[1])};
+}
+
 double cubeSolidAngle(const PictureGeometry& g, std::size_t column, std::size_t row) {
     const std::size_t n = g.faceSize();
     if (faceAt(g, column / n, row / n) < 0) return 0;
@@ -213,6 +269,10 @@ Direction PictureGeometry::direction(double column, double row) const {
         case PictureLayout::cross:
         case PictureLayout::faces:
             return cubeDirection(*this, column, row);
+        case PictureLayout::dome:
+            return fromDome(p);
+        case PictureLayout::equalArea:
+            return fromSquare(p);
     }
     return {};
 }
@@ -233,7 +293,44 @@ std::array<double, 2> PictureGeometry::position(const Direction& d) const {
         case PictureLayout::cross:
         case PictureLayout::faces:
             return cubePosition(*this, d);
+        case PictureLayout::dome:
+            return onDisc(toDome(d));
+        case PictureLayout::equalArea:
+            return onDisc(toSquare(d));
     }
+    return {};
+}
+
+bool PictureGeometry::covers(const Direction& d) const {
+    return layout != PictureLayout::dome || d.z >= 0;
+}
+
+std::optional<std::array<std::size_t, 2>> PictureGeometry::neighbour(std::size_t column,
+                                                                     std::size_t row, int right,
+                                                                     int down) const {
+    using Place = std::array<std::size_t, 2>;
+    if (!(solidAngle(column, row) > 0)) return {};
+    const std::size_t face = faceSize();
+    // Steps from 0 and to the limit stay within, others go beyond.
+    const auto beyond = [](std::size_t at, int step, std::size_t limit) {
+        return step < 0 ? at == 0 : step > 0 && at + 1 == limit;
+    };
+    const auto moved = [](std::size_t at, int step) {
+        return step < 0 ? at - 1 : at + static_cast<std::size_t>(step);
+    };
+    const bool aside = face > 0 ? beyond(column % face, right, face) : beyond(column, right, width);
+    const bool apart = face > 0 ? beyond(row % face, down, face) : beyond(row, down, height);
+    if (!aside && !apart) {
+        const Place place{moved(column, right), moved(row, down)};
+        if (!(solidAngle(place[0], place[1]) > 0)) return {};
+        return place;
+    }
+    if (face > 0) return cubeNeighbour(*this, column, row, right, down);
+    if (layout == PictureLayout::latlong)
+        return Place{aside ? (right < 0 ? width - 1 : 0) : (column + width / 2) % width, row};
+    // The square is folded along its rim.
+    if (layout == PictureLayout::equalArea)
+        return aside ? Place{column, height - 1 - row} : Place{width - 1 - column, row};
     return {};
 }
 
@@ -245,6 +342,8 @@ double PictureGeometry::solidAngle(std::size_t column, std::size_t row) const {
                (2 * pi / static_cast<double>(width));
     }
     if (faceSize() > 0) return cubeSolidAngle(*this, column, row);
+    if (layout == PictureLayout::equalArea)
+        return 4 * pi / (static_cast<double>(width) * static_cast<double>(height));
     return discSolidAngle(*this, column, row);
 }
 
@@ -260,13 +359,16 @@ double PictureGeometry::density(double column, double row) const {
         const double b = 2 * (row / size - static_cast<double>(cellRow)) - 1;
         return std::pow(1 + a * a + b * b, -1.5) * 4 / (size * size);
     }
+    if (layout == PictureLayout::equalArea) return 4 * pi / (w * h);
     const double u = 2 * column / w - 1, v = 1 - 2 * row / h;
     return std::hypot(u, v) < 1 ? discDensity(layout, u, v) * 4 / (w * h) : 0;
 }
 
 double PictureGeometry::pixelAngle() const {
     if (const std::size_t n = faceSize(); n > 0) return pi / 2 / static_cast<double>(n);
-    const double perDiameter = layout == PictureLayout::latlong ? pi : 2 * pi;
+    if (layout == PictureLayout::equalArea) return std::sqrt(4 * pi) / static_cast<double>(height);
+    const bool half = layout == PictureLayout::latlong || layout == PictureLayout::dome;
+    const double perDiameter = half ? pi : 2 * pi;
     return perDiameter / static_cast<double>(height);
 }
 
@@ -289,7 +391,10 @@ bool layoutFits(PictureLayout layout, std::size_t width, std::size_t height) {
             return ratio(2, 1);
         case PictureLayout::angular:
         case PictureLayout::mirrorBall:
+        case PictureLayout::equalArea:
             return ratio(1, 1);
+        case PictureLayout::dome:
+            return ratio(1, 1) || ratio(4, 1);
         case PictureLayout::cross:
             return ratio(4, 3) || ratio(3, 4);
         case PictureLayout::faces:
@@ -314,7 +419,10 @@ std::string_view layoutSizes(PictureLayout layout) {
             return "twice as wide as high";
         case PictureLayout::angular:
         case PictureLayout::mirrorBall:
+        case PictureLayout::equalArea:
             return "as wide as high";
+        case PictureLayout::dome:
+            return "1 : 1 or 4 : 1";
         case PictureLayout::cross:
             return "4 : 3 or 3 : 4";
         case PictureLayout::faces:

@@ -26,16 +26,29 @@ std::span<const LayoutName> layoutNames();
 /// cross       4 x 3 or 3 x 4 square faces; the back of 3 x 4 is turned by 180 degrees
 /// faces       6 x 1 or 1 x 6 square faces, right, left, top, bottom, front, back, each turned as
 ///             in OpenGL's cube maps: +X, -X, +Y, -Y, +Z, -Z of a frame with Y up and Z forward
+/// dome        the upper hemisphere in a disc: the zenith in the middle, radius = theta / (pi / 2),
+///             forward at the lower edge, which is the view of somebody who leans back. Of pictures
+///             4 x 1, the rows of latlong above the horizon (picture_reader.h)
+/// equalArea   the octahedron in a square, all pixels of one solid angle (Clarberg 2008, as in
+///             pbrt-v4): the zenith in the middle, the nadir at the corners. pbrt's x is our -x, as
+///             its imgtool makes such a square of a latlong picture
 struct PictureGeometry {
     PictureLayout layout = PictureLayout::latlong;
     std::size_t width = 0, height = 0;
 
     /// At a position in pixels, fractions allowed; arbitrary outside of the used area.
     Direction direction(double column, double row) const;
-    /// {column, row} of a direction, within [0, width) x [0, height).
+    /// {column, row} of a direction, within [0, width) x [0, height); arbitrary for directions that
+    /// the picture does not cover.
     std::array<double, 2> position(const Direction& direction) const;
-    /// Of a pixel; 0 outside of the used area. Exact for latlong, mirror balls inside the rim and
-    /// cubes; from two Gauss nodes each way for angular maps.
+    /// Whether the picture has a pixel for a direction: all but domes have one for each.
+    bool covers(const Direction& direction) const;
+    /// The pixel across the edge to the right (1, 0), left, above (0, -1) or below, also over the
+    /// edges of the picture and of the faces of a cube; none beside the used area of discs.
+    std::optional<std::array<std::size_t, 2>> neighbour(std::size_t column, std::size_t row,
+                                                        int right, int down) const;
+    /// Of a pixel; 0 outside of the used area. Exact for latlong, mirror balls inside the rim,
+    /// cubes and squares of equal area; from two Gauss nodes each way for angular maps and domes.
     double solidAngle(std::size_t column, std::size_t row) const;
     /// Solid angle per pixel at a position in pixels; 0 outside of the used area.
     double density(double column, double row) const;

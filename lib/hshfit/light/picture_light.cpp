@@ -1,7 +1,9 @@
 #include <hshfit/light/picture_light.h>
 
 #include <hshfit/error.h>
+#include <hshfit/light/internal/picture_filling.h>
 #include <hshfit/light/internal/picture_reduction.h>
+#include <hshfit/light/internal/picture_seams.h>
 
 #include <fmt/format.h>
 
@@ -12,11 +14,12 @@
 namespace hshfit::inline light {
 namespace {
 
-/// Radiance from the values of a row, with pixels that are none as 0, counted.
+/// Radiance from the values of a row, with pixels that are none as 0, or replaced, counted.
 class Scaling {
 public:
-    Scaling(const PictureGeometry& geometry, double scale, bool clamped = false)
-        : geometry_(geometry), scale_(scale), clamped_(clamped) {}
+    Scaling(const PictureGeometry& geometry, double scale, bool clamped = false,
+            const FilledPixels* filled = nullptr)
+        : geometry_(geometry), scale_(scale), clamped_(clamped), filled_(filled) {}
 
     void apply(std::size_t row, std::span<const float> from, std::span<float> to) {
         for (std::size_t column = 0; column < geometry_.width; ++column) {
@@ -28,7 +31,11 @@ public:
                 valid &= out[c] >= 0 && out[c] <= std::numeric_limits<float>::max();
             }
             if (valid) continue;
-            if (clamped_)
+            const FilledPixel* fill = filled_ ? pixelAt(*filled_, row, column) : nullptr;
+            if (fill)
+                std::ranges::transform(fill->rgb, out,
+                                       [&](float v) { return static_cast<float>(v * scale_); });
+            else if (clamped_)
                 std::transform(value, value + 3, out, [&](float v) { return clamped(v); });
             else
                 std::fill(out, out + 3, 0.F);
@@ -43,7 +50,8 @@ public:
         if (census_.total() == 0) return;
         throw InputError(fmt::format(
             "{}: {} pixels below 0, {} infinite, {} not a number; the first is {} at column {}, "
-            "row {}; radiance has to be finite and not below 0{}; invalid=clamp goes on",
+            "row {}; radiance has to be finite and not below 0{}; invalid=clamp goes on, and "
+            "invalid=inpaint with what is around them",
             path, census_.negative, census_.infinite, census_.notANumber, firstValue_, firstColumn_,
             firstRow_,
             converted ? " (colours of the file's primaries may lie outside of Rec. 709)" : ""));
@@ -74,6 +82,7 @@ private:
     PictureGeometry geometry_;
     double scale_;
     bool clamped_;
+    const FilledPixels* filled_;
     PictureCensus census_;
     float firstValue_ = 0;
     std::size_t firstColumn_ = 0, firstRow_ = 0;
@@ -166,31 +175,48 @@ private:
 
 PictureLight readPictureLight(const std::string& path, double scale, const PictureOptions& options,
                               InvalidPixels invalid) {
+    std::shared_ptr<const FilledPixels> filled;
+    if (invalid == InvalidPixels::inpainted)
+        filled = std::make_shared<const FilledPixels>(fillPixels(path, options));
     PictureReader reader(path, options);
-    const PictureGeometry& file = reader.facts().geometry;
+    const PictureFacts& facts = reader.facts();
+    const PictureGeometry& file = facts.geometry;
     PictureReduction reduction(file, mostHeldPixels);
     const bool clamped = invalid == InvalidPixels::clamped;
-    Scaling scaling(file, scale, clamped);
+    Scaling scaling(file, scale, clamped, filled.get());
     std::vector<float> row(3 * file.width);
     reader.forEachRow([&](std::size_t at, std::span<const float> values) {
         scaling.apply(at, values, row);
         reduction.add(at, row);
     });
-    if (invalid == InvalidPixels::refused)
-        scaling.requireNone(path, reader.facts().colour.primaries.has_value());
+    // A scale may make more pixels infinite than were filled.
+    if (invalid == InvalidPixels::refused || (filled && scaling.census().total() > filled->size()))
+        scaling.requireNone(path, facts.colour.primaries.has_value());
     PictureLight light{.file = path,
                        .width = reduction.geometry().width,
                        .height = reduction.geometry().height,
                        .rgb = reduction.result(),
                        .layout = file.layout,
-                       .curve = reader.facts().curve,
+                       .curve = facts.curve,
                        .part = options.part,
                        .layer = options.layer,
                        .clamped = clamped,
                        .scale = scale,
-                       .census = scaling.census()};
+                       .census = scaling.census(),
+                       .fileLayout = facts.layout,
+                       .filled = filled};
     if (light.width != file.width) light.fileWidth = file.width, light.fileHeight = file.height;
+    light.remark = seamRemark(light);
     return light;
+}
+
+std::vector<std::string> remarksOf(std::span<const Light> lights) {
+    std::vector<std::string> remarks;
+    for (const Light& light : lights) {
+        const auto* picture = std::get_if<PictureLight>(&light);
+        if (picture && !picture->remark.empty()) remarks.push_back(picture->remark);
+    }
+    return remarks;
 }
 
 PictureGeometry geometryOf(const PictureLight& light) {
@@ -210,14 +236,14 @@ void forEachRow(const PictureLight& light, const RowVisitor& visit) {
         }
         return;
     }
-    PictureOptions options{.layout = light.layout, .part = light.part, .layer = light.layer};
+    PictureOptions options{.layout = light.fileLayout, .part = light.part, .layer = light.layer};
     if (light.curve != TransferCurve::linear) options.curve = light.curve;
     PictureReader reader(light.file, options);
     const PictureGeometry file = reader.facts().geometry;
     if (file.width != light.fileWidth || file.height != light.fileHeight) {
         throw InputError(fmt::format("{}: changed while it was in use", light.file));
     }
-    Scaling scaling(file, light.scale, light.clamped);
+    Scaling scaling(file, light.scale, light.clamped, light.filled.get());
     std::vector<float> scaled(3 * file.width);
     reader.forEachRow([&](std::size_t row, std::span<const float> values) {
         scaling.apply(row, values, scaled);
@@ -226,12 +252,26 @@ void forEachRow(const PictureLight& light, const RowVisitor& visit) {
     if (light.census.total() == 0) scaling.requireNone(light.file);
 }
 
+Direction toWorld(const PictureLight& light, Direction d) {
+    if (light.mirrored) d.y = -d.y;
+    return rotateAboutZ(light.tilt(d), light.turn);
+}
+
+Direction toPicture(const PictureLight& light, const Direction& world) {
+    Direction d = light.tilt.inverse()(rotateAboutZ(world, -light.turn));
+    if (light.mirrored) d.y = -d.y;
+    return d;
+}
+
 Direction directionOf(const PictureLight& light, double column, double row) {
-    return rotateAboutZ(geometryOf(light).direction(column, row), light.turn);
+    return toWorld(light, geometryOf(light).direction(column, row));
 }
 
 Rgb radianceOf(const PictureLight& light, const Direction& world) {
-    const auto [column, row] = geometryOf(light).position(rotateAboutZ(world, -light.turn));
+    const PictureGeometry geometry = geometryOf(light);
+    const Direction d = toPicture(light, world);
+    if (!geometry.covers(d)) return {};
+    const auto [column, row] = geometry.position(d);
     const float* rgb = light.rgb.data() + 3 * (static_cast<std::size_t>(row) * light.width +
                                                static_cast<std::size_t>(column));
     return {rgb[0], rgb[1], rgb[2]};

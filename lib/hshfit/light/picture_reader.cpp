@@ -206,6 +206,11 @@ public:
                 "is an OpenEXR cube, whose faces are turned otherwise; make it latlong with "
                 "exrenvmap");
         }
+        if (const std::string mark = picture_->gainMap(); !mark.empty())
+            picture_->fail(fmt::format(
+                "has a gain map ({}): its base picture is made for ordinary screens and is not the "
+                "light; decode both to OpenEXR or Radiance HDR, for example with libultrahdr",
+                mark));
         first_ = *std::ranges::min_element(group_.channels);
         last_ = *std::ranges::max_element(group_.channels) + 1;
         const PictureColour& colour = picture_->colour();
@@ -312,7 +317,8 @@ PictureReader::PictureReader(const std::string& path, const PictureOptions& opti
     }
     // A panorama whose layout is stated may have any proportion: pixels are as wide and as high as
     // they follow from its size.
-    const bool stated = options.layout == PictureLayout::latlong;
+    const bool stated =
+        options.layout == PictureLayout::latlong || options.layout == PictureLayout::dome;
     if (!stated && !layoutFits(*layout, width, height)) {
         throw InputError(fmt::format("{}: is {} x {} pixels; the layout {} has to be {}", path,
                                      width, height, layoutName(*layout), layoutSizes(*layout)));
@@ -332,9 +338,13 @@ PictureReader::PictureReader(const std::string& path, const PictureOptions& opti
               .number = first.picture().number(),
               .curve = options.curve.value_or(TransferCurve::linear),
               .geometry = {*layout, width, height},
+              .layout = *layout,
+              .fileHeight = height,
               .part = first.group().part,
               .layer = first.group().layer,
               .colour = first.picture().colour()};
+    if (layout == PictureLayout::dome && width != height)
+        facts_.geometry = {PictureLayout::latlong, width, 2 * height};
     for (std::size_t k = 0; k < first.picture().parts(); ++k)
         facts_.parts.push_back({first.picture().partName(k), first.picture().partChannels(k)});
 }
@@ -347,6 +357,8 @@ void PictureReader::forEachRow(const RowVisitor& visit) {
         file->forEachRow(row, facts_.curve, visit);
         row += file->picture().height();
     }
+    const std::vector<float> below(row < facts_.geometry.height ? 3 * facts_.geometry.width : 0);
+    for (; row < facts_.geometry.height; ++row) visit(row, below);
 }
 
 std::span<const CurveName> curveNames() {

@@ -44,7 +44,11 @@ struct PictureFacts {
     std::string format;  ///< "OpenEXR", "Radiance HDR", "PNG", …
     std::string number;  ///< "half", "float", "uint8", …
     TransferCurve curve = TransferCurve::linear;
+    /// Of the rows that are given. A dome of rows is given as the latlong picture of both
+    /// hemispheres, with black rows below the horizon.
     PictureGeometry geometry;
+    PictureLayout layout = PictureLayout::latlong;  ///< of the file
+    std::size_t fileHeight = 0;                     ///< rows of the file
     /// Of the file, or of the first of six.
     std::vector<PicturePart> parts = {};
     std::size_t part = 0;  ///< the one that is read

@@ -58,4 +58,31 @@ Light scaled(Light light, double factor) {
     return light;
 }
 
+PictureLight rotated(PictureLight light, const Rotation& rotation) {
+    light.tilt = rotation * Rotation::aboutAxis({0, 0, 1}, light.turn) * light.tilt;
+    light.turn = 0;
+    return light;
+}
+
+CoefficientLight rotated(CoefficientLight light, const Rotation& rotation) {
+    for (Direction* axis : {&light.tangent, &light.bitangent, &light.normal})
+        *axis = rotation(*axis);
+    return light;
+}
+
+PictureLight mirrorImage(PictureLight light) {
+    // With S the mirror: S R_z(turn) T S^mirrored = R_z(-turn) (S T S) S S^mirrored.
+    std::array<double, 9> rows = light.tilt.matrix();
+    for (const std::size_t k : {1U, 3U, 5U, 7U}) rows[k] = -rows[k];
+    light.tilt = Rotation::fromMatrix(rows);
+    light.turn = -light.turn;
+    light.mirrored = !light.mirrored;
+    return light;
+}
+
+CoefficientLight mirrorImage(CoefficientLight light) {
+    for (Direction* axis : {&light.tangent, &light.bitangent, &light.normal}) axis->y = -axis->y;
+    return light;
+}
+
 }  // namespace hshfit::inline light

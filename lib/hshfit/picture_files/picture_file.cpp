@@ -5,6 +5,7 @@
 #include <hshfit/files/mapped_file.h>
 #include <hshfit/files/printable.h>
 #include <hshfit/picture_files/internal/image_module.h>
+#include <hshfit/picture_files/internal/radiance_picture.h>
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -23,13 +24,13 @@ constexpr std::size_t mostTileBytes = std::size_t{1} << 28;
 constexpr std::size_t mostBlockRows = 256;  // as many as any compression of OpenEXR joins
 
 struct PictureFormat {
-    const char* plugin;  ///< of OpenImageIO
+    const char* plugin;  ///< of OpenImageIO; none for what is read here
     std::string_view name;
     std::string_view start;
 };
 constexpr PictureFormat formats[] = {
     {"openexr", "OpenEXR", {"\x76\x2f\x31\x01", 4}},
-    {"hdr", "Radiance HDR", "#?"},
+    {"", "Radiance HDR", "#?"},
     {"png", "PNG", {"\x89PNG\r\n\x1a\n", 8}},
     {"jpeg", "JPEG", "\xff\xd8\xff"},
     {"tiff", "TIFF", {"II*\0", 4}},
@@ -268,7 +269,11 @@ PictureFile::PictureFile(const std::string& path, std::size_t part)
         if (!wrong.empty()) fail(wrong);
     }
     std::string error;
-    state_->image.reset(imageModule()(format.plugin, path.c_str(), static_cast<int>(part), error));
+    if (format.name == "Radiance HDR")
+        state_->image = openRadiance(state_->mapped, error);
+    else
+        state_->image.reset(
+            imageModule()(format.plugin, path.c_str(), static_cast<int>(part), error));
     if (!state_->image) {
         fail(fmt::format("is no valid {} file{}{}", format.name, error.empty() ? "" : ": ",
                          firstLine(error)));
@@ -335,6 +340,15 @@ bool PictureFile::wholeNumbers() const {
 }
 std::string PictureFile::environment() const {
     return state_->image->environment;
+}
+std::string PictureFile::gainMap() const {
+    // Adobe's and Google's metadata, ISO 21496-1, Apple's auxiliary picture.
+    constexpr std::string_view marks[] = {"hdrgm:Version", "urn:iso:std:iso:ts:21496:-1",
+                                          "urn:com:apple:photo:2020:aux:hdrgainmap"};
+    if (state_->format != "JPEG") return {};
+    for (const std::string_view mark : marks)
+        if (textOf(state_->mapped).find(mark) != std::string_view::npos) return std::string(mark);
+    return {};
 }
 const std::vector<std::string>& PictureFile::channels() const {
     return state_->image->channels;

@@ -49,6 +49,9 @@ public:
     std::string partName(std::size_t part) const;  ///< "" where it has none
     const std::vector<std::string>& partChannels(std::size_t part) const;
     const PictureColour& colour() const { return colour_; }
+    /// The mark of a gain map in a JPEG file, "hdrgm:Version" of Ultra HDR and so on: what is read
+    /// is its base picture, which is made for ordinary screens. Empty without one.
+    std::string gainMap() const;
     /// The index of a channel, by its name in any case or, for R, G, B and A, by "red", …; none
     /// where there is no such channel.
     int find(std::string_view channel) const;

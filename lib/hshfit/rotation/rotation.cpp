@@ -163,6 +163,10 @@ Rotation::Turns Rotation::turns() const {
     return {ca, sa, cb, sb, cb > 0 ? sb * sb / (1 + cb) : 1 - cb, cg, sg};
 }
 
+bool isIdentity(const Rotation& rotation) {
+    return rotation.matrix() == Rotation().matrix();
+}
+
 double angleOf(const Rotation& rotation) {
     const Rows& r = rotation.matrix();
     const double s = std::hypot(r[7] - r[5], r[2] - r[6], r[3] - r[1]);

@@ -46,5 +46,7 @@ private:
 
 /// The angle of `rotation`, from 0 to pi.
 double angleOf(const Rotation& rotation);
+/// Whether it moves nothing at all.
+bool isIdentity(const Rotation& rotation);
 
 }  // namespace hshfit::inline rotation

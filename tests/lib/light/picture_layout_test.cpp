@@ -13,8 +13,13 @@ using enum PictureLayout;
 
 /// Every layout in every arrangement.
 const std::vector<PictureGeometry> geometries = {
-    {latlong, 48, 24}, {angular, 40, 40}, {mirrorBall, 40, 40}, {cross, 64, 48},
-    {cross, 48, 64},   {faces, 96, 16},   {faces, 16, 96},      {angular, 41, 41}};
+    {latlong, 48, 24}, {angular, 40, 40},   {mirrorBall, 40, 40}, {cross, 64, 48},
+    {cross, 48, 64},   {faces, 96, 16},     {faces, 16, 96},      {angular, 41, 41},
+    {dome, 40, 40},    {equalArea, 40, 40}, {equalArea, 31, 31}};
+
+bool isDisc(PictureLayout layout) {
+    return layout == angular || layout == mirrorBall || layout == dome;
+}
 
 std::string nameOf(const PictureGeometry& g) {
     return std::string(layoutName(g.layout)) + " " + std::to_string(g.width) + " x " +
@@ -36,9 +41,11 @@ TEST(PictureLayout, SolidAnglesAddUpToTheSphere) {
             }
         }
         const double tolerance = g.faceSize() > 0 || g.layout == latlong ? 1e-12
+                                 : g.layout == equalArea                 ? 1e-12
                                  : g.layout == angular                   ? 1e-5
                                                                          : 1e-4;
-        EXPECT_NEAR(sum, 4 * pi, 4 * pi * tolerance) << nameOf(g);
+        const double whole = g.layout == dome ? 2 * pi : 4 * pi;
+        EXPECT_NEAR(sum, whole, whole * tolerance) << nameOf(g);
     }
 }
 
@@ -47,6 +54,7 @@ TEST(PictureLayout, SolidAnglesAreTheSharesOfEvenlySpreadDirections) {
     for (const PictureGeometry& g : geometries) {
         std::vector<double> seen(g.width * g.height, 0);
         for (std::size_t k = 0; k < count; ++k) {
+            if (!g.covers(latticeDirection(k, count))) continue;
             const auto [column, row] = g.position(latticeDirection(k, count));
             seen[static_cast<std::size_t>(row) * g.width + static_cast<std::size_t>(column)] +=
                 4 * pi / count;
@@ -70,7 +78,7 @@ TEST(PictureLayout, PositionIsTheInverseOfDirection) {
                              y = static_cast<double>(row) + 0.5;
                 const Direction d = g.direction(x, y);
                 EXPECT_NEAR(dot(d, d), 1, 1e-12);
-                const bool onDisc = g.layout == angular || g.layout == mirrorBall;
+                const bool onDisc = isDisc(g.layout);
                 const double w = static_cast<double>(g.width);
                 if (g.solidAngle(column, row) == 0) continue;
                 if (onDisc && std::hypot(2 * x / w - 1, 2 * y / w - 1) >= 1) continue;
@@ -94,6 +102,7 @@ TEST(PictureLayout, EveryDirectionHasAPlaceInTheUsedArea) {
     }
     for (const PictureGeometry& g : geometries) {
         for (const Direction& d : directions) {
+            if (!g.covers(d)) continue;
             const auto [column, row] = g.position(d);
             ASSERT_TRUE(column >= 0 && column < static_cast<double>(g.width)) << nameOf(g);
             ASSERT_TRUE(row >= 0 && row < static_cast<double>(g.height)) << nameOf(g);
@@ -179,6 +188,78 @@ TEST(PictureLayout, TheMiddleIsForwardAndTheRightIsMinusY) {
     expectAt(ball, 0, 100, {1, 0, 0});
 }
 
+/// A fisheye that looks up has the angle from the zenith as its radius; somebody who leans back has
+/// forward below and the right on the right.
+TEST(PictureLayout, DomesLookUpWithForwardBelow) {
+    const PictureGeometry g{dome, 200, 200};
+    const auto expectAt = [&](double column, double row, double theta, double phi) {
+        const Direction expected = directionFromAngles(radians(theta), radians(phi));
+        EXPECT_NEAR(dot(g.direction(column, row), expected), 1, 1e-12) << column << " " << row;
+    };
+    expectAt(100, 100, 0, 0);
+    expectAt(100, 150, 45, 0);
+    expectAt(100, 199.9999999, 90, 0);
+    expectAt(175, 100, 67.5, -90);
+    expectAt(100, 50, 45, 180);
+    EXPECT_TRUE(g.covers({0, 0.6, 0.8}));
+    EXPECT_FALSE(g.covers({0, 0.6, -0.8}));
+}
+
+/// Clarberg 2008: the zenith in the middle, the horizon the square through the middles of the
+/// sides, the nadir in the corners; on the line from the middle to a side 1 - z is the square of
+/// the distance. pbrt-v4 has x to the right and y downwards, and its x is our -x.
+TEST(PictureLayout, SquaresOfEqualAreaAreThoseOfPbrt) {
+    const PictureGeometry g{equalArea, 200, 200};
+    const auto expectAt = [&](double column, double row, const Direction& expected) {
+        EXPECT_NEAR(dot(g.direction(column, row), expected), 1, 1e-12) << column << " " << row;
+    };
+    expectAt(100, 100, {0, 0, 1});
+    expectAt(200, 100, {-1, 0, 0});
+    expectAt(100, 200, {0, 1, 0});
+    expectAt(0, 100, {1, 0, 0});
+    expectAt(0, 0, {0, 0, -1});
+    expectAt(200, 200, {0, 0, -1});
+    const double diagonal = std::sqrt(0.5), s = std::sqrt(1 - 0.75 * 0.75);
+    expectAt(150, 150, {-diagonal, diagonal, 0});
+    expectAt(150, 100, {-s, 0, 0.75});
+    expectAt(125, 125, {-s * diagonal, s * diagonal, 0.75});
+    // The azimuth grows evenly on a line of equal distance: a quarter of the way is 22.5 degrees.
+    expectAt(137.5, 112.5, {-s * std::cos(pi / 8), s * std::sin(pi / 8), 0.75});
+    expectAt(175, 175, {-s * diagonal, s * diagonal, -0.75});
+}
+
+/// Neighbours are as far apart as pixels are wide, and the way back leads to where it began, but
+/// for the corners of cubes and the stretched pixels at the rims of discs.
+TEST(PictureLayout, NeighboursLieAcrossEdgesAlsoAtTheRimsOfPictures) {
+    constexpr std::pair<int, int> steps[] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+    for (const PictureGeometry& g : geometries) {
+        std::size_t found = 0;
+        for (std::size_t row = 0; row < g.height; ++row) {
+            for (std::size_t column = 0; column < g.width; ++column) {
+                const auto middle = [&](std::size_t x, std::size_t y) {
+                    return g.direction(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
+                };
+                for (const auto& [right, down] : steps) {
+                    const auto next = g.neighbour(column, row, right, down);
+                    if (!next || isDisc(g.layout)) continue;
+                    ++found;
+                    const double cosine = dot(middle(column, row), middle((*next)[0], (*next)[1]));
+                    EXPECT_GT(cosine, std::cos(2.2 * g.pixelAngle()))
+                        << nameOf(g) << " " << column << " " << row << " " << right << " " << down;
+                }
+                if (!(g.solidAngle(column, row) > 0)) {
+                    EXPECT_FALSE(g.neighbour(column, row, 1, 0));
+                }
+            }
+        }
+        const std::size_t used =
+            g.faceSize() > 0 ? 6 * g.faceSize() * g.faceSize() : g.width * g.height;
+        if (!isDisc(g.layout)) {
+            EXPECT_EQ(found, 4 * used) << nameOf(g);
+        }
+    }
+}
+
 TEST(PictureLayout, SizesTellLayoutsExceptForSquares) {
     EXPECT_EQ(layoutOfSize(64, 32), latlong);
     EXPECT_EQ(layoutOfSize(64, 48), cross);
@@ -186,6 +267,7 @@ TEST(PictureLayout, SizesTellLayoutsExceptForSquares) {
     EXPECT_EQ(layoutOfSize(60, 10), faces);
     EXPECT_EQ(layoutOfSize(10, 60), faces);
     EXPECT_EQ(layoutOfSize(64, 64), std::nullopt);
+    EXPECT_EQ(layoutOfSize(64, 16), dome);
     EXPECT_EQ(layoutOfSize(65, 32), std::nullopt);
     EXPECT_FALSE(layoutFits(cross, 4, 2));
     EXPECT_TRUE(layoutFits(angular, 7, 7));
@@ -194,8 +276,9 @@ TEST(PictureLayout, SizesTellLayoutsExceptForSquares) {
 /// The flux of a reduced picture and of its reduction, by the solid angles of each.
 TEST(PictureReduction, KeepsConstantsAndFlux) {
     const std::vector<PictureGeometry> sizes = {
-        {latlong, 64, 32}, {latlong, 70, 35}, {angular, 61, 61}, {mirrorBall, 64, 64},
-        {cross, 68, 51},   {faces, 17, 102},  {faces, 96, 16}};
+        {latlong, 64, 32},    {latlong, 70, 35}, {angular, 61, 61},
+        {mirrorBall, 64, 64}, {cross, 68, 51},   {faces, 17, 102},
+        {faces, 96, 16},      {dome, 61, 61},    {equalArea, 70, 70}};
     for (const PictureGeometry& file : sizes) {
         for (const std::size_t most : {5000U, 500U, 130U}) {
             PictureReduction constant(file, most), pattern(file, most);
@@ -223,13 +306,13 @@ TEST(PictureReduction, KeepsConstantsAndFlux) {
                     const double omega = kept.solidAngle(column, row);
                     keptFlux += rgb[at] * omega;
                     EXPECT_FLOAT_EQ(rgb[at + 1], 2 * rgb[at]);
-                    const bool rim = kept.layout == angular || kept.layout == mirrorBall;
+                    const bool rim = isDisc(kept.layout);
                     if (omega > 0 && !rim) {
                         EXPECT_FLOAT_EQ(same[at], 3.F) << nameOf(file);
                     }
                 }
             }
-            const bool disc = file.layout == angular || file.layout == mirrorBall;
+            const bool disc = isDisc(file.layout);
             EXPECT_NEAR(keptFlux, flux, (disc ? 2e-2 : 2e-3) * flux) << nameOf(file);
         }
     }

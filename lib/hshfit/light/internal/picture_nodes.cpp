@@ -52,7 +52,10 @@ struct Block {
 class Pictured {
 public:
     Pictured(const PictureLight& light, const LightDomain& domain, int order, int level)
-        : light_(light), hemisphere_(domain.normal.has_value()), frame_(domain.frame()) {
+        : light_(light),
+          hemisphere_(domain.normal.has_value()),
+          frame_(domain.frame()),
+          normal_(toPicture(light, frame_.normal)) {
         pixel_ = pi / static_cast<double>(light.height);
         step_ = 2 * pi / static_cast<double>(light.width);
         const double phase = order * pixel_;
@@ -98,10 +101,10 @@ private:
                              2;
         return std::abs(height) <= std::sin(std::min(reach, pi / 2)) ? 0 : height > 0 ? 1 : -1;
     }
-    /// Polar angle at which the horizon of the domain crosses a meridian of the world; none where
+    /// Polar angle at which the horizon of the domain crosses a meridian of the picture; none where
     /// it follows meridians.
     std::optional<double> crossing(double phi) const {
-        const Direction& n = frame_.normal;
+        const Direction& n = normal_;
         const double across = n.x * std::cos(phi) + n.y * std::sin(phi);
         if (std::abs(n.z) < 1e-12) return {};
         return std::atan2(std::abs(n.z), n.z > 0 ? -across : across);
@@ -111,7 +114,7 @@ private:
     /// where the horizon enters and leaves the pixel or touches a ring, then arcs.
     template <class Take>
     void forEachNode(std::size_t row, std::size_t column, Take take) const {
-        const Direction& n = frame_.normal;
+        const Direction& n = normal_;
         const double slope = std::hypot(n.x, n.y), middle = (static_cast<double>(column) + 0.5);
         const double towards = std::atan2(n.y, n.x) - azimuthOf(middle);
         const double touch = std::atan2(std::abs(n.z), slope);
@@ -153,7 +156,7 @@ private:
             }
         }
     }
-    double azimuthOf(double column) const { return pi - step_ * column + light_.turn; }
+    double azimuthOf(double column) const { return pi - step_ * column; }
     Rgb radiance(std::size_t row, std::size_t column) const {
         const float* rgb = light_.rgb.data() + 3 * (row * light_.width + column);
         return {rgb[0], rgb[1], rgb[2]};
@@ -212,6 +215,7 @@ private:
     const PictureLight& light_;
     bool hemisphere_;
     Frame frame_;
+    Direction normal_;  ///< of the domain, in the picture's own frame
     double pixel_, step_;
     std::size_t block_, nodes_;
 };

@@ -39,10 +39,12 @@ double middleWeight(const PictureGeometry& g, std::size_t column, std::size_t ro
         const double a = middle(column % n, n), b = middle(row % n, n), squared = 1 + a * a + b * b;
         return 1 / (squared * std::sqrt(squared));
     }
+    if (g.layout == PictureLayout::equalArea) return 1;
     const double r = std::hypot(middle(column, g.width), middle(row, g.height));
     if (r >= 1) return 0;
     if (g.layout == PictureLayout::mirrorBall) return 1;
-    return r > 0 ? std::sin(pi * r) / r : pi;
+    const double rim = g.layout == PictureLayout::dome ? pi / 2 : pi;
+    return r > 0 ? std::sin(rim * r) / r : rim;
 }
 
 PictureReduction::PictureReduction(const PictureGeometry& file, std::size_t most)
