@@ -108,6 +108,10 @@ std::vector<unsigned char> readHead(const std::string& path, std::size_t most) {
 constexpr std::size_t headBytes = 4096;
 static_assert(headBytes >= jsonStartBytes);
 
+bool isJson(std::span<const unsigned char> head) {
+    return beginsAsJson({reinterpret_cast<const char*>(head.data()), head.size()});
+}
+
 /// JSON of this program. The key "format" may come behind the head of a long file.
 bool isPreset(std::span<const unsigned char> head) {
     const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
@@ -122,6 +126,12 @@ const Format* recognisedFormat(std::span<const unsigned char> head, std::uint64_
     return nullptr;
 }
 
+/// Throws for content that looks like something else, naming it.
+void refuseForeign(const std::string& path, std::span<const unsigned char> head, bool certain) {
+    if (const auto foreign = foreignContent(head, certain))
+        throw InputError(fmt::format("{}: of no known format: it looks like {}", path, *foreign));
+}
+
 /// Formats that are text or may be; the others are bytes.
 constexpr std::string_view textFormats[] = {"bsdf-xml", "astm", "zemax", "fred",    "cornell",
                                             "xompt",    "csv",  "nist",  "scatmech"};
@@ -132,8 +142,7 @@ constexpr std::string_view eitherFormats[] = {"alta", "speos"};
 const Format& formatByExtension(const std::string& path, std::span<const unsigned char> head,
                                 std::uint64_t size) {
     const std::string start = fmt::format("{}: of no known format", path);
-    if (const auto foreign = foreignContent(head, false))
-        throw InputError(fmt::format("{}: it looks like {}", start, *foreign));
+    refuseForeign(path, head, false);
     const std::string extension = fs::path(path).extension().string();
     const bool plain = isPlainText(head);
     const Format* misfit = nullptr;
@@ -179,11 +188,11 @@ std::unique_ptr<Brdf> openFile(const std::string& path, std::string_view options
     if (error) throw InputError(fmt::format("{}: {}", path, error.message()));
     if (size == 0) throw InputError(path + ": is empty");
     const std::vector<unsigned char> head = readHead(path, headBytes);
-    if (const auto foreign = foreignContent(head, true))
-        throw InputError(fmt::format("{}: of no known format: it looks like {}", path, *foreign));
+    refuseForeign(path, head, true);
     const Format* format = recognisedFormat(head, size);
     const std::string extension = fs::path(path).extension().string();
     if (!format && extension == xomptFormat().extension) format = &xomptFormat();
+    if (!format && !isJson(head)) refuseForeign(path, head, false);
     if (!format && (extension == ".json" || isPreset(head)))
         return openPresetFile(path, size, options);
     if (!format) format = &formatByExtension(path, head, size);

@@ -120,13 +120,13 @@ bool isPlainText(std::span<const unsigned char> head) {
 
 std::optional<std::string> foreignContent(std::span<const unsigned char> head, bool certain) {
     const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
-    for (const Magic& magic : magics)
-        if (text.starts_with(magic.bytes)) return std::string(magic.what);
-    if (auto archive = archiveOf(text)) return archive;
     const std::string lower = lowerCase(text);
     if (isWebPage(lower))
         return "a web page; download the file itself (its raw form), not the page that shows it";
     if (certain) return std::nullopt;
+    for (const Magic& magic : magics)
+        if (text.starts_with(magic.bytes)) return std::string(magic.what);
+    if (auto archive = archiveOf(text)) return archive;
     if (beginsAsJson(text))
         return "JSON of another program; tables of OpenMATERIAL (.xompt) and this program's own "
                "files are read";

@@ -9,7 +9,8 @@ namespace hshfit::brdfs {
 
 /// The looks of a file that no format takes, and what to do: "a Git LFS pointer, not the file
 /// itself; fetch that with 'git lfs pull'". By the first bytes of the file; none if they look like
-/// nothing known. `certain`: only what no format can be, before the formats are asked.
+/// nothing known. `certain`: web pages alone, which may quote a format; to be asked before the
+/// formats.
 std::optional<std::string> foreignContent(std::span<const unsigned char> head, bool certain);
 
 /// Whether the bytes are text: no control characters but white space.
