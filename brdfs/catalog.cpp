@@ -145,6 +145,9 @@ const Format& formatByExtension(const std::string& path, std::span<const unsigne
     refuseForeign(path, head, false);
     const std::string extension = fs::path(path).extension().string();
     const bool plain = isPlainText(head);
+    // A single word may be the beginning of either.
+    const bool word =
+        plain && std::ranges::none_of(head, [](unsigned char c) { return c == ' ' || c == '\n'; });
     const Format* misfit = nullptr;
     for (const Format& format : formats()) {
         // FRED's extension is that of any text.
@@ -152,7 +155,7 @@ const Format& formatByExtension(const std::string& path, std::span<const unsigne
         const bool either =
             std::ranges::find(eitherFormats, format.name) != std::end(eitherFormats);
         const bool text = std::ranges::find(textFormats, format.name) != std::end(textFormats);
-        if (either || plain == text) return format;
+        if (either || word || plain == text) return format;
         misfit = &format;
     }
     if (misfit)
