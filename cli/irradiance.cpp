@@ -125,7 +125,8 @@ void addIrradiance(CLI::App& command, Globals& globals) {
     jobs::IrradianceOptions& options = arguments->options;
     command
         .add_option("SPEC", arguments->specs,
-                    "One or more lights, which add up: kind:key=value,… or the path of a picture")
+                    "One or more lights, which add up: kind:key=value,…, the path of a picture, or "
+                    "PATH:convention=NAME of nine numbers (docs/irradiance.md)")
         ->required();
     command
         .add_option("--convention", arguments->convention,

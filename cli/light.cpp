@@ -145,7 +145,8 @@ void addLight(CLI::App& command, Globals& globals) {
     jobs::LightOptions& options = arguments->options;
     command
         .add_option("SPEC", arguments->specs,
-                    "One or more lights, which add up: kind:key=value,… or the path of a picture")
+                    "One or more lights, which add up: kind:key=value,…, the path of a picture, or "
+                    "PATH:convention=NAME of nine numbers (docs/irradiance.md)")
         ->required();
     command.add_option("-o,--output", arguments->output, "File of coefficients, .json")->required();
     command.add_option("--basis", options.basis, "sh; with --normal any of hshfit list bases")

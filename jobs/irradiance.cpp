@@ -1,5 +1,7 @@
 #include "irradiance.h"
 
+#include "nine_numbers.h"
+
 #include <hshfit/bases/sh.h>
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
@@ -58,6 +60,17 @@ Irradiances byCoefficients(LightCoefficients light, std::span<const Direction> n
     });
 }
 
+/// The nine coefficients of which the zonal form is made: it has three bands, whatever order the
+/// errors are asked for.
+NineRgb zonalSource(std::span<const Light> lights, const NineRgb& nine,
+                    const IrradianceOptions& options) {
+    if (options.order >= 3) return nine;
+    LightCoefficients light = projectLight(lights, *bases::makeSh(3, {}), {.tolerance = 1e-6});
+    LitSurface unused;
+    applyWindow(light, unused, options.window);
+    return nineFrom(light, 3);
+}
+
 void writeByNormal(const std::string& path, std::span<const Direction> normals,
                    const Irradiances& direct, const Irradiances& approximation) {
     std::string text = "normal_x,normal_y,normal_z,direct_r,direct_g,direct_b,r,g,b\n";
@@ -73,8 +86,8 @@ void writeByNormal(const std::string& path, std::span<const Direction> normals,
 
 LitSurface irradianceOfLight(const std::vector<std::string>& specs,
                              const IrradianceOptions& options) {
-    const LightSpecification specification =
-        parseLights(fmt::format("{}", fmt::join(specs, " + ")));
+    const LightSpecification specification{.text = fmt::format("{}", fmt::join(specs, " + ")),
+                                           .lights = lightsOf(specs)};
     LightCoefficients light =
         projectLight(specification.lights, *bases::makeSh(options.order, {}), {.tolerance = 1e-6});
     LitSurface result;
@@ -91,7 +104,7 @@ LitSurface irradianceOfLight(const std::vector<std::string>& specs,
     result.meanIrradiance = meanOf(direct);
     const Irradiances approximation = byCoefficients(light, normals);
     result.error = errorsOf(normals, direct, approximation);
-    result.zonal = zonalForm(result.radiance);
+    result.zonal = zonalForm(zonalSource(specification.lights, result.radiance, options));
     const NineRgb zonal = irradianceOf(nineOf(result.zonal));
     result.zonalError = errorsOf(normals, direct, atNormals(normals, [&](const Direction& normal) {
                                      return evaluateNine(zonal, normal);

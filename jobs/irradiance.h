@@ -23,7 +23,7 @@ struct LitSurface {
     std::string window;                ///< that was applied
     double meanIrradiance = 0;         ///< over normals and channels, by direct integration
     IrradianceErrors error;            ///< of the order that was asked for
-    ZonalForm zonal;                   ///< of `radiance`
+    ZonalForm zonal;                   ///< of three bands, whatever `order` is
     IrradianceErrors zonalError;
     std::vector<std::string> remarks = {};  ///< on the files of the light
 };

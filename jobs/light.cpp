@@ -1,5 +1,7 @@
 #include "light.h"
 
+#include "nine_numbers.h"
+
 #include <hshfit/bases/catalog.h>
 #include <hshfit/coefficient_files/light_file.h>
 #include <hshfit/light/catalog.h>
@@ -49,8 +51,8 @@ ProjectedLight light(const std::vector<std::string>& specs, const std::string& o
                      const LightOptions& options) {
     const auto basis =
         bases::make(options.basis, options.order, {.condonShortley = options.condonShortley});
-    const LightSpecification specification =
-        parseLights(fmt::format("{}", fmt::join(specs, " + ")));
+    const LightSpecification specification{.text = fmt::format("{}", fmt::join(specs, " + ")),
+                                           .lights = lightsOf(specs)};
     ProjectedLight result;
     result.light =
         projectLight(specification.lights, *basis,

@@ -21,7 +21,8 @@ struct LightingExportOptions {
     /// The BRDF that errors are measured against; empty: the one that the coefficients name.
     std::string source = {};
     std::string prefix = "hsh";  ///< of every name in a shader
-    /// Of the cube, float16 or float32; none: float16, or float32 for a light beyond 65504.
+    /// The number of the cube, float16 or float32; none: float16, or float32 for a light beyond
+    /// 65504.
     std::optional<gpu::Number> number = {};
     bool measureError = true;
     bool force = false;                ///< replace existing files

@@ -1,5 +1,7 @@
 #include "rotate.h"
 
+#include "nine_numbers.h"
+
 #include <hshfit/bases/catalog.h>
 #include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/coefficient_files/light_file.h>
@@ -164,6 +166,11 @@ Rotated rotate(LightCoefficients& light, const RotateOptions& options, const std
 }
 
 Rotated rotate(const std::string& input, const std::string& output, const RotateOptions& options) {
+    if (auto nine = nineNumbers(input)) {
+        const Rotated result = rotate(*nine, options, input);
+        writeLight(*nine, output);
+        return result;
+    }
     if (isLightFile(input)) {
         LightCoefficients light = readLight(input);
         const Rotated result = rotate(light, options, input);

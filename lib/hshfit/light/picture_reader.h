@@ -44,8 +44,8 @@ struct PictureFacts {
     std::string format;  ///< "OpenEXR", "Radiance HDR", "PNG", …
     std::string number;  ///< "half", "float", "uint8", …
     TransferCurve curve = TransferCurve::linear;
-    /// Of the rows that are given. A dome of rows is given as the latlong picture of both
-    /// hemispheres, with black rows below the horizon.
+    /// The geometry of the rows that are given. A dome of rows is given as the latlong picture of
+    /// both hemispheres, with black rows below the horizon.
     PictureGeometry geometry;
     PictureLayout layout = PictureLayout::latlong;  ///< of the file
     std::size_t fileHeight = 0;                     ///< rows of the file
