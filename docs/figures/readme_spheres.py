@@ -22,7 +22,8 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     paint = shared / 'data/rgl/cg_sunflower_rgb.bsdf'
     form, fit, column = (folder / name for name in ('form.json', 'openpbr.json', 'column.png'))
-    run(program, 'project', paint, '--form', 'halfway', '--precision', 'half', '-o', form, '--force')
+    run(program, 'project', paint, '--form', 'halfway', '--precision', 'half', '-o', form,
+        '--force')
     run(program, 'fit', paint, '--model', 'openpbr', '-o', fit, '--force')
     run(program, 'render', paint, form, fit, '--light',
         shared / 'data/env/studio_small_03_1k.hdr', '--by', 'integration', '--error', '20%',
