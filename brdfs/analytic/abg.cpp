@@ -52,7 +52,9 @@ public:
     /// The lobe has half its height at |D| = B^(1/g); |D| is the slope times 2 cos(theta_o).
     std::vector<Lobe> lobes(const Direction& wo) const override {
         if (!(shape_.g > 0)) return {};
-        const double width = std::pow(shape_.b, 1 / shape_.g) / (2 * std::max(wo.z, 1e-3));
+        double width = std::pow(shape_.b, 1 / shape_.g) / (2 * std::max(wo.z, 1e-3));
+        // |beta - beta_0|^g is smooth at its tip for even g alone.
+        if (std::fmod(shape_.g, 2.0) != 0) width *= 0.05;
         if (!(width < 1)) return {};
         return {{Lobe::About::halfway, std::max(width, 1e-6), {}}};
     }

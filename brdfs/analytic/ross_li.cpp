@@ -45,7 +45,8 @@ public:
                      RossLiFormula::shape(Values<double>(p, 0))) {}
 
     std::vector<Lobe> lobes(const Direction& wo) const override {
-        return {{Lobe::About::axis, 0.2, wo}};
+        // A cone, whose tip is not smooth.
+        return {{Lobe::About::axis, 0.01, wo}};
     }
 };
 

@@ -52,7 +52,8 @@ public:
 
     /// The hot spot is a cusp at wi = wo.
     std::vector<Lobe> lobes(const Direction& wo) const override {
-        return {{Lobe::About::axis, 0.2, wo}};
+        // A cone, whose tip is not smooth.
+        return {{Lobe::About::axis, 0.01, wo}};
     }
 };
 
