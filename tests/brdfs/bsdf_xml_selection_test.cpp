@@ -4,6 +4,7 @@
 #include "bsdf_xml_files.h"
 #include "bsdf_xml_text.h"
 #include "places.h"
+#include "skip_without.h"
 
 #include <brdfs/catalog.h>
 
@@ -131,7 +132,7 @@ TEST(BsdfSelection, WrongWavelengthsAreRefused) {
 TEST(BsdfSelection, FilesOfTheFieldOpenWithoutAnOption) {
     const std::string path =
         test::sharedFolder() + "/data/field/measured/03-side-default/back_only.xml";
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent";
+    SKIP_WITHOUT(path);
     const auto brdf = brdfs::open(path);
     EXPECT_NEAR(atNormal(*brdf), .4 / pi, 1e-8);
     EXPECT_EQ(factOf(*brdf, "side"), "back");

@@ -1,6 +1,7 @@
 // Tables of samples with named columns: names, units, separators, quantities and conventions.
 
 #include "places.h"
+#include "skip_without.h"
 
 #include <brdfs/catalog.h>
 #include <brdfs/measured/scattered/csv.h>
@@ -224,7 +225,7 @@ TEST(CsvAttack, EveryTruncationIsReadOrRefused) {
 TEST(CsvShared, InPlaneScansOfTheFieldAreSamples) {
     const std::string path =
         test::sharedFolder() + "/data/field/measured/05-foreign-extension/inplane.csv";
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent";
+    SKIP_WITHOUT(path);
     const auto brdf = open(path);
     const Direction wi = atDegrees(10, 0);
     EXPECT_NEAR(evaluate(*brdf, wi, mirrored(wi))[0], 0.9, 1e-12);

@@ -2,6 +2,7 @@
 // every stored value is a sample, and f at its directions is the value.
 
 #include "places.h"
+#include "skip_without.h"
 
 #include <brdfs/catalog.h>
 #include <brdfs/measured/scattered/scattered.h>
@@ -21,9 +22,6 @@ namespace {
 std::string field(const std::string& name) {
     return test::sharedFolder() + "/data/field/files/" + name;
 }
-
-#define SKIP_WITHOUT(path) \
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << (path) << " is absent"
 
 using Rows = std::vector<std::vector<double>>;
 

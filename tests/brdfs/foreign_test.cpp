@@ -2,6 +2,7 @@
 // what they look like, and known formats are known under any extension.
 
 #include "places.h"
+#include "skip_without.h"
 
 #include <brdfs/catalog.h>
 #include <brdfs/measured/scattered/alta.h>
@@ -112,7 +113,7 @@ TEST(AltaStream, FilesWithoutMarksBeginAtTheFirstByteThatIsNoRemark) {
 TEST(AltaStream, TheFileOfTheFieldIsRead) {
     const std::string path =
         test::sharedFolder() + "/data/field/measured/04-alta-binary-no-marks/no_marks.alta";
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent";
+    SKIP_WITHOUT(path);
     EXPECT_EQ(open(path)->facts().empty(), false);
 }
 

@@ -3,6 +3,7 @@
 // itself.
 
 #include "places.h"
+#include "skip_without.h"
 
 #include <brdfs/catalog.h>
 #include <brdfs/measured/scattered/fred.h>
@@ -28,9 +29,6 @@ using Values = std::vector<double>;
 std::string field(const std::string& name) {
     return test::sharedFolder() + "/data/field/files/" + name;
 }
-
-#define SKIP_WITHOUT(path) \
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << (path) << " is absent"
 
 std::string textOf(const std::string& path) {
     std::ostringstream text;

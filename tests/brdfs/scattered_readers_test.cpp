@@ -1,6 +1,7 @@
 // The readers of scattered samples, on files written here byte by byte and on real ones.
 
 #include "places.h"
+#include "skip_without.h"
 
 #include <brdfs/catalog.h>
 #include <brdfs/measured/scattered/alta.h>
@@ -383,9 +384,6 @@ TEST(Scatmech, evaluatesItsTerms) {
 std::string shared(const std::string& name) {
     return test::sharedFolder() + "/data/" + name;
 }
-
-#define SKIP_WITHOUT(path) \
-    if (!std::filesystem::exists(path)) GTEST_SKIP() << (path) << " is absent"
 
 /// The rows of the measurement against the published expansion. SCATMECH documents a factor
 /// r(lambda), "usually the diffuse reflectance": the table stands for unit reflectance, so that the

@@ -131,6 +131,7 @@ public:
             open.resize(count);
             refine(open, round);
             spent_ = cost;
+            reportSpent();
             open = openPairs();
         }
         summarise();
@@ -195,10 +196,8 @@ private:
     }
 
     void refine(const std::vector<OpenPair>& open, int round) {
-        /// A rule of twice the points changes what converges by less than that of the change
-        /// before.
+        // A rule that converges changes by less than this part of the change before.
         constexpr double converging = 1.0 / 3;
-        std::atomic<std::size_t> done{0};
         tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t k) {
             const std::size_t pair = open[k].place, o = pair / incident_.count,
                               i = pair % incident_.count;
@@ -212,12 +211,6 @@ private:
             if (gauss) smooth_[pair] = change < converging * change_[pair] ? 1 : 0;
             change_[pair] = change;
             result_.values[pair] = better;
-            if (options_.progress && ++done % 64 == 0) {
-                const double share = spent_ / std::max(spent_ + 1, options_.evaluations);
-                const auto rows = static_cast<double>(outgoing_.count);
-                options_.progress(static_cast<std::size_t>(rows * (1 + std::min(1.0, share))),
-                                  2 * outgoing_.count);
-            }
         });
     }
 
@@ -233,6 +226,14 @@ private:
                          &sum);
         }
         return sum;
+    }
+
+    /// The second half of the progress: what is spent of the evaluations.
+    void reportSpent() const {
+        if (!options_.progress) return;
+        const double share = std::min(1.0, spent_ / options_.evaluations);
+        const auto rows = static_cast<double>(outgoing_.count);
+        options_.progress(static_cast<std::size_t>(rows * (1 + share)), 2 * outgoing_.count);
     }
 
     void summarise() {

@@ -44,9 +44,10 @@ struct CellAverages {
 /// luminanceWeights). Two Gauss rules are compared for every pair, the second with twice the points
 /// along each coordinate. Where they differ by more than the tolerance, relative to the pair's
 /// value or, if that is greater, to the average of the outgoing cell, a third rule follows, and
-/// then points in a low-discrepancy order, four times as many in each round, since Gauss rules gain
-/// nothing where f has steps within a cell. Pairs with the greatest changes go first, until all
-/// agree or the evaluations are spent. A lobe between the nodes of the first two rules is missed.
+/// others where rules converge; elsewhere points in a low-discrepancy order, four times as many in
+/// each round, since Gauss rules gain nothing where f has steps within a cell. Pairs with the
+/// greatest changes go first, until all agree or the evaluations are spent. A lobe between the
+/// nodes of the first two rules is missed.
 ///
 /// Parallel; the averages do not depend on the number of threads. Throws NumericError where f is
 /// negative or not finite.

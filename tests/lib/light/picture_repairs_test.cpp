@@ -1,6 +1,7 @@
 // Pictures with faults: pixels that are filled from those around, faces of cubes that do not meet,
 // gain maps.
 #include "places.h"
+#include "skip_without.h"
 #include "temporary_folder.h"
 
 #include <hshfit/error.h>
@@ -208,7 +209,7 @@ TEST_F(PictureRepairs, FacesThatDoNotMeetAreSaidWithTheOrderInWhichTheyDo) {
 
 TEST_F(PictureRepairs, CubesOfTheFieldAreToldApart) {
     const std::string field = test::sharedFolder() + "/data/field/light/12-cube-order-and-seams/";
-    if (!std::filesystem::exists(field)) GTEST_SKIP() << field << " is absent";
+    SKIP_WITHOUT(field);
     const auto remark = [&](const std::string& name) { return read(field + name).remark; };
     EXPECT_EQ(remark("vcross_rot.hdr"), "");
     EXPECT_EQ(remark("strip_gl.hdr"), "");

@@ -1,5 +1,6 @@
 // Radiance pictures written byte by byte: every orientation, every compression, and broken ones.
 #include "places.h"
+#include "skip_without.h"
 #include "temporary_folder.h"
 
 #include <hshfit/error.h>
@@ -174,6 +175,12 @@ TEST_F(RadianceFiles, BrokenFilesAreRefusedWithThePlace) {
     EXPECT_TRUE(damaged(std::string("\x02\x02\x00\x20\xa1\x07", 6)));          // a run of 33
     EXPECT_TRUE(damaged(std::string("\x02\x02\x00\x20\x00\x00\x00\x00", 8)));  // none at all
     EXPECT_FALSE(damaged(pixel + std::string("\x01\x01\x01\x1f", 4)));
+    // Two rows of twelve bytes, and half of one.
+    std::string rows;
+    for (int row = 0; row < 3; ++row)
+        rows += std::string("\x02\x02\x00\x20\xa0\x07\xa0\x07\xa0\x07\xa0\x80", 12);
+    EXPECT_NE(messageOf(file("half.hdr", resolution, rows.substr(0, 30))).find("row 2 of 16"),
+              std::string::npos);
     for (const char* text : {"-Y 16", "-Y 16 +Y 32", "-Y 0 +X 32", "-Z 16 +X 32", "-Y 16 +X 32 1",
                              "-Y 16 +X 99999999999", "16 32"})
         EXPECT_NE(messageOf(file("size.hdr", text, std::string(4096, '\x70'))).find("resolution"),
@@ -184,7 +191,7 @@ TEST_F(RadianceFiles, BrokenFilesAreRefusedWithThePlace) {
 /// Real files: one light in four orientations, and with and without old runs.
 TEST_F(RadianceFiles, FilesOfTheFieldHoldTheLightOfTheirReferences) {
     const std::string field = test::sharedFolder() + "/data/field/light/";
-    if (!std::filesystem::exists(field)) GTEST_SKIP() << field << " is absent";
+    SKIP_WITHOUT(field);
     const auto nineOf = [&](const std::string& name) {
         return projectLight(parseLights(field + name).lights, *bases::makeSh(3, {})).values;
     };

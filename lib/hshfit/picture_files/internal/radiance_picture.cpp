@@ -134,10 +134,6 @@ public:
         channels = {"R", "G", "B"};
         partNames = {""};
         partChannels = {channels};
-        if (bytes.size() / 4 < resolution.lines) {
-            fail(bytes.size() / 4);
-            return;
-        }
         for (std::size_t line = 0; line < resolution.lines; ++line) {
             places_.push_back(lines_.place());
             if (!lines_.next(nullptr)) {
