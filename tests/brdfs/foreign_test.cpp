@@ -103,11 +103,11 @@ TEST(AltaStream, FilesWithoutMarksBeginAtTheFirstByteThatIsNoRemark) {
     std::string odd = bytesOf({0.0, 0.2, 0.1, 0.31, 0.1, 0.2, 3.1, 0.52});
     odd[0] = '#';
     EXPECT_EQ(readAlta(altaHeader + end + odd, "f").size(), 2u);
-    for (const auto& [text, parts] :
+    for (const auto& refused :
          {std::pair(altaHeader + end + rows.substr(1), std::vector<std::string>{"too few"}),
           std::pair(altaHeader + end + rows + rows, std::vector<std::string>{"bytes after 2"}),
           std::pair(altaHeader + end, std::vector<std::string>{"too few"})})
-        test::expectInputError([&] { readAlta(text, "f"); }, parts);
+        test::expectInputError([&] { readAlta(refused.first, "f"); }, refused.second);
 }
 
 TEST(AltaStream, TheFileOfTheFieldIsRead) {
