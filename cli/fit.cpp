@@ -69,14 +69,7 @@ std::string text(const jobs::Fitted& fitted, const FitArguments& arguments) {
         lines += fmt::format("  {:<24} {:>2} {}\n", p.name, p.channel, value);
     }
     lines += instrumentText(result);
-    if (fitted.search) {
-        for (const brdfs::PartTrial& trial : fitted.search->trials) {
-            const std::string name = trial.parts.empty()
-                                         ? "no extension"
-                                         : fmt::format("{}", fmt::join(trial.parts, " + "));
-            lines += fmt::format("  {:<40} {}\n", name, brdfs::outcomeOf(trial));
-        }
-    }
+    if (fitted.search) lines += brdfs::textOf(*fitted.search);
     for (const auto& set : result.ambiguous)
         lines += fmt::format("  ambiguous together: {}\n", fmt::join(set, ", "));
     lines += fmt::format("  rms residual {:.6g} over {} values, {} iterations, {}\n", result.loss,
@@ -87,6 +80,11 @@ std::string text(const jobs::Fitted& fitted, const FitArguments& arguments) {
                     percent(fitted.explained, 4), fitted.preset["fit"]["loss"].get<std::string>(),
                     percent(fitted.relativeError));
     if (fitted.picture) lines += "  " + summaryOf(*fitted.picture) + "\n";
+    if (fitted.factors)
+        lines += fmt::format(
+            "  off by a factor of {:.3g} in the median, {:.3g} for nine of ten "
+            "values\n",
+            fitted.factors->median, fitted.factors->nineOfTen);
     lines += uncertaintyText(fitted.preset["fit"]);
     if (fitted.pageFiles > 0)
         lines += fmt::format("written to {}: fit.json, comparison.html and {} files beside it\n",
@@ -145,6 +143,7 @@ void runCompareModels(const FitArguments& arguments, Globals& globals) {
                 fit.uncertainty->stated ? Json(fit.uncertainty->chiSquare) : Json();
             list.back()["degrees_of_freedom"] = fit.uncertainty->degreesOfFreedom;
             list.back()["tied"] = rank.tied;
+            list.back()["simplest_of_tied"] = rank.simplest;
         }
         lines += fmt::format("  {:<28} {:>3} {:>12.6g} {:>12.6g} {:>12.8g} {:>12.8g}{}\n",
                              rank.model, fit.parameters.size(), rank.heldOut, fit.loss, fit.aic,
@@ -153,6 +152,7 @@ void runCompareModels(const FitArguments& arguments, Globals& globals) {
             lines.insert(lines.size() - 1, fmt::format("  chi-square {:.4g} each",
                                                        fit.uncertainty->reducedChiSquare()));
         if (rank.tied) lines.insert(lines.size() - 1, "  tied with the first");
+        if (rank.simplest) lines.insert(lines.size() - 1, "  fewest parameters of those tied");
         if (!fit.converged && !arguments.options.accept)
             endWithoutNumbers(globals,
                               fmt::format("{}: the fit of {} did not converge; --accept takes it",
@@ -233,7 +233,8 @@ void addFit(CLI::App& command, Globals& globals) {
                        "Where the fit goes: a preset (.json), or a folder for a report as well");
     command.add_option("--loss", options.loss,
                        "picture (default for functions and tables), l2 (default with --sigma), "
-                       "cosine (default for scattered samples), log, cube-root or log-relative");
+                       "cosine (default for scattered samples), log-relative (default for those "
+                       "that span more than two decades), log or cube-root");
     command.add_option("--robust", options.robust, "none, huber or cauchy")->capture_default_str();
     command
         .add_option("--robust-scale", options.robustScale,

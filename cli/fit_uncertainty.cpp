@@ -63,6 +63,13 @@ std::string errorTable(const Document& uncertainty) {
     return lines;
 }
 
+/// The reason why there are no errors by scan; empty where there are.
+std::string reasonLine(const Document& uncertainty) {
+    const auto scans = uncertainty.find("scans");
+    if (scans == uncertainty.end() || !scans->contains("reason")) return {};
+    return fmt::format("  {}\n", (*scans)["reason"].get<std::string>());
+}
+
 /// The pairs of parameters whose errors are nearly one.
 std::string correlationLine(const Document& uncertainty) {
     constexpr double strong = 0.95;
@@ -129,7 +136,7 @@ std::string predictionLine(const Document& prediction, const std::string& unit) 
     return fmt::format(
         "  standard error of the fitted f ({}) {:.3g} of f in the root mean square, most at {} "
         "{}{}: {:.4g} +- {:.2g}\n",
-        prediction["route"] == "scans" ? "by scan" : "sandwich",
+        prediction["route"] == "scans" ? "by scan" : prediction["route"].get<std::string>(),
         prediction["rms_relative_error"].get<double>(), unit, worst["row"].get<std::size_t>(),
         channel.empty() ? "" : " at " + channel, worst["model"].get<double>(),
         worst["standard_error"].get<double>());
@@ -149,7 +156,8 @@ std::string uncertaintyText(const Document& fit) {
     const std::string bands = fit.contains("bands") ? bandsLine(fit["bands"]) : "";
     if (!fit.contains("uncertainty")) return bands;
     const Document& uncertainty = fit["uncertainty"];
-    std::string lines = chiSquareLine(uncertainty) + errorTable(uncertainty);
+    std::string lines =
+        chiSquareLine(uncertainty) + errorTable(uncertainty) + reasonLine(uncertainty);
     if (uncertainty.contains("bootstrap")) {
         const Document& bootstrap = uncertainty["bootstrap"];
         lines += fmt::format(

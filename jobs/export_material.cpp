@@ -1,6 +1,7 @@
 #include "export_material.h"
 
 #include "fit.h"
+#include "picture.h"
 #include "source.h"
 
 #include <hshfit/coefficient_files/coefficient_file.h>
@@ -12,6 +13,8 @@
 #include <hshfit/materials/glb.h>
 #include <hshfit/materials/materialx.h>
 #include <hshfit/meshes/mesh_file.h>
+#include <hshfit/pages/picture_error_json.h>
+#include <hshfit/pictures/picture_strips.h>
 #include <hshfit/wording.h>
 
 #include <brdfs/catalog.h>
@@ -187,6 +190,14 @@ std::string wantedModel(const std::string& target, const Input& input) {
     return own.empty() ? "openpbr" : std::string(own);
 }
 
+/// A grey material is compared with colours as three equal channels.
+std::unique_ptr<Brdf> openBeside(const std::string& spec, const Brdf& source) {
+    auto brdf = brdfs::open(spec);
+    return brdf->channels().count() < source.channels().count()
+               ? brdfs::open(spec + " + 0 * lambert:kd=0/0.5/1")
+               : std::move(brdf);
+}
+
 /// The material of a target: the input itself, or a fit to it.
 ExportedMaterial materialFor(const std::string& target, const Input& input,
                              const MaterialExportOptions& options, const Listener& listener) {
@@ -197,9 +208,7 @@ ExportedMaterial materialFor(const std::string& target, const Input& input,
         material.spec = input.spec;
     } else {
         FitOptions how{.model = model};
-        how.loss = options.fitLoss;
         how.parts = options.parts;
-        how.samples = options.samples;
         how.accept = true;
         how.rgb = true;
         const Fitted fitted = fit(input.fitTo, "", how, listener);
@@ -212,24 +221,20 @@ ExportedMaterial materialFor(const std::string& target, const Input& input,
         material.reason = input.reason;
         return material;
     }
-    auto own = brdfs::open(material.spec);
-    // A grey material is compared with colours as three equal channels.
-    if (own->channels().count() < input.brdf->channels().count())
-        own = brdfs::open(material.spec + " + 0 * lambert:kd=0/0.5/1");
+    const auto own = openBeside(material.spec, *input.brdf);
     if (own->channels().count() != input.brdf->channels().count())
         material.reason = "the source has other channels than the material";
-    else
+    else {
         material.loss = summaryOf(*input.brdf, *own);
+        material.picture = pictureErrorOf(*input.brdf, *own);
+    }
     return material;
 }
 
 Json statement(const ExportedMaterial& material, const std::string& source) {
     Json json = {{"spec", material.spec}};
     if (!source.empty()) json["source"] = source;
-    if (material.loss)
-        json["loss"] = lossJson(*material.loss);
-    else
-        json["loss"] = {{"reason", material.reason}};
+    json["loss"] = lossJson(material);
     return json;
 }
 
@@ -239,11 +244,11 @@ std::string sentence(const ExportedMaterial& material, const std::string& source
     const PairSummary& loss = *material.loss;
     const Direction &wi = loss.at.wi, &wo = loss.at.wo;
     return text + fmt::format(
-                      "; against {}: mean log error {:.4g}, largest error of f cos(theta_i) {:.4g} "
-                      "at wi ({:.4g}, {:.4g}, {:.4g}), wo ({:.4g}, {:.4g}, {:.4g}), albedo off by "
-                      "at most {:.4g}",
-                      source, loss.meanLog.value, loss.maximum, wi.x, wi.y, wi.z, wo.x, wo.y, wo.z,
-                      loss.albedo.value);
+                      "; against {}: {}{}mean log error {:.4g}, largest error of f cos(theta_i) "
+                      "{:.4g} at wi ({:.4g}, {:.4g}, {:.4g}), wo ({:.4g}, {:.4g}, {:.4g})",
+                      source, material.picture ? summaryOf(*material.picture) : "",
+                      material.picture ? ", " : "", loss.meanLog.value, loss.maximum, wi.x, wi.y,
+                      wi.z, wo.x, wo.y, wo.z);
 }
 
 std::string nameOf(const std::string& input, const MaterialExportOptions& options) {
@@ -267,19 +272,23 @@ bool areMaterials(const std::string& targets) {
     return true;
 }
 
-Json lossJson(const PairSummary& loss) {
+Json lossJson(const ExportedMaterial& material) {
+    if (!material.loss) return {{"reason", material.reason}};
+    const PairSummary& loss = *material.loss;
     const auto array = [](const Direction& d) { return Json::array({d.x, d.y, d.z}); };
-    return {{"metric", "mean |ln(1 + f cos(theta_i)) - ln(1 + g cos(theta_i))|"},
-            {"pairs", loss.pairs},
-            {"mean_log", loss.meanLog.value},
-            {"mean_log_error", loss.meanLog.error},
-            {"maximum",
-             {{"value", loss.maximum}, {"wi", array(loss.at.wi)}, {"wo", array(loss.at.wo)}}},
-            {"albedo",
-             {{"difference", loss.albedo.value},
-              {"of", loss.albedoThere},
-              {"theta_from", degrees(loss.albedoFrom)},
-              {"theta_to", degrees(loss.albedoTo)}}}};
+    Json json = {{"metric", "mean |ln(1 + f cos(theta_i)) - ln(1 + g cos(theta_i))|"},
+                 {"pairs", loss.pairs},
+                 {"mean_log", loss.meanLog.value},
+                 {"mean_log_error", loss.meanLog.error},
+                 {"maximum",
+                  {{"value", loss.maximum}, {"wi", array(loss.at.wi)}, {"wo", array(loss.at.wo)}}},
+                 {"albedo",
+                  {{"difference", loss.albedo.value},
+                   {"of", loss.albedoThere},
+                   {"theta_from", degrees(loss.albedoFrom)},
+                   {"theta_to", degrees(loss.albedoTo)}}}};
+    if (material.picture) json["picture"] = pictureErrorJson(*material.picture);
+    return json;
 }
 
 ExportedMaterials makeMaterials(const std::string& text, const MaterialExportOptions& options,
@@ -309,6 +318,8 @@ ExportedMaterials makeMaterials(const std::string& text, const MaterialExportOpt
                 materialXText(exported.name, model == "openpbr" ? "open_pbr_surface" : "gltf_pbr",
                               inputsOf(model, parameters), sentence(material, input.source));
         }
+        if (material.picture)
+            material.pictures = fmt::format("{}_{}.png", exported.name, target->name);
         material.bytes = material.content.size();
         exported.files.push_back(std::move(material));
     }
@@ -320,8 +331,15 @@ ExportedMaterials exportMaterials(const std::string& text, const std::string& fo
                                   const MaterialExportOptions& options, const Listener& listener) {
     FileSet files(folder, options.force);
     ExportedMaterials exported = makeMaterials(text, options, listener);
-    for (const ExportedMaterial& material : exported.files)
+    std::vector<SpherePicture> source;
+    for (const ExportedMaterial& material : exported.files) {
         files.write(material.path, material.content);
+        if (material.pictures.empty()) continue;
+        const auto brdf = openSource(exported.source, true);
+        if (source.empty()) source = stripSpheres(*brdf);
+        const auto own = stripSpheres(*openBeside(material.spec, *brdf));
+        files.write(material.pictures, pngOf(pictureStrips(source, own)));
+    }
     files.commit();
     return exported;
 }

@@ -4,6 +4,7 @@
 
 #include <brdfs/fit/choose_parts.h>
 #include <hshfit/accuracy/pair_errors.h>
+#include <hshfit/pictures/picture_error.h>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -20,11 +21,9 @@ struct MaterialExportOptions {
     /// The BRDF that the loss is measured against; empty: that of the coefficient file or of the
     /// fit, or the input itself.
     std::string source = {};
-    std::string mesh = {};        ///< path, +y up; empty: a sphere
-    std::string parts = "auto";   ///< FitOptions::parts
-    std::string fitLoss = "log";  ///< brdfs::findLoss: that of the stated mean
-    std::size_t samples = 40000;  ///< of the fit, drawn; 0: all
-    bool force = false;           ///< replace existing files
+    std::string mesh = {};       ///< path, +y up; empty: a sphere
+    std::string parts = "auto";  ///< FitOptions::parts
+    bool force = false;          ///< replace existing files
 };
 
 /// One file: a standard material.
@@ -35,9 +34,11 @@ struct ExportedMaterial {
     bool fitted = false;  ///< to the input, rather than being the input
     bool converged = true;
     std::optional<brdfs::PartSearch> search = {};
-    std::optional<PairSummary> loss = {};  ///< against the source
-    std::string reason = {};               ///< why there is no loss
-    std::string content = {};              ///< of the file
+    std::optional<PictureError> picture = {};  ///< against the source
+    std::optional<PairSummary> loss = {};      ///< the same over pairs of directions
+    std::string reason = {};                   ///< why there is neither
+    std::string pictures = {};  ///< a PNG beside it: source, material, difference; empty: no source
+    std::string content = {};   ///< of the file
 };
 
 struct ExportedMaterials {
@@ -49,8 +50,9 @@ struct ExportedMaterials {
 /// Whether a list of targets names materials; throws UsageError for a mixture with other targets.
 bool areMaterials(const std::string& targets);
 
-/// The loss of a material as JSON: mean log error, maximum with its directions, albedo.
-nlohmann::ordered_json lossJson(const PairSummary& loss);
+/// The loss of a material as JSON: picture error, mean log error, maximum with its directions,
+/// albedo; or the reason why there is none.
+nlohmann::ordered_json lossJson(const ExportedMaterial& material);
 
 /// The materials of exportMaterials, without a file.
 ExportedMaterials makeMaterials(const std::string& input, const MaterialExportOptions& options,
@@ -58,8 +60,9 @@ ExportedMaterials makeMaterials(const std::string& input, const MaterialExportOp
 
 /// Writes `input` as standard materials to `folder`: all files or none. A specification or preset
 /// of the models gltf-pbr and openpbr is written as it is; anything else, and the source of a
-/// coefficient file, is fitted first. The target gltf takes gltf-pbr; materialx takes either, and
-/// openpbr for anything else. Colours are linear Rec. 709.
+/// coefficient file, is fitted first, by the default loss of fit(). The target gltf takes gltf-pbr;
+/// materialx takes either, and openpbr for anything else. Colours are linear Rec. 709. Where the
+/// source opens, NAME_TARGET.png shows spheres of source, material and difference (PictureStrip).
 /// Throws UsageError, InputError, NumericError and OutputError.
 ExportedMaterials exportMaterials(const std::string& input, const std::string& folder,
                                   const MaterialExportOptions& options,

@@ -156,54 +156,76 @@ std::optional<brdfs::PartSearch> restrictParts(const FitOptions& options,
         search = brdfs::chooseParts(samples, how, {.progress = listener.part("parts")});
     else if (options.parts != "none")
         search.parts = namesIn(options.parts);
-    how.model = brdfs::withParts(how.model, search.parts);
+    how.model = brdfs::withParts(how.model, search);
     return search;
 }
 
-nlohmann::ordered_json searchJson(const brdfs::PartSearch& search) {
-    return {{"chosen", search.parts},
-            {"least_gain", brdfs::PartOptions{}.leastGain},
-            {"trials", brdfs::trialsJson(search)}};
-}
-
-/// Wider models than that of a poor fit, fitted in brief: a second lobe, and sums of the catalog
-/// that are known to describe much.
-std::vector<TriedModel> triedModels(const brdfs::FitSamples& samples, brdfs::FitOptions how) {
+/// Fits in place of a poor one, made in brief: a second lobe and sums of the catalog that are known
+/// to describe much, where no standard material was asked for, and the model by other losses.
+/// `seen`: of the data; null where it has no pictures.
+std::vector<TriedFit> triedFits(const Brdf& data, const brdfs::FitSamples& samples,
+                                const FitOptions& options, brdfs::FitOptions how,
+                                const PictureReference* seen) {
     constexpr std::size_t few = 4096;
     const bool pixels = samples.origin == brdfs::SampleOrigin::pixels;
-    const brdfs::FitSamples drawn = samples.drawn(pixels ? samples.size() : few, how.seed);
     const std::string own = how.model;
     how.starts = 2;
     how.iterations = 60;
     how.progress = {};
     how.uncertainty = {};
     how.dispersion = {};
-    std::vector<TriedModel> tried;
-    for (const std::string& model : {own + (own.starts_with("ggx") ? "+eon" : "+ggx"),
-                                     std::string("lambert+ggx"), std::string("lambert+ggx+ggx")}) {
-        if (model == own || std::ranges::find(tried, model, &TriedModel::model) != tried.end())
-            continue;
+    std::vector<TriedFit> tried;
+    const auto attempt = [&](const std::string& model, const brdfs::FitSamples& places,
+                             const std::string& loss) {
         how.model = model;
         try {
-            tried.push_back({model, explainedBy(brdfs::fit(drawn, how), drawn, how.loss)});
+            const brdfs::FitResult result = brdfs::fit(places, how);
+            tried.push_back(
+                {.model = model, .loss = loss, .explained = explainedBy(result, places, how.loss)});
+            if (seen) tried.back().flip = seen->errorOf(*brdfs::openFit(result)).flip.mean;
+            if (places.origin != brdfs::SampleOrigin::measured) return;
+            const auto values = brdfs::predictedValues(result, places);
+            if (const auto factors = brdfs::factorsOf(values, places))
+                tried.back().factor = factors->median;
         } catch (const Error&) {
             // A model that these samples do not determine is no better one.
         }
+    };
+    const brdfs::FitSamples places = samples.drawn(pixels ? samples.size() : few, how.seed);
+    std::vector<std::string> wider;
+    if (!brdfs::modelWithParts(own))
+        wider = {own + (own.starts_with("ggx") ? "+eon" : "+ggx"), "lambert+ggx",
+                 "lambert+ggx+ggx"};
+    for (const std::string& model : wider)
+        if (model != own && std::ranges::find(tried, model, &TriedFit::model) == tried.end())
+            attempt(model, places, {});
+    if (sampleSetting(options)) return tried;
+    using Kind = brdfs::Loss::Kind;
+    const Kind stated = how.loss;
+    for (const Kind loss : {Kind::picture, Kind::log, Kind::logRelative}) {
+        if (loss == stated || (loss != Kind::logRelative) != (seen != nullptr)) continue;
+        how.loss = loss;
+        FitOptions chosen = options;
+        chosen.samples = loss == Kind::picture ? 0 : few;
+        attempt(own, samplesOf(chosen, data, loss), std::string(brdfs::lossName(loss)));
+        if (!tried.empty() && tried.back().model == own) tried.back().model = options.model;
     }
     return tried;
 }
 
-std::optional<Poor> judged(const Fitted& fitted, const brdfs::FitSamples& samples,
+std::optional<Poor> judged(const Fitted& fitted, const Brdf& brdf, const brdfs::FitSamples& samples,
                            const std::string& data, const FitOptions& options,
-                           const brdfs::FitOptions& how) {
+                           const brdfs::FitOptions& how, const PictureReference* seen) {
     FitCall call{.data = data,
                  .model = options.model,
                  .explained = fitted.explained,
                  .relativeError = fitted.relativeError,
+                 .factor = fitted.factors ? fitted.factors->median : 1,
                  .loss = brdfs::lossName(how.loss)};
     if (!options.loss.empty()) call.settings.push_back({"FitOptions::loss", options.loss});
     if (!options.sigma.empty()) call.settings.push_back({"FitOptions::sigma", options.sigma});
-    return judgeFit(fitted.picture, call, [&] { return triedModels(samples, how); });
+    return judgeFit(fitted.picture, call,
+                    [&] { return triedFits(brdf, samples, options, how, seen); });
 }
 
 /// Writes a page that compares data and fit into the fit's folder. Returns the number of files.
@@ -239,9 +261,11 @@ std::unique_ptr<AtomicFile> residualsOf(const brdfs::FitSamples& samples,
 std::string lossOf(const FitOptions& options, const Brdf& data) {
     if (!options.loss.empty()) return options.loss;
     if (!options.sigma.empty()) return "l2";
-    const bool ofSamples =
-        sampleSetting(options) || options.robust != "none" || brdfs::areMeasured(data);
-    return ofSamples ? "cosine" : "picture";
+    if (brdfs::areMeasured(data)) {
+        const auto samples = brdfs::gatherSamples(data, {.grazingCut = options.grazingCut});
+        return brdfs::decadesOf(samples) > brdfs::mostDecades ? "log-relative" : "cosine";
+    }
+    return sampleSetting(options) || options.robust != "none" ? "cosine" : "picture";
 }
 
 bool isPresetPath(const std::string& output) {
@@ -311,13 +335,24 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
             fitted.relativeError = metric["value"];
     fitted.explained = explainedBy(fitted.result, samples, how.loss);
     // Between scattered samples the data are a guess: pictures of that say nothing of a fit.
-    if (!brdfs::areMeasured(brdf))
-        fitted.picture = pictureError(brdf, *brdfs::openFit(fitted.result));
-    fitted.poor = judged(fitted, samples, data, options, how);
+    std::optional<PictureReference> seen;
+    if (samples.origin == brdfs::SampleOrigin::measured) {
+        const auto values = brdfs::predictedValues(fitted.result, samples);
+        fitted.factors = brdfs::factorsOf(values, samples);
+    }
+    if (!brdfs::areMeasured(brdf)) {
+        seen.emplace(brdf);
+        fitted.picture = seen->errorOf(*brdfs::openFit(fitted.result));
+    }
+    fitted.poor = judged(fitted, brdf, samples, data, options, how, seen ? &*seen : nullptr);
     if (fitted.picture) fitted.preset["picture"] = pictureErrorJson(*fitted.picture);
+    if (fitted.factors)
+        fitted.preset["fit"]["factors"] = {{"median", finiteOrNull(fitted.factors->median)},
+                                           {"nine_of_ten", finiteOrNull(fitted.factors->nineOfTen)},
+                                           {"values", fitted.factors->count}};
     fitted.preset["fit"]["explained"] = fitted.explained;
     fitted.preset["fit"]["relative_error"] = fitted.relativeError;
-    if (search) fitted.preset["fit"]["parts"] = searchJson(*search);
+    if (search) fitted.preset["fit"]["parts"] = brdfs::searchJson(*search);
     files.residuals = residualsOf(samples, fitted.result, how.loss, options.residuals);
     if (files.figures)
         fitted.figures = addFitFigures(brdf, report, *options.figures, *files.figures, listener);

@@ -9,6 +9,7 @@
 #include <brdfs/fit/compare_models.h>
 #include <brdfs/fit/fit.h>
 #include <brdfs/fit/fit_samples.h>
+#include <brdfs/fit/percentiles.h>
 
 #include <nlohmann/json.hpp>
 
@@ -23,9 +24,10 @@ namespace hshfit::jobs {
 struct FitOptions {
     /// MODEL[:key=value,…][+MODEL…]; parameters with a value are held fixed.
     std::string model;
-    /// brdfs::findLoss. Empty: l2 with stated uncertainties; cosine for scattered samples, and
-    /// where another option is about single samples (robust, weights, places, scans, bootstrap,
-    /// profile, residuals, bands); else picture, whose spheres look most like those of the data.
+    /// brdfs::findLoss. Empty: l2 with stated uncertainties; for scattered samples cosine, or
+    /// log-relative where they span more than brdfs::mostDecades; cosine where another option is
+    /// about single samples (robust, weights, places, scans, bootstrap, profile, residuals, bands);
+    /// else picture, whose spheres look most like those of the data.
     std::string loss = {};
     std::string robust = "none";   ///< brdfs::findRobust
     std::string weights = "auto";  ///< brdfs::findSampleWeights
@@ -69,8 +71,9 @@ struct Fitted {
     /// Root of the integral of ((fit - data) cos(theta_i))^2 over that of (data cos(theta_i))^2,
     /// over the samples; of `picture` over the nodes of a comparison.
     double relativeError = 0;
-    std::optional<PictureError> picture = {};  ///< of the fit against the data
-    std::optional<Poor> poor = {};             ///< the energy captured is 1 - relativeError^2
+    std::optional<PictureError> picture = {};          ///< of the fit against the data
+    std::optional<brdfs::SampleFactors> factors = {};  ///< of scattered samples
+    std::optional<Poor> poor = {};  ///< the energy captured is 1 - relativeError^2
     FigureFiles figures = {};
     nlohmann::ordered_json bands = {};  ///< brdfs::bandRowsJson, where they were asked for
 };

@@ -164,6 +164,41 @@ std::optional<double> measuredShare(const Brdf& source, const Brdf& result, cons
     }
 }
 
+std::string fitAgain(const FitCall& call, const std::string& model, std::vector<Setting> settings) {
+    settings.insert(settings.begin(), {"FitOptions::model", model});
+    return fmt::format(
+        "{}", Call{.function = "fit", .subject = call.data, .settings = std::move(settings)});
+}
+
+/// The fit whose error is least, if that is a tenth below the poor fit's `own`.
+std::optional<Poor> withLeast(std::optional<double> TriedFit::*error, double own,
+                              const std::string& reason, const FitCall& call,
+                              const std::vector<TriedFit>& fits) {
+    constexpr double leastGain = 0.9;
+    const auto errorOf = [&](const TriedFit& fit) { return (fit.*error).value_or(own); };
+    const auto best = std::ranges::min_element(fits, {}, errorOf);
+    if (best == fits.end() || errorOf(*best) > leastGain * own) return std::nullopt;
+    const bool same = best->loss.empty();
+    return Poor{
+        fmt::format("{}; {} by the loss {} has {:.3g} in place of {:.3g}", reason, best->model,
+                    same ? call.loss : best->loss, errorOf(*best), own),
+        fitAgain(call, best->model,
+                 same ? call.settings : std::vector<Setting>{{"FitOptions::loss", best->loss}})};
+}
+
+/// The model that explains most in units of the same loss, if that is 2 % more.
+std::optional<Poor> withMostExplained(const std::string& reason, const FitCall& call,
+                                      const std::vector<TriedFit>& fits) {
+    constexpr double leastGain = 0.02;
+    const auto explained = [](const TriedFit& fit) { return fit.loss.empty() ? fit.explained : 0; };
+    const auto best = std::ranges::max_element(fits, {}, explained);
+    if (best == fits.end() || explained(*best) < call.explained + leastGain) return std::nullopt;
+    return Poor{
+        fmt::format("{}; {} explains {} of the data, {} {}", reason, call.model,
+                    percent(std::max(call.explained, 0.0)), best->model, percent(best->explained)),
+        fitAgain(call, best->model, call.settings)};
+}
+
 }  // namespace
 
 std::optional<int> sufficientOrder(const Brdf& source, const CoefficientHead& head) {
@@ -296,32 +331,34 @@ std::optional<Poor> judge(const gpu::ErrorSplit& split, const std::optional<Pict
 }
 
 std::optional<Poor> judgeFit(const std::optional<PictureError>& picture, const FitCall& call,
-                             const std::function<std::vector<TriedModel>()>& tried) {
-    const auto reason = poorReason(1 - call.relativeError * call.relativeError, picture);
+                             const std::function<std::vector<TriedFit>()>& tried) {
+    constexpr double mostFactor = 2;
+    const bool looksPoor = picture && picture->flip.mean > PoorBounds{}.flip;
+    const bool isFarOff = call.factor > mostFactor;
+    const std::optional<std::string> reason =
+        isFarOff ? fmt::format("half of the samples are off by more than a factor of {:.3g}",
+                               call.factor)
+                 : poorReason(1 - call.relativeError * call.relativeError, picture);
     if (!reason) return std::nullopt;
-    const auto again = [&](std::vector<Setting> settings) {
-        return fmt::format(
-            "{}", Call{.function = "fit", .subject = call.data, .settings = std::move(settings)});
-    };
-    if (call.relativeError > 1 && call.loss != "cosine" && call.loss != "l2")
+    if (!looksPoor && !isFarOff && call.relativeError > 1 && call.loss != "cosine" &&
+        call.loss != "l2")
         return Poor{fmt::format("{}; the error of f cos(theta_i) is {} of it, in peaks that the "
                                 "loss {} hardly sees",
                                 *reason, percent(call.relativeError), call.loss),
-                    again({{"FitOptions::model", call.model}, {"FitOptions::loss", "cosine"}})};
-    constexpr double leastGain = 0.02;
-    const std::vector<TriedModel> models = tried();
-    const auto best = std::ranges::max_element(models, {}, &TriedModel::explained);
-    if (best == models.end() || best->explained < call.explained + leastGain)
-        return Poor{*reason, fmt::format("{}", Call{.function = "writeRepresentation",
-                                                    .subject = call.data,
-                                                    .settings = {kindSetting(Kind::halfway)},
-                                                    .output = "halfway.json"})};
-    std::vector<Setting> settings = call.settings;
-    settings.insert(settings.begin(), {"FitOptions::model", best->model});
-    return Poor{
-        fmt::format("{}; {} explains {} of the data, {} {}", *reason, call.model,
-                    percent(std::max(call.explained, 0.0)), best->model, percent(best->explained)),
-        again(std::move(settings))};
+                    fitAgain(call, call.model, {{"FitOptions::loss", "cosine"}})};
+    const std::vector<TriedFit> fits = tried();
+    std::optional<Poor> better;
+    if (looksPoor)
+        better = withLeast(&TriedFit::flip, picture->flip.mean, *reason, call, fits);
+    else if (isFarOff)
+        better = withLeast(&TriedFit::factor, call.factor, *reason, call, fits);
+    else
+        better = withMostExplained(*reason, call, fits);
+    return better ? *better
+                  : Poor{*reason, fmt::format("{}", Call{.function = "writeRepresentation",
+                                                         .subject = call.data,
+                                                         .settings = {kindSetting(Kind::halfway)},
+                                                         .output = "halfway.json"})};
 }
 
 }  // namespace hshfit::jobs

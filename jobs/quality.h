@@ -60,24 +60,30 @@ std::optional<Poor> judge(const Representation& kept, std::optional<double> capt
 std::optional<Poor> judge(const gpu::ErrorSplit& split, const std::optional<PictureError>& picture,
                           const gpu::Payload& payload, const std::string& path,
                           const std::string& folder);
-/// A model that was fitted in a trial, and the share of the data that it explains.
-struct TriedModel {
+/// A fit that was made in a trial.
+struct TriedFit {
     std::string model;
-    double explained = 0;
+    std::string loss = {};              ///< another than that of the poor fit; empty: the same
+    double explained = 0;               ///< share of the data, in units of its loss
+    std::optional<double> flip = {};    ///< mean FLIP, where pictures can be drawn
+    std::optional<double> factor = {};  ///< the median of brdfs::SampleFactors, of measured samples
 };
 /// The making of a fit, for the call that does better.
 struct FitCall {
     std::string data, model;
     double explained = 0;                ///< share of the data, in units of the loss
     double relativeError = 0;            ///< of f cos(theta_i)
+    double factor = 1;                   ///< the median of brdfs::SampleFactors
     std::string_view loss = {};          ///< that was minimised
     std::vector<Setting> settings = {};  ///< those that a call with another model shares
 };
-/// A fit, which captures 1 - relativeError^2 of the energy. Better is the loss of f cos(theta_i)
-/// where the error of that exceeds f itself, in peaks that the fit's own loss hardly sees; else the
-/// model of `tried` that explains most of the data; else, if none explains 2 % more, the halfway
-/// form. `tried` is called for poor fits only.
+/// A fit, which captures 1 - relativeError^2 of the energy. Where its pictures are poor, better is
+/// the fit of `tried` with the least FLIP, if that is lower by a tenth; where half of the measured
+/// samples are off by a factor of more than 2, likewise that with the least such factor. Else it is
+/// the loss of f cos(theta_i) if the error of that exceeds f itself, in peaks that the fit's own
+/// loss hardly sees, or the model of `tried` that explains most of the data, if that is 2 % more.
+/// Where nothing is found it is the halfway form. `tried` is called for poor fits only.
 std::optional<Poor> judgeFit(const std::optional<PictureError>& picture, const FitCall& call,
-                             const std::function<std::vector<TriedModel>()>& tried);
+                             const std::function<std::vector<TriedFit>()>& tried);
 
 }  // namespace hshfit::jobs

@@ -101,8 +101,10 @@ nlohmann::ordered_json predictionJson(const FitSamples& samples, const FitResult
         relativeSquares += relative(v) * relative(v);
     }
     const double count = static_cast<double>(prediction.values.size());
-    const bool byScan = result.uncertainty && result.uncertainty->scans > 0;
-    return {{"route", byScan ? "scans" : "sandwich"},
+    const Uncertainty none, &own = result.uncertainty ? *result.uncertainty : none;
+    return {{"route", own.scansSuffice() ? "scans"
+                      : own.scans > 0    ? "normal"
+                                         : "sandwich"},
             {"rms_error", std::sqrt(squares / count)},
             {"rms_relative_error", std::sqrt(relativeSquares / count)},
             {"largest_error",

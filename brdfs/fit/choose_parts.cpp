@@ -6,6 +6,7 @@
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
@@ -62,10 +63,16 @@ public:
 
     /// To all samples. `before`: a fit with fewer parts, of which the shapes start where it ended.
     TriedParts fitted(std::vector<std::string> parts, const TriedParts* before) {
+        const std::string model = withParts(fit_.model, parts);
+        return fitted(std::move(parts), model, before);
+    }
+
+    /// The same of a model that holds more.
+    TriedParts fitted(std::vector<std::string> parts, std::string model, const TriedParts* before) {
         TriedParts own;
         own.trial.parts = std::move(parts);
         own.options = fit_;
-        own.options.model = withParts(fit_.model, own.trial.parts);
+        own.options.model = std::move(model);
         own.options.progress = {};
         own.options.uncertainty = {};
         own.options.starts = std::max(1, fit_.starts / 4);
@@ -117,6 +124,43 @@ private:
     std::size_t most_, done_ = 0;
 };
 
+/// "held out 0.0274, taken", the loss where it fell too little for that, or the failure.
+std::string outcomeOf(const PartTrial& trial) {
+    if (!trial.failure.empty()) return trial.failure;
+    if (!trial.heldOut) return fmt::format("rms {:.6g}, not held out", trial.loss);
+    return fmt::format("held out {:.6g}{}", *trial.heldOut, trial.taken ? ", taken" : "");
+}
+
+std::string holding(const std::string& spec, const HeldParameter& held) {
+    return fmt::format("{}{}{}={}", spec, spec.find(':') == spec.npos ? ':' : ',', held.name,
+                       held.value);
+}
+
+/// Of the parts of a fit, the parameters that may stay at their defaults, one after another.
+std::vector<HeldParameter> undecided(const Model& model, const FitSamples& samples, Trials& trials,
+                                     TriedParts current, double leastGain) {
+    std::vector<HeldParameter> held;
+    const double most = current.trial.loss / (1 - leastGain);
+    for (const ModelPart& part : model.parts) {
+        if (!has(current.trial.parts, part.name)) continue;
+        for (const std::string_view key : part.parameters) {
+            const Parameters stated = statedIn(current.options.model, model);
+            if (stated.given(key) ||
+                !isFree(model, {part.name, part.help, {key}}, stated, samples.isotropic))
+                continue;
+            const auto row = std::ranges::find(model.parameters, key, &Parameter::name);
+            HeldParameter own{std::string(key), *row->fallback};
+            TriedParts without =
+                trials.fitted(current.trial.parts, holding(current.options.model, own), &current);
+            if (!without.trial.failure.empty() || without.trial.loss > most) continue;
+            own.loss = without.trial.loss;
+            held.push_back(std::move(own));
+            current = std::move(without);
+        }
+    }
+    return held;
+}
+
 }  // namespace
 
 const Model* modelWithParts(std::string_view spec) {
@@ -139,6 +183,12 @@ std::string withParts(std::string_view spec, const std::vector<std::string>& par
                                   *row->fallback);
         }
     }
+    return result;
+}
+
+std::string withParts(std::string_view spec, const PartSearch& search) {
+    std::string result = withParts(spec, search.parts);
+    for (const HeldParameter& held : search.held) result = holding(result, held);
     return result;
 }
 
@@ -183,13 +233,22 @@ PartSearch chooseParts(const FitSamples& all, const FitOptions& fit, const PartO
         search.parts = current.trial.parts;
         std::erase(open, search.parts.back());
     }
+    if (current.trial.failure.empty())
+        search.held = undecided(*model, samples, trials, current, options.leastGain);
     return search;
 }
 
-std::string outcomeOf(const PartTrial& trial) {
-    if (!trial.failure.empty()) return trial.failure;
-    if (!trial.heldOut) return fmt::format("rms {:.6g}, not held out", trial.loss);
-    return fmt::format("held out {:.6g}{}", *trial.heldOut, trial.taken ? ", taken" : "");
+std::string textOf(const PartSearch& search) {
+    std::string lines;
+    for (const PartTrial& trial : search.trials) {
+        const std::string name =
+            trial.parts.empty() ? "no extension" : fmt::format("{}", fmt::join(trial.parts, " + "));
+        lines += fmt::format("  {:<40} {}\n", name, outcomeOf(trial));
+    }
+    for (const HeldParameter& held : search.held)
+        lines += fmt::format("  {:<40} {:g}, its default: the data do not decide it (rms {:.6g})\n",
+                             held.name, held.value, held.loss);
+    return lines;
 }
 
 }  // namespace hshfit::brdfs

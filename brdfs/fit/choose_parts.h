@@ -30,14 +30,25 @@ struct PartTrial {
     std::string failure = {};  ///< why there is no fit
 };
 
-struct PartSearch {
-    std::vector<std::string> parts;  ///< found worth it
-    std::vector<PartTrial> trials;   ///< the first has no parts
+/// A parameter of a part that is not worth fitting.
+struct HeldParameter {
+    std::string name;
+    double value = 0;  ///< the default of the standard
+    double loss = 0;   ///< with it and those before it
 };
+
+struct PartSearch {
+    std::vector<std::string> parts;        ///< found worth it
+    std::vector<PartTrial> trials;         ///< the first has no parts
+    std::vector<HeldParameter> held = {};  ///< of these parts
+};
+
+/// withParts for what a search has found, with the parameters that it holds.
+std::string withParts(std::string_view spec, const PartSearch& search);
 
 struct PartOptions {
     /// A part is worth it if it lowers the held-out loss by this share. Folds of the same data
-    /// differ by less.
+    /// differ by less. A parameter of a part is fitted if it lowers the loss by as much.
     double leastGain = 0.02;
     /// Samples that the search draws, of others than pixels, which have FitSamples::fewer; the fit
     /// that follows takes all.
@@ -47,11 +58,12 @@ struct PartOptions {
 
 /// Adds the part that lowers the loss most among those that lower the held-out loss
 /// (compare_models.h) by `leastGain`, again and again. Each fit starts at the one without the part.
-/// Parts whose parameters are all held or stated are not tried.
+/// Parts whose parameters are all held or stated are not tried. Then each parameter of the parts
+/// is held at its default unless it lowers the loss by `leastGain`: the data do not decide it.
 PartSearch chooseParts(const FitSamples& samples, const FitOptions& fit,
                        const PartOptions& options = {});
 
-/// "held out 0.0274, taken", the loss where it fell too little for that, or the failure.
-std::string outcomeOf(const PartTrial& trial);
+/// An indented line for each trial and for each parameter that is held.
+std::string textOf(const PartSearch& search);
 
 }  // namespace hshfit::brdfs

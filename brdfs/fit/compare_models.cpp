@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 namespace hshfit::brdfs {
 namespace {
@@ -171,19 +172,23 @@ std::vector<ModelRank> compareModels(const FitSamples& samples, std::span<const 
         }
         ranks.push_back(std::move(rank));
     }
+    std::string least;
     if (stated(samples) && !heldOut.empty()) {
         const auto best = std::ranges::min_element(heldOut, {}, &HeldOut::loss);
         auto own = heldOut.begin();
         for (ModelRank& rank : ranks)
             if (rank.failure.empty()) {
-                rank.tied = own != best && areTied(*best, *own, groups);
+                rank.tied = own == best || areTied(*best, *own, groups);
+                if (own == best) least = rank.model;
                 ++own;
             }
     }
-    std::ranges::stable_sort(ranks, [](const ModelRank& a, const ModelRank& b) {
-        if (a.failure.empty() != b.failure.empty()) return a.failure.empty();
-        return a.heldOut < b.heldOut;
+    std::ranges::stable_sort(ranks, {}, [](const ModelRank& rank) {
+        return std::tuple(!rank.failure.empty(), !rank.tied,
+                          rank.tied ? rank.fit.parameters.size() : 0, rank.heldOut);
     });
+    ranks.front().simplest = ranks.front().tied && ranks.front().model != least;
+    ranks.front().tied = false;
     return ranks;
 }
 

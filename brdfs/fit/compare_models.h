@@ -14,14 +14,16 @@ struct ModelRank {
     FitResult fit;
     /// As FitResult::loss, of directions that the fit did not see: five fits, each to four fifths.
     double heldOut = 0;
-    /// The squared residuals at those directions differ from those of the first model by no more
-    /// than their spread over scans (or rings) explains: Student's t, 5 %. Only for samples with
-    /// stated uncertainties or scans.
+    /// The data do not tell it from the first model: the squared residuals at those directions
+    /// differ from those of the least held-out error by no more than their spread over scans (or
+    /// rings) explains (Student's t, 5 %). Only for samples with stated uncertainties or scans.
     bool tied = false;
-    std::string failure;  ///< why there is no fit; then last
+    bool simplest = false;  ///< first by its few parameters: of those tied, not the least held out
+    std::string failure;    ///< why there is no fit; then last
 };
 
-/// Fits every model and ranks them by `heldOut`. Held out are outgoing directions: rings of three
+/// Fits every model and ranks them by `heldOut`; of models that are tied with the first, the one
+/// with the fewest parameters comes first. Held out are outgoing directions: rings of three
 /// degrees in elevation (and, for anisotropic data, sectors of thirty in azimuth) are dealt to five
 /// folds, so that no held-out value stands between neighbours of its own ring. Data with fewer than
 /// five rings are cut into five runs of their samples instead. Of samples with five scans or more,

@@ -344,7 +344,8 @@ void describe(const DispersedProblem& problem, const Minimum& found, const FitOp
     if (byScan) {
         const double square = problem.normalisation() * problem.normalisation();
         const std::vector<ScanSums> sums = sumsOfScans(rows, samples.scans, n);
-        const Matrix spread = scanSpread(sums, unscaled, model.parameterCount()) / square;
+        requireScans(sums.size(), model.parameterCount(), false);
+        const Matrix spread = scanSpread(sums, unscaled) / square;
         degrees = scanDegrees(sums, unscaled, report.slopes);
         result.point.freedom.push_back({0, std::make_shared<const VarianceFreedom>(
                                                sums, unscaled, Eigen::VectorXd::Ones(at(n)))});

@@ -80,8 +80,9 @@ void describe(const FitProblem& problem, const std::vector<double>& x, const Fit
     const Covariance sandwich = covariance;
     part.freedom = freedomAt(problem, x, inverse, slope);
     if (!problem.samples().scans.empty()) {
-        equations.spread = spreadOfScans(problem, *part.freedom);
+        equations.spread = spreadOfScans(problem, *part.freedom, equations);
         covariance = covarianceOf(equations, fixed);
+        if (!scansSuffice(problem, *part.freedom)) part.freedom.reset();
     }
     part.covariance = covariance.whole;
     for (std::size_t i = 0; i < x.size(); ++i)
@@ -147,6 +148,7 @@ void addStudy(const Uncertainty& own, std::size_t first, std::size_t n,
         sum.emplace();
         sum->stated = own.stated;
         sum->scans = own.scans;
+        sum->scanParameters = own.scanParameters;
         sum->covariance.assign(n * n, 0);
     }
     sum->chiSquare += own.chiSquare;

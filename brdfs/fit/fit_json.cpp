@@ -123,8 +123,10 @@ Json fitPreset(const FitReport& report) {
     return preset;
 }
 
-Json trialsJson(const PartSearch& search) {
-    Json trials = Json::array();
+Json searchJson(const PartSearch& search) {
+    Json trials = Json::array(), held = Json::array();
+    for (const HeldParameter& own : search.held)
+        held.push_back({{"name", own.name}, {"value", own.value}, {"rms", own.loss}});
     for (const PartTrial& trial : search.trials) {
         trials.push_back({{"parts", trial.parts}, {"taken", trial.taken}});
         if (!trial.failure.empty()) {
@@ -134,7 +136,10 @@ Json trialsJson(const PartSearch& search) {
         trials.back()["rms"] = trial.loss;
         if (trial.heldOut) trials.back()["held_out_rms"] = *trial.heldOut;
     }
-    return trials;
+    return {{"chosen", search.parts},
+            {"least_gain", PartOptions{}.leastGain},
+            {"held", held},
+            {"trials", trials}};
 }
 
 }  // namespace hshfit::brdfs

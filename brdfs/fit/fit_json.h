@@ -25,6 +25,6 @@ struct FitReport {
 nlohmann::ordered_json fitPreset(const FitReport& report);
 
 /// The steps of a search for parts, in the form of the same schema.
-nlohmann::ordered_json trialsJson(const PartSearch& search);
+nlohmann::ordered_json searchJson(const PartSearch& search);
 
 }  // namespace hshfit::brdfs

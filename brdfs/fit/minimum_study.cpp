@@ -85,6 +85,10 @@ DenseMatrix wholeRows(const WeightedRows& rows, std::size_t n, std::size_t shape
     return whole;
 }
 
+std::size_t parametersOfChannel(const FitProblem& problem) {
+    return problem.shapeCount() + problem.sum().linears().size();
+}
+
 std::size_t scanCount(const FitSamples& samples) {
     return samples.scans.empty() ? 0 : *std::ranges::max_element(samples.scans) + 1;
 }
@@ -109,10 +113,21 @@ std::shared_ptr<const VarianceFreedom> freedomAt(const FitProblem& problem,
                                                    std::move(own), std::move(slopes));
 }
 
-std::vector<double> spreadOfScans(const FitProblem& problem, const VarianceFreedom& byScan) {
-    const std::size_t ofChannel = problem.shapeCount() + problem.sum().linears().size();
-    const double square = problem.normalisation() * problem.normalisation();
-    const DenseMatrix spread = byScan.spread(ofChannel) / square;
+bool scansSuffice(const FitProblem& problem, const VarianceFreedom& byScan) {
+    return byScan.scanCount() > parametersOfChannel(problem);
+}
+
+std::vector<double> spreadOfScans(const FitProblem& problem, const VarianceFreedom& byScan,
+                                  const Equations& equations) {
+    const double norm = problem.normalisation();
+    if (!scansSuffice(problem, byScan)) {
+        requireScans(byScan.scanCount(), parametersOfChannel(problem),
+                     !problem.samples().sigmas.empty());
+        std::vector<double> spread = equations.hessian;
+        for (double& value : spread) value /= norm;
+        return spread;
+    }
+    const DenseMatrix spread = byScan.spread() / (norm * norm);
     return {spread.data(), spread.data() + spread.size()};
 }
 
@@ -120,6 +135,7 @@ Uncertainty influences(const StudiedValues& values) {
     Uncertainty result;
     result.stated = values.stated;
     result.scans = values.scans;
+    result.scanParameters = values.scanParameters;
     double rank = values.otherRank;
     result.chiSquare = values.otherSquares;
     for (std::size_t v = 0; v < values.leverages.size(); ++v) {
@@ -166,7 +182,7 @@ void addErrors(std::span<const double> inverse, const std::vector<double>& slope
                 result.covariance[i * n + j] = scale * inverse[i * n + j] * slope[i] * slope[j];
         own.normal = std::sqrt(result.covariance[i * n + i]);
         if (sandwich.variance[i] >= 0) own.sandwich = std::sqrt(sandwich.variance[i]) * slope[i];
-        if (result.scans == 0) continue;
+        if (!result.scansSuffice()) continue;
         own.scans = std::sqrt(stated.variance[i]) * slope[i];
         if (i < scanDegrees.size() && scanDegrees[i] > 0) own.scanDegrees = scanDegrees[i];
     }
@@ -182,9 +198,11 @@ Uncertainty studied(const StudiedMinimum& minimum) {
                                      .models = rows.values,
                                      .leverages = leveragesOf(rows, inverse, shapes),
                                      .stated = !problem.samples().sigmas.empty(),
-                                     .scans = scanCount(problem.samples())});
+                                     .scans = scanCount(problem.samples()),
+                                     .scanParameters = parametersOfChannel(problem)});
     std::vector<double> degrees;
-    if (result.scans > 0) degrees = minimum.freedom->degrees(DenseMatrix::Identity(at(n), at(n)));
+    if (result.scansSuffice())
+        degrees = minimum.freedom->degrees(DenseMatrix::Identity(at(n), at(n)));
     addErrors({inverse.data(), n * n}, minimum.slope, minimum.stated, minimum.sandwich, degrees,
               result);
     return result;

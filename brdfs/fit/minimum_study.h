@@ -37,9 +37,13 @@ std::shared_ptr<const VarianceFreedom> freedomAt(const FitProblem& problem,
 
 /// Equations::spread with scans in place of samples: sum over scans of g g^T, g the gradient of a
 /// scan as it would be if the scan had not been fitted (CR3: Bell & McCaffrey 2002, Survey
-/// Methodology 28(2)), times (S - 1) / S for S scans. Throws NumericError for fewer scans than
-/// parameters that act on one channel.
-std::vector<double> spreadOfScans(const FitProblem& problem, const VarianceFreedom& byScan);
+/// Methodology 28(2)), times (S - 1) / S for S scans. Where no more scans than parameters act on
+/// one channel it is the spread of stated uncertainties, the hessian, and without these it throws
+/// NumericError.
+std::vector<double> spreadOfScans(const FitProblem& problem, const VarianceFreedom& byScan,
+                                  const Equations& equations);
+/// Whether it is that of scans.
+bool scansSuffice(const FitProblem& problem, const VarianceFreedom& byScan);
 
 /// The values of a fit at its minimum.
 struct StudiedValues {
@@ -48,6 +52,7 @@ struct StudiedValues {
     std::vector<double> leverages = {};
     bool stated = false;  ///< weights are 1 / sigma^2
     std::size_t scans = 0;
+    std::size_t scanParameters = 0;  ///< Uncertainty::scanParameters
     /// Of terms beside the values, such as priors: squares, number, and sum of leverages.
     double otherSquares = 0, otherCount = 0, otherRank = 0;
 };

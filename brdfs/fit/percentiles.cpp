@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hshfit::brdfs {
 
@@ -24,6 +25,34 @@ ParameterUncertainty::Bootstrap summarised(std::vector<double> draws) {
     return {.error = std::sqrt(squares / (count - 1)),
             .within68 = {percentile(draws, tail), percentile(draws, 1 - tail)},
             .within95 = {percentile(draws, outer), percentile(draws, 1 - outer)}};
+}
+
+double decadesOf(const FitSamples& samples) {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < samples.values.size(); ++k) {
+        const double value = samples.values[k] * samples.wiZ[k % samples.size()];
+        if (value > 0) values.push_back(value);
+    }
+    if (values.size() < 2) return 0;
+    std::ranges::sort(values);
+    return std::log10(percentile(values, 0.95) / percentile(values, 0.05));
+}
+
+std::optional<SampleFactors> factorsOf(std::span<const double> values, const FitSamples& samples) {
+    std::vector<double> factors;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        const double measured = samples.values[k], model = values[k];
+        if (!(measured > 0)) continue;
+        factors.push_back(model > 0 ? std::max(model / measured, measured / model)
+                                    : std::numeric_limits<double>::infinity());
+    }
+    if (factors.empty()) return std::nullopt;
+    std::ranges::sort(factors);
+    // Between infinite values there is no mean.
+    const auto at = [&](double share) {
+        return factors[static_cast<std::size_t>(share * static_cast<double>(factors.size() - 1))];
+    };
+    return SampleFactors{at(0.5), at(0.9), factors.size()};
 }
 
 }  // namespace hshfit::brdfs

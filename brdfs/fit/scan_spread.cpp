@@ -91,12 +91,15 @@ std::vector<double> VarianceFreedom::degrees(const Eigen::MatrixXd& of) const {
     return scans_.empty() ? valueDegrees(rows_, inverse_, own) : scanDegrees(scans_, inverse_, own);
 }
 
-Eigen::MatrixXd scanSpread(const std::vector<ScanSums>& scans, const Eigen::MatrixXd& inverse,
-                           std::size_t parameters) {
-    if (scans.size() <= parameters)
-        throw NumericError(fmt::format(
-            "{} scans cannot give errors of {} parameters; expected more scans than parameters",
-            scans.size(), parameters));
+void requireScans(std::size_t scans, std::size_t parameters, bool stated) {
+    if (scans > parameters || stated) return;
+    throw NumericError(
+        fmt::format("{} scans cannot give errors of {} parameters; expected more "
+                    "scans than parameters, or the samples' uncertainties",
+                    scans, parameters));
+}
+
+Eigen::MatrixXd scanSpread(const std::vector<ScanSums>& scans, const Eigen::MatrixXd& inverse) {
     const Eigen::MatrixXd root = rootOf(inverse);
     // With M = L L^T: (1 - A M)^-1 b = b + A L (1 - L^T A L)^-1 L^T b.
     Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(inverse.rows(), inverse.cols());

@@ -13,11 +13,14 @@ struct ScanSums {
     Eigen::VectorXd gradient;
 };
 
+/// Throws NumericError where there are no more scans than parameters of one channel, and
+/// uncertainties, which could give errors in their place, are not `stated`.
+void requireScans(std::size_t scans, std::size_t parameters, bool stated);
+
 /// (S - 1) / S times the sum over S scans of g g^T, g the gradient of a scan as it would be if the
 /// scan had not been fitted (CR3: Bell & McCaffrey 2002). `inverse`: of the sum of the matrices
-/// [n * n], 0 for what is held. Throws NumericError for no more scans than `parameters`.
-Eigen::MatrixXd scanSpread(const std::vector<ScanSums>& scans, const Eigen::MatrixXd& inverse,
-                           std::size_t parameters);
+/// [n * n], 0 for what is held. Of no use for no more scans than parameters of one channel.
+Eigen::MatrixXd scanSpread(const std::vector<ScanSums>& scans, const Eigen::MatrixXd& inverse);
 
 /// Degrees of freedom of the variances that scanSpread gives to combinations of the parameters, the
 /// rows of `of`: Satterthwaite's, those of the chi-square with the variance's mean and variance if
@@ -43,9 +46,8 @@ public:
 
     Eigen::Index count() const { return slope_.size(); }
     /// scanSpread of the scans.
-    Eigen::MatrixXd spread(std::size_t parameters) const {
-        return scanSpread(scans_, inverse_, parameters);
-    }
+    Eigen::MatrixXd spread() const { return scanSpread(scans_, inverse_); }
+    std::size_t scanCount() const { return scans_.size(); }
     /// Of combinations of the coefficients, the rows of `of`; 0 where the variance is 0.
     std::vector<double> degrees(const Eigen::MatrixXd& of) const;
 

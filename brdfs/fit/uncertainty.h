@@ -56,11 +56,14 @@ struct ValueInfluence {
 };
 
 struct Uncertainty {
-    bool stated = false;                           ///< uncertainties of the samples were
-    double chiSquare = 0;                          ///< sum of weighted squared residuals
-    std::size_t degreesOfFreedom = 0;              ///< values less determined parameters
-    std::optional<double> probability;             ///< of a chi-square as large; only if `stated`
-    std::size_t scans = 0;                         ///< 0: every sample on its own
+    bool stated = false;                ///< uncertainties of the samples were
+    double chiSquare = 0;               ///< sum of weighted squared residuals
+    std::size_t degreesOfFreedom = 0;   ///< values less determined parameters
+    std::optional<double> probability;  ///< of a chi-square as large; only if `stated`
+    std::size_t scans = 0;              ///< 0: every sample on its own
+    /// Of one channel. Where there are no more scans than these, there are no errors by scan, and
+    /// the errors that a fit states are those of the stated uncertainties (`normal`).
+    std::size_t scanParameters = 0;
     std::vector<ParameterUncertainty> parameters;  ///< in the order of FitResult::parameters
     std::vector<double> covariance;      ///< by the route `normal`, [n * n]; 0 where there is none
     std::vector<ValueInfluence> values;  ///< [channel * samples + sample]
@@ -70,6 +73,7 @@ struct Uncertainty {
     /// The parameters' values of each draw; empty for a draw that did not converge.
     std::vector<std::vector<double>> draws;
 
+    bool scansSuffice() const { return scans > scanParameters; }
     double reducedChiSquare() const {
         return degreesOfFreedom > 0 ? chiSquare / static_cast<double>(degreesOfFreedom) : 0;
     }

@@ -5,6 +5,8 @@
 #include <brdfs/fit/residual_rows.h>
 #include <hshfit/files/json_fields.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -92,6 +94,11 @@ Document uncertaintyJson(const FitReport& report) {
     json["probability"] = finiteOrNull(own.probability);
     json["residual_variance"] = own.reducedChiSquare();
     if (!report.scans.empty()) json["scans"] = {{"by", report.scans}, {"count", own.scans}};
+    if (own.scans > 0 && !own.scansSuffice())
+        json["scans"]["reason"] = fmt::format(
+            "{} scans give no errors of {} parameters by scan; those of the stated "
+            "uncertainties are taken",
+            own.scans, own.scanParameters);
     if (own.bootstrapDraws > 0)
         json["bootstrap"] = {{"draws", own.bootstrapDraws},
                              {"failed", own.bootstrapFailures},

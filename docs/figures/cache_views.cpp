@@ -22,15 +22,23 @@ double grey(const std::vector<float>& values, std::size_t pixel) {
            3;
 }
 
-/// The largest distance of a pixel from the paths, over their mean in the 5 x 5 pixels about it,
-/// and what is left of such distances beyond three standard errors of both pictures.
+/// The largest distance of a pixel from the paths, over their mean in the 5 x 5 pixels about it or
+/// a hundredth of that of the picture, which is more where a horizon is all but black, and what is
+/// left of such distances beyond three standard errors of both pictures.
 struct Largest {
     double distance = 0, beyond = 0;
     int column = 0, row = 0;
 };
 
+double mean(const std::vector<float>& values) {
+    double sum = 0;
+    for (const float value : values) sum += static_cast<double>(value);
+    return sum / static_cast<double>(values.size());
+}
+
 Largest largest(const PathPicture& paths, const PathPicture& cached) {
     Largest found;
+    const double darkest = mean(paths.radiance) / 100;
     for (int row = 0; row < paths.height; ++row) {
         for (int column = 0; column < paths.width; ++column) {
             double sum = 0;
@@ -41,13 +49,12 @@ Largest largest(const PathPicture& paths, const PathPicture& cached) {
                     ++count;
                 }
             }
-            if (!(sum > 0)) continue;
             const auto pixel = static_cast<std::size_t>(row * paths.width + column);
-            const double mean = sum / count;
+            const double about = std::max(sum / count, darkest);
             const double distance =
-                std::abs(grey(cached.radiance, pixel) - grey(paths.radiance, pixel)) / mean;
+                std::abs(grey(cached.radiance, pixel) - grey(paths.radiance, pixel)) / about;
             const double noise =
-                std::hypot(grey(paths.error, pixel), grey(cached.error, pixel)) / mean;
+                std::hypot(grey(paths.error, pixel), grey(cached.error, pixel)) / about;
             found.beyond = std::max(found.beyond, distance - 3 * noise);
             if (distance > found.distance) {
                 found.distance = distance;
@@ -57,12 +64,6 @@ Largest largest(const PathPicture& paths, const PathPicture& cached) {
         }
     }
     return found;
-}
-
-double mean(const std::vector<float>& values) {
-    double sum = 0;
-    for (const float value : values) sum += static_cast<double>(value);
-    return sum / static_cast<double>(values.size());
 }
 
 }  // namespace

@@ -309,6 +309,35 @@ TEST(InstrumentRanking, HeldOutScansArePredictedWithTheInstrument) {
     EXPECT_LT(with[0].heldOut, 0.7 * without[0].heldOut);
 }
 
+// Three scans of three parameters give no errors by scan: those of the stated uncertainties and of
+// the prior of scales are taken, which hold, and without either there are none.
+TEST(InstrumentCoverage, OfThreeScansIsByStatedUncertainties) {
+    constexpr std::size_t repeats = 600, scans = 3;
+    const ScanTruth truth{.source = "", .detector = "", .dark = 0, .along = 0};
+    const FitSamples exact = test::exactScans(truth, scans, 46);
+    FitOptions options{.model = truth.model, .loss = Loss::Kind::l2, .starts = 1};
+    options.uncertainty.report = true;
+    options.instrument = parseInstrument({.scale = "0.02"});
+    Coverage coverage;
+    std::mt19937_64 random(9);
+    for (std::size_t repeat = 0; repeat < repeats; ++repeat) {
+        const FitResult fitted = fit(noisyScans(exact, truth, random), options);
+        const double values[] = {truth.alpha, truth.kd, truth.ks};
+        for (std::size_t i = 0; i < std::size(values); ++i) {
+            coverage.add(fitted.parameters[i].value - values[i],
+                         *fitted.parameters[i].standardError);
+            EXPECT_FALSE(fitted.uncertainty->parameters[i].scans);
+        }
+    }
+    std::printf("coverage of 68.3 %% and 95 %%: %.3f %.3f\n", coverage.one(), coverage.two());
+    EXPECT_NEAR(coverage.one(), 0.685, 0.035);
+    EXPECT_NEAR(coverage.two(), 0.95, 0.02);
+    FitSamples unstated = noisyScans(exact, truth, random);
+    unstated.sigmas.clear();
+    options.instrument = {};
+    EXPECT_THROW(fit(unstated, options), NumericError);
+}
+
 // 200 scans with apertures, a dark signal, a scale each and noise that runs along them; as many
 // draws as the suite has time for. docs/figures/fit_coverage.cpp has more.
 TEST(InstrumentCoverage, OfStatedErrorsIsNominalAndFarOffWithoutTheTerms) {

@@ -147,6 +147,19 @@ TEST(PictureLoss, FindsTheParametersOfItsData) {
     }
 }
 
+/// A coat narrower than every pixel costs nothing but in the pixel that mirrors the light.
+TEST(PictureLoss, SeesMirrorsThatTheDataDoNotHave) {
+    const auto data = open("lambert:kd=.2+ggx:alpha=.3,F0=.04");
+    const FitSamples samples = pictureSamples(*data);
+    const auto lossOfCoat = [&](double alpha) {
+        const auto coated = open("lambert:kd=.2+ggx:alpha=.3,F0=.04+ggx:ks=.5,F0=.04,alpha=" +
+                                 std::to_string(alpha));
+        return lossOf(*coated, samples, Loss::Kind::picture);
+    };
+    EXPECT_GT(lossOfCoat(1e-6), 0.02);
+    EXPECT_GT(lossOfCoat(1e-6), lossOfCoat(1e-3));
+}
+
 /// Derivatives of sums over nodes are those of their terms.
 TEST(PictureLoss, DerivativesMatchFiniteDifferences) {
     const auto data = open("lambert:kd=.2+ggx:alpha=.15,F0=.2");

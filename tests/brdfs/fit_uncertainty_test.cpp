@@ -249,7 +249,7 @@ TEST(ScanDegrees, AreThoseOfTheVariancesOfDrawnLines) {
         for (std::size_t s = 0; s < scans; ++s)
             sums[s] = {part(rows, s).transpose() * part(rows, s),
                        part(rows, s).transpose() * part(residual, s)};
-        const double variance = (inverse * scanSpread(sums, inverse, 2) * inverse)(1, 1);
+        const double variance = (inverse * scanSpread(sums, inverse) * inverse)(1, 1);
         mean += variance / draws;
         square += variance * variance / draws;
     }
@@ -391,8 +391,12 @@ TEST(ScanRanking, ModelsTieWhereScansDoNotTellThemApart) {
     const std::string models[] = {linearModel, "lambert + ggx:F0=.5", "lambert"};
     const std::vector<ModelRank> ranks = compareModels(samples, models, options);
     ASSERT_EQ(ranks.size(), 3u);
+    // The wider model has the lower loss; of what the data do not tell apart the simpler is first.
+    EXPECT_EQ(ranks[0].model, linearModel);
     EXPECT_FALSE(ranks[0].tied);
     EXPECT_TRUE(ranks[1].tied);
+    EXPECT_LT(ranks[0].fit.parameters.size(), ranks[1].fit.parameters.size());
+    EXPECT_EQ(ranks[0].simplest, ranks[0].heldOut > ranks[1].heldOut);
     EXPECT_EQ(ranks[2].model, "lambert");
     EXPECT_FALSE(ranks[2].tied);
     for (const ModelRank& rank : ranks) {

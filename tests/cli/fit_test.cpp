@@ -45,6 +45,26 @@ TEST_F(Cli, FitOfAFolderGoesOnAfterAFailure) {
     EXPECT_NE(again.out.find("0 fitted, 1 kept"), std::string::npos) << again.out;
 }
 
+// A measured aluminium, over five decades (data/field/measured/07): the peak alone decides least
+// squares of f, and that is called poor.
+TEST_F(Cli, FitsOfSamplesOverDecadesSeeAllOfThem) {
+    const std::string data = hshfit::test::sharedFolder() +
+                             "/data/field/measured/07-fit-loss-scattered/abg.astm:angles=degrees";
+    const std::string job = "fit " + data + " --model lambert+ggx --json";
+    const Answer answer = run(job);
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "fit"));
+    const Json fit = Json::parse(answer.out)["fit"];
+    EXPECT_EQ(fit["loss"], "log-relative");
+    EXPECT_LT(fit["factors"]["median"], 2);
+    const Json poor = Json::parse(run(job + " --loss cosine").out);
+    EXPECT_GT(poor["fit"]["factors"]["median"], 10);
+    ASSERT_TRUE(poor.contains("poor"));
+    EXPECT_NE(poor["poor"]["better"].get<std::string>().find("--loss log-relative"),
+              std::string::npos)
+        << poor["poor"];
+}
+
 TEST_F(Cli, FitNamesWhatIsWrong) {
     expectError("fit lambert -o " + path("x.json"), 2, "--model", 0);
     expectError("fit --model ward -o " + path("x.json"), 2, "DATA", 0);

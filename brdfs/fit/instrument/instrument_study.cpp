@@ -171,11 +171,8 @@ Covariance covarianceByScan(const InstrumentProblem& problem, const WholeSystem&
     const double scale = problem.normalisation();
     const std::vector<double> inverse = inverseOf(reduced, fixed);
     const Matrix own = Eigen::Map<const Matrix>(inverse.data(), at(count), at(count)) / scale;
-    std::size_t parameters = 0;  // of one channel
-    for (const auto& places : system.rows().places)
-        parameters = std::max(parameters, places.size());
     Equations equations = reduced;
-    const Matrix spread = scanSpread(system.scanSums(), own, parameters) / (scale * scale);
+    const Matrix spread = scanSpread(system.scanSums(), own) / (scale * scale);
     equations.spread.assign(spread.data(), spread.data() + spread.size());
     const Covariance ofX = covarianceOf(equations, fixed);
     if (system.scales().empty()) return ofX;
@@ -377,13 +374,19 @@ void describeReadings(const InstrumentProblem& problem, const std::vector<double
     }
     const bool byScan = options.uncertainty.report && !samples.scans.empty();
     if (byScan) values.scans = *std::ranges::max_element(samples.scans) + 1;
+    for (const auto& places : system.rows().places)
+        values.scanParameters = std::max(values.scanParameters, places.size());
+    if (byScan) requireScans(values.scans, values.scanParameters, values.stated);
     Uncertainty study = influences(values);
     const std::vector<bool> fixedX(fixed.begin(),
                                    fixed.begin() + static_cast<std::ptrdiff_t>(x.size()));
     Covariance covariance = sandwich;
-    if (byScan)
+    if (study.scansSuffice())
         covariance = covarianceByScan(problem, system, reduced, fixedX,
                                       study.stated ? 1 : study.reducedChiSquare());
+    else if (byScan)
+        covariance = covarianceOf(
+            equationsOf(system.hessian() / unit, system.hessian() / (unit * unit)), fixed);
     const std::size_t shapes = problem.shapeCount(), channels = problem.channels();
     reportUnseenLobes(
         {shapes, channels, shapes + problem.sum().linears().size() * channels},
@@ -399,7 +402,8 @@ void describeReadings(const InstrumentProblem& problem, const std::vector<double
     if (options.uncertainty.report) {
         addErrors({inverse.data(), fixed.size() * fixed.size()}, described.slope, covariance,
                   sandwich,
-                  byScan ? degreesByScan(problem, system, reduced, fixedX) : std::vector<double>(),
+                  study.scansSuffice() ? degreesByScan(problem, system, reduced, fixedX)
+                                       : std::vector<double>(),
                   study);
         if (options.uncertainty.bootstrap > 0) addBootstrapOfReadings(problem, x, options, study);
         if (options.uncertainty.profile) {

@@ -96,48 +96,52 @@ bool fromStark(const double* x, Direction& wi, Direction& wo) {
 
 constexpr Chart pairOnly = Chart::anisotropic, isotropicPairs = Chart::isotropic;
 
-using In = const double*;
+using Coordinates = const double*;
 using Out = Direction&;
 
-const std::array table{
-    AltaParameters{"COS_TH", 1, Chart::halfAngle,
-                   [](In x, Out i, Out o) { return fromHalf(angleOf(x[0]), 0, 0, 0, i, o); },
-                   kind_c},
+const std::array parametrisations{
     AltaParameters{
-        "COS_TK", 1, Chart::backAngle,
-        [](In x, Out i, Out o) { return fromBack(directionFromAngles(angleOf(x[0]), 0), i, o); },
-        kind_c},
+        "COS_TH", 1, Chart::halfAngle,
+        [](Coordinates x, Out i, Out o) { return fromHalf(angleOf(x[0]), 0, 0, 0, i, o); }, kind_c},
+    AltaParameters{"COS_TK", 1, Chart::backAngle,
+                   [](Coordinates x, Out i, Out o) {
+                       return fromBack(directionFromAngles(angleOf(x[0]), 0), i, o);
+                   },
+                   kind_c},
     AltaParameters{"COS_TLV", 1, Chart::betweenDirections,
-                   [](In x, Out i, Out o) {
+                   [](Coordinates x, Out i, Out o) {
                        i = directionFromAngles(angleOf(x[0]) / 2, 0);
                        o = mirrored(i);
                        return true;
                    },
                    kind_c},
     AltaParameters{"COS_TLR", 1, Chart::fromMirror,
-                   [](In x, Out i, Out o) {
+                   [](Coordinates x, Out i, Out o) {
                        i = o = directionFromAngles(angleOf(x[0]) / 2, 0);
                        return true;
                    },
                    kind_c},
+    AltaParameters{"COS_TH_TD", 2, Chart::halfDifference,
+                   [](Coordinates x, Out i, Out o) {
+                       return fromHalf(angleOf(x[0]), 0, angleOf(x[1]), pi / 2, i, o);
+                   },
+                   kind_cc},
     AltaParameters{
-        "COS_TH_TD", 2, Chart::halfDifference,
-        [](In x, Out i, Out o) { return fromHalf(angleOf(x[0]), 0, angleOf(x[1]), pi / 2, i, o); },
-        kind_cc},
-    AltaParameters{"RUSIN_TH_TD", 2, Chart::halfDifference,
-                   [](In x, Out i, Out o) { return fromHalf(x[0], 0, x[1], pi / 2, i, o); },
-                   kind_tt},
-    AltaParameters{"RUSIN_TH_PH_TD", 3, Chart::halfVectorDistance,
-                   [](In x, Out i, Out o) { return fromHalf(x[0], x[1], x[2], pi / 2, i, o); },
-                   kind_tpt},
+        "RUSIN_TH_TD", 2, Chart::halfDifference,
+        [](Coordinates x, Out i, Out o) { return fromHalf(x[0], 0, x[1], pi / 2, i, o); }, kind_tt},
+    AltaParameters{
+        "RUSIN_TH_PH_TD", 3, Chart::halfVectorDistance,
+        [](Coordinates x, Out i, Out o) { return fromHalf(x[0], x[1], x[2], pi / 2, i, o); },
+        kind_tpt},
     AltaParameters{"RUSIN_TH_TD_PD", 3, isotropicPairs,
-                   [](In x, Out i, Out o) { return fromHalf(x[0], 0, x[1], x[2], i, o); },
+                   [](Coordinates x, Out i, Out o) { return fromHalf(x[0], 0, x[1], x[2], i, o); },
                    kind_ttp},
-    AltaParameters{"RUSIN_TH_PH_TD_PD", 4, pairOnly,
-                   [](In x, Out i, Out o) { return fromHalf(x[0], x[1], x[2], x[3], i, o); },
-                   kind_tptp},
+    AltaParameters{
+        "RUSIN_TH_PH_TD_PD", 4, pairOnly,
+        [](Coordinates x, Out i, Out o) { return fromHalf(x[0], x[1], x[2], x[3], i, o); },
+        kind_tptp},
     AltaParameters{"RUSIN_VH", 3, Chart::halfVector,
-                   [](In x, Out i, Out o) {
+                   [](Coordinates x, Out i, Out o) {
                        const bool valid = unit(x, i);
                        o = i;
                        return valid;
@@ -145,10 +149,10 @@ const std::array table{
                    kind_xxx},
     AltaParameters{
         "SCHLICK_TK_PK", 2, Chart::backVector,
-        [](In x, Out i, Out o) { return fromBack(directionFromAngles(x[0], x[1]), i, o); },
+        [](Coordinates x, Out i, Out o) { return fromBack(directionFromAngles(x[0], x[1]), i, o); },
         kind_tp},
     AltaParameters{"SCHLICK_VK", 3, Chart::backVector,
-                   [](In x, Out i, Out o) {
+                   [](Coordinates x, Out i, Out o) {
                        Direction k;
                        return unit(x, k) && fromBack(k, i, o);
                    },
@@ -156,7 +160,7 @@ const std::array table{
     AltaParameters{"SCHLICK_TL_TK_PROJ_DPHI", 3, isotropicPairs, fromSchlick, kind_tjj},
     AltaParameters{"RETRO_TL_TVL_PROJ_DPHI", 3, isotropicPairs, fromRetro, kind_tjj},
     AltaParameters{"STEREOGRAPHIC", 4, pairOnly,
-                   [](In x, Out i, Out o) {
+                   [](Coordinates x, Out i, Out o) {
                        const auto raised = [](double a, double b) {
                            return directionFromAngles(2 * std::atan(std::hypot(a, b)),
                                                       std::atan2(b, a));
@@ -167,28 +171,28 @@ const std::array table{
                    },
                    kind_xxxx},
     AltaParameters{"SPHERICAL_TL_PL_TV_PV", 4, pairOnly,
-                   [](In x, Out i, Out o) {
+                   [](Coordinates x, Out i, Out o) {
                        i = directionFromAngles(x[0], x[1]);
                        o = directionFromAngles(x[2], x[3]);
                        return true;
                    },
                    kind_tptp},
     AltaParameters{"ISOTROPIC_TV_TL_DPHI", 3, isotropicPairs,
-                   [](In x, Out i, Out o) {
+                   [](Coordinates x, Out i, Out o) {
                        o = directionFromAngles(x[0], x[2]);
                        i = directionFromAngles(x[1], 0);
                        return true;
                    },
                    kind_ttp},
     AltaParameters{"ISOTROPIC_TL_TV_PROJ_DPHI", 3, isotropicPairs,
-                   [](In x, Out i, Out o) {
+                   [](Coordinates x, Out i, Out o) {
                        i = directionFromAngles(x[0], 0);
                        o = projected(x[1], x[2]);
                        return true;
                    },
                    kind_tjj},
     AltaParameters{"STARK_2D", 2, Chart::stark,
-                   [](In x, Out i, Out o) {
+                   [](Coordinates x, Out i, Out o) {
                        const double turned[] = {x[0], x[1], pi / 2};
                        return fromStark(turned, i, o);
                    },
@@ -196,29 +200,30 @@ const std::array table{
     AltaParameters{"STARK_3D", 3, isotropicPairs, fromStark, kind_xxp},
     AltaParameters{
         "NEUMANN_2D", 2, Chart::neumann,
-        [](In x, Out i, Out o) { return lifted(x[0], x[1], i) && lifted(x[0], -x[1], o); },
+        [](Coordinates x, Out i, Out o) { return lifted(x[0], x[1], i) && lifted(x[0], -x[1], o); },
         kind_xx},
     AltaParameters{"NEUMANN_3D", 3, isotropicPairs,
-                   [](In x, Out i, Out o) {
+                   [](Coordinates x, Out i, Out o) {
                        const double bx = x[1] * std::cos(x[2]), by = x[1] * std::sin(x[2]);
                        return lifted(x[0] - bx, -by, i) && lifted(x[0] + bx, by, o);
                    },
                    kind_xxp},
     AltaParameters{"CARTESIAN", 6, pairOnly,
-                   [](In x, Out i, Out o) { return unit(x, o) && unit(x + 3, i); }, kind_x6},
+                   [](Coordinates x, Out i, Out o) { return unit(x, o) && unit(x + 3, i); },
+                   kind_x6},
 };
 
 }  // namespace
 
 const AltaParameters* altaParameters(std::string_view name) {
-    const auto found = std::ranges::find(table, name, &AltaParameters::name);
-    return found == table.end() ? nullptr : &*found;
+    const auto found = std::ranges::find(parametrisations, name, &AltaParameters::name);
+    return found == parametrisations.end() ? nullptr : &*found;
 }
 
 std::string_view altaParameterNames() {
     static const std::string names = [] {
         std::string list;
-        for (const AltaParameters& row : table) {
+        for (const AltaParameters& row : parametrisations) {
             list += (list.empty() ? "" : ", ") + std::string(row.name);
         }
         return list;

@@ -4,14 +4,11 @@
 #include <hshfit/files/template_text.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/pages/report_files.h>
-#include <hshfit/pictures/picture_lights.h>
-#include <hshfit/pictures/sphere_picture.h>
+#include <hshfit/pictures/picture_strips.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <string_view>
 
 namespace hshfit::embedded {
@@ -23,37 +20,13 @@ namespace {
 
 using kainjow::mustache::data;
 
-/// The lights of the strips, of those of the picture error: one that shows the highlight, and one
-/// with light from all around.
-constexpr std::array<std::string_view, 2> stripLights{"lamp at 30 degrees", "room"};
-constexpr int stripPixels = 160, stripSamples = 1;
-
-const SphereRig& rigOf(std::string_view name) {
-    return std::ranges::find(pictureLights(), name, &PictureLight::name)->rig;
-}
-
-/// The spheres of a BRDF, one for each light of the strips.
-std::vector<SpherePicture> spheresOf(const Brdf& brdf) {
-    const AlbedoTable albedo(brdf, AlbedoTable::Detail::coarse);
-    std::vector<SpherePicture> spheres;
-    for (const std::string_view light : stripLights) {
-        const SphereOptions how{.rig = rigOf(light), .size = stripPixels, .samples = stripSamples};
-        spheres.push_back(renderSphere(brdf, albedo, how));
-    }
-    return spheres;
-}
-
 /// Source, candidate and their difference under each light, at the exposure of the source.
-data strips(const std::vector<SpherePicture>& source, const std::vector<SpherePicture>& own) {
+data strips(const std::vector<SpherePicture>& source, const std::vector<SpherePicture>& other) {
     data list{data::type::list};
-    for (std::size_t k = 0; k < source.size(); ++k) {
-        const double stops = automaticExposure({&source[k], 1});
-        const SpherePicture difference = sphereDifference(source[k], own[k]);
-        const double times = amplificationFor(difference, stops);
-        const std::array<SpherePicture, 3> row{source[k], own[k], amplified(difference, times)};
-        data strip("light", std::string(stripLights[k]));
-        strip.set("png", base64(spheresPng(row, stops)));
-        strip.set("times", fmt::format("{:g}", times));
+    for (const PictureStrip& own : pictureStrips(source, other)) {
+        data strip("light", own.light);
+        strip.set("png", base64(pngOf(own)));
+        strip.set("times", fmt::format("{:g}", own.times));
         list.push_back(strip);
     }
     return list;
@@ -78,14 +51,14 @@ data rowData(const Choice& choice, std::size_t k, const std::vector<SpherePictur
     const std::string command = commandLineOf(row);
     if (!command.empty()) entry.set("command", command);
     entry.set("spec", withoutFolders(row.made.spec));
-    entry.set("strips", strips(spheres, row.made.brdf ? spheresOf(*row.made.brdf) : spheres));
+    entry.set("strips", strips(spheres, row.made.brdf ? stripSpheres(*row.made.brdf) : spheres));
     return entry;
 }
 
 }  // namespace
 
 std::string choicePage(const Choice& choice, const Brdf& source) {
-    const std::vector<SpherePicture> spheres = spheresOf(source);
+    const std::vector<SpherePicture> spheres = stripSpheres(source);
     data page("style", std::string(pageStyle()));
     page.set("generator", std::string("hshfit ") + version);
     page.set("source", shortName(withoutFolders(choice.source), 120));
