@@ -6,6 +6,7 @@
 #include <brdfs/spec.h>
 #include <brdfs/spectrum.h>
 #include <brdfs/sum.h>
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -108,6 +109,10 @@ std::unique_ptr<Brdf> openPreset(std::string_view text, const std::string& where
     std::vector<Spectrum::Line> lines;
     for (const auto& [wavelength, spec] : content.spectrum) {
         lines.push_back({wavelength, openSpec(spec, where)});
+        if (transmits(*lines.back().brdf))
+            throw InputError(fmt::format(
+                "{}: '{}' at {} nm is a transmission; a spectrum of a preset takes reflections",
+                where, spec, wavelength));
         if (lines.back().brdf->channels().kind != Channels::Kind::grey)
             throw InputError(
                 fmt::format("{}: '{}' at {} nm has colours; expected a grey BRDF at "

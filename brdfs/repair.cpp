@@ -3,6 +3,7 @@
 #include <brdfs/spec.h>
 #include <hshfit/brdf/kink_curve.h>
 #include <hshfit/brdf/steps.h>
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/projection/albedo.h>
@@ -35,8 +36,8 @@ std::string negativeReason(const Brdf&, const Health& health) {
     return fmt::format("{} of {} sampled values are below 0", health.negative, health.values);
 }
 
-std::string reciprocityReason(const Brdf&, const Health& health) {
-    if (health.reciprocityDefect <= reciprocityLimit) return {};
+std::string reciprocityReason(const Brdf& brdf, const Health& health) {
+    if (transmits(brdf) || health.reciprocityDefect <= reciprocityLimit) return {};
     return fmt::format("exchanged directions differ by {:.2g} of f", health.reciprocityDefect);
 }
 
@@ -368,7 +369,15 @@ std::span<const Repair> repairs() {
 std::unique_ptr<RepairedBrdf> repaired(
     std::unique_ptr<Brdf> brdf, std::string_view names,
     const std::function<void(std::size_t, std::size_t)>& progress) {
-    const Chosen chosen = parseNames(names);
+    Chosen chosen = parseNames(names);
+    if (transmits(*brdf) && chosen[reciprocity]) {
+        if (names != "all")
+            throw UsageError(fmt::format(
+                "{}: is a transmission, whose directions are not exchanged; expected repairs other "
+                "than reciprocity",
+                brdf->name()));
+        chosen[reciprocity] = false;
+    }
     return std::make_unique<Repaired>(std::move(brdf), chosen, progress);
 }
 

@@ -1,5 +1,6 @@
 #include <brdfs/sum.h>
 
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
 #include <hshfit/specification/sums.h>
 
@@ -95,6 +96,12 @@ Channels mergedChannels(const std::vector<Sum::Term>& terms) {
     return widest->channels();
 }
 
+/// The first term's side is that of all.
+std::vector<Sum::Term> ofOneSide(std::vector<Sum::Term> terms) {
+    for (const Sum::Term& term : terms) requireSameSide(*terms.front().brdf, *term.brdf);
+    return terms;
+}
+
 Laws commonLaws(const std::vector<Sum::Term>& terms) {
     Laws laws{true, true, true, true, true};
     double total = 0;
@@ -152,7 +159,7 @@ std::vector<WeightedSpec> splitSum(std::string_view spec, bool (*isWhole)(std::s
 }
 
 Sum::Sum(std::vector<Term> terms)
-    : terms_(std::move(terms)),
+    : terms_(ofOneSide(std::move(terms))),
       name_(joinedNames(terms_)),
       channels_(mergedChannels(terms_)),
       laws_(commonLaws(terms_)) {}
@@ -187,6 +194,13 @@ std::vector<Lobe> Sum::lobes(const Direction& wo) const {
     std::vector<Lobe> all;
     for (const Term& term : terms_)
         for (const Lobe& lobe : term.brdf->lobes(wo)) all.push_back(lobe);
+    return all;
+}
+
+std::vector<Lobe> Sum::outgoingLobes(const Direction& wi) const {
+    std::vector<Lobe> all;
+    for (const Term& term : terms_)
+        for (const Lobe& lobe : outgoingLobesOf(*term.brdf, wi)) all.push_back(lobe);
     return all;
 }
 

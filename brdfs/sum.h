@@ -3,6 +3,7 @@
 #include <hshfit/brdf/brdf.h>
 #include <hshfit/brdf/kink_curve.h>
 #include <hshfit/brdf/steps.h>
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/sampling/sampler.h>
 
 #include <cstddef>
@@ -39,7 +40,11 @@ std::vector<WeightedSpec> splitSum(std::string_view spec, bool (*isWhole)(std::s
 ///   coverage   where all terms are covered
 ///   lobes, kinks, facts   those of all terms; the tolerance is the largest
 /// Throws UsageError for rgb with spectral terms and for spectra of different wavelengths.
-class Sum final : public Brdf, public HasKinkCurves, public HasSteps, public HasSamplers {
+class Sum final : public Brdf,
+                  public HasKinkCurves,
+                  public HasSteps,
+                  public HasOutgoingLobes,
+                  public HasSamplers {
 public:
     struct Term {
         double weight = 1;
@@ -53,6 +58,7 @@ public:
     void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
     void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
     std::vector<Lobe> lobes(const Direction& wo) const override;
+    std::vector<Lobe> outgoingLobes(const Direction& wi) const override;
     std::vector<double> kinks(const Direction& wo) const override;
     std::vector<KinkCurve> kinkCurves(const Direction& wo) const override;
     std::vector<double> outgoingKinks(const Direction& wi) const override;

@@ -3,6 +3,7 @@
 #include <hshfit/brdf/brdf.h>
 #include <hshfit/brdf/kink_curve.h>
 #include <hshfit/brdf/steps.h>
+#include <hshfit/brdf/transmission.h>
 
 #include <memory>
 #include <span>
@@ -14,7 +15,10 @@ namespace hshfit::inline brdf {
 /// A BRDF whose channels are weighted sums of another's at the same directions: the colours of a
 /// spectrum, or the mean of the channels. The samples behind the other BRDF, converted value by
 /// value, are therefore the samples behind this one.
-class ChannelView final : public Brdf, public HasKinkCurves, public HasSteps {
+class ChannelView final : public Brdf,
+                          public HasKinkCurves,
+                          public HasSteps,
+                          public HasOutgoingLobes {
 public:
     /// Everything that differs from the BRDF that is seen.
     struct Look {
@@ -39,6 +43,9 @@ public:
         seen_->coverage(wo, wi, covered);
     }
     std::vector<Lobe> lobes(const Direction& wo) const override { return seen_->lobes(wo); }
+    std::vector<Lobe> outgoingLobes(const Direction& wi) const override {
+        return outgoingLobesOf(*seen_, wi);
+    }
     std::vector<double> kinks(const Direction& wo) const override { return seen_->kinks(wo); }
     std::vector<KinkCurve> kinkCurves(const Direction& wo) const override {
         return kinkCurvesOf(*seen_, wo);

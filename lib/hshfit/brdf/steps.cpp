@@ -1,4 +1,5 @@
 #include <hshfit/brdf/steps.h>
+#include <hshfit/brdf/transmission.h>
 
 #include <algorithm>
 #include <cmath>
@@ -39,6 +40,10 @@ void Exchanged::eval(const Direction& wo, DirectionBatch wi, double* out) const 
         brdf_.eval({wi.x[k], wi.y[k], wi.z[k]}, {&wo.x, &wo.y, &wo.z, 1}, values.data());
         for (std::size_t c = 0; c < channels; ++c) out[c * wi.count + k] = values[c];
     }
+}
+
+std::vector<Lobe> Exchanged::lobes(const Direction& wo) const {
+    return outgoingLobesOf(brdf_, wo);
 }
 
 void Exchanged::coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const {

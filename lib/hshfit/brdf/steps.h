@@ -59,7 +59,7 @@ public:
     const Laws& laws() const override { return brdf_.laws(); }
     void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
     void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
-    std::vector<Lobe> lobes(const Direction& wo) const override { return brdf_.lobes(wo); }
+    std::vector<Lobe> lobes(const Direction& wo) const override;
     std::vector<double> kinks(const Direction& wo) const override {
         return outgoingKinksOf(brdf_, wo);
     }
