@@ -1,5 +1,6 @@
 #include <brdfs/measured/merl_layout.h>
 #include <brdfs/measured/merl_writer.h>
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 
@@ -17,6 +18,7 @@ namespace hshfit::brdfs {
 namespace {
 
 void checkRepresentable(const Brdf& brdf) {
+    requireReflection(brdf, "merl");
     if (!brdf.laws().isotropic) {
         throw UsageError(brdf.name() + ": is anisotropic; a MERL file holds isotropic BRDFs only");
     }

@@ -1,4 +1,5 @@
 #include <brdfs/measured/rgl_writer.h>
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
 #include <hshfit/files/tensor_file_writer.h>
 
@@ -152,6 +153,7 @@ RglTables tablesOf(const Brdf& brdf, const Parameters& parameters, const WriteOp
 
 std::vector<std::string> writeRgl(const Brdf& brdf, const std::string& path,
                                   const Parameters& parameters, const WriteOptions& options) {
+    requireReflection(brdf, "rgl");
     std::vector<std::string> alterations;
     const Channels& channels = brdf.channels();
     if (channels.kind == Channels::Kind::grey) {

@@ -66,10 +66,6 @@ TEST(BsdfSelection, TheOnlyReflectionOfAFileIsReadAndNamed) {
                              ".xml");
     EXPECT_EQ(atNormal(*brdfs::open(both.path())), .125);
     EXPECT_EQ(atNormal(*brdfs::open(both.path() + ":side=back")), .25);
-
-    const TemporaryFile none(file(test::blockXml("Transmission Back", matrix(.5), basis)), ".xml");
-    test::expectInputError([&] { brdfs::open(none.path()); },
-                           {"no reflection", "transmission", "Transmission Back Visible"});
 }
 
 TEST(BsdfSelection, BlocksByWavelengthAreASpectrum) {

@@ -394,7 +394,7 @@ TEST(ZemaxAttack, FieldsAreChecked) {
     const auto read = [](const std::string& text) { readZemax(text, "f"); };
     cutEverywhere(read, zemaxText);
     refusedBy(read, "", {"DataBegin"});
-    refusedBy(read, with(zemaxText, "BRDF", "BTDF"), {"BTDF", "transmission"});
+    refusedBy(read, with(zemaxText, "BRDF", "BSDF"), {"bsdf", "BRDF or BTDF"});
     refusedBy(read, with(zemaxText, "PlaneSymmetrical", "Round"), {"round", "PlaneSymmetrical"});
     refusedBy(read, with(zemaxText, "Monochrome", "Red"), {"red", "Monochrome"});
     refusedBy(read, with(zemaxText, "Source", "Sauce"), {"'Sauce'"});

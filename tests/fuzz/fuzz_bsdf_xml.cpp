@@ -36,8 +36,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     using namespace hshfit::brdfs;
     if (size == 0) return 0;
     try {
-        check(*openBsdfXml({data + 1, size - 1}, "input",
-                           data[0] & 1 ? BsdfSide::back : BsdfSide::front,
+        constexpr BsdfSide sides[] = {BsdfSide::front, BsdfSide::back, BsdfSide::transmissionFront,
+                                      BsdfSide::transmissionBack};
+        check(*openBsdfXml({data + 1, size - 1}, "input", sides[data[0] & 1 | data[0] >> 1 & 2],
                            data[0] & 2 ? "solar" : "visible"));
     } catch (const hshfit::InputError&) {
     }

@@ -14,11 +14,25 @@ bool looksLikeBsdfXml(std::span<const unsigned char> head, std::uint64_t) {
 std::unique_ptr<Brdf> openFile(const std::string& path, const Parameters& parameters) {
     const MappedFile file(path);
     const std::string word = parameters.choice("side");
-    std::optional<BsdfSide> side;
-    if (word != "auto") side = word.ends_with("back") ? BsdfSide::back : BsdfSide::front;
     std::unique_ptr<Brdf> brdf =
-        openBsdfXml(file.bytes(), path, side, parameters.choice("wavelength"));
+        openBsdfXml(file.bytes(), path, sideNamed(word), parameters.choice("wavelength"));
     file.checkIntact();
+    return brdf;
+}
+
+/// The blocks of one kind; where they transmit, with the energy of the reflection beside them.
+template <class Stored>
+std::unique_ptr<MeasuredBrdf> make(const BsdfDocument& document, BsdfSelection selection,
+                                   std::string_view wavelength) {
+    const BsdfSide side = selection.side;
+    auto brdf = std::make_unique<Stored>(document, std::move(selection));
+    if (!isTransmission(side)) return brdf;
+    try {
+        brdf->addReflection(
+            Stored(document, selectBlocks(document, counterpart(side), wavelength)));
+    } catch (const InputError&) {
+        // The file has no reflection of that side, or one that cannot be read.
+    }
     return brdf;
 }
 
@@ -29,8 +43,8 @@ std::unique_ptr<MeasuredBrdf> openBsdfXml(std::span<const unsigned char> bytes, 
                                           std::string_view wavelength) {
     const BsdfDocument document(bytes, std::move(name));
     BsdfSelection selection = selectBlocks(document, side, wavelength);
-    if (document.isTree()) return std::make_unique<TreeBrdf>(document, std::move(selection));
-    return std::make_unique<KlemsBrdf>(document, std::move(selection));
+    if (document.isTree()) return make<TreeBrdf>(document, std::move(selection), wavelength);
+    return make<KlemsBrdf>(document, std::move(selection), wavelength);
 }
 
 const Format& bsdfXmlFormat() {
@@ -41,11 +55,11 @@ const Format& bsdfXmlFormat() {
         .recognises = looksLikeBsdfXml,
         .parameters = {{.name = "side",
                         .help = "as the file calls it, Radiance calls the back front; auto: front, "
-                                "or the only reflection there is",
+                                "or the only reflection there is, or the only transmission",
                         .kind = Parameter::Kind::choice,
                         .fallback = {},
-                        .choices = {"auto", "front", "back", "reflection-front",
-                                    "reflection-back"}},
+                        .choices = {"auto", "front", "back", "reflection-front", "reflection-back",
+                                    "transmission-front", "transmission-back"}},
                        {.name = "wavelength",
                         .help =
                             "visible (in colour where the file is), solar, nir, a wavelength in "

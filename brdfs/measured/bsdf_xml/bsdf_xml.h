@@ -12,9 +12,9 @@
 
 namespace hshfit::brdfs {
 
-/// Opens the reflection of one side (selectBlocks) from a BSDF XML file: matrices of patch pairs
-/// (klems_brdf.h) or tensor trees (tree_brdf.h). Values are f in 1/sr. The bytes are not needed
-/// after opening. Throws InputError with the line for invalid content.
+/// Opens the reflection or the transmission of one side (selectBlocks) from a BSDF XML file:
+/// matrices of patch pairs (klems_brdf.h) or tensor trees (tree_brdf.h). Values are f in 1/sr. The
+/// bytes are not needed after opening. Throws InputError with the line for invalid content.
 std::unique_ptr<MeasuredBrdf> openBsdfXml(std::span<const unsigned char> bytes, std::string name,
                                           std::optional<BsdfSide> side = BsdfSide::front,
                                           std::string_view wavelength = "visible");

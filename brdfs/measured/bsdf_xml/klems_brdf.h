@@ -7,19 +7,22 @@
 #include <hshfit/brdf/kink_curve.h>
 #include <hshfit/brdf/steps.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace hshfit::brdfs {
 
-/// Reflection in a matrix of patch pairs (Klems 1994): f is constant for wi in one patch of the
-/// incident basis and wo in one of the outgoing basis. With (x, y) in the file's plane (see
-/// BsdfSelection), the outgoing patch is that of (x, y) of wo, and the incident one that of
-/// (-x, -y) of wi, towards which the light goes: a mirror fills the diagonal.
+/// Reflection or transmission in a matrix of patch pairs (Klems 1994): f is constant for wi in one
+/// patch of the incident basis and wo in one of the outgoing basis. With (x, y) in the file's plane
+/// (see BsdfSelection), the outgoing patch is that of (x, y) of wo, and the incident one that of
+/// (-x, -y) of wi, towards which the light goes: a mirror fills the diagonal,
+/// and so does a clear pane, wo of a transmission being mirrored at the surface.
 ///
 /// Negative values are taken as 0, as in Radiance. So are NaN and infinite values, for which
 /// checkIntact() throws InputError. f is 0 beyond a basis that ends above the
-/// horizon. Laws are claimed where the matrix has them exactly.
+/// horizon. Laws are claimed where the matrix has them exactly; reciprocity, never of a
+/// transmission.
 class KlemsBrdf : public MeasuredBrdf, public HasKinkCurves, public HasSteps {
 public:
     /// Throws InputError for unknown bases, matrices of wrong size, and words among the
@@ -58,6 +61,9 @@ public:
     /// Directional-hemispherical reflectance of an incident patch as the file defines it: the sum
     /// over outgoing patches of f times projected solid angle.
     double directionalReflectance(std::size_t channel, std::size_t incident) const;
+    /// Takes note of the reflection of light from the same side: conservation of energy is then
+    /// that of both together.
+    void addReflection(const KlemsBrdf& reflection);
 
 private:
     std::vector<double> readMatrix(const BsdfDocument& document, const BsdfBlock& block);
@@ -78,6 +84,8 @@ private:
     Census census_;
     std::vector<double> values_;          ///< [channel][outgoing][incident]
     std::vector<unsigned char> missing_;  ///< [outgoing][incident]: NaN or infinite
+    /// Of a transmission: the largest sum with the reflection of the same patch, where it is known.
+    std::optional<double> withReflection_;
 };
 
 }  // namespace hshfit::brdfs

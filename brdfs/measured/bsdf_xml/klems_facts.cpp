@@ -73,7 +73,7 @@ bool KlemsBrdf::dependsOnRingsOnly() const {
 // Reciprocity, f(wi, wo) = f(wo, wi), exchanges wi and wo. Patches are those of wo and -wi, so
 // that the matrix is transposed and both patches are turned by 180 degrees.
 void KlemsBrdf::findLaws() {
-    laws_.reciprocal = movable() && sameUnder(1, 1, true);
+    laws_.reciprocal = !isTransmission(selection_.side) && movable() && sameUnder(1, 1, true);
     laws_.mirrorSymmetric = incident_.symmetric() && outgoing_.symmetric() &&
                             sameUnder(-1, 0, false) && sameUnder(-1, 1, false);
     laws_.isotropic = dependsOnRingsOnly();
@@ -82,6 +82,19 @@ void KlemsBrdf::findLaws() {
         for (std::size_t i = 0; i < incident_.patches(); ++i)
             most = std::max(most, directionalReflectance(c, i));
     laws_.energyConserving = most <= 1 + roundingOfFiles;
+}
+
+void KlemsBrdf::addReflection(const KlemsBrdf& reflection) {
+    if (reflection.incident_.patches() != incident_.patches() ||
+        reflection.channels_.count() != channels_.count())
+        return;
+    double most = 0;
+    for (std::size_t c = 0; c < channels_.count(); ++c)
+        for (std::size_t i = 0; i < incident_.patches(); ++i)
+            most = std::max(most,
+                            directionalReflectance(c, i) + reflection.directionalReflectance(c, i));
+    withReflection_ = most;
+    laws_.energyConserving = laws_.energyConserving && most <= 1 + roundingOfFiles;
 }
 
 /// Whether both bases have the same patches, and directions may be exchanged patch by patch.
@@ -107,6 +120,8 @@ std::vector<Fact> KlemsBrdf::facts() const {
     facts.emplace_back("negative_values", static_cast<std::int64_t>(census_.negative));
     facts.emplace_back("nan_values", static_cast<std::int64_t>(census_.notANumber));
     facts.emplace_back("infinite_values", static_cast<std::int64_t>(census_.infinite));
+    const bool through = isTransmission(selection_.side);
+    const char* const share = through ? "transmittance" : "reflectance";
     double largest = 0;
     for (const AngleBasis::Ring& ring : incident_.rings()) {
         double low = HUGE_VAL, high = 0;
@@ -118,10 +133,13 @@ std::vector<Fact> KlemsBrdf::facts() const {
             }
         }
         largest = std::max(largest, high);
-        facts.emplace_back(fmt::format("reflectance_incident_{:g}_to_{:g}", ring.lower, ring.upper),
+        facts.emplace_back(fmt::format("{}_incident_{:g}_to_{:g}", share, ring.lower, ring.upper),
                            fmt::format("{:.6g} to {:.6g}", low, high));
     }
-    facts.emplace_back("largest_directional_reflectance", largest);
+    facts.emplace_back(fmt::format("largest_directional_{}", share), largest);
+    if (withReflection_)
+        facts.emplace_back("largest_reflectance_and_transmittance", *withReflection_);
+    if (through) return facts;
     const std::vector<std::string> names = channels_.names();
     // Values of patches at opposite azimuths exchange under reciprocity.
     if (laws_.reciprocal || !incident_.symmetric() || incident_.patches() != outgoing_.patches()) {

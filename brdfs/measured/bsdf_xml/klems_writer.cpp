@@ -92,7 +92,7 @@ private:
     Direction directionAt(double z, double phi) const {
         const double s = sign_ * std::sqrt((1 - z) * (1 + z));
         const double x = s * std::cos(phi);
-        return {side_ == BsdfSide::front ? -x : x, s * std::sin(phi), z};
+        return {isFront(side_) ? -x : x, s * std::sin(phi), z};
     }
 
     /// Azimuths of a patch, ascending, at whose ends f has steps or the patch ends.
@@ -102,7 +102,7 @@ private:
         for (const KinkCurve& plane : steps_.meridians) {
             if (z < plane.low || z > plane.high) continue;
             // x cos(phi) + y sin(phi) = 0, in the file's plane
-            const double x = side_ == BsdfSide::front ? -plane.x : plane.x;
+            const double x = isFront(side_) ? -plane.x : plane.x;
             const double phi = std::atan2(-x, plane.y);
             for (int turn = 0; turn < 2; ++turn) {
                 const double from = phi + turn * pi - first;
@@ -153,11 +153,10 @@ std::string matrixText(const CellAverages& averages, std::size_t columns) {
     return text;
 }
 
-std::vector<std::string> write(const Brdf& brdf, const std::string& path,
-                               const Parameters& parameters, const WriteOptions& options) {
-    const AngleBasis basis = standardAngleBases("LBNL/Klems Full").front();
-    const BsdfSide side = sideOf(parameters);
-    std::vector<std::string> alterations;
+/// The matrix of one block.
+std::string blockText(const Brdf& brdf, BsdfSide side, const AngleBasis& basis,
+                      const Parameters& parameters, const WriteOptions& options,
+                      std::vector<std::string>& alterations) {
     const std::vector<double> weights = luminanceWeights(brdf, alterations);
     // A matrix is constant between steps that do not depend on the other direction: one point
     // between them is exact.
@@ -178,12 +177,19 @@ std::vector<std::string> write(const Brdf& brdf, const std::string& path,
          .evaluations = parameters.number("evaluations"),
          .progress = options.progress});
     reportUncertain(averages, alterations);
-    writeBsdfXml({.material = brdf.name(),
-                  .side = side,
-                  .structure = BsdfDocument::Structure::columns,
-                  .basis = &basis,
-                  .scatteringData = matrixText(averages, basis.patches())},
-                 path, options);
+    return matrixText(averages, basis.patches());
+}
+
+std::vector<std::string> write(const Brdf& brdf, const std::string& path,
+                               const Parameters& parameters, const WriteOptions& options) {
+    const AngleBasis basis = standardAngleBases("LBNL/Klems Full").front();
+    BsdfXmlContent content{
+        .material = brdf.name(), .structure = BsdfDocument::Structure::columns, .basis = &basis};
+    std::vector<std::string> alterations;
+    for (const auto& [side, part] : partsOf(brdf, parameters))
+        content.blocks.emplace_back(
+            side, blockText(*part, side, basis, parameters, options, alterations));
+    writeBsdfXml(content, path, options);
     return alterations;
 }
 

@@ -12,9 +12,25 @@
 namespace hshfit::brdfs {
 namespace {
 
-bool isReflection(const BsdfBlock& block, BsdfSide side) {
-    return sameWord(block.direction,
-                    side == BsdfSide::front ? "Reflection Front" : "Reflection Back");
+struct Kind {
+    BsdfSide side;
+    std::string_view block, word;
+};
+
+/// In the order in which they are looked for.
+constexpr Kind kinds[] = {
+    {BsdfSide::front, "Reflection Front", "front"},
+    {BsdfSide::back, "Reflection Back", "back"},
+    {BsdfSide::transmissionFront, "Transmission Front", "transmission-front"},
+    {BsdfSide::transmissionBack, "Transmission Back", "transmission-back"},
+};
+
+const Kind& kindOf(BsdfSide side) {
+    return *std::ranges::find(kinds, side, &Kind::side);
+}
+
+bool isOf(const BsdfBlock& block, BsdfSide side) {
+    return sameWord(block.direction, blockName(side));
 }
 
 std::string list(const std::set<std::string>& words) {
@@ -25,7 +41,7 @@ const BsdfBlock* findBlock(const BsdfDocument& document, BsdfSide side,
                            std::string_view wavelength) {
     const BsdfBlock* found = nullptr;
     for (const BsdfBlock& block : document.blocks()) {
-        if (!isReflection(block, side) || !sameWord(block.wavelength, wavelength)) continue;
+        if (!isOf(block, side) || !sameWord(block.wavelength, wavelength)) continue;
         if (found) {
             throw document.error(block.offset, fmt::format("a second block {}, {}; expected one",
                                                            block.direction, block.wavelength));
@@ -38,18 +54,11 @@ const BsdfBlock* findBlock(const BsdfDocument& document, BsdfSide side,
 InputError absent(const BsdfDocument& document, std::optional<BsdfSide> side,
                   std::string_view wavelength) {
     std::set<std::string> here;
-    bool reflects = false;
-    for (const BsdfBlock& block : document.blocks()) {
+    for (const BsdfBlock& block : document.blocks())
         here.insert(block.direction + " " + block.wavelength);
-        reflects =
-            reflects || isReflection(block, BsdfSide::front) || isReflection(block, BsdfSide::back);
-    }
-    if (!reflects)
-        return InputError(fmt::format("{}: no reflection, and transmission is not read; it has: {}",
-                                      document.where(), list(here)));
     return InputError(fmt::format(
-        "{}: no block Reflection{} for {}; it has: {} (options: side, wavelength)",
-        document.where(), side ? *side == BsdfSide::front ? " Front" : " Back" : "",
+        "{}: no block {} for {}; it has: {} (options: side, wavelength)", document.where(),
+        side ? blockName(*side) : "of reflection or transmission",
         wavelength.empty() ? "visible light or single wavelengths" : wavelength, list(here)));
 }
 
@@ -66,7 +75,7 @@ std::vector<const BsdfBlock*> findSpectrum(const BsdfDocument& document, BsdfSid
                                            std::optional<double> nanometres) {
     std::vector<const BsdfBlock*> found;
     for (const BsdfBlock& block : document.blocks())
-        if (block.nanometres > 0 && isReflection(block, side) &&
+        if (block.nanometres > 0 && isOf(block, side) &&
             (!nanometres || std::fabs(block.nanometres - *nanometres) < 1e-6))
             found.push_back(&block);
     std::ranges::stable_sort(found, {}, &BsdfBlock::nanometres);
@@ -94,7 +103,8 @@ bool takeSide(BsdfSelection& selection, const BsdfDocument& document, BsdfSide s
 }
 
 std::string optionsOf(const BsdfSelection& selection, std::string_view wavelength) {
-    std::string options = selection.side == BsdfSide::back ? "side=back" : "";
+    std::string options =
+        selection.side == BsdfSide::front ? "" : fmt::format("side={}", sideWord(selection.side));
     if (!wavelength.empty() && !sameWord(wavelength, "visible"))
         options += fmt::format("{}wavelength={}", options.empty() ? "" : ",", wavelength);
     return options;
@@ -103,8 +113,7 @@ std::string optionsOf(const BsdfSelection& selection, std::string_view wavelengt
 void addFacts(BsdfSelection& selection, const BsdfDocument& document) {
     constexpr std::string_view structures[] = {"columns", "rows", "tensor tree of rank 3",
                                                "tensor tree of rank 4"};
-    std::set<std::string> unused;
-    std::int64_t transmission = 0;
+    std::set<std::string> reflections, transmissions;
     for (const BsdfBlock& block : document.blocks()) {
         const bool used = &block == selection.main || &block == selection.colour[0] ||
                           &block == selection.colour[1] ||
@@ -113,16 +122,15 @@ void addFacts(BsdfSelection& selection, const BsdfDocument& document) {
         const bool through =
             block.direction.size() >= 12 &&
             sameWord(std::string_view(block.direction).substr(0, 12), "Transmission");
-        transmission += through ? 1 : 0;
-        if (!through) unused.insert(block.direction + " " + block.wavelength);
+        (through ? transmissions : reflections).insert(block.direction + " " + block.wavelength);
     }
     selection.facts = {
         {"format", "bsdf-xml"},
         {"structure", std::string(structures[static_cast<int>(document.structure())])},
-        {"side", selection.side == BsdfSide::front ? "front" : "back"},
+        {"side", std::string(sideWord(selection.side))},
         {"wavelength", selection.wavelength},
-        {"ignored_transmission_blocks", transmission},
-        {"other_reflection_blocks", list(unused)},
+        {"other_reflection_blocks", list(reflections)},
+        {"other_transmission_blocks", list(transmissions)},
         {"layers", static_cast<std::int64_t>(document.layers())},
     };
     if (!document.material().empty()) selection.facts.emplace_back("material", document.material());
@@ -143,13 +151,45 @@ Eigen::Matrix3d rgbToXyz() {
 
 }  // namespace
 
+std::string_view blockName(BsdfSide side) {
+    return kindOf(side).block;
+}
+
+std::string_view sideWord(BsdfSide side) {
+    return kindOf(side).word;
+}
+
+std::optional<BsdfSide> sideNamed(std::string_view word) {
+    if (constexpr std::string_view prefix = "reflection-"; word.starts_with(prefix))
+        word.remove_prefix(prefix.size());
+    const auto* found = std::ranges::find(kinds, word, &Kind::word);
+    return found == std::end(kinds) ? std::nullopt : std::optional(found->side);
+}
+
+BsdfSide counterpart(BsdfSide side) {
+    switch (side) {
+        case BsdfSide::front:
+            return BsdfSide::transmissionFront;
+        case BsdfSide::back:
+            return BsdfSide::transmissionBack;
+        case BsdfSide::transmissionFront:
+            return BsdfSide::front;
+        case BsdfSide::transmissionBack:
+            break;
+    }
+    return BsdfSide::back;
+}
+
 BsdfSelection selectBlocks(const BsdfDocument& document, std::optional<BsdfSide> side,
                            std::string_view wavelength) {
     BsdfSelection selection;
-    const bool front =
-        side != BsdfSide::back && takeSide(selection, document, BsdfSide::front, wavelength);
-    const bool any = front || (side != BsdfSide::front &&
-                               takeSide(selection, document, BsdfSide::back, wavelength));
+    const bool reflects = std::ranges::any_of(document.blocks(), [](const BsdfBlock& block) {
+        return isOf(block, BsdfSide::front) || isOf(block, BsdfSide::back);
+    });
+    const bool any = std::ranges::any_of(kinds, [&](const Kind& kind) {
+        const bool wanted = side ? *side == kind.side : !(reflects && isTransmission(kind.side));
+        return wanted && takeSide(selection, document, kind.side, wavelength);
+    });
     if (!any) throw absent(document, side, wavelength);
     const bool spectral = !selection.spectrum.empty();
     selection.wavelength = !spectral ? selection.main->wavelength

@@ -11,15 +11,32 @@
 
 namespace hshfit::brdfs {
 
-/// The sides as the file names them. Radiance exchanges the words: its front, towards +z and the
-/// room, is the file's back.
-enum class BsdfSide { front, back };
+/// The kinds of blocks as the file names them, `front` and `back` for reflections. The side is that
+/// of the incident light. Radiance exchanges the words: its front, towards +z and the room, is the
+/// file's back.
+enum class BsdfSide { front, back, transmissionFront, transmissionBack };
+
+/// "Reflection Front", …, as in files.
+std::string_view blockName(BsdfSide side);
+/// "front", "back", "transmission-front" or "transmission-back": the value of the option `side`.
+std::string_view sideWord(BsdfSide side);
+/// The kind that an option states, "reflection-front" and "front" alike; none for other words.
+std::optional<BsdfSide> sideNamed(std::string_view word);
+inline bool isTransmission(BsdfSide side) {
+    return side == BsdfSide::transmissionFront || side == BsdfSide::transmissionBack;
+}
+inline bool isFront(BsdfSide side) {
+    return side == BsdfSide::front || side == BsdfSide::transmissionFront;
+}
+/// The reflection of light from the same side for a transmission, and the reverse.
+BsdfSide counterpart(BsdfSide side);
 
 /// The blocks of a document that one BRDF is made of, and the facts that all kinds of blocks share.
 ///
 /// Directions. Files have one frame for both sides: x and y along the surface, z out of the back.
-/// Local frames are right-handed with +z out of the surface: (x, y, z) on the back, and turned
-/// about y, (-x, y, -z), on the front.
+/// Local frames are right-handed with +z out of the surface towards the incident light: (x, y, z)
+/// on the back, and turned about y, (-x, y, -z), on the front. Outgoing directions of transmissions
+/// are mirrored at the surface (hshfit/brdf/transmission.h), so that they have the same (x, y).
 struct BsdfSelection {
     std::string name;  ///< a specification that opens the same BRDF
     BsdfSide side = BsdfSide::front;
@@ -41,17 +58,18 @@ struct BsdfSelection {
     }
     bool coloured() const { return colour[0] != nullptr; }
     /// x in the file's frame.
-    double fileX(double x) const { return side == BsdfSide::front ? -x : x; }
+    double fileX(double x) const { return isFront(side) ? -x : x; }
     void checkIntact() const {
         if (!corrupt.empty()) throw InputError(corrupt);
     }
 };
 
-/// Finds the blocks of a reflection. Without a side it is the front's, or the back's where the file
-/// has no other. `wavelength`: a word of the file ("visible": with colours if the file has them), a
-/// wavelength in nm, "spectrum" for all blocks of single wavelengths, or empty: visible if the
-/// file has it, else the spectrum. Throws InputError for missing blocks, naming those in the file,
-/// and for duplicates.
+/// Finds the blocks of one kind. Without a side it is the front's reflection, or the back's where
+/// the file has no other; of a file without reflections, a transmission in the same way.
+/// `wavelength`: a word of the file ("visible": with colours if the file has them), a wavelength in
+/// nm, "spectrum" for all blocks of single wavelengths, or empty: visible if the file has it, else
+/// the spectrum. Throws InputError for missing blocks, naming those in the file, and for
+/// duplicates.
 BsdfSelection selectBlocks(const BsdfDocument& document, std::optional<BsdfSide> side,
                            std::string_view wavelength);
 

@@ -79,7 +79,8 @@ void TreeBrdf::findLaws() {
     laws_.mirrorSymmetric =
         isotropic ? all(same, {false, false, true, false})
                   : all(same, {true, false, true, false}) && all(same, {false, true, false, true});
-    laws_.reciprocal = !isotropic && all(exchanged, {true, true, true, true});
+    laws_.reciprocal =
+        !isotropic && !isTransmission(selection_.side) && all(exchanged, {true, true, true, true});
     if (trees_.size() > 1) return;
     const std::vector<double> reflectances = directionalReflectances();
     laws_.energyConserving =
@@ -204,6 +205,26 @@ std::vector<double> TreeBrdf::directionalReflectances() const {
     return averages;
 }
 
+// The coarser grid is a part of the finer: the cell with the same corner.
+void TreeBrdf::addReflection(const TreeBrdf& reflection) {
+    const int rank = trees_[0].rank();
+    if (reflection.trees_[0].rank() != rank) return;
+    const std::vector<double> own = directionalReflectances(),
+                              other = reflection.directionalReflectances();
+    const auto sideOf = [&](const TensorTree& tree, const std::vector<double>& cells) {
+        return rank == 4 ? std::size_t{1} << tree.levels() : cells.size();
+    };
+    const std::size_t mine = sideOf(trees_[0], own), theirs = sideOf(reflection.trees_[0], other),
+                      side = std::max(mine, theirs);
+    double most = 0;
+    for (std::size_t v = 0; v < (rank == 4 ? side : 1); ++v)
+        for (std::size_t u = 0; u < side; ++u)
+            most = std::max(most, own[v * mine / side * mine + u * mine / side] +
+                                      other[v * theirs / side * theirs + u * theirs / side]);
+    withReflection_ = most;
+    laws_.energyConserving = laws_.energyConserving && most <= 1 + roundingOfFiles;
+}
+
 std::vector<Axis> TreeBrdf::axes() const {
     // Cells along the x axis, from the middle of the square to its rim.
     const int cells = std::max(1 << trees_[0].levels() >> 1, 1);
@@ -228,12 +249,17 @@ std::vector<Fact> TreeBrdf::facts() const {
     facts.emplace_back("infinite_values", static_cast<std::int64_t>(census_.infinite));
     const std::vector<double> reflectances = directionalReflectances();
     const auto [least, most] = std::ranges::minmax(reflectances);
-    facts.emplace_back("least_directional_reflectance", least);
-    facts.emplace_back("largest_directional_reflectance", most);
+    const bool through = isTransmission(selection_.side);
+    const char* const share = through ? "transmittance" : "reflectance";
+    facts.emplace_back(fmt::format("least_directional_{}", share), least);
+    facts.emplace_back(fmt::format("largest_directional_{}", share), most);
+    if (withReflection_)
+        facts.emplace_back("largest_reflectance_and_transmittance", *withReflection_);
     if (tree.rank() == 4) {
         double mean = 0;
         for (const double r : reflectances) mean += r / static_cast<double>(reflectances.size());
-        facts.emplace_back("mean_reflectance", mean);
+        facts.emplace_back(fmt::format("mean_{}", share), mean);
+        if (through) return facts;
         facts.emplace_back("reciprocity_defect",
                            tree.asymmetry(exchanged, {true, true, true, true}));
     }

@@ -6,21 +6,23 @@
 #include <brdfs/measured/measured_brdf.h>
 #include <hshfit/brdf/steps.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace hshfit::brdfs {
 
-/// Reflection in a tensor tree over the squares of squareFromDisc, constant on each leaf. With
-/// (x, y) in the file's plane (see BsdfSelection):
+/// Reflection or transmission in a tensor tree over the squares of squareFromDisc, constant on each
+/// leaf. With (x, y) in the file's plane (see BsdfSelection):
 ///     rank 4:  (u, v) of (-x, -y) of wi, (u, v) of (x, y) of wo;
 ///     rank 3:  (1 - sin(theta_i)) / 2, (u, v) of (x, y) of wo turned so that -wi has azimuth 0.
-/// Half of the cube of rank 3 has no directions. A mirror lies on the diagonal of rank 4.
+/// Half of the cube of rank 3 has no directions. A mirror lies on the diagonal of rank 4, and so
+/// does a clear pane, wo of a transmission being mirrored at the surface.
 ///
 /// Negative values are taken as 0, as in Radiance. So are NaN and infinite values, for which
 /// checkIntact() throws InputError. With trees for CIE u' and v' the BRDF is RGB, with trees for
-/// wavelengths spectral. Laws are claimed if the trees have them exactly. Rank 3 never claims
-/// reciprocity, and several trees never claim conservation of energy.
+/// wavelengths spectral. Laws are claimed if the trees have them exactly. Rank 3 and
+/// transmissions never claim reciprocity, and several trees never claim conservation of energy.
 class TreeBrdf : public MeasuredBrdf, public HasSteps {
 public:
     /// Throws InputError as TensorTree does.
@@ -53,6 +55,9 @@ public:
     /// the outgoing square, for each cell of the finest grid of incident coordinates, first
     /// coordinate fastest. Rank 3: from grazing (first) to normal incidence.
     std::vector<double> directionalReflectances() const;
+    /// Takes note of the reflection of light from the same side: conservation of energy is then
+    /// that of both together.
+    void addReflection(const TreeBrdf& reflection);
 
 private:
     TensorTree::Point pointFor(const Direction& wo, double x, double y) const;
@@ -65,6 +70,8 @@ private:
     Census census_;
     std::vector<TensorTree> trees_;       ///< one, Y, u' and v', or one a wavelength
     std::vector<unsigned char> missing_;  ///< leaves of the first that are NaN or infinite
+    /// Of a transmission: the largest sum with the reflection of the same cell, where it is known.
+    std::optional<double> withReflection_;
 };
 
 }  // namespace hshfit::brdfs

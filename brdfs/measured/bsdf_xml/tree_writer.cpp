@@ -14,7 +14,7 @@ namespace hshfit::brdfs {
 namespace {
 
 Direction seenFrom(BsdfSide side, const Direction& d, int sign) {
-    return {side == BsdfSide::front ? -sign * d.x : sign * d.x, sign * d.y, d.z};
+    return {isFront(side) ? -sign * d.x : sign * d.x, sign * d.y, d.z};
 }
 
 /// Cell u + side v of the square.
@@ -144,16 +144,10 @@ private:
     double prune_;
 };
 
-std::vector<std::string> write(const Brdf& brdf, const std::string& path,
-                               const Parameters& parameters, const WriteOptions& options) {
-    const int rank = brdf.laws().isotropic ? 3 : 4;
+/// The tree of one block.
+std::string blockText(const Brdf& brdf, BsdfSide side, int rank, const Parameters& parameters,
+                      const WriteOptions& options, std::vector<std::string>& alterations) {
     const int levels = static_cast<int>(std::lround(parameters.number("levels")));
-    if (rank == 4 && levels > 6) {
-        throw UsageError(fmt::format("{}: levels={} is too fine for an anisotropic BRDF, at most 6",
-                                     brdf.name(), levels));
-    }
-    const BsdfSide side = sideOf(parameters);
-    std::vector<std::string> alterations;
     const std::vector<double> weights = luminanceWeights(brdf, alterations);
     const std::size_t steps = std::size_t{1} << levels;
     const auto square = [=](int sign) {
@@ -177,13 +171,28 @@ std::vector<std::string> write(const Brdf& brdf, const std::string& path,
                           .evaluations = parameters.number("evaluations"),
                           .progress = options.progress});
     reportUncertain(averages, alterations);
-    writeBsdfXml(
-        {.material = brdf.name(),
-         .side = side,
-         .structure = rank == 4 ? BsdfDocument::Structure::tree4 : BsdfDocument::Structure::tree3,
-         .basis = nullptr,
-         .scatteringData = TreePrinter(averages, rank, levels, parameters.number("prune")).text()},
-        path, options);
+    return TreePrinter(averages, rank, levels, parameters.number("prune")).text();
+}
+
+std::vector<std::string> write(const Brdf& brdf, const std::string& path,
+                               const Parameters& parameters, const WriteOptions& options) {
+    const std::vector<BsdfPart> parts = partsOf(brdf, parameters);
+    // A file has one rank.
+    const bool isotropic = std::ranges::all_of(
+        parts, [](const BsdfPart& part) { return part.brdf->laws().isotropic; });
+    const int rank = isotropic ? 3 : 4;
+    if (rank == 4 && parameters.number("levels") > 6) {
+        throw UsageError(fmt::format("{}: levels={} is too fine for an anisotropic BRDF, at most 6",
+                                     brdf.name(), parameters.number("levels")));
+    }
+    BsdfXmlContent content{
+        .material = brdf.name(),
+        .structure = isotropic ? BsdfDocument::Structure::tree3 : BsdfDocument::Structure::tree4};
+    std::vector<std::string> alterations;
+    for (const auto& [side, part] : parts)
+        content.blocks.emplace_back(side,
+                                    blockText(*part, side, rank, parameters, options, alterations));
+    writeBsdfXml(content, path, options);
     return alterations;
 }
 

@@ -1,8 +1,15 @@
+#include <brdfs/measured/bsdf_xml/bsdf_xml.h>
 #include <brdfs/measured/bsdf_xml/xml_frame.h>
+#include <brdfs/spec.h>
+#include <hshfit/brdf/transmission.h>
+#include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
+#include <hshfit/files/mapped_file.h>
 
 #include <fmt/format.h>
 #include <pugixml.hpp>
+
+#include <algorithm>
 
 namespace hshfit::brdfs {
 namespace {
@@ -45,17 +52,48 @@ void putData(pugi::xml_node layer, const BsdfXmlContent& content) {
     putWithUnit(data, "Wavelength", "Integral", "Visible");
     put(data, "SourceSpectrum", "CIE Illuminant D65 1nm.ssp");
     put(data, "DetectorSpectrum", "ASTM E308 1931 Y.dsp");
-    pugi::xml_node block = data.append_child("WavelengthDataBlock");
-    const bool front = content.side == BsdfSide::front;
-    put(block, "WavelengthDataDirection", front ? "Reflection Front" : "Reflection Back");
-    if (content.basis) {
-        put(block, "ColumnAngleBasis", content.basis->name);
-        put(block, "RowAngleBasis", content.basis->name);
-    } else {
-        put(block, "AngleBasis", "LBNL/Shirley-Chiu");
+    for (const auto& [side, numbers] : content.blocks) {
+        pugi::xml_node block = data.append_child("WavelengthDataBlock");
+        put(block, "WavelengthDataDirection", std::string(blockName(side)));
+        if (content.basis) {
+            put(block, "ColumnAngleBasis", content.basis->name);
+            put(block, "RowAngleBasis", content.basis->name);
+        } else {
+            put(block, "AngleBasis", "LBNL/Shirley-Chiu");
+        }
+        put(block, "ScatteringDataType", isTransmission(side) ? "BTDF" : "BRDF");
+        put(block, "ScatteringData", numbers);
     }
-    put(block, "ScatteringDataType", "BRDF");
-    put(block, "ScatteringData", content.scatteringData);
+}
+
+/// Every block of the file that a BRDF of this name was opened from.
+std::vector<BsdfPart> allPartsOf(const std::string& name) {
+    const std::string path(pathIn(name));
+    const auto none = [&] {
+        return UsageError(
+            fmt::format("{}: side=all writes the blocks of a BSDF XML file, and this is none; "
+                        "expected front, back, transmission-front or transmission-back",
+                        name));
+    };
+    if (path.empty()) throw none();
+    const MappedFile file(path);
+    const std::string_view text(reinterpret_cast<const char*>(file.bytes().data()),
+                                file.bytes().size());
+    if (text.substr(0, 4096).find("<WindowElement") == std::string_view::npos) throw none();
+    constexpr std::string_view key = "wavelength=";
+    const std::size_t at = name.find(key, path.size());
+    const std::string wavelength = at == std::string::npos ? "" : name.substr(at + key.size());
+    const BsdfDocument document(file.bytes(), path);
+    std::vector<BsdfPart> parts;
+    for (const BsdfSide side : {BsdfSide::transmissionFront, BsdfSide::transmissionBack,
+                                BsdfSide::front, BsdfSide::back}) {
+        const bool there = std::ranges::any_of(document.blocks(), [&](const BsdfBlock& block) {
+            return sameWord(block.direction, blockName(side));
+        });
+        if (there) parts.push_back({side, openBsdfXml(file.bytes(), path, side, wavelength)});
+    }
+    file.checkIntact();
+    return parts;
 }
 
 struct FileWriter : pugi::xml_writer {
@@ -95,25 +133,37 @@ void writeBsdfXml(const BsdfXmlContent& content, const std::string& path,
 }
 
 std::vector<Parameter> commonWriterParameters() {
-    return {{.name = "side",
-             .help = "of the file; Radiance calls the back front",
-             .kind = Parameter::Kind::choice,
-             .fallback = {},
-             .choices = {"front", "back"}},
-            {.name = "tolerance",
-             .help = "of averages over a cell, relative",
-             .fallback = 1e-3,
-             .min = 1e-6,
-             .max = 0.1},
-            {.name = "evaluations",
-             .help = "of f, after which averages are taken as they are",
-             .fallback = 2e7,
-             .min = 0,
-             .max = 1e12}};
+    return {
+        {.name = "side",
+         .help = "of the file, Radiance calls the back front; auto: front, of a transmission its "
+                 "own; all: every block of a BSDF XML file",
+         .kind = Parameter::Kind::choice,
+         .fallback = {},
+         .choices = {"auto", "front", "back", "transmission-front", "transmission-back", "all"}},
+        {.name = "tolerance",
+         .help = "of averages over a cell, relative",
+         .fallback = 1e-3,
+         .min = 1e-6,
+         .max = 0.1},
+        {.name = "evaluations",
+         .help = "of f, after which averages are taken as they are",
+         .fallback = 2e7,
+         .min = 0,
+         .max = 1e12}};
 }
 
-BsdfSide sideOf(const Parameters& parameters) {
-    return parameters.choice("side") == "back" ? BsdfSide::back : BsdfSide::front;
+std::vector<BsdfPart> partsOf(const Brdf& brdf, const Parameters& parameters) {
+    const std::string name = brdf.name(), word = parameters.choice("side");
+    if (word == "all") return allPartsOf(name);
+    const std::string_view own = transmissionSide(name);
+    const BsdfSide side =
+        sideNamed(word == "auto" ? (own.empty() ? "front" : own) : std::string_view(word)).value();
+    if (isTransmission(side) == own.empty())
+        throw UsageError(
+            fmt::format("{}: is a {}, which side={} is not; expected side={}", name,
+                        own.empty() ? "reflection" : "transmission", word,
+                        own.empty() ? "front or back" : "transmission-front or transmission-back"));
+    return {{side, std::shared_ptr<const Brdf>(std::shared_ptr<const Brdf>(), &brdf)}};
 }
 
 void reportUncertain(const CellAverages& averages, std::vector<std::string>& alterations) {

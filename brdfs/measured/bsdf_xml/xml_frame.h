@@ -5,19 +5,20 @@
 #include <brdfs/measured/bsdf_xml/document.h>
 #include <brdfs/measured/bsdf_xml/selection.h>
 
+#include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace hshfit::brdfs {
 
-/// The contents of a BSDF XML file with one block of reflection.
+/// The contents of a BSDF XML file of visible light.
 struct BsdfXmlContent {
     std::string material;  ///< name of the material
-    BsdfSide side = BsdfSide::front;
     BsdfDocument::Structure structure = BsdfDocument::Structure::columns;
     const AngleBasis* basis = nullptr;  ///< of rows and columns; null in trees
-    std::string scatteringData;
+    std::vector<std::pair<BsdfSide, std::string>> blocks = {};  ///< ScatteringData of each kind
 };
 
 /// Writes the elements that Radiance and WINDOW expect, in the order of BSDF-v1.4.xsd, through an
@@ -27,7 +28,17 @@ void writeBsdfXml(const BsdfXmlContent& content, const std::string& path,
 
 /// "side", "tolerance" and "evaluations", which all writers of this format have.
 std::vector<Parameter> commonWriterParameters();
-BsdfSide sideOf(const Parameters& parameters);
+
+/// A block to write: its kind and the BRDF that it holds.
+struct BsdfPart {
+    BsdfSide side;
+    std::shared_ptr<const Brdf> brdf;
+};
+/// The blocks that `side` asks for: one of `brdf`, or with "all" those of the file that `brdf` was
+/// opened from, each opened by its own specification. `brdf` has to outlive them. Throws
+/// UsageError where a reflection would be written as a transmission or the reverse, and where
+/// `brdf` is of no such file.
+std::vector<BsdfPart> partsOf(const Brdf& brdf, const Parameters& parameters);
 
 /// Appends a sentence if some averages did not converge.
 void reportUncertain(const CellAverages& averages, std::vector<std::string>& alterations);

@@ -1,5 +1,6 @@
 #include <brdfs/measured/gridded/slice.h>
 #include <brdfs/measured/gridded/slice_writer.h>
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/exr_picture.h>
@@ -155,6 +156,7 @@ private:
 
 std::vector<std::string> writeRow(const Brdf& brdf, const std::string& path,
                                   const Parameters& parameters, const WriteOptions& options) {
+    requireReflection(brdf, "slices");
     const auto count = [&](std::string_view name) {
         const double value = parameters.number(name);
         if (value != std::floor(value)) {

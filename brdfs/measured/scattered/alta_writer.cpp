@@ -1,5 +1,6 @@
 #include <brdfs/measured/scattered/alta_writer.h>
 #include <brdfs/measured/scattered/scattered.h>
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 
@@ -98,6 +99,7 @@ void writeGrid(const Brdf& brdf, const Grid& grid, Rows& rows,
 
 std::vector<std::string> writeAlta(const Brdf& brdf, const std::string& path,
                                    const Parameters& parameters, const WriteOptions& options) {
+    requireReflection(brdf, "alta");
     if (brdf.channels().kind == Channels::Kind::spectral) {
         throw UsageError(fmt::format(
             "{}: is spectral ({} wavelengths); ALTA text has one value or three, and no "

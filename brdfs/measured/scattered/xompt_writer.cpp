@@ -1,4 +1,5 @@
 #include <brdfs/measured/scattered/xompt_writer.h>
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/checksum.h>
@@ -61,6 +62,7 @@ void checkWritable(const Brdf& brdf) {
 
 std::vector<std::string> writeXompt(const Brdf& brdf, const std::string& path,
                                     const Parameters& parameters, const WriteOptions& options) {
+    requireReflection(brdf, "xompt");
     checkWritable(brdf);
     const auto polar = static_cast<std::size_t>(parameters.number("theta"));
     const auto around = static_cast<std::size_t>(parameters.number("phi"));

@@ -15,7 +15,7 @@ namespace hshfit::brdfs {
 namespace {
 
 struct ZemaxHead {
-    bool mirrored = false, tristimulus = false;
+    bool mirrored = false, tristimulus = false, through = false;
     std::vector<double> rotations, incidences, azimuths, radials;
 };
 
@@ -86,10 +86,8 @@ void ZemaxReader::readKeyword(std::string_view keyword) {
         seen_[1] = true;
     } else if (is("ScatterType")) {
         const std::string type = word();
-        if (type == "btdf")
-            throw reader_.error(
-                "ScatterType BTDF: a transmission, which is not read; expected BRDF");
-        if (type != "brdf") throw wrong("ScatterType", type, "BRDF");
+        head_.through = type == "btdf";
+        if (!head_.through && type != "brdf") throw wrong("ScatterType", type, "BRDF or BTDF");
         seen_[2] = true;
     } else if (is("SampleRotation")) {
         head_.rotations = list("SampleRotation", -360, 360);
@@ -199,6 +197,7 @@ Samples ZemaxReader::read(bool zerosMeasured) {
     const auto [least, most] = std::ranges::minmax(tis_);
     samples.facts = {{"format", "zemax"},
                      {"symmetry", head_.mirrored ? "plane" : "none"},
+                     {"scatter_type", head_.through ? "BTDF" : "BRDF"},
                      {"tis", fmt::format("{:.4g} to {:.4g}, not applied", least, most)}};
     if (zeros_ > 0)
         samples.leftOut.push_back(
@@ -229,25 +228,47 @@ Samples readZemax(std::string_view text, const std::string& where, bool zerosMea
     return ZemaxReader(text, where).read(zerosMeasured);
 }
 
+namespace {
+
+std::unique_ptr<Brdf> openZemax(const std::string& path, const Parameters& parameters) {
+    const bool zerosMeasured = parameters.choice("zeros") == "values";
+    Samples samples;
+    withTextFile(path, [&](std::string_view text, const std::string& where) {
+        samples = readZemax(text, where, zerosMeasured);
+    });
+    const bool through =
+        std::ranges::find(samples.facts, Fact{"scatter_type", "BTDF"}) != samples.facts.end();
+    const bool stated = parameters.choice("side") != "auto";
+    if (stated && !through)
+        throw InputError(fmt::format("{}: ScatterType is BRDF, a reflection; side={} is for BTDF",
+                                     path, parameters.choice("side")));
+    ScatteredOptions options = scatteredOptions(parameters);
+    options.exchange = options.exchange && !through;
+    std::string words = parameters.canonical();
+    if (through && !stated)
+        words += fmt::format("{}side=transmission-front", words.empty() ? "" : ",");
+    return std::make_unique<Scattered>(std::move(samples), options,
+                                       words.empty() ? path : path + ":" + words);
+}
+
+}  // namespace
+
 const Format& zemaxFormat() {
     static const Format format{
         .name = "zemax",
-        .help = "Tabular BSDF data of Zemax and Radiant, grey or RGB; BRDF",
+        .help = "Tabular BSDF data of Zemax and Radiant, grey or RGB",
         .extension = ".bsdf",
         .recognises = looksLikeZemax,
         .parameters =
-            scatteredParameters({{.name = "zeros",
+            scatteredParameters({{.name = "side",
+                                  .help = "of the light of a BTDF; auto: of a BTDF, front",
+                                  .kind = Parameter::Kind::choice,
+                                  .choices = {"auto", "transmission-front", "transmission-back"}},
+                                 {.name = "zeros",
                                   .help = "meaning of values of exactly 0 above the horizon",
                                   .kind = Parameter::Kind::choice,
                                   .choices = {"unmeasured", "values"}}}),
-        .open =
-            [](const std::string& path, const Parameters& parameters) {
-                const bool measured = parameters.choice("zeros") == "values";
-                return openScattered(path, parameters,
-                                     [=](std::string_view text, const std::string& where) {
-                                         return readZemax(text, where, measured);
-                                     });
-            },
+        .open = openZemax,
     };
     return format;
 }

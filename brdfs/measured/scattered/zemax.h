@@ -10,7 +10,7 @@ namespace hshfit::brdfs {
 
 /// Reads tabular BSDF data of Zemax OpticStudio and Radiant's Imaging Sphere ("BSDF Data
 /// Interchange file format", 2008; "Zemax Tabular BSDF data file format"): Source, Symmetry,
-/// SpectralContent, ScatterType BRDF, and counts and lists of SampleRotation, AngleOfIncidence,
+/// SpectralContent, ScatterType, and counts and lists of SampleRotation, AngleOfIncidence,
 /// ScatterAzimuth and ScatterRadial in degrees, then for each rotation and incidence TIS and a row
 /// of values for each azimuth.
 ///
@@ -22,7 +22,11 @@ namespace hshfit::brdfs {
 /// OpticStudio scales each table, is not applied. Tristimulus X, Y, Z become linear Rec. 709, with
 /// X = Y = Z grey. `zerosMeasured`: values of exactly 0 above the horizon are samples; the format
 /// has no other mark for directions that were not measured. Throws InputError, with `where` and the
-/// line, for other content, and for BTDF.
+/// line, for other content.
+///
+/// With ScatterType BTDF, angles are about the direction of direct transmission. Mirrored at the
+/// surface (hshfit/brdf/transmission.h) that is the specular direction, so that places are the
+/// same; the fact `scatter_type` says which it is. Incidence is that of a pane between equal media.
 Samples readZemax(std::string_view text, const std::string& where, bool zerosMeasured = false);
 
 /// The directions of a place in such a table, in degrees.

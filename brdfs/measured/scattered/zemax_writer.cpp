@@ -1,5 +1,6 @@
 #include <brdfs/measured/scattered/zemax.h>
 #include <brdfs/measured/scattered/zemax_writer.h>
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/printable.h>
@@ -51,11 +52,12 @@ void writeHead(const Brdf& brdf, const ZemaxGrid& grid, fmt::memory_buffer& text
     };
     fmt::format_to(std::back_inserter(text),
                    "# {}\nSource\tMeasured\nSymmetry\t{}\nSpectralContent\tMonochrome\n"
-                   "ScatterType\tBRDF\n",
+                   "ScatterType\t{}\n",
                    shortened(printable(brdf.name()), 200),
                    grid.mirrored               ? "PlaneSymmetrical"
                    : grid.rotations.size() > 1 ? "ASymmetrical4D"
-                                               : "ASymmetrical");
+                                               : "ASymmetrical",
+                   transmits(brdf) ? "BTDF" : "BRDF");
     list("SampleRotation", grid.rotations);
     list("AngleOfIncidence", grid.incidences);
     list("ScatterAzimuth", grid.azimuths);
@@ -120,7 +122,7 @@ std::vector<std::string> writeZemax(const Brdf& brdf, const std::string& path,
 const Writer& zemaxWriter() {
     static const Writer writer{
         .name = "zemax",
-        .help = "Tabular BSDF data of Zemax: a grey BRDF about its mirror directions",
+        .help = "Tabular BSDF data of Zemax: a grey BRDF or BTDF about its specular directions",
         .extension = ".bsdf",
         .parameters = {{.name = "incidences",
                         .help = "number of angles of incidence",
