@@ -22,6 +22,7 @@
 #include <brdfs/analytic/oren_nayar.h>
 #include <brdfs/analytic/phong.h>
 #include <brdfs/analytic/ross_li.h>
+#include <brdfs/analytic/rough_glass.h>
 #include <brdfs/analytic/rpv.h>
 #include <brdfs/analytic/sg.h>
 #include <brdfs/analytic/sgd.h>
@@ -294,6 +295,8 @@ std::span<const Model> models() {
         rossLiModel(),
         rpvModel(),
         hapkeModel(),
+        lambertTransmissionModel(),
+        roughGlassModel(),
     };
     // clang-format on
     return table;

@@ -2,6 +2,7 @@
 
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/term_brdf.h>
+#include <brdfs/analytic/transmission_side.h>
 
 namespace hshfit::brdfs {
 
@@ -43,6 +44,30 @@ private:
     LambertShape shape_;
 };
 
+constexpr Laws transmissionClaims{
+    .nonNegative = true, .isotropic = true, .mirrorSymmetric = true, .energyConserving = true};
+
+class LambertTransmission final : public TermBrdf {
+public:
+    explicit LambertTransmission(const Parameters& p)
+        : TermBrdf(lambertTransmissionModel(), p, transmissionClaims, overPi(p.colour("kt")), {}),
+          name_(withSide(TermBrdf::name(), p)) {}
+
+    std::string name() const override { return name_; }
+
+protected:
+    void evalBatch(const TermBatch& batch) const override {
+        HWY_DYNAMIC_DISPATCH(evalLambert)(shape_, batch);
+    }
+    void evalBatchScalar(const TermBatch& batch) const override {
+        evalAll<double, LambertTerms>(shape_, batch);
+    }
+
+private:
+    LambertShape shape_;
+    std::string name_;
+};
+
 std::unique_ptr<Brdf> make(const Parameters& p) {
     return std::make_unique<Lambert>(p);
 }
@@ -56,6 +81,26 @@ HasSamplers::Known sampling(const Parameters&) {
 }
 
 }  // namespace
+
+const Model& lambertTransmissionModel() {
+    static const Model model{.name = "lambert-transmission",
+                             .help = "ideal diffuse transmission",
+                             .source = "Lambert 1760, Photometria",
+                             .parameters = {{.name = "kt",
+                                             .help = "transmittance",
+                                             .kind = Parameter::Kind::colour,
+                                             .fallback = 1,
+                                             .min = 0,
+                                             .max = 1,
+                                             .fit = {{.low = 0, .high = 1}},
+                                             .linear = alwaysLinear},
+                                            transmissionSideParameter("side of the light")},
+                             .laws = transmissionClaims,
+                             .make = [](const Parameters& p) -> std::unique_ptr<Brdf> {
+                                 return std::make_unique<LambertTransmission>(p);
+                             }};
+    return model;
+}
 
 const Model& lambertModel() {
     static const Model model{.name = "lambert",

@@ -172,6 +172,18 @@ inline void addScatter(std::vector<Case>& grid) {
             grid.push_back({"hapke:w=" + std::string(w) + rest});
 }
 
+/// Transmissions, over the two opposite hemispheres.
+inline void addTransmissions(std::vector<Case>& grid) {
+    for (const char* rest : {"", ":kt=.3,side=transmission-back", ":kt=.9/.5/.1"})
+        grid.push_back({"lambert-transmission" + std::string(rest)});
+    for (const char* alpha : {"1e-4", ".05", ".3", "1", "10"})
+        for (const char* rest : {"", ",distribution=beckmann", ",side=transmission-back",
+                                 ",ior=1.05", ",ior=4,side=transmission-back,kt=.9/.5/.1",
+                                 ",ior=2.4,distribution=beckmann,side=transmission-back"})
+            grid.push_back({"rough-glass:alpha=" + std::string(alpha) + rest, std::stod(alpha),
+                            std::stod(alpha)});
+}
+
 /// Every model of the table, over its parameters and the ends of their ranges.
 inline std::vector<Case> modelGrid() {
     std::vector<Case> grid{{"lambert"}, {"lambert:kd=0"}, {"lambert:kd=.8/.5/.1"}};
@@ -235,6 +247,7 @@ inline std::vector<Case> modelGrid() {
     addStandard(grid);
     addFitted(grid);
     addScatter(grid);
+    addTransmissions(grid);
     return grid;
 }
 
