@@ -21,20 +21,22 @@ struct EvalArguments {
 
 void evaluateOne(const EvalArguments& arguments, const Globals& globals) {
     const Direction wi = parseDirection(arguments.wi, "--wi");
-    const Direction wo = parseDirection(arguments.wo, "--wo");
+    const Direction wo = parseDirection(arguments.wo, "--wo", 180);
     const jobs::Evaluated found =
         jobs::evaluatePair(arguments.spec, wi, wo, arguments.options, listenerFor(globals));
+    if (found.side.empty()) parseDirection(arguments.wo, "--wo");  // of a reflection, to 90
     if (globals.json) {
-        printJson({{"format", "hshfit-eval"},
-                   {"version", 1},
-                   {"brdf", found.brdf},
-                   {"wi", directionJson(wi)},
-                   {"wo", directionJson(wo)},
-                   {"cosine", arguments.options.cosine},
-                   {"channels", found.channels},
-                   {"values", found.values}});
+        nlohmann::ordered_json answer = {
+            {"format", "hshfit-eval"},    {"version", 1},
+            {"brdf", found.brdf},         {"wi", directionJson(wi)},
+            {"wo", directionJson(wo)},    {"cosine", arguments.options.cosine},
+            {"channels", found.channels}, {"values", found.values}};
+        if (!found.side.empty()) answer["side"] = found.side;
+        printJson(answer);
         return;
     }
+    if (!found.side.empty())
+        note(globals, fmt::format("{}: f of {}, wo below the surface", found.brdf, found.side));
     std::string text;
     for (std::size_t c = 0; c < found.values.size(); ++c) {
         text += fmt::format("{}\t{}\n", found.channels[c], found.values[c]);
@@ -54,7 +56,9 @@ void addEval(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<EvalArguments>();
     command.add_option("SPEC", arguments->spec, "BRDF or coefficient file")->required();
     auto* wi = command.add_option("--wi", arguments->wi, "Incoming direction THETA,PHI, degrees");
-    auto* wo = command.add_option("--wo", arguments->wo, "Outgoing direction THETA,PHI, degrees");
+    auto* wo = command.add_option(
+        "--wo", arguments->wo,
+        "Outgoing direction THETA,PHI, degrees; of a transmission, theta from 90 to 180");
     auto* pairs = command.add_option(
         "--pairs", arguments->pairs,
         "CSV of direction pairs: columns wi_x, wi_y, wi_z, wo_x, wo_y, wo_z; others are ignored");

@@ -178,8 +178,13 @@ std::string healthText(const Json& document) {
     }
     // Of a reciprocal BRDF both are the same numbers.
     const bool both = document["reflectance"] != document["albedo"];
-    if (both) text += integralsText("reflectance", document["reflectance"]);
-    text += integralsText("albedo", document["albedo"]);
+    // Of a transmission, the light of one direction that comes through, and the radiance that
+    // comes through under uniform light.
+    const bool through = document.contains("side");
+    const std::string share = through ? "transmittance" : "reflectance",
+                      albedo = through ? "radiance" : "albedo";
+    if (both) text += integralsText(share.c_str(), document["reflectance"]);
+    text += integralsText(albedo.c_str(), document["albedo"]);
     const Json& health = document["health"];
     text += factLine("measured directions",
                      fmt::format("{:.1f} % of the pairs", 100 * health["coverage"].get<double>()));
@@ -195,10 +200,10 @@ std::string healthText(const Json& document) {
             fmt::format(" (most: {:.4g} and {:.4g} in {})", worst["value"].get<double>(),
                         worst["exchanged"].get<double>(), worst["channel"].get<std::string>());
     }
-    text += factLine("reciprocity defect", defect);
+    if (!through) text += factLine("reciprocity defect", defect);
     if (reciprocity.contains("samples")) text += bothOrdersText(reciprocity["samples"]);
-    if (both) text += factLine("largest reflectance", shareText(health["largest_reflectance"]));
-    text += factLine("largest albedo", shareText(health["largest_albedo"]));
+    if (both) text += factLine("largest " + share, shareText(health["largest_reflectance"]));
+    text += factLine("largest " + albedo, shareText(health["largest_albedo"]));
     for (const Json& repair : health["suggested_repairs"]) {
         text +=
             factLine("suggested repair", fmt::format("{} ({})", repair["name"].get<std::string>(),

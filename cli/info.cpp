@@ -4,6 +4,7 @@
 #include "health.h"
 #include "info_light.h"
 
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/files/json_fields.h>
 
 #include <jobs/info.h>
@@ -69,6 +70,8 @@ Json answer(const jobs::BrdfInfo& info) {
                      {"kind", info.coefficients ? "coefficients" : "brdf"},
                      {"name", brdf.name()},
                      {"channels", brdf.channels().names()}};
+    if (const std::string name = brdf.name(); !transmissionSide(name).empty())
+        document["side"] = transmissionSide(name);
     if (info.coefficients) {
         describeCoefficients(*info.coefficients, document);
         if (info.representation) document["representation"] = describeForm(*info.representation);
@@ -91,6 +94,9 @@ std::string scalarText(const Json& value) {
 std::string infoText(const Json& document) {
     std::string out = fmt::format("{}: {}\n", document["kind"].get<std::string>(),
                                   document["name"].get<std::string>());
+    if (document.contains("side"))
+        out += factLine("light", fmt::format("{}: wo is below the surface",
+                                             document["side"].get<std::string>()));
     std::vector<std::string> names = document["channels"];
     if (names.size() > 8)
         names = {fmt::format("{} from {} to {}", names.size(), names.front(), names.back())};

@@ -4,6 +4,7 @@
 #include "measured_numbers.h"
 #include "within.h"
 
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
 #include <hshfit/pages/pair_summary_json.h>
 #include <hshfit/pages/picture_error_json.h>
@@ -57,6 +58,8 @@ Json answer(const jobs::Projected& result) {
                                      {"residual", c.leastSquares->residual},
                                      {"samples", c.leastSquares->samples}};
     }
+    if (const std::string_view side = transmissionSide(c.source); !side.empty())
+        document["side"] = side;
     if (result.kept) document["representation"] = describeForm(*result.kept);
     if (result.poor) document["poor"] = jobs::poorJson(*result.poor);
     if (result.picture) document["picture"] = pictureErrorJson(*result.picture);
@@ -71,6 +74,9 @@ void noteQuality(const jobs::Projected& result, const std::string& prefix, const
     if (!energy.finite && !halfway)
         note(globals, prefix + "the energy does not exist: " + energy.reason);
     if (!result.remark.empty()) note(globals, result.remark);
+    if (const auto side = transmissionSide(result.projection.coefficients.source); !side.empty())
+        note(globals, fmt::format("{}coefficients of {}: outgoing (x, y, z) stands for (x, y, -z)",
+                                  prefix, side));
     if (result.poor) note(globals, prefix + result.poor->line());
 }
 

@@ -4,12 +4,15 @@
 #include "source.h"
 
 #include <brdfs/measured/scattered/scattered.h>
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
 #include <hshfit/files/output_rule.h>
 #include <hshfit/pages/comparison.h>
 #include <hshfit/pages/gnuplot.h>
 #include <hshfit/representation/forms/represented_brdf.h>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -38,6 +41,7 @@ OutgoingSet outgoingOf(const CompareOptions& options, const Brdf& a, const Brdf&
 /// for print.
 void writeFiles(const Brdf& a, const Brdf& b, const std::string& folder,
                 const CompareOptions& options, const Listener& listener, Compared& compared) {
+    requireReflection(a, "a page with its lit spheres");
     const auto filesIn = [](const std::string& name) {
         return name.empty() ? nullptr
                             : std::make_unique<FileSet>(name, true, FileSet::Above::require);
@@ -111,10 +115,26 @@ std::string messageName(const std::string& spec, const Brdf& brdf) {
                : spec + " (coefficients of f cos(theta_i), divided by the cosine)";
 }
 
+/// The metrics that are asked for; of a transmission, whose directions are not exchanged, without
+/// that of reciprocity.
+std::vector<const Metric*> metricsFor(const Brdf& a, const CompareOptions& options) {
+    auto metrics = selectMetrics(options.metrics);
+    if (!transmits(a)) return metrics;
+    const auto dropped =
+        std::erase_if(metrics, [](const Metric* metric) { return metric->name == "reciprocity"; });
+    if (dropped > 0 && options.metrics != "all")
+        throw UsageError(
+            fmt::format("{}: is a transmission, whose directions are not exchanged; leave out the "
+                        "metric reciprocity",
+                        a.name()));
+    return metrics;
+}
+
 Compared compareNamed(const Brdf& a, const Brdf& b, const std::array<std::string, 2>& names,
                       const std::string& output, const CompareOptions& options,
                       const Listener& listener) {
-    const auto metrics = selectMetrics(options.metrics);
+    requireSameSide(a, b);
+    const auto metrics = metricsFor(a, options);
     Compared result{.a = a.name(), .b = b.name(), .outgoing = outgoingOf(options, a, b)};
     result.metrics = hshfit::compare(
         a, b, result.outgoing, metrics,
@@ -135,7 +155,8 @@ Compared compare(const std::string& a, const std::string& b, const std::string& 
                  const CompareOptions& options, const Listener& listener) {
     selectMetrics(options.metrics);  // a word that is none fails before any file is opened
     if (options.figures) checkFigures(*options.figures);
-    const auto reference = openSource(a, options.rgb), approximation = openSource(b, options.rgb);
+    const auto reference = openSource(a, options.rgb, Sides::either),
+               approximation = openSource(b, options.rgb, Sides::either);
     return compareNamed(*reference, *approximation,
                         {messageName(a, *reference), messageName(b, *approximation)}, output,
                         options, listener);

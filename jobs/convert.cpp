@@ -23,6 +23,7 @@
 #include <memory>
 #include <string_view>
 #include <utility>
+#include <variant>
 
 namespace hshfit::jobs {
 namespace {
@@ -61,15 +62,26 @@ brdfs::Parameters writerParameters(const brdfs::Writer& writer, const std::strin
                                   colon == std::string::npos ? "" : format.substr(colon + 1));
 }
 
+/// Opens the file that was written from `input`; of several blocks, the one of the same side.
+std::unique_ptr<Brdf> openWritten(const Brdf& input, const std::string& output,
+                                  const brdfs::Parameters& parameters) {
+    const auto side = parameters.words.find("side");
+    if (side == parameters.words.end() || side->second != "all") return brdfs::open(output);
+    for (const auto& [name, value] : input.facts())
+        if (name == "side")
+            return brdfs::open(fmt::format("{}:side={}", output, std::get<std::string>(value)));
+    return brdfs::open(output);
+}
+
 /// Reads the file back and compares it with the BRDF that it was written from.
 ConversionLoss measureLoss(const Brdf& input, const brdfs::Writer& writer,
-                           const std::string& output, const ConvertOptions& options,
-                           const Listener& listener) {
+                           const std::string& output, const brdfs::Parameters& parameters,
+                           const ConvertOptions& options, const Listener& listener) {
     if (!writer.readBack) {
         throw UsageError(fmt::format("{}: {} is for other programs to read; nothing here reads it",
                                      Setting{"ConvertOptions::measureLoss"}, writer.name));
     }
-    const auto read = brdfs::open(output);
+    const auto read = openWritten(input, output, parameters);
     const OutgoingSet outgoing =
         outgoingOrDefault(options.outgoing, input.laws().isotropic ? *read : input);
     return {outgoing.spec(), compare(input, *read, outgoing, selectMetrics("all"),
@@ -79,11 +91,12 @@ ConversionLoss measureLoss(const Brdf& input, const brdfs::Writer& writer,
 /// The loss of the file, read back, so that every conversion can state it: relative L2 of f c
 /// over few directions with a coarse quadrature, and the picture error. Nothing where the channels
 /// differ.
-void stateError(const Brdf& input, const std::string& output, Converted& result) {
+void stateError(const Brdf& input, const std::string& output, const brdfs::Parameters& parameters,
+                Converted& result) {
     const OutgoingSet outgoing =
         input.laws().isotropic ? OutgoingSet::elevations(6) : OutgoingSet::parabolic(6, 6);
     try {
-        const auto read = brdfs::open(output);
+        const auto read = openWritten(input, output, parameters);
         result.error =
             compare(input, *read, outgoing, selectMetrics("relative-l2-cosine"), {.level = 1})[0]
                 .value;
@@ -117,9 +130,9 @@ Converted converted(const Brdf& brdf, const brdfs::RepairedBrdf* repaired,
     result.bytes = error ? 0 : bytes;
     if (repaired) result.repairs = Repairs{repaired->evaluated(), repaired->counts()};
     if (options.measureLoss) {
-        result.loss = measureLoss(brdf, writer, output, options, listener);
+        result.loss = measureLoss(brdf, writer, output, parameters, options, listener);
     }
-    if (writer.readBack && !isStandardOutput(output)) stateError(brdf, output, result);
+    if (writer.readBack && !isStandardOutput(output)) stateError(brdf, output, parameters, result);
     brdf.checkIntact();
     return result;
 }
@@ -129,7 +142,7 @@ Converted convertedFrom(const std::string& input, const std::string& output,
                         const brdfs::Writer& writer, const ConvertOptions& options,
                         const Listener& listener) {
     writerParameters(writer, options.format);
-    std::unique_ptr<Brdf> brdf = openSource(input, options.rgb);
+    std::unique_ptr<Brdf> brdf = openSource(input, options.rgb, Sides::either);
     if (options.repairs.empty())
         return converted(*brdf, nullptr, output, writer, options, listener);
     const auto repaired =

@@ -3,6 +3,7 @@
 #include "pair_file.h"
 #include "source.h"
 
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/stop_request.h>
@@ -15,10 +16,24 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <iterator>
 
 namespace hshfit::jobs {
 namespace {
+
+/// The outgoing direction that `eval` takes for this one: of a transmission, that below the
+/// surface, mirrored. Throws InputError for one above.
+Direction outgoingFor(bool through, const Direction& wo,
+                      const std::function<std::string()>& where) {
+    if (!through) return wo;
+    if (wo.z > 0)
+        throw InputError(
+            fmt::format("{} is above the surface; a transmission leaves below it, expected theta_o "
+                        "from 90 to 180 degrees (wo_z at most 0)",
+                        where()));
+    return throughSurface(wo);
+}
 
 std::vector<double> valuesAt(const Brdf& brdf, const Direction& wi, const Direction& wo,
                              const EvalOptions& options) {
@@ -58,6 +73,7 @@ public:
 
     /// Those of the pairs first to first + count - 1. Throws InputError at the first that is none.
     void take(const VectorArray& vectors, const char* name, std::size_t first, std::size_t count) {
+        count_ = count;
         for (std::size_t k = 0; k < count; ++k) {
             const Direction d = vectors.at(first + k);
             x[k] = d.x, y[k] = d.y, z[k] = d.z;
@@ -72,12 +88,20 @@ public:
             unitDirection(vectors.at(first + k),
                           [&] { return fmt::format("{}[{}]", name, first + k); });
     }
+    /// Mirrors the taken ones at the surface, as `outgoingFor` does; `first` is the first's number.
+    void goThrough(std::size_t first) {
+        for (std::size_t k = 0; k < count_; ++k)
+            z[k] = outgoingFor(true, at(k), [&] { return fmt::format("wo[{}]", first + k); }).z;
+    }
     Direction at(std::size_t k) const { return {x[k], y[k], z[k]}; }
     DirectionBatch from(std::size_t k, std::size_t count) const {
         return {x.data() + k, y.data() + k, z.data() + k, count};
     }
 
     std::array<double, most> x, y, z, lengths;
+
+private:
+    std::size_t count_ = 0;
 };
 
 /// [pair][channel] from [channel][pair].
@@ -120,6 +144,7 @@ private:
 void evaluateArrays(const Brdf& brdf, const VectorArray& wi, const VectorArray& wo,
                     std::size_t count, double* out, const EvalOptions& options) {
     const std::size_t channels = brdf.channels().count();
+    const bool through = transmits(brdf);
     const auto work = [&](const tbb::blocked_range<std::size_t>& range) {
         PairBlock block(brdf);
         UnitVectors in, from;
@@ -129,6 +154,7 @@ void evaluateArrays(const Brdf& brdf, const VectorArray& wi, const VectorArray& 
             double* const values = out + k * channels;
             in.take(wi, "wi", k, some);
             from.take(wo, "wo", k, some);
+            if (through) from.goThrough(k);
             block.evaluate(in, from, some, values);
             for (std::size_t j = 0; options.cosine && j < some * channels; ++j)
                 values[j] *= in.z[j / channels];
@@ -140,8 +166,14 @@ void evaluateArrays(const Brdf& brdf, const VectorArray& wi, const VectorArray& 
 
 Evaluated evaluatePair(const std::string& source, const Direction& wi, const Direction& wo,
                        const EvalOptions& options, const Listener& listener) {
-    const auto brdf = openSource(source, options.rgb);
-    Evaluated result{brdf->name(), brdf->channels().names(), valuesAt(*brdf, wi, wo, options)};
+    const auto brdf = openSource(source, options.rgb, Sides::either);
+    Evaluated result{.brdf = brdf->name(), .channels = brdf->channels().names()};
+    result.side = transmissionSide(result.brdf);
+    const Direction leaving = outgoingFor(!result.side.empty(), wo, [&] {
+        return fmt::format("{}: wo = {:.4g},{:.4g} degrees", source, degrees(polarAngle(wo)),
+                           degrees(azimuth(wo)));
+    });
+    result.values = valuesAt(*brdf, wi, leaving, options);
     brdf->checkIntact();
     requireFinite(result.values, source, wi, wo);
     if (isZero(result.values)) remark(*brdf, listener);
@@ -151,12 +183,18 @@ Evaluated evaluatePair(const std::string& source, const Direction& wi, const Dir
 std::string evaluatePairs(const std::string& source, const std::string& pairs,
                           const std::string& output, const EvalOptions& options,
                           const Listener& listener) {
-    const auto brdf = openSource(source, options.rgb);
+    const auto brdf = openSource(source, options.rgb, Sides::either);
+    const bool through = transmits(*brdf);
+    std::size_t pair = 0;
     const auto columns = columnsOf(brdf->channels());
     std::string csv = fmt::format("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,{}\n", fmt::join(columns, ","));
     bool zero = true;
     readPairs(pairs, [&](const PairRow& row) {
-        const auto values = valuesAt(*brdf, row.wi, row.wo, options);
+        ++pair;
+        const Direction wo = outgoingFor(through, row.wo, [&] {
+            return fmt::format("{}: pair {}: wo_z = {}", pairs, pair, row.cells[5]);
+        });
+        const auto values = valuesAt(*brdf, row.wi, wo, options);
         requireFinite(values, source, row.wi, row.wo);
         zero = zero && isZero(values);
         fmt::format_to(std::back_inserter(csv), "{}", fmt::join(row.cells, ","));

@@ -18,11 +18,13 @@ struct EvalOptions {
 
 struct Evaluated {
     std::string brdf;
-    std::vector<std::string> channels;
-    std::vector<double> values;  ///< one per channel, in 1/sr
+    std::string side = {};  ///< "transmission-front" or "transmission-back"; "": a reflection
+    std::vector<std::string> channels = {};
+    std::vector<double> values = {};  ///< one per channel, in 1/sr
 };
 
-/// f at a pair of directions, of a source as in openSource; 0 below the horizon. The listener hears
+/// f at a pair of directions, of a source as in openSource; 0 below the horizon. Of a transmission,
+/// wo is below the surface, and an InputError is thrown where it is above. The listener hears
 /// why f is 0 (whyZero). Throws InputError, and NumericError where f is not finite.
 Evaluated evaluatePair(const std::string& source, const Direction& wi, const Direction& wo,
                        const EvalOptions& options, const Listener& listener = {});

@@ -7,6 +7,7 @@
 #include "proposal.h"
 #include "source.h"
 
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
@@ -45,9 +46,16 @@ struct Source {
 };
 
 Source openSourceOf(const ExportOptions& options, const CoefficientHead& coefficients) {
-    if (!options.source.empty()) return {openBrdf(options.source), {}};
+    if (!options.source.empty()) {
+        Source named{openBrdf(options.source, false, Sides::either), {}};
+        if (transmissionSide(named.brdf->name()) != transmissionSide(coefficients.source))
+            throw UsageError(fmt::format("{}: {} is not of the side of {}",
+                                         Setting{"ExportOptions::source"}, named.brdf->name(),
+                                         coefficients.source));
+        return named;
+    }
     try {
-        return {openBrdf(coefficients.source), {}};
+        return {openBrdf(coefficients.source, false, Sides::either), {}};
     } catch (const Error& error) {
         return {nullptr, fmt::format("the source does not open ({}); name it with {}", error.what(),
                                      Setting{"ExportOptions::source"})};
@@ -261,6 +269,24 @@ void exportForm(const Representation& stored, const std::string& path, const std
     files.commit();
 }
 
+/// The targets for what is exported: those that draw lit surfaces take reflections.
+Targets targetsFor(const Representation& stored, const ExportOptions& options,
+                   const Listener& listener) {
+    Targets chosen = gpu::selectTargets(options.targets);
+    if (transmissionSide(stored.head.source).empty()) return chosen;
+    std::erase_if(chosen, [&](const Target* target) {
+        if (target->kind != Target::Kind::viewer && target->kind != Target::Kind::module)
+            return false;
+        const std::string why = fmt::format(
+            "{} draws reflecting surfaces, and {} is a transmission; expected textures and shaders",
+            target->name, stored.head.source);
+        if (options.targets != "all") throw UsageError(why);
+        listener.say("left out: " + why);
+        return true;
+    });
+    return chosen;
+}
+
 }  // namespace
 
 nlohmann::ordered_json errorJson(const ExportError& error) {
@@ -289,8 +315,7 @@ nlohmann::ordered_json errorJson(const ExportError& error) {
 
 Exported exportCoefficients(const std::string& path, const std::string& folder,
                             const ExportOptions& options, const Listener& listener) {
-    const Targets chosen = gpu::selectTargets(options.targets);
-    const std::vector<LightSpecification> lights = lightsOf(chosen, options);
+    gpu::selectTargets(options.targets);  // a word that is none fails before any file is opened
     if (isFilteredSidecar(path)) {
         throw UsageError(fmt::format(
             "{}: a map of normals and directions has no coefficients; those of a texel, "
@@ -298,6 +323,8 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
             path, path));
     }
     const Representation stored = readRepresentation(path);
+    const Targets chosen = targetsFor(stored, options, listener);
+    const std::vector<LightSpecification> lights = lightsOf(chosen, options);
     Exported exported;
     exported.name =
         options.name.empty() ? std::filesystem::path(path).stem().string() : options.name;

@@ -3,6 +3,7 @@
 #include "fit_bands.h"
 #include "source.h"
 
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/file_set.h>
@@ -16,6 +17,7 @@
 #include <brdfs/fit/fit_json.h>
 #include <brdfs/fit/picture_samples.h>
 #include <brdfs/fit/residual_rows.h>
+#include <brdfs/sum.h>
 
 #include <fmt/format.h>
 
@@ -75,6 +77,21 @@ std::optional<Setting> sampleSetting(const FitOptions& options) {
     for (const auto& [given, name] : rows)
         if (given) return Setting{name};
     return std::nullopt;
+}
+
+/// Throws UsageError for data or a model of transmission.
+void requireReflections(const Brdf& data, const std::string& model) {
+    requireReflection(data, "fit");
+    for (const brdfs::WeightedSpec& term :
+         brdfs::splitSum(model, [](std::string_view) { return false; })) {
+        const std::string_view name = std::string_view(term.spec).substr(0, term.spec.find(':'));
+        const auto row = std::ranges::find(brdfs::models(), name, &brdfs::Model::name);
+        if (row != brdfs::models().end() &&
+            std::ranges::find(row->parameters, "side", &Parameter::name) != row->parameters.end())
+            throw UsageError(fmt::format(
+                "{}: is a model of transmission; expected models of reflection, as the data are",
+                name));
+    }
 }
 
 brdfs::FitSamples samplesOf(const FitOptions& options, const Brdf& data, brdfs::Loss::Kind loss) {
@@ -294,6 +311,7 @@ struct PreparedFiles {
 /// A fit, and its other files.
 std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& data,
                                          const FitOptions& options, const Listener& listener) {
+    requireReflections(brdf, options.model);
     PreparedFiles files;
     if (!options.bands.empty() && options.instrument.any())
         throw UsageError(fmt::format("{} is for fits without terms of the instrument",
@@ -397,6 +415,7 @@ RankedModels rankModels(const std::string& data, const std::vector<std::string>&
 
 RankedModels rankModels(const Brdf& data, const std::vector<std::string>& models,
                         const FitOptions& options) {
+    for (const std::string& model : models) requireReflections(data, model);
     const brdfs::FitOptions how = optionsOf(options, data);
     const brdfs::FitSamples samples = samplesOf(options, data, how.loss);
     return {lossOf(options, data), brdfs::compareModels(samples, models, how)};

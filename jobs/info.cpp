@@ -87,7 +87,7 @@ Health healthOf(const Brdf& brdf, const Listener& listener) {
 }  // namespace
 
 BrdfInfo describeSource(const std::string& source, bool rgb, const Listener& listener) {
-    BrdfInfo info{.brdf = openSource(source, rgb)};
+    BrdfInfo info{.brdf = openSource(source, rgb, Sides::either)};
     const Brdf& brdf = *info.brdf;
     if (const auto* plain = dynamic_cast<const Reconstruction*>(&brdf))
         info.coefficients = &plain->coefficients();

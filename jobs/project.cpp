@@ -7,6 +7,7 @@
 
 #include <hshfit/accuracy/exchange.h>
 #include <hshfit/bases/catalog.h>
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/coefficients/reconstruction.h>
@@ -96,8 +97,9 @@ public:
     Projected run(const std::string& spec, const std::string& output,
                   const ProgressCall& progress) const {
         Projected result;
-        withFileNamed(spec,
-                      [&] { result = projected(*openBrdf(spec, options_.rgb), output, progress); });
+        withFileNamed(spec, [&] {
+            result = projected(*openBrdf(spec, options_.rgb, Sides::either), output, progress);
+        });
         return result;
     }
 
@@ -115,6 +117,11 @@ public:
                                        .maxEvaluations = options_.maxEvaluations,
                                        .progress = progress};
         Projected result{.projection = {}, .output = output};
+        if (form_ && form_->reciprocal && transmits(brdf))
+            throw UsageError(
+                fmt::format("{}: is a transmission, whose directions are not exchanged; leave out "
+                            "{}",
+                            brdf.name(), Setting{"Form::reciprocal"}));
         if (form_) {
             result.kept = represent(brdf, *form_, sourceOpener(), how);
             result.projection.coefficients = {result.kept->head};

@@ -4,6 +4,7 @@
 #include "source.h"
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
 #include <hshfit/light/catalog.h>
 #include <hshfit/meshes/mesh_file.h>
@@ -180,7 +181,13 @@ public:
 
     void open(const std::vector<std::string>& specs) {
         for (const std::string& spec : specs) {
-            materials_.push_back({.brdf = openSource(spec, /*rgb=*/true)});
+            materials_.push_back({.brdf = openSource(spec, /*rgb=*/true, Sides::either)});
+            const Brdf &first = *materials_.front().brdf, &last = *materials_.back().brdf;
+            if (transmits(first) != transmits(last))
+                throw UsageError(
+                    fmt::format("{} and {}: a sheet shows reflections, or panes with the lights "
+                                "behind them; render a sheet of each",
+                                first.name(), last.name()));
         }
     }
 

@@ -2,6 +2,7 @@
 
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/brdf/colour.h>
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/coefficient_files/light_file.h>
 #include <hshfit/coefficient_files/representation_file.h>
@@ -67,17 +68,13 @@ std::unique_ptr<Brdf> openTexel(const std::string& spec) {
     return std::make_unique<Reconstruction>(std::move(coefficients));
 }
 
-}  // namespace
-
-std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb) {
-    if (auto texel = openTexel(spec)) return texel;
-    if (isLightFile(spec))
-        throw InputError(fmt::format(
-            "{}: has coefficients of light, where a BRDF or coefficients of one belong", spec));
-    return seenAsRgb(brdfs::open(spec), rgb);
+std::unique_ptr<Brdf> checked(std::unique_ptr<Brdf> brdf, Sides sides) {
+    if (sides == Sides::reflection) requireReflection(*brdf, "this command");
+    return brdf;
 }
 
-std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb) {
+/// Opens every source that `openSource` takes, reflections and transmissions.
+std::unique_ptr<Brdf> openAnySource(const std::string& spec, bool rgb) {
     if (auto texel = openTexel(spec)) return texel;
     if (auto read = gpu::readIfForm(spec, sourceOpener()))
         return seenAsRgb(reconstruct(std::move(read->payload.form), sourceOpener()), rgb);
@@ -85,7 +82,7 @@ std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb) {
         auto coefficients = gpu::unpack(gpu::readPayload(spec).payload);
         return seenAsRgb(std::make_unique<Reconstruction>(std::move(coefficients)), rgb);
     }
-    if (!looksLikeCoefficients(spec)) return openBrdf(spec, rgb);
+    if (!looksLikeCoefficients(spec)) return openBrdf(spec, rgb, Sides::either);
     Representation representation = readRepresentation(spec);
     const bool plain = representation.steps.empty() && representation.added.empty() &&
                        representation.as<CoefficientArray>();
@@ -95,8 +92,22 @@ std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb) {
     return seenAsRgb(reconstruct(std::move(representation), sourceOpener()), rgb);
 }
 
+}  // namespace
+
+std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb, Sides sides) {
+    if (auto texel = openTexel(spec)) return texel;
+    if (isLightFile(spec))
+        throw InputError(fmt::format(
+            "{}: has coefficients of light, where a BRDF or coefficients of one belong", spec));
+    return checked(seenAsRgb(brdfs::open(spec), rgb), sides);
+}
+
+std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb, Sides sides) {
+    return checked(openAnySource(spec, rgb), sides);
+}
+
 BrdfOpener sourceOpener() {
-    return [](const std::string& spec) { return openSource(spec); };
+    return [](const std::string& spec) { return openAnySource(spec, false); };
 }
 
 void requireReadable(const Brdf& brdf) {

@@ -9,14 +9,21 @@
 
 namespace hshfit::jobs {
 
+/// The kinds of scattering that a job takes. Transmissions have laws of their own
+/// (hshfit/brdf/transmission.h), so that a job has to ask for them.
+enum class Sides { reflection, either };
+
 /// Opens a BRDF specification (docs/brdfs.md) or a texel of a material map
 /// (FILE:x=3,y=5,level=0). `rgb` converts a spectral BRDF to linear Rec.
-/// 709 and leaves others unchanged.
-std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb = false);
+/// 709 and leaves others unchanged. Throws UsageError for a transmission unless `sides` is
+/// `either`.
+std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb = false,
+                               Sides sides = Sides::reflection);
 
 /// Opens what openBrdf does, a coefficient file or a file of an export (a sidecar or a container
 /// with one) as a BRDF; `rgb` as above.
-std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb = false);
+std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb = false,
+                                 Sides sides = Sides::reflection);
 
 /// `openSource` as the opener of BRDFs that representations add.
 BrdfOpener sourceOpener();

@@ -3,6 +3,8 @@
 #include "batch.h"
 #include "source.h"
 
+#include <hshfit/brdf/transmission.h>
+#include <hshfit/error.h>
 #include <hshfit/pictures/sphere_picture.h>
 
 #include <fmt/format.h>
@@ -18,7 +20,12 @@ SphereSheet renderSpheres(const std::vector<std::string>& sources, const std::st
     std::vector<SpherePicture> pictures;
     std::map<std::string, std::string> attributes;
     for (const std::string& source : expandInputs(sources, Members::both)) {
-        const auto brdf = openSource(source);
+        const auto brdf = openSource(source, false, Sides::either);
+        if (transmits(*brdf))
+            throw UsageError(
+                fmt::format("{}: is a transmission, and point lights about the viewer leave a pane "
+                            "dark; expected a sky or a picture as light",
+                            brdf->name()));
         const std::string name = brdf->name();
         const SpherePicture& picture =
             pictures.emplace_back(renderSphere(*brdf, {.rig = options.rig,

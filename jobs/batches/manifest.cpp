@@ -62,7 +62,7 @@ std::string mistakeOfInput(const std::string& spec) {
     const std::string path(pathIn(spec));
     try {
         if (path.empty()) {
-            openSource(spec);
+            openSource(spec, false, Sides::either);
         } else if (!std::ifstream(path, std::ios::binary)) {
             return fmt::format("{}: {}", path, std::strerror(errno));
         }

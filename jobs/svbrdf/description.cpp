@@ -21,6 +21,13 @@ const brdfs::Model& modelOf(const JsonFields& root) {
     const std::string name = root.word("model");
     std::vector<std::string_view> known;
     for (const brdfs::Model& model : brdfs::models()) {
+        const bool through =
+            std::ranges::find(model.parameters, "side", &Parameter::name) != model.parameters.end();
+        if (model.name == name && through)
+            root.fail(fmt::format("is '{}', a model of transmission; material maps take those of "
+                                  "reflection",
+                                  name),
+                      "model");
         if (model.name == name) return model;
         known.push_back(model.name);
     }

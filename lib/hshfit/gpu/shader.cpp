@@ -194,7 +194,7 @@ void setWords(const Words& words, const Payload& payload, const std::string& pre
 
 void setHeader(const Payload& payload, int environmentOrder, data& page) {
     page.set("generator", commentText(payload.head.generator));
-    page.set("source", commentText(payload.head.source));
+    page.set("source", sourceComment(payload.head.source));
     page.set("basis", payload.head.basis);
     page.set("order", std::to_string(payload.head.order));
     page.set("functionCount", std::to_string(payload.slots.size()));

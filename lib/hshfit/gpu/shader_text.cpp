@@ -1,5 +1,7 @@
 #include <hshfit/gpu/shader_text.h>
 
+#include <hshfit/brdf/transmission.h>
+
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -15,6 +17,12 @@ std::string commentText(std::string text) {
         if (code < 32 || code > 126 || c == '\\') c = '?';
     }
     return text;
+}
+
+std::string sourceComment(const std::string& specification) {
+    const std::string comment = commentText(specification);
+    if (transmissionSide(specification).empty()) return comment;
+    return comment + "; a transmission: wo = (x, y, z) stands for (x, y, -z) below the lit side";
 }
 
 void checkPrefix(const std::string& prefix) {

@@ -1,6 +1,7 @@
 #include <hshfit/rendering/lit_picture.h>
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/light/picture_light.h>
 #include <hshfit/light/radiance.h>
 #include <hshfit/pictures/sphere_picture.h>
@@ -73,6 +74,23 @@ private:
     std::vector<Light> others_;
 };
 
+/// A point of a surface in the frame of its lit side.
+struct LitPoint {
+    Frame frame;
+    Direction wo;
+};
+
+/// Of a reflection, the side that is seen. A transmission is a thin pane: light comes from behind
+/// it, and the viewer's direction, below the lit side, is mirrored at the surface.
+LitPoint litPoint(const Direction& normal, const Direction& viewer, bool through) {
+    if (!through) {
+        const Frame frame = frameAt(normal);
+        return {frame, frame.toLocal(viewer)};
+    }
+    const Frame frame = frameAt({-normal.x, -normal.y, -normal.z});
+    return {frame, throughSurface(frame.toLocal(viewer))};
+}
+
 /// Coefficients of materials met with light at single points.
 class CoefficientShader {
 public:
@@ -85,16 +103,17 @@ public:
             assert(other->basis == one.basis && other->order == one.order);
             assert(other->condonShortley == one.condonShortley && other->quantity == quantity_);
             assert(other->channels.count() == 1 || other->channels.count() == 3);
+            assert(transmissionSide(other->source).empty() == transmissionSide(one.source).empty());
         }
+        through_ = !transmissionSide(one.source).empty();
     }
 
     /// [material]; returns the number of light samples.
     std::size_t radiance(const LightAbove& light, const Direction& normal, const Direction& viewer,
                          Rgb* out) const {
-        const Frame frame = frameAt(normal);
+        const auto [frame, wo] = litPoint(normal, viewer, through_);
         const LightSamples samples = light.at(frame);
         const BasisLight inBasis(*basis_, quantity_, samples);
-        const Direction wo = frame.toLocal(viewer);
         std::vector<double> c;
         for (std::size_t k = 0; k < materials_.size(); ++k) {
             const Coefficients& material = *materials_[k];
@@ -114,6 +133,7 @@ private:
     std::span<const Coefficients* const> materials_;
     std::unique_ptr<Basis> basis_;
     Quantity quantity_ = Quantity::brdf;
+    bool through_ = false;
 };
 
 double squaredDistance(const std::vector<Rgb>& a, const std::vector<Rgb>& b, double& reference) {
@@ -200,10 +220,11 @@ LitPicture renderByIntegration(const Brdf& brdf, const SurfacePoints& points, co
     assert(brdf.channels().count() == 1 || brdf.channels().count() == 3);
     Radiance radiance(points.count());
     std::vector<PointRadiance> facts(points.count());
+    const bool through = transmits(brdf);
     forBlocks(points.count(), progress, [&](std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k) {
-            const Frame frame = frameAt(points.normals[k]);
-            facts[k] = light.at(brdf, frame, frame.toLocal(points.viewer(k, view)), options);
+            const LitPoint at = litPoint(points.normals[k], points.viewer(k, view), through);
+            facts[k] = light.at(brdf, at.frame, at.wo, options);
             radiance[k] = facts[k].radiance;
         }
     });

@@ -35,7 +35,8 @@ struct LitPicture {
 };
 
 /// Radiance of a surface by direct integration (direct_integral.h) at every point. `brdf` is grey
-/// or RGB. The picture does not depend on the number of threads.
+/// or RGB; a transmission is seen as a thin pane with the lights behind it. The picture does not
+/// depend on the number of threads.
 LitPicture renderByIntegration(const Brdf& brdf, const SurfacePoints& points, const View& view,
                                const DirectIntegral& light, const IntegrationOptions& options = {},
                                const RenderProgress& progress = {});
@@ -52,8 +53,8 @@ struct CoefficientShading {
 /// over the hemisphere about each point's normal, with w = cos(theta_i) for coefficients of f and 1
 /// for those of f cos(theta_i). E is made of samples of the lights above each normal, not of
 /// rotated coefficients; c is interpolated in the materials' outgoing sets. All materials share
-/// basis, order, sign and quantity, and are grey or RGB. Values below 0 are kept. The pictures do
-/// not depend on the number of threads.
+/// basis, order, sign and quantity, are grey or RGB, and are all reflections or all transmissions.
+/// Values below 0 are kept. The pictures do not depend on the number of threads.
 std::vector<LitPicture> renderByCoefficients(std::span<const Coefficients* const> materials,
                                              const SurfacePoints& points, const View& view,
                                              std::span<const Light> lights,

@@ -270,4 +270,40 @@ TEST(LitPicture, TheDifferenceNamesItsPlace) {
     EXPECT_NEAR(d.relativeL2, std::sqrt(9.0 / (9 * 4)), 1e-12);
 }
 
+/// A transmission: its name states the side.
+class Pane : public test::FormulaBrdf {
+public:
+    using FormulaBrdf::FormulaBrdf;
+    std::string name() const override { return "pane:side=transmission-front"; }
+};
+
+TEST(LitPicture, PanesAreLitFromBehind) {
+    const Pane paper([](const Direction&, const Direction&) { return .4 / pi; });
+    // Behind the sphere, in part.
+    const Direction lamp = directionFromAngles(radians(130), radians(170));
+    const std::vector<Light> lights = {DirectionalLight{lamp, {2, 2, 2}}};
+    const auto exact = [&](const Direction& n) { return .8 / pi * std::max(0.0, -dot(n, lamp)); };
+    EXPECT_LE(largestError(integrated(paper, lights).picture, exact), 1e-6);
+    const Coefficients c = projected(paper, "hsh", 3, "8");
+    EXPECT_LE(largestError(byCoefficients(c, lights).picture, exact), 1e-5);
+}
+
+// wo is mirrored at the surface, so that light which goes straight on is at the mirror of wi.
+TEST(LitPicture, AClearPaneShowsTheLightBehindIt) {
+    const auto clear = [](double cosine) {
+        return Pane([=](const Direction& wi, const Direction& wo) {
+            return dot(mirrored(wi), wo) > cosine ? 1.0 : 0.0;
+        });
+    };
+    const Direction& eye = view().towards;
+    const std::vector<Light> behind = {DirectionalLight{{-eye.x, -eye.y, -eye.z}, {1, 1, 1}}};
+    const auto facing = [&](const Direction& n) { return dot(n, eye); };
+    EXPECT_LE(largestError(integrated(clear(.999), behind).picture, facing), 1e-6);
+    const std::vector<Light> beside = {
+        DirectionalLight{rotateAboutZ({-eye.x, -eye.y, -eye.z}, .3), {1, 1, 1}}};
+    EXPECT_EQ(
+        largestError(integrated(clear(.999), beside).picture, [](const Direction&) { return 0.0; }),
+        0);
+}
+
 }  // namespace

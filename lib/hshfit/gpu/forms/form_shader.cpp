@@ -102,7 +102,7 @@ void setChannels(const Channels& channels, const std::string& prefix, Language l
 void setHeader(const FormPayload& payload, data& page) {
     const Representation& form = payload.form;
     page.set("generator", commentText(form.head.generator));
-    page.set("source", commentText(form.head.source));
+    page.set("source", sourceComment(form.head.source));
     page.set("kind", std::string(kindName(form.kind())));
     page.set("orders", fmt::format("{} {}", form.head.basis, form.head.order));
     if (form.kind() == Representation::Kind::halfway) {
