@@ -2,6 +2,7 @@
 #include "arrays.h"
 #include "watched.h"
 
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/pictures/sphere_picture.h>
@@ -20,6 +21,7 @@
 #include <atomic>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -113,10 +115,18 @@ py::array_t<double> integrals(const py::object& self, const py::object& fixed, c
     Source* const sources[] = {&source};
     watched(progress, sources, [&](const jobs::Listener& listener) {
         const auto report = listener.part(what);
+        // The viewers of a transmission are below the surface.
+        const bool through = name == std::string_view("wo") && transmits(source.brdf());
         std::vector<std::vector<double>> found(directions.size());
         std::atomic<std::size_t> done = 0;
         eachInParallel(directions.size(), [&](std::size_t k) {
-            found[k] = integral(source.brdf(), directions[k], tolerance);
+            if (through && directions[k].z > 0)
+                throw InputError(
+                    fmt::format("wo[{}] is above the surface; a transmission leaves "
+                                "below it, expected z at most 0",
+                                k));
+            found[k] = integral(source.brdf(),
+                                through ? throughSurface(directions[k]) : directions[k], tolerance);
             report(++done, directions.size());
         });
         for (const auto& one : found) values.insert(values.end(), one.begin(), one.end());
@@ -143,6 +153,7 @@ SpherePicture sphereOf(const py::object& self, int size, int samples, const py::
     SpherePicture picture;
     Source* const sources[] = {&source};
     watched(progress, sources, [&](const jobs::Listener& listener) {
+        requireReflection(source.brdf(), "a lit sphere");
         picture = renderSphere(
             source.brdf(), {.size = size, .samples = samples, .progress = listener.part("sphere")});
     });

@@ -90,13 +90,5 @@ TEST(FieldFiles, AltaRowsAreSamples) {
     std::printf("%zu rows\n", rows.size());
 }
 
-TEST(FieldFiles, TransmissionAloneIsRefusedByName) {
-    for (const char* name : {"xml/diffuse50.xml", "xml/simple_tensor_d2_trans.xml"}) {
-        const std::string path = field(name);
-        SKIP_WITHOUT(path);
-        test::expectInputError([&] { open(path); }, {"no reflection", "Transmission"});
-    }
-}
-
 }  // namespace
 }  // namespace hshfit::brdfs

@@ -71,14 +71,29 @@ class Evaluation(unittest.TestCase):
             except hshfit.UsageError:  # parameters that have to be given
                 continue
             with self.subTest(model=spec):
-                together = f(wi, wo_rows)
-                apart = np.array([f(a, b) for a, b in zip(wi, wo_rows)])
+                # The outgoing light of a transmission is below the surface.
+                below = "side=transmission-" in f.name
+                rows = wo_rows * [1, 1, -1] if below else wo_rows
+                together = f(wi, rows)
+                apart = np.array([f(a, b) for a, b in zip(wi, rows)])
                 np.testing.assert_array_equal(together, apart)
 
     def test_albedo_of_lambert_is_its_parameter(self):
         f = hshfit.open("lambert:kd=0.3/0.2/0.1")
         found = f.albedo(hshfit.direction([0, 45, 80], 10))
         np.testing.assert_allclose(found, np.tile([0.3, 0.2, 0.1], (3, 1)), rtol=1e-9)
+
+    def test_transmission_leaves_below_the_surface(self):
+        f = hshfit.open("lambert-transmission:kt=0.4")
+        wi, wo = hshfit.direction(30, 0), hshfit.direction(150, 180)
+        np.testing.assert_allclose(f(wi, wo), [0.4 / np.pi], rtol=1e-14)
+        np.testing.assert_allclose(f.reflectance(wi), [0.4], rtol=1e-6)
+        np.testing.assert_allclose(f.albedo(wo), [0.4], rtol=1e-6)
+        for refused in (lambda: f(wi, wi), lambda: f.albedo(wi)):
+            with self.assertRaisesRegex(hshfit.InputError, "above the surface"):
+                refused()
+        with self.assertRaisesRegex(hshfit.UsageError, "takes reflections"):
+            f.sphere(16)
 
     def test_directions_from_angles(self):
         np.testing.assert_allclose(hshfit.direction(30, 90), [0, 0.5, np.sqrt(0.75)], atol=1e-15)

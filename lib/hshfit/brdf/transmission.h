@@ -15,8 +15,8 @@ namespace hshfit::inline brdf {
 /// transmittances. It has no law of exchange: f_t(wi, wo) and f_t(wo, wi) are light from the same
 /// side, while Helmholtz reciprocity relates light from one side to light from the other.
 ///
-/// A BRDF says so in its name: the option `side=transmission-front` or `side=transmission-back` of
-/// a specification, which every form, file and sum of it keeps.
+/// The name of a transmission states its side: the option `side=transmission-front` or
+/// `side=transmission-back` of a specification, which every form, file and sum of it keeps.
 
 /// "transmission-front" or "transmission-back", as the specification states it; else "".
 std::string_view transmissionSide(std::string_view specification);
