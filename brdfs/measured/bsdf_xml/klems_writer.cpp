@@ -183,14 +183,14 @@ std::string blockText(const Brdf& brdf, BsdfSide side, const AngleBasis& basis,
 std::vector<std::string> write(const Brdf& brdf, const std::string& path,
                                const Parameters& parameters, const WriteOptions& options) {
     const AngleBasis basis = standardAngleBases("LBNL/Klems Full").front();
-    BsdfXmlContent content{
+    const BsdfXmlContent content{
         .material = brdf.name(), .structure = BsdfDocument::Structure::columns, .basis = &basis};
-    std::vector<std::string> alterations;
-    for (const auto& [side, part] : partsOf(brdf, parameters))
-        content.blocks.emplace_back(
-            side, blockText(*part, side, basis, parameters, options, alterations));
-    writeBsdfXml(content, path, options);
-    return alterations;
+    return writeParts(
+        content, partsOf(brdf, parameters),
+        [&](const BsdfPart& part, std::vector<std::string>& alterations) {
+            return blockText(*part.brdf, part.side, basis, parameters, options, alterations);
+        },
+        path, options);
 }
 
 }  // namespace

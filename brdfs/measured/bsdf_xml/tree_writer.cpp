@@ -185,15 +185,15 @@ std::vector<std::string> write(const Brdf& brdf, const std::string& path,
         throw UsageError(fmt::format("{}: levels={} is too fine for an anisotropic BRDF, at most 6",
                                      brdf.name(), parameters.number("levels")));
     }
-    BsdfXmlContent content{
+    const BsdfXmlContent content{
         .material = brdf.name(),
         .structure = isotropic ? BsdfDocument::Structure::tree3 : BsdfDocument::Structure::tree4};
-    std::vector<std::string> alterations;
-    for (const auto& [side, part] : parts)
-        content.blocks.emplace_back(side,
-                                    blockText(*part, side, rank, parameters, options, alterations));
-    writeBsdfXml(content, path, options);
-    return alterations;
+    return writeParts(
+        content, parts,
+        [&](const BsdfPart& part, std::vector<std::string>& alterations) {
+            return blockText(*part.brdf, part.side, rank, parameters, options, alterations);
+        },
+        path, options);
 }
 
 }  // namespace

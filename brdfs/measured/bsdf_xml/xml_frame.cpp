@@ -166,6 +166,23 @@ std::vector<BsdfPart> partsOf(const Brdf& brdf, const Parameters& parameters) {
     return {{side, std::shared_ptr<const Brdf>(std::shared_ptr<const Brdf>(), &brdf)}};
 }
 
+std::vector<std::string> writeParts(
+    BsdfXmlContent content, const std::vector<BsdfPart>& parts,
+    const std::function<std::string(const BsdfPart&, std::vector<std::string>&)>& dataOf,
+    const std::string& path, const WriteOptions& options) {
+    std::vector<std::string> alterations;
+    for (const BsdfPart& part : parts) {
+        std::vector<std::string> own;
+        content.blocks.emplace_back(part.side, dataOf(part, own));
+        for (const std::string& sentence : own)
+            alterations.push_back(parts.size() == 1
+                                      ? sentence
+                                      : fmt::format("{}: {}", blockName(part.side), sentence));
+    }
+    writeBsdfXml(content, path, options);
+    return alterations;
+}
+
 void reportUncertain(const CellAverages& averages, std::vector<std::string>& alterations) {
     if (averages.uncertain == 0) return;
     alterations.push_back(fmt::format(

@@ -5,6 +5,7 @@
 #include <brdfs/measured/bsdf_xml/document.h>
 #include <brdfs/measured/bsdf_xml/selection.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -39,6 +40,12 @@ struct BsdfPart {
 /// UsageError where a reflection would be written as a transmission or the reverse, and where
 /// `brdf` is of no such file.
 std::vector<BsdfPart> partsOf(const Brdf& brdf, const Parameters& parameters);
+/// Writes a file of `parts` with the text that `dataOf` gives for each; returns its sentences, of
+/// several parts with the name of the block.
+std::vector<std::string> writeParts(
+    BsdfXmlContent content, const std::vector<BsdfPart>& parts,
+    const std::function<std::string(const BsdfPart&, std::vector<std::string>&)>& dataOf,
+    const std::string& path, const WriteOptions& options);
 
 /// Appends a sentence if some averages did not converge.
 void reportUncertain(const CellAverages& averages, std::vector<std::string>& alterations);
