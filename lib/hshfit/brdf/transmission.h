@@ -21,6 +21,7 @@ namespace hshfit::inline brdf {
 /// "transmission-front" or "transmission-back", as the specification states it; else "".
 std::string_view transmissionSide(std::string_view specification);
 
+/// Whether the name of the BRDF states a transmission.
 inline bool transmits(const Brdf& brdf) {
     return !transmissionSide(brdf.name()).empty();
 }
