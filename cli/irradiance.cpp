@@ -2,6 +2,8 @@
 #include "documents.h"
 #include "within.h"
 
+#include <hshfit/error.h>
+
 #include <jobs/irradiance.h>
 
 #include <fmt/format.h>
@@ -15,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 struct IrradianceArguments {
     std::vector<std::string> specs;
-    std::string convention = "all";
+    std::string convention = "all", engine;
     jobs::IrradianceOptions options;
 };
 
@@ -42,6 +44,7 @@ Json conventionJson(const Convention& c, const NineRgb& radiance) {
             {"divided_by_pi", c.divided},
             {"constants", c.constants},
             {"order", c.order},
+            {"import", {{"turn", c.turn}, {"mirror", false}, {"source", c.import}}},
             {"source", c.source},
             {"evidence", c.evidence},
             {"values", engineValues(c, radiance)},
@@ -55,23 +58,27 @@ Json answer(const jobs::LitSurface& lit, const IrradianceArguments& arguments) {
     const ZonalForm& zonal = lit.zonal;
     Json linear = Json::array();
     for (const Rgb& rgb : zonal.linear) linear.push_back({rgb[0], rgb[1], rgb[2]});
-    return {{"format", "hshfit-irradiance"},
-            {"version", 1},
-            {"light", lit.light},
-            {"order", arguments.options.order},
-            {"radiance", nineJson(lit.radiance)},
-            {"irradiance", nineJson(lit.irradiance)},
-            {"window", {{"name", lit.window}, {"factors", lit.factors}}},
-            {"mean_irradiance", lit.meanIrradiance},
-            {"normals", arguments.options.normals},
-            {"error", errorJson(lit.error)},
-            {"zonal",
-             {{"linear", linear},
-              {"quadratic", zonal.quadratic},
-              {"axis", {zonal.axis.x, zonal.axis.y, zonal.axis.z}},
-              {"bytes", sizeof(float) * 15},
-              {"error", errorJson(lit.zonalError)}}},
-            {"conventions", conventions}};
+    return {
+        {"format", "hshfit-irradiance"},
+        {"version", 1},
+        {"light", lit.light},
+        {"order", arguments.options.order},
+        {"turn", arguments.options.turn},
+        {"radiance", nineJson(lit.radiance)},
+        {"irradiance", nineJson(lit.irradiance)},
+        {"window", {{"name", lit.window}, {"factors", lit.factors}}},
+        {"mean_irradiance", lit.meanIrradiance},
+        {"normals", arguments.options.normals},
+        {"error", errorJson(lit.error)},
+        {"zonal",
+         {{"linear", linear},
+          {"quadratic", zonal.quadratic},
+          {"axis", {zonal.axis.x, zonal.axis.y, zonal.axis.z}},
+          {"bytes", sizeof(float) * 15},
+          {"error", errorJson(lit.zonalError)}}},
+        {"geomerics",
+         {{"order", 2}, {"bytes", sizeof(float) * 12}, {"error", errorJson(lit.geomericsError)}}},
+        {"conventions", conventions}};
 }
 
 std::string errorText(const char* name, std::size_t numbers, const IrradianceErrors& error) {
@@ -89,6 +96,7 @@ std::string text(const jobs::LitSurface& lit, const IrradianceArguments& argumen
         static_cast<std::size_t>(3 * arguments.options.order * arguments.options.order);
     out += errorText(fmt::format("order {}", arguments.options.order).c_str(), numbers, lit.error);
     out += errorText("zonal order 3", 15, lit.zonalError);
+    out += errorText("geomerics order 2", 12, lit.geomericsError);
     out += " l  m  radiance R, G, B                       irradiance R, G, B\n";
     for (int l = 0; l < 3; ++l) {
         for (int m = -l; m <= l; ++m) {
@@ -101,15 +109,22 @@ std::string text(const jobs::LitSurface& lit, const IrradianceArguments& argumen
     for (const Convention* each : selectConventions(arguments.convention)) {
         out += fmt::format(
             "\n{}: {}\n  signs {}; up {}; {}-handed\n  {}; divided by pi: {}\n"
-            "  constants folded in: {}; {}\n{}",
+            "  constants folded in: {}; {}\n  import of a panorama: {}; turn {:g}, no mirror{}\n{}",
             each->name, each->engine, each->signs, each->up, each->handedness, each->quantity,
-            each->divided, each->constants, each->order, engineShader(*each, lit.radiance));
+            each->divided, each->constants, each->order, each->import, each->turn,
+            arguments.engine.empty() ? "" : ", applied", engineShader(*each, lit.radiance));
     }
     return out;
 }
 
-void runIrradiance(const IrradianceArguments& arguments, const Globals& globals) {
-    selectConventions(arguments.convention);
+void runIrradiance(IrradianceArguments arguments, const Globals& globals) {
+    const auto chosen =
+        selectConventions(arguments.engine.empty() ? arguments.convention : arguments.engine);
+    if (!arguments.engine.empty()) {
+        if (chosen.size() != 1) throw UsageError("--for all: valid: one engine");
+        arguments.convention = arguments.engine;
+        arguments.options.turn = chosen.front()->turn;
+    }
     const jobs::LitSurface lit = jobs::irradianceOfLight(arguments.specs, arguments.options);
     for (const std::string& remark : lit.remarks) note(globals, remark);
     if (globals.json)
@@ -130,8 +145,13 @@ void addIrradiance(CLI::App& command, Globals& globals) {
         ->required();
     command
         .add_option("--convention", arguments->convention,
-                    "three, unity, filament, godot, unreal or all")
+                    "three, unity, unity-csharp, filament, godot, unreal, babylon, gltf, "
+                    "playcanvas, cesium, geomerics or all")
         ->capture_default_str();
+    command
+        .add_option("--for", arguments->engine,
+                    "One of these, with the light turned as its own import of panoramas does")
+        ->excludes("--convention");
     command.add_option("--order", options.order, "Bands of the irradiance")
         ->check(within(jobs::bounds::irradianceOrder))
         ->capture_default_str();

@@ -237,6 +237,7 @@ constexpr ValueRow valueRows[] = {
     {"list", "TEXT", presetWords},
     {"manual", "--output", nullptr, Syntax::word, Files::folder},
     {"plan", "--output", nullptr, Syntax::word, Files::folder},
+    {"irradiance", "--for", conventionWords},
     {"plot", "--output", nullptr, Syntax::word, Files::written},
     {"render", "--output", nullptr, Syntax::word, Files::written, ".png"},
     {"report", "--output", nullptr, Syntax::word, Files::folder},

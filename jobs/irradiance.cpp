@@ -6,9 +6,11 @@
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/irradiance/direct_irradiance.h>
+#include <hshfit/irradiance/geomerics.h>
 #include <hshfit/light/catalog.h>
 #include <hshfit/light/light_projection.h>
 #include <hshfit/light/picture_light.h>
+#include <hshfit/light/placement.h>
 #include <hshfit/transfer/convolution.h>
 #include <hshfit/transfer/windows.h>
 
@@ -60,10 +62,10 @@ Irradiances byCoefficients(LightCoefficients light, std::span<const Direction> n
     });
 }
 
-/// The nine coefficients of which the zonal form is made: it has three bands, whatever order the
+/// The nine coefficients of which the forms of two and three bands are made, whatever order the
 /// errors are asked for.
-NineRgb zonalSource(std::span<const Light> lights, const NineRgb& nine,
-                    const IrradianceOptions& options) {
+NineRgb threeBands(std::span<const Light> lights, const NineRgb& nine,
+                   const IrradianceOptions& options) {
     if (options.order >= 3) return nine;
     LightCoefficients light = projectLight(lights, *bases::makeSh(3, {}), {.tolerance = 1e-6});
     LitSurface unused;
@@ -86,8 +88,11 @@ void writeByNormal(const std::string& path, std::span<const Direction> normals,
 
 LitSurface irradianceOfLight(const std::vector<std::string>& specs,
                              const IrradianceOptions& options) {
-    const LightSpecification specification{.text = fmt::format("{}", fmt::join(specs, " + ")),
-                                           .lights = lightsOf(specs)};
+    LightSpecification specification{.text = fmt::format("{}", fmt::join(specs, " + ")),
+                                     .lights = lightsOf(specs)};
+    if (options.turn != 0)
+        for (Light& each : specification.lights)
+            each = turned(std::move(each), radians(options.turn));
     LightCoefficients light =
         projectLight(specification.lights, *bases::makeSh(options.order, {}), {.tolerance = 1e-6});
     LitSurface result;
@@ -104,11 +109,16 @@ LitSurface irradianceOfLight(const std::vector<std::string>& specs,
     result.meanIrradiance = meanOf(direct);
     const Irradiances approximation = byCoefficients(light, normals);
     result.error = errorsOf(normals, direct, approximation);
-    result.zonal = zonalForm(zonalSource(specification.lights, result.radiance, options));
+    const NineRgb source = threeBands(specification.lights, result.radiance, options);
+    result.zonal = zonalForm(source);
     const NineRgb zonal = irradianceOf(nineOf(result.zonal));
     result.zonalError = errorsOf(normals, direct, atNormals(normals, [&](const Direction& normal) {
                                      return evaluateNine(zonal, normal);
                                  }));
+    result.geomericsError =
+        errorsOf(normals, direct, atNormals(normals, [&](const Direction& normal) {
+                     return geomericsIrradiance(source, normal);
+                 }));
     if (!options.byNormal.empty()) writeByNormal(options.byNormal, normals, direct, approximation);
     return result;
 }

@@ -13,6 +13,7 @@ struct IrradianceOptions {
     int order = 3;                ///< bands of the irradiance
     std::string window = "none";  ///< none, hann, lanczos or least-negative
     std::size_t normals = 2000;   ///< of the lattice on which errors are taken
+    double turn = 0;              ///< degrees about +z by which the light is turned first
     std::string byNormal;         ///< CSV of the irradiances at them; empty: none
 };
 
@@ -25,6 +26,7 @@ struct LitSurface {
     IrradianceErrors error;            ///< of the order that was asked for
     ZonalForm zonal;                   ///< of three bands, whatever `order` is
     IrradianceErrors zonalError;
+    IrradianceErrors geomericsError;        ///< of two bands with the reconstruction of Geomerics
     std::vector<std::string> remarks = {};  ///< on the files of the light
 };
 

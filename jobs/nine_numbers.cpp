@@ -5,6 +5,7 @@
 #include <hshfit/irradiance/nine_numbers.h>
 #include <hshfit/light/coefficient_light.h>
 #include <hshfit/light/light_projection.h>
+#include <hshfit/light/placement.h>
 
 #include <fmt/format.h>
 
@@ -29,8 +30,10 @@ std::string textOf(const std::string& path) {
 }  // namespace
 
 std::optional<LightCoefficients> nineNumbers(const std::string& specification) {
-    constexpr std::string_view key = ":convention=";
-    const std::size_t at = specification.rfind(key);
+    std::string_view key = ":convention=";
+    std::size_t at = specification.rfind(key);
+    const bool imported = at == std::string::npos && specification.rfind(":for=") != at;
+    if (imported) key = ":for=", at = specification.rfind(key);
     const std::string path = specification.substr(0, at);
     const std::string text = textOf(path);
     std::string name(conventionOfText(text));
@@ -46,12 +49,13 @@ std::optional<LightCoefficients> nineNumbers(const std::string& specification) {
             "{}: is no text of nine coefficients, but longer than {} bytes", path, longestText));
     const auto chosen = selectConventions(name);
     if (chosen.size() != 1)
-        throw UsageError(fmt::format("{}: convention={} is not one of them", path, name));
+        throw UsageError(fmt::format("{}{}{} is not one of them", path, key, name));
     const NineRgb nine = radianceFromEngine(*chosen.front(), numbersOfText(text, path), path);
     LightCoefficients light{.basis = "sh", .order = 3};
     for (std::size_t c = 0; c < 3; ++c)
         for (const Rgb& each : nine) light.values.push_back(each[c]);
-    const Light series = coefficientLight(light, path);
+    Light series = coefficientLight(light, path);
+    if (imported) series = turned(std::move(series), -radians(chosen.front()->turn));
     light = projectLight({&series, 1}, *bases::makeSh(3, {}));
     light.source = specification;
     return light;

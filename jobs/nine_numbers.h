@@ -10,7 +10,8 @@
 namespace hshfit::jobs {
 
 /// Light of nine coefficients in a text file of an engine's numbers,
-/// `PATH:convention=NAME`, or PATH alone for cmgen's text, which states its own
+/// `PATH:convention=NAME`, `PATH:for=NAME` from that engine's own import of a panorama, which is
+/// turned back, or PATH alone for cmgen's text, which states its own
 /// (irradiance/nine_numbers.h). None for any other specification. Throws UsageError and InputError.
 std::optional<LightCoefficients> nineNumbers(const std::string& specification);
 

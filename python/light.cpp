@@ -180,16 +180,23 @@ py::dict errorsDict(const IrradianceErrors& errors) {
 }
 
 py::dict irradianceOfSpecs(const py::object& specs, int order, const std::string& window,
-                           std::size_t normals, const std::string& convention) {
+                           std::size_t normals, const std::string& convention,
+                           const std::string& engine) {
     requireWithin("order", order, jobs::bounds::irradianceOrder);
     requireWithin("normals", normals, jobs::bounds::normals);
     const std::vector<std::string> texts = specificationsOf(specs);
-    const auto chosen =
-        convention.empty() ? std::vector<const Convention*>{} : selectConventions(convention);
+    if (!convention.empty() && !engine.empty())
+        throw UsageError("irradiance: convention and engine are both given; valid: one of the two");
+    const std::string name = engine.empty() ? convention : engine;
+    const auto chosen = name.empty() ? std::vector<const Convention*>{} : selectConventions(name);
+    if (!engine.empty() && chosen.size() != 1)
+        throw UsageError("irradiance: engine='all'; valid: one engine");
+    const double turn = engine.empty() ? 0 : chosen.front()->turn;
     jobs::LitSurface done;
     watched(py::none(), {}, [&](const jobs::Listener&) {
         done = jobs::irradianceOfLight(
-            texts, {.order = order, .window = window, .normals = normals, .byNormal = {}});
+            texts,
+            {.order = order, .window = window, .normals = normals, .turn = turn, .byNormal = {}});
     });
     py::dict out, engines;
     out["light"] = done.light;
@@ -230,11 +237,13 @@ Returns a Light.)");
     module.def("irradiance", irradianceOfSpecs, py::arg("spec"), py::kw_only(),
                py::arg("order") = irradiance.order, py::arg("window") = irradiance.window,
                py::arg("normals") = irradiance.normals, py::arg("convention") = "",
+               py::arg("engine") = "",
                R"(The irradiance of light by nine coefficients (Ramamoorthi & Hanrahan 2001).
 
 Returns a dict: "radiance" and "irradiance" (9, 3) in the order l(l+1)+m, "error" against direct
-integration ("maximum", "mean", relative to the mean irradiance), and for `convention` ("three",
-"unity", "filament", "godot", "unreal" or "all") "engines" with their numbers and shader code.)");
+integration ("maximum", "mean", relative to the mean irradiance), and for `convention` (a
+name of `hshfit irradiance --convention`, or "all") "engines" with their numbers and shader code.
+`engine` in its place turns the light as that engine's own import of panoramas does.)");
     module.def(
         "_read_light",
         [](const std::string& path) {

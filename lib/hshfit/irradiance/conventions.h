@@ -23,13 +23,21 @@ struct Convention {
     std::string_view order;       ///< of l and m
     std::string_view source;      ///< the engine's code that was read
     std::string_view evidence;    ///< how the row was checked
+    /// Degrees about +z by which light is turned before the numbers are taken, so that they are
+    /// those of the engine's own import of the same panorama, and that import. No engine mirrors.
+    double turn = 0;
+    std::string_view import;
     Direction (*toEngine)(const Direction& world);
     /// Rows of numbers from raw coefficients in the engine's axes.
     std::vector<std::vector<double>> (*pack)(const NineRgb& radiance);
     std::string_view (*shader)();  ///< text with the place of the numbers, "@VALUES@"
+    bool hlsl = false;             ///< the language of `shader`, otherwise GLSL
+    int bands = 3;                 ///< that the numbers hold
+    std::size_t redundant = 0;  ///< numbers at the end that texts may lack, and that are not read
 };
 
-/// three, unity, filament, godot, unreal.
+/// three, unity, unity-csharp, filament, godot, unreal, babylon, gltf, playcanvas, cesium,
+/// geomerics.
 std::span<const Convention> conventions();
 /// "all" or a name; throws UsageError with the names.
 std::vector<const Convention*> selectConventions(std::string_view name);

@@ -66,11 +66,12 @@ void addLine(std::string_view line, const std::string& name, std::vector<double>
 NineRgb radianceFromEngine(const Convention& convention, const std::vector<double>& numbers,
                            const std::string& name) {
     const std::vector<double> none = flat(engineValues(convention, {}));
-    if (numbers.size() != none.size())
+    const std::size_t read = none.size() - convention.redundant;
+    if (numbers.size() != none.size() && numbers.size() != read)
         throw InputError(fmt::format("{}: has {} numbers; the convention {} has {}", name,
                                      numbers.size(), convention.name, none.size()));
     // Numbers are linear in the coefficients, but for constants.
-    const auto rows = static_cast<Eigen::Index>(none.size());
+    const auto rows = static_cast<Eigen::Index>(read);
     Eigen::MatrixXd columns(rows, static_cast<Eigen::Index>(unknowns));
     Eigen::VectorXd wanted(rows);
     for (Eigen::Index k = 0; k < rows; ++k)
@@ -79,7 +80,7 @@ NineRgb radianceFromEngine(const Convention& convention, const std::vector<doubl
         NineRgb unit{};
         unit[j / 3][j % 3] = 1;
         const std::vector<double> with = flat(engineValues(convention, unit));
-        for (std::size_t k = 0; k < none.size(); ++k)
+        for (std::size_t k = 0; k < read; ++k)
             columns(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(j)) = with[k] - none[k];
     }
     const Eigen::VectorXd solution =

@@ -63,7 +63,10 @@ TEST(NineNumbers, EveryConventionIsUndone) {
             numbers.insert(numbers.end(), row.begin(), row.end());
         const NineRgb back = radianceFromEngine(each, numbers, "n");
         for (std::size_t k = 0; k < 27; ++k)
-            EXPECT_NEAR(back[k / 3][k % 3], nine[k / 3][k % 3], 1e-12) << each.name;
+            EXPECT_NEAR(back[k / 3][k % 3],
+                        static_cast<int>(k / 3) < each.bands * each.bands ? nine[k / 3][k % 3] : 0,
+                        1e-12)
+                << each.name;
         numbers.pop_back();
         EXPECT_THROW(radianceFromEngine(each, numbers, "n"), InputError);
     }
