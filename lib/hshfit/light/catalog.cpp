@@ -6,6 +6,7 @@
 #include <hshfit/files/exr_header.h>
 #include <hshfit/light/coefficient_light.h>
 #include <hshfit/light/internal/picture_terms.h>
+#include <hshfit/light/perez_sky.h>
 #include <hshfit/light/picture_light.h>
 #include <hshfit/light/placement.h>
 #include <hshfit/light/sky.h>
@@ -216,6 +217,13 @@ Light preetham(std::string_view owner, const Parameters& p) {
     return sky;
 }
 
+Light perez(std::string_view owner, const Parameters& p) {
+    SkyLight sky = perezSky(sunDirection(owner, p), p.number("direct"), p.number("diffuse"),
+                            p.number("extraterrestrial"));
+    sky.ground = rgb(p, "ground");
+    return sky;
+}
+
 LightKind kind(std::string_view name, std::string_view help, std::string_view source,
                std::string_view example, const std::vector<Parameter>& parameters,
                Light (*make)(std::string_view, const Parameters&)) {
@@ -278,6 +286,18 @@ std::vector<LightKind> makeKinds() {
                                notGiven),
                         ground})),
              preetham),
+        kind("perez", "all-weather sky from measured sunshine, without the sun's disc",
+             "Perez, Seals and Michalsky 1993, Solar Energy 50(3)",
+             "perez:elevation=40,direct=700,diffuse=110",
+             both({number("direct", "irradiance of the sun across its beam", 0, 0, brightest),
+                   number("diffuse", "irradiance of a horizontal surface by the sky", 100, 1e-6,
+                          brightest),
+                   number("extraterrestrial",
+                          "irradiance of the sun above the air, in the unit of both; W/m^2, or "
+                          "127500 lux",
+                          1367, 1e-6, brightest)},
+                  both(sunPlace(0), {ground})),
+             perez),
     };
 }
 

@@ -1,3 +1,5 @@
+#include <hshfit/error.h>
+#include <hshfit/light/perez_sky.h>
 #include <hshfit/light/sky.h>
 #include <hshfit/light/solar_position.h>
 
@@ -153,6 +155,54 @@ TEST(SolarPosition, StandsInTheZenithOfThePlaceThatMeeusGives) {
     const SolarPosition sun =
         solarPosition({1992, 10, 13, 0}, radians(-7.78507), radians(longitude));
     EXPECT_GT(degrees(sun.elevation), 89.98);
+}
+
+/// Sum over rings of equal steps of the sine of elevation; independent of the quadrature of skies.
+double horizontalIrradiance(const SkyLight& sky) {
+    double sum = 0;
+    constexpr int rings = 800, azimuths = 720;
+    for (int r = 0; r < rings; ++r) {
+        const double z = (r + 0.5) / rings;
+        for (int j = 0; j < azimuths; ++j)
+            sum += z * radianceOf(sky, directionFromAngles(std::acos(z),
+                                                           2 * pi * (j + 0.5) / azimuths))[1];
+    }
+    return sum * 2 * pi / rings / azimuths;
+}
+
+TEST(PerezSky, IrradianceOfTheSkyIsTheMeasuredOne) {
+    for (const double elevation : {15.0, 40.0, 65.0})
+        for (const auto& [direct, diffuse] :
+             {std::pair(0.0, 150.0), {100.0, 250.0}, {300.0, 260.0}, {800.0, 110.0}}) {
+            const Direction sun = directionFromAngles(radians(90 - elevation), 0.7);
+            const SkyLight sky = perezSky(sun, direct, diffuse, 1367);
+            EXPECT_NEAR(horizontalIrradiance(sky), diffuse, 2e-3 * diffuse)
+                << elevation << " " << direct;
+        }
+}
+
+/// The coefficients by hand from table 1 with Z = 1 and a brightness of 0.1: the last row, and the
+/// first with its own c and d.
+TEST(PerezSky, CoefficientsAreThoseOfThePrintedTable) {
+    const Direction sun = directionFromAngles(1, 0);
+    const SkyShape clear = perezShape({.clearness = 7, .brightness = 0.1}, sun);
+    EXPECT_NEAR(clear.a, -1.05 + 0.0289 + 0.1 * (0.426 + 0.359), 1e-12);
+    EXPECT_NEAR(clear.b, -0.325 + 0.1156 + 0.1 * (0.7781 + 0.0025), 1e-12);
+    EXPECT_NEAR(clear.c, 31.0625 - 14.5 + 0.1 * (-46.1148 + 55.375), 1e-12);
+    EXPECT_NEAR(clear.d, -7.2312 + 0.405 + 0.1 * (13.35 + 0.6234), 1e-12);
+    EXPECT_NEAR(clear.e, 1.5 - 0.6426 + 0.1 * (1.8564 + 0.5636), 1e-12);
+    EXPECT_EQ(clear.offset, 0);
+    const SkyShape overcast = perezShape({.clearness = 1, .brightness = 0.1}, sun);
+    EXPECT_NEAR(overcast.c, std::exp(std::pow(0.1 * 3.4004, 1.2375)) - 1, 1e-12);
+    EXPECT_NEAR(overcast.d, -std::exp(0.1 * 2.5031) + 0.9738 + 0.1 * 0.2809, 1e-12);
+}
+
+/// Kasten's air mass is 1 overhead, and an overcast sky has clearness 1.
+TEST(PerezSky, ClearnessAndBrightnessHaveTheirLimits) {
+    const PerezWeather none = perezWeather({0, 0, 1}, 0, 136.7, 1367);
+    EXPECT_NEAR(none.clearness, 1, 1e-12);
+    EXPECT_NEAR(none.brightness, 0.1, 1e-4);
+    EXPECT_NEAR(perezWeather({0, 0, 1}, 500, 100, 1367).clearness, 6, 1e-12);
 }
 
 }  // namespace
