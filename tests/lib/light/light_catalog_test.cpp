@@ -29,6 +29,8 @@ const std::vector<std::string> specs = {
     "preetham:elevation=50,azimuth=70",
     "preetham:turbidity=6,elevation=15,irradiance=2/2.5/3",
     "preetham:turbidity=2,elevation=80,radiance=3",
+    "perez:elevation=40,azimuth=30,direct=300,diffuse=260",
+    "perez:elevation=60,direct=800,diffuse=110,ground=20",
     "sun:latitude=50.1,longitude=14.4,date=2024-06-21,time=09:30,zone=2",
 };
 
@@ -134,6 +136,7 @@ TEST(LightCatalog, IrradianceIsAsStatedByTwoSetsOfSamples) {
         {"sky:type=15,elevation=75,irradiance=2", {}, {2, 2, 2}, 3e-4},
         {"sky:type=14,elevation=2,irradiance=2", {}, {2, 2, 2}, 3e-4},
         {"preetham:turbidity=6,elevation=15,irradiance=2/2.5/3", {}, {2, 2.5, 3}, 3e-4},
+        {"perez:elevation=40,direct=300,diffuse=260", {}, {260, 260, 260}, 5e-4},
     };
     for (const Stated& one : cases) {
         const LightSpecification parsed = parseLights(one.spec);
