@@ -82,7 +82,7 @@ struct FitCall {
 /// samples are off by a factor of more than 2, likewise that with the least such factor. Else it is
 /// the loss of f cos(theta_i) if the error of that exceeds f itself, in peaks that the fit's own
 /// loss hardly sees, or the model of `tried` that explains most of the data, if that is 2 % more.
-/// Where nothing is found it is the halfway form. `tried` is called for poor fits only.
+/// Where none is better, it is the halfway form. `tried` is called for poor fits only.
 std::optional<Poor> judgeFit(const std::optional<PictureError>& picture, const FitCall& call,
                              const std::function<std::vector<TriedFit>()>& tried);
 

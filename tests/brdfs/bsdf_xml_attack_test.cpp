@@ -133,7 +133,7 @@ TEST(BsdfXmlAttack, ElementsAndWordsAreChecked) {
     expectRefused(replaced(klems(), "BasisName>Two", "BasisName>Three"),
                   {"'Two' is neither defined", "LBNL/Klems Full"});
     expectRefused(replaced(klems(), "Reflection Front", "Reflection Sideways"),
-                  {"no reflection", "Reflection Sideways"});
+                  {"no block Reflection Front", "Reflection Sideways"});
     expectRefused(replaced(tree("{1}"), "LBNL/Shirley-Chiu", "LBNL/Tregenza"), {"'LBNL/Tregenza'"});
     const std::string block = blockXml("Reflection Front", "1 2 3 4 5 6 7 8 9", "Two");
     expectRefused(bsdfXml("Columns", basisXml("Two", two), block + block), {"a second block"});

@@ -62,24 +62,25 @@ TEST(ChooseParts, TakesNoneWhereThereIsNone) {
         EXPECT_FALSE(search.trials[k].heldOut);  // no gain to be checked
         EXPECT_GT(search.trials[k].loss, 0);
     }
-    EXPECT_EQ(textOf(search).find("held out", textOf(search).find('\n')), std::string::npos);
+    EXPECT_NE(textOf(search).find("not held out"), std::string::npos);
 }
 
 // A coat of the standard's index, and one of another, seen through noise.
 TEST(ChooseParts, LeavesDefaultsThatTheDataDoNotContradict) {
+    const std::string base = "openpbr:fuzz_weight=0,specular_weight=1,specular_ior=1.5";
     for (const double index : {1.6, 2.2}) {
         const PartSearch search = chooseParts(
             samplesOf("openpbr:base_color=.6/.3/.1,specular_roughness=.5,coat_weight=.7,"
                       "coat_roughness=.2,coat_ior=" +
                           std::to_string(index),
                       0.02),
-            optionsOf("openpbr"));
+            optionsOf(base));
         ASSERT_NE(std::ranges::find(search.parts, "coat"), search.parts.end());
         const auto held = std::ranges::find(search.held, "coat_ior", &HeldParameter::name);
-        EXPECT_EQ(held != search.held.end(), index == 1.6);
+        EXPECT_EQ(held != search.held.end(), index == 1.6) << textOf(search);
         if (held == search.held.end()) continue;
         EXPECT_EQ(held->value, 1.6);
-        EXPECT_NE(withParts("openpbr", search).find("coat_ior=1.6"), std::string::npos);
+        EXPECT_NE(withParts(base, search).find("coat_ior=1.6"), std::string::npos);
     }
 }
 

@@ -78,8 +78,8 @@ TEST_F(Cli, LossIsStatedInAnswerAndFiles) {
         EXPECT_LT(file["loss"]["mean_log"], 0.05) << file;
         EXPECT_GT(file["loss"]["mean_log"], 0) << file;
         EXPECT_GE(file["loss"]["maximum"]["value"], file["loss"]["mean_log"]);
-        // Both models hold a GGX metal; grazing angles differ.
-        EXPECT_LT(file["loss"]["picture"]["flip"]["mean"], 0.1) << file;
+        // Both models hold a GGX metal; the diffuse part below it is outside of them.
+        EXPECT_LT(file["loss"]["picture"]["flip"]["mean"], 0.2) << file;
         EXPECT_TRUE(isPng(read(path("out/" + file["pictures"].get<std::string>())), 480, 320));
     }
     const Json json = jsonOf(read(path("out/g.glb")));
