@@ -28,6 +28,7 @@ Json document(const jobs::ExportedMaterials& exported, const std::string& folder
                      {"fitted", file.fitted}, {"converged", file.converged}};
         if (file.search) json["parts"] = brdfs::searchJson(*file.search);
         json["loss"] = jobs::lossJson(file);
+        if (file.poor) json["poor"] = jobs::poorJson(*file.poor);
         if (!file.pictures.empty()) json["pictures"] = file.pictures;
         document["files"].push_back(std::move(json));
     }
@@ -65,6 +66,8 @@ void runMaterialExport(const std::string& input, const std::string& folder,
                        const jobs::MaterialExportOptions& options, const Globals& globals) {
     const jobs::ExportedMaterials exported =
         jobs::exportMaterials(input, folder, options, listenerFor(globals));
+    for (const jobs::ExportedMaterial& file : exported.files)
+        if (file.poor) note(globals, fmt::format("{}: {}", file.path, file.poor->line()));
     if (globals.json)
         printJson(document(exported, folder));
     else

@@ -190,14 +190,6 @@ std::string wantedModel(const std::string& target, const Input& input) {
     return own.empty() ? "openpbr" : std::string(own);
 }
 
-/// A grey material is compared with colours as three equal channels.
-std::unique_ptr<Brdf> openBeside(const std::string& spec, const Brdf& source) {
-    auto brdf = brdfs::open(spec);
-    return brdf->channels().count() < source.channels().count()
-               ? brdfs::open(spec + " + 0 * lambert:kd=0/0.5/1")
-               : std::move(brdf);
-}
-
 /// The material of a target: the input itself, or a fit to it.
 ExportedMaterial materialFor(const std::string& target, const Input& input,
                              const MaterialExportOptions& options, const Listener& listener) {
@@ -211,11 +203,13 @@ ExportedMaterial materialFor(const std::string& target, const Input& input,
         how.parts = options.parts;
         how.accept = true;
         how.rgb = true;
+        how.advise = options.advise;
         const Fitted fitted = fit(input.fitTo, "", how, listener);
         material.spec = brdfs::open(fitted.result.spec)->name();
         material.fitted = true;
         material.converged = fitted.result.converged;
         material.search = fitted.search;
+        material.poor = fitted.poor;
     }
     if (!input.brdf) {
         material.reason = input.reason;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "listener.h"
+#include "quality.h"
 
 #include <brdfs/fit/choose_parts.h>
 #include <hshfit/accuracy/pair_errors.h>
@@ -24,6 +25,7 @@ struct MaterialExportOptions {
     std::string mesh = {};       ///< path, +y up; empty: a sphere
     std::string parts = "auto";  ///< FitOptions::parts
     bool force = false;          ///< replace existing files
+    bool advise = true;          ///< FitOptions::advise
 };
 
 /// One file: a standard material.
@@ -34,6 +36,7 @@ struct ExportedMaterial {
     bool fitted = false;  ///< to the input, rather than being the input
     bool converged = true;
     std::optional<brdfs::PartSearch> search = {};
+    std::optional<Poor> poor = {};             ///< of the fit
     std::optional<PictureError> picture = {};  ///< against the source
     std::optional<PairSummary> loss = {};      ///< the same over pairs of directions
     std::string reason = {};                   ///< why there is neither

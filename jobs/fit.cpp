@@ -362,7 +362,8 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
         seen.emplace(brdf);
         fitted.picture = seen->errorOf(*brdfs::openFit(fitted.result));
     }
-    fitted.poor = judged(fitted, brdf, samples, data, options, how, seen ? &*seen : nullptr);
+    if (options.advise)
+        fitted.poor = judged(fitted, brdf, samples, data, options, how, seen ? &*seen : nullptr);
     if (fitted.picture) fitted.preset["picture"] = pictureErrorJson(*fitted.picture);
     if (fitted.factors)
         fitted.preset["fit"]["factors"] = {{"median", finiteOrNull(fitted.factors->median)},

@@ -54,6 +54,8 @@ struct FitOptions {
     brdfs::InstrumentText instrument = {};      ///< between f and the samples
     std::string bands = {};    ///< pairs at which f has its error (bandPairs); empty: none
     std::string bandsTo = {};  ///< CSV file of the bands; empty: in `Fitted::bands` alone
+    /// Where the fit is poor: try others in brief, for Fitted::poor.
+    bool advise = true;
 };
 
 /// The name of the loss that these options ask for with these data.

@@ -171,8 +171,8 @@ std::string fitAgain(const FitCall& call, const std::string& model, std::vector<
 }
 
 /// The fit whose error is least, if that is a tenth below the poor fit's `own`.
-std::optional<Poor> withLeast(std::optional<double> TriedFit::*error, double own,
-                              const std::string& reason, const FitCall& call,
+std::optional<Poor> withLeast(std::optional<double> TriedFit::*error, std::string_view unit,
+                              double own, const std::string& reason, const FitCall& call,
                               const std::vector<TriedFit>& fits) {
     constexpr double leastGain = 0.9;
     const auto errorOf = [&](const TriedFit& fit) { return (fit.*error).value_or(own); };
@@ -180,8 +180,8 @@ std::optional<Poor> withLeast(std::optional<double> TriedFit::*error, double own
     if (best == fits.end() || errorOf(*best) > leastGain * own) return std::nullopt;
     const bool same = best->loss.empty();
     return Poor{
-        fmt::format("{}; {} by the loss {} has {:.3g} in place of {:.3g}", reason, best->model,
-                    same ? call.loss : best->loss, errorOf(*best), own),
+        fmt::format("{}; {} by the loss {} has {} {:.3g} in place of {:.3g}", reason, best->model,
+                    same ? call.loss : best->loss, unit, errorOf(*best), own),
         fitAgain(call, best->model,
                  same ? call.settings : std::vector<Setting>{{"FitOptions::loss", best->loss}})};
 }
@@ -349,9 +349,9 @@ std::optional<Poor> judgeFit(const std::optional<PictureError>& picture, const F
     const std::vector<TriedFit> fits = tried();
     std::optional<Poor> better;
     if (looksPoor)
-        better = withLeast(&TriedFit::flip, picture->flip.mean, *reason, call, fits);
+        better = withLeast(&TriedFit::flip, "FLIP", picture->flip.mean, *reason, call, fits);
     else if (isFarOff)
-        better = withLeast(&TriedFit::factor, call.factor, *reason, call, fits);
+        better = withLeast(&TriedFit::factor, "a factor of", call.factor, *reason, call, fits);
     else
         better = withMostExplained(*reason, call, fits);
     return better ? *better

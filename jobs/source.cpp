@@ -106,6 +106,13 @@ std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb, Sides sides)
     return checked(openAnySource(spec, rgb), sides);
 }
 
+std::unique_ptr<Brdf> openBeside(const std::string& spec, const Brdf& source) {
+    auto brdf = openBrdf(spec, true);
+    if (brdf->channels().count() < source.channels().count())
+        brdf = openBrdf(spec + " + 0 * lambert:kd=0/0.5/1", true);
+    return brdf;
+}
+
 BrdfOpener sourceOpener() {
     return [](const std::string& spec) { return openAnySource(spec, false); };
 }

@@ -25,6 +25,10 @@ std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb = false,
 std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb = false,
                                  Sides sides = Sides::reflection);
 
+/// openBrdf in linear Rec. 709 for a comparison with `source`: a grey BRDF beside colours has three
+/// equal channels.
+std::unique_ptr<Brdf> openBeside(const std::string& spec, const Brdf& source);
+
 /// `openSource` as the opener of BRDFs that representations add.
 BrdfOpener sourceOpener();
 

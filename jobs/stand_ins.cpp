@@ -48,7 +48,7 @@ struct StandardMaterial {
     double seconds;  ///< Candidate::seconds, of tables
 };
 constexpr StandardMaterial standardMaterials[] = {
-    {"gltf", "glTF material", "gltf", 6},
+    {"gltf", "glTF material", "gltf", 20},
     {"openpbr", "OpenPBR Surface", "materialx", 40},
 };
 
@@ -67,14 +67,6 @@ bool isModel(const Brdf& brdf) {
         models += fact.first == "model" || fact.first.ends_with("_model") ? 1 : 0;
     }
     return models == terms;
-}
-
-/// A BRDF that is compared with colours: a grey one as three equal channels.
-std::unique_ptr<Brdf> openBeside(const std::string& spec, const Brdf& source) {
-    auto brdf = openBrdf(spec, true);
-    if (brdf->channels().count() < source.channels().count())
-        brdf = openBrdf(spec + " + 0 * lambert:kd=0/0.5/1", true);
-    return brdf;
 }
 
 std::string command(const char* function, const std::string& subject, std::vector<Setting> settings,
@@ -103,7 +95,7 @@ Made theModel(const CandidateSource& source) {
 }
 
 Made fittedLobes(const CandidateSource& source, const char* model) {
-    const FitOptions how{.model = model, .accept = true, .rgb = true};
+    const FitOptions how{.model = model, .accept = true, .rgb = true, .advise = false};
     const Fitted fitted = fitBrdf(source.brdf, source.spec, how);
     const std::string file = source.name + ".json", text = presetText(fitted);
     std::vector<Setting> settings{{"FitOptions::model", model}};
@@ -116,7 +108,7 @@ Made fittedLobes(const CandidateSource& source, const char* model) {
 }
 
 Made standardMaterial(const CandidateSource& source, const char* target) {
-    const MaterialExportOptions how{.targets = target, .name = source.name};
+    const MaterialExportOptions how{.targets = target, .name = source.name, .advise = false};
     const ExportedMaterial made = makeMaterials(source.spec, how).files.at(0);
     return {.brdf = openBeside(made.spec, source.brdf),
             .spec = made.spec,

@@ -27,10 +27,10 @@ constexpr Laws claims{.nonNegative = true,
                       .mirrorSymmetric = true,
                       .energyConserving = true};
 
-class Lambert final : public TermBrdf {
+/// The same in all directions.
+class Diffuse : public TermBrdf {
 public:
-    explicit Lambert(const Parameters& p)
-        : TermBrdf(lambertModel(), p, claims, channelWeights<LambertFormula>(p)) {}
+    using TermBrdf::TermBrdf;
 
 protected:
     void evalBatch(const TermBatch& batch) const override {
@@ -44,27 +44,24 @@ private:
     LambertShape shape_;
 };
 
+class Lambert final : public Diffuse {
+public:
+    explicit Lambert(const Parameters& p)
+        : Diffuse(lambertModel(), p, claims, channelWeights<LambertFormula>(p)) {}
+};
+
 constexpr Laws transmissionClaims{
     .nonNegative = true, .isotropic = true, .mirrorSymmetric = true, .energyConserving = true};
 
-class LambertTransmission final : public TermBrdf {
+class LambertTransmission final : public Diffuse {
 public:
     explicit LambertTransmission(const Parameters& p)
-        : TermBrdf(lambertTransmissionModel(), p, transmissionClaims, overPi(p.colour("kt")), {}),
-          name_(withSide(TermBrdf::name(), p)) {}
+        : Diffuse(lambertTransmissionModel(), p, transmissionClaims, overPi(p.colour("kt")), {}),
+          name_(withSide(Diffuse::name(), p)) {}
 
     std::string name() const override { return name_; }
 
-protected:
-    void evalBatch(const TermBatch& batch) const override {
-        HWY_DYNAMIC_DISPATCH(evalLambert)(shape_, batch);
-    }
-    void evalBatchScalar(const TermBatch& batch) const override {
-        evalAll<double, LambertTerms>(shape_, batch);
-    }
-
 private:
-    LambertShape shape_;
     std::string name_;
 };
 

@@ -189,6 +189,43 @@ TEST_F(Lights, FilesOfCoefficientsAreLights) {
     EXPECT_LT(Json::parse(rendered.out)["pictures"][1]["relative_l2"], 1e-3);
 }
 
+// A beam whose azimuth is turned by hand, and numbers that are read back.
+TEST_F(Lights, IrradianceForAnEngineIsThatOfTurnedLight) {
+    const auto answerOf = [&](const std::string& words) {
+        const Answer answer = run("irradiance --normals 16 --json " + words);
+        EXPECT_EQ(answer.code, 0) << answer.err;
+        if (answer.code != 0) return Json();
+        EXPECT_TRUE(keepsSchema(answer.out, "irradiance"));
+        return Json::parse(answer.out);
+    };
+    const auto beam = [](int azimuth) {
+        return "directional:elevation=40,irradiance=2,azimuth=" + std::to_string(azimuth);
+    };
+    for (const auto& [engine, turn] :
+         {std::pair("filament", -90), std::pair("unreal", 90), std::pair("three", 0)}) {
+        const Json own = answerOf(beam(25) + " --for " + engine);
+        EXPECT_EQ(own["turn"], turn);
+        ASSERT_EQ(own["conventions"].size(), 1U);
+        const Json byHand = answerOf(beam(25 + turn) + " --convention " + std::string(engine));
+        std::string numbers;
+        const Json &ours = own["conventions"][0]["values"],
+                   &theirs = byHand["conventions"][0]["values"];
+        ASSERT_EQ(ours.size(), theirs.size());
+        for (std::size_t row = 0; row < ours.size(); ++row)
+            for (std::size_t k = 0; k < ours[row].size(); ++k) {
+                EXPECT_NEAR(ours[row][k], theirs[row][k], 1e-12) << engine;
+                numbers += ours[row][k].dump() + "\n";
+            }
+        write("nine.txt", numbers);
+        const Json back = answerOf(path("nine.txt") + ":for=" + engine),
+                   first = answerOf(beam(25) + " --convention three");
+        for (std::size_t slot = 0; slot < 9; ++slot)
+            EXPECT_NEAR(back["radiance"][slot][0], first["radiance"][slot][0], 1e-5) << engine;
+    }
+    expectError("irradiance uniform --for unrael", 2, "unreal", 1);
+    expectError("irradiance uniform --for unreal --convention three", 2, "--for", 1);
+}
+
 TEST_F(Lights, LightComparesWithItsBestWavelets) {
     const Answer answer =
         run("light panel:elevation=50,width=30,height=20 --order 8 --wavelets --json -o " +

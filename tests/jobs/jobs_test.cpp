@@ -9,6 +9,7 @@
 #include <jobs/export.h>
 #include <jobs/fit.h>
 #include <jobs/project.h>
+#include <jobs/quality.h>
 #include <jobs/report.h>
 #include <jobs/source.h>
 
@@ -24,6 +25,48 @@ namespace {
 using namespace hshfit;
 
 class Jobs : public test::JobFiles {};
+
+/// By hand: a call for each kind of fault, and none that is not better by its measure.
+TEST(JudgeFit, NamesWhatIsBetterByTheMeasureThatIsPoor) {
+    const auto lookedAt = [](double flip) {
+        PictureError picture{.channels = {"grey"}, .albedo = {0}, .lastAlbedo = {0}};
+        picture.flip.mean = flip;
+        return picture;
+    };
+    jobs::FitCall call{.data = "d.binary",
+                       .model = "ggx",
+                       .explained = 0.8,
+                       .relativeError = 0.1,
+                       .loss = "picture"};
+    std::vector<jobs::TriedFit> fits{
+        {.model = "ggx+eon", .explained = 0.99, .flip = 0.15},
+        {.model = "ggx", .loss = "log", .explained = 0.999, .flip = 0.12, .factor = 1.5}};
+    std::size_t tried = 0;
+    const auto betterOf = [&](double flip) {
+        const auto poor = judgeFit(lookedAt(flip), call, [&] {
+            ++tried;
+            return fits;
+        });
+        return poor ? poor->reason + "|" + poor->better : std::string();
+    };
+    const auto has = [](const std::string& text, const std::string& part) {
+        return text.find(part) != std::string::npos;
+    };
+    EXPECT_EQ(betterOf(0.05), "");
+    EXPECT_EQ(tried, 0U);
+    // The least FLIP, of another loss; not where it is lower by less than a tenth.
+    EXPECT_TRUE(has(betterOf(0.3), "ggx by the loss log has FLIP 0.12 in place of 0.3"));
+    EXPECT_TRUE(has(betterOf(0.3), "FitOptions::loss = log"));
+    EXPECT_TRUE(has(betterOf(0.13), "halfway.json")) << betterOf(0.13);
+    // Pictures are good and the energy is not: the loss of energy, or a model that explains more.
+    call.relativeError = 1.5;
+    EXPECT_TRUE(has(betterOf(0.05), "FitOptions::loss = cosine"));
+    call.relativeError = 0.5;
+    EXPECT_TRUE(has(betterOf(0.05), "ggx+eon 99 %")) << betterOf(0.05);
+    // Samples of many decades.
+    call.factor = 30;
+    EXPECT_TRUE(has(betterOf(0.05), "a factor of 1.5 in place of 30")) << betterOf(0.05);
+}
 
 TEST_F(Jobs, ProjectWritesTheFileOfTheProgram) {
     const std::string spec = "ward:ax=.2,ay=.5";
