@@ -43,20 +43,25 @@ function(hshfit_link target)
   endforeach()
 endfunction()
 
-# hshfit_room(NAME SOURCES… [APART] [NEEDS ROOM…] [LINKS LIBRARY…] [PRIVATE_HEADERS HEADER…]): a
-# folder of lib/hshfit as a static library, hshfit_room_NAME. With HSHFIT_UNITY eight sources are
-# compiled at a time; APART is for rooms whose sources have local functions of one name, as the
-# members of a table do. NEEDS lists the rooms whose headers it includes, all of them lower;
-# tests/house_rules.sh holds that to the includes. LINKS are libraries that no header shows, and
-# PRIVATE_HEADERS are headers for the rooms above that are not installed: they show a library.
+# hshfit_room(NAME SOURCES… [APART] [TEXT] [NEEDS ROOM…] [LINKS LIBRARY…] [PRIVATE_HEADERS
+# HEADER…]): a folder of lib/hshfit as a static library, hshfit_room_NAME. With HSHFIT_UNITY eight
+# sources are compiled at a time; APART is for rooms whose sources have local functions of one name,
+# as the members of a table do. TEXT is for rooms that write pages and shaders: -O1 loses nothing
+# there and compiles in two thirds of the time. NEEDS lists the rooms whose headers it includes, all
+# of them lower; tests/house_rules.sh holds that to the includes. LINKS are libraries that no header
+# shows, and PRIVATE_HEADERS are headers for the rooms above that are not installed: they show a
+# library.
 function(hshfit_room name)
-  cmake_parse_arguments(ARG "APART" "" "NEEDS;LINKS;PRIVATE_HEADERS" ${ARGN})
+  cmake_parse_arguments(ARG "APART;TEXT" "" "NEEDS;LINKS;PRIVATE_HEADERS" ${ARGN})
   set(target hshfit_room_${name})
   add_library(${target} STATIC ${ARG_UNPARSED_ARGUMENTS})
   list(TRANSFORM ARG_NEEDS PREPEND hshfit_room_)
   target_link_libraries(${target} PUBLIC hshfit_front_door fmt::fmt ${ARG_NEEDS})
   hshfit_link(${target} ${ARG_LINKS})
   hshfit_precompiled(${target} ${HSHFIT_ROOM_HEADERS})
+  if(ARG_TEXT)
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
   hshfit_install_target(${target} room_${name})
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR}/lib ${CMAKE_CURRENT_SOURCE_DIR})
   hshfit_install_headers(${folder} ${ARG_PRIVATE_HEADERS})
