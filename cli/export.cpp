@@ -28,6 +28,7 @@ struct ExportArguments {
     std::vector<std::string> coefficients;
     std::string output, number, storage = "auto", packing = "coef4";
     std::string lighting;  ///< models; empty: none
+    jobs::LightingTableOptions tables;
     bool chroma = false, noError = false, sampling = false, noSampling = false;
     jobs::ExportOptions options;
     jobs::MaterialExportOptions material;
@@ -270,6 +271,7 @@ void runLighting(const ExportArguments& arguments, const Globals& globals) {
                                         .measureError = !arguments.noError,
                                         .force = shared.force};
     if (!arguments.number.empty()) options.number = gpu::parseNumber(arguments.number);
+    options.errors.tables = arguments.tables;
     options.errors.tables.order = shared.shader.environmentOrder;
     if (!shared.lights.empty()) options.light = fmt::format("{}", fmt::join(shared.lights, "+"));
     // Errors under the light that is written, and under those of the catalog.
@@ -342,6 +344,9 @@ void runExport(ExportArguments& arguments, const CLI::App& command, Globals& glo
     const bool many = jobs::areMany(arguments.coefficients);
     if (many && (materials || !arguments.lighting.empty()))
         throw UsageError("export: the targets gltf and materialx and --lighting take one input");
+    for (const char* name : {"--engine", "--lobes"})
+        if (arguments.lighting.empty() && command.get_option(name)->count() > 0)
+            throw UsageError(fmt::format("export: {} goes with --lighting prefiltered", name));
     if (!arguments.lighting.empty()) return runLighting(arguments, globals);
     if (materials) {
         jobs::MaterialExportOptions& material = arguments.material;
@@ -369,7 +374,7 @@ void addExport(CLI::App& command, Globals& globals) {
         .add_option(
             "COEFFS", arguments->coefficients,
             "Coefficient file of hshfit project, one or more, or a folder of them; material.json "
-            "of hshfit svbrdf; for gltf and materialx a BRDF too")
+            "of hshfit svbrdf; for gltf, materialx and --lighting a BRDF too")
         ->required();
     command
         .add_option("-o,--output", arguments->output,
@@ -429,9 +434,10 @@ void addExport(CLI::App& command, Globals& globals) {
         "by '+'; repeated: several to choose from (default: a studio)");
     command.add_option("--lighting", arguments->lighting,
                        "Tables, light and shaders for environments and area lights in place of "
-                       "textures: all, or of coefficients, split-sum and ltc those named; with "
-                       "--light the light that is written; shaders of materials that are not "
-                       "isotropic take a tangent");
+                       "textures: all, or of coefficients, split-sum, ltc and prefiltered those "
+                       "named; with --light the light that is written; shaders of materials that "
+                       "are not isotropic take a tangent");
+    addPrefiltered(command, arguments->tables);
     command.add_option("--library", options.library,
                        "Of the target three: where its page finds three.js, a path from the folder "
                        "or an address (default: ./node_modules/three)");

@@ -1,6 +1,7 @@
 #include "export_lighting.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
@@ -21,6 +22,13 @@ Json lightingAnswer(const jobs::LightingExport& exported, const std::string& fol
     return answer;
 }
 
+/// Of a prefiltered environment the error over all turns of the light.
+std::string turnedText(const Json& error) {
+    return error.contains("turned_l2")
+               ? fmt::format("; over all turns {:.4f}", error["turned_l2"].get<double>())
+               : "";
+}
+
 std::string lightingText(const Json& answer) {
     std::string out =
         fmt::format("{}: lighting of {} under {}\n", answer["folder"].get<std::string>(),
@@ -34,18 +42,31 @@ std::string lightingText(const Json& answer) {
     for (const Json& file : answer["files"]) out += "  " + file.get<std::string>() + "\n";
     if (answer["errors"].empty()) return out;
     out +=
-        "against direct integration on a sphere: relative L2, largest difference of a pixel over\n"
-        "the mean radiance, nanoseconds of a point on one thread (direct integration: last)\n";
+        "against direct integration on a sphere: relative L2, FLIP, largest difference of a pixel\n"
+        "over the mean radiance, nanoseconds of a point on one thread (direct integration: last)\n";
     for (const Json& error : answer["errors"])
-        out += fmt::format("  {:12}  {:7.4f}  {:7.3f}  {:8.0f} {:10.0f}  {}\n",
+        out += fmt::format("  {:12}  {:7.4f}  {:6.4f}  {:7.3f}  {:8.0f} {:10.0f}  {}{}\n",
                            error["model"].get<std::string>(), error["relative_l2"].get<double>(),
-                           error["maximum"].get<double>(), error["nanoseconds"].get<double>(),
+                           error["flip"].get<double>(), error["maximum"].get<double>(),
+                           error["nanoseconds"].get<double>(),
                            error["integration_nanoseconds"].get<double>(),
-                           error["light"].get<std::string>());
+                           error["light"].get<std::string>(), turnedText(error));
     return out;
 }
 
 }  // namespace
+
+void addPrefiltered(CLI::App& command, jobs::LightingTableOptions& options) {
+    command
+        .add_option("--engine", options.engine,
+                    "Of --lighting prefiltered, the engine whose environment is looked up")
+        ->capture_default_str();
+    command
+        .add_option("--lobes", options.lobes,
+                    "Of --lighting prefiltered, lookups besides the diffuse one, 1 to 3")
+        ->check(CLI::Range(1, 3))
+        ->capture_default_str();
+}
 
 void runExportLighting(const std::string& coefficients, const std::string& folder,
                        const jobs::LightingExportOptions& options, const Globals& globals) {

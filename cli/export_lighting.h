@@ -8,6 +8,9 @@
 
 namespace hshfit::cli {
 
+/// --engine and --lobes of prefiltered environments.
+void addPrefiltered(CLI::App& command, jobs::LightingTableOptions& options);
+
 /// Writes tables, light and shaders to `folder` and prints their sizes and errors, or with --json
 /// the sidecar without its arrays.
 void runExportLighting(const std::string& coefficients, const std::string& folder,

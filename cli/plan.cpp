@@ -80,7 +80,7 @@ void addPlan(CLI::App& command, Globals& globals) {
     command.add_option("--lighting", arguments->lighting,
                        "Choose a model of lighting for each material too (hshfit tradeoff "
                        "--lighting), within the number of its budget: all, or of coefficients, "
-                       "split-sum and ltc those named");
+                       "split-sum, ltc and prefiltered those named");
     command.callback([arguments, &globals] { runPlan(*arguments, globals); });
 }
 

@@ -24,9 +24,11 @@ std::string lightingTradeText(const std::string& spec,
                                error.integration);
         light = error.light;
         out += fmt::format(
-            "  {} {:12} {:15} {:7} + {:7} bytes {:8.0f} ns  error {:.4f}, at most {:.3f}\n",
+            "  {} {:12} {:15} {:7} + {:7} bytes {:8.0f} ns  error {:.4f}, FLIP {:.3f}, at most "
+            "{:.3f}\n",
             trade.front ? '*' : ' ', error.model, trade.settings, error.bytes, error.lightBytes,
-            error.nanoseconds, error.difference.relativeL2, error.difference.maximum);
+            error.nanoseconds, error.difference.relativeL2, error.flip, error.difference.maximum,
+            error.turned ? fmt::format(", over all turns {:.4f}", *error.turned) : "");
     }
     return out;
 }

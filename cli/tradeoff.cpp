@@ -187,7 +187,7 @@ void addTradeoff(CLI::App& command, Globals& globals) {
                      "Measure the best terms of SOHO wavelets too, for comparison");
     command.add_option("--lighting", arguments->lighting,
                        "Measure, in place of forms, the models of lighting of hshfit export: all, "
-                       "or of coefficients, split-sum and ltc those named");
+                       "or of coefficients, split-sum, ltc and prefiltered those named");
     command
         .add_option("--light", arguments->lights,
                     "With --lighting, a light; repeated (default: an example of every kind)")

@@ -86,6 +86,10 @@ Words lightingWords() {
     return withAll(summariesOf(jobs::lightingModels()));
 }
 
+Words engineWords() {
+    return wordsOf(lighting::prefilters());
+}
+
 Words rendererWords() {
     return wordsOf(jobs::renderers());
 }
@@ -258,6 +262,7 @@ constexpr ValueRow valueRows[] = {
     {"", "--compare-models", modelWords, Syntax::sum},
     {"", "--constraints", constraintWords, Syntax::list},
     {"", "--convention", conventionWords},
+    {"", "--engine", engineWords},
     {"", "--figure-width", figureWidthWords},
     {"", "--figures", nullptr, Syntax::word, Files::folder},
     {"", "--font"},

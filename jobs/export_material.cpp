@@ -245,14 +245,13 @@ std::string sentence(const ExportedMaterial& material, const std::string& source
                       wi.z, wo.x, wo.y, wo.z);
 }
 
-std::string nameOf(const std::string& input, const MaterialExportOptions& options) {
-    if (!options.name.empty()) return options.name;
+}  // namespace
+
+std::string exportName(const std::string& input) {
     const std::string_view path = pathIn(input);
     if (!path.empty()) return std::filesystem::path(path).stem().string();
     return input.substr(0, input.find_first_of(": "));
 }
-
-}  // namespace
 
 bool areMaterials(const std::string& targets) {
     const auto chosen = gpu::selectTargets(targets);
@@ -292,7 +291,7 @@ ExportedMaterials makeMaterials(const std::string& text, const MaterialExportOpt
     const Surface surface =
         options.mesh.empty() ? sphereSurface() : surfaceOf(readMesh(options.mesh).mesh);
     const Input input = openInput(text, options);
-    ExportedMaterials exported{.name = nameOf(text, options),
+    ExportedMaterials exported{.name = options.name.empty() ? exportName(text) : options.name,
                                .source = input.source,
                                .vertices = surface.positions.size(),
                                .triangles = surface.indices.size() / 3,

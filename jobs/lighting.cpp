@@ -1,7 +1,9 @@
 #include "lighting.h"
 
+#include "export_material.h"
 #include "source.h"
 
+#include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/error.h>
 #include <hshfit/files/checksum.h>
@@ -48,11 +50,6 @@ struct Output {
     }
 };
 
-const lighting::ElevationTable& tableOf(Kind kind, const LightingTables& tables) {
-    if (kind == Kind::coefficients) return tables.harmonics->table;
-    return kind == Kind::splitSum ? tables.splitSum->table : tables.cosines->table;
-}
-
 Json writeTable(const LightingModel& model, const lighting::ElevationTable& table, Output& output) {
     const auto width = static_cast<int>(table.texels), height = static_cast<int>(table.height());
     const gpu::Texels texels = gpu::encode(table.values, width, height, 1, gpu::Number::float32);
@@ -76,21 +73,24 @@ Json rgbRows(std::span<const Rgb> values) {
 }
 
 /// The number of the cube's texels: as asked for, or the least that holds the light.
-gpu::Number cubeNumber(const LightingEnvironment& light, const LightingExportOptions& options,
+gpu::Number cubeNumber(const lighting::EnvironmentCube& cube, const LightingExportOptions& options,
                        const Listener& listener) {
-    if (options.number == gpu::Number::float16 && !light.fitsHalf())
+    if (options.number == gpu::Number::float16 && !fitsHalf(cube))
         throw NumericError(
             "the cube of the light is brighter than float16 holds (65504); write it as float32, or "
             "scale the light down");
     if (options.number) return *options.number;
-    if (light.fitsHalf()) return gpu::Number::float16;
+    if (fitsHalf(cube)) return gpu::Number::float16;
     listener.say(
         "the cube is brighter than float16 holds (65504) and written as float32; a light with "
         "scale=1e-3 and an exposure in its place fits float16");
     return gpu::Number::float32;
 }
 
-Json writeCube(const lighting::EnvironmentCube& cube, gpu::Number number, Output& output) {
+Json writeCube(const LightingModel& model, const lighting::EnvironmentCube& cube,
+               const Listener& listener, Output& output) {
+    const gpu::Number number = cubeNumber(cube, output.options, listener);
+    const std::string stem = fmt::format(".{}.cube", model.name);
     std::vector<Bytes> levels;
     Json places = Json::array();
     Bytes all;
@@ -116,8 +116,8 @@ Json writeCube(const lighting::EnvironmentCube& cube, gpu::Number number, Output
             {"faces", "+x -x +y -y +z -z of the world, as OpenGL 4.6, section 8.13"},
             {"levels", places},
             {"files",
-             {output.add(".split-sum.cube.ktx2", gpu::ktx2File(image, levels)),
-              output.add(fmt::format(".split-sum.cube.f{}.bin", bits), lightingBytes(all))}}};
+             {output.add(stem + ".ktx2", gpu::ktx2File(image, levels)),
+              output.add(fmt::format("{}.f{}.bin", stem, bits), lightingBytes(all))}}};
 }
 
 Json pointJson(const Direction& d) {
@@ -131,8 +131,9 @@ void describeLighting(const LightingModel& model, const LightingEnvironment& lig
         document["light"] = rgbRows(light.harmonics->light());
     } else if (model.kind == Kind::splitSum) {
         document["irradiance"] = rgbRows(light.irradiance);
-        document["cube"] =
-            writeCube(light.cube, cubeNumber(light, output.options, listener), output);
+        document["cube"] = writeCube(model, light.cube, listener, output);
+    } else if (model.kind == Kind::prefiltered) {
+        document["cube"] = writeCube(model, light.engineCube, listener, output);
     } else {
         document["areas"] = Json::array();
         for (const lighting::AreaLight& area : light.areas) {
@@ -145,12 +146,14 @@ void describeLighting(const LightingModel& model, const LightingEnvironment& lig
 
 Json writeLightingShaders(const LightingModel& model, const LightingTables& tables,
                           const std::string& source, const Listener& listener, Output& output) {
-    const lighting::ElevationTable& table = tableOf(model.kind, tables);
+    const lighting::ElevationTable& table = tables.table(model.kind);
     const lighting::LightingShader shader{
         .kind = static_cast<lighting::LightingShader::Kind>(model.kind),
         .order = tables.harmonics ? tables.harmonics->order : 0,
         .levels = tables.splitSum ? tables.splitSum->levels : 0,
         .taps = tables.splitSum ? tables.splitSum->taps : 0,
+        .engine = tables.prefiltered ? tables.prefiltered->engine : nullptr,
+        .lobes = tables.prefiltered ? tables.prefiltered->lobes : 0,
         .inPlane = tables.inPlane,
         .rows = table.rows,
         .azimuths = table.azimuths,
@@ -215,9 +218,9 @@ Json testsOf(std::span<const LightingModel* const> models, const LightingTables&
 /// The BRDF that errors are measured against: the source, or the file where it does not open.
 std::unique_ptr<Brdf> truthOf(const std::string& path, const LightingExportOptions& options,
                               std::string& name, const Listener& listener) {
-    if (!options.source.empty()) {
-        name = options.source;
-        return openBrdf(options.source, true);
+    if (!options.source.empty() || !looksLikeCoefficients(path)) {
+        name = options.source.empty() ? path : options.source;
+        return openSource(name, true);
     }
     try {
         name = readRepresentation(path).head.source;
@@ -242,8 +245,7 @@ LightingExport exportLighting(const std::string& path, const std::string& folder
                                      gpu::numberName(*options.number)));
     const std::vector<Light> lights = parseLights(options.light).lights;
     const auto brdf = openSource(path, true);
-    Output output{options,
-                  options.name.empty() ? std::filesystem::path(path).stem().string() : options.name,
+    Output output{options, options.name.empty() ? exportName(path) : options.name,
                   FileSet(folder, options.force)};
     const LightingTableOptions& how = options.errors.tables;
     const LightingTables tables = fitLightingTables(*brdf, models, how);
@@ -287,7 +289,11 @@ LightingExport exportLighting(const std::string& path, const std::string& folder
                 entry["misplaced"] = tables.splitSum->misplaced;
             }
         }
-        entry["table"] = writeTable(*model, tableOf(model->kind, tables), output);
+        if (model->kind == Kind::prefiltered) {
+            entry["engine"] = tables.prefiltered->engine->name;
+            entry["lobes"] = tables.prefiltered->lobes;
+        }
+        entry["table"] = writeTable(*model, tables.table(model->kind), output);
         describeLighting(*model, light, listener, output, entry);
         entry["shaders"] = writeLightingShaders(*model, tables, truthName, listener, output);
         document["models"].push_back(entry);

@@ -1,6 +1,7 @@
 #include "lighting_errors.h"
 
 #include <hshfit/light/catalog.h>
+#include <hshfit/pictures/picture_error.h>
 #include <hshfit/rendering/lit_picture.h>
 
 #include <nlohmann/json.hpp>
@@ -73,9 +74,14 @@ std::vector<LightingError> lightingErrors(std::span<const LightingReference> ref
         for (const LightingModel* model : models) {
             const lighting::ShadedPicture shaded =
                 lighting::render(shadingOf(model->kind, tables, light), points, view);
+            std::optional<double> turned;
+            if (model->kind == LightingModel::Kind::prefiltered)
+                turned = lighting::turnedError(*tables.prefiltered, reference.lights);
             errors.push_back({.light = reference.light,
                               .model = std::string(model->name),
                               .difference = differenceOf(reference.picture.picture, shaded.picture),
+                              .flip = sphereFlip(reference.picture.picture, shaded.picture),
+                              .turned = turned,
                               .reference = reference.picture.error,
                               .bytes = tables.bytes(model->kind),
                               .lightBytes = light.bytes(model->kind),
@@ -93,6 +99,7 @@ nlohmann::ordered_json lightingErrorsJson(std::span<const LightingError> errors)
         rows.push_back({{"light", error.light},
                         {"model", error.model},
                         {"relative_l2", error.difference.relativeL2},
+                        {"flip", error.flip},
                         {"maximum", error.difference.maximum},
                         {"pixel", {error.difference.column, error.difference.row}},
                         {"reference_error", error.reference},
@@ -101,6 +108,7 @@ nlohmann::ordered_json lightingErrorsJson(std::span<const LightingError> errors)
                         {"nanoseconds", error.nanoseconds},
                         {"integration_nanoseconds", error.integration},
                         {"prepare_seconds", error.prepareSeconds}});
+        if (error.turned) rows.back()["turned_l2"] = *error.turned;
     }
     return rows;
 }

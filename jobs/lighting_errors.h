@@ -6,6 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct LightingErrorOptions {
 struct LightingError {
     std::string light, model;
     PictureDifference difference = {};
+    double flip = 0;  ///< sphereFlip
+    /// Of a prefiltered environment, over all turns of the light (lighting::turnedError).
+    std::optional<double> turned = {};
     double reference = 0;   ///< estimated relative error of direct integration
     std::size_t bytes = 0;  ///< of the table
     std::size_t lightBytes = 0;
@@ -46,13 +50,13 @@ std::vector<LightingReference> lightingReferences(const Brdf& truth,
                                                   const Listener& listener = {});
 
 /// Every model under every light against the references, which have the same options: relative L2,
-/// and the largest difference of a pixel and where it is.
+/// FLIP, and the largest difference of a pixel and where it is.
 std::vector<LightingError> lightingErrors(std::span<const LightingReference> references,
                                           const LightingTables& tables,
                                           std::span<const LightingModel* const> models,
                                           const LightingErrorOptions& options);
 
-/// One object for each: light, model, relative_l2, maximum, where, bytes and times.
+/// One object for each: light, model, relative_l2, flip, maximum, where, bytes and times.
 nlohmann::ordered_json lightingErrorsJson(std::span<const LightingError> errors);
 
 /// The examples of the catalog of lights.

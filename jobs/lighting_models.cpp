@@ -30,6 +30,9 @@ constexpr std::array lightingTable{
                   "elevation; irradiance in nine coefficients"},
     LightingModel{Kind::cosines, "ltc",
                   "linearly transformed cosines of the BRDF for polygons of light"},
+    LightingModel{Kind::prefiltered, "prefiltered",
+                  "lookups in an environment that an engine has prefiltered for GGX, whatever its "
+                  "light"},
 };
 
 double secondsOf(const std::function<void()>& work) {
@@ -67,16 +70,22 @@ std::vector<const LightingModel*> selectLightingModels(std::string_view names) {
     return models;
 }
 
-std::size_t LightingTables::bytes(Kind kind) const {
+const lighting::ElevationTable& LightingTables::table(Kind kind) const {
     switch (kind) {
         case Kind::coefficients:
-            return harmonics->bytes();
+            return harmonics->table;
         case Kind::splitSum:
-            return splitSum->bytes();
+            return splitSum->table;
+        case Kind::prefiltered:
+            return prefiltered->table;
         case Kind::cosines:
             break;
     }
-    return cosines->bytes();
+    return cosines->table;
+}
+
+std::size_t LightingTables::bytes(Kind kind) const {
+    return table(kind).bytes();
 }
 
 LightingTables fitLightingTables(const Brdf& brdf, std::span<const LightingModel* const> models,
@@ -96,6 +105,9 @@ LightingTables fitLightingTables(const Brdf& brdf, std::span<const LightingModel
                 tables.harmonics = lighting::fitHarmonics(brdf, options.order, rows, steps);
             else if (model->kind == Kind::splitSum)
                 tables.splitSum = lighting::fitSplitSum(brdf, rows, steps);
+            else if (model->kind == Kind::prefiltered)
+                tables.prefiltered = lighting::fitPrefiltered(
+                    brdf, lighting::prefilterNamed(options.engine), options.lobes, rows, steps);
             else
                 tables.cosines = fitCosineTable(brdf, rows, steps);
         });
@@ -109,14 +121,16 @@ std::size_t LightingEnvironment::bytes(Kind kind) const {
         case Kind::coefficients:
             return harmonics->light().size() * 3 * single;
         case Kind::splitSum:
-            return cube.texels() * 4 * (fitsHalf() ? half : single) + 9 * 3 * single;
+            return cube.texels() * 4 * (fitsHalf(cube) ? half : single) + 9 * 3 * single;
+        case Kind::prefiltered:
+            return 0;
         case Kind::cosines:
             break;
     }
     return areas.size() * 5 * 3 * single;
 }
 
-bool LightingEnvironment::fitsHalf() const {
+bool fitsHalf(const lighting::EnvironmentCube& cube) {
     constexpr float largestHalf = 65504;
     return std::ranges::all_of(cube.levels, [&](const lighting::EnvironmentCube::Level& level) {
         return std::ranges::all_of(level.rgb, [&](float v) { return std::abs(v) <= largestHalf; });
@@ -142,6 +156,10 @@ LightingEnvironment lightFor(const LightingTables& tables, std::span<const Light
     if (tables.cosines)
         result.seconds[2] =
             secondsOf([&] { result.areas = lighting::areaLights(lights, options.tiles); });
+    if (tables.prefiltered)
+        result.seconds[3] = secondsOf([&] {
+            result.engineCube = lighting::prefiltered(*tables.prefiltered->engine, lights);
+        });
     return result;
 }
 
@@ -156,6 +174,12 @@ lighting::Shading shadingOf(Kind kind, const LightingTables& tables,
         return [&](const Direction& normal, const Direction& viewer) {
             return lighting::radiance(*tables.splitSum, light.cube, light.irradiance, normal,
                                       viewer, frameAt(normal).tangent);
+        };
+    }
+    if (kind == Kind::prefiltered) {
+        return [&](const Direction& normal, const Direction& viewer) {
+            return lighting::radiance(*tables.prefiltered, light.engineCube, normal, viewer,
+                                      frameAt(normal).tangent);
         };
     }
     return [&](const Direction& normal, const Direction& viewer) {

@@ -38,6 +38,10 @@ std::vector<Candidate> candidatesOf(const LightingTradeOptions& options) {
             for (const std::size_t tiles : options.tiles)
                 add(fmt::format("{} tiles", tiles),
                     [&](LightingTableOptions& how) { how.tiles = tiles; });
+        if (model->kind == Kind::prefiltered)
+            for (const std::size_t lobes : options.lobes)
+                add(fmt::format("{} lobe{}", lobes, lobes == 1 ? "" : "s"),
+                    [&](LightingTableOptions& how) { how.lobes = lobes; });
     }
     return candidates;
 }
@@ -66,7 +70,7 @@ void markFront(std::vector<LightingTrade>& trades) {
 std::vector<LightingTrade> tradeLighting(const Brdf& brdf, const LightingTradeOptions& options,
                                          const Listener& listener) {
     std::vector<LightingTrade> trades;
-    // Tables depend on the order alone, not on faces and tiles.
+    // Tables depend on the order and the number of lobes, not on faces and tiles.
     std::optional<LightingTables> tables;
     const auto references = lightingReferences(brdf, options.errors, listener);
     const Candidate* before = nullptr;
@@ -74,7 +78,8 @@ std::vector<LightingTrade> tradeLighting(const Brdf& brdf, const LightingTradeOp
     for (const Candidate& candidate : candidates) {
         const LightingModel* const models[] = {candidate.model};
         if (!before || before->model != candidate.model ||
-            before->tables.order != candidate.tables.order)
+            before->tables.order != candidate.tables.order ||
+            before->tables.lobes != candidate.tables.lobes)
             tables = fitLightingTables(brdf, models, candidate.tables);
         before = &candidate;
         LightingErrorOptions how = options.errors;

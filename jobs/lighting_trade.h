@@ -13,7 +13,7 @@ namespace hshfit::jobs {
 
 /// A model of lighting at one setting under one light.
 struct LightingTrade {
-    std::string settings;  ///< "order 5", "faces up to 32", "64 tiles"
+    std::string settings;  ///< "order 5", "faces up to 32", "64 tiles", "2 lobes"
     LightingError error;
     bool front = false;  ///< no other one has fewer bytes, less time and less error
 };
@@ -24,6 +24,7 @@ struct LightingTradeOptions {
     std::vector<int> orders = {3, 5, 8};             ///< of coefficients
     std::vector<std::size_t> faces = {16, 32, 128};  ///< of split sums, at most
     std::vector<std::size_t> tiles = {16, 64, 256};  ///< of transformed cosines
+    std::vector<std::size_t> lobes = {1, 2, 3};      ///< of prefiltered environments
 };
 
 /// Every model at every setting under every light, by light: bytes of table and light, time of a

@@ -47,7 +47,7 @@ TEST_F(Lighting, TablesLightAndShadersOfAFormAreWrittenWithTheirErrors) {
     // Under uniform light of radiance 2, albedo 0.5 reflects 1 everywhere.
     ASSERT_EQ(written["tests"].size(), 64u);
     for (const Json& test : written["tests"])
-        for (const char* model : {"coefficients", "split-sum", "ltc"})
+        for (const char* model : {"coefficients", "split-sum", "ltc", "prefiltered"})
             EXPECT_NEAR(test[model][1].get<double>(), 1, 2e-3) << model;
     std::size_t uniform = 0;
     for (const Json& error : document["errors"]) {
@@ -55,7 +55,7 @@ TEST_F(Lighting, TablesLightAndShadersOfAFormAreWrittenWithTheirErrors) {
         ++uniform;
         EXPECT_LT(error["relative_l2"].get<double>(), 5e-3) << error;
     }
-    EXPECT_EQ(uniform, 3u);
+    EXPECT_EQ(uniform, 4u);
     for (const Json& model : document["models"]) EXPECT_EQ(model["shaders"].size(), 4u);
     // KTX 2.0: vkFormat, faceCount, levelCount; the level index names the largest level first,
     // which lies last.
@@ -77,8 +77,8 @@ TEST_F(Lighting, BrushedMaterialsHaveTablesByAzimuth) {
     exported("ward", "--no-error", written);
     EXPECT_EQ(written["rows"]["azimuths"], 9);
     // Mirror-symmetric: harmonics of m < 0, and matrices outside the plane of incidence.
-    const std::size_t widths[] = {25, 3, 4};
-    for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t widths[] = {25, 3, 4, 5};
+    for (std::size_t k = 0; k < 4; ++k) {
         const Json model = written["models"][k];
         EXPECT_EQ(model["table"]["width"], widths[k]);
         EXPECT_EQ(model["table"]["height"], 9 * 32);
@@ -101,6 +101,7 @@ TEST_F(Lighting, BrushedMaterialsHaveTablesByAzimuth) {
         EXPECT_GT(at("coefficients", 1), 0.1);
         EXPECT_NEAR(at("split-sum", 1), at("coefficients", 1), 5e-3 * at("coefficients", 1));
         EXPECT_NEAR(at("ltc", 1), at("coefficients", 1), 5e-3 * at("coefficients", 1));
+        EXPECT_NEAR(at("prefiltered", 1), at("coefficients", 1), 5e-3 * at("coefficients", 1));
     }
 }
 
@@ -173,6 +174,32 @@ TEST_F(Lighting, CubesOfSunsInLuxAreFloat32) {
     EXPECT_FALSE(fs::exists(path("half")) || fs::exists(path("whole")));
 }
 
+/// A BRDF itself, looked up in the environment of an engine.
+TEST_F(Lighting, PrefilteredEnvironmentsTakeAnyBrdf) {
+    const std::string out = " -o " + path("out");
+    const Answer answer =
+        run("export ggx:alpha=.4,F0=.9/.6/.3+lambert:kd=.1" + out +
+            " --lighting prefiltered --engine filament --lobes 3 --target glsl,wgsl --light "
+            "sky:type=12,elevation=40 --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_EQ(answer.err, "");
+    EXPECT_TRUE(keepsSchema(answer.out, "lighting"));
+    const Json model = Json::parse(answer.out)["models"][0];
+    EXPECT_EQ(model["engine"], "filament");
+    EXPECT_EQ(model["lobes"], 3);
+    EXPECT_EQ(model["bytes"], 32 * 5 * 16);
+    EXPECT_EQ(model["light_bytes"], 0);
+    const std::string shader = read(path("out/ggx_hsh_prefiltered.glsl"));
+    EXPECT_NE(shader.find("#ifndef HSH_PREFILTERED_LIGHT"), std::string::npos);
+    EXPECT_NE(shader.find("return 4.0 * r * (2.0 - r);"), std::string::npos);
+    // Three lobes see a glossy metal under every light of the catalog but single suns.
+    for (const Json& error : Json::parse(answer.out)["errors"]) {
+        const std::string light = error["light"];
+        if (light.rfind("sky", 0) == 0 || light.rfind("preetham", 0) == 0)
+            EXPECT_LT(error["relative_l2"].get<double>(), 0.05) << error;
+    }
+}
+
 TEST_F(Lighting, BadInputIsRefused) {
     project("lambert", "plain.json", "--order 2 --outgoing 4");
     const std::string out = " -o " + path("out");
@@ -180,6 +207,11 @@ TEST_F(Lighting, BadInputIsRefused) {
     expectError("export " + path("plain.json") + out + " --lighting coefficients " +
                     "--environment-order 40",
                 2, "40 bands", 1);
+    expectError("export lambert" + out + " --lighting prefiltered --engine unrael", 2,
+                "did you mean 'unreal'", 1);
+    expectError("export lambert" + out + " --lighting prefiltered --lobes 4", 2, "1 to 3", 1);
+    expectError("export " + path("plain.json") + out + " --lobes 2", 2, "--lighting prefiltered",
+                1);
     EXPECT_FALSE(fs::exists(path("out")));
 }
 

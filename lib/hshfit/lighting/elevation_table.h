@@ -61,6 +61,7 @@ struct ElevationTable {
     ElevationTable(ElevationRows rows, std::size_t texels, AzimuthNodes azimuths = {});
 
     std::size_t height() const { return azimuths.count * rows.count; }
+    std::size_t bytes() const { return values.size() * sizeof(float); }  ///< as float32
     std::span<double> row(std::size_t k, std::size_t azimuth = 0);
     std::span<const double> row(std::size_t k, std::size_t azimuth = 0) const;
     /// The interpolated row of a view: 4 texels numbers to `out`. Returns whether the lobe has to

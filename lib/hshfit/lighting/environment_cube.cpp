@@ -1,6 +1,9 @@
 #include <hshfit/lighting/environment_cube.h>
 
+#include <hshfit/light/coefficient_light.h>
 #include <hshfit/light/light_nodes.h>
+#include <hshfit/light/picture_light.h>
+#include <hshfit/light/sky.h>
 
 #include <tbb/parallel_for.h>
 
@@ -64,6 +67,16 @@ Rgb bilinear(const EnvironmentCube::Level& level, const CubePoint& point) {
     return sum;
 }
 
+/// A kernel, and the chord beyond which it has little of its integral, so that cells may grow there
+/// in size over distance.
+struct PyramidKernel {
+    const LobeKernel::Scaled& kernel;
+    double core = 2;
+
+    /// By which the square of size over distance may be larger, for the square of a chord.
+    double growth(double squared) const { return std::clamp(squared / (core * core), 1.0, 16.0); }
+};
+
 /// Light as a pyramid over the cells of a cube's faces. Far from an axis a kernel about it varies
 /// slowly, so that a cell is one node at the middle of its flux if it is small beside its distance.
 class LightPyramid {
@@ -104,7 +117,7 @@ public:
     }
 
     /// The sum of flux times kernel(cosine) about an axis.
-    Rgb sum(const Direction& axis, const LobeKernel::Scaled& kernel) const {
+    Rgb sum(const Direction& axis, const PyramidKernel& kernel) const {
         Rgb sum{};
         for (std::size_t face = 0; face < 6; ++face)
             add(axis, kernel, levels_.size() - 1, face, 0, 0, sum);
@@ -151,14 +164,14 @@ private:
                                          true};
     }
 
-    static void addNode(const Direction& axis, const LobeKernel::Scaled& kernel, const Cell& node,
+    static void addNode(const Direction& axis, const PyramidKernel& kernel, const Cell& node,
                         Rgb& sum) {
         const double weight =
-            kernel.at(axis.x * node.sum.x + axis.y * node.sum.y + axis.z * node.sum.z);
+            kernel.kernel.at(axis.x * node.sum.x + axis.y * node.sum.y + axis.z * node.sum.z);
         for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * node.flux[c];
     }
 
-    void add(const Direction& axis, const LobeKernel::Scaled& kernel, std::size_t level,
+    void add(const Direction& axis, const PyramidKernel& kernel, std::size_t level,
              std::size_t face, std::size_t row, std::size_t column, Rgb& sum) const {
         const Level& own = levels_[level];
         const std::size_t place = (face * own.width + row) * own.width + column;
@@ -168,7 +181,8 @@ private:
         // Of the chord, squared.
         const double squared =
             2 - 2 * (axis.x * cell.sum.x + axis.y * cell.sum.y + axis.z * cell.sum.z);
-        if (size * size <= slender * slender * squared) return addNode(axis, kernel, cell, sum);
+        if (size * size <= slender * slender * squared * kernel.growth(squared))
+            return addNode(axis, kernel, cell, sum);
         if (level == 0) {
             if (first_.empty()) return addNode(axis, kernel, cell, sum);
             for (std::size_t k = first_[place]; k < first_[place + 1]; ++k)
@@ -223,26 +237,126 @@ Rgb EnvironmentCube::at(const Direction& world, double level) const {
     return result;
 }
 
+namespace {
+
+Direction unitAt(std::size_t face, double a, double b) {
+    const Direction d = cubeDirection(face, a, b);
+    const double length = std::sqrt(dot(d, d));
+    return {d.x / length, d.y / length, d.z / length};
+}
+
+/// Calls `at` with the place of each texel, its face, column and row, in parallel.
+template <class At>
+void overTexels(std::size_t face, const At& at) {
+    tbb::parallel_for(std::size_t{0}, 6 * face, [&](std::size_t line) {
+        for (std::size_t column = 0; column < face; ++column)
+            at(line * face + column, line / face, static_cast<double>(column),
+               static_cast<double>(line % face));
+    });
+}
+
+EnvironmentCube::Level convolved(const std::vector<LightPyramid>& pyramids, std::size_t face,
+                                 const PyramidKernel& kernel) {
+    EnvironmentCube::Level level{.face = face, .rgb = std::vector<float>(18 * face * face)};
+    overTexels(face, [&](std::size_t place, std::size_t side, double column, double row) {
+        const Direction d = unitAt(side, centre(column, face), centre(row, face));
+        Rgb sum{};
+        for (const LightPyramid& part : pyramids) {
+            const Rgb own = part.sum(d, kernel);
+            for (std::size_t c = 0; c < 3; ++c) sum[c] += own[c];
+        }
+        for (std::size_t c = 0; c < 3; ++c) level.rgb[3 * place + c] = static_cast<float>(sum[c]);
+    });
+    return level;
+}
+
+/// The solid angle of a texel about its middle: the area over the cube of the distance.
+double solidAngle(std::size_t face, double column, double row) {
+    const double a = centre(column, face), b = centre(row, face);
+    const double side = 2 / static_cast<double>(face);
+    return side * side / std::pow(1 + a * a + b * b, 1.5);
+}
+
+/// The radiance of lights that have one in every direction.
+struct RadianceAt {
+    Direction d;
+
+    bool operator()(const SkyLight& light, Rgb& sum) const {
+        return add(radianceOf(light, d), sum);
+    }
+    bool operator()(const PictureLight& light, Rgb& sum) const {
+        return add(radianceOf(light, d), sum);
+    }
+    bool operator()(const CoefficientLight& light, Rgb& sum) const {
+        return add(radianceOf(light, d), sum);
+    }
+    bool operator()(const auto&, Rgb&) const { return false; }
+
+    static bool add(const Rgb& own, Rgb& sum) {
+        for (std::size_t c = 0; c < 3; ++c) sum[c] += own[c] / 4;
+        return true;
+    }
+};
+
+}  // namespace
+
 EnvironmentCube::Level convolve(std::span<const Light> lights, std::size_t face, int order,
                                 const LobeKernel::Scaled& kernel) {
     std::vector<LightPyramid> pyramids;
     for (const Light& light : lights) pyramids.emplace_back(nodesOf(light, {}, order, 0), 2 * face);
+    return convolved(pyramids, face, {kernel});
+}
+
+EnvironmentCube::Level convolve(const EnvironmentCube::Level& light, std::size_t face,
+                                const LobeKernel::Scaled& kernel, double core) {
+    LightNodes nodes;
+    for (std::size_t place = 0; place < light.rgb.size() / 3; ++place) {
+        const std::size_t side = place / (light.face * light.face);
+        const auto column = static_cast<double>(place % light.face),
+                   row = static_cast<double>(place / light.face % light.face);
+        const float* rgb = &light.rgb[3 * place];
+        nodes.add(unitAt(side, centre(column, light.face), centre(row, light.face)),
+                  {rgb[0], rgb[1], rgb[2]}, solidAngle(light.face, column, row));
+    }
+    std::vector<LightPyramid> pyramids;
+    pyramids.emplace_back(nodes, 2 * face);
+    return convolved(pyramids, face, {kernel, core});
+}
+
+EnvironmentCube::Level rasterised(std::span<const Light> lights, std::size_t face) {
+    constexpr int order = 512;  // of nodes that fill texels
     EnvironmentCube::Level level{.face = face, .rgb = std::vector<float>(18 * face * face)};
-    tbb::parallel_for(std::size_t{0}, 6 * face, [&](std::size_t line) {
-        for (std::size_t column = 0; column < face; ++column) {
-            Direction d = cubeDirection(line / face, centre(static_cast<double>(column), face),
-                                        centre(static_cast<double>(line % face), face));
-            const double length = std::sqrt(dot(d, d));
-            d = {d.x / length, d.y / length, d.z / length};
-            Rgb sum{};
-            for (const LightPyramid& part : pyramids) {
-                const Rgb own = part.sum(d, kernel);
-                for (std::size_t c = 0; c < 3; ++c) sum[c] += own[c];
+    overTexels(face, [&](std::size_t place, std::size_t side, double column, double row) {
+        Rgb sum{};
+        for (const double down : {-0.25, 0.25}) {
+            for (const double right : {-0.25, 0.25}) {
+                const RadianceAt here{
+                    unitAt(side, centre(column + right, face), centre(row + down, face))};
+                for (const Light& light : lights)
+                    std::visit([&](const auto& one) { here(one, sum); }, light);
             }
-            for (std::size_t c = 0; c < 3; ++c)
-                level.rgb[3 * (line * face + column) + c] = static_cast<float>(sum[c]);
         }
+        for (std::size_t c = 0; c < 3; ++c) level.rgb[3 * place + c] = static_cast<float>(sum[c]);
     });
+    for (const Light& light : lights) {
+        Rgb none{};
+        if (std::visit([&](const auto& one) { return RadianceAt{{0, 0, 1}}(one, none); }, light))
+            continue;
+        const LightNodes nodes = nodesOf(light, {}, order, 0);
+        for (std::size_t k = 0; k < nodes.count(); ++k) {
+            const CubePoint point = cubePoint({nodes.x[k], nodes.y[k], nodes.z[k]});
+            const auto at = [&](double a) {
+                return std::min(static_cast<std::size_t>((a + 1) / 2 * static_cast<double>(face)),
+                                face - 1);
+            };
+            const std::size_t column = at(point.a), row = at(point.b);
+            const double omega =
+                solidAngle(face, static_cast<double>(column), static_cast<double>(row));
+            for (std::size_t c = 0; c < 3; ++c)
+                level.rgb[3 * ((point.face * face + row) * face + column) + c] +=
+                    static_cast<float>(nodes.flux[c][k] / omega);
+        }
+    }
     return level;
 }
 

@@ -32,5 +32,13 @@ Direction cubeDirection(std::size_t face, double a, double b);
 /// Nodes of the lights resolve functions of `order` bands. Runs on all threads.
 EnvironmentCube::Level convolve(std::span<const Light> lights, std::size_t face, int order,
                                 const LobeKernel::Scaled& kernel);
+/// The same of a level of another cube, each of whose texels is a node. A tenth of the kernel's
+/// integral, at most, is beyond the chord `core`.
+EnvironmentCube::Level convolve(const EnvironmentCube::Level& light, std::size_t face,
+                                const LobeKernel::Scaled& kernel, double core);
+
+/// The mean radiance over each texel, from four directions in it; of discs, panels and single
+/// directions the flux that falls into it.
+EnvironmentCube::Level rasterised(std::span<const Light> lights, std::size_t face);
 
 }  // namespace hshfit::lighting

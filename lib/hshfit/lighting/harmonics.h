@@ -21,8 +21,6 @@ struct HarmonicTable {
     int order = 0;
     bool inPlane = true;
     ElevationTable table = {};
-
-    std::size_t bytes() const { return table.values.size() * sizeof(float); }
 };
 
 /// The texel of (l, m >= 0).

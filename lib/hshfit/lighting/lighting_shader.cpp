@@ -17,7 +17,8 @@
 
 namespace hshfit::embedded {
 extern const std::string_view lighting_snippet, lighting_functions, lighting_row, lighting_axes,
-    lighting_coefficients, lighting_split_sum, lighting_edge, lighting_ltc;
+    lighting_coefficients, lighting_split_sum, lighting_edge, lighting_ltc, lighting_prefiltered,
+    lighting_level;
 }  // namespace hshfit::embedded
 
 namespace hshfit::lighting {
@@ -29,10 +30,20 @@ using kainjow::mustache::partial;
 
 constexpr std::array languages{Language::glslEs, Language::glsl, Language::hlsl, Language::wgsl};
 
-constexpr const char* functionName(LightingShader::Kind kind) {
-    return kind == LightingShader::Kind::coefficients ? "coefficients"
-           : kind == LightingShader::Kind::splitSum   ? "splitSum"
-                                                      : "ltc";
+/// A model's function, in the order of Kind, the section of the templates that has it, and its line
+/// of comment.
+struct FunctionRow {
+    const char *name, *summary;
+};
+constexpr std::array functions{
+    FunctionRow{"coefficients", "harmonics by elevation against rotated coefficients of light"},
+    FunctionRow{"splitSum", "a split sum with its own lobes"},
+    FunctionRow{"ltc", "linearly transformed cosines"},
+    FunctionRow{"prefiltered", "lookups in an environment that an engine has prefiltered"},
+};
+
+const FunctionRow& functionOf(const LightingShader& shader) {
+    return functions[static_cast<std::size_t>(shader.kind)];
 }
 
 /// Declarations, whose order of type and name differs between the languages.
@@ -120,6 +131,23 @@ void setAskew(const LightingShader& shader, data& page) {
     page.set("taps", list);
 }
 
+/// The lookups of a prefiltered environment.
+void setLobes(const LightingShader& shader, data& page) {
+    data lobes{data::type::list};
+    for (std::size_t k = 0; k < shader.lobes; ++k) {
+        data lobe;
+        lobe.set("k", std::to_string(k + 1));
+        lobe.set("letter", std::string(1, "xyz"[k]));
+        lobe.set("axis", std::to_string(shader.lobes + 1 + k));
+        lobes.push_back(lobe);
+    }
+    page.set("lobes", lobes);
+    page.set("places", std::to_string(shader.lobes + 1));
+    page.set("engine", std::string(shader.engine->name));
+    page.set("level", fmt::format(fmt::runtime(shader.engine->formula),
+                                  fmt::format("{}.0", shader.engine->levels - 1)));
+}
+
 void setPartials(data& page) {
     const std::pair<const char*, std::string_view> parts[] = {
         {"functions", embedded::lighting_functions},
@@ -129,6 +157,8 @@ void setPartials(data& page) {
         {"splitSumBody", embedded::lighting_split_sum},
         {"edgeBody", embedded::lighting_edge},
         {"ltcBody", embedded::lighting_ltc},
+        {"prefilteredBody", embedded::lighting_prefiltered},
+        {"levelBody", embedded::lighting_level},
     };
     for (const auto& [name, text] : parts) {
         // The last newline is dropped, because the line that names a partial has one of its own.
@@ -148,7 +178,7 @@ std::string lightingShaderSource(Language language, const LightingShader& shader
     gpu::checkPrefix(shader.prefix);
     if (!std::ranges::count(languages, language))
         throw UsageError("shaders of lighting are in GLSL ES, GLSL, HLSL and WGSL only");
-    const std::string name = shader.prefix + "_" + functionName(shader.kind);
+    const std::string name = shader.prefix + "_" + functionOf(shader).name;
     std::string upper = name;
     for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     data page;
@@ -163,23 +193,21 @@ std::string lightingShaderSource(Language language, const LightingShader& shader
     page.set("glsl", language == Language::glsl);
     page.set("hlsl", language == Language::hlsl);
     page.set("wgsl", wgsl);
-    page.set("coefficients", shader.kind == LightingShader::Kind::coefficients);
-    page.set("splitSum", shader.kind == LightingShader::Kind::splitSum);
-    page.set("ltc", shader.kind == LightingShader::Kind::cosines);
-    page.set("summary", shader.kind == LightingShader::Kind::coefficients
-                            ? "harmonics by elevation against rotated coefficients of light"
-                        : shader.kind == LightingShader::Kind::splitSum
-                            ? "a split sum with its own lobes"
-                            : "linearly transformed cosines");
+    for (const FunctionRow& row : functions) page.set(row.name, &row == &functionOf(shader));
+    const bool prefiltered = shader.kind == LightingShader::Kind::prefiltered;
+    page.set("withCube", prefiltered || shader.kind == LightingShader::Kind::splitSum);
+    page.set("light", wgsl ? name + "_lookUp" : upper + "_LIGHT");
+    page.set("summary", functionOf(shader).summary);
     page.set("generator", gpu::commentText(shader.generator));
     page.set("source", gpu::commentText(shader.source));
     page.set("order", std::to_string(shader.order));
-    page.set("levels", std::to_string(shader.levels));
+    page.set("levels", std::to_string(prefiltered ? shader.engine->levels : shader.levels));
     page.set("rows", std::to_string(shader.rows.count));
     page.set("texels", std::to_string(shader.texels));
     page.set("last", fmt::format("{}.0", shader.rows.count - 1));
     page.set("span", gpu::shaderNumber(1 - ElevationRows::leastCosine));
     setAskew(shader, page);
+    if (prefiltered) setLobes(shader, page);
     if (shader.kind == LightingShader::Kind::coefficients) {
         setTerms(shader, page);
         gpu::setFrameTurn(shader.order, page);

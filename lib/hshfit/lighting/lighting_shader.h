@@ -2,6 +2,7 @@
 
 #include <hshfit/gpu/shader.h>
 #include <hshfit/lighting/elevation_table.h>
+#include <hshfit/lighting/prefilter.h>
 
 #include <cstddef>
 #include <span>
@@ -10,16 +11,18 @@
 namespace hshfit::lighting {
 
 /// A model as a shader sees it. The function is called PREFIX_coefficients(n, wo, light),
-/// PREFIX_splitSum(n, wo, irradiance) or PREFIX_ltc(n, wo, c0, c1, c2, c3), all in the world, and
-/// gives what the library's `radiance` does, in single precision. With several azimuths, the
-/// tangent follows n.
+/// PREFIX_splitSum(n, wo, irradiance), PREFIX_ltc(n, wo, c0, c1, c2, c3) or PREFIX_prefiltered(n,
+/// wo), all in the world, and gives what the library's `radiance` does, in single precision. With
+/// several azimuths, the tangent follows n.
 struct LightingShader {
-    enum class Kind { coefficients, splitSum, cosines };
+    enum class Kind { coefficients, splitSum, cosines, prefiltered };
     Kind kind = Kind::coefficients;
     int order = 0;           ///< of coefficients
     std::size_t levels = 0;  ///< of the cube
     std::size_t taps = 0;    ///< of a split sum whose lobes are not their own mirror images
-    bool inPlane = true;     ///< lobes are their own mirror images
+    const Prefilter* engine = nullptr;  ///< of prefiltered
+    std::size_t lobes = 0;              ///< of prefiltered
+    bool inPlane = true;                ///< lobes are their own mirror images
     ElevationRows rows = {};
     AzimuthNodes azimuths = {};
     std::size_t texels = 0;  ///< of a row

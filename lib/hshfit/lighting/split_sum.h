@@ -32,8 +32,6 @@ struct SplitSumTable {
     std::size_t taps = 0;    ///< 0: rows of two texels
     double firstWidth = 1;   ///< acos of the mean cosine at level 0, radians
     ElevationTable table = {};
-
-    std::size_t bytes() const { return table.values.size() * sizeof(float); }
 };
 
 /// The even part is taken with the one of evenShares that misplaces the least light, and taps are

@@ -21,8 +21,6 @@ namespace hshfit::lighting {
 /// g, 0, 0, 0.
 struct CosineTable {
     ElevationTable table = {};
-
-    std::size_t bytes() const { return table.values.size() * sizeof(float); }
 };
 
 /// One row's lobe. Any invertible matrix has this form, up to a factor and a turn about +z that

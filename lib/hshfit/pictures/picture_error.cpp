@@ -130,18 +130,7 @@ OverLights overLights(std::span<const double> values) {
 
 /// FLIP and CIEDE2000 under one light.
 std::pair<double, double> differences(const SpherePicture& f, const SpherePicture& g) {
-    constexpr double perDegree = sphereRadius * pixels / sphereDegrees;
-    std::vector<float> largest(f.coverage.size(), 0.0F);
     const double brightest = *std::max_element(f.radiance.begin(), f.radiance.end());
-    for (const double stops : exposuresOf(f, brightest)) {
-        const std::vector<float> seen =
-            flip(exposed(f, stops), exposed(g, stops), {.pixelsPerDegree = perDegree});
-        for (std::size_t k = 0; k < seen.size(); ++k) largest[k] = std::max(largest[k], seen[k]);
-    }
-    const double least = unlit * brightest;
-    const double flipped = meanOver(
-        f, [&](std::size_t k) { return brightnessOf(f, k) > least || brightnessOf(g, k) > least; },
-        [&](std::size_t k) { return static_cast<double>(largest[k]); });
     // Where all but the highlight is black, no exposure shows what counts as unlit as white.
     const double stops =
         std::min(automaticExposure({&f, 1}), std::log2(shownAsWhite / (unlit * brightest)));
@@ -151,7 +140,7 @@ std::pair<double, double> differences(const SpherePicture& f, const SpherePictur
         [&](std::size_t k) {
             return ciede2000(labOf(pixelOf(reference, k)), labOf(pixelOf(test, k)));
         });
-    return {flipped, colour};
+    return {sphereFlip(f, g), colour};
 }
 
 /// Keeps the deepest of the dips, or peaks for a sign of -1, along a line.
@@ -173,6 +162,21 @@ std::vector<std::string> channelsOf(bool grey) {
 }
 
 }  // namespace
+
+double sphereFlip(const SpherePicture& f, const SpherePicture& g) {
+    const double perDegree = sphereRadius * f.size / sphereDegrees;
+    std::vector<float> largest(f.coverage.size(), 0.0F);
+    const double brightest = *std::max_element(f.radiance.begin(), f.radiance.end());
+    for (const double stops : exposuresOf(f, brightest)) {
+        const std::vector<float> seen =
+            flip(exposed(f, stops), exposed(g, stops), {.pixelsPerDegree = perDegree});
+        for (std::size_t k = 0; k < seen.size(); ++k) largest[k] = std::max(largest[k], seen[k]);
+    }
+    const double least = unlit * brightest;
+    return meanOver(
+        f, [&](std::size_t k) { return brightnessOf(f, k) > least || brightnessOf(g, k) > least; },
+        [&](std::size_t k) { return static_cast<double>(largest[k]); });
+}
 
 /// Everything of one BRDF that is compared.
 struct SeenBrdf {

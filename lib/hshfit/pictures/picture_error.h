@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/brdf/brdf.h>
+#include <hshfit/pictures/sphere.h>
 
 #include <memory>
 #include <string>
@@ -59,6 +60,10 @@ public:
 private:
     std::unique_ptr<const SeenBrdf> seen_;
 };
+
+/// HDR-FLIP of two pictures of a sphere under one light, as PictureError has it: the mean over the
+/// pixels that are lit in either. Of the same size.
+double sphereFlip(const SpherePicture& reference, const SpherePicture& test);
 
 /// The same for one pair; the digits do not depend on the number of threads.
 PictureError pictureError(const Brdf& f, const Brdf& g);

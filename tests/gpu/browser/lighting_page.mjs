@@ -11,6 +11,7 @@ export async function drawWebGl2(job) {
       vec3 shade(vec3 n, vec3 t, vec3 wo) { return hsh_coefficients(${surface}, wo, light); }`,
     'split-sum': `uniform vec3 light[9];
       vec3 shade(vec3 n, vec3 t, vec3 wo) { return hsh_splitSum(${surface}, wo, light); }`,
+    prefiltered: `vec3 shade(vec3 n, vec3 t, vec3 wo) { return hsh_prefiltered(${surface}, wo); }`,
     ltc: `uniform vec3 light[${5 * areas}];
       vec3 shade(vec3 n, vec3 t, vec3 wo) {
         vec3 sum = vec3(0.0);
@@ -46,13 +47,13 @@ export async function drawWebGl2(job) {
     const values = new Float32Array(checks.bytesOf(text).buffer);
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, values);
   };
-  const name = { coefficients: 'coefficients', 'split-sum': 'splitSum', ltc: 'ltc' }[job.model];
+  const name = job.model === 'split-sum' ? 'splitSum' : job.model;
   numbers(`hsh_${name}_table`, job.table.width, job.table.height, job.table.bytes);
   numbers('normals', job.width, job.height, job.normals);
   numbers('viewers', job.width, job.height, job.viewers);
   if (job.tangents) numbers('tangents', job.width, job.height, job.tangents);
   if (job.cube) {
-    bind('hsh_splitSum_cube', gl.TEXTURE_CUBE_MAP, gl.LINEAR_MIPMAP_LINEAR, gl.LINEAR);
+    bind(`hsh_${name}_cube`, gl.TEXTURE_CUBE_MAP, gl.LINEAR_MIPMAP_LINEAR, gl.LINEAR);
     gl.texParameteri(gl.TEXTURE_CUBE_MAP, gl.TEXTURE_MAX_LEVEL, job.cube.levels.length - 1);
     const texels = new Uint16Array(checks.bytesOf(job.cube.bytes).buffer);
     job.cube.levels.forEach(({ face, offset }, level) => {
@@ -72,7 +73,7 @@ export async function drawWebGl2(job) {
       }
     });
   }
-  gl.uniform3fv(gl.getUniformLocation(program, 'light'), job.light);
+  if (job.light.length) gl.uniform3fv(gl.getUniformLocation(program, 'light'), job.light);
   gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
   const target = gl.createTexture();
   gl.activeTexture(gl.TEXTURE0 + unit);
@@ -108,11 +109,12 @@ export async function drawWebGpu(job) {
   if (!adapter) throw new Error('no WebGPU adapter');
   const device = await adapter.requestDevice();
   device.pushErrorScope('validation');
-  const count = job.light.length / 3;
+  const count = Math.max(1, job.light.length / 3);
   const surface = job.tangents ? 'n, t' : 'n';
   const shading = {
     coefficients: `return hsh_coefficients(${surface}, wo, all);`,
     'split-sum': `return hsh_splitSum(${surface}, wo, all);`,
+    prefiltered: `return hsh_prefiltered(${surface}, wo);`,
     ltc: `var sum = vec3<f32>(0.0);
       for (var k = 0; k < ${count}; k += 5) {
         sum += all[k + 4] * hsh_ltc(${surface}, wo, all[k], all[k + 1], all[k + 2], all[k + 3]);

@@ -1,0 +1,470 @@
+#include <hshfit/lighting/internal/lobe_search.h>
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hshfit::lighting {
+namespace {
+
+constexpr std::size_t most = 4;  // lobes and the diffuse one
+using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most, most>;
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1>;
+
+constexpr double ridge = 1e-5;           // of a lobe's own square without the albedo
+constexpr double gridStep = 3;           // degrees between axes in the plane of incidence
+constexpr double askewStep = 5;          // between axes anywhere
+constexpr double windowRoughness = 0.1;  // from one row to the next
+constexpr double windowAngle = 12;       // degrees, the same
+constexpr double mostLean = 3;           // of an axis from the normal, over that of wo
+constexpr double gain = 1e-4;            // of what is left, below which a round is the last
+constexpr int mostRounds = 20;
+
+double angleBetween(const Direction& a, const Direction& b) {
+    return std::acos(std::clamp(dot(a, b), -1.0, 1.0));
+}
+
+/// A direction turned in the plane of incidence, away from the viewer.
+Direction turnedAway(const Direction& d, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {c * d.x - s * d.z, d.y, c * d.z + s * d.x};
+}
+
+Direction unit(const Direction& d) {
+    const double length = std::sqrt(dot(d, d));
+    return {d.x / length, d.y / length, d.z / length};
+}
+
+/// Products of two kernels about axes of that cosine, in the weights of bands.
+double product(const std::vector<double>& a, const std::vector<double>& b, double cosine) {
+    double before = 0, here = 1, sum = 0;
+    for (std::size_t l = 0; l < a.size(); ++l) {
+        const auto n = static_cast<double>(l);
+        sum += bandWeight(static_cast<int>(l)) * a[l] * b[l] * (2 * n + 1) / (4 * pi) * here;
+        const double next = ((2 * n + 1) * cosine * here - n * before) / (n + 1);
+        before = here;
+        here = next;
+    }
+    return sum;
+}
+
+std::vector<double> mixed(const std::vector<double>& a, const std::vector<double>& b,
+                          double share) {
+    std::vector<double> result(a.size());
+    for (std::size_t l = 0; l < a.size(); ++l) result[l] = a[l] + share * (b[l] - a[l]);
+    return result;
+}
+
+/// A direction with the target's products along it, by level and channel.
+struct AxisProducts {
+    Direction axis;
+    std::vector<Rgb> byLevel;
+};
+
+/// The best place between levels on one axis.
+struct BestLevel {
+    double gain = -1, place = 0;
+};
+
+/// A lobe that stands: its kernel, and its product with the target.
+struct Standing {
+    Direction axis;
+    double place = 0;  ///< level
+    std::vector<double> bands;
+    Rgb product{};
+};
+
+}  // namespace
+
+double bandWeight(int l) {
+    const double g = l == 0 ? 100 : 0.3 / l;
+    return g * g;
+}
+
+std::vector<double> turnedBack(std::span<const double> from, int order, double azimuth) {
+    std::vector<double> result(from.begin(), from.end());
+    for (int l = 0; l < order; ++l) {
+        for (int m = 1; m <= l; ++m) {
+            const auto even = static_cast<std::size_t>(bases::slotOf(l, m)),
+                       odd = static_cast<std::size_t>(bases::slotOf(l, -m));
+            const double c = std::cos(m * azimuth), s = std::sin(m * azimuth);
+            result[even] = c * from[even] + s * from[odd];
+            result[odd] = c * from[odd] - s * from[even];
+        }
+    }
+    return result;
+}
+
+LobeTarget::LobeTarget(const Basis& basis, std::array<std::vector<double>, 3> f)
+    : basis_(&basis), f_(std::move(f)) {
+    for (const std::vector<double>& channel : f_)
+        for (int l = 0; l < basis.order(); ++l)
+            for (int m = -l; m <= l; ++m)
+                size_ += bandWeight(l) *
+                         std::pow(channel[static_cast<std::size_t>(bases::slotOf(l, m))], 2);
+}
+
+std::vector<double> LobeTarget::along(const Direction& axis) const {
+    std::vector<double> y(static_cast<std::size_t>(basis_->slots()));
+    basis_->evaluate(axis, y.data());
+    const int order = basis_->order();
+    std::vector<double> result;
+    for (const std::vector<double>& channel : f_) {
+        for (int l = 0; l < order; ++l) {
+            double sum = 0;
+            for (std::size_t i = static_cast<std::size_t>(l * l);
+                 i < static_cast<std::size_t>((l + 1) * (l + 1)); ++i)
+                sum += channel[i] * y[i];
+            result.push_back(sum);
+        }
+    }
+    return result;
+}
+
+std::array<std::vector<double>, 3> LobeTarget::without(
+    const std::vector<Direction>& axes, const std::vector<std::vector<double>>& bands,
+    const std::vector<Rgb>& scales) const {
+    std::array<std::vector<double>, 3> left = f_;
+    std::vector<double> y(static_cast<std::size_t>(basis_->slots()));
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+        basis_->evaluate(axes[k], y.data());
+        for (std::size_t c = 0; c < 3; ++c)
+            for (int l = 0; l < basis_->order(); ++l)
+                for (std::size_t i = static_cast<std::size_t>(l * l);
+                     i < static_cast<std::size_t>((l + 1) * (l + 1)); ++i)
+                    left[c][i] -= scales[k][c] * bands[k][static_cast<std::size_t>(l)] * y[i];
+    }
+    return left;
+}
+
+/// The search for the lobes of one row.
+class LobeSearch::Row {
+public:
+    Row(const LobeSearch& search, const LobeTarget& target, double theta)
+        : search_(search), target_(target), theta_(theta) {
+        diffuse_ = standing(Direction{0, 0, 1}, static_cast<double>(search.levels_.size() - 1));
+    }
+
+    bool allowed(const Direction& axis) const {
+        return axis.z > 1e-3 && angleBetween(axis, {0, 0, 1}) <= mostLean * theta_ + 1e-9;
+    }
+
+    AxisProducts along(const Direction& axis) const {
+        const std::vector<double> values = target_.along(axis);
+        AxisProducts result{axis, std::vector<Rgb>(search_.levels_.size())};
+        const auto bands = static_cast<std::size_t>(search_.bands_);
+        for (std::size_t j = 0; j < search_.levels_.size(); ++j)
+            for (std::size_t c = 0; c < 3; ++c)
+                for (std::size_t l = 0; l < bands; ++l)
+                    result.byLevel[j][c] += bandWeight(static_cast<int>(l)) *
+                                            search_.levels_[j][l] * values[c * bands + l];
+        return result;
+    }
+
+    Standing standing(const Direction& axis, double place) const {
+        return standing(along(axis), place);
+    }
+    Standing standing(const AxisProducts& products, double place) const {
+        const std::size_t first =
+            std::min(static_cast<std::size_t>(place), search_.levels_.size() - 2);
+        const double share = place - static_cast<double>(first);
+        Standing result{products.axis, place,
+                        mixed(search_.levels_[first], search_.levels_[first + 1], share)};
+        for (std::size_t c = 0; c < 3; ++c)
+            result.product[c] =
+                products.byLevel[first][c] * (1 - share) + products.byLevel[first + 1][c] * share;
+        return result;
+    }
+
+    /// The lobes that a new one is added to.
+    void fix(std::vector<Standing> others) {
+        others.push_back(diffuse_);
+        others_ = std::move(others);
+        const auto n = static_cast<Eigen::Index>(others_.size());
+        Small gram(n, n);
+        for (Eigen::Index i = 0; i < n; ++i)
+            for (Eigen::Index j = 0; j < n; ++j) gram(i, j) = productOf(i, j);
+        factor_.compute(gram);
+        for (std::size_t c = 0; c < 3; ++c) {
+            SmallVector right(n);
+            for (Eigen::Index i = 0; i < n; ++i)
+                right(i) = others_[static_cast<std::size_t>(i)].product[c];
+            solved_[c] = factor_.solve(right);
+        }
+    }
+
+    /// The lobe on an axis, of levels in a range, that adds most to what the others explain.
+    BestLevel best(const AxisProducts& products, double from, double to) const {
+        const std::size_t count = search_.levels_.size();
+        std::vector<SmallVector> cross(count), shared(count);
+        std::vector<Rgb> rest(count);
+        std::vector<double> own(count), beside(count);
+        const auto firstLevel = static_cast<std::size_t>(from);
+        const auto lastLevel = std::min(count - 1, static_cast<std::size_t>(std::ceil(to)));
+        for (std::size_t j = firstLevel; j <= lastLevel; ++j) {
+            const std::vector<double>& level = search_.levels_[j];
+            cross[j].resize(static_cast<Eigen::Index>(others_.size()));
+            for (std::size_t i = 0; i < others_.size(); ++i)
+                cross[j](static_cast<Eigen::Index>(i)) =
+                    product(level, others_[i].bands, dot(products.axis, others_[i].axis));
+            shared[j] = factor_.solve(cross[j]);
+            own[j] = search_.selfProduct(j, j) - cross[j].dot(shared[j]);
+            if (j > firstLevel)
+                beside[j] = search_.selfProduct(j - 1, j) - cross[j - 1].dot(shared[j]);
+            for (std::size_t c = 0; c < 3; ++c)
+                rest[j][c] = products.byLevel[j][c] - cross[j].dot(solved_[c]);
+        }
+        const auto gainAt = [&](double place) {
+            const std::size_t j = std::clamp(static_cast<std::size_t>(place), firstLevel,
+                                             lastLevel > firstLevel ? lastLevel - 1 : lastLevel);
+            const double s = place - static_cast<double>(j);
+            if (s == 0) return gainOf(rest[j], own[j]);
+            Rgb mix{};
+            for (std::size_t c = 0; c < 3; ++c)
+                mix[c] = rest[j][c] + s * (rest[j + 1][c] - rest[j][c]);
+            return gainOf(mix, (1 - s) * (1 - s) * own[j] + 2 * s * (1 - s) * beside[j + 1] +
+                                   s * s * own[j + 1]);
+        };
+        BestLevel result;
+        const auto take = [&](double place) {
+            const double value = gainAt(place);
+            if (value > result.gain) result = {value, place};
+        };
+        constexpr int steps = 8;
+        take(from), take(to);
+        for (int k = static_cast<int>(std::ceil(from * steps)); k <= to * steps; ++k)
+            take(k / static_cast<double>(steps));
+        for (double step = 0.5 / steps; step > 0.002; step /= 2) {
+            const double middle = result.place;
+            take(std::max(from, middle - step)), take(std::min(to, middle + step));
+        }
+        return result;
+    }
+
+    LobeSolution solve(const std::vector<Standing>& lobes) const {
+        const auto n = static_cast<Eigen::Index>(lobes.size() + 1);
+        const auto at = [&](Eigen::Index i) -> const Standing& {
+            return i == n - 1 ? diffuse_ : lobes[static_cast<std::size_t>(i)];
+        };
+        Small gram(n, n);
+        for (Eigen::Index i = 0; i < n; ++i)
+            for (Eigen::Index j = 0; j < n; ++j) gram(i, j) = between(at(i), at(j), i == j);
+        const Eigen::LDLT<Small> factor(gram);
+        LobeSolution result;
+        result.scales.resize(lobes.size());
+        double explained = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            SmallVector right(n);
+            for (Eigen::Index i = 0; i < n; ++i) right(i) = at(i).product[c];
+            const SmallVector x = factor.solve(right);
+            explained += x.dot(right);
+            for (std::size_t k = 0; k < lobes.size(); ++k)
+                result.scales[k][c] = x(static_cast<Eigen::Index>(k));
+            result.diffuse[c] = x(n - 1);
+        }
+        for (const Standing& lobe : lobes)
+            result.places.push_back({lobe.axis, search_.engine_->roughnessOf(lobe.place)});
+        result.left =
+            target_.size() > 0 ? std::sqrt(std::max(0.0, 1 - explained / target_.size())) : 0;
+        return result;
+    }
+
+    /// Each lobe again with the others fixed, on the axes given and then between them, until a
+    /// round gains nothing. `within`: axes and levels that a lobe may have.
+    template <class Within>
+    void improve(std::vector<Standing>& lobes, std::span<const AxisProducts> axes,
+                 const Within& within) {
+        double before = solve(lobes).left;
+        for (int round = 0; round < mostRounds; ++round) {
+            for (std::size_t k = 0; k < lobes.size(); ++k) {
+                std::vector<Standing> others = lobes;
+                others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+                fix(std::move(others));
+                lobes[k] = moved(lobes[k], k, axes, within);
+            }
+            const double now = solve(lobes).left;
+            if (before - now <= gain * before) break;
+            before = now;
+        }
+    }
+
+private:
+    double between(const Standing& a, const Standing& b, bool same) const {
+        const double value = product(a.bands, b.bands, same ? 1 : dot(a.axis, b.axis));
+        return same ? value + ridge * (value - bandWeight(0) / (4 * pi)) : value;
+    }
+    double productOf(Eigen::Index i, Eigen::Index j) const {
+        return between(others_[static_cast<std::size_t>(i)], others_[static_cast<std::size_t>(j)],
+                       i == j);
+    }
+    static double gainOf(const Rgb& rest, double own) {
+        return own > 1e-12 ? (rest[0] * rest[0] + rest[1] * rest[1] + rest[2] * rest[2]) / own : 0;
+    }
+
+    template <class Within>
+    Standing moved(const Standing& lobe, std::size_t number, std::span<const AxisProducts> axes,
+                   const Within& within) const {
+        AxisProducts best = along(lobe.axis);
+        const auto [from, to] = within.levels(number);
+        BestLevel level = this->best(best, from, to);
+        const auto take = [&](AxisProducts products) {
+            const BestLevel found = this->best(products, from, to);
+            if (!(found.gain > level.gain * (1 + 1e-9))) return false;
+            level = found;
+            best = std::move(products);
+            return true;
+        };
+        for (const AxisProducts& products : axes)
+            if (within.axis(number, products.axis)) take(products);
+        for (double step = radians(gridStep); step > radians(0.1); step /= 2) {
+            for (bool better = true; better;) {
+                better = false;
+                for (const Direction& d : beside(best.axis, step))
+                    if (allowed(d) && within.axis(number, d) && take(along(d))) better = true;
+            }
+        }
+        return standing(best, level.place);
+    }
+
+    std::vector<Direction> beside(const Direction& axis, double step) const {
+        std::vector<Direction> result{turnedAway(axis, step), turnedAway(axis, -step)};
+        if (!search_.inPlane_)
+            for (const double side : {step, -step})
+                result.push_back(unit({axis.x, axis.y + side, axis.z}));
+        return result;
+    }
+
+    const LobeSearch& search_;
+    const LobeTarget& target_;
+    double theta_;
+    Standing diffuse_;
+    std::vector<Standing> others_;
+    Eigen::LDLT<Small> factor_;
+    std::array<SmallVector, 3> solved_;
+};
+
+LobeSearch::LobeSearch(int bands, const Prefilter& engine, std::size_t lobes, bool inPlane)
+    : bands_(bands), engine_(&engine), lobes_(lobes), inPlane_(inPlane) {
+    for (std::size_t k = 0; k < engine.levels; ++k)
+        levels_.push_back(kernelBands(engine.roughnessOf(static_cast<double>(k)), bands));
+    for (std::size_t j = 0; j < levels_.size(); ++j) {
+        selfProducts_.push_back(product(levels_[j], levels_[j], 1));
+        selfProducts_.push_back(j > 0 ? product(levels_[j - 1], levels_[j], 1) : 0);
+    }
+    if (inPlane) {
+        for (double angle = -87; angle < 90; angle += gridStep)
+            axes_.push_back({-std::sin(radians(angle)), 0, std::cos(radians(angle))});
+        return;
+    }
+    for (double tilt = 0; tilt < 90; tilt += askewStep) {
+        const int count = std::max(1, static_cast<int>(360 * std::sin(radians(tilt)) / askewStep));
+        for (int k = 0; k < count; ++k)
+            axes_.push_back(directionFromAngles(radians(tilt), 2 * pi * k / count));
+    }
+}
+
+double LobeSearch::selfProduct(std::size_t a, std::size_t b) const {
+    const double value = selfProducts_[2 * b + (a == b ? 0 : 1)];
+    return value + ridge * (value - bandWeight(0) / (4 * pi));
+}
+
+BandSquares LobeSearch::squares(const LobeTarget& target, const LobeSolution& solution) const {
+    std::vector<Direction> axes{{0, 0, 1}};
+    std::vector<std::vector<double>> bands{levels_.back()};
+    std::vector<Rgb> scales{solution.diffuse};
+    for (std::size_t k = 0; k < solution.places.size(); ++k) {
+        const double place = engine_->levelOf(solution.places[k].roughness);
+        const std::size_t first = std::min(static_cast<std::size_t>(place), levels_.size() - 2);
+        axes.push_back(solution.places[k].axis);
+        bands.push_back(
+            mixed(levels_[first], levels_[first + 1], place - static_cast<double>(first)));
+        scales.push_back(solution.scales[k]);
+    }
+    const auto left = target.without(axes, bands, scales);
+    BandSquares result;
+    const auto add = [&](const std::array<std::vector<double>, 3>& values,
+                         std::vector<double>& sums) {
+        for (const std::vector<double>& channel : values) {
+            for (int l = 0; l < bands_; ++l) {
+                double sum = 0;
+                for (std::size_t i = static_cast<std::size_t>(l * l);
+                     i < static_cast<std::size_t>((l + 1) * (l + 1)); ++i)
+                    sum += channel[i] * channel[i];
+                sums.push_back(sum);
+            }
+        }
+    };
+    add(target.coefficients(), result.whole);
+    add(left, result.left);
+    return result;
+}
+
+LobeSolution LobeSearch::free(const LobeTarget& target, double theta) const {
+    Row row(*this, target, theta);
+    std::vector<AxisProducts> axes;
+    for (const Direction& axis : axes_)
+        if (row.allowed(axis)) axes.push_back(row.along(axis));
+    axes.push_back(row.along({-std::sin(theta), 0, std::cos(theta)}));
+    struct Anywhere {
+        double last;
+        std::pair<double, double> levels(std::size_t) const { return {0, last}; }
+        bool axis(std::size_t, const Direction&) const { return true; }
+    };
+    const Anywhere anywhere{static_cast<double>(levels_.size() - 1)};
+    std::vector<Standing> lobes;
+    for (std::size_t k = 0; k < lobes_; ++k) {
+        row.fix(lobes);
+        const AxisProducts* found = nullptr;
+        BestLevel level;
+        for (const AxisProducts& products : axes) {
+            const BestLevel own = row.best(products, 0, anywhere.last);
+            if (!(own.gain > level.gain)) continue;
+            level = own;
+            found = &products;
+        }
+        lobes.push_back(row.standing(*found, level.place));
+        row.improve(lobes, axes, anywhere);
+    }
+    return row.solve(lobes);
+}
+
+LobeSolution LobeSearch::continued(const LobeTarget& target, double theta,
+                                   std::span<const LobePlace> places, double before) const {
+    Row row(*this, target, theta);
+    struct Window {
+        std::vector<LobePlace> places;
+        const Prefilter* engine;
+        std::pair<double, double> levels(std::size_t k) const {
+            const double r = places[k].roughness;
+            return {engine->levelOf(std::max(0.0, r - windowRoughness)),
+                    engine->levelOf(std::min(1.0, r + windowRoughness))};
+        }
+        bool axis(std::size_t k, const Direction& d) const {
+            return angleBetween(d, places[k].axis) <= radians(windowAngle);
+        }
+    };
+    Window window{{}, engine_};
+    std::vector<Standing> lobes;
+    for (const LobePlace& place : places) {
+        // A lobe goes along with the mirror direction, as far as it leans to it.
+        const double lean = angleBetween(place.axis, {0, 0, 1});
+        const double share = before > 0 ? std::clamp(lean / before, 0.0, 1.0) : 1;
+        Direction axis =
+            turnedAway(place.axis, (theta - before) * (place.axis.x > 0 ? -share : share));
+        const double leans = angleBetween(axis, {0, 0, 1});
+        const double bound = std::min(mostLean * theta, radians(89.5));
+        if (leans > bound) {
+            const double length = std::hypot(axis.x, axis.y);
+            axis = {axis.x / length * std::sin(bound), axis.y / length * std::sin(bound),
+                    std::cos(bound)};
+        }
+        window.places.push_back({axis, place.roughness});
+        lobes.push_back(row.standing(axis, engine_->levelOf(place.roughness)));
+    }
+    row.improve(lobes, {}, window);
+    return row.solve(lobes);
+}
+
+}  // namespace hshfit::lighting

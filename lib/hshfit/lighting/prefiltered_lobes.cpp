@@ -1,0 +1,195 @@
+#include <hshfit/lighting/prefiltered_lobes.h>
+
+#include <hshfit/bases/catalog.h>
+#include <hshfit/error.h>
+#include <hshfit/light/light_projection.h>
+#include <hshfit/lighting/harmonics.h>
+#include <hshfit/lighting/internal/lobe_search.h>
+#include <hshfit/lighting/lobe_nodes.h>
+#include <hshfit/projection/projection.h>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace hshfit::lighting {
+namespace {
+
+constexpr double startAngles[] = {0.5, 0.85, 1.15};  // radians, of rows whose search is free
+
+/// f cos(theta_i) of every row in the frame with wo.y = 0.
+std::vector<LobeTarget> targetsOf(const Brdf& brdf, const Basis& basis,
+                                  const ElevationTable& table) {
+    OutgoingSet outgoing;
+    for (std::size_t place = 0; place < table.height(); ++place) {
+        const double cosine = table.rows.cosine(place % table.rows.count);
+        outgoing.directions.push_back(
+            directionFromAngles(std::acos(cosine), table.azimuths.angle(place / table.rows.count)));
+        outgoing.solidAngles.push_back(1);
+    }
+    outgoing.width = static_cast<int>(outgoing.size());
+    const Basis* const bases[] = {&basis};
+    const Coefficients all = std::move(
+        project(brdf, bases, outgoing, {.quantity = Quantity::brdfCosine}).front().coefficients);
+    std::vector<LobeTarget> targets;
+    for (std::size_t place = 0; place < table.height(); ++place) {
+        const double azimuth = table.azimuths.angle(place / table.rows.count);
+        std::array<std::vector<double>, 3> f;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double* from = all.at(place, all.channels.count() == 3 ? c : 0);
+            f[c] = turnedBack({from, all.slots()}, basis.order(), azimuth);
+        }
+        targets.emplace_back(basis, std::move(f));
+    }
+    return targets;
+}
+
+/// A solution for every row, from one whose search was free to both sides.
+struct Chain {
+    std::vector<LobeSolution> rows;
+    double left = 0;  ///< the sum of what each row leaves
+};
+
+Chain chainFrom(const LobeSearch& search, std::span<const LobeTarget> targets,
+                const ElevationRows& rows, std::size_t middle, const LobeSolution& first) {
+    Chain chain{.rows = std::vector<LobeSolution>(rows.count)};
+    chain.rows[middle] = first;
+    const auto follow = [&](std::size_t k, std::size_t from) {
+        chain.rows[k] = search.continued(targets[k], std::acos(rows.cosine(k)),
+                                         chain.rows[from].places, std::acos(rows.cosine(from)));
+    };
+    for (std::size_t k = middle; k-- > 0;) follow(k, k + 1);
+    for (std::size_t k = middle + 1; k < rows.count; ++k) follow(k, k - 1);
+    for (const LobeSolution& row : chain.rows) chain.left += row.left;
+    return chain;
+}
+
+std::size_t rowAt(const ElevationRows& rows, double theta) {
+    return rows.place(std::cos(theta)).row;
+}
+
+/// The best of chains from several rows.
+Chain freeChain(const LobeSearch& search, std::span<const LobeTarget> targets,
+                const ElevationRows& rows) {
+    std::array<Chain, std::size(startAngles)> chains;
+    tbb::parallel_for(std::size_t{0}, chains.size(), [&](std::size_t k) {
+        const std::size_t middle = rowAt(rows, startAngles[k]);
+        chains[k] = chainFrom(search, targets, rows, middle,
+                              search.free(targets[middle], std::acos(rows.cosine(middle))));
+    });
+    return *std::ranges::min_element(chains, {}, &Chain::left);
+}
+
+void writeRow(const LobeSolution& row, bool inPlane, std::span<double> out) {
+    std::ranges::copy(row.diffuse, out.begin());
+    const std::size_t lobes = row.places.size();
+    for (std::size_t k = 0; k < lobes; ++k) {
+        const LobePlace& place = row.places[k];
+        const auto texel = out.subspan(4 * (k + 1), 4);
+        std::ranges::copy(row.scales[k], texel.begin());
+        texel[3] = place.roughness;
+        if (inPlane) {
+            out[4 * (lobes + 1) + k] = std::atan2(-place.axis.x, place.axis.z);
+            continue;
+        }
+        const auto axis = out.subspan(4 * (lobes + 1 + k), 4);
+        axis[0] = place.axis.x, axis[1] = place.axis.y, axis[2] = place.axis.z;
+    }
+}
+
+}  // namespace
+
+PrefilteredTable fitPrefiltered(const Brdf& brdf, const Prefilter& engine, std::size_t lobes,
+                                ElevationRows rows, std::size_t azimuthSteps) {
+    if (lobes < 1 || lobes > PrefilteredTable::mostLobes)
+        throw UsageError(
+            fmt::format("{} lobes in a prefiltered environment: from 1 to {} are "
+                        "possible",
+                        lobes, PrefilteredTable::mostLobes));
+    const std::size_t channels = brdf.channels().count();
+    if (channels != 1 && channels != 3)
+        throw UsageError(
+            fmt::format("{}: lighting takes grey and RGB, not {} channels", brdf.name(), channels));
+    const bool inPlane = lobesInPlane(brdf.laws());
+    PrefilteredTable result{.engine = &engine,
+                            .lobes = lobes,
+                            .inPlane = inPlane,
+                            .table = ElevationTable(rows, inPlane ? lobes + 2 : 2 * lobes + 1,
+                                                    AzimuthNodes(brdf.laws(), azimuthSteps))};
+    const auto basis = bases::make("sh", PrefilteredTable::bands);
+    const std::vector<LobeTarget> targets = targetsOf(brdf, *basis, result.table);
+    const LobeSearch search(PrefilteredTable::bands, engine, lobes, inPlane);
+    // The azimuths one after the other, each from the one before, so that lobes keep their places.
+    Chain chain;
+    const std::size_t middle = rowAt(rows, startAngles[1]);
+    const double theta = std::acos(rows.cosine(middle));
+    for (std::size_t around = 0; around < result.table.azimuths.count; ++around) {
+        const std::span<const LobeTarget> own(targets.data() + around * rows.count, rows.count);
+        chain =
+            around == 0
+                ? freeChain(search, own, rows)
+                : chainFrom(search, own, rows, middle,
+                            search.continued(own[middle], theta, chain.rows[middle].places, theta));
+        for (std::size_t k = 0; k < rows.count; ++k) {
+            writeRow(chain.rows[k], inPlane, result.table.row(k, around));
+            result.residuals.push_back(chain.rows[k].left);
+            const BandSquares squares = search.squares(own[k], chain.rows[k]);
+            result.squares.insert(result.squares.end(), squares.whole.begin(), squares.whole.end());
+            result.left.insert(result.left.end(), squares.left.begin(), squares.left.end());
+        }
+    }
+    return result;
+}
+
+double turnedError(const PrefilteredTable& table, std::span<const Light> lights) {
+    constexpr auto bands = static_cast<std::size_t>(PrefilteredTable::bands);
+    const LightCoefficients light =
+        projectLight(lights, *bases::make("sh", PrefilteredTable::bands));
+    std::vector<double> weights(3 * bands, 0.0);
+    for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t l = 0; l < bands; ++l)
+            for (std::size_t i = l * l; i < (l + 1) * (l + 1); ++i)
+                weights[c * bands + l] +=
+                    light.at(c)[i] * light.at(c)[i] / (2 * static_cast<double>(l) + 1);
+    double sum = 0;
+    for (std::size_t row = 0; row < table.residuals.size(); ++row) {
+        double whole = 0, left = 0;
+        for (std::size_t i = 0; i < weights.size(); ++i) {
+            whole += weights[i] * table.squares[row * weights.size() + i];
+            left += weights[i] * table.left[row * weights.size() + i];
+        }
+        sum += whole > 0 ? std::sqrt(left / whole) : 0;
+    }
+    return sum / static_cast<double>(table.residuals.size());
+}
+
+Rgb radiance(const PrefilteredTable& table, const EnvironmentCube& cube, const Direction& normal,
+             const Direction& viewer, const Direction& tangent) {
+    ViewAxes axes(normal, viewer, tangent);
+    if (!(axes.cosine > 0)) return {};
+    std::array<double, 4 * (2 * PrefilteredTable::mostLobes + 1)> row{};
+    const bool mirrored =
+        table.table.at(axes.cosine, axes.azimuth, {row.data(), 4 * table.table.texels});
+    if (mirrored) axes.mirror();
+    const Rgb even = cube.at(normal, table.engine->levelOf(1));
+    Rgb result{row[0] * even[0], row[1] * even[1], row[2] * even[2]};
+    const double* const places = &row[4 * (table.lobes + 1)];
+    for (std::size_t k = 0; k < table.lobes; ++k) {
+        const double* texel = &row[4 * (k + 1)];
+        const Direction local =
+            table.inPlane ? Direction{-std::sin(places[k]), 0, std::cos(places[k])}
+                          : Direction{places[4 * k], places[4 * k + 1], places[4 * k + 2]};
+        const Rgb light = cube.at(axes.toWorld(local), table.engine->levelOf(texel[3]));
+        for (std::size_t c = 0; c < 3; ++c) result[c] += texel[c] * light[c];
+    }
+    for (double& value : result) value = std::max(0.0, value);
+    return result;
+}
+
+}  // namespace hshfit::lighting
