@@ -195,8 +195,9 @@ TEST_F(Lighting, PrefilteredEnvironmentsTakeAnyBrdf) {
     // Three lobes see a glossy metal under every light of the catalog but single suns.
     for (const Json& error : Json::parse(answer.out)["errors"]) {
         const std::string light = error["light"];
-        if (light.rfind("sky", 0) == 0 || light.rfind("preetham", 0) == 0)
+        if (light.rfind("sky", 0) == 0 || light.rfind("preetham", 0) == 0) {
             EXPECT_LT(error["relative_l2"].get<double>(), 0.05) << error;
+        }
     }
 }
 
