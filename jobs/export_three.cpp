@@ -4,6 +4,9 @@
 #include <hshfit/files/json_fields.h>
 #include <hshfit/gpu/highlight.h>
 #include <hshfit/gpu/three/three_files.h>
+#include <hshfit/lighting/lighting_shader.h>
+#include <hshfit/lighting/prefiltered_lobes.h>
+#include <hshfit/version.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,6 +14,40 @@
 #include <filesystem>
 
 namespace hshfit::jobs {
+namespace {
+
+/// Lookups in the environment of three.js, besides the diffuse one two, or three for a lobe that
+/// may be long.
+gpu::ThreeLookUps lookUpsOf(const Brdf& brdf, const std::string& prefix, const std::string& name) {
+    const lighting::Prefilter& engine = lighting::prefilterNamed("three");
+    const lighting::PrefilteredTable fitted =
+        lighting::fitPrefiltered(brdf, engine, brdf.laws().isotropic ? 2 : 3);
+    const lighting::ElevationTable& table = fitted.table;
+    gpu::ThreeLookUps lookUps{
+        .glsl = lighting::lightingShaderSource(gpu::Language::glslEs,
+                                               {.kind = lighting::LightingShader::Kind::prefiltered,
+                                                .engine = &engine,
+                                                .lobes = fitted.lobes,
+                                                .inPlane = fitted.inPlane,
+                                                .rows = table.rows,
+                                                .azimuths = table.azimuths,
+                                                .texels = table.texels,
+                                                .prefix = prefix,
+                                                .source = name,
+                                                .generator = std::string("hshfit ") + version}),
+        .texels = {table.values.begin(), table.values.end()},
+        .width = table.texels,
+        .height = table.height(),
+        .along = table.azimuths.count > 1};
+    for (std::size_t level = 0; level < engine.levels; ++level) {
+        const auto bands = lighting::kernelBands(engine.roughnessOf(static_cast<double>(level)), 3);
+        lookUps.first.push_back(bands[1]);
+        lookUps.second.push_back(bands[2]);
+    }
+    return lookUps;
+}
+
+}  // namespace
 
 void writeThree(const Brdf& brdf, const ExportOptions& options, const Listener& listener,
                 FileSet& files, Exported& exported) {
@@ -21,6 +58,9 @@ void writeThree(const Brdf& brdf, const ExportOptions& options, const Listener& 
         .storage = exported.storage,
         .roughness = gpu::highlightRoughness(brdf),
         .fitError = measured ? jsonText(errorJson(exported.error)) : std::string()};
+    // Other materials are refused below.
+    if (const std::size_t channels = brdf.channels().count(); channels == 1 || channels == 3)
+        three.lookUps = lookUpsOf(brdf, options.shader.prefix, exported.name);
     if (!options.library.empty()) three.library = options.library;
     std::vector<gpu::TextFile> made;
     try {

@@ -506,6 +506,7 @@ def irradiance(
     window: str = ...,
     normals: int = ...,
     convention: str = ...,
+    engine: str = ...,
 ) -> Row: ...
 def read(path: Path) -> Union[Coefficients, Form, Light, Brdf]: ...
 def convert(

@@ -35,7 +35,7 @@ console.log(bytes);
 `;
 const bad = [
   ["import { material } from 'hshfit-ward'; material({ tangents: 'yes' });", 'a wrong type'],
-  ["import { material } from 'hshfit-ward'; material().setEnvironmentMap(null);", 'no such function'],
+  ["import { material } from 'hshfit-ward'; material().setSurroundings(null);", 'no such function'],
   ["import { nothing } from 'hshfit-ward/webgpu'; console.log(nothing);", 'no such export'],
 ];
 

@@ -196,7 +196,7 @@ std::string lightingShaderSource(Language language, const LightingShader& shader
     for (const FunctionRow& row : functions) page.set(row.name, &row == &functionOf(shader));
     const bool prefiltered = shader.kind == LightingShader::Kind::prefiltered;
     page.set("withCube", prefiltered || shader.kind == LightingShader::Kind::splitSum);
-    page.set("light", wgsl ? name + "_lookUp" : upper + "_LIGHT");
+    page.set("lookUp", wgsl ? name + "_lookUp" : upper + "_LIGHT");
     page.set("summary", functionOf(shader).summary);
     page.set("generator", gpu::commentText(shader.generator));
     page.set("source", gpu::commentText(shader.source));

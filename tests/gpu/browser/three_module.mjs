@@ -82,8 +82,34 @@ const lights = {
 };
 const view = { eye: [0.9, 0.7, 3.4], fov: 38, rotation: [0.4, 0.7, -0.3] };
 
+// A picture of light all around, turned: a wide lamp over the same two bands, in three's layout of
+// equirectangular textures (row 0 looks down), with the rotation of scene.environment.
+const lamp = unit0([0.5, 0.6, 0.4]);
+function unit0(a) {
+  return a.map((x) => x / Math.hypot(...a));
+}
+const pictureFrom = (d) => radianceFrom(d).map((x) => x / 2 + 12 * Math.exp(20 * (dot(lamp, d) - 1)));
+const turn = 0.8; // about +y
+function picture(width, height) {
+  const texels = [];
+  for (let row = 0; row < height; ++row) {
+    for (let column = 0; column < width; ++column) {
+      const phi = 2 * Math.PI * ((column + 0.5) / width - 0.5),
+        latitude = Math.PI * ((row + 0.5) / height - 0.5);
+      const across = Math.cos(latitude);
+      texels.push(...pictureFrom([across * Math.cos(phi), Math.sin(latitude), across * Math.sin(phi)]), 1);
+    }
+  }
+  return { width, height, texels };
+}
+// The world's light from d when the picture is turned by `turn` about +y.
+const turnedFrom = ([x, y, z]) => {
+  const [c, s] = [Math.cos(turn), Math.sin(turn)];
+  return pictureFrom([c * x - s * z, y, s * x + c * z]);
+};
+
 // In the page: the sphere under one kind of light, as floats from the bottom row on.
-async function draw({ name, gpu, kind, side, view, lights, environment, tangents }) {
+async function draw({ name, gpu, kind, side, view, lights, environment, tangents, picture, turn }) {
   const three = await import(gpu ? 'three/webgpu' : 'three');
   const { material } = await import(`/out/${name}/${name}_three${gpu ? '_webgpu' : ''}.js`);
   const renderer = gpu ? new three.WebGPURenderer() : new three.WebGLRenderer();
@@ -117,6 +143,16 @@ async function draw({ name, gpu, kind, side, view, lights, environment, tangents
     add(new three.DirectionalLight(colourOf(lights[kind]), lights[kind].intensity), lights[kind]);
   } else if (kind === 'point') {
     add(new three.PointLight(colourOf(lights[kind]), lights[kind].intensity), lights[kind]);
+  }
+  if (kind === 'picture') {
+    const { width, height, texels } = picture;
+    const map = new three.DataTexture(new Float32Array(texels), width, height, three.RGBAFormat, three.FloatType);
+    map.mapping = three.EquirectangularReflectionMapping;
+    map.minFilter = map.magFilter = three.LinearFilter;
+    map.needsUpdate = true;
+    scene.environment = map;
+    scene.environmentRotation.set(0, turn, 0);
+    scene.environmentIntensity = 1.5;
   }
   const camera = new three.PerspectiveCamera(view.fov, 1, 0.1, 20);
   camera.position.set(...view.eye);
@@ -208,7 +244,7 @@ function lit(file, kind, points) {
 
 // Under the environment, by 3000 directions spread evenly over the hemisphere. Coefficients are
 // multiplied with the light as they are, without a clamp.
-function surrounded(file, points, clamp) {
+function surrounded(file, points, clamp, radiance) {
   const count = 3000;
   const directions = Array.from({ length: count }, (_, i) => {
     const z = (i + 0.5) / count,
@@ -221,7 +257,7 @@ function surrounded(file, points, clamp) {
   return points.map(({ world }, i) => {
     const sum = [0, 0, 0];
     directions.forEach((wi, j) => {
-      const light = radianceFrom(world(wi));
+      const light = radiance(world(wi));
       for (let c = 0; c < 3; ++c) sum[c] += f[i * count + j][c] * light[c];
     });
     return sum.map((x) => (x * 2 * Math.PI) / count);
@@ -250,8 +286,8 @@ function compare(name, points, pixels, expected, tolerance) {
   expect(relative < tolerance && largest < 2 * tolerance * most, `${name} differs`);
 }
 
-async function proveMaterial(page, { name, sampled = false, tangents = false }) {
-  for (const kind of ['directional', 'point', 'environment']) {
+async function proveMaterial(page, { name, spec, sampled = false, tangents = false }) {
+  for (const kind of ['directional', 'point', 'environment', ...(gpu ? [] : ['picture'])]) {
     const drawn = await page.evaluate(draw, {
       name,
       gpu,
@@ -261,12 +297,19 @@ async function proveMaterial(page, { name, sampled = false, tangents = false }) 
       lights,
       environment: [...environment],
       tangents,
+      picture: kind === 'picture' ? picture(1024, 512) : null,
+      turn,
     });
     let points = surfacePoints(drawn, gpu, tangents);
     if (kind === 'environment') {
       points = points.filter((_, i) => i % Math.ceil(points.length / 30) === 0);
-      const expected = surrounded(`${name}.json`, points, sampled);
+      const expected = surrounded(`${name}.json`, points, sampled, radianceFrom);
       compare(`${name}, ${kind}`, points, drawn.pixels, expected, sampled ? 0.03 : 0.01);
+    } else if (kind === 'picture') {
+      // Against the source itself, which the lookups are fitted to.
+      points = points.filter((_, i) => i % Math.ceil(points.length / 30) === 0);
+      const expected = surrounded(spec, points, true, turnedFrom).map((rgb) => rgb.map((x) => 1.5 * x));
+      compare(`${name}, ${kind}`, points, drawn.pixels, expected, 0.06);
     } else {
       compare(`${name}, ${kind}`, points, drawn.pixels, lit(`${name}.json`, kind, points), 0.01);
     }

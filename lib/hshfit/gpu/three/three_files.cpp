@@ -5,6 +5,7 @@
 #include <hshfit/files/json_fields.h>
 #include <hshfit/files/printable.h>
 #include <hshfit/files/template_text.h>
+#include <hshfit/gpu/shader_data.h>
 #include <hshfit/gpu/shader_text.h>
 #include <hshfit/gpu/three/internal/three_input.h>
 #include <hshfit/gpu/viewer_light.h>
@@ -104,6 +105,28 @@ data slotsWhere(int slots, const Wanted& wanted) {
     return rows;
 }
 
+std::string listed(const std::vector<double>& values) {
+    std::string text;
+    for (const double value : values) text += (text.empty() ? "" : ", ") + shaderNumber(value);
+    return text;
+}
+
+void setLookUps(const ThreeOptions& options, const std::string& prefix, data& page) {
+    const ThreeLookUps& lookUps = options.lookUps;
+    std::string upper = prefix;
+    for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    page.set("lookUps", lookUps.glsl);
+    page.set("lightMacro", upper + "_PREFILTERED_LIGHT");
+    page.set("along", lookUps.along);
+    page.set("levels", std::to_string(lookUps.first.size()));
+    page.set("lastLevel", std::to_string(std::max<std::size_t>(1, lookUps.first.size()) - 1));
+    page.set("firstBand", listed(lookUps.first));
+    page.set("secondBand", listed(lookUps.second));
+    page.set("lookUpWidth", std::to_string(lookUps.width));
+    page.set("lookUpHeight", std::to_string(lookUps.height));
+    page.set("lookUpBase64", base64(std::as_bytes(std::span(lookUps.texels))));
+}
+
 /// The words of all templates.
 data wordsOf(const ThreeInput& input, const ThreeOptions& options) {
     const int bands = bandsOf(input, options), slots = bands * bands;
@@ -124,15 +147,19 @@ data wordsOf(const ThreeInput& input, const ThreeOptions& options) {
     page.set("filtered", input.texels && input.filtered);
     page.set("odd", slotsWhere(slots, [&](int m) { return input.oddSign && m % 2 != 0; }));
     page.set("sines", slotsWhere(slots, [](int m) { return m < 0; }));
+    setLookUps(options, input.prefix, page);
     return page;
 }
 
 std::string environmentOf(const ThreeInput& input, const ThreeOptions& options) {
     if (input.shade) {
-        return fmt::format("{} bands of spherical harmonics, multiplied with the coefficients",
-                           options.shader.environmentOrder);
+        return fmt::format(
+            "{} bands of spherical harmonics, multiplied with the coefficients; of "
+            "the scene's environment, prefiltered lookups (WebGL)",
+            options.shader.environmentOrder);
     }
-    return fmt::format("a sum over {} directions in the shader", options.samples);
+    return fmt::format("prefiltered lookups (WebGL), a sum over {} directions (WebGPU)",
+                       options.samples);
 }
 
 Json factsOf(const ThreeInput& input, const ThreeOptions& options) {

@@ -9,6 +9,16 @@
 
 namespace hshfit::gpu::inline three {
 
+/// Lookups in an environment that three.js has prefiltered (lighting/prefiltered_lobes.h), as the
+/// room above hands them down.
+struct ThreeLookUps {
+    std::string glsl;           ///< PREFIX_prefiltered, on the macro PREFIX_PREFILTERED_LIGHT
+    std::vector<float> texels;  ///< RGBA by rows
+    std::size_t width = 0, height = 0;
+    bool along = false;                           ///< the function takes a tangent
+    std::vector<double> first = {}, second = {};  ///< zonal coefficients of bands 1 and 2 by level
+};
+
 struct ThreeOptions {
     std::string name;           ///< what the files' names begin with
     ShaderOptions shader = {};  ///< `environmentOrder`: bands of the light from all around
@@ -16,7 +26,8 @@ struct ThreeOptions {
     /// GGX roughness about as wide as the highlight (highlightRoughness), for the directions over
     /// which a material without `shade` sums the light from all around.
     double roughness = 0.3;
-    int samples = 128;                             ///< as many directions; even
+    int samples = 128;  ///< as many directions; even
+    ThreeLookUps lookUps = {};
     std::string library = "./node_modules/three";  ///< where the page finds three.js
     std::string fitError = {};                     ///< JSON, as in the sidecar
 };
