@@ -78,6 +78,10 @@ show export $ward -o out/materials --target gltf --force
 holds "a standard material is near, in the mean" "$(number 'mean log error @') < 0.05"
 show export gltf-pbr:roughnessFactor=0.4 -o out/materials --target materialx --force
 show export out/phong.json -o out/lighting --lighting split-sum,coefficients --no-error --force
+show export ggx:alpha=.25,F0=.9/.6/.3 -o out/prefiltered --lighting prefiltered \
+    --light sky:type=12,elevation=40 --force
+holds "under skies, an engine's own environment is enough" \
+    "$(number 'prefiltered *@ .*sky') < 0.1"
 
 echo
 echo "5. Accuracy reports: the energy that each basis captures, by order (Eq. 15)."
