@@ -250,6 +250,9 @@ std::string sentence(const ExportedMaterial& material, const std::string& source
 std::string exportName(const std::string& input) {
     const std::string_view path = pathIn(input);
     if (!path.empty()) return std::filesystem::path(path).stem().string();
+    const std::string_view preset = "preset:";
+    if (input.starts_with(preset))
+        return std::filesystem::path(input.substr(preset.size())).filename().string();
     return input.substr(0, input.find_first_of(": "));
 }
 

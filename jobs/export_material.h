@@ -50,7 +50,8 @@ struct ExportedMaterials {
     std::vector<ExportedMaterial> files;
 };
 
-/// The name of files made from a BRDF or a coefficient file: its path's stem, or the model's name.
+/// The name of files made from a BRDF or a coefficient file: its path's stem, or the preset's or
+/// model's name.
 std::string exportName(const std::string& input);
 
 /// Whether a list of targets names materials; throws UsageError for a mixture with other targets.
