@@ -2,7 +2,6 @@
 
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
-#include <hshfit/gpu/highlight.h>
 #include <hshfit/gpu/three/three_files.h>
 #include <hshfit/lighting/lighting_shader.h>
 #include <hshfit/lighting/prefiltered_lobes.h>
@@ -23,22 +22,22 @@ gpu::ThreeLookUps lookUpsOf(const Brdf& brdf, const std::string& prefix, const s
     const lighting::PrefilteredTable fitted =
         lighting::fitPrefiltered(brdf, engine, brdf.laws().isotropic ? 2 : 3);
     const lighting::ElevationTable& table = fitted.table;
-    gpu::ThreeLookUps lookUps{
-        .glsl = lighting::lightingShaderSource(gpu::Language::glslEs,
-                                               {.kind = lighting::LightingShader::Kind::prefiltered,
-                                                .engine = &engine,
-                                                .lobes = fitted.lobes,
-                                                .inPlane = fitted.inPlane,
-                                                .rows = table.rows,
-                                                .azimuths = table.azimuths,
-                                                .texels = table.texels,
-                                                .prefix = prefix,
-                                                .source = name,
-                                                .generator = std::string("hshfit ") + version}),
-        .texels = {table.values.begin(), table.values.end()},
-        .width = table.texels,
-        .height = table.height(),
-        .along = table.azimuths.count > 1};
+    const lighting::LightingShader shader{.kind = lighting::LightingShader::Kind::prefiltered,
+                                          .engine = &engine,
+                                          .lobes = fitted.lobes,
+                                          .inPlane = fitted.inPlane,
+                                          .rows = table.rows,
+                                          .azimuths = table.azimuths,
+                                          .texels = table.texels,
+                                          .prefix = prefix,
+                                          .source = name,
+                                          .generator = std::string("hshfit ") + version};
+    gpu::ThreeLookUps lookUps{.wgsl = lighting::lightingShaderSource(gpu::Language::wgsl, shader),
+                              .glsl = lighting::lightingShaderSource(gpu::Language::glslEs, shader),
+                              .texels = {table.values.begin(), table.values.end()},
+                              .width = table.texels,
+                              .height = table.height(),
+                              .along = table.azimuths.count > 1};
     for (std::size_t level = 0; level < engine.levels; ++level) {
         const auto bands = lighting::kernelBands(engine.roughnessOf(static_cast<double>(level)), 3);
         lookUps.first.push_back(bands[1]);
@@ -56,7 +55,6 @@ void writeThree(const Brdf& brdf, const ExportOptions& options, const Listener& 
         .name = exported.name,
         .shader = options.shader,
         .storage = exported.storage,
-        .roughness = gpu::highlightRoughness(brdf),
         .fitError = measured ? jsonText(errorJson(exported.error)) : std::string()};
     // Other materials are refused below.
     if (const std::size_t channels = brdf.channels().count(); channels == 1 || channels == 3)

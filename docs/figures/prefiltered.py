@@ -30,7 +30,8 @@ def materials(data, folder):
         table = folder / f'{name}.binary'
         if not table.exists():
             tool = data.parent / 'tools' / 'merl_hybrid.py'
-            subprocess.run(['/usr/bin/python3', tool, name, table], check=True)
+            subprocess.run(['/usr/bin/python3', tool, name, table], check=True,
+                           stdout=subprocess.DEVNULL)
         yield name, table
     for model in MODELS:
         yield model, model

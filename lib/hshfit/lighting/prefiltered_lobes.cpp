@@ -125,21 +125,28 @@ PrefilteredTable fitPrefiltered(const Brdf& brdf, const Prefilter& engine, std::
     const auto basis = bases::make("sh", PrefilteredTable::bands);
     const std::vector<LobeTarget> targets = targetsOf(brdf, *basis, result.table);
     const LobeSearch search(PrefilteredTable::bands, engine, lobes, inPlane);
-    // The azimuths one after the other, each from the one before, so that lobes keep their places.
-    Chain chain;
-    const std::size_t middle = rowAt(rows, startAngles[1]);
+    // A row of each azimuth from that of the azimuth before, so that lobes keep their places, and
+    // from it the others.
+    const std::size_t around = result.table.azimuths.count, middle = rowAt(rows, startAngles[1]);
     const double theta = std::acos(rows.cosine(middle));
-    for (std::size_t around = 0; around < result.table.azimuths.count; ++around) {
-        const std::span<const LobeTarget> own(targets.data() + around * rows.count, rows.count);
-        chain =
-            around == 0
-                ? freeChain(search, own, rows)
-                : chainFrom(search, own, rows, middle,
-                            search.continued(own[middle], theta, chain.rows[middle].places, theta));
-        for (std::size_t k = 0; k < rows.count; ++k) {
-            writeRow(chain.rows[k], inPlane, result.table.row(k, around));
-            result.residuals.push_back(chain.rows[k].left);
-            const BandSquares squares = search.squares(own[k], chain.rows[k]);
+    const auto targetsAt = [&](std::size_t k) {
+        return std::span<const LobeTarget>(targets.data() + k * rows.count, rows.count);
+    };
+    std::vector<Chain> chains(around);
+    chains[0] = freeChain(search, targetsAt(0), rows);
+    std::vector<LobeSolution> middles{chains[0].rows[middle]};
+    for (std::size_t k = 1; k < around; ++k)
+        middles.push_back(
+            search.continued(targetsAt(k)[middle], theta, middles.back().places, theta));
+    tbb::parallel_for(std::size_t{1}, around, [&](std::size_t k) {
+        chains[k] = chainFrom(search, targetsAt(k), rows, middle, middles[k]);
+    });
+    for (std::size_t k = 0; k < around; ++k) {
+        for (std::size_t row = 0; row < rows.count; ++row) {
+            const LobeSolution& found = chains[k].rows[row];
+            writeRow(found, inPlane, result.table.row(row, k));
+            result.residuals.push_back(found.left);
+            const BandSquares squares = search.squares(targetsAt(k)[row], found);
             result.squares.insert(result.squares.end(), squares.whole.begin(), squares.whole.end());
             result.left.insert(result.left.end(), squares.left.begin(), squares.left.end());
         }

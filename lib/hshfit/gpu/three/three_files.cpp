@@ -21,8 +21,9 @@
 #include <cmath>
 
 namespace hshfit::embedded {
-extern const std::string_view three_data, three_fragment, three_light, three_material, three_nodes,
-    three_package, three_page, three_response, three_surroundings, three_types, three_vertex;
+extern const std::string_view three_data, three_fragment, three_light, three_look_ups,
+    three_map_setter, three_material, three_nodes, three_package, three_page, three_response,
+    three_surroundings, three_types, three_vertex;
 extern const std::string_view viewer_harmonics;
 }  // namespace hshfit::embedded
 
@@ -32,8 +33,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using kainjow::mustache::data;
 
-/// Bands of the light that comes with materials whose shader sums over directions.
-constexpr int sampledBands = 10;
+/// Bands of the light that comes with materials whose shader looks it up.
+constexpr int lookedUpBands = 10;
 
 /// Omitted sections leave blank lines behind; one is kept.
 std::string rendered(std::string_view text, const data& page) {
@@ -88,7 +89,7 @@ std::string scriptText(const Json& value) {
 }
 
 int bandsOf(const ThreeInput& input, const ThreeOptions& options) {
-    return input.shade ? options.shader.environmentOrder : sampledBands;
+    return input.shade ? options.shader.environmentOrder : lookedUpBands;
 }
 
 /// The slots l(l+1)+m of those m.
@@ -116,6 +117,11 @@ void setLookUps(const ThreeOptions& options, const std::string& prefix, data& pa
     std::string upper = prefix;
     for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     page.set("lookUps", lookUps.glsl);
+    if (!lookUps.wgsl.empty()) {
+        const LookUpNode node = lookUpNode(lookUps.wgsl, prefix);
+        page.set("lookUpMain", node.main);
+        page.set("lookUpFunctions", node.functions);
+    }
     page.set("lightMacro", upper + "_PREFILTERED_LIGHT");
     page.set("along", lookUps.along);
     page.set("levels", std::to_string(lookUps.first.size()));
@@ -141,25 +147,21 @@ data wordsOf(const ThreeInput& input, const ThreeOptions& options) {
     page.set("bands", std::to_string(bands));
     page.set("slots", std::to_string(slots));
     page.set("probeSlots", std::to_string(std::min(slots, 9)));
-    page.set("samples", std::to_string(options.samples));
-    page.set("roughness2", fmt::format("{:.8f}", options.roughness * options.roughness));
     page.set("texels", input.texels.has_value());
     page.set("filtered", input.texels && input.filtered);
     page.set("odd", slotsWhere(slots, [&](int m) { return input.oddSign && m % 2 != 0; }));
     page.set("sines", slotsWhere(slots, [](int m) { return m < 0; }));
     setLookUps(options, input.prefix, page);
+    page.set("lookUpScript", rendered(embedded::three_look_ups, page));
+    page.set("mapSetter", rendered(embedded::three_map_setter, page));
     return page;
 }
 
 std::string environmentOf(const ThreeInput& input, const ThreeOptions& options) {
-    if (input.shade) {
-        return fmt::format(
-            "{} bands of spherical harmonics, multiplied with the coefficients; of "
-            "the scene's environment, prefiltered lookups (WebGL)",
-            options.shader.environmentOrder);
-    }
-    return fmt::format("prefiltered lookups (WebGL), a sum over {} directions (WebGPU)",
-                       options.samples);
+    const std::string lookUps = "lookups in the scene's environment, which three.js prefilters";
+    if (!input.shade) return lookUps;
+    return fmt::format("{}; of coefficients of light {} bands of spherical harmonics", lookUps,
+                       options.shader.environmentOrder);
 }
 
 Json factsOf(const ThreeInput& input, const ThreeOptions& options) {

@@ -12,8 +12,9 @@ namespace hshfit::gpu::inline three {
 /// Lookups in an environment that three.js has prefiltered (lighting/prefiltered_lobes.h), as the
 /// room above hands them down.
 struct ThreeLookUps {
-    std::string glsl;           ///< PREFIX_prefiltered, on the macro PREFIX_PREFILTERED_LIGHT
-    std::vector<float> texels;  ///< RGBA by rows
+    std::string wgsl = {};           ///< the snippet, with a texture, cube and sampler of its own
+    std::string glsl = {};           ///< PREFIX_prefiltered, on the macro PREFIX_PREFILTERED_LIGHT
+    std::vector<float> texels = {};  ///< RGBA by rows
     std::size_t width = 0, height = 0;
     bool along = false;                           ///< the function takes a tangent
     std::vector<double> first = {}, second = {};  ///< zonal coefficients of bands 1 and 2 by level
@@ -23,10 +24,6 @@ struct ThreeOptions {
     std::string name;           ///< what the files' names begin with
     ShaderOptions shader = {};  ///< `environmentOrder`: bands of the light from all around
     Storage storage = Storage::automatic;  ///< of a form; `block` becomes `texture`
-    /// GGX roughness about as wide as the highlight (highlightRoughness), for the directions over
-    /// which a material without `shade` sums the light from all around.
-    double roughness = 0.3;
-    int samples = 128;  ///< as many directions; even
     ThreeLookUps lookUps = {};
     std::string library = "./node_modules/three";  ///< where the page finds three.js
     std::string fitError = {};                     ///< JSON, as in the sidecar

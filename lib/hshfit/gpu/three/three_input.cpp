@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cstring>
 
 namespace hshfit::gpu::inline three {
@@ -31,7 +30,7 @@ Texels readable(const Texels& texels) {
 
 /// WGSL snippets declare texture and sampler for the whole module, where three.js puts its own:
 /// here every function that needs them has them as its first arguments; the sampler if `filtered`.
-std::string withArguments(const std::string& wgsl, const std::string& prefix, bool filtered) {
+std::string withoutBindings(const std::string& wgsl) {
     std::string text;
     for (std::size_t first = 0; first < wgsl.size();) {
         const std::size_t end = std::min(wgsl.find('\n', first), wgsl.size());
@@ -39,19 +38,36 @@ std::string withArguments(const std::string& wgsl, const std::string& prefix, bo
         first = end + 1;
         if (!line.starts_with("@group(")) text += line + '\n';
     }
-    const std::array<std::string, 5> names{"texel", "evalRaw", "eval", "shade", "shadeWorld"};
-    for (const std::string& name : names) {
-        const std::string call = fmt::format("{}_{}(", prefix, name);
-        for (std::size_t at = text.find(call); at != text.npos; at = text.find(call, at)) {
-            const bool declared = at >= 3 && text.compare(at - 3, 3, "fn ") == 0;
-            std::string arguments =
-                prefix + "_coefficients" + (declared ? ": texture_2d_array<f32>, " : ", ");
-            if (filtered) arguments += prefix + "_sampler" + (declared ? ": sampler, " : ", ");
-            at += call.size();
-            text.insert(at, arguments);
-        }
-    }
     return text;
+}
+
+/// Puts arguments before those of a function, where it is declared and where it is called.
+void addArguments(const std::string& function, const std::string& declared,
+                  const std::string& called, std::string& text) {
+    const std::string call = function + "(";
+    for (std::size_t at = text.find(call); at != text.npos; at = text.find(call, at)) {
+        const bool declaration = at >= 3 && text.compare(at - 3, 3, "fn ") == 0;
+        at += call.size();
+        text.insert(at, declaration ? declared : called);
+    }
+}
+
+std::string withArguments(const std::string& wgsl, const std::string& prefix, bool filtered) {
+    std::string text = withoutBindings(wgsl);
+    std::string declared = prefix + "_coefficients: texture_2d_array<f32>, ",
+                called = prefix + "_coefficients, ";
+    if (filtered) {
+        declared += prefix + "_sampler: sampler, ";
+        called += prefix + "_sampler, ";
+    }
+    for (const char* name : {"texel", "evalRaw", "eval", "shade", "shadeWorld"})
+        addArguments(fmt::format("{}_{}", prefix, name), declared, called, text);
+    return text;
+}
+
+void replaceAll(const std::string& from, const std::string& to, std::string& text) {
+    for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
+        text.replace(at, from.size(), to);
 }
 
 void refuseSpectral(const CoefficientHead& head) {
@@ -70,6 +86,26 @@ void setHead(const CoefficientHead& head, const ThreeOptions& options, ThreeInpu
 }
 
 }  // namespace
+
+LookUpNode lookUpNode(const std::string& wgsl, const std::string& prefix) {
+    const std::string name = prefix + "_prefiltered";
+    std::string text = withoutBindings(wgsl);
+    const std::string table = "table: texture_2d<f32>, ",
+                      light =
+                          "cube: texture_cube<f32>, cubeSampler: sampler, cubeTurn: mat3x3<f32>, "
+                          "cubeLevels: f32, ";
+    // The engine's own number of levels, and its turn.
+    replaceAll(
+        fmt::format("{0}_cube, {0}_sampler, direction, {0}_level(roughness)", name),
+        "cube, cubeSampler, cubeTurn * direction, cubeLevels * roughness * (2.0 - roughness)",
+        text);
+    replaceAll(name + "_table", "table", text);
+    addArguments(name + "_lookUp", light, "cube, cubeSampler, cubeTurn, cubeLevels, ", text);
+    for (const char* part : {"_texel", "_at"}) addArguments(name + part, table, "table, ", text);
+    addArguments(name, table + light, "", text);
+    const std::size_t main = text.find("fn " + name + "(");
+    return {.main = text.substr(main), .functions = text.substr(0, main)};
+}
 
 ThreeInput threeInput(const Payload& given, const ThreeOptions& options) {
     refuseSpectral(given.head);

@@ -24,6 +24,13 @@ struct ThreeInput {
     bool filtered = true;          ///< texels are interpolated
 };
 
+/// The parts of a snippet of lookups for a node of three.js: the function, and those that it calls.
+/// Table, cube, sampler, turn and number of levels are arguments.
+struct LookUpNode {
+    std::string main, functions;
+};
+LookUpNode lookUpNode(const std::string& wgsl, const std::string& prefix);
+
 ThreeInput threeInput(const Payload& payload, const ThreeOptions& options);
 ThreeInput threeInput(const FormPayload& payload, const ThreeOptions& options);
 
