@@ -45,10 +45,12 @@
 #include <brdfs/measured/scattered/alta.h>
 #include <brdfs/measured/scattered/alta_writer.h>
 #include <brdfs/measured/scattered/astm.h>
+#include <brdfs/measured/scattered/bird.h>
 #include <brdfs/measured/scattered/cornell.h>
 #include <brdfs/measured/scattered/csv.h>
 #include <brdfs/measured/scattered/fred.h>
 #include <brdfs/measured/scattered/nist.h>
+#include <brdfs/measured/scattered/pab_opto.h>
 #include <brdfs/measured/scattered/scatmech.h>
 #include <brdfs/measured/scattered/scattered.h>
 #include <brdfs/measured/scattered/speos.h>
@@ -134,8 +136,9 @@ void refuseForeign(const std::string& path, std::span<const unsigned char> head,
 }
 
 /// Formats that are text or may be; the others are bytes.
-constexpr std::string_view textFormats[] = {"bsdf-xml", "astm", "zemax", "fred",    "cornell",
-                                            "xompt",    "csv",  "nist",  "scatmech"};
+constexpr std::string_view textFormats[] = {"bsdf-xml", "astm",  "zemax",   "fred",
+                                            "cornell",  "xompt", "csv",     "nist",
+                                            "scatmech", "bird",  "pab-opto"};
 constexpr std::string_view eitherFormats[] = {"alta", "speos"};
 
 /// The format by extension, for content that none recognises. Content that looks like something
@@ -304,10 +307,10 @@ std::span<const Model> models() {
 
 std::span<const Format> formats() {
     static const std::vector<Format> table{
-        merlFormat(),  pbsdfFormat(),  rglFormat(),      bsdfXmlFormat(),  altaFormat(),
-        astmFormat(),  zemaxFormat(),  fredFormat(),     speosFormat(),    cornellFormat(),
-        xomptFormat(), csvFormat(),    nistFormat(),     scatmechFormat(), mitFormat(),
-        utiaFormat(),  slicesFormat(), merlSliceFormat()};
+        merlFormat(),     pbsdfFormat(), rglFormat(),     bsdfXmlFormat(), altaFormat(),
+        astmFormat(),     zemaxFormat(), fredFormat(),    speosFormat(),   cornellFormat(),
+        xomptFormat(),    birdFormat(),  pabOptoFormat(), csvFormat(),     nistFormat(),
+        scatmechFormat(), mitFormat(),   utiaFormat(),    slicesFormat(),  merlSliceFormat()};
     return table;
 }
 

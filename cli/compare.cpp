@@ -3,6 +3,7 @@
 #include "figure_options.h"
 #include "measured_numbers.h"
 
+#include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
 #include <hshfit/pages/pair_summary_json.h>
 #include <hshfit/pages/picture_error_json.h>
@@ -38,6 +39,7 @@ Json answer(const jobs::Compared& compared, const CompareArguments& arguments) {
                      {"a", compared.a},
                      {"b", compared.b},
                      {"outgoing", compared.outgoing.spec()}};
+    if (const auto side = transmissionSide(compared.a); !side.empty()) document["side"] = side;
     if (compared.picture) document["picture"] = pictureErrorJson(*compared.picture);
     document["metrics"] = metricValuesJson(compared.metrics);
     if (compared.pairs) document["pairs"] = pairSummaryJson(*compared.pairs);
@@ -55,6 +57,8 @@ std::string text(const jobs::Compared& compared, const CompareArguments& argumen
     std::string out = fmt::format("{} against {}, outgoing {}\n", arguments.others[0], arguments.a,
                                   compared.outgoing.spec());
     if (compared.picture) out += "  " + indented(textOf(*compared.picture));
+    if (const auto side = transmissionSide(compared.a); !side.empty())
+        out += fmt::format("  {}: no picture error, whose lit spheres reflect\n", side);
     for (const MetricValue& result : compared.metrics) out += metricText(result);
     if (compared.pairs) out += "  " + indented(textOf(*compared.pairs));
     if (compared.samples) {

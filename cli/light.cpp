@@ -45,6 +45,30 @@ Json curveJson(const LightCurve& curve) {
     return {{"basis", curve.basis}, {"points", points}};
 }
 
+Json splitJson(const jobs::SplitLight& split) {
+    const Direction& towards = split.split.sun.towards;
+    return {{"sun", split.sun},
+            {"rest", split.rest},
+            {"specification", split.specification},
+            {"elevation", 90 - degrees(polarAngle(towards))},
+            {"azimuth", degrees(azimuth(towards))},
+            {"angle", degrees(2 * split.split.sun.radius)},
+            {"radiance", split.split.sun.radiance},
+            {"irradiance", split.split.irradiance},
+            {"pixels", split.split.rest.size()},
+            {"peak", split.split.peak},
+            {"surroundings", split.split.surroundings},
+            {"error", split.error},
+            {"mean_error", split.meanError}};
+}
+
+std::string splitText(const jobs::SplitLight& split) {
+    return fmt::format(
+        "{}: the picture without its sun, {} pixels filled\n  sun: {}\n"
+        "  sum: '{}'\n  coefficients of the sum differ by {:.1e}\n",
+        split.rest, split.split.rest.size(), split.sun, split.specification, split.error);
+}
+
 std::string shareName(double share) {
     return fmt::format("{:g}", 100 * share);
 }
@@ -70,20 +94,22 @@ Json answer(const jobs::ProjectedLight& result, const std::string& output) {
         curve["enough"] = enoughJson(result.enoughWavelets);
         curves.push_back(curve);
     }
-    return {{"format", "hshfit-light-answer"},
-            {"version", 1},
-            {"light", light.source},
-            {"output", output},
-            {"basis", light.basis},
-            {"order", light.order},
-            {"domain", normal.is_null() ? "sphere" : "hemisphere"},
-            {"normal", normal},
-            {"channels", light.channels.names()},
-            {"energy", energyJson(light.energy)},
-            {"error", finiteOrNull(light.error)},
-            {"bands", result.bands},
-            {"enough", enoughJson(result.enough)},
-            {"curves", curves}};
+    Json json = {{"format", "hshfit-light-answer"},
+                 {"version", 1},
+                 {"light", light.source},
+                 {"output", output},
+                 {"basis", light.basis},
+                 {"order", light.order},
+                 {"domain", normal.is_null() ? "sphere" : "hemisphere"},
+                 {"normal", normal},
+                 {"channels", light.channels.names()},
+                 {"energy", energyJson(light.energy)},
+                 {"error", finiteOrNull(light.error)},
+                 {"bands", result.bands},
+                 {"enough", enoughJson(result.enough)},
+                 {"curves", curves}};
+    if (result.split) json["split"] = splitJson(*result.split);
+    return json;
 }
 
 std::string enoughText(const jobs::ProjectedLight& result) {
@@ -118,7 +144,8 @@ std::string text(const jobs::ProjectedLight& result, const std::string& output) 
                        known ? fmt::format("{:.6f} of the energy captured",
                                            light.curves.front().points.back().accuracy)
                              : std::string(noCapturedEnergy),
-                       light.error, known ? enoughText(result) : "", waveletText(result));
+                       light.error, known ? enoughText(result) : "", waveletText(result)) +
+           (result.split ? splitText(*result.split) : "");
 }
 
 void runLight(LightArguments& arguments, Globals& globals) {
@@ -159,6 +186,9 @@ void addLight(CLI::App& command, Globals& globals) {
                        "(default: the whole sphere)");
     command.add_flag("--wavelets", options.wavelets,
                      "A curve of SOHO wavelets too: the best n^2 terms of each channel");
+    command.add_flag("--split-sun", options.splitSun,
+                     "Split one picture into a sun: and NAME_rest.exr beside NAME.json, whose sum "
+                     "is the picture; exit code 3 where it has no sun");
     command.add_flag("--condon-shortley", options.condonShortley,
                      "Give functions of odd m the Condon-Shortley sign");
     command

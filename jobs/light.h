@@ -2,6 +2,7 @@
 
 #include <hshfit/coefficients/light_coefficients.h>
 #include <hshfit/light/light_nodes.h>
+#include <hshfit/light/sun_split.h>
 
 #include <optional>
 #include <string>
@@ -16,6 +17,18 @@ struct LightOptions {
     std::optional<Orientation> normal = {};  ///< of a hemisphere; none: the whole sphere
     double tolerance = 1e-6;                 ///< of coefficients that come from quadrature
     bool wavelets = false;                   ///< the captured energy of the best SOHO wavelets too
+    bool splitSun = false;                   ///< the sun of a picture and the rest beside the file
+};
+
+/// A picture as a sun and the rest.
+struct SplitLight {
+    SunSplit split;
+    std::string rest;           ///< path of the picture without the sun
+    std::string sun;            ///< specification
+    std::string specification;  ///< of the sum, which is the light
+    /// The coefficients of the sum less those of the picture, relative: root of the sum of squares,
+    /// of all bands and of band 0 alone.
+    double error = 0, meanError = 0;
 };
 
 struct ProjectedLight {
@@ -30,13 +43,15 @@ struct ProjectedLight {
     /// The least number of wavelets among those that captures each share.
     std::vector<std::optional<int>> enoughWavelets = {};
     std::vector<std::string> remarks = {};  ///< on the files of the light
+    std::optional<SplitLight> split = {};
 };
 
 /// Shares of the energy, one for each order in `enough`.
 inline constexpr double lightShares[] = {0.9, 0.99, 0.999};
 
 /// Coefficients of the sum of all specifications (light/catalog.h), to a file unless `output` is
-/// empty.
+/// empty. With `splitSun` the only specification is a picture, and NAME_rest.exr is written beside
+/// the file NAME.json: throws UsageError for another light, and as splitSun does.
 ProjectedLight light(const std::vector<std::string>& specs, const std::string& output,
                      const LightOptions& options);
 

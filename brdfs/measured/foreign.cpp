@@ -97,9 +97,6 @@ std::optional<std::string> programOf(std::string_view text, std::string_view low
     const auto has = [&](std::string_view word) {
         return lower.find(word) != std::string_view::npos;
     };
-    if (has("#format: theta phi"))
-        return "a pab-opto scan; it becomes readable as a table with a line of names "
-               "(theta_i,phi_i,theta_o,phi_o,brdf), or as BSDF XML by Radiance's pabopto2bsdf";
     if (text.starts_with("OPTIS - "))
         return "a Speos file of another kind; .brdf and .anisotropicbsdf are read, as text";
     if (has("\naoi") && has("\npoi"))

@@ -164,7 +164,7 @@ TEST(Speos, PercentagesScaleTheTables) {
     const Samples intensity = readSpeos(file("0"), "f");
     ASSERT_EQ(intensity.size(), 3u);  // none on the horizon
     EXPECT_NEAR(intensity.values[2], 0.2 / (2 * pi * std::sqrt(0.5)), 1e-12);
-    EXPECT_EQ(f.leftOut, (std::vector<std::string>{"transmission"}));
+    EXPECT_EQ(f.leftOut, (std::vector<std::string>{"transmission (option side)"}));
 }
 
 /// Two anisotropy angles, values 1 and 3, and a spectrum measured half way between two incidences.

@@ -148,6 +148,29 @@ TEST(Transmission, EnergyIsJudgedWithTheReflectionOfTheSameSide) {
     }
 }
 
+// A reflection that cannot be read, or compared, leaves the transmission readable and is stated.
+TEST(Transmission, AReflectionThatIsNotReadIsAFact) {
+    const auto fact = [](const std::string& blocks, const std::string& wavelength = "") {
+        const TemporaryFile both(
+            file(blockXml("Transmission Front", constant(.125), basis) + blocks), ".xml");
+        const auto brdf = brdfs::open(both.path() + ":side=transmission-front" + wavelength);
+        EXPECT_EQ(valueOf(*brdf, {0, 0, 1}, {0, 0, 1}), .125);
+        return textFact(*brdf, "reflection_not_read");
+    };
+    EXPECT_EQ(fact(""), "");
+    EXPECT_EQ(fact(blockXml("Reflection Front", constant(.125), basis)), "");
+    EXPECT_EQ(fact(blockXml("Reflection Back", "1, 2", basis)), "");
+    EXPECT_EQ(fact(blockXml("Reflection Front", constant(.125), basis, "Solar")), "");
+    const std::string broken = fact(blockXml("Reflection Front", "1, 2, x", basis));
+    EXPECT_NE(broken.find("judged without"), std::string::npos) << broken;
+    const std::string other = fact(blockXml(
+        "Reflection Front", matrixText(145, [](int, int) { return .1; }), "LBNL/Klems Full"));
+    EXPECT_NE(other.find("judged without"), std::string::npos) << other;
+    const std::string twice = fact(blockXml("Reflection Front", constant(.125), basis) +
+                                   blockXml("Reflection Front", constant(.125), basis));
+    EXPECT_NE(twice.find("second block"), std::string::npos) << twice;
+}
+
 // Grids of different depth: cells of the coarser one hold several of the finer one.
 TEST(Transmission, EnergyOfTreesOfDifferentDepthIsThatOfTheSameLight) {
     std::string fine = "{";  // 2 x 2 incident cells, the first coordinate in the lower half .125

@@ -247,6 +247,40 @@ TEST_F(Lights, LightComparesWithItsBestWavelets) {
     EXPECT_LT(curves[1]["error"], 0.02);
 }
 
+TEST_F(Lights, ASunIsSplitOffAPicture) {
+    // A sun of one pixel, and one without.
+    std::vector<float> rgb(3 * 64 * 32, 1.0F);
+    const std::string plain = pfm("plain.pfm", 64, 32, rgb);
+    for (std::size_t c = 0; c < 3; ++c) rgb[3 * (20 * 64 + 10) + c] = 5e4F;
+    const std::string sun = pfm("sun.pfm", 64, 32, rgb);
+    const Answer answer =
+        run("light " + sun + ":turn=20,scale=2 --split-sun -o " + path("day.json") + " --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "light"));
+    const Json split = Json::parse(answer.out)["split"];
+    // Row 20 from the bottom is row 11 from the top; a pixel has 5.625 degrees.
+    EXPECT_NEAR(split["elevation"], 90 - 11.5 * 5.625, 0.1);
+    EXPECT_NEAR(split["azimuth"], 180 - 10.5 * 5.625 + 20 - 0, 0.1);
+    const double solidAngle = 2 * pi / 64 * (std::cos(11 * pi / 32) - std::cos(12 * pi / 32));
+    EXPECT_NEAR(split["irradiance"][1], 2 * (5e4 - 1) * solidAngle, 2e-3 * 2 * 5e4 * solidAngle);
+    EXPECT_LT(split["mean_error"], 1e-6);
+    EXPECT_LT(split["error"], 0.03);
+    EXPECT_EQ(split["rest"], path("day_rest.exr"));
+    // The sum is a specification like any other.
+    const auto irradiance = [&](const std::string& spec) {
+        const Answer one = run("irradiance '" + spec + "' --json");
+        EXPECT_EQ(one.code, 0) << one.err;
+        return Json::parse(one.out)["irradiance"];
+    };
+    const Json whole = irradiance(sun + ":turn=20,scale=2");
+    const Json sum = irradiance(split["specification"]);
+    for (std::size_t k = 0; k < 4; ++k)
+        EXPECT_NEAR(sum[k][0], whole[k][0], 1e-5 * whole[0][0].get<double>()) << k;
+    expectError("light " + plain + " --split-sun -o " + path("x.json"), 3, "has no sun", 4);
+    expectError("light uniform: --split-sun -o " + path("x.json"), 2, "one picture", 4);
+    expectError("light " + sun + " uniform: --split-sun -o " + path("x.json"), 2, "a sum", 4);
+}
+
 TEST_F(Lights, CoefficientsOfTheOtherKindAreRefused) {
     ASSERT_EQ(run("light uniform --order 2 -o " + path("light.json")).code, 0);
     ASSERT_EQ(run("project lambert --order 2 --outgoing 4 -o " + path("brdf.json")).code, 0);

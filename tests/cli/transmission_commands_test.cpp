@@ -77,6 +77,12 @@ TEST_F(TransmissionCommands, CoefficientsOfATransmissionStayOne) {
     const Answer compared = run("compare " + glass + " " + file);
     EXPECT_EQ(compared.code, 0) << compared.err;
     EXPECT_EQ(compared.out.find("reciprocity"), std::string::npos);
+    EXPECT_NE(compared.out.find("transmission-front: no picture error"), std::string::npos);
+    const Answer document = run("compare " + glass + " " + file + " --json");
+    EXPECT_TRUE(keepsSchema(document.out, "compare"));
+    EXPECT_EQ(Json::parse(document.out)["side"], "transmission-front");
+    refuses("compare " + glass + " " + file + " -o " + path("page"), 2,
+            "a page with its lit spheres takes reflections");
     refuses("compare " + glass + " " + file + " --metrics reciprocity", 2, "not exchanged");
     EXPECT_EQ(run("report " + glass + " --json --bases hsh --max-order 4 --outgoing 4").code, 0);
     refuses("project " + glass + " --form basis --reciprocal -o " + path("b.json"), 2,
@@ -121,8 +127,10 @@ TEST_F(TransmissionCommands, AnXmlFileKeepsAllItsBlocks) {
 
 TEST_F(TransmissionCommands, OtherCommandsRefuseATransmission) {
     const std::string out = " -o " + path("x.json");
+    write("t.astm", "VARS theta_i,phi_i,theta_s,phi_s,f\n0.1,0,2.9,3,1\n0.4,0,2.5,3,1\n");
     const std::vector<std::string> commands = {"fit " + glass + " --model ggx" + out,
                                                "fit ggx:alpha=0.3 --model rough-glass" + out,
+                                               "fit " + path("t.astm") + " --model lambert" + out,
                                                "choose " + glass + out,
                                                "tradeoff " + glass + out,
                                                "gaussians " + glass + out,

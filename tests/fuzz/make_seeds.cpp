@@ -170,6 +170,13 @@ void lightSpecifications(const std::filesystem::path& folder) {
         write(folder / std::to_string(number++), text);
 }
 
+void weatherFile(const std::filesystem::path& folder) {
+    write(folder / "two",
+          "LOCATION,A,-,B,C,1,52.3,4.77,1,-2\nDESIGN CONDITIONS,0\nDATA PERIODS,1,1,Data,Sunday,"
+          "1/ 1,12/31\n1995,1,1,1,60,?9,5,1,79,99900,0,1415,288,0,0,0,0\n"
+          "1996,6,21,13,60,?9,5,1,79,99900,1200,1325,288,800,700,150,0\n");
+}
+
 void coefficientFiles(const std::filesystem::path& folder) {
     using namespace hshfit;
     std::filesystem::create_directories(folder);
@@ -317,6 +324,17 @@ void opticsFiles(const std::filesystem::path& folder) {
     write(folder / "fuzz_speos" / "anisotropic",
           "OPTIS - Anisotropic BSDF surface file v8.0\n0\nown\n2\nab\n0 1 0\n1 0\n0\n1\n0\n1\n30\n"
           "30 0\n\n2\n400 10\n500 20\n2 2\n0 180\n0 1 1\n60 1 1\nEnd of file\n");
+    write(folder / "fuzz_pab_opto" / "two",
+          "#sample_name \"a\"\n#incident_angle 30 180\n#format: theta phi DSF\n30 0 0.4\n"
+          "150 0 0.3\n#intheta 150\n#inphi 0\n#format: theta phi BSDF\n"
+          "#colorimetry: CIE-Y\n40 0 1\n");
+    write(folder / "fuzz_bird" / "two",
+          R"({"metadata": {"sample": {"name": "a"}}, "data": {"theta_i": {"unit": "deg",)"
+          R"( "values": [1, 2]}, "phi_i": {"unit": "deg", "values": [0, 0]}, "theta_r":)"
+          R"( {"unit": "rad", "values": [0.1, 0.1]}, "phi_r": {"unit": "deg", "values":)"
+          R"( [0, 90]}, "wavelength_i": {"unit": "nm", "values": [500, 500]}, "polarization_i":)"
+          R"( {"notation": "sp", "values": ["u", "u"]}, "uBRDF": {"unit": "%", "values":)"
+          R"( [1, 1]}, "BRDF": {"unit": "1/sr", "values": [0.3, 0.2]}}})");
     write(folder / "fuzz_xompt" / "two",
           R"({"metadata": {"name": "a"}, "brdf": {"wavelengths": [5e-7],)"
           R"( "lookupTable": [[5e-7, 0, 0, 0, 0.3], [5e-7, 0.1, 0, 0, null]]}})");
@@ -427,6 +445,7 @@ int main(int count, char** arguments) {
     bsdfXmlFiles(folder / "fuzz_bsdf_xml");
     lightPictures(folder / "fuzz_pictures");
     lightSpecifications(folder / "fuzz_lights");
+    weatherFile(folder / "fuzz_weather");
     meshes(folder / "fuzz_meshes");
     int number = 0;
     for (const std::vector<float>& phi :

@@ -20,18 +20,22 @@ std::unique_ptr<Brdf> openFile(const std::string& path, const Parameters& parame
     return brdf;
 }
 
-/// The blocks of one kind; where they transmit, with the energy of the reflection beside them.
+/// The blocks of one kind; where they transmit, with the energy of the reflection beside them. A
+/// reflection that cannot be read, or not be added, is a fact of the BRDF.
 template <class Stored>
 std::unique_ptr<MeasuredBrdf> make(const BsdfDocument& document, BsdfSelection selection,
                                    std::string_view wavelength) {
     const BsdfSide side = selection.side;
     auto brdf = std::make_unique<Stored>(document, std::move(selection));
     if (!isTransmission(side)) return brdf;
+    constexpr const char* notRead = "reflection_not_read";
     try {
-        brdf->addReflection(
-            Stored(document, selectBlocks(document, counterpart(side), wavelength)));
-    } catch (const InputError&) {
-        // The file has no reflection of that side, or one that cannot be read.
+        if (!hasBlocks(document, counterpart(side), wavelength)) return brdf;
+        const Stored reflection(document, selectBlocks(document, counterpart(side), wavelength));
+        if (!brdf->addReflection(reflection))
+            brdf->addFact({notRead, "its cells or channels are others; energy is judged without"});
+    } catch (const InputError& error) {
+        brdf->addFact({notRead, std::string(error.what()) + "; energy is judged without"});
     }
     return brdf;
 }

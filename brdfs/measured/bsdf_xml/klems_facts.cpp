@@ -84,10 +84,10 @@ void KlemsBrdf::findLaws() {
     laws_.energyConserving = most <= 1 + roundingOfFiles;
 }
 
-void KlemsBrdf::addReflection(const KlemsBrdf& reflection) {
+bool KlemsBrdf::addReflection(const KlemsBrdf& reflection) {
     if (reflection.incident_.patches() != incident_.patches() ||
         reflection.channels_.count() != channels_.count())
-        return;
+        return false;
     double most = 0;
     for (std::size_t c = 0; c < channels_.count(); ++c)
         for (std::size_t i = 0; i < incident_.patches(); ++i)
@@ -95,6 +95,7 @@ void KlemsBrdf::addReflection(const KlemsBrdf& reflection) {
                             directionalReflectance(c, i) + reflection.directionalReflectance(c, i));
     withReflection_ = most;
     laws_.energyConserving = laws_.energyConserving && most <= 1 + roundingOfFiles;
+    return true;
 }
 
 /// Whether both bases have the same patches, and directions may be exchanged patch by patch.

@@ -180,6 +180,11 @@ BsdfSide counterpart(BsdfSide side) {
     return BsdfSide::back;
 }
 
+bool hasBlocks(const BsdfDocument& document, BsdfSide side, std::string_view wavelength) {
+    BsdfSelection selection;
+    return takeSide(selection, document, side, wavelength);
+}
+
 BsdfSelection selectBlocks(const BsdfDocument& document, std::optional<BsdfSide> side,
                            std::string_view wavelength) {
     BsdfSelection selection;

@@ -73,6 +73,10 @@ struct BsdfSelection {
 BsdfSelection selectBlocks(const BsdfDocument& document, std::optional<BsdfSide> side,
                            std::string_view wavelength);
 
+/// Whether the file has blocks of one kind for a wavelength, as above. Throws likewise for
+/// duplicates.
+bool hasBlocks(const BsdfDocument& document, BsdfSide side, std::string_view wavelength);
+
 /// Linear RGB of CIE XYZ with the primaries of Rec. 709 and the white of equal energy, which these
 /// files use for a neutral surface: X = Y = Z gives R = G = B. Negative components, outside of the
 /// gamut, are kept.

@@ -206,9 +206,9 @@ std::vector<double> TreeBrdf::directionalReflectances() const {
 }
 
 // The coarser grid is a part of the finer: the cell with the same corner.
-void TreeBrdf::addReflection(const TreeBrdf& reflection) {
+bool TreeBrdf::addReflection(const TreeBrdf& reflection) {
     const int rank = trees_[0].rank();
-    if (reflection.trees_[0].rank() != rank) return;
+    if (reflection.trees_[0].rank() != rank) return false;
     const std::vector<double> own = directionalReflectances(),
                               other = reflection.directionalReflectances();
     const auto sideOf = [&](const TensorTree& tree, const std::vector<double>& cells) {
@@ -223,6 +223,7 @@ void TreeBrdf::addReflection(const TreeBrdf& reflection) {
                                       other[v * theirs / side * theirs + u * theirs / side]);
     withReflection_ = most;
     laws_.energyConserving = laws_.energyConserving && most <= 1 + roundingOfFiles;
+    return true;
 }
 
 std::vector<Axis> TreeBrdf::axes() const {

@@ -56,8 +56,10 @@ public:
     /// coordinate fastest. Rank 3: from grazing (first) to normal incidence.
     std::vector<double> directionalReflectances() const;
     /// Takes note of the reflection of light from the same side: conservation of energy is then
-    /// that of both together.
-    void addReflection(const TreeBrdf& reflection);
+    /// that of both together. False, and nothing changes, for a reflection over other cells or
+    /// in other channels.
+    bool addReflection(const TreeBrdf& reflection);
+    void addFact(Fact fact) { selection_.facts.push_back(std::move(fact)); }
 
 private:
     TensorTree::Point pointFor(const Direction& wo, double x, double y) const;

@@ -1,5 +1,6 @@
 #include <brdfs/measured/scattered/astm.h>
 #include <brdfs/measured/scattered/scattered.h>
+#include <brdfs/measured/scattered/sides.h>
 #include <brdfs/measured/scattered/text_file.h>
 #include <brdfs/measured/text_reader.h>
 
@@ -156,10 +157,11 @@ bool looksLikeAstm(std::span<const unsigned char> head, std::uint64_t) {
 
 }  // namespace
 
-Samples readAstm(std::string_view text, const std::string& where, bool inDegrees) {
+Samples readAstm(std::string_view text, const std::string& where, bool inDegrees,
+                 std::string_view side) {
     TextReader reader(text, where);
-    Samples samples;
-    samples.facts = {{"format", "astm"}};
+    std::vector<Fact> facts{{"format", "astm"}};
+    Channels channels;
     std::optional<double> announced;
     std::optional<Columns> columns;
     while (!columns && reader.next()) {
@@ -168,7 +170,7 @@ Samples readAstm(std::string_view text, const std::string& where, bool inDegrees
         const std::size_t at = static_cast<std::size_t>(keyword.data() - reader.line().data());
         std::string_view rest = withoutBlanks(reader.line().substr(at + keyword.size()));
         if (keyword == "VARS") {
-            columns = readColumns(rest, reader, samples.channels);
+            columns = readColumns(rest, reader, channels);
         } else if (keyword == "NUM_POINTS") {
             double count = 0;
             if (!takeNumber(rest, count) || !withoutBlanks(rest).empty() || !(count >= 0)) {
@@ -176,10 +178,11 @@ Samples readAstm(std::string_view text, const std::string& where, bool inDegrees
             }
             announced = count;
         } else if (keyword == "SAMPLE_NAME" || keyword == "LAB_NAME") {
-            samples.facts.emplace_back(lowerCase(keyword), std::string(rest.substr(0, 200)));
+            facts.emplace_back(lowerCase(keyword), std::string(rest.substr(0, 200)));
         }
     }
     if (!columns) throw reader.error("the file ends without a line VARS that names its columns");
+    SidedSamples sided(channels);
     std::vector<double> row, values(columns->values.size());
     const double unit = inDegrees ? pi / 180 : 1;
     std::size_t rows = 0;
@@ -195,19 +198,21 @@ Samples readAstm(std::string_view text, const std::string& where, bool inDegrees
         for (std::size_t k = 0; k < 4; ++k) {
             if (!columns->angle[k]) continue;
             const double angle = row[*columns->angle[k]] * unit;
-            angles[k] = k % 2 == 0 ? checkedPolarAngle(angle, at, angleNames[k])
+            angles[k] = k % 2 == 0 ? checkedSidedAngle(angle, at, angleNames[k])
                                    : checkedAzimuth(angle, at, angleNames[k]);
         }
         for (std::size_t c = 0; c < values.size(); ++c) values[c] = row[columns->values[c]];
-        const std::size_t before = samples.size();
-        samples.add(directionFromAngles(angles[0], angles[1]),
-                    directionFromAngles(angles[2], angles[3]), values, at);
-        if (samples.size() > before) addStatement(*columns, row, at, samples);
+        Samples* samples = sided.add(directionFromAngles(angles[0], angles[1]),
+                                     directionFromAngles(angles[2], angles[3]), values, at);
+        if (samples) addStatement(*columns, row, at, *samples);
         ++rows;
     }
     if (announced && *announced != static_cast<double>(rows)) {
         throw reader.error(fmt::format("{} rows, but NUM_POINTS announces {}", rows, *announced));
     }
+    if (rows == 0) throw reader.error("the file has no row of numbers");
+    Samples samples = sided.take(side, where);
+    samples.facts = std::move(facts);
     return samples;
 }
 
@@ -220,13 +225,17 @@ const Format& astmFormat() {
         .parameters = scatteredParameters({{.name = "angles",
                                             .help = "unit of the angles in the file",
                                             .kind = Parameter::Kind::choice,
-                                            .choices = {"radians", "degrees"}}}),
+                                            .choices = {"radians", "degrees"}},
+                                           sideParameter("polar angles beyond 90 degrees are on "
+                                                         "the back; auto: the first that the "
+                                                         "file has, reflections first")}),
         .open =
             [](const std::string& path, const Parameters& parameters) {
                 const bool inDegrees = parameters.choice("angles") == "degrees";
+                const std::string side = parameters.choice("side");
                 return openScattered(path, parameters,
                                      [=](std::string_view text, const std::string& where) {
-                                         return readAstm(text, where, inDegrees);
+                                         return readAstm(text, where, inDegrees, side);
                                      });
             },
     };

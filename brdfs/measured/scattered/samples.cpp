@@ -59,6 +59,13 @@ double checkedPolarAngle(double theta, const Row& row, std::string_view field) {
                                 inDegrees ? " (are these degrees?)" : ""));
 }
 
+double checkedSidedAngle(double theta, const Row& row, std::string_view field) {
+    if (std::fabs(theta) <= pi + 1e-3) return theta;
+    const bool inDegrees = std::fabs(theta) <= 180.1;
+    throw row.error(fmt::format("{} is {}, expected radians from -pi to pi{}", field, theta,
+                                inDegrees ? " (are these degrees?)" : ""));
+}
+
 double checkedAzimuth(double phi, const Row& row, std::string_view field) {
     if (std::fabs(phi) <= 4 * pi + 1e-3) return phi;
     const bool inDegrees = std::fabs(phi) <= 720.1;

@@ -31,6 +31,8 @@ struct Samples {
     /// pairs with its coordinates. Chart::anisotropic stands for full pairs.
     Chart chart = Chart::anisotropic;
     bool isotropic = false;  ///< as stated in the file
+    /// The value of the option `side` (sides.h); empty for formats of reflections alone.
+    std::string_view side = {};
     Census census;
     std::vector<Fact> facts;           ///< the format and the facts of its header
     std::vector<std::string> leftOut;  ///< parts of the file that are not read
@@ -63,6 +65,8 @@ private:
 /// for NaN, infinity, and angles more than 1e-3 above pi/2, which are most likely in degrees.
 /// Negative angles are on the other side of the normal.
 double checkedPolarAngle(double theta, const Row& row, std::string_view field);
+/// The same of an angle up to pi: beyond pi/2 it is on the back of the surface.
+double checkedSidedAngle(double theta, const Row& row, std::string_view field);
 /// Checks an azimuth in the same way, with a limit of two turns.
 double checkedAzimuth(double phi, const Row& row, std::string_view field);
 

@@ -1,5 +1,6 @@
 #include <brdfs/measured/scattered/number_lines.h>
 #include <brdfs/measured/scattered/scattered.h>
+#include <brdfs/measured/scattered/sides.h>
 #include <brdfs/measured/scattered/speos.h>
 #include <brdfs/measured/scattered/text_file.h>
 #include <hshfit/files/printable.h>
@@ -20,7 +21,24 @@ constexpr std::string_view anisotropicMark = "OPTIS - Anisotropic BSDF surface f
 struct SpeosTable {
     std::vector<double> thetas, phis, values;
     std::vector<std::size_t> lines;  ///< of the rows
+    /// Whether the polar angles of the file go from 90 to 180 degrees; `thetas` are those of the
+    /// directions mirrored at the surface, ascending likewise.
+    bool through = false;
 };
+
+/// The rows in the reverse order, with the supplements of their angles.
+void mirrorThrough(SpeosTable& table) {
+    const std::size_t phis = table.phis.size();
+    std::vector<double> values;
+    values.reserve(table.values.size());
+    for (std::size_t t = table.thetas.size(); t-- > 0;)
+        values.insert(values.end(), table.values.begin() + static_cast<std::ptrdiff_t>(t * phis),
+                      table.values.begin() + static_cast<std::ptrdiff_t>((t + 1) * phis));
+    table.values = std::move(values);
+    std::ranges::reverse(table.thetas);
+    std::ranges::reverse(table.lines);
+    for (double& theta : table.thetas) theta = 180 - theta;
+}
 
 /// The integrals over [a, b] of (b - t)/(b - a) w(t) and of (t - a)/(b - a) w(t), w = sin t cos t
 /// or sin t.
@@ -39,15 +57,17 @@ std::pair<double, double> shares(double a, double b, bool withCosine) {
 
 class SpeosReader {
 public:
-    SpeosReader(std::string_view text, const std::string& where)
-        : where_(where), reader_(text, where), numbers_(reader_, text.size()) {}
+    SpeosReader(std::string_view text, const std::string& where, std::string_view side)
+        : where_(where), reader_(text, where), numbers_(reader_, text.size()), side_(side) {}
 
     Samples read();
 
 private:
     void readHead();
     bool takeFlag(std::string_view what);
-    SpeosTable takeTable(bool reflection);
+    void chooseSide();
+    SpeosTable takeTable();
+    SpeosTable takeWanted(double* percent);
     double integral(const SpeosTable& table) const;
     void readSpectral(Samples& samples);
     void readAnisotropic(Samples& samples);
@@ -60,6 +80,8 @@ private:
     const std::string& where_;
     TextReader reader_;
     NumberLines numbers_;
+    std::string_view side_;
+    bool through_ = false;  ///< transmission is read
     bool anisotropic_ = false, reflects_ = false, transmits_ = false, ofBsdf_ = false;
 };
 
@@ -98,18 +120,47 @@ void SpeosReader::readHead() {
     }
     reflects_ = takeFlag("reflection (0 or 1)");
     transmits_ = takeFlag("transmission (0 or 1)");
-    if (!reflects_) throw reader_.error("the file holds transmission alone, which is not read");
+    chooseSide();
     ofBsdf_ = takeFlag("the type of the values (1 BSDF, 0 intensity)");
 }
 
-SpeosTable SpeosReader::takeTable(bool reflection) {
+void SpeosReader::chooseSide() {
+    if (!reflects_ && !transmits_)
+        throw reader_.error("the file says that it has neither reflection nor transmission");
+    if (side_ == "auto") side_ = reflects_ ? sideWords[0] : sideWords[2];
+    through_ = side_.starts_with("transmission");
+    if (through_ ? !transmits_ : !reflects_)
+        throw reader_.error(fmt::format("the file holds {} alone, and side={} is asked for",
+                                        reflects_ ? "reflection" : "transmission", side_));
+}
+
+/// The next table of the kind that is read, with the percentage before it; a file with both kinds
+/// tells them apart by their polar angles, in whatever order they come.
+SpeosTable SpeosReader::takeWanted(double* percent) {
+    while (true) {
+        if (percent) *percent = numbers_.take("the percentage");
+        SpeosTable table = takeTable();
+        if (table.through == through_) {
+            if (through_) mirrorThrough(table);
+            return table;
+        }
+        if (!reflects_ || !transmits_)
+            throw reader_.error(fmt::format(
+                "the polar angles are from {} to {}, expected {} for {}", table.thetas.front(),
+                table.thetas.back(), through_ ? "90 to 180" : "0 to 90",
+                through_ ? "transmission" : "reflection"));
+    }
+}
+
+SpeosTable SpeosReader::takeTable() {
     const std::size_t thetas = numbers_.takeCount("polar angles");
     const std::size_t phis = numbers_.takeCount("azimuths");
     SpeosTable table;
     table.phis = numbers_.takeAscending(phis, "azimuths");
     for (std::size_t t = 0; t < thetas; ++t) {
         const double theta = numbers_.take("a polar angle");
-        const double least = reflection ? 0 : 90;
+        if (t == 0) table.through = theta >= 90 - 1e-9;
+        const double least = table.through ? 90 : 0;
         if (!(theta >= least - 1e-9 && theta <= least + 90 + 1e-9) ||
             (t > 0 && theta <= table.thetas.back()))
             throw reader_.error(
@@ -122,7 +173,7 @@ SpeosTable SpeosReader::takeTable(bool reflection) {
         table.values.insert(table.values.end(), row.begin(), row.end());
     }
     const double around = table.phis.back() - table.phis.front();
-    if (reflection && std::fabs(around - 360) > 1e-6 && std::fabs(around - 180) > 1e-6)
+    if (std::fabs(around - 360) > 1e-6 && std::fabs(around - 180) > 1e-6)
         throw reader_.error(fmt::format("azimuths from {} to {}, expected 360 or 180 degrees",
                                         table.phis.front(), table.phis.back()));
     return table;
@@ -191,10 +242,10 @@ void SpeosReader::readSpectral(Samples& samples) {
         SpeosTable first;
         std::vector<std::vector<double>> channels;
         for (std::size_t c = 0; c < wavelengths; ++c) {
-            const double percent = numbers_.take("the percentage");
+            double percent = 0;
+            SpeosTable table = takeWanted(&percent);
             if (!(percent >= 0 && percent <= 1e6))
                 throw reader_.error(fmt::format("{} percent is no reflectance", percent));
-            SpeosTable table = takeTable(true);
             const double whole = integral(table);
             if (percent > 0 && !(whole > 0))
                 throw reader_.error(fmt::format(
@@ -273,20 +324,21 @@ void SpeosReader::readAnisotropic(Samples& samples) {
     };
     std::vector<double> angles, ignoredAngles;
     std::vector<std::vector<double>> incidences, ignored;
+    const bool both = reflects_ && transmits_;
+    if (both && through_) readAngles(ignoredAngles, ignored);
     readAngles(angles, incidences);
-    if (transmits_) readAngles(ignoredAngles, ignored);
-    double spectrumIncidence = 0;
+    if (both && !through_) readAngles(ignoredAngles, ignored);
+    double spectrumIncidence = 0, otherIncidence = 0;
+    Samples other;
+    if (both && through_) readSpectrum(other, otherIncidence);
     const std::vector<double> shares = readSpectrum(samples, spectrumIncidence);
-    if (transmits_) {
-        Samples none;
-        double angle = 0;
-        readSpectrum(none, angle);
-    }
+    if (both && !through_) readSpectrum(other, otherIncidence);
     samples.isotropic = angles.size() == 1;
     double scale = 0;
     for (std::size_t k = 0; k < angles.size(); ++k) {
         std::vector<SpeosTable> tables;
-        for (std::size_t i = 0; i < incidences[k].size(); ++i) tables.push_back(takeTable(true));
+        for (std::size_t i = 0; i < incidences[k].size(); ++i)
+            tables.push_back(takeWanted(nullptr));
         if (k == 0) scale = scaleAt(spectrumIncidence, incidences[0], tables);
         for (std::size_t i = 0; i < tables.size(); ++i) {
             std::vector<std::vector<double>> channels(shares.size(), tables[i].values);
@@ -307,7 +359,10 @@ Samples SpeosReader::read() {
         readAnisotropic(samples);
     else
         readSpectral(samples);
-    if (transmits_) samples.leftOut.emplace_back("transmission");
+    if (reflects_ && transmits_)
+        samples.leftOut.emplace_back(through_ ? "reflection (option side)"
+                                              : "transmission (option side)");
+    samples.side = side_ == sideWords[3] ? sideWords[3] : through_ ? sideWords[2] : sideWords[0];
     return samples;
 }
 
@@ -318,22 +373,30 @@ bool looksLikeSpeos(std::span<const unsigned char> head, std::uint64_t) {
 
 }  // namespace
 
-Samples readSpeos(std::string_view text, const std::string& where) {
-    return SpeosReader(text, where).read();
+Samples readSpeos(std::string_view text, const std::string& where, std::string_view side) {
+    return SpeosReader(text, where, side).read();
 }
 
 const Format& speosFormat() {
     static const Format format{
         .name = "speos",
         .help =
-            "Surface files of Ansys Speos, .brdf and .anisotropicbsdf as text; reflection, grey "
-            "or spectral",
+            "Surface files of Ansys Speos, .brdf and .anisotropicbsdf as text, grey or spectral",
         .extension = ".anisotropicbsdf",
         .recognises = looksLikeSpeos,
-        .parameters = scatteredParameters(),
+        .parameters = scatteredParameters(
+            {{.name = "side",
+              .help = "light comes from the front, unless stated otherwise; auto: reflection, or "
+                      "transmission where the file has no other",
+              .kind = Parameter::Kind::choice,
+              .choices = {"auto", "reflection-front", "transmission-front", "transmission-back"}}}),
         .open =
             [](const std::string& path, const Parameters& parameters) {
-                return openScattered(path, parameters, readSpeos);
+                const std::string side = parameters.choice("side");
+                return openScattered(path, parameters,
+                                     [&](std::string_view text, const std::string& where) {
+                                         return readSpeos(text, where, side);
+                                     });
             },
     };
     return format;

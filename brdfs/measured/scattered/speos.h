@@ -21,9 +21,12 @@ namespace hshfit::brdfs {
 ///                            weighted between its neighbours
 /// and for type 0 divided by cos(theta). The anisotropy vector is the tangent +x: at an anisotropy
 /// angle of p the light comes from azimuth 180 - p degrees. A spectrum of one percentage is grey.
-/// Tables of transmission are left out. Throws InputError, with `where` and the line, for other
-/// content, binary files and files of transmission alone.
-Samples readSpeos(std::string_view text, const std::string& where);
+///
+/// Polar angles from 90 to 180 degrees tell tables of transmission from those of reflection, in
+/// whatever order they come. `side`: "reflection-front", "transmission-front" or, by the user's
+/// word, "transmission-back"; "auto": reflection, or transmission where there is no other. Throws
+/// InputError, with `where` and the line, for other content and binary files.
+Samples readSpeos(std::string_view text, const std::string& where, std::string_view side = "auto");
 
 /// The row of the table of formats.
 const Format& speosFormat();

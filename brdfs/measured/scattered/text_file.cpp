@@ -2,6 +2,8 @@
 #include <brdfs/measured/scattered/text_file.h>
 #include <hshfit/files/mapped_file.h>
 
+#include <fmt/format.h>
+
 namespace hshfit::brdfs {
 
 void withTextFile(const std::string& path,
@@ -23,9 +25,16 @@ std::unique_ptr<Brdf> openScattered(
     withTextFile(path, [&](std::string_view text, const std::string& where) {
         samples = read(text, where);
     });
-    const std::string options = parameters.canonical();
-    return std::make_unique<Scattered>(std::move(samples), scatteredOptions(parameters),
-                                       options.empty() ? path : path + ":" + options);
+    std::string words = parameters.canonical();
+    ScatteredOptions options = scatteredOptions(parameters);
+    if (!samples.side.empty()) {
+        // Directions of a transmission are not exchanged, and its name states its side.
+        options.exchange = options.exchange && !samples.side.starts_with("transmission");
+        if (parameters.choice("side") == "auto" && samples.side != "reflection-front")
+            words += fmt::format("{}side={}", words.empty() ? "" : ",", samples.side);
+    }
+    return std::make_unique<Scattered>(std::move(samples), options,
+                                       words.empty() ? path : path + ":" + words);
 }
 
 std::string_view asText(std::span<const unsigned char> head) {

@@ -6,11 +6,11 @@
 #include <hshfit/files/exr_header.h>
 #include <hshfit/light/coefficient_light.h>
 #include <hshfit/light/internal/picture_terms.h>
+#include <hshfit/light/internal/sun_place.h>
 #include <hshfit/light/perez_sky.h>
 #include <hshfit/light/picture_light.h>
 #include <hshfit/light/placement.h>
 #include <hshfit/light/sky.h>
-#include <hshfit/light/solar_position.h>
 #include <hshfit/picture_files/picture_file.h>
 #include <hshfit/specification/sums.h>
 
@@ -43,10 +43,6 @@ Parameter number(std::string_view name, std::string_view help, double fallback, 
     return {.name = name, .help = help, .fallback = fallback, .min = min, .max = max};
 }
 
-Parameter words(std::string_view name, std::string_view help, std::string_view example) {
-    return {.name = name, .help = help, .kind = Parameter::Kind::text, .choices = {example}};
-}
-
 std::vector<Parameter> both(std::vector<Parameter> first, const std::vector<Parameter>& second) {
     first.insert(first.end(), second.begin(), second.end());
     return first;
@@ -55,18 +51,6 @@ std::vector<Parameter> both(std::vector<Parameter> first, const std::vector<Para
 std::vector<Parameter> scaleAndTurn() {
     return {number("scale", "factor of the radiance", 1, 0, brightest),
             number("turn", "degrees about +z, from +x towards +y", 0, -360, 360)};
-}
-
-/// A direction, or a place and time for that of the sun.
-std::vector<Parameter> sunPlace(double lowest) {
-    return {number("elevation", "of the sun, degrees from the horizon; or a place and time",
-                   notGiven, lowest, 90),
-            number("azimuth", "degrees from +x towards +y", 0, -360, 360),
-            number("latitude", "degrees, positive in the north", notGiven, -90, 90),
-            number("longitude", "degrees, positive in the east", notGiven, -180, 180),
-            words("date", "of the place, 1950 to 2050", "2024-06-21"),
-            words("time", "of the place", "12:00"),
-            number("zone", "hours that the place's time is ahead of Universal Time", 0, -14, 14)};
 }
 
 Rgb rgb(const Parameters& p, std::string_view name) {
@@ -98,45 +82,6 @@ Rgb radianceBy(std::string_view owner, const Parameters& p, double irradianceOfO
     return byIrradiance ? over(rgb(p, "irradiance"), irradianceOfOne) : rgb(p, "radiance");
 }
 
-Direction fromElevation(const Parameters& p) {
-    return directionFromAngles(radians(90 - p.number("elevation")), radians(p.number("azimuth")));
-}
-
-/// The direction of the sun.
-Direction sunDirection(std::string_view owner, const Parameters& p) {
-    constexpr std::string_view place[] = {"latitude", "longitude", "date", "time"};
-    const auto stated = [&](std::string_view name) { return p.given(name); };
-    if (!std::ranges::any_of(place, stated)) {
-        if (!p.given("elevation"))
-            throw UsageError(
-                fmt::format("{}: elevation has to be given, or latitude, longitude, "
-                            "date and time",
-                            owner));
-        if (p.given("zone"))
-            throw UsageError(fmt::format("{}: zone is given without date and time", owner));
-        return fromElevation(p);
-    }
-    for (const std::string_view name : place)
-        if (!p.given(name))
-            throw UsageError(
-                fmt::format("{}: {} is missing; a place and time needs latitude, "
-                            "longitude, date and time",
-                            owner, name));
-    for (const std::string_view name : {"elevation", "azimuth"})
-        if (p.given(name))
-            throw UsageError(fmt::format(
-                "{}: {} is given beside a place and time; valid: one of the two", owner, name));
-    const SolarPosition sun =
-        solarPosition(parseMoment(owner, p.choice("date"), p.choice("time"), p.number("zone")),
-                      radians(p.number("latitude")), radians(p.number("longitude")));
-    if (sun.elevation < 0)
-        throw UsageError(
-            fmt::format("{}: the sun is {:.2f} degrees below the horizon at {} on {}; "
-                        "valid: a time between sunrise and sunset",
-                        owner, -degrees(sun.elevation), p.choice("time"), p.choice("date")));
-    return directionOf(sun);
-}
-
 // --- the kinds ------------------------------------------------------------------------------
 
 Light uniform(std::string_view owner, const Parameters& p) {
@@ -152,8 +97,12 @@ Light directional(std::string_view owner, const Parameters& p) {
 
 Light sun(std::string_view owner, const Parameters& p) {
     const double radius = radians(p.number("angle")) / 2;
-    return DiscLight{sunDirection(owner, p), radius,
-                     radianceBy(owner, p, pi * std::pow(std::sin(radius), 2))};
+    const PlacedSun placed = placedSun(owner, p);
+    Parameters stated = p;
+    if (placed.weather && !p.given("radiance") && !p.given("irradiance"))
+        stated.set("irradiance", {placed.weather->direct});
+    return DiscLight{placed.towards, radius,
+                     radianceBy(owner, stated, pi * std::pow(std::sin(radius), 2))};
 }
 
 Light panel(std::string_view owner, const Parameters& p) {
@@ -187,7 +136,7 @@ Light generalSky(std::string_view owner, const Parameters& p) {
     const bool sunless = type == 1 || type == 3 || type == 5;
     const bool placed = p.given("elevation") || p.given("latitude") || p.given("longitude") ||
                         p.given("date") || p.given("time");
-    const Direction towards = sunless && !placed ? Direction{} : sunDirection(owner, p);
+    const Direction towards = sunless && !placed ? Direction{} : placedSun(owner, p).towards;
     SkyLight sky = cieSky(static_cast<int>(type), towards, rgb(p, "radiance"));
     if (p.given("irradiance")) sky = std::get<SkyLight>(withIrradiance(sky, rgb(p, "irradiance")));
     sky.ground = rgb(p, "ground");
@@ -206,7 +155,7 @@ Rgb factors(const std::vector<double>& asked, const Rgb& colour) {
 
 Light preetham(std::string_view owner, const Parameters& p) {
     onlyOne(owner, p);
-    const Direction towards = sunDirection(owner, p);
+    const Direction towards = placedSun(owner, p).towards;
     const double turbidity = p.number("turbidity");
     SkyLight sky = preethamSky(turbidity, towards, {1, 1, 1});
     Rgb factor{1, 1, 1};
@@ -218,8 +167,17 @@ Light preetham(std::string_view owner, const Parameters& p) {
 }
 
 Light perez(std::string_view owner, const Parameters& p) {
-    SkyLight sky = perezSky(sunDirection(owner, p), p.number("direct"), p.number("diffuse"),
-                            p.number("extraterrestrial"));
+    const PlacedSun sun = placedSun(owner, p);
+    const double direct = sun.weather ? sun.weather->direct : p.number("direct");
+    const double diffuse = sun.weather ? sun.weather->diffuse : p.number("diffuse");
+    if (!(diffuse > 0))
+        throw InputError(
+            fmt::format("{}, line {}: the diffuse horizontal radiation is 0; valid: "
+                        "an hour of daylight",
+                        p.choice("file"), sun.weather->line));
+    double above = p.number("extraterrestrial");
+    if (!p.given("extraterrestrial")) above /= sun.distance * sun.distance;
+    SkyLight sky = perezSky(sun.towards, direct, diffuse, above);
     sky.ground = rgb(p, "ground");
     return sky;
 }
@@ -243,13 +201,18 @@ std::vector<LightKind> makeKinds() {
               number("azimuth", "degrees from +x towards +y", 0, -360, 360),
               colour("irradiance", "of a surface across the light", 1)},
              directional),
-        kind("sun", "a round light of uniform radiance",
-             "position: Michalsky 1988, Solar Energy 40(3)",
-             "sun:latitude=50.1,longitude=14.4,date=2024-06-21,time=09:30,zone=2,irradiance=3",
-             both(sunPlace(-90), {number("angle", "angular diameter, degrees", 0.533, 0.001, 180),
-                                  colour("radiance", "of the disc; or irradiance", notGiven),
-                                  colour("irradiance", "of a surface across the light", 1)}),
-             sun),
+        kind(
+            "sun", "a round light of uniform radiance",
+            "position: Michalsky 1988, Solar Energy 40(3)",
+            "sun:latitude=50.1,longitude=14.4,date=2024-06-21,time=09:30,zone=2,irradiance=3",
+            both(
+                sunPlaceParameters(-90),
+                {weatherParameter(
+                     "an EPW weather file, whose place and direct normal radiation in W/m^2 count"),
+                 number("angle", "angular diameter, degrees", 0.533, 0.001, 180),
+                 colour("radiance", "of the disc; or irradiance", notGiven),
+                 colour("irradiance", "of a surface across the light", 1)}),
+            sun),
         kind("panel", "a rectangle of uniform radiance that faces the origin", "",
              "panel:elevation=50,width=60,height=20,radiance=2",
              {number("elevation", "of its centre, degrees from the horizon", 90, -90, 90),
@@ -266,7 +229,7 @@ std::vector<LightKind> makeKinds() {
                              .help = "1 overcast to 5 uniform, 12 clear, 15 turbid",
                              .min = 1,
                              .max = 15}},
-                  both(sunPlace(0),
+                  both(sunPlaceParameters(0),
                        {colour("radiance", "of the zenith", 1),
                         colour("irradiance", "of a horizontal surface, instead", notGiven),
                         ground})),
@@ -275,7 +238,7 @@ std::vector<LightKind> makeKinds() {
              "Preetham, Shirley and Smits 1999, 10.1145/311535.311545",
              "preetham:turbidity=3,elevation=30",
              both({number("turbidity", "2 clear to 10 haze", 3, 2, 10)},
-                  both(sunPlace(0),
+                  both(sunPlaceParameters(0),
                        {colour("radiance",
                                "of the zenith; one number is its luminance, in place of the "
                                "model's in 1000 cd/m^2",
@@ -296,7 +259,10 @@ std::vector<LightKind> makeKinds() {
                           "irradiance of the sun above the air, in the unit of both; W/m^2, or "
                           "127500 lux",
                           1367, 1e-6, brightest)},
-                  both(sunPlace(0), {ground})),
+                  both(sunPlaceParameters(0),
+                       {weatherParameter("an EPW weather file, whose place, direct normal and "
+                                         "diffuse horizontal radiation in W/m^2 count"),
+                        ground})),
              perez),
     };
 }
@@ -370,8 +336,9 @@ Light parseTerm(std::string_view term, const std::string& folder, InvalidPixels 
         return at < term.size() ? term.substr(at + 1) : std::string_view();
     };
     if (const LightKind* row = findKind(term.substr(0, colon))) {
-        const Parameters p = parseParameters(row->name, row->parameters,
-                                             colon == std::string_view::npos ? "" : after(colon));
+        Parameters p = parseParameters(row->name, row->parameters,
+                                       colon == std::string_view::npos ? "" : after(colon));
+        if (p.given("file")) p.words["file"] = within(folder, p.choice("file"));
         return placed(row->make(row->name, p), p);
     }
     const std::size_t end = pathEnd(term, folder);

@@ -21,6 +21,11 @@ double daysSince2000(const Moment& moment) {
     return static_cast<double>((day - start).count()) + (moment.hour - 12) / 24;
 }
 
+/// The mean anomaly, radians.
+double anomalyAt(double days) {
+    return radians(357.528 + 0.9856003 * days);
+}
+
 /// Degrees of refraction at a true elevation in degrees.
 double refraction(double elevation) {
     if (elevation < -0.56) return 0.56;
@@ -43,7 +48,7 @@ std::optional<int> digits(std::string_view text, std::size_t at, std::size_t cou
 SolarPosition solarPosition(const Moment& moment, double latitude, double longitude) {
     const double n = daysSince2000(moment);
     const double meanLongitude = 280.460 + 0.9856474 * n;
-    const double anomaly = radians(357.528 + 0.9856003 * n);
+    const double anomaly = anomalyAt(n);
     const double ecliptic =
         radians(meanLongitude + 1.915 * std::sin(anomaly) + 0.020 * std::sin(2 * anomaly));
     const double obliquity = radians(23.439 - 0.0000004 * n);
@@ -63,6 +68,11 @@ SolarPosition solarPosition(const Moment& moment, double latitude, double longit
     const double turn = std::atan2(east, north);
     return {radians(std::min(elevation + refraction(elevation), 90.0)),
             turn < 0 ? turn + 2 * pi : turn};
+}
+
+double sunDistance(const Moment& moment) {
+    const double g = anomalyAt(daysSince2000(moment));
+    return 1.00014 - 0.01671 * std::cos(g) - 0.00014 * std::cos(2 * g);
 }
 
 Direction directionOf(const SolarPosition& position) {

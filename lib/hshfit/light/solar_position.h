@@ -24,7 +24,11 @@ struct SolarPosition {
 /// radians.
 SolarPosition solarPosition(const Moment& moment, double latitude, double longitude);
 
-/// Its direction in a world with +x east, +y north and +z up.
+/// The distance of the Earth from the sun, astronomical units; error 1e-4 (The Astronomical
+/// Almanac, low-precision formulas for the sun: R = 1.00014 - 0.01671 cos g - 0.00014 cos 2g).
+double sunDistance(const Moment& moment);
+
+/// The direction of the sun in a world with +x east, +y north and +z up.
 Direction directionOf(const SolarPosition& position);
 
 /// "2024-06-21" and "12:00" or "12:00:30", local time of a zone that is `zone` hours ahead of

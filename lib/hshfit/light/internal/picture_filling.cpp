@@ -83,7 +83,7 @@ bool reachValid(const std::vector<Around>& all) {
 }
 
 /// Sums of the valid pixels around each, [pixel][R, G, B].
-Eigen::MatrixXd validSums(const std::string& path, const PictureOptions& options,
+Eigen::MatrixXd validSums(const std::function<void(const RowVisitor&)>& rows,
                           const std::vector<Around>& all) {
     std::vector<std::pair<Place, std::size_t>> wanted;
     for (std::size_t k = 0; k < all.size(); ++k)
@@ -91,7 +91,7 @@ Eigen::MatrixXd validSums(const std::string& path, const PictureOptions& options
     std::ranges::sort(wanted);
     Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()), 3);
     auto next = wanted.begin();
-    PictureReader(path, options).forEachRow([&](std::size_t row, std::span<const float> rgb) {
+    rows([&](std::size_t row, std::span<const float> rgb) {
         for (; next != wanted.end() && next->first.first == row; ++next)
             for (std::size_t c = 0; c < 3; ++c)
                 sums(static_cast<Eigen::Index>(next->second), static_cast<Eigen::Index>(c)) +=
@@ -102,16 +102,12 @@ Eigen::MatrixXd validSums(const std::string& path, const PictureOptions& options
 
 }  // namespace
 
-FilledPixels fillPixels(const std::string& path, const PictureOptions& options) {
-    FilledPixels pixels = invalidPixels(path, options);
-    if (pixels.empty()) return pixels;
-    const auto all = neighbourhoods(pixels, PictureReader(path, options).facts().geometry);
-    if (!reachValid(all))
-        throw InputError(
-            fmt::format("{}: invalid=inpaint finds no valid pixel beside those that are no "
-                        "radiance",
-                        path));
-    const Eigen::MatrixXd sums = validSums(path, options, all);
+void fillFromAround(FilledPixels& pixels, const PictureGeometry& geometry,
+                    const std::function<void(const RowVisitor&)>& rows,
+                    const std::string& message) {
+    const auto all = neighbourhoods(pixels, geometry);
+    if (!reachValid(all)) throw InputError(message);
+    const Eigen::MatrixXd sums = validSums(rows, all);
     const auto size = static_cast<Eigen::Index>(all.size());
     std::vector<Eigen::Triplet<double>> entries;
     for (Eigen::Index k = 0; k < size; ++k) {
@@ -128,6 +124,18 @@ FilledPixels fillPixels(const std::string& path, const PictureOptions& options) 
         for (Eigen::Index c = 0; c < 3; ++c)
             pixels[static_cast<std::size_t>(k)].rgb[static_cast<std::size_t>(c)] =
                 static_cast<float>(std::max(solution(k, c), 0.0));
+}
+
+FilledPixels fillPixels(const std::string& path, const PictureOptions& options) {
+    FilledPixels pixels = invalidPixels(path, options);
+    if (pixels.empty()) return pixels;
+    const auto rows = [&](const RowVisitor& visit) {
+        PictureReader(path, options).forEachRow(visit);
+    };
+    fillFromAround(pixels, PictureReader(path, options).facts().geometry, rows,
+                   path +
+                       ": invalid=inpaint finds no valid pixel beside those that are no "
+                       "radiance");
     return pixels;
 }
 

@@ -3,6 +3,7 @@
 #include <hshfit/light/lights.h>
 #include <hshfit/light/picture_reader.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,12 @@ using FilledPixels = std::vector<FilledPixel>;
 /// through them. Throws InputError for more than 65536 pixels, or where no valid pixel is next to
 /// them.
 FilledPixels fillPixels(const std::string& path, const PictureOptions& options);
+
+/// Fills pixels, sorted by row and column, in the same way from those around them; `rows` visits
+/// all rows of the picture. Throws InputError with `message` where none of those around has a
+/// value.
+void fillFromAround(FilledPixels& pixels, const PictureGeometry& geometry,
+                    const std::function<void(const RowVisitor&)>& rows, const std::string& message);
 
 /// The pixel that fills a place; null where none does.
 const FilledPixel* pixelAt(const FilledPixels& pixels, std::size_t row, std::size_t column);
