@@ -37,6 +37,7 @@
 #include <brdfs/measured/gridded/slice.h>
 #include <brdfs/measured/gridded/slice_writer.h>
 #include <brdfs/measured/gridded/utia.h>
+#include <brdfs/measured/material_library.h>
 #include <brdfs/measured/merl.h>
 #include <brdfs/measured/merl_writer.h>
 #include <brdfs/measured/pbsdf.h>
@@ -200,6 +201,8 @@ std::unique_ptr<Brdf> openFile(const std::string& path, std::string_view options
     if (!format && (extension == ".json" || isPreset(head)))
         return openPresetFile(path, size, options);
     if (!format) format = &formatByExtension(path, head, size);
+    // The words after the path are the name of a material.
+    if (format == &materialLibraryFormat()) return openLibraryMaterial(path, options);
     return format->open(path, parseParameters(format->name, format->parameters, options));
 }
 
@@ -303,11 +306,16 @@ std::span<const Model> models() {
 }
 
 std::span<const Format> formats() {
-    static const std::vector<Format> table{
-        merlFormat(),  pbsdfFormat(),  rglFormat(),      bsdfXmlFormat(),  altaFormat(),
-        astmFormat(),  zemaxFormat(),  fredFormat(),     speosFormat(),    cornellFormat(),
-        xomptFormat(), csvFormat(),    nistFormat(),     scatmechFormat(), mitFormat(),
-        utiaFormat(),  slicesFormat(), merlSliceFormat()};
+    static const std::vector<Format> table{merlFormat(),     materialLibraryFormat(),
+                                           pbsdfFormat(),    rglFormat(),
+                                           bsdfXmlFormat(),  altaFormat(),
+                                           astmFormat(),     zemaxFormat(),
+                                           fredFormat(),     speosFormat(),
+                                           cornellFormat(),  xomptFormat(),
+                                           csvFormat(),      nistFormat(),
+                                           scatmechFormat(), mitFormat(),
+                                           utiaFormat(),     slicesFormat(),
+                                           merlSliceFormat()};
     return table;
 }
 
