@@ -202,7 +202,7 @@ std::unique_ptr<Brdf> openFile(const std::string& path, std::string_view options
         return openPresetFile(path, size, options);
     if (!format) format = &formatByExtension(path, head, size);
     // The words after the path are the name of a material.
-    if (format == &materialLibraryFormat()) return openLibraryMaterial(path, options);
+    if (format->name == materialLibraryFormat().name) return openLibraryMaterial(path, options);
     return format->open(path, parseParameters(format->name, format->parameters, options));
 }
 

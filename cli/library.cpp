@@ -27,8 +27,8 @@ struct LibraryArguments {
     std::vector<std::string> inputs;
     std::string components = "auto";
     std::size_t count = 10;
-    double limit = ml::Library{}.limit;
-    bool limitGiven = false, learnGiven = false, final = false;
+    bool learnGiven = false, final = false;
+    jobs::EncodeOptions encode;  ///< with the limits that are given
     jobs::LearnLibraryOptions learn;
     jobs::ReconstructOptions reconstruct;
 
@@ -49,10 +49,9 @@ struct LibraryArguments {
 };
 
 Json errorJson(const ml::FormError& error) {
-    return {{"mean_log", error.meanLog},
-            {"log", error.logError},
-            {"relative_l2", error.relativeL2},
-            {"maximum", error.maximum}};
+    return {{"mean_log", error.meanLog},       {"log", error.logError},
+            {"relative_l2", error.relativeL2}, {"maximum", error.maximum},
+            {"largest", error.largest},        {"flip", error.flip}};
 }
 
 Json headOf(const LibraryArguments& arguments) {
@@ -67,17 +66,22 @@ Json materialJson(const ml::Material& material) {
             {"kind", ml::nameOf(material.kind)},
             {"channels", material.channels},
             {"bytes", material.bytes},
-            {"error", errorJson(material.error)}};
+            {"error", errorJson(material.error)},
+            {"fallback", material.fallback.empty() ? Json(nullptr) : Json(material.fallback)}};
 }
 
 std::string materialText(const ml::Material& m) {
-    return fmt::format("{:<32} {:<10} {:>6}  {:<9.3g} {:<9.3g} {:<9.3g} {:.3g}\n", m.name,
-                       ml::nameOf(m.kind), m.bytes, m.error.meanLog, m.error.logError,
-                       m.error.relativeL2, m.error.maximum);
+    std::string text =
+        fmt::format("{:<32} {:<10} {:>6}  {:<9.3g} {:<9.3g} {:<9.3g} {:<9.3g} {:.3g}\n", m.name,
+                    ml::nameOf(m.kind), m.bytes, m.error.meanLog, m.error.logError,
+                    m.error.relativeL2, m.error.maximum, m.error.flip);
+    if (!m.fallback.empty()) text += fmt::format("  a form of its own: it {}\n", m.fallback);
+    return text;
 }
 
 constexpr const char* materialHead =
-    "material                         kind        bytes  mean log  log       rel. L2   maximum\n";
+    "material                         kind        bytes  mean log  log       rel. L2   maximum   "
+    "FLIP\n";
 
 std::vector<std::string> fallbacksOf(const ml::Library& library) {
     std::vector<std::string> names;
@@ -108,6 +112,7 @@ void printLearned(const jobs::LearnedLibrary& learned, const LibraryArguments& a
                              {"materials", bytesOf(library)},
                              {"channel", library.basis.channelBytes()}};
         document["held_out"] = trials;
+        document["unseen"] = {{"log", library.unseen}, {"flip", library.unseenFlip}};
         document["doubted"] = learned.basis.doubted;
         document["fallbacks"] = fallbacks;
         return printJson(document);
@@ -121,6 +126,9 @@ void printLearned(const jobs::LearnedLibrary& learned, const LibraryArguments& a
             "  {:>3} components: root mean square of ln(f + 0.001) {:.4f} on "
             "materials that took no part\n",
             trial.components, trial.error);
+    if (library.unseenFlip > 0)
+        text += fmt::format("  mean FLIP {:.4f} on these with {} components\n", library.unseenFlip,
+                            library.basis.size());
     if (!fallbacks.empty())
         text += fmt::format("  forms of their own: {}\n", fmt::join(fallbacks, ", "));
     if (learned.basis.doubted > 0)
@@ -131,7 +139,10 @@ void printLearned(const jobs::LearnedLibrary& learned, const LibraryArguments& a
 void runLearn(const LibraryArguments& arguments, const Globals& globals) {
     jobs::LearnLibraryOptions options = arguments.learn;
     options.learn.components = arguments.componentCount();
-    options.limit = arguments.limit;
+    const ml::Limits usual;
+    options.limits = {arguments.encode.log.value_or(usual.log),
+                      arguments.encode.maximum.value_or(usual.maximum),
+                      arguments.encode.flip.value_or(usual.flip)};
     options.final = arguments.final;
     printLearned(
         jobs::learnLibrary(arguments.inputs, arguments.output, options, listenerFor(globals)),
@@ -149,8 +160,8 @@ void runMerge(const LibraryArguments& arguments, const Globals& globals) {
 }
 
 void runEncode(const LibraryArguments& arguments, const Globals& globals) {
-    jobs::EncodeOptions options{.components = arguments.componentCount()};
-    if (arguments.limitGiven) options.limit = arguments.limit;
+    jobs::EncodeOptions options = arguments.encode;
+    options.components = arguments.componentCount();
     const jobs::EncodedMaterial encoded = jobs::encodeMaterial(
         arguments.inputs[0], arguments.inputs[1], arguments.output, options, listenerFor(globals));
     const std::optional<std::string> poor = poorReason({}, encoded.picture);
@@ -158,14 +169,11 @@ void runEncode(const LibraryArguments& arguments, const Globals& globals) {
         Json document = headOf(arguments);
         document.update(materialJson(encoded.material));
         document["picture"] = pictureErrorJson(encoded.picture);
-        document["fallback"] = encoded.fallback.empty() ? Json(nullptr) : Json(encoded.fallback);
         document["poor"] = poor ? Json(*poor) : Json(nullptr);
         return printJson(document);
     }
     std::string text = std::string(materialHead) + materialText(encoded.material) + "  " +
                        indented(textOf(encoded.picture));
-    if (!encoded.fallback.empty())
-        text += fmt::format("  a halfway form of its own: it {}\n", encoded.fallback);
     if (poor) text += fmt::format("  poor: {}\n", *poor);
     printText(text);
 }
@@ -180,6 +188,24 @@ void runDecode(const LibraryArguments& arguments, const Globals& globals) {
     printText(std::string(materialHead) + materialText(material));
 }
 
+void runMix(const LibraryArguments& arguments, const Globals& globals) {
+    const std::vector<jobs::MixedMaterial> path =
+        jobs::mixMaterials(arguments.inputs, arguments.output, arguments.count);
+    Json rows = Json::array();
+    std::string text;
+    for (const jobs::MixedMaterial& one : path) {
+        rows.push_back({{"name", one.name},
+                        {"first", one.first},
+                        {"second", one.second},
+                        {"share", one.share}});
+        text += one.name + "\n";
+    }
+    if (!globals.json) return printText(text);
+    Json document = headOf(arguments);
+    document["mixed"] = std::move(rows);
+    printJson(document);
+}
+
 void runList(const LibraryArguments& arguments, const Globals& globals) {
     const ml::Library library = ml::readLibrary(arguments.inputs[0]);
     if (globals.json) {
@@ -189,7 +215,9 @@ void runList(const LibraryArguments& arguments, const Globals& globals) {
         document["components"] = library.basis.size();
         document["widths"] = library.basis.widths;
         document["bytes"] = {{"basis", library.basis.bytes()}, {"materials", bytesOf(library)}};
-        document["limit"] = library.limit;
+        document["limit"] = {{"log", library.limits.log},
+                             {"maximum", library.limits.maximum},
+                             {"flip", library.limits.flip}};
         document["basis"] = library.basisFile.empty() ? Json(nullptr) : Json(library.basisFile);
         document["final"] = library.measured.empty();
         document["materials"] = std::move(rows);
@@ -286,11 +314,13 @@ constexpr std::size_t any = 1000000;
 
 constexpr Action actions[] = {
     {"learn", "MATERIAL…", 1, any, Action::Output::required,
-     "--components --bytes --held-out --limit --add-to --final ", runLearn},
+     "--components --bytes --held-out --limit --limit-maximum --limit-flip --add-to --final ",
+     runLearn},
     {"merge", "LIBRARY…", 1, any, Action::Output::required, "--final ", runMerge},
-    {"encode", "LIBRARY MATERIAL", 2, 2, Action::Output::required, "--components --limit ",
-     runEncode},
+    {"encode", "LIBRARY MATERIAL", 2, 2, Action::Output::required,
+     "--components --limit --limit-maximum --limit-flip ", runEncode},
     {"decode", "LIBRARY:NAME", 1, 1, Action::Output::required, "", runDecode},
+    {"mix", "LIBRARY:NAME LIBRARY:NAME…", 2, any, Action::Output::required, "--count ", runMix},
     {"list", "LIBRARY", 1, 1, Action::Output::none, "", runList},
     {"search", "LIBRARY MATERIAL", 2, 2, Action::Output::none, "--count ", runSearch},
     {"reconstruct", "SAMPLES", 1, 1, Action::Output::required,
@@ -317,8 +347,9 @@ void check(const CLI::App& command, const LibraryArguments& arguments, const Act
         throw UsageError(fmt::format("library {} writes no file; leave out -o", action.name));
     const std::string_view own(action.options);
     for (const char* option :
-         {"--components", "--bytes", "--held-out", "--limit", "--add-to", "--final", "--library",
-          "--count", "--sigma", "--instrument", "--bands", "--bands-to"})
+         {"--components", "--bytes", "--held-out", "--limit", "--limit-maximum", "--limit-flip",
+          "--add-to", "--final", "--library", "--count", "--sigma", "--instrument", "--bands",
+          "--bands-to"})
         if (command.count(option) > 0 && own.find(std::string(option) + " ") == own.npos)
             throw UsageError(fmt::format(
                 "library {} takes no {}{}", action.name, option,
@@ -327,7 +358,8 @@ void check(const CLI::App& command, const LibraryArguments& arguments, const Act
     if (own.find("--library ") != own.npos && arguments.reconstruct.library.empty())
         throw UsageError(fmt::format("library {} needs --library LIBRARY", action.name));
     if (command.count("--add-to") > 0)
-        for (const char* option : {"--components", "--bytes", "--held-out", "--limit"})
+        for (const char* option : {"--components", "--bytes", "--held-out", "--limit",
+                                   "--limit-maximum", "--limit-flip"})
             if (command.count(option) > 0)
                 throw UsageError(
                     fmt::format("{} is that of the library that --add-to names", option));
@@ -349,8 +381,8 @@ void addLibrary(CLI::App& command, Globals& globals) {
     command.add_option(
         "INPUT", arguments->inputs,
         "learn: MATERIAL… (specifications, files, folders); merge: LIBRARY…; encode and search: "
-        "LIBRARY MATERIAL; decode: LIBRARY:NAME; list: LIBRARY; reconstruct: SAMPLES; next: "
-        "[SAMPLES]");
+        "LIBRARY MATERIAL; decode and mix: LIBRARY:NAME; list: LIBRARY; reconstruct: SAMPLES; "
+        "next: [SAMPLES]");
     command.add_option("-o,--output", arguments->output,
                        "The library, the material, or of next a CSV");
     command
@@ -371,18 +403,32 @@ void addLibrary(CLI::App& command, Globals& globals) {
         ->check(CLI::Range(0.01, 0.5))
         ->capture_default_str();
     command
-        .add_option("--limit", arguments->limit,
+        .add_option("--limit", arguments->encode.log,
                     "learn, encode: mean error of ln(f + 0.001) beyond which a material keeps a "
                     "form of its own")
         ->check(CLI::Range(0.0, ml::greatestLimit))
-        ->capture_default_str();
+        ->default_str(fmt::format("{}", ml::Limits{}.log));
+    command
+        .add_option("--limit-maximum", arguments->encode.maximum,
+                    "learn, encode: the same for the largest error of f cos, as a share of the "
+                    "largest f cos")
+        ->check(CLI::Range(0.0, ml::greatestLimit))
+        ->default_str(fmt::format("{}", ml::Limits{}.maximum));
+    command
+        .add_option("--limit-flip", arguments->encode.flip,
+                    "learn, encode: the same for the mean FLIP of spheres; from 1 on no picture is "
+                    "drawn")
+        ->check(CLI::Range(0.0, ml::greatestLimit))
+        ->default_str(fmt::format("{}", ml::Limits{}.flip));
     command.add_option("--add-to", arguments->learn.addTo,
                        "learn: a library whose materials come first");
     command.add_flag("--final", arguments->final,
                      "learn, merge: without what adding and merging need");
     command.add_option("--library", arguments->reconstruct.library,
                        "reconstruct, next: the library that is the prior");
-    command.add_option("--count", arguments->count, "search: materials; next: pairs of directions")
+    command
+        .add_option("--count", arguments->count,
+                    "search, mix: materials; next: pairs of directions")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     command
@@ -402,7 +448,6 @@ void addLibrary(CLI::App& command, Globals& globals) {
     command.callback([arguments, &globals, &command] {
         const Action& action = actionOf(arguments->action);
         check(command, *arguments, action);
-        arguments->limitGiven = command.count("--limit") > 0;
         for (const char* option : {"--components", "--bytes", "--held-out"})
             arguments->learnGiven |= command.count(option) > 0;
         action.run(*arguments, globals);

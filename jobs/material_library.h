@@ -14,7 +14,7 @@ namespace hshfit::jobs {
 
 struct LearnLibraryOptions {
     material_library::LearnOptions learn = {};
-    double limit = material_library::Library{}.limit;
+    material_library::Limits limits = {};
     std::string addTo = {};  ///< a library whose materials come first; its options count
     bool final = false;      ///< without what adding and merging need
 };
@@ -26,8 +26,8 @@ struct LearnedLibrary {
 
 /// Learns a library from specifications, files and folders of files, and writes it; names are
 /// nameOf(spec) with '_' for what a name may not have. Materials that the terms of libraries do not
-/// hold within `limit`, and anisotropic ones, keep halfway forms. Nothing is written where one of
-/// the materials cannot be read. Throws InputError, UsageError, NumericError and OutputError.
+/// hold within the limits, and anisotropic ones, keep halfway forms. Nothing is written where one
+/// of the materials cannot be read. Throws InputError, UsageError, NumericError and OutputError.
 LearnedLibrary learnLibrary(const std::vector<std::string>& specs, const std::string& output,
                             const LearnLibraryOptions& options, const Listener& listener = {});
 
@@ -42,14 +42,13 @@ LearnedLibrary mergeLibraries(const std::vector<std::string>& paths, const std::
                               const MergeLibraryOptions& options);
 
 struct EncodeOptions {
-    std::size_t components = 0;        ///< that are used; 0: all
-    std::optional<double> limit = {};  ///< none: the library's
+    std::size_t components = 0;                               ///< that are used; 0: all
+    std::optional<double> log = {}, maximum = {}, flip = {};  ///< none: the library's limits
 };
 
 struct EncodedMaterial {
     material_library::Material material;
     PictureError picture;
-    std::string fallback;  ///< why the material has a form of its own; empty: it is encoded
 };
 
 /// Writes a library of the one material, which takes its basis from `library`.
@@ -59,6 +58,19 @@ EncodedMaterial encodeMaterial(const std::string& library, const std::string& sp
 
 /// Writes the material LIBRARY:NAME as a library of its own, without a basis.
 material_library::Material decodeMaterial(const std::string& spec, const std::string& output);
+
+struct MixedMaterial {
+    std::string name;           ///< FIRST-SECOND-SHARE, the share of SECOND in percent
+    std::string first, second;  ///< materials
+    double share = 0;           ///< of the second, 0 to 1
+};
+
+/// `count` materials at equal steps along the path through LIBRARY:NAME after LIBRARY:NAME, written
+/// as a library without a basis. Between two, ln(f + 0.001) and the bounds are linear, so that f is
+/// neither negative nor above the greater bound. Throws UsageError for fewer than two of either and
+/// for a material twice in turn, InputError for a material with a halfway form.
+std::vector<MixedMaterial> mixMaterials(const std::vector<std::string>& specs,
+                                        const std::string& output, std::size_t count);
 
 struct FoundMaterial {
     std::string name;

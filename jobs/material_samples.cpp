@@ -112,7 +112,7 @@ ReconstructedMaterial reconstructMaterial(const std::string& samples, const std:
                           .channels = done.material.channels(),
                           .polynomial = done.material};
     material.bytes = 2 * material.polynomial.exponents.size() + 4 * material.channels;
-    ml::Library one{.asked = library.asked, .limit = library.limit};
+    ml::Library one{.asked = library.asked, .limits = library.limits};
     one.materials = {std::move(material)};
     AtomicFile file(output);
     ml::writeLibrary(one, file);

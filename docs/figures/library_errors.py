@@ -1,11 +1,13 @@
 #!/usr/bin/python3
-"""library_errors.py PROGRAM TABLES OUT [--divisions N] [--halfway MATERIALS]
+"""library_errors.py PROGRAM TABLES OUT [--divisions N] [--halfway MATERIALS] [--few]
 
 The table of docs/library_of_materials.md: the errors of materials that took no part in a library,
 over random divisions of the tables of a folder (MERL layout), beside halfway forms. A library is
 learned of each table alone, once; those of a division are merged. Prints medians and the share of
 new materials at 120 bytes within the error of halfway 8,4,3, by each measure; OUT/errors.json has
-every number, so that a second run goes on.
+every number, so that a second run goes on. --few: instead, materials from 5, 10 and 20 directions
+with errors of 2 %, chosen by `library next`, at random, and chosen in the plane of incidence, beside
+a fit to the same samples, and the share of the truth within the bands of one standard deviation.
 """
 import argparse
 import json
@@ -17,7 +19,8 @@ import subprocess
 import numpy
 
 MEASURES = ("mean_log", "log", "relative_l2", "maximum", "flip")
-PAIRS = 20000
+PAIRS = 12000
+FREE = ("--limit", 10, "--limit-maximum", 10, "--limit-flip", 1)  # no material falls back
 HALFWAY = ("6,3,2", "8,4,3", "10,5,5")
 
 
@@ -83,13 +86,22 @@ class Errors:
     def shard(self, table):
         path = self.out / f"{table.stem}.library"
         if not path.exists():
-            self.call("library", "learn", table, "-o", path)
+            self.call("library", "learn", table, *FREE, "-o", path)
         return path
+
+    def division(self, tables, division, new, size):
+        """A library of a random part of the tables, and the others."""
+        mixed = tables[:]
+        random.Random(division).shuffle(mixed)
+        library = self.out / f"division-{division}-{size}.library"
+        if not library.exists():
+            self.call("library", "merge", *(self.shard(t) for t in mixed[new:]), "--bytes", size,
+                      "-o", library)
+        return library, mixed[:new]
 
     def encoded(self, library, table):
         where = self.out / "one.library"
-        answer = self.call("library", "encode", library, table, "-o", where, "--force", "--limit",
-                           10)
+        answer = self.call("library", "encode", library, table, "-o", where, "--force", *FREE)
         return self.measured(table, where, answer["bytes"])
 
     def halfway(self, table, orders):
@@ -108,6 +120,95 @@ def line(name, row):
             " | ".join(f"{row[m]:.3g}" for m in MEASURES) + " |")
 
 
+KINDS = ("chosen", "random", "in-plane")
+MODELS = ("lambert+ggx",)
+
+
+def directions(errors, library, kind, count):
+    """Pairs of directions to measure, [pair][theta_i, phi_i, theta_o, phi_o] in degrees."""
+    if kind == "random":
+        drawn = numpy.random.default_rng(count)
+        theta = numpy.degrees(numpy.arccos(1 - drawn.random((count, 2)) * (1 - numpy.cos(1.4))))
+        return numpy.stack([theta[:, 0], 0 * theta[:, 0], theta[:, 1],
+                            360 * drawn.random(count)], 1)
+    where = errors.out / "next.csv"
+    instrument = "in-plane" if kind == "in-plane" else "free"
+    errors.call("library", "next", "--library", library, "--count", count, "--instrument",
+                instrument, "-o", where, "--force")
+    return numpy.loadtxt(where, delimiter=",", skiprows=1, ndmin=2)[:, :4]
+
+
+def vectors(angles):
+    theta, phi = numpy.radians(angles[:, 0]), numpy.radians(angles[:, 1])
+    return numpy.stack([numpy.sin(theta) * numpy.cos(phi), numpy.sin(theta) * numpy.sin(phi),
+                        numpy.cos(theta)], 1)
+
+
+def scan(errors, table, pairs, seed):
+    """A CSV of samples of a table with errors of 2 %."""
+    where, values = errors.out / "scan-pairs.csv", errors.out / "scan-values.csv"
+    numpy.savetxt(where, numpy.hstack([vectors(pairs[:, :2]), vectors(pairs[:, 2:])]), fmt="%.17g",
+                  delimiter=",", comments="", header="wi_x,wi_y,wi_z,wo_x,wo_y,wo_z")
+    errors.call("eval", table, "--pairs", where, "-o", values, "--force")
+    f = numpy.loadtxt(values, delimiter=",", skiprows=1, ndmin=2)[:, 6:9]
+    f = f * (1 + 0.02 * numpy.random.default_rng(seed).standard_normal(f.shape))
+    samples = errors.out / "samples.csv"
+    numpy.savetxt(samples, numpy.hstack([pairs, f]), fmt="%.9g", delimiter=",", comments="",
+                  header="theta_i,phi_i,theta_o,phi_o,R,G,B")
+    return samples
+
+
+def covered(bands, f):
+    """The share of values of f within the bands; rows of a band: angles, then value, low, high."""
+    rows = numpy.loadtxt(bands, delimiter=",", skiprows=1)
+    low, high = rows[:, 5::3], rows[:, 6::3]
+    return float(((f >= low) & (f <= high)).mean())
+
+
+def pointwise(errors, f, spec):
+    """The mean log error of a specification at the pairs."""
+    c = numpy.loadtxt(errors.pairs(), delimiter=",", skiprows=1, usecols=2)[:, None]
+    g = numpy.maximum(errors.values(spec), 0)
+    return float(abs(numpy.log1p(numpy.maximum(f, 0) * c) - numpy.log1p(g * c)).mean())
+
+
+def one_scan(errors, library, table, pairs, seed):
+    samples, form = scan(errors, table, pairs, seed), errors.out / "found.library"
+    bands = errors.out / "bands.csv"
+    answer = errors.call("library", "reconstruct", samples, "--library", library, "-o", form,
+                         "--bands", errors.pairs(), "--bands-to", bands, "--force")
+    f = errors.values(table, table.stem)
+    row = {"library": pointwise(errors, f, form), "covered": covered(bands, f),
+           "known": answer["known"]}
+    for model in MODELS:
+        fit = errors.out / "fit.json"
+        run = subprocess.run([errors.program, "fit", samples, "--model", model, "--loss", "log",
+                              "-o", fit, "--force", "--quiet"], capture_output=True, check=False)
+        row[model] = pointwise(errors, f, fit) if run.returncode == 0 else None
+    return row
+
+
+def few(errors, tables, arguments):
+    print("| directions | library, mean log | bands | unknown | " + " | ".join(MODELS) + " |")
+    print("|---|---|---|---|" + "---|" * len(MODELS))
+    for kind in KINDS:
+        for count in (5, 10, 20):
+            rows = []
+            for division in range(arguments.divisions):
+                library, new = errors.division(tables, division, arguments.new, 120)
+                pairs = directions(errors, library, kind, count)
+                rows += [errors.once(f"few {kind} {count} {division} {t.stem}",
+                                     lambda t=t, l=library, p=pairs, s=k:
+                                     one_scan(errors, l, t, p, s))
+                         for k, t in enumerate(new)]
+            fits = (statistics.median([r[m] for r in rows if r[m] is not None] or [float("nan")])
+                    for m in MODELS)
+            print(f"| {count} {kind} | {statistics.median(r['library'] for r in rows):.2g} | "
+                  f"{statistics.mean(r['covered'] for r in rows):.2f} | "
+                  f"{sum(not r['known'] for r in rows)} of {len(rows)} | " +
+                  " | ".join(f"{v:.2g}" for v in fits) + " |", flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("program")
@@ -116,9 +217,13 @@ def main():
     parser.add_argument("--divisions", type=int, default=3)
     parser.add_argument("--new", type=int, default=20, help="materials that take no part")
     parser.add_argument("--halfway", type=int, default=60, help="materials with halfway forms")
+    parser.add_argument("--others", type=int, default=3, help="divisions at 60 and 240 bytes")
+    parser.add_argument("--few", action="store_true", help="materials from few directions")
     arguments = parser.parse_args()
     errors = Errors(arguments)
     tables = sorted(pathlib.Path(arguments.tables).glob("*.binary"))
+    if arguments.few:
+        return few(errors, tables, arguments)
     print("| form | bytes | mean log | log (1e-3) | relative L2 | maximum | FLIP |")
     print("|---|---|---|---|---|---|---|")
     forms = {}
@@ -132,14 +237,9 @@ def main():
     count = 0
     for size in (60, 120, 240):
         rows = []
-        for division in range(arguments.divisions):
-            mixed = tables[:]
-            random.Random(division).shuffle(mixed)
-            new, old = mixed[:arguments.new], mixed[arguments.new:]
-            library = errors.out / f"division-{division}-{size}.library"
-            if not library.exists():
-                errors.call("library", "merge", *(errors.shard(t) for t in old), "--bytes", size,
-                            "-o", library)
+        for division in range(arguments.divisions if size == 120 else
+                              min(arguments.divisions, arguments.others)):
+            library, new = errors.division(tables, division, arguments.new, size)
             for table in new:
                 row = errors.once(f"new {size} {division} {table.stem}",
                                   lambda t=table, l=library: errors.encoded(l, t))

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 namespace hshfit::test {
 namespace {
@@ -38,10 +39,13 @@ protected:
         for (std::size_t n = first; n < last; ++n) all += std::string(" '") + materials[n] + "'";
         return all;
     }
-    Json learn(const std::string& output, std::size_t first = 0, std::size_t last = 8,
-               const std::string& more = "") const {
-        return answer("learn" + words(first, last) + " --components 6 -o " + path(output) + more);
+    Json learn(const std::string& output, std::size_t first = 0, std::size_t last = 8) const {
+        return answer("learn" + words(first, last) + " --components 6" + free + " -o " +
+                      path(output));
     }
+
+    /// No material falls back, and no picture is drawn.
+    static constexpr const char* free = " --limit 10 --limit-maximum 10 --limit-flip 1";
 };
 
 TEST_F(LibraryCommand, MaterialsOfALibraryAreSpecifications) {
@@ -88,8 +92,8 @@ TEST_F(LibraryCommand, ShardsAndAddingGiveTheBytesOfLearningAtOnce) {
     all.replace(all.find("s0.library"), 10, "s2.library");
     answer("merge" + all + " -o " + path("e.library"));
     EXPECT_EQ(read(path("e.library")), whole);
-    const Answer one =
-        run("library learn" + words(0, 8) + " --components 6 --threads 1 -o " + path("t.library"));
+    const Answer one = run("library learn" + words(0, 8) + " --components 6 --threads 1" + free +
+                           " -o " + path("t.library"));
     EXPECT_EQ(one.code, 0) << one.err;
     EXPECT_EQ(read(path("t.library")), whole);
 }
@@ -99,7 +103,7 @@ TEST_F(LibraryCommand, EncodesANewMaterialAndFallsBackWhereItHasTo) {
     fs::create_directory(path("sub"));
     const Json encoded =
         answer("encode " + path("a.library") + " 'lambert:kd=.2/.4/.2+ggx:alpha=.3,F0=.04' -o " +
-               path("sub/new.library") + " --limit 1");
+               path("sub/new.library") + free);
     EXPECT_EQ(encoded["kind"], "coded");
     EXPECT_TRUE(encoded["fallback"].is_null());
     EXPECT_LE(encoded["bytes"], 120);
@@ -118,9 +122,33 @@ TEST_F(LibraryCommand, EncodesANewMaterialAndFallsBackWhereItHasTo) {
     EXPECT_EQ(run("eval " + path("plain.library") + " --wi 30,0 --wo 30,180").code, 0);
 }
 
+TEST_F(LibraryCommand, MaterialsBeyondALimitFallBackAndTheAnswerSaysWhy) {
+    const std::string few = "learn" + words(0, 5) + " --components 1 --bytes 6";
+    const Json learned = answer(few + " -o " + path("a.library"));
+    EXPECT_FALSE(learned["fallbacks"].empty());
+    const Json listed = answer("list " + path("a.library"));
+    EXPECT_EQ(listed["limit"]["flip"], 0.1);
+    for (const Json& row : listed["materials"]) {
+        EXPECT_EQ(row["fallback"].is_null(), row["kind"] == "coded") << row;
+        EXPECT_LE(row["error"]["flip"], 0.1) << row;
+        EXPECT_LE(row["error"]["maximum"], row["error"]["largest"].get<double>() / 2) << row;
+    }
+    answer(few + free + " -o " + path("b.library"));
+    const std::string encode = "encode " + path("b.library") + " '" + materials[0] + "' -o ";
+    const std::pair<const char*, const char*> limits[] = {
+        {" --limit 0", "ln(f + 0.001)"},
+        {" --limit 10 --limit-maximum 0", "largest f cos"},
+        {" --limit 10 --limit-maximum 10 --limit-flip 0", "FLIP"}};
+    for (const auto& [options, word] : limits) {
+        const Json own = answer(encode + path("own.library") + " --force" + options);
+        EXPECT_NE(own["kind"], "coded") << options;
+        EXPECT_NE(own["fallback"].get<std::string>().find(word), std::string::npos) << own;
+    }
+}
+
 TEST_F(LibraryCommand, ABasisThatChangedIsNotUsed) {
     learn("a.library");
-    answer("encode " + path("a.library") + " 'lambert:kd=.2/.4/.2' --limit 1 -o " +
+    answer("encode " + path("a.library") + " 'lambert:kd=.2/.4/.2'" + free + " -o " +
            path("new.library"));
     fs::remove(path("a.library"));
     learn("a.library", 0, 6);
@@ -139,6 +167,33 @@ TEST_F(LibraryCommand, SearchFindsTheMaterialItself) {
         EXPECT_GE(row["picture"]["flip"]["mean"], before);
         before = row["picture"]["flip"]["mean"];
     }
+}
+
+TEST_F(LibraryCommand, MixturesHaveLogarithmsBetweenThoseOfTheirMaterials) {
+    learn("a.library");
+    const std::string a = path("a.library") + ":lambert_kd=.5_.5_.1",
+                      b = path("a.library") + ":lambert_kd=.1_.5_.3_ggx_alpha=.25_F0=.05";
+    const Json mixed = answer("mix '" + a + "' '" + b + "' --count 5 -o " + path("path.library"));
+    ASSERT_EQ(mixed["mixed"].size(), 5u);
+    const auto at = [&](const std::string& spec) {
+        const Answer value = run("eval '" + spec + "' --wi 30,0 --wo 20,140 --json");
+        EXPECT_EQ(value.code, 0) << value.err;
+        return Json::parse(value.out)["values"].get<std::vector<double>>();
+    };
+    const std::vector<double> first = at(a), last = at(b);
+    for (const Json& row : mixed["mixed"]) {
+        const double share = row["share"];
+        const std::vector<double> f =
+            at(path("path.library") + ":" + row["name"].get<std::string>());
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(std::log(f[c] + 1e-3),
+                        (1 - share) * std::log(first[c] + 1e-3) + share * std::log(last[c] + 1e-3),
+                        0.01)
+                << row;
+    }
+    const Answer itself = run("library mix '" + a + "' '" + a + "' -o " + path("x.library"));
+    EXPECT_EQ(itself.code, 2);
+    EXPECT_NE(itself.err.find("mixed with itself"), std::string::npos) << itself.err;
 }
 
 TEST_F(LibraryCommand, MeasuresAndReconstructs) {

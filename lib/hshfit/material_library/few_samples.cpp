@@ -20,6 +20,9 @@ using Eigen::VectorXd;
 
 constexpr std::size_t planes = 3, fewestMaterials = 3;
 constexpr double usualShare = 0.95, knownFactor = 2;
+/// The least variance of ln(f + logOffset) of a sample: a tenth of a percent, which rounding of
+/// components to half precision and of coordinates to steps stays below.
+constexpr double leastVariance = 1e-6;
 
 /// Channels as their sum and two differences, an orthogonal matrix.
 Eigen::Matrix3d planeMatrix() {
@@ -130,6 +133,7 @@ Agreement Posterior::observe(std::span<const Observation> observations) {
     const auto n = static_cast<Index>(observations.size());
     const auto k = static_cast<Index>(s.basis.size());
     const std::size_t used = s.channels == 1 ? 1 : planes;
+    const double beyond = std::max(s.beyond, leastVariance);
     // A grey sample stands for three equal channels of one measurement.
     const Eigen::Matrix3d q = planeMatrix();
     MatrixXd rows(n, k), residual(n, 3), variance(n, 3);
@@ -146,8 +150,8 @@ Agreement Posterior::observe(std::span<const Observation> observations) {
         }
         residual.row(i) = (q * y).transpose();
         variance.row(i) =
-            (q.cwiseProduct(q) * sigma.cwiseProduct(sigma)).transpose().array() + s.beyond;
-        if (s.channels == 1) variance(i, 0) = 3 * (sigma[0] * sigma[0] + s.beyond);
+            (q.cwiseProduct(q) * sigma.cwiseProduct(sigma)).transpose().array() + beyond;
+        if (s.channels == 1) variance(i, 0) = 3 * (sigma[0] * sigma[0] + beyond);
     }
     Agreement agreement{.degreesOfFreedom = static_cast<std::size_t>(n) * used};
     std::vector<double> own(s.materials.size(), 0.0);
@@ -162,9 +166,12 @@ Agreement Posterior::observe(std::span<const Observation> observations) {
         agreement.chiSquare += r.dot(factor.solve(r));
         s.now[p].mean = prior.mean + cross * factor.solve(r);
         s.now[p].covariance = prior.covariance - cross * factor.solve(cross.transpose());
+        // A material of the library has its own residual, and the noise of its samples.
+        const MatrixXd inverse = factor.solve(MatrixXd::Identity(n, n));
+        const double noise = inverse.diagonal().dot(variance.col(plane));
         for (std::size_t m = 0; m < own.size(); ++m) {
             const VectorXd theirs = rows * (s.materials[m].row(plane).transpose() - prior.mean);
-            own[m] += theirs.dot(factor.solve(theirs));
+            own[m] += theirs.dot(factor.solve(theirs)) + noise;
         }
     }
     std::ranges::sort(own);

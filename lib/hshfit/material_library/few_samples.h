@@ -22,8 +22,8 @@ struct Observation {
 struct Agreement {
     double chiSquare = 0;
     std::size_t degreesOfFreedom = 0;
-    /// The 95th percentile of chiSquare / degreesOfFreedom of the library's own materials at the
-    /// same pairs.
+    /// The 95th percentile of chiSquare / degreesOfFreedom that is expected of the library's own
+    /// materials at the same pairs, with the noise of the samples.
     double usual = 0;
     bool known = true;  ///< at most twice as much, or 2
 };

@@ -29,9 +29,23 @@ FormError formError(const Brdf& f, const Brdf& g, const PairSample& pairs) {
         square += weight * (a - b) * (a - b) * c * c;
         all += weight * a * a * c * c;
         error.maximum = std::max(error.maximum, std::abs(a - b) * c);
+        error.largest = std::max(error.largest, a * c);
     }
     error.relativeL2 = all > 0 ? std::sqrt(square / all) : 0;
     return error;
+}
+
+std::string beyond(const FormError& error, const Limits& limits) {
+    const auto text = [](const char* of, double value, double limit) {
+        return fmt::format("has a {} of {:.3g}, limit {:.3g}", of, value, limit);
+    };
+    if (error.logError > limits.log)
+        return text("mean error of ln(f + 0.001)", error.logError, limits.log);
+    if (error.maximumShare() > limits.maximum)
+        return text("largest error of f cos, as a share of the largest f cos,",
+                    error.maximumShare(), limits.maximum);
+    if (error.flip > limits.flip) return text("mean FLIP", error.flip, limits.flip);
+    return {};
 }
 
 const PairSample& errorPairs() {

@@ -1,7 +1,9 @@
 #include <hshfit/material_library/learning.h>
 
+#include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/material_library/internal/log_samples.h>
+#include <hshfit/pictures/picture_error.h>
 #include <hshfit/wording.h>
 
 #include <Imath/half.h>
@@ -20,7 +22,10 @@ constexpr int leastWidth = 2, mostWidth = 16;
 constexpr double worthIt = 1.03;      ///< error of fewer components over the least
 constexpr double farAway = 3;         ///< times the median distance
 constexpr std::size_t firstFew = 10;  ///< components that a distance is taken from
+constexpr double nearEnough = 0.05;   ///< the distance up to which every material counts in full
 constexpr int robustRounds = 2;
+constexpr std::size_t mostPictures = 64;
+constexpr std::size_t fewestFolds = 4, mostFolds = 10;  ///< parts by which distances are taken
 
 /// Channels of materials as columns of d = L^T c, and the material of each.
 struct Vectors {
@@ -48,23 +53,45 @@ Vectors vectorsOf(const LogSpace& space, std::span<const Measured> materials) {
     return all;
 }
 
-/// Orthonormal components of the columns, the one with the largest spread first.
+/// Sums over vectors x with weights: of the weights, of x, and of x x^T.
+struct Moments {
+    double weight = 0;
+    Eigen::VectorXd sum;
+    Eigen::MatrixXd product;
+};
+
+/// Moments of the columns of the materials that `counts` accepts, about `centre`.
+template <class Counts>
+Moments momentsOf(const Vectors& all, const std::vector<double>& weights,
+                  const Eigen::VectorXd& centre, const Counts& counts) {
+    std::vector<Eigen::Index> used;
+    for (Eigen::Index v = 0; v < all.count(); ++v)
+        if (counts(all.material[static_cast<std::size_t>(v)])) used.push_back(v);
+    const Eigen::Index terms = all.columns.rows(), count = static_cast<Eigen::Index>(used.size());
+    Eigen::VectorXd w(count);
+    for (Eigen::Index k = 0; k < count; ++k)
+        w[k] = weights[all.material[static_cast<std::size_t>(used[static_cast<std::size_t>(k)])]];
+    Moments moments{w.sum(), Eigen::VectorXd::Zero(terms), Eigen::MatrixXd::Zero(terms, terms)};
+    if (count == 0) return moments;
+    const Eigen::MatrixXd x = all.columns(Eigen::all, used).colwise() - centre;
+    moments.sum = x * w;
+    moments.product = x * w.asDiagonal() * x.transpose();
+    return moments;
+}
+
+/// Orthonormal components of vectors, the one with the largest spread first.
 struct Principal {
     Eigen::VectorXd mean;
     Eigen::MatrixXd components;  ///< one a column
 };
 
-Principal principalOf(const Vectors& all, const std::vector<double>& weights) {
-    Eigen::VectorXd w(all.count());
-    for (Eigen::Index v = 0; v < all.count(); ++v)
-        w[v] = weights[all.material[static_cast<std::size_t>(v)]];
-    w /= w.sum();
-    Principal principal{all.columns * w, {}};
-    const Eigen::MatrixXd centred = all.columns.colwise() - principal.mean;
-    const Eigen::MatrixXd covariance = centred * w.asDiagonal() * centred.transpose();
+/// Of moments about `centre` of `count` vectors.
+Principal principalOf(const Moments& moments, const Eigen::VectorXd& centre, Eigen::Index count) {
+    const Eigen::VectorXd off = moments.sum / moments.weight;
+    const Eigen::MatrixXd covariance = moments.product / moments.weight - off * off.transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
-    const Eigen::Index most = std::min(covariance.cols(), all.count() - 1);
-    principal.components = solver.eigenvectors().rowwise().reverse().leftCols(most);
+    const Eigen::Index most = std::max<Eigen::Index>(std::min(covariance.cols(), count - 1), 0);
+    Principal principal{centre + off, solver.eigenvectors().rowwise().reverse().leftCols(most)};
     // The sign of a component is that of its largest number.
     for (auto component : principal.components.colwise()) {
         Eigen::Index largest = 0;
@@ -74,21 +101,19 @@ Principal principalOf(const Vectors& all, const std::vector<double>& weights) {
     return principal;
 }
 
-/// Distance of each material from the space of the first few components.
-std::vector<double> distancesOf(const Vectors& all, const Principal& principal,
-                                std::size_t materials) {
+/// The largest distance of the channels of each material of `fold` from the first components.
+void addDistances(const Vectors& all, const Principal& principal, std::size_t fold,
+                  std::size_t folds, std::vector<double>& distances) {
     const Eigen::Index few = std::min<Eigen::Index>(static_cast<Eigen::Index>(firstFew),
                                                     principal.components.cols() / 4);
     const auto first = principal.components.leftCols(few);
-    const Eigen::MatrixXd centred = all.columns.colwise() - principal.mean;
-    const Eigen::MatrixXd rest = centred - first * (first.transpose() * centred);
-    std::vector<double> square(materials, 0.0);
     for (Eigen::Index v = 0; v < all.count(); ++v) {
-        double& most = square[all.material[static_cast<std::size_t>(v)]];
-        most = std::max(most, rest.col(v).squaredNorm());
+        const std::size_t material = all.material[static_cast<std::size_t>(v)];
+        if (material % folds != fold) continue;
+        const Eigen::VectorXd centred = all.columns.col(v) - principal.mean;
+        const double rest = (centred - first * (first.transpose() * centred)).norm();
+        distances[material] = std::max(distances[material], rest);
     }
-    for (double& value : square) value = std::sqrt(value);
-    return square;
 }
 
 struct Robust {
@@ -96,15 +121,39 @@ struct Robust {
     std::vector<double> weights;
 };
 
+/// Components of all, in which materials unlike the others count for less. The distance of a
+/// material is from components of the other folds: its own would take it in.
 Robust robustPrincipal(const Vectors& all, std::size_t materials) {
     Robust robust{{}, std::vector<double>(materials, 1.0)};
+    const std::size_t folds = std::min(mostFolds, materials);
+    const Eigen::VectorXd centre = all.columns.rowwise().mean();
     for (int round = 0;; ++round) {
-        robust.principal = principalOf(all, robust.weights);
-        if (round == robustRounds) return robust;
-        const std::vector<double> distances = distancesOf(all, robust.principal, materials);
+        std::vector<Moments> parts;
+        for (std::size_t fold = 0; fold < folds; ++fold)
+            parts.push_back(momentsOf(all, robust.weights, centre,
+                                      [&](std::size_t m) { return m % folds == fold; }));
+        const auto without = [&](std::size_t left) {
+            Moments sum{0, Eigen::VectorXd::Zero(centre.size()),
+                        Eigen::MatrixXd::Zero(centre.size(), centre.size())};
+            for (std::size_t fold = 0; fold < folds; ++fold) {
+                if (fold == left) continue;
+                sum.weight += parts[fold].weight;
+                sum.sum += parts[fold].sum;
+                sum.product += parts[fold].product;
+            }
+            return sum;
+        };
+        robust.principal = principalOf(without(folds), centre, all.count());
+        if (round == robustRounds || folds < fewestFolds) return robust;
+        std::vector<double> distances(materials, 0.0);
+        for (std::size_t fold = 0; fold < folds; ++fold) {
+            Eigen::Index others = 0;
+            for (const std::size_t m : all.material) others += m % folds != fold ? 1 : 0;
+            addDistances(all, principalOf(without(fold), centre, others), fold, folds, distances);
+        }
         std::vector<double> sorted = distances;
         std::ranges::sort(sorted);
-        const double bound = farAway * sorted[sorted.size() / 2];
+        const double bound = std::max(farAway * sorted[sorted.size() / 2], nearEnough);
         for (std::size_t m = 0; m < materials; ++m)
             robust.weights[m] = distances[m] > bound ? std::pow(bound / distances[m], 2) : 1.0;
     }
@@ -187,24 +236,6 @@ std::size_t budgetOf(const LearnOptions& options) {
     return 8 * (channel - 1);
 }
 
-std::vector<ComponentsTrial> trialsOf(const LogSpace& space, std::span<const Measured> materials,
-                                      const LearnOptions& options) {
-    std::vector<Measured> fitted, held;
-    const auto every = static_cast<std::size_t>(std::round(1 / std::max(options.heldOut, 1e-3)));
-    for (std::size_t m = 0; m < materials.size(); ++m)
-        (every > 0 && m % every == every / 2 ? held : fitted).push_back(materials[m]);
-    if (held.empty() || fitted.size() < 2) return {};
-    const Vectors all = vectorsOf(space, fitted), others = vectorsOf(space, held);
-    const Robust robust = robustPrincipal(all, fitted.size());
-    std::vector<ComponentsTrial> trials;
-    for (const std::size_t components : ladder) {
-        if (static_cast<Eigen::Index>(components) > robust.principal.components.cols()) break;
-        const Widths widths = widthsFor(largestOf(all, robust, components), budgetOf(options));
-        trials.push_back({components, storedError(others, robust.principal, widths)});
-    }
-    return trials;
-}
-
 std::size_t chosen(const std::vector<ComponentsTrial>& trials) {
     if (trials.empty()) return ladder.back();
     const double least = std::ranges::min_element(trials, {}, &ComponentsTrial::error)->error;
@@ -235,20 +266,75 @@ Basis basisOf(const LogSpace& space, const Principal& principal, const Widths& w
     return basis;
 }
 
+/// The materials that give the basis of a trial, and those that it is tried on.
+struct Division {
+    std::vector<Measured> fitted, held;
+};
+
+Division divisionOf(std::span<const Measured> materials, double heldOut) {
+    Division division;
+    const auto every = static_cast<std::size_t>(std::round(1 / std::max(heldOut, 1e-3)));
+    for (std::size_t m = 0; m < materials.size(); ++m)
+        (every > 0 && m % every == every / 2 ? division.held : division.fitted)
+            .push_back(materials[m]);
+    return division;
+}
+
+/// The mean FLIP of materials in a basis that they took no part in.
+double unseenFlipOf(const LogSpace& space, const Basis& basis, const std::vector<Measured>& held) {
+    const std::size_t step = (held.size() + mostPictures - 1) / mostPictures;
+    std::vector<double> flips(held.size(), 0.0);
+    const Encoder encoder(basis, space);
+    eachInParallel(held.size(), [&](std::size_t m) {
+        if (m % step != 0) return;
+        const LogMaterial material = held[m].material();
+        const LogBrdf before(material, held[m].name),
+            after(decode(basis, encoder.encode(material, basis.size())), held[m].name);
+        flips[m] = held[m].error.flip + pictureError(before, after).flip.mean;
+    });
+    double sum = 0;
+    for (const double one : flips) sum += one;
+    return sum / static_cast<double>((held.size() + step - 1) / step);
+}
+
+/// Trials on the materials that are held out, and their errors in the basis of so many components;
+/// 0 becomes those of the best trial.
+void addTrials(const LogSpace& space, std::span<const Measured> materials,
+               const LearnOptions& options, bool pictures, std::size_t& components,
+               LearnedBasis& learned) {
+    const Division division = divisionOf(materials, options.heldOut);
+    if (division.held.empty() || division.fitted.size() < 2) {
+        if (components == 0) components = ladder.back();
+        return;
+    }
+    const Vectors all = vectorsOf(space, division.fitted), others = vectorsOf(space, division.held);
+    const Robust robust = robustPrincipal(all, division.fitted.size());
+    const auto widthsOf = [&](std::size_t count) {
+        return widthsFor(largestOf(all, robust, count), budgetOf(options));
+    };
+    for (const std::size_t count : ladder) {
+        if (static_cast<Eigen::Index>(count) > robust.principal.components.cols()) break;
+        learned.trials.push_back({count, storedError(others, robust.principal, widthsOf(count))});
+    }
+    if (components == 0) components = chosen(learned.trials);
+    const Widths widths = widthsOf(components);
+    learned.unseen = storedError(others, robust.principal, widths);
+    if (pictures)
+        learned.unseenFlip =
+            unseenFlipOf(space, basisOf(space, robust.principal, widths), division.held);
+}
+
 }  // namespace
 
 LearnedBasis learnBasis(const LogSpace& space, std::span<const Measured> materials,
-                        const LearnOptions& options) {
+                        const LearnOptions& options, bool pictures) {
     const Vectors all = vectorsOf(space, materials);
     if (all.count() < 2)
         throw UsageError(
             "a basis is learned from two channels or more: give more materials, or one in colours");
     LearnedBasis learned;
     std::size_t components = options.components;
-    learned.trials = trialsOf(space, materials, options);
-    if (components == 0) components = chosen(learned.trials);
-    for (const ComponentsTrial& trial : learned.trials)
-        if (learned.unseen == 0 || trial.components <= components) learned.unseen = trial.error;
+    addTrials(space, materials, options, pictures, components, learned);
     const Robust robust = robustPrincipal(all, materials.size());
     const Widths widths = widthsFor(largestOf(all, robust, components), budgetOf(options));
     learned.basis = basisOf(space, robust.principal, widths);

@@ -5,6 +5,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/checksum.h>
 #include <hshfit/material_library/log_terms.h>
+#include <hshfit/pictures/picture_error.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/representation/halfway/halfway.h>
 #include <hshfit/representation/halfway/halfway_rounding.h>
@@ -21,8 +22,12 @@ namespace {
 constexpr std::array<std::string_view, 3> kindNames{"coded", "polynomial", "halfway"};
 
 FormError sumOf(const FormError& a, const FormError& b) {
-    return {a.meanLog + b.meanLog, a.logError + b.logError, a.relativeL2 + b.relativeL2,
-            a.maximum + b.maximum};
+    return {a.meanLog + b.meanLog,
+            a.logError + b.logError,
+            a.relativeL2 + b.relativeL2,
+            a.maximum + b.maximum,
+            a.largest,
+            a.flip + b.flip};
 }
 
 /// In the numbers that a file keeps.
@@ -33,11 +38,18 @@ LogMaterial rounded(LogMaterial material) {
     return material;
 }
 
-FormError errorAgainst(const Measured& measured, const LogMaterial& stored, const Brdf* source) {
+FormError errorBetween(const Brdf& f, const Brdf& g, bool seen) {
+    FormError error = formError(f, g, errorPairs());
+    if (seen) error.flip = pictureError(f, g).flip.mean;
+    return error;
+}
+
+FormError errorAgainst(const Measured& measured, const LogMaterial& stored, const Brdf* source,
+                       bool seen) {
     const LogBrdf form(stored, measured.name);
-    if (source) return formError(*source, form, errorPairs());
+    if (source) return errorBetween(*source, form, seen);
     return sumOf(measured.error,
-                 formError(LogBrdf(measured.material(), measured.name), form, errorPairs()));
+                 errorBetween(LogBrdf(measured.material(), measured.name), form, seen));
 }
 
 template <class Row>
@@ -80,7 +92,8 @@ std::string checksum(const Basis& basis) {
     return sha256(bytes);
 }
 
-Material withHalfway(const Brdf& brdf, const std::string& name, const std::string& source) {
+Material withHalfway(const Brdf& brdf, const std::string& name, const std::string& source,
+                     bool seen) {
     Representation form = projectHalfway(brdf, {});
     quantiseHalfway(form, Precision::half, brdf);
     Material material{.name = name,
@@ -89,7 +102,7 @@ Material withHalfway(const Brdf& brdf, const std::string& name, const std::strin
                       .channels = brdf.channels().count(),
                       .halfway = representationToJson(form),
                       .bytes = form.bytes()};
-    material.error = formError(brdf, *reconstruct(std::move(form), {}), errorPairs());
+    material.error = errorBetween(brdf, *reconstruct(std::move(form), {}), seen);
     return material;
 }
 
@@ -100,23 +113,27 @@ Material encode(const Library& library, const LogSpace& space, const Measured& m
     const Encoder encoder(library.basis, space);
     material.codes = encoder.encode(measured.material(), components);
     material.bytes = material.codes.size();
-    material.error = errorAgainst(measured, decode(library.basis, material.codes), source);
-    if (material.error.logError <= library.limit) return material;
+    const bool seen = library.limits.pictures();
+    material.error = errorAgainst(measured, decode(library.basis, material.codes), source, seen);
+    material.fallback = beyond(material.error, library.limits);
+    if (material.fallback.empty()) return material;
+    material.fallback += " in the basis";
     material.kind = Kind::polynomial;
     material.codes.clear();
     material.polynomial = rounded(measured.material());
     material.bytes = 2 * material.polynomial.exponents.size() + 4 * material.polynomial.tops.size();
-    material.error = errorAgainst(measured, material.polynomial, source);
+    material.error = errorAgainst(measured, material.polynomial, source, seen);
     return material;
 }
 
 Library learn(const LogSpace& space, std::vector<Measured> measured, std::vector<Material> own,
-              const LearnOptions& options, double limit, LearnedBasis* learned) {
+              const LearnOptions& options, const Limits& limits, LearnedBasis* learned) {
     std::ranges::sort(measured, {}, &Measured::name);
-    Library library{.asked = options, .limit = limit};
-    LearnedBasis basis = learnBasis(space, measured, options);
+    Library library{.asked = options, .limits = limits};
+    LearnedBasis basis = learnBasis(space, measured, options, limits.pictures());
     library.basis = basis.basis;
     library.unseen = basis.unseen;
+    library.unseenFlip = basis.unseenFlip;
     library.materials.resize(measured.size());
     errorPairs();
     eachInParallel(measured.size(), [&](std::size_t m) {

@@ -30,6 +30,7 @@ struct Material {
     LogMaterial polynomial = {};           ///< polynomial
     std::string halfway = {};              ///< halfway: the JSON of a coefficient file
     std::size_t bytes = 0;                 ///< of its numbers
+    std::string fallback = {};             ///< why it is not coded; empty: it is
     /// Of a material that was learned: the sum of the errors of the projection onto logTerms() and
     /// of the rounding to the basis, which is at least the distance from the source.
     FormError error = {};
@@ -38,10 +39,11 @@ struct Material {
 /// Materials and the basis that they share.
 struct Library {
     LearnOptions asked = {};
-    double limit = 0.15;  ///< FormError::logError beyond which a material keeps a form of its own
+    Limits limits = {};  ///< beyond which a material keeps a form of its own
     /// Root mean square error of ln(f + logOffset) of materials that took no part, as stored; 0:
     /// there were too few to tell.
     double unseen = 0;
+    double unseenFlip = 0;  ///< the mean FLIP of these, where pictures were drawn
     Basis basis = {};
     /// Another library that has the basis, and its checksum; empty: it is this one's own.
     std::string basisFile = {}, basisSum = {};
@@ -50,23 +52,25 @@ struct Library {
     std::vector<Measured> measured = {};
 };
 
-/// The share of FormError::logError in which a form of its own is needed, from 0 to 10.
+/// The greatest of each of the limits.
 inline constexpr double greatestLimit = 10;
 
 /// SHA-256 of the arrays of a basis as files keep them.
 std::string checksum(const Basis& basis);
 
-/// The material with a halfway form in half precision. Throws as projectHalfway does.
-Material withHalfway(const Brdf& brdf, const std::string& name, const std::string& source);
+/// The material with a halfway form in half precision; `seen`: the error has FLIP. Throws as
+/// projectHalfway does.
+Material withHalfway(const Brdf& brdf, const std::string& name, const std::string& source,
+                     bool seen = false);
 
 /// Learns a basis from the `measured` materials and stores them with it, beside those that have
 /// `own` forms. Names have to be unique (UsageError). The same materials give the same library in
 /// whatever order and parts they came.
 Library learn(const LogSpace& space, std::vector<Measured> measured, std::vector<Material> own,
-              const LearnOptions& options, double limit, LearnedBasis* learned = nullptr);
+              const LearnOptions& options, const Limits& limits, LearnedBasis* learned = nullptr);
 
-/// `measured` in the basis of a library: coded, or, beyond `limit`, as a polynomial; the errors are
-/// against `source`, which was measured, or without one as Material::error says.
+/// `measured` in the basis of a library: coded, or, beyond its limits, as a polynomial that says
+/// so; the errors are against `source`, which was measured, or without one as Material::error says.
 Material encode(const Library& library, const LogSpace& space, const Measured& measured,
                 std::size_t components, const Brdf* source = nullptr);
 

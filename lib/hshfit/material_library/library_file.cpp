@@ -30,15 +30,24 @@ constexpr std::size_t mostHalfway = std::size_t{1} << 22;
 constexpr double highestTop = 60;  ///< e^60 is beyond every BRDF, and its square is finite
 
 Json errorJson(const FormError& error) {
-    return {{"mean_log", error.meanLog},
-            {"log", error.logError},
-            {"relative_l2", error.relativeL2},
-            {"maximum", error.maximum}};
+    return {{"mean_log", error.meanLog},       {"log", error.logError},
+            {"relative_l2", error.relativeL2}, {"maximum", error.maximum},
+            {"largest", error.largest},        {"flip", error.flip}};
 }
 
 FormError readError(const JsonFields& fields) {
     const auto value = [&](const char* key) { return fields.number(key, 0, largestNumber); };
-    return {value("mean_log"), value("log"), value("relative_l2"), value("maximum")};
+    return {value("mean_log"), value("log"),     value("relative_l2"),
+            value("maximum"),  value("largest"), value("flip")};
+}
+
+Json limitsJson(const Limits& limits) {
+    return {{"log", limits.log}, {"maximum", limits.maximum}, {"flip", limits.flip}};
+}
+
+Limits readLimits(const JsonFields& fields) {
+    const auto value = [&](const char* key) { return fields.number(key, 0, greatestLimit); };
+    return {value("log"), value("maximum"), value("flip")};
 }
 
 std::string headOf(const Library& library) {
@@ -47,6 +56,7 @@ std::string headOf(const Library& library) {
         Json row = {{"name", m.name},         {"source", m.source}, {"kind", nameOf(m.kind)},
                     {"channels", m.channels}, {"bytes", m.bytes},   {"error", errorJson(m.error)}};
         if (m.kind == Kind::halfway) row["length"] = m.halfway.size();
+        if (!m.fallback.empty()) row["fallback"] = m.fallback;
         materials.push_back(std::move(row));
     }
     for (const Measured& m : library.measured)
@@ -59,8 +69,8 @@ std::string headOf(const Library& library) {
                  {"generator", fmt::format("hshfit {}", version)},
                  {"terms", logTerms().size()},
                  {"step", library.basis.step},
-                 {"limit", library.limit},
-                 {"unseen", library.unseen},
+                 {"limit", limitsJson(library.limits)},
+                 {"unseen", {{"log", library.unseen}, {"flip", library.unseenFlip}}},
                  {"asked",
                   {{"components", library.asked.components},
                    {"bytes", library.asked.bytes},
@@ -226,6 +236,7 @@ std::vector<Material> readRows(const JsonFields& root, const Basis& basis) {
                    .channels = readChannels(row),
                    .bytes = static_cast<std::size_t>(row.integer("bytes", 0, 1 << 30))};
         m.error = readError(row.object("error"));
+        if (row.has("fallback")) m.fallback = row.word("fallback");
         if (m.kind == Kind::coded && basis.mean.empty())
             row.fail("is coded, in a file without a basis", "kind");
         if (m.kind == Kind::coded) m.codes.resize(m.channels * basis.channelBytes());
@@ -344,8 +355,10 @@ Library parseLibrary(std::span<const unsigned char> bytes, const std::string& na
     root.integer("version", 1, newest);
     const int terms = static_cast<int>(logTerms().size());
     root.integer("terms", terms, terms);
-    Library library{.limit = root.number("limit", 0, greatestLimit),
-                    .unseen = root.number("unseen", 0, largestNumber)};
+    const JsonFields unseen = root.object("unseen");
+    Library library{.limits = readLimits(root.object("limit")),
+                    .unseen = unseen.number("log", 0, largestNumber),
+                    .unseenFlip = unseen.number("flip", 0, 1)};
     const JsonFields asked = root.object("asked");
     library.asked = {.components = static_cast<std::size_t>(
                          asked.integer("components", 0, static_cast<int>(mostComponents))),

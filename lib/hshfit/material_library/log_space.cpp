@@ -3,6 +3,7 @@
 #include <hshfit/error.h>
 #include <hshfit/material_library/internal/log_samples.h>
 #include <hshfit/material_library/log_terms.h>
+#include <hshfit/pictures/picture_error.h>
 
 #include <fmt/format.h>
 
@@ -77,8 +78,8 @@ Eigen::MatrixXd LogSamples::solve(Eigen::MatrixXd right) const {
 LogSpace::LogSpace() : samples_(std::make_unique<LogSamples>()) {}
 LogSpace::~LogSpace() = default;
 
-Measured LogSpace::project(const Brdf& brdf, const std::string& name,
-                           const std::string& source) const {
+Measured LogSpace::project(const Brdf& brdf, const std::string& name, const std::string& source,
+                           bool seen) const {
     const std::size_t channels = brdf.channels().count();
     if (brdf.channels().kind == Channels::Kind::spectral)
         throw UsageError(
@@ -104,7 +105,9 @@ Measured LogSpace::project(const Brdf& brdf, const std::string& name,
         measured.tops.push_back(
             static_cast<float>(std::max(ridgeTop[k], logs.col(column).maxCoeff())));
     }
-    measured.error = formError(brdf, LogBrdf(measured.material(), name), errorPairs());
+    const LogBrdf form(measured.material(), name);
+    measured.error = formError(brdf, form, errorPairs());
+    if (seen) measured.error.flip = pictureError(brdf, form).flip.mean;
     return measured;
 }
 

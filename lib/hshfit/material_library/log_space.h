@@ -34,8 +34,10 @@ public:
     /// (spreadPairs), half of the weight by solid angle and half by pair; residuals beyond 1 count
     /// as 1 (Huber's function, by the modified residuals of Huber and Dutter 1974). f < 0 counts as
     /// 0. The tops are the greatest values over the pairs and the ridge, where wi mirrors wo.
-    /// Throws NumericError where f is not finite, and UsageError unless it is grey or RGB.
-    Measured project(const Brdf& brdf, const std::string& name, const std::string& source) const;
+    /// `seen`: the error has FLIP. Throws NumericError where f is not finite, and UsageError unless
+    /// it is grey or RGB.
+    Measured project(const Brdf& brdf, const std::string& name, const std::string& source,
+                     bool seen = false) const;
 
     const LogSamples& samples() const { return *samples_; }
 

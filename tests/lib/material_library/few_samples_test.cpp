@@ -18,7 +18,7 @@ const LogSpace& space() {
 }
 
 LogMaterial mixed(double a, double b, double c) {
-    LogMaterial material{std::vector<double>(logTerms().size(), 0.0), {2.0}};
+    LogMaterial material{std::vector<double>(logTerms().size(), 0.0), {20.0}};
     material.exponents[40] = a;
     material.exponents[60] = b;
     material.exponents[5] = c;
@@ -36,7 +36,8 @@ protected:
             all.push_back(space().project(LogBrdf(mixed(a, b, c), "made"),
                                           "m" + std::to_string(100 + n), "made"));
         }
-        library_ = learn(space(), std::move(all), {}, {.components = 3, .bytes = 24}, 0.3);
+        library_ = learn(space(), std::move(all), {}, {.components = 3, .bytes = 24},
+                         {.log = 0.3, .maximum = 10, .flip = 1});
     }
     /// f at pairs spread over the hemispheres, with relative errors of `sigma`.
     static std::vector<Observation> observed(const Brdf& brdf, std::size_t count, double sigma,

@@ -13,9 +13,13 @@
 #include <fstream>
 #include <random>
 #include <sstream>
+#include <utility>
 
 namespace hshfit::material_library {
 namespace {
+
+/// The limits of a library but for FLIP, whose pictures take most of the time.
+constexpr Limits noPictures{.flip = 1};
 
 const LogSpace& space() {
     static const LogSpace one;
@@ -83,7 +87,7 @@ TEST(Codes, RoundToHalfAStepAndKeepTheBoundAboveTheGreatestValue) {
 TEST(Learning, FindsTheTwoNumbersOfAFamily) {
     const std::vector<Measured> all = family(24, 1);
     LearnedBasis learned;
-    const Library library = learn(space(), all, {}, {.bytes = 30}, 0.15, &learned);
+    const Library library = learn(space(), all, {}, {.bytes = 30}, noPictures, &learned);
     EXPECT_LE(library.basis.size(), 20u);
     for (const Material& material : library.materials) {
         EXPECT_EQ(material.kind, Kind::coded);
@@ -105,11 +109,12 @@ TEST(Learning, FindsTheTwoNumbersOfAFamily) {
 
 TEST(Learning, OneStrangerAmongManyChangesLittle) {
     std::vector<Measured> all = family(24, 2);
-    const Library before = learn(space(), all, {}, {.components = 2, .bytes = 30}, 0.15);
+    const Library before = learn(space(), all, {}, {.components = 2, .bytes = 30}, noPictures);
     LogBrdf stranger = madeOf({0, 0, 0, 0, 0, 0, 0, 2.5, -2}, 0);
     all.push_back(space().project(stranger, "stranger", "made"));
     LearnedBasis learned;
-    const Library after = learn(space(), all, {}, {.components = 2, .bytes = 30}, 0.15, &learned);
+    const Library after =
+        learn(space(), all, {}, {.components = 2, .bytes = 30}, noPictures, &learned);
     EXPECT_EQ(learned.doubted, 1u);
     for (const Material& material : before.materials) {
         const Material* again = find(after, material.name);
@@ -119,26 +124,71 @@ TEST(Learning, OneStrangerAmongManyChangesLittle) {
     EXPECT_EQ(find(after, "stranger")->kind, Kind::polynomial);
 }
 
+TEST(Limits, TheFirstThatIsExceededIsNamed) {
+    const FormError error{.logError = 0.1, .maximum = 2, .largest = 10, .flip = 0.05};
+    EXPECT_DOUBLE_EQ(error.maximumShare(), 0.2);
+    EXPECT_EQ(FormError{}.maximumShare(), 0);
+    EXPECT_EQ(beyond(error, {.log = 0.1, .maximum = 0.2, .flip = 0.05}), "");
+    EXPECT_NE(beyond(error, {.log = 0.09}).find("ln(f + 0.001) of 0.1, limit 0.09"),
+              std::string::npos);
+    EXPECT_NE(beyond(error, {.maximum = 0.19}).find("f cos, of 0.2, limit 0.19"),
+              std::string::npos);
+    EXPECT_NE(beyond(error, {.flip = 0.04}).find("FLIP of 0.05, limit 0.04"), std::string::npos);
+}
+
+TEST(Limits, MaterialsBeyondOneKeepTheirOwnFormAndSayWhy) {
+    const std::vector<Measured> all = family(4, 8);
+    const std::vector<std::pair<Limits, std::string>> each{
+        {{.log = 0, .flip = 1}, "ln(f + 0.001)"},
+        {{.log = 10, .maximum = 0, .flip = 1}, "largest f cos"},
+        {{.log = 10, .maximum = 10, .flip = 0}, "FLIP"}};
+    for (const auto& [limits, word] : each) {
+        const Library library = learn(space(), all, {}, {.components = 1, .bytes = 6}, limits);
+        for (const Material& material : library.materials) {
+            EXPECT_EQ(material.kind, Kind::polynomial) << word;
+            EXPECT_NE(material.fallback.find(word), std::string::npos) << material.fallback;
+        }
+        const test::TemporaryFile file("");
+        bytesOf(library, file.path());
+        const Library again = readLibrary(file.path());
+        EXPECT_EQ(again.limits, limits);
+        EXPECT_EQ(again.materials[2].fallback, library.materials[2].fallback);
+    }
+}
+
+TEST(Learning, StatesThePictureErrorOfMaterialsThatTookNoPart) {
+    LearnedBasis learned;
+    // Four bits of two numbers are seen, and sixteen are not.
+    learn(space(), family(10, 9), {}, {.components = 2, .bytes = 30}, {}, &learned);
+    EXPECT_GT(learned.unseenFlip, 0);
+    EXPECT_LT(learned.unseenFlip, 0.01);
+    const double fine = learned.unseenFlip;
+    learn(space(), family(10, 9), {}, {.components = 2, .bytes = 6}, {}, &learned);
+    EXPECT_GT(learned.unseenFlip, 2 * fine);
+    learn(space(), family(10, 9), {}, {.components = 2, .bytes = 6}, noPictures, &learned);
+    EXPECT_EQ(learned.unseenFlip, 0);
+}
+
 TEST(Learning, OrderOfTheMaterialsChangesNoByte) {
     std::vector<Measured> all = family(12, 3);
     const test::TemporaryFile one(""), two("");
-    const std::string first = bytesOf(learn(space(), all, {}, {}, 0.15), one.path());
+    const std::string first = bytesOf(learn(space(), all, {}, {}, noPictures), one.path());
     std::ranges::reverse(all);
-    EXPECT_EQ(bytesOf(learn(space(), all, {}, {}, 0.15), two.path()), first);
+    EXPECT_EQ(bytesOf(learn(space(), all, {}, {}, noPictures), two.path()), first);
 }
 
 TEST(Learning, RefusesTwoMaterialsOfOneNameAndTooFewBytes) {
     std::vector<Measured> all = family(3, 4);
     all[2].name = all[0].name;
-    EXPECT_THROW(learn(space(), all, {}, {}, 0.15), UsageError);
-    EXPECT_THROW(learn(space(), family(3, 4), {}, {.bytes = 5}, 0.15), UsageError);
-    EXPECT_THROW(learn(space(), family(1, 4), {}, {}, 0.15), UsageError);
+    EXPECT_THROW(learn(space(), all, {}, {}, noPictures), UsageError);
+    EXPECT_THROW(learn(space(), family(3, 4), {}, {.bytes = 5}, noPictures), UsageError);
+    EXPECT_THROW(learn(space(), family(1, 4), {}, {}, noPictures), UsageError);
     for (const char* name : {"", "a:b", "a,b", "a+b", "a\nb"})
         EXPECT_THROW(requireName(name), UsageError) << name;
 }
 
 TEST(Forms, AreNeitherNegativeNorAboveTheirBounds) {
-    const Library library = learn(space(), family(12, 5), {}, {}, 0.15);
+    const Library library = learn(space(), family(12, 5), {}, {}, noPictures);
     for (const Material& material : library.materials) {
         const auto brdf = open(library, material, material.name);
         const double top = std::exp(logMaterial(library, material)->tops[0]) - logOffset;
@@ -157,7 +207,7 @@ protected:
             LogBrdf stranger = madeOf({0, 0, 0, 0, 0, 0, 0, 2.5, -2}, 0);
             all.push_back(space().project(stranger, "stranger", "made"));
             const test::TemporaryFile at("");
-            return bytesOf(learn(space(), all, {}, {.components = 2, .bytes = 12}, 0.15),
+            return bytesOf(learn(space(), all, {}, {.components = 2, .bytes = 12}, noPictures),
                            at.path());
         }();
         return bytes;
