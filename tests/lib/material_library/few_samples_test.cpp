@@ -8,6 +8,9 @@
 
 #include <cmath>
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace hshfit::material_library {
 namespace {
@@ -27,17 +30,21 @@ LogMaterial mixed(double a, double b, double c) {
 
 class FewSamples : public testing::Test {
 protected:
-    FewSamples() {
-        std::mt19937 random(1);
-        std::normal_distribution<double> number(0, 0.3);
-        std::vector<Measured> all;
-        for (int n = 0; n < 30; ++n) {
-            const double a = number(random), b = number(random), c = number(random);
-            all.push_back(space().project(LogBrdf(mixed(a, b, c), "made"),
-                                          "m" + std::to_string(100 + n), "made"));
-        }
-        library_ = learn(space(), std::move(all), {}, {.components = 3, .bytes = 24},
+    /// Thirty materials of three normal numbers, learned once.
+    static const Library& learned() {
+        static const Library library = [] {
+            std::mt19937 random(1);
+            std::normal_distribution<double> number(0, 0.3);
+            std::vector<Measured> all;
+            for (int n = 0; n < 30; ++n) {
+                const double a = number(random), b = number(random), c = number(random);
+                all.push_back(space().project(LogBrdf(mixed(a, b, c), "made"),
+                                              "m" + std::to_string(100 + n), "made"));
+            }
+            return learn(space(), std::move(all), {}, {.components = 3, .bytes = 24},
                          {.log = 0.3, .maximum = 10, .flip = 1});
+        }();
+        return library;
     }
     /// f at pairs spread over the hemispheres, with relative errors of `sigma`.
     static std::vector<Observation> observed(const Brdf& brdf, std::size_t count, double sigma,
@@ -55,7 +62,7 @@ protected:
         return all;
     }
 
-    Library library_;
+    const Library& library_ = learned();
 };
 
 TEST_F(FewSamples, ThreeNumbersComeBackFromTwelveSamples) {
