@@ -17,7 +17,7 @@ struct FormError {
     double largest = 0;     ///< f c, 1/sr
     double flip = 0;        ///< mean FLIP of the picture error, where it was measured
 
-    /// Of |g - f| c, as a share of the largest f c; 0 for f = 0.
+    /// The maximum as a share of the largest f c; 0 for f = 0.
     double maximumShare() const { return largest > 0 ? maximum / largest : 0; }
 };
 

@@ -85,7 +85,7 @@ struct Principal {
     Eigen::MatrixXd components;  ///< one a column
 };
 
-/// Of moments about `centre` of `count` vectors.
+/// The components of `count` vectors by their moments about `centre`.
 Principal principalOf(const Moments& moments, const Eigen::VectorXd& centre, Eigen::Index count) {
     const Eigen::VectorXd off = moments.sum / moments.weight;
     const Eigen::MatrixXd covariance = moments.product / moments.weight - off * off.transpose();
