@@ -37,6 +37,7 @@
 #include <brdfs/measured/gridded/slice.h>
 #include <brdfs/measured/gridded/slice_writer.h>
 #include <brdfs/measured/gridded/utia.h>
+#include <brdfs/measured/material_library.h>
 #include <brdfs/measured/merl.h>
 #include <brdfs/measured/merl_writer.h>
 #include <brdfs/measured/pbsdf.h>
@@ -203,6 +204,8 @@ std::unique_ptr<Brdf> openFile(const std::string& path, std::string_view options
     if (!format && (extension == ".json" || isPreset(head)))
         return openPresetFile(path, size, options);
     if (!format) format = &formatByExtension(path, head, size);
+    // The words after the path are the name of a material.
+    if (format->name == materialLibraryFormat().name) return openLibraryMaterial(path, options);
     return format->open(path, parseParameters(format->name, format->parameters, options));
 }
 
@@ -307,10 +310,13 @@ std::span<const Model> models() {
 
 std::span<const Format> formats() {
     static const std::vector<Format> table{
-        merlFormat(),     pbsdfFormat(), rglFormat(),     bsdfXmlFormat(), altaFormat(),
-        astmFormat(),     zemaxFormat(), fredFormat(),    speosFormat(),   cornellFormat(),
-        xomptFormat(),    birdFormat(),  pabOptoFormat(), csvFormat(),     nistFormat(),
-        scatmechFormat(), mitFormat(),   utiaFormat(),    slicesFormat(),  merlSliceFormat()};
+        merlFormat(),  materialLibraryFormat(), pbsdfFormat(),
+        rglFormat(),   bsdfXmlFormat(),         altaFormat(),
+        astmFormat(),  zemaxFormat(),           fredFormat(),
+        speosFormat(), cornellFormat(),         xomptFormat(),
+        birdFormat(),  pabOptoFormat(),         csvFormat(),
+        nistFormat(),  scatmechFormat(),        mitFormat(),
+        utiaFormat(),  slicesFormat(),          merlSliceFormat()};
     return table;
 }
 

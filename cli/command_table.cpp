@@ -29,6 +29,7 @@ void addSample(CLI::App& command, Globals& globals);
 void addTransfer(CLI::App& command, Globals& globals);
 void addBatch(CLI::App& command, Globals& globals);
 void addSvbrdf(CLI::App& command, Globals& globals);
+void addLibrary(CLI::App& command, Globals& globals);
 void addHelp(CLI::App& command, Globals& globals);
 void addCompletion(CLI::App& command, Globals& globals);
 void addManual(CLI::App& command, Globals& globals);
@@ -216,6 +217,14 @@ constexpr Command table[] = {
      .file = "svbrdf.cpp",
      .example = "hshfit svbrdf examples/maps/coin.json -o coin --form low-rank",
      .add = addSvbrdf},
+    {.name = "library",
+     .group = fits,
+     .help = "Many materials in a basis learned from them: a few bytes each, nearest ones, and "
+             "materials from few measurements",
+     .file = "library.cpp",
+     .example = "hshfit library learn ggx:alpha=.2,F0=.9/.6/.3 ggx:alpha=.3,F0=.04 "
+                "lambert:kd=.3/.2/.1 -o studio.library",
+     .add = addLibrary},
     {.name = "help",
      .group = program,
      .help = "Commands by group and topics; the options of one command; one topic",

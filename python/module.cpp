@@ -58,6 +58,7 @@ PYBIND11_MODULE(_hshfit, module) {
     bindProjection(module);
     bindStudies(module);
     bindFit(module);
+    bindLibraries(module);
     bindLight(module);
     bindPictures(module);
     bindScenes(module);

@@ -18,6 +18,7 @@ void bindCoefficients(py::module_& module);
 void bindProjection(py::module_& module);
 void bindStudies(py::module_& module);
 void bindFit(py::module_& module);
+void bindLibraries(py::module_& module);
 void bindLight(py::module_& module);
 void bindPictures(py::module_& module);
 void bindRotation(py::module_& module);

@@ -14,20 +14,20 @@ tangent; angles are in degrees; f is in 1/sr and never has a cosine.
 """
 from ._hshfit import (
     Basis, Brdf, Coefficients, Comparison, Curve, Curves, Error, Fit, FittedParameter, Form,
-    InputError, Light, NumericError, Outgoing, OutputError, Projection, Rotation, UsageError,
-    __version__, catalog, compare, convert, curves, describe, direction, export, fit, function,
-    illuminate, import_coefficients, irradiance, light, matrix, open, picture_error, plan, plot,
-    project, project_all, rank_models, read, render, sample, set_threads, svbrdf, threads, tradeoff,
-    transfer)
+    InputError, Library, Light, NumericError, Outgoing, OutputError, Projection, Rotation,
+    UsageError, __version__, catalog, compare, convert, curves, describe, direction, export,
+    fit, function, illuminate, import_coefficients, irradiance, light, matrix, open,
+    picture_error, plan, plot, project, project_all, rank_models, read, render, sample,
+    set_threads, svbrdf, threads, tradeoff, transfer)
 from . import _html
 
 _html.attach()
 
 __all__ = [
     "Basis", "Brdf", "Coefficients", "Comparison", "Curve", "Curves", "Error", "Fit",
-    "FittedParameter", "Form", "InputError", "Light", "NumericError", "Outgoing", "OutputError",
-    "Projection", "Rotation", "UsageError", "catalog", "compare", "convert", "curves", "describe",
-    "direction", "export", "fit", "function", "illuminate", "import_coefficients", "irradiance",
-    "light", "matrix", "open", "picture_error", "plan", "plot", "project", "project_all",
-    "rank_models", "read", "render", "sample", "set_threads", "svbrdf", "threads", "tradeoff",
-    "transfer"]
+    "FittedParameter", "Form", "InputError", "Library", "Light", "NumericError", "Outgoing",
+    "OutputError", "Projection", "Rotation", "UsageError", "catalog", "compare", "convert",
+    "curves", "describe", "direction", "export", "fit", "function", "illuminate",
+    "import_coefficients", "irradiance", "light", "matrix", "open", "picture_error", "plan",
+    "plot", "project", "project_all", "rank_models", "read", "render", "sample", "set_threads",
+    "svbrdf", "threads", "tradeoff", "transfer"]

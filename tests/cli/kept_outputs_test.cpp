@@ -69,6 +69,8 @@ constexpr Row rows[] = {
     {"illuminate", "scene.json --samples 1", "--seed 1", "--seed 2", "pictures"},
     {"transfer", "scene.json --rays 4 --edge 0", "--order 2", "--order 3", "light"},
     {"svbrdf", "map.json --checks 0", "--order 2", "--order 3", "map"},
+    {"library", "learn lambert:kd=.3/.2/.1 ggx:alpha=.3,F0=.9/.6/.3", "--components 2",
+     "--components 3", "a.library", true},
     {"manual", "", "", "", "man", true},
 };
 

@@ -22,32 +22,16 @@ namespace {
 /// Options and arguments of free text that name no file.
 const std::set<std::string> plainTexts{"--bandwidth",
 
-                                       "--camera",
-                                       "--detector-aperture",
-                                       "--device",
-                                       "--dispersion",
-                                       "--euler",
-                                       "--exposure",
-                                       "--exposures",
-                                       "--extensions",
-                                       "--font",
-                                       "--font-size",
-                                       "--halfway",
+                                       "--camera",    "--components", "--detector-aperture",
+                                       "--device",    "--dispersion", "--euler",
+                                       "--exposure",  "--exposures",  "--extensions",
+                                       "--font",      "--font-size",  "--halfway",
 
-                                       "--method",
-                                       "--name",
-                                       "--normal",
-                                       "--of",
-                                       "--outgoing",
-                                       "--parameter",
-                                       "--prefix",
-                                       "--shard",
-                                       "--source-aperture",
-                                       "--up",
-                                       "--view",
-                                       "--wi",
-                                       "--wo",
-                                       "WORDS"};
+                                       "--method",    "--name",       "--normal",
+                                       "--of",        "--outgoing",   "--parameter",
+                                       "--prefix",    "--shard",      "--source-aperture",
+                                       "--up",        "--view",       "--wi",
+                                       "--wo",        "WORDS"};
 
 class ValueTable : public test::Cli {
 protected:

@@ -8,6 +8,8 @@
 #include <hshfit/files/checksum.h>
 #include <hshfit/files/exr_picture.h>
 #include <hshfit/light/catalog.h>
+#include <hshfit/material_library/library_file.h>
+#include <hshfit/material_library/log_terms.h>
 #include <hshfit/representation/basis_matrix.h>
 #include <hshfit/representation/named_arrays.h>
 
@@ -427,6 +429,30 @@ void meshes(const std::filesystem::path& folder) {
           "end_header\r\n0 0 0 0 0 1\r\n1 0 0 0 0 2\r\n0 1 0 0 0 0\r\n3 0 1 2\r\n");
 }
 
+/// Two materials in a basis and one with terms of its own.
+void materialLibraries(const std::filesystem::path& folder) {
+    using namespace hshfit::material_library;
+    const std::size_t terms = logTerms().size();
+    Library library;
+    library.basis = {.mean = std::vector<double>(terms, 0.01),
+                     .components = std::vector<double>(2 * terms, 0.125),
+                     .widths = {4, 6},
+                     .step = 0.5};
+    for (const char* name : {"a", "b"})
+        library.materials.push_back(
+            {.name = name, .source = name, .channels = 1, .codes = {90, 1, 2}, .bytes = 3});
+    library.materials.push_back({.name = "c",
+                                 .source = "c",
+                                 .kind = Kind::polynomial,
+                                 .channels = 1,
+                                 .polynomial = {std::vector<double>(terms, 0.25), {1}},
+                                 .bytes = 2 * terms + 4});
+    std::filesystem::create_directories(folder);
+    hshfit::AtomicFile file((folder / "0").string());
+    writeLibrary(library, file);
+    file.commit();
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -447,6 +473,7 @@ int main(int count, char** arguments) {
     lightSpecifications(folder / "fuzz_lights");
     weatherFile(folder / "fuzz_weather");
     meshes(folder / "fuzz_meshes");
+    materialLibraries(folder / "fuzz_material_library");
     int number = 0;
     for (const std::vector<float>& phi :
          {std::vector<float>{0}, {0, 1}, {-3.1415927F, -1.5707964F, 0}, {0, 0.5F, 1.5707964F}}) {

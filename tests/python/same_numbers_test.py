@@ -329,6 +329,40 @@ class SameNumbers(program.InFolder):
                               "--outgoing", "8", "--no-timing", "--pair-count", "256")
         self.assertEqual(without_calls(ours), without_calls(theirs))
 
+    def test_libraries_are_those_of_the_program(self):
+        specs = ["ggx:alpha=.2,F0=.9/.6/.3", "ggx:alpha=.3,F0=.8/.7/.6", "lambert:kd=.5/.5/.1",
+                 "lambert:kd=.3/.2/.1+ggx:alpha=.35,F0=.04"]
+        ours = hshfit.Library.learn(specs, "ours.library", components=4, limit=10,
+                                    limit_maximum=10, limit_flip=1)
+        words = ["--components", "4", "--limit", "10", "--limit-maximum", "10", "--limit-flip", "1"]
+        self.run_program("library", "learn", *specs, *words, "-o", "theirs.library")
+        self.assertEqual(self.bytes_of("ours.library"), self.bytes_of("theirs.library"))
+        self.assertEqual(hshfit.Library("theirs.library").names, ours.names)
+        name = ours.names[1]
+        self.assertEqual(ours.coefficients(name).shape, (3, ours.components.shape[0]))
+        self.assertEqual(ours.components.shape[1:], ours.mean.shape)
+        done = ours.encode("lambert:kd=.2/.4/.2", "one.library")
+        theirs = self.json_of("library", "encode", "theirs.library", "lambert:kd=.2/.4/.2", "-o",
+                              "two.library")
+        for key in ("name", "kind", "bytes", "picture", "fallback"):
+            self.assertEqual(done[key], theirs[key])
+        pairs = self.json_of("library", "next", "--library", "theirs.library", "--count", "5")
+        mine = ours.next(5)
+        self.assertEqual([row["expected_error"] for row in pairs["pairs"]], mine[:, 4].tolist())
+        with open("scan.csv", "w", encoding="ascii") as file:
+            file.write("theta_i,phi_i,theta_o,phi_o,R,G,B\n")
+            for row in mine[:, :4].tolist():
+                file.write(",".join(map(repr, [*row, 0.1, 0.08, 0.06])) + "\n")
+        found = ours.reconstruct("scan.csv", "found.library", sigma="5%")
+        again = self.json_of("library", "reconstruct", "scan.csv", "--library", "theirs.library",
+                             "--sigma", "5%", "-o", "again.library")
+        for key, value in found.items():
+            self.assertEqual(value, again[key])
+        with self.assertRaises(hshfit.UsageError):
+            ours.coefficients("nobody")
+        with self.assertRaises(hshfit.UsageError):
+            ours.next(3, instrument="hand")
+
     def test_arguments_are_refused_where_the_program_refuses_them(self):
         for work in [lambda: hshfit.render("lambert", "x.png", size=4),
                      lambda: hshfit.render("lambert", "x.png", light=[(200, 0)]),

@@ -1,0 +1,148 @@
+#include <hshfit/material_library/basis.h>
+
+#include <hshfit/material_library/internal/log_samples.h>
+#include <hshfit/material_library/log_terms.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace hshfit::material_library {
+namespace {
+
+constexpr double topsPerLog = 12;
+constexpr int mostTop = 255;
+
+int halfRange(std::uint8_t width) {
+    return 1 << (width - 1);
+}
+
+double topOf(std::uint8_t code) {
+    return std::log(logOffset) + code / topsPerLog;
+}
+
+std::uint8_t topCode(double top) {
+    const double steps = std::ceil((top - std::log(logOffset)) * topsPerLog - 1e-6);
+    return static_cast<std::uint8_t>(std::clamp(steps, 0.0, double{mostTop}));
+}
+
+using Matrix = Eigen::Map<const linear_algebra::RowMajor>;
+
+Matrix matrixOf(const Basis& basis) {
+    return {basis.components.data(), static_cast<Eigen::Index>(basis.size()),
+            static_cast<Eigen::Index>(basis.mean.size())};
+}
+
+}  // namespace
+
+std::size_t Basis::channelBytes() const {
+    std::size_t bits = 0;
+    for (const std::uint8_t width : widths) bits += width;
+    return 1 + (bits + 7) / 8;
+}
+
+std::size_t Basis::bytes() const {
+    return 4 * mean.size() + 2 * components.size() + widths.size() + 4;
+}
+
+std::vector<std::uint8_t> pack(const Basis& basis, std::span<const double> coordinates,
+                               double top) {
+    assert(coordinates.size() == basis.size());
+    std::vector<std::uint8_t> code(basis.channelBytes(), 0);
+    code[0] = topCode(top);
+    std::size_t bit = 8;
+    for (std::size_t k = 0; k < basis.size(); ++k) {
+        const int half = halfRange(basis.widths[k]);
+        const double most = half - 1;
+        const double steps = std::clamp(std::round(coordinates[k] / basis.step), -most, most);
+        const auto number = static_cast<unsigned>(static_cast<int>(steps) + half);
+        for (int b = 0; b < basis.widths[k]; ++b, ++bit)
+            code[bit / 8] |= static_cast<std::uint8_t>((number >> b & 1u) << bit % 8);
+    }
+    return code;
+}
+
+ChannelCode unpack(const Basis& basis, std::span<const std::uint8_t> code) {
+    assert(code.size() == basis.channelBytes());
+    ChannelCode channel{.coordinates = {}, .top = topOf(code[0])};
+    std::size_t bit = 8;
+    for (const std::uint8_t width : basis.widths) {
+        int number = 0;
+        for (int b = 0; b < width; ++b, ++bit) number |= (code[bit / 8] >> bit % 8 & 1) << b;
+        channel.coordinates.push_back(basis.step * (number - halfRange(width)));
+    }
+    return channel;
+}
+
+LogMaterial decode(const Basis& basis, std::span<const std::uint8_t> codes) {
+    LogMaterial material;
+    const std::size_t bytes = basis.channelBytes(), terms = basis.mean.size();
+    for (std::size_t first = 0; first + bytes <= codes.size(); first += bytes) {
+        const ChannelCode channel = unpack(basis, codes.subspan(first, bytes));
+        std::vector<double> sum = basis.mean;
+        for (std::size_t k = 0; k < basis.size(); ++k)
+            for (std::size_t t = 0; t < terms; ++t)
+                sum[t] += channel.coordinates[k] * basis.components[k * terms + t];
+        material.exponents.insert(material.exponents.end(), sum.begin(), sum.end());
+        material.tops.push_back(channel.top);
+    }
+    return material;
+}
+
+struct Encoder::Projection {
+    Eigen::MatrixXd rows;  ///< coordinates = rows (exponents - mean)
+};
+
+Encoder::Encoder(const Basis& basis, const LogSpace& space) : basis_(basis) {
+    projection_ = std::make_unique<const Projection>();
+    if (basis.size() == 0) return;
+    const Eigen::MatrixXd measured = matrixOf(basis) * space.samples().metric;
+    const Eigen::MatrixXd gram = measured * matrixOf(basis).transpose();
+    projection_ = std::make_unique<const Projection>(Projection{gram.ldlt().solve(measured)});
+}
+
+Encoder::~Encoder() = default;
+
+std::vector<double> Encoder::coordinates(const LogMaterial& material,
+                                         std::size_t components) const {
+    const auto terms = static_cast<Eigen::Index>(basis_.mean.size());
+    const Eigen::Map<const Eigen::VectorXd> mean(basis_.mean.data(), terms);
+    std::vector<double> all;
+    for (std::size_t c = 0; c < material.channels(); ++c) {
+        const Eigen::Map<const Eigen::VectorXd> exponents(
+            material.exponents.data() + c * basis_.mean.size(), terms);
+        if (basis_.size() == 0) continue;
+        const Eigen::VectorXd a = projection_->rows * (exponents - mean);
+        for (std::size_t k = 0; k < basis_.size(); ++k)
+            all.push_back(k < components ? a[static_cast<Eigen::Index>(k)] : 0);
+    }
+    return all;
+}
+
+std::vector<std::uint8_t> Encoder::encode(const LogMaterial& material,
+                                          std::size_t components) const {
+    const std::vector<double> all = coordinates(material, components);
+    std::vector<std::uint8_t> codes;
+    for (std::size_t c = 0; c < material.channels(); ++c) {
+        const std::vector<std::uint8_t> one = pack(
+            basis_, std::span(all).subspan(c * basis_.size(), basis_.size()), material.tops[c]);
+        codes.insert(codes.end(), one.begin(), one.end());
+    }
+    return codes;
+}
+
+double distance(const LogSpace& space, const LogMaterial& a, const LogMaterial& b) {
+    const auto terms = static_cast<Eigen::Index>(logTerms().size());
+    const std::size_t channels = std::max(a.channels(), b.channels());
+    // A grey material has its one channel for every colour.
+    const auto channel = [&](const LogMaterial& m, std::size_t c) {
+        return Eigen::Map<const Eigen::VectorXd>(
+            m.exponents.data() + (m.channels() == 1 ? 0 : c) * logTerms().size(), terms);
+    };
+    double sum = 0;
+    for (std::size_t c = 0; c < channels; ++c)
+        sum += (space.samples().lower.transpose() * (channel(a, c) - channel(b, c))).squaredNorm();
+    return std::sqrt(sum / static_cast<double>(channels));
+}
+
+}  // namespace hshfit::material_library

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <hshfit/material_library/log_space.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace hshfit::material_library {
+
+/// The mean and the components that materials share. A channel is
+///     ln(f + logOffset) = mean + sum over k of step * q_k * component_k
+/// with whole numbers q_k of widths_k bits, |q_k| < 2^(widths_k - 1): the components have length 1
+/// in the metric of LogSamples, so that one step has the same error in each, and a component takes
+/// the bits that its spread needs.
+struct Basis {
+    std::vector<double> mean;          ///< [term], float32 in files
+    std::vector<double> components;    ///< [component][term], half precision in files
+    std::vector<std::uint8_t> widths;  ///< [component], from 2 to 16
+    double step = 1;                   ///< float32 in files
+
+    std::size_t size() const { return widths.size(); }
+    /// Bytes of one channel: its bound, then the bits of all components.
+    std::size_t channelBytes() const;
+    /// Bytes of the arrays above in a file.
+    std::size_t bytes() const;
+};
+
+/// Codes of one channel: the bound in steps of a twelfth of ln(f + logOffset), rounded up; then q_k
+/// + 2^(widths_k - 1), the lowest bit first. `coordinates` beyond the widths become the nearest.
+std::vector<std::uint8_t> pack(const Basis& basis, std::span<const double> coordinates, double top);
+
+struct ChannelCode {
+    std::vector<double> coordinates;  ///< step * q_k
+    double top = 0;
+};
+/// The inverse of `pack`, of basis.channelBytes() bytes.
+ChannelCode unpack(const Basis& basis, std::span<const std::uint8_t> code);
+
+/// The channels of a material from their codes, one after another.
+LogMaterial decode(const Basis& basis, std::span<const std::uint8_t> codes);
+
+/// The numbers of materials in a basis: least squares in the metric of `space`, which has to
+/// outlive this.
+class Encoder {
+public:
+    Encoder(const Basis& basis, const LogSpace& space);
+    ~Encoder();
+
+    /// The coordinates of channel after channel, not rounded; those from `components` on are 0.
+    std::vector<double> coordinates(const LogMaterial& material, std::size_t components) const;
+    /// Codes of all channels.
+    std::vector<std::uint8_t> encode(const LogMaterial& material, std::size_t components) const;
+
+private:
+    struct Projection;
+    const Basis& basis_;
+    std::unique_ptr<const Projection> projection_;
+};
+
+/// Root of the weighted mean square of the difference of ln(f + logOffset), over channels.
+double distance(const LogSpace& space, const LogMaterial& a, const LogMaterial& b);
+
+}  // namespace hshfit::material_library

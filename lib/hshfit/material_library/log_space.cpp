@@ -1,0 +1,114 @@
+#include <hshfit/material_library/log_space.h>
+
+#include <hshfit/error.h>
+#include <hshfit/material_library/internal/log_samples.h>
+#include <hshfit/material_library/log_terms.h>
+#include <hshfit/pictures/picture_error.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hshfit::material_library {
+namespace {
+
+constexpr unsigned fittedSeed = 2;     ///< of the pairs; those of errors have 1
+constexpr int fittedIncoming = 200;    ///< pairs of one outgoing direction
+constexpr double byPair = 0.5;         ///< share of the weight that counts pairs
+constexpr double ridge = 1e-8;         ///< of the mean diagonal: the terms are nearly dependent
+constexpr double largestResidual = 1;  ///< of logarithms, from which on Huber's function is linear
+constexpr int robustSteps = 6;
+constexpr int ridgeNodes = 91;
+
+/// ln(f + logOffset), [pair][channel].
+Eigen::MatrixXd logarithms(const Brdf& brdf, const PairSample& pairs) {
+    const std::size_t channels = brdf.channels().count();
+    const std::vector<double> values = evaluateOn(brdf, pairs, true);
+    Eigen::MatrixXd out(pairs.size(), channels);
+    for (std::size_t n = 0; n < values.size(); ++n) {
+        if (!std::isfinite(values[n]))
+            throw NumericError(fmt::format("{}: f is not finite at a pair", brdf.name()));
+        out(static_cast<Eigen::Index>(n % pairs.size()),
+            static_cast<Eigen::Index>(n / pairs.size())) =
+            std::log(std::max(values[n], 0.0) + logOffset);
+    }
+    return out;
+}
+
+/// The greatest ln(f + logOffset) of each channel where wi mirrors wo.
+std::vector<double> ridgeTops(const Brdf& brdf) {
+    std::vector<double> tops(brdf.channels().count(), std::log(logOffset));
+    for (int n = 0; n < ridgeNodes; ++n) {
+        const Direction wo = directionFromAngles(n * pi / 2 / ridgeNodes, 0);
+        const std::vector<double> f = evaluate(brdf, mirrored(wo), wo);
+        for (std::size_t c = 0; c < f.size(); ++c)
+            tops[c] = std::max(tops[c], std::log(std::max(f[c], 0.0) + logOffset));
+    }
+    return tops;
+}
+
+}  // namespace
+
+LogMaterial Measured::material() const {
+    return {{exponents.begin(), exponents.end()}, {tops.begin(), tops.end()}};
+}
+
+LogSamples::LogSamples() : pairs(spreadPairs({.seed = fittedSeed, .incoming = fittedIncoming})) {
+    const auto size = static_cast<Eigen::Index>(pairs.size());
+    const auto count = static_cast<Eigen::Index>(logTerms().size());
+    weights.resize(size);
+    terms.resize(size, count);
+    for (Eigen::Index k = 0; k < size; ++k) {
+        const auto n = static_cast<std::size_t>(k);
+        logTerms().evaluate(pairs.incoming(n), pairs.outgoing(n), terms.row(k).data());
+        weights[k] = (1 - byPair) * pairs.weights[n] + byPair / static_cast<double>(size);
+    }
+    metric = terms.transpose() * (weights.asDiagonal() * terms);
+    metric.diagonal().array() += ridge * metric.trace() / static_cast<double>(count);
+    lower = metric.llt().matrixL();
+}
+
+Eigen::MatrixXd LogSamples::solve(Eigen::MatrixXd right) const {
+    lower.triangularView<Eigen::Lower>().solveInPlace(right);
+    lower.transpose().triangularView<Eigen::Upper>().solveInPlace(right);
+    return right;
+}
+
+LogSpace::LogSpace() : samples_(std::make_unique<LogSamples>()) {}
+LogSpace::~LogSpace() = default;
+
+Measured LogSpace::project(const Brdf& brdf, const std::string& name, const std::string& source,
+                           bool seen) const {
+    const std::size_t channels = brdf.channels().count();
+    if (brdf.channels().kind == Channels::Kind::spectral)
+        throw UsageError(
+            fmt::format("{}: is spectral; a library holds grey and RGB materials, so "
+                        "give rgb:{}",
+                        source, source));
+    const Eigen::MatrixXd logs = logarithms(brdf, samples_->pairs);
+    const auto fit = [&](const Eigen::MatrixXd& y) {
+        return samples_->solve(samples_->terms.transpose() * (samples_->weights.asDiagonal() * y));
+    };
+    Eigen::MatrixXd c = fit(logs);
+    for (int step = 0; step < robustSteps; ++step) {
+        const Eigen::MatrixXd sums = samples_->terms * c, rest = logs - sums;
+        if (rest.cwiseAbs().maxCoeff() <= largestResidual) break;
+        c = fit(sums + rest.cwiseMax(-largestResidual).cwiseMin(largestResidual));
+    }
+    Measured measured{.name = name, .source = source, .exponents = {}, .tops = {}};
+    const std::vector<double> ridgeTop = ridgeTops(brdf);
+    for (std::size_t k = 0; k < channels; ++k) {
+        const auto column = static_cast<Eigen::Index>(k);
+        for (const double value : c.col(column))
+            measured.exponents.push_back(static_cast<float>(value));
+        measured.tops.push_back(
+            static_cast<float>(std::max(ridgeTop[k], logs.col(column).maxCoeff())));
+    }
+    const LogBrdf form(measured.material(), name);
+    measured.error = formError(brdf, form, errorPairs());
+    if (seen) measured.error.flip = pictureError(brdf, form).flip.mean;
+    return measured;
+}
+
+}  // namespace hshfit::material_library
