@@ -1,5 +1,7 @@
 // make_seeds FOLDER: FOLDER/fuzz_NAME with small synthetic inputs for each target to start from.
 
+#include "seed_files.h"
+
 #include <hshfit/bases/catalog.h>
 #include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/coefficient_files/light_file.h>
@@ -32,12 +34,6 @@ using hshfit::test::pbsdfFields;
 using hshfit::test::put;
 using hshfit::test::RglShape;
 using hshfit::test::tensorFile;
-
-void write(const std::filesystem::path& path, const std::string& bytes) {
-    std::filesystem::create_directories(path.parent_path());
-    std::ofstream(path, std::ios::binary)
-        .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-}
 
 RglShape small(std::vector<float> phi, std::uint64_t channels, bool jacobian) {
     return {.phi = std::move(phi),
@@ -142,7 +138,7 @@ void lightPictures(const std::filesystem::path& folder) {
         std::ifstream in(exr, std::ios::binary);
         const std::string bytes{std::istreambuf_iterator<char>(in), {}};
         const char choice = static_cast<char>(shape.layout + 8 * 7);
-        write(folder / std::to_string(number++), choice + bytes);
+        writeSeed(folder / std::to_string(number++), choice + bytes);
         std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " +
                           std::to_string(shape.height) + " +X " + std::to_string(shape.width) +
                           "\n";
@@ -155,9 +151,9 @@ void lightPictures(const std::filesystem::path& folder) {
             ppm += "\x10\x20\x30";
             for (const float v : {1.F, 0.5F, 2.F}) put(pfm, v);
         }
-        write(folder / std::to_string(number++), choice + hdr);
-        write(folder / std::to_string(number++), choice + pfm);
-        write(folder / std::to_string(number++), static_cast<char>(shape.layout + 8) + ppm);
+        writeSeed(folder / std::to_string(number++), choice + hdr);
+        writeSeed(folder / std::to_string(number++), choice + pfm);
+        writeSeed(folder / std::to_string(number++), static_cast<char>(shape.layout + 8) + ppm);
         std::filesystem::remove(exr);
     }
 }
@@ -165,18 +161,19 @@ void lightPictures(const std::filesystem::path& folder) {
 void lightSpecifications(const std::filesystem::path& folder) {
     int number = 0;
     for (const hshfit::LightKind& kind : hshfit::lightKinds())
-        write(folder / std::to_string(number++), std::string(kind.example));
+        writeSeed(folder / std::to_string(number++), std::string(kind.example));
     for (const char* text :
          {"sky:type=12,elevation=40+sun:elevation=40,irradiance=1e+3,turn=-90",
           "uniform: + panel:roll=30,scale=2", "none.hdr:layout=angular,curve=srgb"})
-        write(folder / std::to_string(number++), text);
+        writeSeed(folder / std::to_string(number++), text);
 }
 
 void weatherFile(const std::filesystem::path& folder) {
-    write(folder / "two",
-          "LOCATION,A,-,B,C,1,52.3,4.77,1,-2\nDESIGN CONDITIONS,0\nDATA PERIODS,1,1,Data,Sunday,"
-          "1/ 1,12/31\n1995,1,1,1,60,?9,5,1,79,99900,0,1415,288,0,0,0,0\n"
-          "1996,6,21,13,60,?9,5,1,79,99900,1200,1325,288,800,700,150,0\n");
+    writeSeed(
+        folder / "two",
+        "LOCATION,A,-,B,C,1,52.3,4.77,1,-2\nDESIGN CONDITIONS,0\nDATA PERIODS,1,1,Data,Sunday,"
+        "1/ 1,12/31\n1995,1,1,1,60,?9,5,1,79,99900,0,1415,288,0,0,0,0\n"
+        "1996,6,21,13,60,?9,5,1,79,99900,1200,1325,288,800,700,150,0\n");
 }
 
 void coefficientFiles(const std::filesystem::path& folder) {
@@ -274,7 +271,7 @@ void bsdfXmlFiles(const std::filesystem::path& folder) {
     int number = 0;
     for (const std::string& file : files) {
         for (const char first : {'\0', '\3'}) {
-            write(folder / std::to_string(number++), std::string(1, first) + file);
+            writeSeed(folder / std::to_string(number++), std::string(1, first) + file);
         }
     }
 }
@@ -282,78 +279,81 @@ void bsdfXmlFiles(const std::filesystem::path& folder) {
 /// Small files of the formats of scattered samples.
 void scatteredFiles(const std::filesystem::path& folder) {
     const std::string mueller = ",0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n";
-    write(folder / "fuzz_alta" / "text",
-          "#DIM 4 1\n#VS 2\n#PARAM_IN SPHERICAL_TL_PL_TV_PV\n0.1 0 0.2 0 1 0.9 1.1\n");
-    write(folder / "fuzz_alta" / "stream",
-          "#DIM 2 1\n#PARAM_IN STARK_2D\n#FORMAT binary\n#SAMPLE_COUNT 1\n#ENDIAN little\n"
-          "#BEGIN_STREAM\n" +
-              std::string(24, '\0') + "\n#END_STREAM\n");
-    write(folder / "fuzz_alta" / "function",
-          "#ALTA FUNC HEADER\n#DIM 6 1\n#FUNC nonlinear_function_diffuse\nkd 0.25\n"
-          "#FUNC nonlinear_function_blinn\nKs 2\nN 3\n");
-    write(folder / "fuzz_alta" / "rational",
-          "#ALTA FUNC HEADER\n#CMD --sg-type half\n#DIM 2 1\n#PARAM_IN RUSIN_TH_TD\n"
-          "#FUNC rational_function\n#MIN 0 0\n#MAX 1.5 1.5\n#BASIS LEGENDRE\n#NP 2\n#NQ 2\n"
-          "0 0 1\n1 0 -.5\n0 0 1\n0 2 .5\n"
-          "#FUNC nonlinear_function_spherical_gaussian\nKs 1\nN 9\n"
-          "#FUNC nonlinear_fresnel_schlick\nR 0.1\n"
-          "#FUNC nonlinear_function_abc\n#PARAM COS_TH\na 1\nb 2\nc 3\n");
-    write(folder / "fuzz_astm" / "spectral",
-          "NUM_POINTS 1\nVARS theta_i,phi_i,theta_s,phi_s,400nm\n0.1,0,0.2,0,1\n");
-    write(folder / "fuzz_cornell" / "two", "# x\n2\n400 500\n0.1 0 0.2 0.3 1 2\n");
-    write(folder / "fuzz_csv" / "rows",
-          "wavelength (um),theta_i (deg),phi_i,theta_o,phi_o,brf,sigma (%),scan\n"
-          "0.5,30,0,40,180,1,2,1\n0.6,30,0,40,180,1,2,1\n");
-    write(folder / "fuzz_csv" / "plane", "BRF\nAOI;View_angle;500nm;600nm\n10;-10;0,5;0,25\n");
-    write(folder / "fuzz_nist" / "two", "lambda,thetai,phi,thetar,phir\n0.633,-30,0,45,10,0.3" +
-                                            mueller + "0.532,-30,0,45,10,0.3" + mueller);
-    write(folder / "fuzz_scatmech" / "three",
-          "1, 1, 2, 0, 0, 0, 0, 0.5\n1, 1, 3, 1, 1, 1, 1, 0.5\n2, 2, 1, 1, -1, 1, 0, 3\n");
+    writeSeed(folder / "fuzz_alta" / "text",
+              "#DIM 4 1\n#VS 2\n#PARAM_IN SPHERICAL_TL_PL_TV_PV\n0.1 0 0.2 0 1 0.9 1.1\n");
+    writeSeed(folder / "fuzz_alta" / "stream",
+              "#DIM 2 1\n#PARAM_IN STARK_2D\n#FORMAT binary\n#SAMPLE_COUNT 1\n#ENDIAN little\n"
+              "#BEGIN_STREAM\n" +
+                  std::string(24, '\0') + "\n#END_STREAM\n");
+    writeSeed(folder / "fuzz_alta" / "function",
+              "#ALTA FUNC HEADER\n#DIM 6 1\n#FUNC nonlinear_function_diffuse\nkd 0.25\n"
+              "#FUNC nonlinear_function_blinn\nKs 2\nN 3\n");
+    writeSeed(folder / "fuzz_alta" / "rational",
+              "#ALTA FUNC HEADER\n#CMD --sg-type half\n#DIM 2 1\n#PARAM_IN RUSIN_TH_TD\n"
+              "#FUNC rational_function\n#MIN 0 0\n#MAX 1.5 1.5\n#BASIS LEGENDRE\n#NP 2\n#NQ 2\n"
+              "0 0 1\n1 0 -.5\n0 0 1\n0 2 .5\n"
+              "#FUNC nonlinear_function_spherical_gaussian\nKs 1\nN 9\n"
+              "#FUNC nonlinear_fresnel_schlick\nR 0.1\n"
+              "#FUNC nonlinear_function_abc\n#PARAM COS_TH\na 1\nb 2\nc 3\n");
+    writeSeed(folder / "fuzz_astm" / "spectral",
+              "NUM_POINTS 1\nVARS theta_i,phi_i,theta_s,phi_s,400nm\n0.1,0,0.2,0,1\n");
+    writeSeed(folder / "fuzz_cornell" / "two", "# x\n2\n400 500\n0.1 0 0.2 0.3 1 2\n");
+    writeSeed(folder / "fuzz_csv" / "rows",
+              "wavelength (um),theta_i (deg),phi_i,theta_o,phi_o,brf,sigma (%),scan\n"
+              "0.5,30,0,40,180,1,2,1\n0.6,30,0,40,180,1,2,1\n");
+    writeSeed(folder / "fuzz_csv" / "plane", "BRF\nAOI;View_angle;500nm;600nm\n10;-10;0,5;0,25\n");
+    writeSeed(folder / "fuzz_nist" / "two", "lambda,thetai,phi,thetar,phir\n0.633,-30,0,45,10,0.3" +
+                                                mueller + "0.532,-30,0,45,10,0.3" + mueller);
+    writeSeed(folder / "fuzz_scatmech" / "three",
+              "1, 1, 2, 0, 0, 0, 0, 0.5\n1, 1, 3, 1, 1, 1, 1, 0.5\n2, 2, 1, 1, -1, 1, 0, 3\n");
 }
 
 /// Small files of the formats of optical design programs.
 void opticsFiles(const std::filesystem::path& folder) {
-    write(folder / "fuzz_fred" / "two",
-          "type bsdf_data\nformat angles=deg bsdf=value scale=1\n10 0\n0 0 0.5\n20 90 0.4\n");
+    writeSeed(folder / "fuzz_fred" / "two",
+              "type bsdf_data\nformat angles=deg bsdf=value scale=1\n10 0\n0 0 0.5\n20 90 0.4\n");
     const std::string zemax =
         "# x\nSource Measured\nSymmetry PlaneSymmetrical\nSpectralContent Monochrome\n"
         "ScatterType BRDF\nSampleRotation 1\n0\nAngleOfIncidence 1\n10\nScatterAzimuth 2\n0 180\n"
         "ScatterRadial 2\n0 90\n\nMonochrome\nDataBegin\nTIS 0.1\n0.03 0.03\n0.03 0\nDataEnd\n";
-    write(folder / "fuzz_zemax" / "plane", zemax);
-    write(folder / "fuzz_speos" / "spectral",
-          "OPTIS - brdf surface file v8.0\n0\nown\n2\nab\n1 0\n1\n1 1\n30\n550\n20\n2 3\n"
-          "0 180 360\n0 1 1 1\n90 1 1 1\nEnd of file\n");
-    write(folder / "fuzz_speos" / "anisotropic",
-          "OPTIS - Anisotropic BSDF surface file v8.0\n0\nown\n2\nab\n0 1 0\n1 0\n0\n1\n0\n1\n30\n"
-          "30 0\n\n2\n400 10\n500 20\n2 2\n0 180\n0 1 1\n60 1 1\nEnd of file\n");
-    write(folder / "fuzz_pab_opto" / "two",
-          "#sample_name \"a\"\n#incident_angle 30 180\n#format: theta phi DSF\n30 0 0.4\n"
-          "150 0 0.3\n#intheta 150\n#inphi 0\n#format: theta phi BSDF\n"
-          "#colorimetry: CIE-Y\n40 0 1\n");
-    write(folder / "fuzz_bird" / "two",
-          R"({"metadata": {"sample": {"name": "a"}}, "data": {"theta_i": {"unit": "deg",)"
-          R"( "values": [1, 2]}, "phi_i": {"unit": "deg", "values": [0, 0]}, "theta_r":)"
-          R"( {"unit": "rad", "values": [0.1, 0.1]}, "phi_r": {"unit": "deg", "values":)"
-          R"( [0, 90]}, "wavelength_i": {"unit": "nm", "values": [500, 500]}, "polarization_i":)"
-          R"( {"notation": "sp", "values": ["u", "u"]}, "uBRDF": {"unit": "%", "values":)"
-          R"( [1, 1]}, "BRDF": {"unit": "1/sr", "values": [0.3, 0.2]}}})");
-    write(folder / "fuzz_xompt" / "two",
-          R"({"metadata": {"name": "a"}, "brdf": {"wavelengths": [5e-7],)"
-          R"( "lookupTable": [[5e-7, 0, 0, 0, 0.3], [5e-7, 0.1, 0, 0, null]]}})");
+    writeSeed(folder / "fuzz_zemax" / "plane", zemax);
+    writeSeed(folder / "fuzz_speos" / "spectral",
+              "OPTIS - brdf surface file v8.0\n0\nown\n2\nab\n1 0\n1\n1 1\n30\n550\n20\n2 3\n"
+              "0 180 360\n0 1 1 1\n90 1 1 1\nEnd of file\n");
+    writeSeed(
+        folder / "fuzz_speos" / "anisotropic",
+        "OPTIS - Anisotropic BSDF surface file v8.0\n0\nown\n2\nab\n0 1 0\n1 0\n0\n1\n0\n1\n30\n"
+        "30 0\n\n2\n400 10\n500 20\n2 2\n0 180\n0 1 1\n60 1 1\nEnd of file\n");
+    writeSeed(folder / "fuzz_pab_opto" / "two",
+              "#sample_name \"a\"\n#incident_angle 30 180\n#format: theta phi DSF\n30 0 0.4\n"
+              "150 0 0.3\n#intheta 150\n#inphi 0\n#format: theta phi BSDF\n"
+              "#colorimetry: CIE-Y\n40 0 1\n");
+    writeSeed(
+        folder / "fuzz_bird" / "two",
+        R"({"metadata": {"sample": {"name": "a"}}, "data": {"theta_i": {"unit": "deg",)"
+        R"( "values": [1, 2]}, "phi_i": {"unit": "deg", "values": [0, 0]}, "theta_r":)"
+        R"( {"unit": "rad", "values": [0.1, 0.1]}, "phi_r": {"unit": "deg", "values":)"
+        R"( [0, 90]}, "wavelength_i": {"unit": "nm", "values": [500, 500]}, "polarization_i":)"
+        R"( {"notation": "sp", "values": ["u", "u"]}, "uBRDF": {"unit": "%", "values":)"
+        R"( [1, 1]}, "BRDF": {"unit": "1/sr", "values": [0.3, 0.2]}}})");
+    writeSeed(folder / "fuzz_xompt" / "two",
+              R"({"metadata": {"name": "a"}, "brdf": {"wavelengths": [5e-7],)"
+              R"( "lookupTable": [[5e-7, 0, 0, 0, 0.3], [5e-7, 0.1, 0, 0, null]]}})");
 }
 
 /// Presets, a collection of them, and mixtures of Gaussians of either kind.
 void presetFiles(const std::filesystem::path& folder) {
     const std::string head = R"({"format": "hshfit-preset", "version": 1, )";
-    write(folder / "fuzz_presets" / "parameters",
-          head + R"("model": "ward", "parameters": {"kd": [0.1, 0.2, 0.3], "ax": 0.2, "ay": 0.5,)"
-                 R"( "variant": "duer"}, "source": "none"})");
-    write(folder / "fuzz_presets" / "sum",
-          head + R"("spec": "lambert:kd=.5 + 0.5 * ggx:alpha=.2,F0=.1,ks=.5"})");
-    write(folder / "fuzz_presets" / "collection",
-          R"({"format": "hshfit-presets", "version": 1, "model": "ggx", "help": "h",)"
-          R"( "parameters": {"fresnel": "schlick"}, "source": "none", "materials":)"
-          R"( {"a": {"alpha": 0.2, "F0": [0.1, 0.2, 0.3]}, "b": {"alpha": 1}}})");
+    writeSeed(folder / "fuzz_presets" / "parameters",
+              head +
+                  R"("model": "ward", "parameters": {"kd": [0.1, 0.2, 0.3], "ax": 0.2, "ay": 0.5,)"
+                  R"( "variant": "duer"}, "source": "none"})");
+    writeSeed(folder / "fuzz_presets" / "sum",
+              head + R"("spec": "lambert:kd=.5 + 0.5 * ggx:alpha=.2,F0=.1,ks=.5"})");
+    writeSeed(folder / "fuzz_presets" / "collection",
+              R"({"format": "hshfit-presets", "version": 1, "model": "ggx", "help": "h",)"
+              R"( "parameters": {"fresnel": "schlick"}, "source": "none", "materials":)"
+              R"( {"a": {"alpha": 0.2, "F0": [0.1, 0.2, 0.3]}, "b": {"alpha": 1}}})");
     for (const bool across : {false, true}) {
         const std::string lobe = std::string(R"({"tilt": 1, "sharpness": 20, )") +
                                  (across ? R"("across": 30, )" : "") +
@@ -364,69 +364,11 @@ void presetFiles(const std::filesystem::path& folder) {
                           R"(, "lobes": [)" + lobe + ", " + lobe +
                           R"(], "error": 0.1, "albedo": 0.5, "fitted_albedo": 0.5,)"
                           R"( "converged": true})";
-        write(folder / "fuzz_gaussians" / (across ? "asg" : "sg"),
-              std::string(R"({"format": "hshfit-gaussians", "version": 1, "brdf": "ggx",)") +
-                  R"( "kind": ")" + (across ? "asg" : "sg") +
-                  R"(", "channels": "rgb", "elevations": [)" + elevations + "]}");
+        writeSeed(folder / "fuzz_gaussians" / (across ? "asg" : "sg"),
+                  std::string(R"({"format": "hshfit-gaussians", "version": 1, "brdf": "ggx",)") +
+                      R"( "kind": ")" + (across ? "asg" : "sg") +
+                      R"(", "channels": "rgb", "elevations": [)" + elevations + "]}");
     }
-}
-
-void gltf(const std::filesystem::path& folder) {
-    std::string buffer;
-    for (const int x : {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) put(buffer, static_cast<float>(x));
-    for (const int k : {0, 1, 2, 3}) put(buffer, static_cast<std::uint16_t>(k));
-    const std::string head =
-        R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,)"
-        R"("children":[1],"scale":[1,-2,1]},)"
-        R"({"mesh":0,"rotation":[0,0,1,0],"translation":[2,0,0]}],)"
-        R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":0},"indices":1,"mode":6},)"
-        R"({"attributes":{"POSITION":2},"mode":5}]}],"accessors":[{"bufferView":0,"componentType":)"
-        R"(5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5123,"count":4,"type":)"
-        R"("SCALAR"},{"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":3,"indices":)"
-        R"({"bufferView":1,"byteOffset":2,"componentType":5123},"values":{"bufferView":0,)"
-        R"("byteOffset":12}}}],"bufferViews":[{"buffer":0,"byteLength":48,"byteStride":12},)"
-        R"({"buffer":0,"byteOffset":48,"byteLength":8}],"buffers":[{"byteLength":56)";
-    write(folder / "quad.gltf",
-          head + R"(,"uri":"data:application/octet-stream;base64,)" +
-              hshfit::base64(std::as_bytes(std::span(buffer.data(), buffer.size()))) + "\"}]}");
-    std::string text = head + "}]}";
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    std::string bytes = "glTF";
-    const auto size = [](std::size_t count) { return static_cast<std::uint32_t>(count); };
-    for (const std::uint32_t word : {2U, size(28 + text.size() + buffer.size()), size(text.size())})
-        put(bytes, word);
-    bytes += "JSON" + text;
-    put(bytes, size(buffer.size()));
-    write(folder / "quad.glb", bytes + std::string("BIN\0", 4) + buffer);
-}
-
-void meshes(const std::filesystem::path& folder) {
-    gltf(folder);
-    write(folder / "quad.obj",
-          "# a square\nv -1 0 -1\nv 1 0 -1 0.5 0.5 0.5\nv 1 0 1\nv -1 0 1e0\nvt 0 1\n"
-          "vn 0 -1 0\no a\ng b\ns 1\nusemtl m\nf 1/1/1 4//1 3/1 -3\nl 1 2\n");
-    const std::string head =
-        "comment c\nobj_info i\nelement vertex 4\nproperty float x\n"
-        "property double y\nproperty short z\nproperty uchar red\n"
-        "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-    write(folder / "quad.ply",
-          "ply\nformat ascii 1.0\n" + head + "0 0 0 9\n1 0 0 9\n1 1 0 9\n0 1 0 9\n4 0 1 2 3\n");
-    std::string body;
-    for (const int k : {0, 1, 2, 3}) {
-        put(body, static_cast<float>(k % 3 > 0));
-        put(body, static_cast<double>(k / 2));
-        put(body, std::int16_t{0});
-        put(body, std::uint8_t{9});
-    }
-    put(body, std::uint8_t{4});
-    for (const std::int32_t k : {0, 1, 2, 3}) put(body, k);
-    write(folder / "little.ply", "ply\nformat binary_little_endian 1.0\n" + head + body);
-    write(folder / "big.ply", "ply\nformat binary_big_endian 1.0\n" + head + body);
-    write(folder / "normals.ply",
-          "ply\r\nformat ascii 1.0\r\nelement vertex 3\r\nproperty float x\r\n"
-          "property float y\r\nproperty float z\r\nproperty float nx\r\nproperty float ny\r\n"
-          "property float nz\r\nelement face 1\r\nproperty list uint8 uint32 vertex_index\r\n"
-          "end_header\r\n0 0 0 0 0 1\r\n1 0 0 0 0 2\r\n0 1 0 0 0 0\r\n3 0 1 2\r\n");
 }
 
 /// Two materials in a basis and one with terms of its own.
@@ -472,15 +414,15 @@ int main(int count, char** arguments) {
     lightPictures(folder / "fuzz_pictures");
     lightSpecifications(folder / "fuzz_lights");
     weatherFile(folder / "fuzz_weather");
-    meshes(folder / "fuzz_meshes");
+    meshSeeds(folder / "fuzz_meshes");
     materialLibraries(folder / "fuzz_material_library");
     int number = 0;
     for (const std::vector<float>& phi :
          {std::vector<float>{0}, {0, 1}, {-3.1415927F, -1.5707964F, 0}, {0, 0.5F, 1.5707964F}}) {
         for (const std::uint64_t channels : {3, 2}) {
             for (const bool jacobian : {true, false}) {
-                write(folder / "fuzz_rgl" / std::to_string(number++),
-                      tensorFile(rglFields(small(phi, channels, jacobian))));
+                writeSeed(folder / "fuzz_rgl" / std::to_string(number++),
+                          tensorFile(rglFields(small(phi, channels, jacobian))));
             }
         }
     }
@@ -488,29 +430,29 @@ int main(int count, char** arguments) {
     for (const double value : {-1.0, nan, 1e308}) {
         const auto single = static_cast<float>(std::min(value, 1e38));
         for (std::uint8_t choice = 0; choice < 6; ++choice) {
-            write(folder / "fuzz_utia" / std::to_string(number++), utiaScript(choice, value));
+            writeSeed(folder / "fuzz_utia" / std::to_string(number++), utiaScript(choice, value));
         }
-        write(folder / "fuzz_mit" / std::to_string(number++), mitFile(0, single));
-        write(folder / "fuzz_mit" / std::to_string(number++), mitFile(1, single));
+        writeSeed(folder / "fuzz_mit" / std::to_string(number++), mitFile(0, single));
+        writeSeed(folder / "fuzz_mit" / std::to_string(number++), mitFile(1, single));
         std::string values;
         for (const float v : {0.5F, 0.25F, single}) put(values, v);
-        write(folder / "fuzz_merl_slice" / std::to_string(number++), values);
+        writeSeed(folder / "fuzz_merl_slice" / std::to_string(number++), values);
     }
     utiaPicture(folder / "fuzz_utia");
     pictures(folder / "fuzz_merl_slice");
     for (const bool withAngles : {true, false}) {
-        write(folder / "fuzz_pbsdf" / std::to_string(number++),
-              tensorFile(hshfit::test::pbsdfFields(
-                  {.azimuths = 3,
-                   .differences = 2,
-                   .halves = 2,
-                   .wavelengths = {450, 650},
-                   .withAngles = withAngles},
-                  [](double p, double, double, std::size_t) { return p; })));
+        writeSeed(folder / "fuzz_pbsdf" / std::to_string(number++),
+                  tensorFile(hshfit::test::pbsdfFields(
+                      {.azimuths = 3,
+                       .differences = 2,
+                       .halves = 2,
+                       .wavelengths = {450, 650},
+                       .withAngles = withAngles},
+                      [](double p, double, double, std::size_t) { return p; })));
     }
     for (std::uint8_t mode = 0; mode < 4; ++mode) {
-        write(folder / "fuzz_merl" / std::to_string(number++), merlScript(180, 0, mode, -1));
-        write(folder / "fuzz_merl" / std::to_string(number++), merlScript(360, 1, mode, nan));
-        write(folder / "fuzz_merl" / std::to_string(number++), merlScript(180, 230, mode, 2));
+        writeSeed(folder / "fuzz_merl" / std::to_string(number++), merlScript(180, 0, mode, -1));
+        writeSeed(folder / "fuzz_merl" / std::to_string(number++), merlScript(360, 1, mode, nan));
+        writeSeed(folder / "fuzz_merl" / std::to_string(number++), merlScript(180, 230, mode, 2));
     }
 }
