@@ -149,7 +149,7 @@ TEST_F(Lights, TheListHasEveryKindAndKeepsItsSchema) {
         return std::any_of(rows.begin(), rows.end(),
                            [&](const Json& row) { return row["name"] == name; });
     };
-    for (const char* name : {"sun", "panel", "sky", "preetham", "perez", "even"})
+    for (const char* name : {"sun", "panel", "sky", "preetham", "perez", "uniform"})
         EXPECT_TRUE(named(name)) << name;
     const std::string text = run("list lights").out;
     for (const char* words : {"preetham", "turbidity", "layout", "such as 2024-06-21", "sums"}) {
