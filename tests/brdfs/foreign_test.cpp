@@ -44,7 +44,10 @@ TEST(Foreign, FilesAreNamedForWhatTheyLookLike) {
     }
     for (const char* extension : {".binary", ".bsdf", ".brdf", ".csv", ".dat", ".unknown"}) {
         refused("404: Not Found", extension, {"error message of a server"});
-        refused("#format: theta phi BSDF\n30 180 0.4\n", extension, {"line 2", "#incident_angle"});
+        // A scan of pab-opto without its incident direction is known, and says what is missing.
+        const TemporaryFile scan("#format: theta phi BSDF\n30 180 0.4\n", extension);
+        test::expectInputError([&] { open(scan.path()); },
+                               {scan.path(), "line 2", "#incident_angle"});
         refused("30 0 30 180 0.5\n30 0 40 180 0.4\n", extension, {"names of its columns"});
         refused("OPTIS - BSDF180 file v8.0\n", extension, {"Speos", "another kind"});
     }

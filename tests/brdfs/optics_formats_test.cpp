@@ -436,7 +436,8 @@ TEST(SpeosAttack, FieldsAreChecked) {
     refusedBy(read, "x\n", {"OPTIS"});
     refusedBy(read, "OPTIS - brdf surface file v8.0\n0\nown\n", {"description"});
     refusedBy(read, with(text, "v8.0\n0", "v8.0\n1"), {"binary", "text"});
-    refusedBy(read, with(text, "1 0\n1\n", "0 1\n1\n"), {"transmission alone"});
+    refusedBy(read, with(text, "1 0\n1\n", "0 1\n1\n"),
+              {"line 15", "expected 90 to 180 for transmission"});
     refusedBy(read, with(text, "1 0\n1\n", "1 0\n7\n"), {"is 7"});
     refusedBy(read, with(text, "1 1\n30", "1e9 1\n30"), {"whole number"});
     refusedBy(read, with(text, "0 180 360", "0 180 270"), {"360 or 180"});
