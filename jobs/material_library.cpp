@@ -82,9 +82,9 @@ std::vector<Entry> entriesOf(const ml::LogSpace& space, const std::vector<std::s
                                   failures.size(), specs.size(), first.reason));
 }
 
-/// The bytes of a sum of terms in half precision.
+/// The bytes of a sum of terms in single precision.
 std::size_t bytesOf(const ml::LogMaterial& material) {
-    return 2 * material.exponents.size() + 4 * material.tops.size();
+    return 4 * (material.exponents.size() + material.tops.size());
 }
 
 void write(ml::Library& library, const std::string& output, bool final) {

@@ -111,7 +111,7 @@ ReconstructedMaterial reconstructMaterial(const std::string& samples, const std:
                           .kind = ml::Kind::polynomial,
                           .channels = done.material.channels(),
                           .polynomial = done.material};
-    material.bytes = 2 * material.polynomial.exponents.size() + 4 * material.channels;
+    material.bytes = 4 * (material.polynomial.exponents.size() + material.channels);
     ml::Library one{.asked = library.asked, .limits = library.limits};
     one.materials = {std::move(material)};
     AtomicFile file(output);

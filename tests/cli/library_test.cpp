@@ -169,7 +169,7 @@ TEST_F(LibraryCommand, SearchFindsTheMaterialItself) {
     }
 }
 
-TEST_F(LibraryCommand, MixturesHaveLogarithmsBetweenThoseOfTheirMaterials) {
+TEST_F(LibraryCommand, MixturesHaveTheGeometricMeanOfTheirMaterialsOrUpToTheBoundMore) {
     learn("a.library");
     const std::string a = path("a.library") + ":lambert_kd=.5_.5_.1",
                       b = path("a.library") + ":lambert_kd=.1_.5_.3_ggx_alpha=.25_F0=.05";
@@ -185,11 +185,13 @@ TEST_F(LibraryCommand, MixturesHaveLogarithmsBetweenThoseOfTheirMaterials) {
         const double share = row["share"];
         const std::vector<double> f =
             at(path("path.library") + ":" + row["name"].get<std::string>());
-        for (std::size_t c = 0; c < 3; ++c)
-            EXPECT_NEAR(std::log(f[c] + 1e-3),
-                        (1 - share) * std::log(first[c] + 1e-3) + share * std::log(last[c] + 1e-3),
-                        0.01)
-                << row;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double above = std::log(f[c] + 1e-3) - (1 - share) * std::log(first[c] + 1e-3) -
+                                 share * std::log(last[c] + 1e-3);
+            // A bound cuts the noise of a flat material off, so that it is concave: never below.
+            EXPECT_GE(above, -1e-5) << row;
+            EXPECT_LE(above, share == 0 || share == 1 ? 1e-5 : 0.05) << row;
+        }
     }
     const Answer itself = run("library mix '" + a + "' '" + a + "' -o " + path("x.library"));
     EXPECT_EQ(itself.code, 2);

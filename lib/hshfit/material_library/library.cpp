@@ -32,8 +32,7 @@ FormError sumOf(const FormError& a, const FormError& b) {
 
 /// In the numbers that a file keeps.
 LogMaterial rounded(LogMaterial material) {
-    for (double& value : material.exponents)
-        value = static_cast<float>(Imath::half(static_cast<float>(value)));
+    for (double& value : material.exponents) value = static_cast<float>(value);
     for (double& value : material.tops) value = static_cast<float>(value);
     return material;
 }
@@ -121,7 +120,7 @@ Material encode(const Library& library, const LogSpace& space, const Measured& m
     material.kind = Kind::polynomial;
     material.codes.clear();
     material.polynomial = rounded(measured.material());
-    material.bytes = 2 * material.polynomial.exponents.size() + 4 * material.polynomial.tops.size();
+    material.bytes = 4 * (material.polynomial.exponents.size() + material.polynomial.tops.size());
     material.error = errorAgainst(measured, material.polynomial, source, seen);
     return material;
 }

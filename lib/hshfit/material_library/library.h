@@ -17,7 +17,8 @@ namespace hshfit::material_library {
 
 /// The way in which a library keeps a material:
 ///     coded       coordinates in the basis
-///     polynomial  logTerms() of its own in half precision: the basis does not hold it
+///     polynomial  logTerms() of its own in single precision, which their cancellation needs: the
+///                 basis does not hold it
 ///     halfway     a halfway form of its own: logTerms() do not hold it either
 enum class Kind { coded, polynomial, halfway };
 std::string_view nameOf(Kind kind);  ///< as in files

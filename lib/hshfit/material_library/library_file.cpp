@@ -258,7 +258,7 @@ void fill(std::vector<Material>& materials, const Reader& reader) {
     }
     const std::size_t terms = logTerms().size();
     const auto allCodes = reader.octets("codes", codes), allText = reader.octets("halfway", text);
-    const std::vector<double> polynomials = reader.halves("polynomials", channels * terms);
+    const std::vector<float> polynomials = reader.floats("polynomials", channels * terms);
     const std::vector<float> tops = reader.floats("polynomial_tops", channels);
     reader.requireTops(tops, "polynomial_tops");
     codes = channels = text = 0;
@@ -320,9 +320,9 @@ void writeLibrary(const Library& library, AtomicFile& file) {
     const Joined all = joinedOf(library);
     const std::uint64_t terms = logTerms().size();
     const std::vector<float> mean = asFloats(library.basis.mean),
+                             polynomials = asFloats(all.polynomials),
                              polynomialTops = asFloats(all.polynomialTops);
-    const std::vector<std::uint16_t> components = asHalves(library.basis.components),
-                                     polynomials = asHalves(all.polynomials);
+    const std::vector<std::uint16_t> components = asHalves(library.basis.components);
     TensorFileWriter writer;
     writer.add(headField, head);
     const std::string widths(library.basis.widths.begin(), library.basis.widths.end());
@@ -335,8 +335,7 @@ void writeLibrary(const Library& library, AtomicFile& file) {
     if (!all.codes.empty()) writer.add("codes", all.codes);
     if (!all.halfway.empty()) writer.add("halfway", all.halfway);
     if (!polynomials.empty()) {
-        writer.add("polynomials", TensorFile::Type::f16, {polynomialTops.size(), terms},
-                   std::as_bytes(std::span(polynomials)));
+        writer.add("polynomials", {polynomialTops.size(), terms}, polynomials);
         writer.add("polynomial_tops", {polynomialTops.size()}, polynomialTops);
     }
     if (!all.tops.empty()) {
