@@ -307,10 +307,10 @@ private:
     Standing moved(const Standing& lobe, std::size_t number, std::span<const AxisProducts> axes,
                    const Within& within) const {
         AxisProducts best = along(lobe.axis);
-        const auto [from, to] = within.levels(number);
-        BestLevel level = this->best(best, from, to);
+        const std::pair<double, double> range = within.levels(number);
+        BestLevel level = this->best(best, range.first, range.second);
         const auto take = [&](AxisProducts products) {
-            const BestLevel found = this->best(products, from, to);
+            const BestLevel found = this->best(products, range.first, range.second);
             if (!(found.gain > level.gain * (1 + 1e-9))) return false;
             level = found;
             best = std::move(products);
