@@ -344,9 +344,7 @@ void runExport(ExportArguments& arguments, const CLI::App& command, Globals& glo
     const bool many = jobs::areMany(arguments.coefficients);
     if (many && (materials || !arguments.lighting.empty()))
         throw UsageError("export: the targets gltf and materialx and --lighting take one input");
-    for (const char* name : {"--engine", "--lobes"})
-        if (arguments.lighting.empty() && command.get_option(name)->count() > 0)
-            throw UsageError(fmt::format("export: {} goes with --lighting prefiltered", name));
+    requirePrefiltered(command, arguments.lighting);
     if (!arguments.lighting.empty()) return runLighting(arguments, globals);
     if (materials) {
         jobs::MaterialExportOptions& material = arguments.material;

@@ -1,9 +1,12 @@
 #include "export_lighting.h"
 
+#include <hshfit/error.h>
+
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstddef>
 
 namespace hshfit::cli {
@@ -66,6 +69,16 @@ void addPrefiltered(CLI::App& command, jobs::LightingTableOptions& options) {
                     "Of --lighting prefiltered, lookups besides the diffuse one, 1 to 3")
         ->check(CLI::Range(1, 3))
         ->capture_default_str();
+}
+
+void requirePrefiltered(const CLI::App& command, const std::string& models) {
+    const auto isIt = [](const jobs::LightingModel* model) {
+        return model->kind == jobs::LightingModel::Kind::prefiltered;
+    };
+    if (!models.empty() && std::ranges::any_of(jobs::selectLightingModels(models), isIt)) return;
+    for (const char* name : {"--engine", "--lobes"})
+        if (command.get_option(name)->count() > 0)
+            throw UsageError(fmt::format("export: {} goes with --lighting prefiltered", name));
 }
 
 void runExportLighting(const std::string& coefficients, const std::string& folder,

@@ -10,6 +10,8 @@ namespace hshfit::cli {
 
 /// --engine and --lobes of prefiltered environments.
 void addPrefiltered(CLI::App& command, jobs::LightingTableOptions& options);
+/// Refuses them without that model among `models`.
+void requirePrefiltered(const CLI::App& command, const std::string& models);
 
 /// Writes tables, light and shaders to `folder` and prints their sizes and errors, or with --json
 /// the sidecar without its arrays.

@@ -345,17 +345,21 @@ void check(const CLI::App& command, const LibraryArguments& arguments, const Act
         throw UsageError(fmt::format("library {} needs -o FILE", action.name));
     if (!arguments.output.empty() && action.output == none)
         throw UsageError(fmt::format("library {} writes no file; leave out -o", action.name));
+    const auto takes = [](const Action& one, const std::string& option) {
+        return std::string_view(one.options).find(option + " ") != std::string_view::npos;
+    };
     const std::string_view own(action.options);
-    for (const char* option :
-         {"--components", "--bytes", "--held-out", "--limit", "--limit-maximum", "--limit-flip",
-          "--add-to", "--final", "--library", "--count", "--sigma", "--instrument", "--bands",
-          "--bands-to"})
-        if (command.count(option) > 0 && own.find(std::string(option) + " ") == own.npos)
-            throw UsageError(fmt::format(
-                "library {} takes no {}{}", action.name, option,
-                own.empty() ? std::string()
-                            : fmt::format("; it takes {}", own.substr(0, own.size() - 1))));
-    if (own.find("--library ") != own.npos && arguments.reconstruct.library.empty())
+    for (const CLI::Option* option : command.get_options()) {
+        const std::string name = option->get_name();
+        const bool ofActions =
+            std::ranges::any_of(actions, [&](const Action& one) { return takes(one, name); });
+        if (option->count() == 0 || !ofActions || takes(action, name)) continue;
+        throw UsageError(
+            fmt::format("library {} takes no {}{}", action.name, name,
+                        own.empty() ? std::string()
+                                    : fmt::format("; it takes {}", own.substr(0, own.size() - 1))));
+    }
+    if (takes(action, "--library") && arguments.reconstruct.library.empty())
         throw UsageError(fmt::format("library {} needs --library LIBRARY", action.name));
     if (command.count("--add-to") > 0)
         for (const char* option : {"--components", "--bytes", "--held-out", "--limit",

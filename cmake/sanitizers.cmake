@@ -28,9 +28,8 @@ function(hshfit_sanitize flags)
   endif()
   # GNU ld takes several times as long for a test program, and its memory.
   target_link_options(${flags} INTERFACE ${options} -fuse-ld=lld)
-  # Of the instruction sets those that every machine here runs: AVX2 and the baseline.
-  target_compile_definitions(${flags} INTERFACE
-    "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|HWY_AVX3|HWY_AVX3_DL)")
+  # Of the instruction sets those that every machine here runs (lib/hshfit/vector_targets.h).
+  target_compile_definitions(${flags} INTERFACE HSHFIT_COMMON_SETS)
   if(HSHFIT_SANITIZE STREQUAL "thread")
     target_include_directories(${flags} BEFORE INTERFACE tests/threads)
   endif()

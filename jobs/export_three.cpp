@@ -38,8 +38,7 @@ gpu::ThreeLookUps lookUpsOf(const Brdf& brdf, const std::string& prefix, const s
                               .width = table.texels,
                               .height = table.height(),
                               .along = table.azimuths.count > 1};
-    for (std::size_t level = 0; level < engine.levels; ++level) {
-        const auto bands = lighting::kernelBands(engine.roughnessOf(static_cast<double>(level)), 3);
+    for (const std::vector<double>& bands : lighting::levelBands(engine, 3)) {
         lookUps.first.push_back(bands[1]);
         lookUps.second.push_back(bands[2]);
     }

@@ -82,11 +82,6 @@ std::vector<Entry> entriesOf(const ml::LogSpace& space, const std::vector<std::s
                                   failures.size(), specs.size(), first.reason));
 }
 
-/// The bytes of a sum of terms in single precision.
-std::size_t bytesOf(const ml::LogMaterial& material) {
-    return 4 * (material.exponents.size() + material.tops.size());
-}
-
 void write(ml::Library& library, const std::string& output, bool final) {
     if (final) library.measured.clear();
     AtomicFile file(output);
@@ -238,7 +233,7 @@ ml::Material plainMaterial(const std::string& spec) {
         material.polynomial = *ml::logMaterial(library, material);
         material.kind = ml::Kind::polynomial;
         material.codes.clear();
-        material.bytes = bytesOf(material.polynomial);
+        material.bytes = material.polynomial.bytes();
     }
     return material;
 }
@@ -294,7 +289,7 @@ std::vector<MixedMaterial> mixMaterials(const std::vector<std::string>& specs,
                               .polynomial = mixed(a.polynomial, b.polynomial, share)};
         ml::requireName(material.name);
         material.channels = material.polynomial.channels();
-        material.bytes = bytesOf(material.polynomial);
+        material.bytes = material.polynomial.bytes();
         library.materials.push_back(std::move(material));
     }
     std::ranges::sort(library.materials, {}, &ml::Material::name);

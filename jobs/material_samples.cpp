@@ -111,7 +111,7 @@ ReconstructedMaterial reconstructMaterial(const std::string& samples, const std:
                           .kind = ml::Kind::polynomial,
                           .channels = done.material.channels(),
                           .polynomial = done.material};
-    material.bytes = 4 * (material.polynomial.exponents.size() + material.channels);
+    material.bytes = material.polynomial.bytes();
     ml::Library one{.asked = library.asked, .limits = library.limits};
     one.materials = {std::move(material)};
     AtomicFile file(output);

@@ -7,6 +7,7 @@
 #include <brdfs/measured/scattered/csv.h>
 #include <brdfs/measured/scattered/scattered.h>
 #include <brdfs/measured_files.h>
+#include <brdfs/sample_checks.h>
 
 #include <gtest/gtest.h>
 
@@ -16,16 +17,11 @@
 namespace hshfit::brdfs {
 namespace {
 
+using test::atDegrees;
 using Values = std::vector<double>;
 
 void expectDirection(const Direction& got, const Direction& expected) {
-    EXPECT_NEAR(got.x, expected.x, 1e-9);
-    EXPECT_NEAR(got.y, expected.y, 1e-9);
-    EXPECT_NEAR(got.z, expected.z, 1e-9);
-}
-
-Direction atDegrees(double theta, double phi) {
-    return directionFromAngles(radians(theta), radians(phi));
+    test::expectDirection(got, expected, 1e-9);
 }
 
 std::string factOf(const Samples& samples, std::string_view name) {

@@ -10,6 +10,7 @@
 #include <brdfs/measured/scattered/scattered.h>
 #include <brdfs/measured/scattered/speos.h>
 #include <brdfs/measured_files.h>
+#include <brdfs/sample_checks.h>
 #include <hshfit/brdf/transmission.h>
 
 #include <fmt/format.h>
@@ -23,32 +24,12 @@
 namespace hshfit::brdfs {
 namespace {
 
+using test::atDegrees;
+using test::cutEverywhere;
+using test::expectDirection;
 using test::expectInputError;
 using test::TemporaryFile;
 using Values = std::vector<double>;
-
-Direction atDegrees(double theta, double phi) {
-    return directionFromAngles(radians(theta), radians(phi));
-}
-
-void expectDirection(const Direction& got, const Direction& expected) {
-    EXPECT_NEAR(got.x, expected.x, 1e-12);
-    EXPECT_NEAR(got.y, expected.y, 1e-12);
-    EXPECT_NEAR(got.z, expected.z, 1e-12);
-}
-
-/// For every truncation, either the reader takes the rest or it throws InputError.
-void cutEverywhere(const std::function<void(std::string_view)>& read, const std::string& text) {
-    EXPECT_NO_THROW(read(text));
-    for (std::size_t size = 0; size < text.size(); ++size) {
-        const std::vector<char> copy(text.begin(),
-                                     text.begin() + static_cast<std::ptrdiff_t>(size));
-        try {
-            read(std::string_view(copy.data(), copy.size()));
-        } catch (const InputError&) {
-        }
-    }
-}
 
 // --- ASTM ---------------------------------------------------------------------------------------
 

@@ -213,6 +213,8 @@ TEST_F(Lighting, BadInputIsRefused) {
     expectError("export lambert" + out + " --lighting prefiltered --lobes 4", 2, "1 to 3", 1);
     expectError("export " + path("plain.json") + out + " --lobes 2", 2, "--lighting prefiltered",
                 1);
+    expectError("export lambert" + out + " --lighting ltc --engine unity", 2,
+                "--lighting prefiltered", 1);
     EXPECT_FALSE(fs::exists(path("out")));
 }
 

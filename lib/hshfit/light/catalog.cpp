@@ -143,14 +143,10 @@ Light generalSky(std::string_view owner, const Parameters& p) {
     return sky;
 }
 
-double luminance(const Rgb& colour) {
-    return 0.2126 * colour[0] + 0.7152 * colour[1] + 0.0722 * colour[2];
-}
-
 /// Factors that give a colour the luminance, or the three components, asked for.
 Rgb factors(const std::vector<double>& asked, const Rgb& colour) {
     if (asked.size() == 3) return over({asked[0], asked[1], asked[2]}, colour);
-    return over({asked[0], asked[0], asked[0]}, luminance(colour));
+    return over({asked[0], asked[0], asked[0]}, luminanceOf(colour));
 }
 
 Light preetham(std::string_view owner, const Parameters& p) {

@@ -21,6 +21,11 @@ inline double meanOf(const Rgb& rgb) {
     return (rgb[0] + rgb[1] + rgb[2]) / 3;
 }
 
+/// The luminance of linear Rec. 709 (ITU-R BT.709-6, 3.2).
+inline double luminanceOf(const Rgb& rgb) {
+    return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+}
+
 /// A round light of uniform radiance, `radius` radians from its centre to its rim.
 struct DiscLight {
     Direction towards;

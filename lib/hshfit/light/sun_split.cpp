@@ -32,8 +32,7 @@ constexpr std::pair<int, int> steps[] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
 using Place = std::pair<std::size_t, std::size_t>;  // row, column
 
 double luminanceOf(const float* rgb) {
-    return 0.2126 * static_cast<double>(rgb[0]) + 0.7152 * static_cast<double>(rgb[1]) +
-           0.0722 * static_cast<double>(rgb[2]);
+    return light::luminanceOf({rgb[0], rgb[1], rgb[2]});
 }
 
 struct Pixel {

@@ -113,14 +113,19 @@ std::vector<double> kernelBands(double roughness, int bands) {
     return result;
 }
 
-std::vector<double> lookUpBands(const Prefilter& prefilter, double roughness, int bands) {
-    const double place = prefilter.levelOf(roughness);
-    const double share = place - std::floor(place);
-    std::vector<double> result = kernelBands(prefilter.roughnessOf(std::floor(place)), bands);
-    if (share == 0) return result;
-    const std::vector<double> next =
-        kernelBands(prefilter.roughnessOf(std::floor(place) + 1), bands);
-    for (std::size_t l = 0; l < result.size(); ++l) result[l] += share * (next[l] - result[l]);
+std::vector<std::vector<double>> levelBands(const Prefilter& prefilter, int bands) {
+    std::vector<std::vector<double>> levels;
+    for (std::size_t k = 0; k < prefilter.levels; ++k)
+        levels.push_back(kernelBands(prefilter.roughnessOf(static_cast<double>(k)), bands));
+    return levels;
+}
+
+std::vector<double> lookUpBands(std::span<const std::vector<double>> levels, double place) {
+    const std::size_t first = std::min(static_cast<std::size_t>(place), levels.size() - 2);
+    const double share = place - static_cast<double>(first);
+    std::vector<double> result = levels[first];
+    for (std::size_t l = 0; l < result.size(); ++l)
+        result[l] += share * (levels[first + 1][l] - result[l]);
     return result;
 }
 

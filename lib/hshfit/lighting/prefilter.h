@@ -37,8 +37,10 @@ const Prefilter& prefilterNamed(std::string_view name);
 
 /// Zonal coefficients of P_r, bands 0 to bands - 1: p_l = integral of P_r P_l(cos gamma), p_0 = 1.
 std::vector<double> kernelBands(double roughness, int bands);
-/// The same for a lookup, which mixes the two levels beside the roughness.
-std::vector<double> lookUpBands(const Prefilter& prefilter, double roughness, int bands);
+/// The same of each level.
+std::vector<std::vector<double>> levelBands(const Prefilter& prefilter, int bands);
+/// The same of a lookup at a place among these levels, which mixes the two beside it.
+std::vector<double> lookUpBands(std::span<const std::vector<double>> levels, double place);
 
 /// The engine's cube of the light. The last level has faces of 8 texels, and each before it twice
 /// as many. Level 0 has the mean over each texel, and the others are made from it, as engines do.

@@ -120,7 +120,7 @@ Material encode(const Library& library, const LogSpace& space, const Measured& m
     material.kind = Kind::polynomial;
     material.codes.clear();
     material.polynomial = rounded(measured.material());
-    material.bytes = 4 * (material.polynomial.exponents.size() + material.polynomial.tops.size());
+    material.bytes = material.polynomial.bytes();
     material.error = errorAgainst(measured, material.polynomial, source, seen);
     return material;
 }

@@ -13,6 +13,7 @@ struct LogMaterial {
     std::vector<double> tops;       ///< the greatest ln(f + logOffset), [channel]
 
     std::size_t channels() const { return tops.size(); }
+    std::size_t bytes() const { return sizeof(float) * (exponents.size() + tops.size()); }
 };
 
 /// f = max(exp(min(sum of exponents, top)) - logOffset, 0), in 1/sr: never negative, nowhere above

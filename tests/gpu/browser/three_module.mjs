@@ -144,6 +144,14 @@ async function draw({ name, gpu, kind, side, view, lights, environment, tangents
   } else if (kind === 'point') {
     add(new three.PointLight(colourOf(lights[kind]), lights[kind].intensity), lights[kind]);
   }
+  if (kind === 'probe') {
+    // The same two bands, a quarter of them as even light.
+    const probe = new three.LightProbe(new three.SphericalHarmonics3());
+    for (let k = 0; k < 4; ++k)
+      probe.sh.coefficients[k].fromArray(environment, 3 * k).multiplyScalar(k === 0 ? 0.75 : 1);
+    const even = (0.25 * environment[0]) / Math.sqrt(4 * Math.PI);
+    scene.add(probe, new three.AmbientLight(new three.Color(1, 1, 1), even * Math.PI));
+  }
   if (kind === 'picture') {
     const { width, height, texels } = picture;
     const map = new three.DataTexture(new Float32Array(texels), width, height, three.RGBAFormat, three.FloatType);
@@ -287,7 +295,7 @@ function compare(name, points, pixels, expected, tolerance) {
 }
 
 async function proveMaterial(page, { name, spec, sampled = false, tangents = false }) {
-  for (const kind of ['directional', 'point', 'environment', 'picture']) {
+  for (const kind of ['directional', 'point', 'environment', 'picture', ...(gpu ? [] : ['probe'])]) {
     const drawn = await page.evaluate(draw, {
       name,
       gpu,
@@ -301,7 +309,7 @@ async function proveMaterial(page, { name, spec, sampled = false, tangents = fal
       turn,
     });
     let points = surfacePoints(drawn, gpu, tangents);
-    if (kind === 'environment') {
+    if (kind === 'environment' || kind === 'probe') {
       points = points.filter((_, i) => i % Math.ceil(points.length / 30) === 0);
       const expected = surrounded(`${name}.json`, points, sampled, radianceFrom);
       compare(`${name}, ${kind}`, points, drawn.pixels, expected, sampled ? 0.02 : 0.01);

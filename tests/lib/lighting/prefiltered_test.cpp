@@ -88,7 +88,8 @@ TEST(Prefilters, LevelsAreThoseOfTheEngines) {
         // A lookup between two levels has a mixture of their kernels.
         const std::vector<double> below = kernelBands(engine.roughnessOf(2), 9);
         const std::vector<double> above = kernelBands(engine.roughnessOf(3), 9);
-        const std::vector<double> between = lookUpBands(engine, engine.roughnessOf(2.25), 9);
+        const std::vector<double> between =
+            lookUpBands(levelBands(engine, 9), engine.levelOf(engine.roughnessOf(2.25)));
         for (std::size_t l = 0; l < 9; ++l)
             EXPECT_NEAR(between[l], 0.75 * below[l] + 0.25 * above[l], 1e-9);
     }

@@ -50,11 +50,9 @@ double product(const std::vector<double>& a, const std::vector<double>& b, doubl
     return sum;
 }
 
-std::vector<double> mixed(const std::vector<double>& a, const std::vector<double>& b,
-                          double share) {
-    std::vector<double> result(a.size());
-    for (std::size_t l = 0; l < a.size(); ++l) result[l] = a[l] + share * (b[l] - a[l]);
-    return result;
+/// A product of two kernels on one axis with the ridge.
+double withRidge(double square) {
+    return square + ridge * (square - bandWeight(0) / (4 * pi));
 }
 
 /// A direction with the target's products along it, by level and channel.
@@ -170,8 +168,7 @@ public:
         const std::size_t first =
             std::min(static_cast<std::size_t>(place), search_.levels_.size() - 2);
         const double share = place - static_cast<double>(first);
-        Standing result{products.axis, place,
-                        mixed(search_.levels_[first], search_.levels_[first + 1], share)};
+        Standing result{products.axis, place, lookUpBands(search_.levels_, place)};
         for (std::size_t c = 0; c < 3; ++c)
             result.product[c] =
                 products.byLevel[first][c] * (1 - share) + products.byLevel[first + 1][c] * share;
@@ -179,21 +176,7 @@ public:
     }
 
     /// The lobes that a new one is added to.
-    void fix(std::vector<Standing> others) {
-        others.push_back(diffuse_);
-        others_ = std::move(others);
-        const auto n = static_cast<Eigen::Index>(others_.size());
-        Small gram(n, n);
-        for (Eigen::Index i = 0; i < n; ++i)
-            for (Eigen::Index j = 0; j < n; ++j) gram(i, j) = productOf(i, j);
-        factor_.compute(gram);
-        for (std::size_t c = 0; c < 3; ++c) {
-            SmallVector right(n);
-            for (Eigen::Index i = 0; i < n; ++i)
-                right(i) = others_[static_cast<std::size_t>(i)].product[c];
-            solved_[c] = factor_.solve(right);
-        }
-    }
+    void fix(std::vector<Standing> others) { fixed_ = equationsOf(std::move(others)); }
 
     /// The lobe on an axis, of levels in a range, that adds most to what the others explain.
     BestLevel best(const AxisProducts& products, double from, double to) const {
@@ -205,16 +188,17 @@ public:
         const auto lastLevel = std::min(count - 1, static_cast<std::size_t>(std::ceil(to)));
         for (std::size_t j = firstLevel; j <= lastLevel; ++j) {
             const std::vector<double>& level = search_.levels_[j];
-            cross[j].resize(static_cast<Eigen::Index>(others_.size()));
-            for (std::size_t i = 0; i < others_.size(); ++i)
+            const std::vector<Standing>& terms = fixed_.terms;
+            cross[j].resize(static_cast<Eigen::Index>(terms.size()));
+            for (std::size_t i = 0; i < terms.size(); ++i)
                 cross[j](static_cast<Eigen::Index>(i)) =
-                    product(level, others_[i].bands, dot(products.axis, others_[i].axis));
-            shared[j] = factor_.solve(cross[j]);
+                    product(level, terms[i].bands, dot(products.axis, terms[i].axis));
+            shared[j] = fixed_.factor.solve(cross[j]);
             own[j] = search_.selfProduct(j, j) - cross[j].dot(shared[j]);
             if (j > firstLevel)
                 beside[j] = search_.selfProduct(j - 1, j) - cross[j - 1].dot(shared[j]);
             for (std::size_t c = 0; c < 3; ++c)
-                rest[j][c] = products.byLevel[j][c] - cross[j].dot(solved_[c]);
+                rest[j][c] = products.byLevel[j][c] - cross[j].dot(fixed_.scales[c]);
         }
         const auto gainAt = [&](double place) {
             const std::size_t j = std::clamp(static_cast<std::size_t>(place), firstLevel,
@@ -244,25 +228,16 @@ public:
     }
 
     LobeSolution solve(const std::vector<Standing>& lobes) const {
-        const auto n = static_cast<Eigen::Index>(lobes.size() + 1);
-        const auto at = [&](Eigen::Index i) -> const Standing& {
-            return i == n - 1 ? diffuse_ : lobes[static_cast<std::size_t>(i)];
-        };
-        Small gram(n, n);
-        for (Eigen::Index i = 0; i < n; ++i)
-            for (Eigen::Index j = 0; j < n; ++j) gram(i, j) = between(at(i), at(j), i == j);
-        const Eigen::LDLT<Small> factor(gram);
+        const Equations equations = equationsOf(lobes);
         LobeSolution result;
         result.scales.resize(lobes.size());
         double explained = 0;
         for (std::size_t c = 0; c < 3; ++c) {
-            SmallVector right(n);
-            for (Eigen::Index i = 0; i < n; ++i) right(i) = at(i).product[c];
-            const SmallVector x = factor.solve(right);
-            explained += x.dot(right);
+            const SmallVector& x = equations.scales[c];
+            explained += x.dot(equations.right[c]);
             for (std::size_t k = 0; k < lobes.size(); ++k)
                 result.scales[k][c] = x(static_cast<Eigen::Index>(k));
-            result.diffuse[c] = x(n - 1);
+            result.diffuse[c] = x(x.size() - 1);
         }
         for (const Standing& lobe : lobes)
             result.places.push_back({lobe.axis, search_.engine_->roughnessOf(lobe.place)});
@@ -291,13 +266,34 @@ public:
     }
 
 private:
-    double between(const Standing& a, const Standing& b, bool same) const {
-        const double value = product(a.bands, b.bands, same ? 1 : dot(a.axis, b.axis));
-        return same ? value + ridge * (value - bandWeight(0) / (4 * pi)) : value;
-    }
-    double productOf(Eigen::Index i, Eigen::Index j) const {
-        return between(others_[static_cast<std::size_t>(i)], others_[static_cast<std::size_t>(j)],
-                       i == j);
+    /// Least squares of lobes and, last, the diffuse one.
+    struct Equations {
+        std::vector<Standing> terms;
+        Eigen::LDLT<Small> factor;
+        std::array<SmallVector, 3> right, scales;  ///< by channel
+    };
+    Equations equationsOf(std::vector<Standing> terms) const {
+        terms.push_back(diffuse_);
+        const auto n = static_cast<Eigen::Index>(terms.size());
+        const auto at = [&](Eigen::Index i) -> const Standing& {
+            return terms[static_cast<std::size_t>(i)];
+        };
+        Small gram(n, n);
+        for (Eigen::Index i = 0; i < n; ++i)
+            for (Eigen::Index j = 0; j < n; ++j)
+                gram(i, j) = i == j
+                                 ? withRidge(product(at(i).bands, at(i).bands, 1))
+                                 : product(at(i).bands, at(j).bands, dot(at(i).axis, at(j).axis));
+        Equations result;
+        result.factor.compute(gram);
+        for (std::size_t c = 0; c < 3; ++c) {
+            SmallVector& right = result.right[c];
+            right.resize(n);
+            for (Eigen::Index i = 0; i < n; ++i) right(i) = at(i).product[c];
+            result.scales[c] = result.factor.solve(right);
+        }
+        result.terms = std::move(terms);
+        return result;
     }
     static double gainOf(const Rgb& rest, double own) {
         return own > 1e-12 ? (rest[0] * rest[0] + rest[1] * rest[1] + rest[2] * rest[2]) / own : 0;
@@ -340,15 +336,15 @@ private:
     const LobeTarget& target_;
     double theta_;
     Standing diffuse_;
-    std::vector<Standing> others_;
-    Eigen::LDLT<Small> factor_;
-    std::array<SmallVector, 3> solved_;
+    Equations fixed_;
 };
 
 LobeSearch::LobeSearch(int bands, const Prefilter& engine, std::size_t lobes, bool inPlane)
-    : bands_(bands), engine_(&engine), lobes_(lobes), inPlane_(inPlane) {
-    for (std::size_t k = 0; k < engine.levels; ++k)
-        levels_.push_back(kernelBands(engine.roughnessOf(static_cast<double>(k)), bands));
+    : bands_(bands),
+      engine_(&engine),
+      lobes_(lobes),
+      inPlane_(inPlane),
+      levels_(levelBands(engine, bands)) {
     for (std::size_t j = 0; j < levels_.size(); ++j) {
         selfProducts_.push_back(product(levels_[j], levels_[j], 1));
         selfProducts_.push_back(j > 0 ? product(levels_[j - 1], levels_[j], 1) : 0);
@@ -366,8 +362,7 @@ LobeSearch::LobeSearch(int bands, const Prefilter& engine, std::size_t lobes, bo
 }
 
 double LobeSearch::selfProduct(std::size_t a, std::size_t b) const {
-    const double value = selfProducts_[2 * b + (a == b ? 0 : 1)];
-    return value + ridge * (value - bandWeight(0) / (4 * pi));
+    return withRidge(selfProducts_[2 * b + (a == b ? 0 : 1)]);
 }
 
 BandSquares LobeSearch::squares(const LobeTarget& target, const LobeSolution& solution) const {
@@ -375,11 +370,8 @@ BandSquares LobeSearch::squares(const LobeTarget& target, const LobeSolution& so
     std::vector<std::vector<double>> bands{levels_.back()};
     std::vector<Rgb> scales{solution.diffuse};
     for (std::size_t k = 0; k < solution.places.size(); ++k) {
-        const double place = engine_->levelOf(solution.places[k].roughness);
-        const std::size_t first = std::min(static_cast<std::size_t>(place), levels_.size() - 2);
         axes.push_back(solution.places[k].axis);
-        bands.push_back(
-            mixed(levels_[first], levels_[first + 1], place - static_cast<double>(first)));
+        bands.push_back(lookUpBands(levels_, engine_->levelOf(solution.places[k].roughness)));
         scales.push_back(solution.scales[k]);
     }
     const auto left = target.without(axes, bands, scales);
