@@ -19,6 +19,16 @@ struct EvalArguments {
     jobs::EvalOptions options;
 };
 
+nlohmann::ordered_json factsJson(const jobs::Evaluated& found, const jobs::EvalOptions& options) {
+    nlohmann::ordered_json answer = {{"format", "hshfit-eval"},
+                                     {"version", 1},
+                                     {"brdf", found.brdf},
+                                     {"cosine", options.cosine},
+                                     {"channels", found.channels}};
+    if (!found.side.empty()) answer["side"] = found.side;
+    return answer;
+}
+
 void evaluateOne(const EvalArguments& arguments, const Globals& globals) {
     const Direction wi = parseDirection(arguments.wi, "--wi");
     const Direction wo = parseDirection(arguments.wo, "--wo", 180);
@@ -26,14 +36,11 @@ void evaluateOne(const EvalArguments& arguments, const Globals& globals) {
         jobs::evaluatePair(arguments.spec, wi, wo, arguments.options, listenerFor(globals));
     if (found.side.empty()) parseDirection(arguments.wo, "--wo");  // of a reflection, to 90
     if (globals.json) {
-        nlohmann::ordered_json answer = {
-            {"format", "hshfit-eval"},    {"version", 1},
-            {"brdf", found.brdf},         {"wi", directionJson(wi)},
-            {"wo", directionJson(wo)},    {"cosine", arguments.options.cosine},
-            {"channels", found.channels}, {"values", found.values}};
-        if (!found.side.empty()) answer["side"] = found.side;
-        printJson(answer);
-        return;
+        auto answer = factsJson(found, arguments.options);
+        answer["wi"] = directionJson(wi);
+        answer["wo"] = directionJson(wo);
+        answer["values"] = found.values;
+        return printJson(answer);
     }
     if (!found.side.empty())
         note(globals, fmt::format("{}: f of {}, wo below the surface", found.brdf, found.side));
@@ -45,9 +52,20 @@ void evaluateOne(const EvalArguments& arguments, const Globals& globals) {
 }
 
 void evaluateAll(const EvalArguments& arguments, const Globals& globals) {
-    const std::string csv = jobs::evaluatePairs(arguments.spec, arguments.pairs, arguments.output,
-                                                arguments.options, listenerFor(globals));
-    if (arguments.output.empty()) printText(csv);
+    const jobs::EvaluatedPairs found = jobs::evaluatePairs(
+        arguments.spec, arguments.pairs, arguments.output, arguments.options, listenerFor(globals));
+    if (!globals.json) {
+        if (arguments.output.empty()) printText(found.csv);
+        return;
+    }
+    auto answer = factsJson(found.facts, arguments.options);
+    answer["pairs"] = found.count;
+    if (arguments.output.empty()) {
+        answer["values"] = found.facts.values;
+    } else {
+        answer["output"] = arguments.output;
+    }
+    printJson(answer);
 }
 
 }  // namespace

@@ -66,6 +66,13 @@ std::vector<std::string> columnsOf(const Channels& channels) {
     return {"r", "g", "b"};
 }
 
+Evaluated factsOf(const Brdf& brdf) {
+    const std::string name = brdf.name();
+    return {.brdf = name,
+            .side = std::string(transmissionSide(name)),
+            .channels = brdf.channels().names()};
+}
+
 /// Unit vectors of some pairs, made 1 in length.
 class UnitVectors {
 public:
@@ -167,8 +174,7 @@ void evaluateArrays(const Brdf& brdf, const VectorArray& wi, const VectorArray& 
 Evaluated evaluatePair(const std::string& source, const Direction& wi, const Direction& wo,
                        const EvalOptions& options, const Listener& listener) {
     const auto brdf = openSource(source, options.rgb, Sides::either);
-    Evaluated result{.brdf = brdf->name(), .channels = brdf->channels().names()};
-    result.side = transmissionSide(result.brdf);
+    Evaluated result = factsOf(*brdf);
     const Direction leaving = outgoingFor(!result.side.empty(), wo, [&] {
         return fmt::format("{}: wo = {:.4g},{:.4g} degrees", source, degrees(polarAngle(wo)),
                            degrees(azimuth(wo)));
@@ -180,23 +186,23 @@ Evaluated evaluatePair(const std::string& source, const Direction& wi, const Dir
     return result;
 }
 
-std::string evaluatePairs(const std::string& source, const std::string& pairs,
-                          const std::string& output, const EvalOptions& options,
-                          const Listener& listener) {
+EvaluatedPairs evaluatePairs(const std::string& source, const std::string& pairs,
+                             const std::string& output, const EvalOptions& options,
+                             const Listener& listener) {
     const auto brdf = openSource(source, options.rgb, Sides::either);
     const bool through = transmits(*brdf);
-    std::size_t pair = 0;
+    EvaluatedPairs result{.facts = factsOf(*brdf), .csv = {}};
     const auto columns = columnsOf(brdf->channels());
-    std::string csv = fmt::format("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,{}\n", fmt::join(columns, ","));
-    bool zero = true;
+    std::string& csv = result.csv;
+    csv = fmt::format("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,{}\n", fmt::join(columns, ","));
     readPairs(pairs, [&](const PairRow& row) {
-        ++pair;
+        ++result.count;
         const Direction wo = outgoingFor(through, row.wo, [&] {
-            return fmt::format("{}: pair {}: wo_z = {}", pairs, pair, row.cells[5]);
+            return fmt::format("{}: pair {}: wo_z = {}", pairs, result.count, row.cells[5]);
         });
         const auto values = valuesAt(*brdf, row.wi, wo, options);
         requireFinite(values, source, row.wi, row.wo);
-        zero = zero && isZero(values);
+        result.facts.values.insert(result.facts.values.end(), values.begin(), values.end());
         fmt::format_to(std::back_inserter(csv), "{}", fmt::join(row.cells, ","));
         for (std::size_t c = 0; c < columns.size(); ++c) {
             fmt::format_to(std::back_inserter(csv), ",{}", values[std::min(c, values.size() - 1)]);
@@ -204,9 +210,9 @@ std::string evaluatePairs(const std::string& source, const std::string& pairs,
         csv += "\n";
     });
     brdf->checkIntact();
-    if (zero) remark(*brdf, listener);
+    if (isZero(result.facts.values)) remark(*brdf, listener);
     if (!output.empty()) writeFile(output, csv);
-    return csv;
+    return result;
 }
 
 }  // namespace hshfit::jobs

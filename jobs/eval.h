@@ -29,12 +29,19 @@ struct Evaluated {
 Evaluated evaluatePair(const std::string& source, const Direction& wi, const Direction& wo,
                        const EvalOptions& options, const Listener& listener = {});
 
+/// Values at the pairs of a file; `facts.values` are those of all pairs, pair by pair.
+struct EvaluatedPairs {
+    Evaluated facts;
+    std::size_t count = 0;
+    std::string csv;
+};
+
 /// f at every pair of a CSV (readPairs), as a CSV: the pairs as they stand, then one column per
 /// wavelength, or r, g and b, which are equal for a grey BRDF. The text is also written to
 /// `output`, unless that is empty. Throws InputError and OutputError.
-std::string evaluatePairs(const std::string& source, const std::string& pairs,
-                          const std::string& output, const EvalOptions& options,
-                          const Listener& listener = {});
+EvaluatedPairs evaluatePairs(const std::string& source, const std::string& pairs,
+                             const std::string& output, const EvalOptions& options,
+                             const Listener& listener = {});
 
 /// Vectors in memory of the caller: component j of vector k is at data[k * stride + j * step].
 /// A stride of 0 is one vector for all k.

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <fstream>
 #include <vector>
 
 namespace {
@@ -35,6 +36,16 @@ TEST_F(TransmissionCommands, EvalTakesADirectionBelowTheSurface) {
     EXPECT_EQ(json["side"], "transmission-front");
     EXPECT_NEAR(json["values"][0].get<double>(), .5 / M_PI, 1e-15);
     EXPECT_NEAR(json["wo"]["theta"].get<double>(), 150, 1e-9);
+    std::ofstream(path("pairs.csv"))
+        << "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,0,0,-1\n0,0,1,0,.6,-.8\n";
+    const std::string pairs =
+        "eval lambert-transmission:kt=.1/.2/.3 --json --pairs " + path("pairs.csv");
+    const Answer all = run(pairs), written = run(pairs + " -o " + path("values.csv"));
+    EXPECT_TRUE(keepsSchema(all.out, "eval")) << all.err;
+    EXPECT_TRUE(keepsSchema(written.out, "eval")) << written.err;
+    EXPECT_EQ(Json::parse(all.out)["pairs"], 2);
+    EXPECT_NEAR(Json::parse(all.out)["values"][5].get<double>(), .3 / M_PI, 1e-15);
+    EXPECT_EQ(Json::parse(written.out)["output"], path("values.csv"));
     const Answer text = run("eval lambert-transmission --wi 30,0 --wo 150,180");
     EXPECT_NE(text.err.find("transmission-front, wo below the surface"), std::string::npos);
 

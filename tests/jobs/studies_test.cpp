@@ -45,8 +45,11 @@ TEST_F(Studies, EvalWritesTheTableOfTheProgram) {
     write("pairs.csv",
           "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,name\n0,0,1,0.6,0,0.8,a\n0.6,0,0.8,0,0.6,.8,b\n");
     const std::string spec = "ward:kd=.1/.2/.3,ks=.2,ax=.2,ay=.5";
-    const std::string csv =
+    const jobs::EvaluatedPairs all =
         jobs::evaluatePairs(spec, path("pairs.csv"), path("job.csv"), {.cosine = true});
+    const std::string& csv = all.csv;
+    EXPECT_EQ(all.count, 2u);
+    EXPECT_EQ(all.facts.values.size(), 6u);
     EXPECT_EQ(csv, runProgram("eval " + spec + " --cosine --pairs " + path("pairs.csv")));
     EXPECT_EQ(read(path("job.csv")), csv);
     const jobs::Evaluated one =
