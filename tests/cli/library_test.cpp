@@ -92,6 +92,10 @@ TEST_F(LibraryCommand, ShardsAndAddingGiveTheBytesOfLearningAtOnce) {
     all.replace(all.find("s0.library"), 10, "s2.library");
     answer("merge" + all + " -o " + path("e.library"));
     EXPECT_EQ(read(path("e.library")), whole);
+    const std::string asked = " --components 4 --bytes 60 -o ";
+    answer("merge " + path("2.library") + " " + path("1.library") + asked + path("less.library"));
+    answer("learn" + words(0, 8) + free + asked + path("small.library"));
+    EXPECT_EQ(read(path("less.library")), read(path("small.library")));
     const Answer one = run("library learn" + words(0, 8) + " --components 6 --threads 1" + free +
                            " -o " + path("t.library"));
     EXPECT_EQ(one.code, 0) << one.err;
