@@ -17,6 +17,7 @@
 #include <brdfs/fit/fit_json.h>
 #include <brdfs/fit/picture_samples.h>
 #include <brdfs/fit/residual_rows.h>
+#include <brdfs/measured/mueller.h>
 #include <brdfs/sum.h>
 
 #include <fmt/format.h>
@@ -82,6 +83,7 @@ std::optional<Setting> sampleSetting(const FitOptions& options) {
 /// Throws UsageError for data or a model of transmission.
 void requireReflections(const Brdf& data, const std::string& model) {
     requireReflection(data, "fit");
+    brdfs::requireReflectance(data, "fit");
     for (const brdfs::WeightedSpec& term :
          brdfs::splitSum(model, [](std::string_view) { return false; })) {
         const std::string_view name = std::string_view(term.spec).substr(0, term.spec.find(':'));

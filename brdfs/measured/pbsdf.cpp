@@ -64,16 +64,18 @@ std::vector<double> loadWavelengths(const TensorFile& file, std::uint64_t count)
     return nodes;
 }
 
-/// M00 of every vertex and wavelength.
-std::vector<float> loadReflectances(const TensorFile& file, const Field& field) {
+/// The elements at some places of every matrix.
+std::vector<float> loadElements(const TensorFile& file, const Field& field,
+                                const std::vector<std::size_t>& places) {
     constexpr std::size_t matrix = 16;
     const auto bytes = file.raw(field);
-    std::vector<float> values(field.count / matrix);
+    std::vector<float> values(field.count / matrix * places.size());
     for (std::size_t i = 0; i < values.size(); ++i) {
-        std::memcpy(&values[i], bytes.data() + i * matrix * sizeof(float), sizeof(float));
+        const std::size_t number = i / places.size() * matrix + places[i % places.size()];
+        std::memcpy(&values[i], bytes.data() + number * sizeof(float), sizeof(float));
         if (std::isinf(values[i])) {
-            file.fail(field, fmt::format("value {} (offset {}) is infinite", i * matrix,
-                                         field.offset + i * matrix * sizeof(float)));
+            file.fail(field, fmt::format("value {} (offset {}) is infinite", number,
+                                         field.offset + number * sizeof(float)));
         }
     }
     return values;
@@ -118,8 +120,9 @@ struct PbsdfBrdf::Corners {
     bool any = false;
 };
 
-PbsdfBrdf::PbsdfBrdf(std::span<const unsigned char> bytes, std::string name)
-    : name_(std::move(name)) {
+PbsdfBrdf::PbsdfBrdf(std::span<const unsigned char> bytes, std::string name, MuellerElement element)
+    : name_(std::move(name)), element_(std::move(element)), places_(element_.places()) {
+    if (places_[0] != 0) places_.insert(places_.begin(), 0);
     const TensorFile file(bytes, name_);
     const Field& field = file.field("M");
     const auto& shape = field.shape;
@@ -135,15 +138,16 @@ PbsdfBrdf::PbsdfBrdf(std::span<const unsigned char> bytes, std::string name)
     thetaDifference_ = loadAngles(file, "theta_d", shape[1], 0, pi / 2, anglesAssumed_);
     thetaHalf_ = loadAngles(file, "theta_h", shape[2], 0, pi / 2, anglesAssumed_);
     channels_ = Channels::spectral(loadWavelengths(file, shape[3]));
-    values_ = loadReflectances(file, field);
-    laws_.nonNegative = true;
+    values_ = loadElements(file, field, places_);
+    laws_.nonNegative = element_.isReflectance() || element_.isDegree();
     laws_.isotropic = true;
 }
 
-std::unique_ptr<PbsdfBrdf> PbsdfBrdf::open(const std::string& path) {
+std::unique_ptr<PbsdfBrdf> PbsdfBrdf::open(const std::string& path, MuellerElement element) {
     const MappedFile file(path);
+    const std::string name = element.isReflectance() ? path : path + ":mueller=" + element.name();
     try {
-        auto brdf = std::make_unique<PbsdfBrdf>(file.bytes(), path);
+        auto brdf = std::make_unique<PbsdfBrdf>(file.bytes(), name, std::move(element));
         file.checkIntact();
         return brdf;
     } catch (const InputError&) {
@@ -157,12 +161,12 @@ std::size_t PbsdfBrdf::vertex(std::size_t p, std::size_t d, std::size_t h) const
 }
 
 bool PbsdfBrdf::hasValue(std::size_t vertex) const {
-    const std::size_t n = channels_.count();
-    const float* first = values_.data() + vertex * n;
     bool zero = true;
-    for (std::size_t c = 0; c < n; ++c) {
-        if (std::isnan(first[c])) return false;
-        zero = zero && first[c] == 0;
+    for (std::size_t c = 0; c < channels_.count(); ++c) {
+        const float* values = at(vertex, c);
+        if (std::any_of(values, values + planes(), [](float v) { return std::isnan(v); }))
+            return false;
+        zero = zero && values[0] == 0;
     }
     return !zero;
 }
@@ -195,14 +199,17 @@ void PbsdfBrdf::eval(const Direction& wo, DirectionBatch wi, double* out) const 
     if (!(wo.z > 0)) return;
     for (std::size_t k = 0; k < wi.count; ++k) {
         if (!(wi.z[k] > 0)) continue;
-        const Corners at = corners(wo, {wi.x[k], wi.y[k], wi.z[k]});
-        for (std::size_t i = 0; i < 8; ++i) {
-            if (!(at.weight[i] > 0)) continue;
-            const float* from = values_.data() + at.vertex[i] * n;
-            for (std::size_t c = 0; c < n; ++c) out[c * wi.count + k] += at.weight[i] * from[c];
-        }
+        const Corners near = corners(wo, {wi.x[k], wi.y[k], wi.z[k]});
+        if (!near.any) continue;
         for (std::size_t c = 0; c < n; ++c) {
-            out[c * wi.count + k] = std::max(out[c * wi.count + k], 0.0);
+            std::array<double, 3> sums{};
+            for (std::size_t i = 0; i < 8; ++i) {
+                if (!(near.weight[i] > 0)) continue;
+                const float* from = at(near.vertex[i], c) + (planes() - element_.places().size());
+                for (std::size_t p = 0; p < element_.places().size(); ++p)
+                    sums[p] += near.weight[i] * from[p];
+            }
+            out[c * wi.count + k] = element_.value(sums.data());
         }
     }
 }
@@ -214,10 +221,18 @@ void PbsdfBrdf::coverage(const Direction& wo, DirectionBatch wi, unsigned char* 
     }
 }
 
+double PbsdfBrdf::nodeValue(std::size_t vertex, std::size_t channel) const {
+    const float* from = at(vertex, channel) + (planes() - element_.places().size());
+    if (element_.isReflectance()) return from[0];  // also below 0, to be counted
+    const std::array<double, 3> values{from[0], element_.isDegree() ? from[1] : 0.0,
+                                       element_.isDegree() ? from[2] : 0.0};
+    return element_.value(values.data());
+}
+
 Census PbsdfBrdf::census() const {
     const std::size_t n = channels_.count();
     Census census;
-    census.values = values_.size();
+    census.values = values_.size() / planes();
     for (std::size_t p = 0; p < phiDifference_.size(); ++p) {
         for (std::size_t d = 0; d < thetaDifference_.size(); ++d) {
             for (std::size_t h = 0; h < thetaHalf_.size(); ++h) {
@@ -225,13 +240,13 @@ Census PbsdfBrdf::census() const {
                 const double along = std::cos(thetaHalf_[h]) * std::cos(thetaDifference_[d]);
                 const double across = std::sin(thetaHalf_[h]) * std::sin(thetaDifference_[d]) *
                                       std::fabs(std::cos(phiDifference_[p]));
-                const std::size_t at = vertex(p, d, h);
+                const std::size_t node = vertex(p, d, h);
                 if (along - across < 1e-6) {
                     census.belowHorizon += n;
-                } else if (!hasValue(at)) {
+                } else if (!hasValue(node)) {
                     census.invalid += n;
                 } else {
-                    for (std::size_t c = 0; c < n; ++c) census.add(values_[at * n + c]);
+                    for (std::size_t c = 0; c < n; ++c) census.add(nodeValue(node, c));
                 }
             }
         }
@@ -264,14 +279,13 @@ std::vector<Fact> PbsdfBrdf::facts() const {
         {"dimensions", fmt::format("{} x {} x {} x {}", phiDifference_.size(),
                                    thetaDifference_.size(), thetaHalf_.size(), channels_.count())},
         {"angles_assumed_evenly_spaced", anglesAssumed_},
-        {"read", "M00; the other elements of the Mueller matrices are ignored"}};
+        muellerFact(element_)};
 }
 
 const Format& pbsdfFormat() {
     static const Format format{
         .name = "pbsdf",
-        .help =
-            "Mueller matrices over half and difference angles, isotropic, spectral; M00 is read",
+        .help = "Mueller matrices over half and difference angles, isotropic, spectral",
         .extension = ".pbsdf",
         .recognises =
             [](std::span<const unsigned char> head, std::uint64_t) {
@@ -282,9 +296,9 @@ const Format& pbsdfFormat() {
                        text.find("theta_d") != std::string_view::npos &&
                        text.find("vndf") == std::string_view::npos;
             },
-        .parameters = {},
-        .open = [](const std::string& path, const Parameters&) -> std::unique_ptr<Brdf> {
-            return PbsdfBrdf::open(path);
+        .parameters = {muellerParameter()},
+        .open = [](const std::string& path, const Parameters& parameters) -> std::unique_ptr<Brdf> {
+            return PbsdfBrdf::open(path, muellerElement(parameters));
         },
     };
     return format;

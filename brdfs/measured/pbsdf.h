@@ -2,6 +2,7 @@
 
 #include <brdfs/catalog.h>
 #include <brdfs/measured/measured_brdf.h>
+#include <brdfs/measured/mueller.h>
 
 #include <memory>
 #include <span>
@@ -14,20 +15,21 @@ namespace hshfit::brdfs {
 /// Polarimetric Reflectance", ACM TOG 39(4)) in a tensor file (tensor_file.h): Mueller matrices
 /// M[phi_d][theta_d][theta_h][wavelength][4][4], f32, and the nodes phi_d, theta_d, theta_h (f32,
 /// radians, 1 x n) and wvls (u16, nm). The reader uses M00, the reflectance of unpolarised light in
-/// 1/sr, and ignores the other 15 elements, which describe polarisation. The BRDF is isotropic and
-/// spectral.
+/// 1/sr, or another element (MuellerElement), whose Stokes vectors have the axes of the file. It is
+/// isotropic and spectral.
 ///
 /// theta_h, theta_d and phi_d are Rusinkiewicz's angles, with wi towards the light and phi_d =
 /// 0 where wi leans away from the normal. f is linear in the angles between the nodes and
 /// constant beyond. Files with empty angles (shape 0 x n) are read as evenly spaced: theta from
 /// 0 to 90, phi_d from -180 to 180 degrees. Interpolation leaves out nodes whose M00 is NaN, or
-/// 0 as in cells below the horizon; without any of the eight nodes f is 0. Negative values
-/// become 0. Reciprocity does not hold in measured files.
+/// 0 as in cells below the horizon; without any of the eight nodes f is 0. Negative values of M00
+/// become 0. The degree of polarisation is that of the interpolated elements. Reciprocity does not
+/// hold in measured files.
 class PbsdfBrdf : public MeasuredBrdf {
 public:
     /// `name` is the path of the file. Throws InputError naming field and offset.
-    PbsdfBrdf(std::span<const unsigned char> bytes, std::string name);
-    static std::unique_ptr<PbsdfBrdf> open(const std::string& path);
+    PbsdfBrdf(std::span<const unsigned char> bytes, std::string name, MuellerElement element = {});
+    static std::unique_ptr<PbsdfBrdf> open(const std::string& path, MuellerElement element = {});
 
     std::string name() const override { return name_; }
     const Channels& channels() const override { return channels_; }
@@ -46,13 +48,21 @@ private:
     Corners corners(const Direction& wo, const Direction& wi) const;
     std::size_t vertex(std::size_t p, std::size_t d, std::size_t h) const;
     bool hasValue(std::size_t vertex) const;
+    double nodeValue(std::size_t vertex, std::size_t channel) const;
+    /// The places of `element_`, after M00 where that is not among them.
+    std::size_t planes() const { return places_.size(); }
+    const float* at(std::size_t vertex, std::size_t channel) const {
+        return values_.data() + (vertex * channels_.count() + channel) * planes();
+    }
 
     std::string name_;
+    MuellerElement element_;
+    std::vector<std::size_t> places_;
     Channels channels_;
     Laws laws_;
     std::vector<double> phiDifference_, thetaDifference_, thetaHalf_;  ///< ascending, radians
     bool anglesAssumed_ = false;
-    std::vector<float> values_;  ///< [phi_d][theta_d][theta_h][wavelength]
+    std::vector<float> values_;  ///< [phi_d][theta_d][theta_h][wavelength][plane]
 };
 
 /// The row of the table of formats.

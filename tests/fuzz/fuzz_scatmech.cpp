@@ -8,11 +8,12 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace hshfit;
-    try {
-        const std::string_view text(reinterpret_cast<const char*>(data), size);
-        test::checkBrdf(brdfs::readScatmech(text, "input", "input"));
-    } catch (const InputError&) {
-    }
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    for (const char* element : {"m00", "m12", "dolp"}) try {
+            test::checkBrdf(*brdfs::readScatmech(text, "input", "input",
+                                                 {.element = brdfs::MuellerElement(element)}));
+        } catch (const InputError&) {
+        }
     brdfs::scatmechFormat().recognises({data, size < 4096 ? size : 4096}, size);
     return 0;
 }

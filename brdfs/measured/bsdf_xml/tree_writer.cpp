@@ -174,8 +174,8 @@ std::string blockText(const Brdf& brdf, BsdfSide side, int rank, const Parameter
     return TreePrinter(averages, rank, levels, parameters.number("prune")).text();
 }
 
-std::vector<std::string> write(const Brdf& brdf, const std::string& path,
-                               const Parameters& parameters, const WriteOptions& options) {
+std::vector<std::string> writeTree(const Brdf& brdf, const std::string& path,
+                                   const Parameters& parameters, const WriteOptions& options) {
     const std::vector<BsdfPart> parts = partsOf(brdf, parameters);
     // A file has one rank.
     const bool isotropic = std::ranges::all_of(
@@ -215,7 +215,7 @@ const Writer& bsdfTreeWriter() {
                       .help = "BSDF XML, tensor tree of rank 3 (isotropic) or 4, luminance",
                       .extension = ".xml",
                       .parameters = std::move(parameters),
-                      .write = write};
+                      .write = writeTree};
     }();
     return writer;
 }

@@ -20,7 +20,7 @@ namespace {
 constexpr std::string_view functionMark = "#ALTA FUNC HEADER";
 constexpr std::size_t mostColumns = 64;
 
-struct Header {
+struct AltaHeader {
     std::size_t in = 0, out = 0, bounds = 0;
     std::string parameters = "UNKNOWN_INPUT", output;
     bool binary = false, bigEndian = false;
@@ -41,7 +41,7 @@ std::size_t wholeNumber(double value, double most, const TextReader& reader,
     return static_cast<std::size_t>(value);
 }
 
-void readSegments(TextReader& reader, Header& header) {
+void readSegments(TextReader& reader, AltaHeader& header) {
     std::vector<double> kinds;
     for (double kind; reader.takeNumber(kind);) kinds.push_back(kind);
     if (kinds.size() != 1 && kinds.size() != header.out) {
@@ -67,7 +67,7 @@ std::string expectWord(TextReader& reader, std::string_view key,
 }
 
 /// Takes one line of the header; true at #BEGIN_STREAM.
-bool readKey(TextReader& reader, Header& header) {
+bool readKey(TextReader& reader, AltaHeader& header) {
     const std::string_view key = reader.takeWord();
     double value = 0;
     if (key == "#DIM") {
@@ -103,7 +103,8 @@ bool readKey(TextReader& reader, Header& header) {
     return key == "#BEGIN_STREAM";
 }
 
-Samples declare(const Header& header, const TextReader& reader, const AltaParameters*& parameters) {
+Samples declare(const AltaHeader& header, const TextReader& reader,
+                const AltaParameters*& parameters) {
     if (header.in == 0 || header.out == 0) {
         throw reader.error("no line #DIM with the numbers of coordinates and of values");
     }
@@ -148,7 +149,7 @@ void toRgb(double* v) {
     v[2] = 0.0557 * x - 0.2040 * y + 1.0570 * z;
 }
 
-void addRow(const Header& header, const AltaParameters& parameters, std::vector<double>& row,
+void addRow(const AltaHeader& header, const AltaParameters& parameters, std::vector<double>& row,
             const Row& at, Samples& samples) {
     Direction wi, wo;
     for (std::size_t k = 0; k < header.in; ++k) {
@@ -169,7 +170,7 @@ void addRow(const Header& header, const AltaParameters& parameters, std::vector<
     samples.add(wi, wo, f, at);
 }
 
-void readStream(std::string_view text, const std::string& where, const Header& header,
+void readStream(std::string_view text, const std::string& where, const AltaHeader& header,
                 const AltaParameters& parameters, const TextReader& reader, Samples& samples) {
     constexpr std::string_view end = "\n#END_STREAM";
     const std::size_t rowBytes = header.columns() * sizeof(double);
@@ -210,7 +211,7 @@ void readStream(std::string_view text, const std::string& where, const Header& h
 
 /// Whether the stream of a file without marks begins after the line that was read: ALTA takes the
 /// first byte that is no '#' as data.
-bool streamBegins(std::string_view text, const Header& header, const TextReader& reader) {
+bool streamBegins(std::string_view text, const AltaHeader& header, const TextReader& reader) {
     if (!header.binary || text.find("\n#BEGIN_STREAM") != std::string_view::npos) return false;
     const auto next = static_cast<std::size_t>(reader.line().end() - text.begin()) + 1;
     const bool ended = reader.line().starts_with("#ALTA_END_HEADER");
@@ -243,7 +244,7 @@ std::vector<std::string_view> inputChoices() {
 
 Samples readAlta(std::string_view text, const std::string& where) {
     TextReader reader(text, where);
-    Header header;
+    AltaHeader header;
     const AltaParameters* parameters = nullptr;
     Samples samples;
     std::vector<double> row;

@@ -34,8 +34,17 @@ bool looksLikeNist(std::span<const unsigned char> head, std::uint64_t) {
     return asText(head).starts_with(beginning);
 }
 
+/// Of a row, whose matrix begins at its sixth number and has f_r11 in place of m_11.
+double valueOf(const std::vector<double>& row, const MuellerElement& element) {
+    if (element.isReflectance()) return row[5];
+    std::vector<double> values;
+    for (const std::size_t place : element.places())
+        values.push_back(place == 0 ? row[5] : row[5] * row[5 + place]);
+    return element.value(values.data());
+}
+
 /// Checks the angles and appends the row to the readings of its geometry.
-void addRow(const std::vector<double>& row, const TextReader& reader,
+void addRow(const std::vector<double>& row, const MuellerElement& element, const TextReader& reader,
             std::map<Geometry, std::size_t>& known, std::vector<Reading>& readings) {
     constexpr std::array<std::string_view, 5> names = {"lambda", "thetai", "phii", "thetar",
                                                        "phir"};
@@ -53,7 +62,7 @@ void addRow(const std::vector<double>& row, const TextReader& reader,
     const auto [place, isNew] = known.try_emplace(at, readings.size());
     if (isNew) readings.push_back({at, reader.lineNumber(), {}});
     if (!readings[place->second]
-             .values.try_emplace(nm, Reading::Value{row[5], reader.lineNumber()})
+             .values.try_emplace(nm, Reading::Value{valueOf(row, element), reader.lineNumber()})
              .second) {
         throw reader.error(fmt::format("a second row for these angles at {} nm", nm));
     }
@@ -61,7 +70,7 @@ void addRow(const std::vector<double>& row, const TextReader& reader,
 
 }  // namespace
 
-Samples readNist(std::string_view text, const std::string& where) {
+Samples readNist(std::string_view text, const std::string& where, const MuellerElement& element) {
     TextReader reader(text, where);
     if (!reader.next() || !reader.line().starts_with(beginning)) {
         throw reader.error(fmt::format("expected the names of the columns, '{},...'", beginning));
@@ -76,7 +85,7 @@ Samples readNist(std::string_view text, const std::string& where) {
         if (row.size() != columnCount) {
             throw reader.error(fmt::format("{} numbers, expected {}", row.size(), columnCount));
         }
-        addRow(row, reader, known, readings);
+        addRow(row, element, reader, known, readings);
         ++wavelengths[std::round(row[0] * 1e6) / 1e3];
     }
     Samples samples;
@@ -84,8 +93,8 @@ Samples readNist(std::string_view text, const std::string& where) {
     for (const auto& [nm, count] : wavelengths) nanometres.push_back(nm);
     if (nanometres.empty()) throw reader.error("the file has no rows");
     samples.channels = Channels::spectral(nanometres);
-    samples.facts = {{"format", "nist"}};
-    samples.leftOut = {"Mueller elements 12 to 44"};
+    samples.element = element;
+    samples.facts = {{"format", "nist"}, muellerFact(element)};
     std::size_t incomplete = 0;
     std::vector<double> values;
     for (const Reading& reading : readings) {
@@ -114,13 +123,16 @@ Samples readNist(std::string_view text, const std::string& where) {
 const Format& nistFormat() {
     static const Format format{
         .name = "nist",
-        .help = "Mueller-matrix samples of NIST (CSV), spectral; the unpolarised BRDF is read",
+        .help = "Mueller-matrix samples of NIST (CSV), spectral",
         .extension = ".csv",
         .recognises = looksLikeNist,
-        .parameters = scatteredParameters(),
+        .parameters = scatteredParameters({muellerParameter()}),
         .open =
             [](const std::string& path, const Parameters& parameters) {
-                return openScattered(path, parameters, readNist);
+                return openScattered(path, parameters,
+                                     [&](std::string_view text, const std::string& where) {
+                                         return readNist(text, where, muellerElement(parameters));
+                                     });
             },
     };
     return format;

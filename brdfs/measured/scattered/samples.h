@@ -1,6 +1,7 @@
 #pragma once
 
 #include <brdfs/measured/measured_brdf.h>
+#include <brdfs/measured/mueller.h>
 #include <brdfs/measured/scattered/chart.h>
 #include <hshfit/brdf/brdf.h>
 #include <hshfit/error.h>
@@ -33,6 +34,8 @@ struct Samples {
     bool isotropic = false;  ///< as stated in the file
     /// The value of the option `side` (sides.h); empty for formats of reflections alone.
     std::string_view side = {};
+    /// Values of others than M_00 are below 0 too, and neither exchange nor mirror holds for them.
+    MuellerElement element;
     Census census;
     std::vector<Fact> facts;           ///< the format and the facts of its header
     std::vector<std::string> leftOut;  ///< parts of the file that are not read

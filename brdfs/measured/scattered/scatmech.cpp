@@ -1,4 +1,5 @@
 #include <brdfs/measured/scattered/scatmech.h>
+#include <brdfs/measured/scattered/scatmech_mueller.h>
 #include <brdfs/measured/scattered/text_file.h>
 #include <brdfs/measured/text_reader.h>
 #include <hshfit/error.h>
@@ -17,23 +18,6 @@ namespace {
 /// The limit keeps radial polynomials exact to rounding; published tables end at 8.
 constexpr int mostOrder = 40;
 constexpr int mostPower = 8;
-
-/// R_n^l(r), l >= 0, n - l even, by Kintner's three-term recurrence in n (Optica Acta 23, 1976).
-double zernikeRadial(int n, int l, double r) {
-    double last = std::pow(r, l);
-    if (n == l) return last;
-    double now = ((l + 2) * r * r - (l + 1)) * last;
-    for (int k = l + 4; k <= n; k += 2) {
-        const double k1 = 0.5 * (k + l) * (k - l) * (k - 2), k2 = 2.0 * k * (k - 1) * (k - 2);
-        const double k3 =
-            -static_cast<double>(l) * l * (k - 1) - static_cast<double>(k) * (k - 1) * (k - 2);
-        const double k4 = -0.5 * k * (k + l - 2) * (k - l - 2);
-        const double next = ((k2 * r * r + k3) * now + k4 * last) / k1;
-        last = now;
-        now = next;
-    }
-    return now;
-}
 
 double normalisation(const ZernikeExpansion::Term& t) {
     const bool same = t.n == t.m, round = t.l == 0;
@@ -69,6 +53,18 @@ ZernikeExpansion::Term termOf(const std::array<int, 7>& at, double a, const Text
     return {n, m, l, p, a};
 }
 
+/// A row i <= j of another element than 11.
+ZernikeMueller::Row muellerRow(const std::array<int, 7>& at, double a, const TextReader& reader) {
+    const auto [i, j, n, m, k, l, p] = at;
+    if (i > j || std::abs(k) > n || std::abs(l) > m || (n - k) % 2 != 0 || (m - l) % 2 != 0) {
+        throw reader.error(fmt::format(
+            "i, j, n, m, k, l are {}, {}, {}, {}, {}, {}; expected i <= j, |k| up to n, "
+            "|l| up to m, and n - k and m - l even",
+            i, j, n, m, k, l));
+    }
+    return {i - 1, j - 1, {n, m}, {k, l}, p, a};
+}
+
 bool looksLikeScatmech(std::span<const unsigned char> head, std::uint64_t fileSize) {
     const std::string_view text = asText(head);
     TextReader reader(text, "");
@@ -92,6 +88,23 @@ bool looksLikeScatmech(std::span<const unsigned char> head, std::uint64_t fileSi
 }
 
 }  // namespace
+
+/// By Kintner's three-term recurrence in n (Optica Acta 23, 1976).
+double zernikeRadial(int n, int l, double r) {
+    double last = std::pow(r, l);
+    if (n == l) return last;
+    double now = ((l + 2) * r * r - (l + 1)) * last;
+    for (int k = l + 4; k <= n; k += 2) {
+        const double k1 = 0.5 * (k + l) * (k - l) * (k - 2), k2 = 2.0 * k * (k - 1) * (k - 2);
+        const double k3 =
+            -static_cast<double>(l) * l * (k - 1) - static_cast<double>(k) * (k - 1) * (k - 2);
+        const double k4 = -0.5 * k * (k + l - 2) * (k - l - 2);
+        const double next = ((k2 * r * r + k3) * now + k4 * last) / k1;
+        last = now;
+        now = next;
+    }
+    return now;
+}
 
 ZernikeExpansion::ZernikeExpansion(const std::vector<Term>& terms, std::vector<double> wavelengths,
                                    std::string name, std::size_t otherTerms)
@@ -167,16 +180,18 @@ void ZernikeExpansion::eval(const Direction& wo, DirectionBatch wi, double* out)
 std::vector<Fact> ZernikeExpansion::facts() const {
     std::vector<Fact> facts{{"format", "scatmech"}, {"terms", static_cast<std::int64_t>(terms_)}};
     if (otherTerms_ > 0) {
+        facts.push_back(muellerFact({}));
         facts.emplace_back("not_read",
                            fmt::format("{} terms of Mueller elements other than 11", otherTerms_));
     }
     return facts;
 }
 
-ZernikeExpansion readScatmech(std::string_view text, const std::string& where, std::string name,
-                              double wavelength, double scale) {
+std::unique_ptr<Brdf> readScatmech(std::string_view text, const std::string& where,
+                                   std::string name, const ScatmechOptions& options) {
     TextReader reader(text, where);
     std::vector<ZernikeExpansion::Term> terms;
+    std::vector<ZernikeMueller::Row> rows;
     std::vector<double> row;
     std::size_t others = 0;
     bool coloured = false;
@@ -191,21 +206,28 @@ ZernikeExpansion readScatmech(std::string_view text, const std::string& where, s
         if (!(std::fabs(row[7]) <= 1e6)) {
             throw reader.error(fmt::format("a is {}, expected a number within 1e6", row[7]));
         }
-        if (at[0] != 1 || at[1] != 1) {
+        if (at[0] == 1 && at[1] == 1) {
+            terms.push_back(termOf(at, options.scale * row[7], reader));
+        } else if (options.element.isReflectance()) {
             ++others;
             continue;
+        } else {
+            rows.push_back(muellerRow(at, row[7], reader));
         }
-        terms.push_back(termOf(at, scale * row[7], reader));
         coloured = coloured || at[6] > 0;
     }
     if (terms.empty()) throw reader.error("the file has no row of Mueller element 11");
     std::vector<double> wavelengths;
-    if (wavelength > 0) {
-        wavelengths = {wavelength};
+    if (options.wavelength > 0) {
+        wavelengths = {options.wavelength};
     } else if (coloured) {
         wavelengths = {351, 532, 633, 1064};
     }
-    return {terms, wavelengths, std::move(name), others};
+    ZernikeExpansion reflectance(terms, wavelengths, name, others);
+    if (options.element.isReflectance())
+        return std::make_unique<ZernikeExpansion>(std::move(reflectance));
+    return std::make_unique<ZernikeMueller>(std::move(reflectance), rows, options.element,
+                                            std::move(name));
 }
 
 const Format& scatmechFormat() {
@@ -227,14 +249,16 @@ const Format& scatmechFormat() {
                         .kind = Parameter::Kind::number,
                         .fallback = 1,
                         .min = 0,
-                        .max = 1000}},
+                        .max = 1000},
+                       muellerParameter()},
         .open = [](const std::string& path, const Parameters& parameters) -> std::unique_ptr<Brdf> {
             const std::string options = parameters.canonical();
             std::unique_ptr<Brdf> brdf;
             withTextFile(path, [&](std::string_view text, const std::string& where) {
-                brdf = std::make_unique<ZernikeExpansion>(
-                    readScatmech(text, where, options.empty() ? path : path + ":" + options,
-                                 parameters.number("wavelength"), parameters.number("scale")));
+                brdf = readScatmech(text, where, options.empty() ? path : path + ":" + options,
+                                    {.wavelength = parameters.number("wavelength"),
+                                     .scale = parameters.number("scale"),
+                                     .element = muellerElement(parameters)});
             });
             return brdf;
         },

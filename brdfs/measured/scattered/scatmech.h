@@ -1,13 +1,18 @@
 #pragma once
 
 #include <brdfs/catalog.h>
+#include <brdfs/measured/mueller.h>
 #include <hshfit/brdf/brdf.h>
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace hshfit::brdfs {
+
+/// R_n^l(r), l >= 0, n - l even.
+double zernikeRadial(int n, int l, double r);
 
 /// A reciprocal isotropic BRDF in products of Zernike functions (Koenderink & van Doorn 1998,
 /// 10.1364/JOSAA.15.002903; Germer 2017, 10.1364/AO.56.009333), for unpolarised light:
@@ -50,13 +55,18 @@ private:
     std::size_t terms_ = 0, otherTerms_ = 0;
 };
 
+struct ScatmechOptions {
+    double wavelength = 0, scale = 1;
+    MuellerElement element = {};
+};
+
 /// Reads a SCATMECH coefficient table, rows i, j, n, m, k, l, p, a between commas or blanks. Rows
-/// of other Mueller elements than i = j = 1 are checked and left out. `wavelength` in nm; 0: grey
-/// where no row depends on it, else 351, 532, 633 and 1064 nm, at which PTFE was measured. Every a
-/// is multiplied by `scale`.
-/// Throws InputError, with `where` and the line, for any other content.
-ZernikeExpansion readScatmech(std::string_view text, const std::string& where, std::string name,
-                              double wavelength = 0, double scale = 1);
+/// of other Mueller elements than the one asked for are checked and left out. `wavelength` in nm;
+/// 0: grey where no row depends on it, else 351, 532, 633 and 1064 nm, at which PTFE was measured.
+/// Every a is multiplied by `scale`. Throws InputError, with `where` and the line, for any other
+/// content.
+std::unique_ptr<Brdf> readScatmech(std::string_view text, const std::string& where,
+                                   std::string name, const ScatmechOptions& options = {});
 
 /// The row of the table of formats.
 const Format& scatmechFormat();

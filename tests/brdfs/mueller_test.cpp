@@ -1,0 +1,184 @@
+// Other elements of Mueller matrices than the reflectance: tables of the tests, NIST's measurement
+// of PTFE, and the expansion that was fitted to it.
+
+#include "places.h"
+#include "skip_without.h"
+
+#include <brdfs/catalog.h>
+#include <brdfs/measured/mueller.h>
+#include <brdfs/measured/pbsdf.h>
+#include <brdfs/measured/scattered/scattered.h>
+
+#include <brdfs/measured_files.h>
+#include <brdfs/tensor_writer.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+namespace hshfit {
+namespace {
+
+using brdfs::MuellerElement;
+using brdfs::PbsdfBrdf;
+using test::expectInputError;
+
+double rising(double phi, double difference, double half, std::size_t wavelength) {
+    return 0.2 + 0.03 * phi + 0.1 * difference + 0.05 * half + 0.3 * double(wavelength);
+}
+
+/// M00 times `share` of each element, at the place row * 4 + column.
+std::string tableOf(const std::array<float, 16>& share) {
+    auto fields = test::pbsdfFields({.withAngles = true}, rising);
+    std::string& data = fields[4].data;
+    for (std::size_t at = 0; at < data.size(); at += 16 * sizeof(float)) {
+        float m00 = 0;
+        std::memcpy(&m00, data.data() + at, sizeof m00);
+        for (std::size_t e = 1; e < 16; ++e) {
+            const float value = share[e] * m00;
+            std::memcpy(data.data() + at + e * sizeof(float), &value, sizeof value);
+        }
+    }
+    return test::tensorFile(fields);
+}
+
+double valueOf(const std::string& bytes, const std::string& element, std::size_t channel = 0) {
+    const std::vector<unsigned char> copy(bytes.begin(), bytes.end());
+    const PbsdfBrdf brdf({copy.data(), copy.size()}, "memory", MuellerElement(element));
+    return evaluate(brdf, directionFromAngles(0.7, 0.3), directionFromAngles(0.4, 2))[channel];
+}
+
+TEST(Mueller, ElementsOfATableAreThoseAtTheirPlaces) {
+    std::array<float, 16> share{};
+    for (std::size_t e = 1; e < 16; ++e) share[e] = 0.05F * float(e) - 0.5F;
+    share[4] = 0.3F, share[8] = -0.4F;
+    const std::string bytes = tableOf(share);
+    const double f = valueOf(bytes, "m00", 1);
+    ASSERT_GT(f, 0);
+    for (std::size_t e = 1; e < 16; ++e) {
+        const std::string name = "m" + std::to_string(e / 4) + std::to_string(e % 4);
+        EXPECT_NEAR(valueOf(bytes, name, 1), double{share[e]} * f, 1e-6) << name;
+    }
+    EXPECT_NEAR(valueOf(bytes, "dolp"), 0.5, 1e-6);  // 3, 4, 5
+}
+
+TEST(Mueller, ANodeWithoutOneElementIsLeftOutForThatOne) {
+    std::array<float, 16> share{};
+    share[5] = std::nanf("");
+    const std::string bytes = tableOf(share);
+    EXPECT_GT(valueOf(bytes, "m00"), 0);
+    EXPECT_EQ(valueOf(bytes, "m11"), 0);  // no node has one
+}
+
+class Ptfe : public testing::Test {
+protected:
+    static std::string file(const std::string& name) {
+        return test::sharedFolder() + "/data/nist_ptfe/" + name;
+    }
+    static std::unique_ptr<Brdf> open(const std::string& name, const std::string& options) {
+        return brdfs::open(file(name) + ":" + options);
+    }
+};
+
+/// A row of the measurement: lambda, four angles, f_r11, then the elements over it.
+std::vector<std::array<double, 21>> measuredRows(const std::string& path) {
+    std::ifstream file(path);
+    std::vector<std::array<double, 21>> rows;
+    std::string line;
+    std::getline(file, line);
+    while (std::getline(file, line)) {
+        std::istringstream cells(line);
+        std::string cell;
+        std::array<double, 21> row{};
+        for (double& value : row) std::getline(cells, cell, ','), value = std::stod(cell);
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+/// Root mean squares over the rows of a wavelength: of the measured element, and of what the
+/// expansion leaves of it, with its own sign and with the other.
+struct Residuals {
+    double measured = 0, left = 0, turned = 0;
+};
+
+Residuals residualsOf(const Brdf& element, const Brdf& reflectance, std::size_t column,
+                      const std::vector<std::array<double, 21>>& rows, double um) {
+    Residuals sums;
+    double count = 0;
+    for (const auto& row : rows) {
+        if (row[0] != um) continue;
+        const Direction wi = directionFromAngles(radians(row[1]), radians(row[2]));
+        const Direction wo = directionFromAngles(radians(row[3]), radians(row[4]));
+        const double m = evaluate(element, wi, wo)[0] / evaluate(reflectance, wi, wo)[0];
+        sums.measured += row[column] * row[column];
+        sums.left += (m - row[column]) * (m - row[column]);
+        sums.turned += (m + row[column]) * (m + row[column]);
+        ++count;
+    }
+    return {std::sqrt(sums.measured / count), std::sqrt(sums.left / count),
+            std::sqrt(sums.turned / count)};
+}
+
+/// The expansion was fitted to these rows, elements i <= j and, by reciprocity, those below: its
+/// formulas and signs are right where it leaves the noise of the instrument, which is that of the
+/// elements that are close to 0 (M03, M30).
+TEST_F(Ptfe, TheExpansionLeavesTheNoiseOfEveryMeasuredElement) {
+    SKIP_WITHOUT(file("PTFE.coeff.csv"));
+    const auto rows = measuredRows(file("PTFE.data.csv"));
+    for (const double um : {0.351, 0.532, 0.633, 1.064}) {
+        const std::string at = ",wavelength=" + std::to_string(std::lround(um * 1000));
+        const auto reflectance = open("PTFE.coeff.csv", "mueller=m00" + at);
+        for (std::size_t e = 1; e < 16; ++e) {
+            const std::string name = "m" + std::to_string(e / 4) + std::to_string(e % 4);
+            const auto element = open("PTFE.coeff.csv", "mueller=" + name + at);
+            const Residuals r = residualsOf(*element, *reflectance, 5 + e, rows, um);
+            EXPECT_LT(r.left, 0.026) << name << at;
+            EXPECT_LT(r.left, 1.01 * r.measured) << name << at;
+            if (r.measured > 0.025) {
+                EXPECT_LT(r.left, 0.6 * r.turned) << name << at;
+            }
+        }
+    }
+}
+
+TEST_F(Ptfe, MeasuredElementsAreThoseOfTheFile) {
+    SKIP_WITHOUT(file("PTFE.data.csv"));
+    const auto rows = measuredRows(file("PTFE.data.csv"));
+    const auto& row = rows[100];
+    for (const auto& [name, expected] : {std::pair<std::string, double>{"m12", row[5] * row[11]},
+                                         {"dolp", std::hypot(row[9], row[13])}}) {
+        const auto brdf = open("PTFE.data.csv", "mueller=" + name);
+        const auto& samples = dynamic_cast<const brdfs::Scattered&>(*brdf).samples();
+        const auto found = std::ranges::find(samples.rows, 102u);
+        ASSERT_NE(found, samples.rows.end());
+        const auto place = static_cast<std::size_t>(found - samples.rows.begin());
+        EXPECT_NEAR(samples.values[place], expected, 1e-12) << name;
+        EXPECT_FALSE(brdf->laws().reciprocal);
+    }
+}
+
+TEST_F(Ptfe, ElementsAreThoseOfAnIsotropicSample) {
+    SKIP_WITHOUT(file("PTFE.coeff.csv"));
+    const Direction wi = directionFromAngles(1, 0.2), wo = directionFromAngles(0.8, 2.5);
+    for (const char* name : {"dolp", "m10", "m12"}) {
+        const auto brdf = open("PTFE.coeff.csv", std::string("mueller=") + name);
+        const double before = evaluate(*brdf, wi, wo)[0];
+        EXPECT_NE(before, 0);
+        EXPECT_NEAR(evaluate(*brdf, rotateAboutZ(wi, 1.1), rotateAboutZ(wo, 1.1))[0], before,
+                    1e-13);
+    }
+}
+
+TEST_F(Ptfe, OnlyTheReflectanceIsFitted) {
+    SKIP_WITHOUT(file("PTFE.coeff.csv"));
+    EXPECT_NO_THROW(brdfs::requireReflectance(*open("PTFE.coeff.csv", "mueller=m00"), "fit"));
+    for (const char* name : {"PTFE.coeff.csv", "PTFE.data.csv"})
+        expectInputError([&] { brdfs::requireReflectance(*open(name, "mueller=m01"), "fit"); },
+                         {"m01 is no reflectance", "mueller=m00"});
+}
+
+}  // namespace
+}  // namespace hshfit
