@@ -1,6 +1,7 @@
 // Numbers with their errors as physicists print them, and text that LaTeX shows as it is.
 
 #include <brdfs/fit/latex_table.h>
+#include <brdfs/fit/printed_number.h>
 
 #include <gtest/gtest.h>
 
