@@ -89,6 +89,8 @@ std::string text(const jobs::Fitted& fitted, const FitArguments& arguments) {
     if (fitted.pageFiles > 0)
         lines += fmt::format("written to {}: fit.json, comparison.html and {} files beside it\n",
                              arguments.output, fitted.pageFiles - 1);
+    if (!arguments.options.certificate.empty())
+        lines += fmt::format("certificate written to {}\n", arguments.options.certificate);
     return lines + figuresText(fitted.figures, arguments.figures);
 }
 
@@ -180,10 +182,12 @@ void runFit(FitArguments& arguments, Globals& globals) {
     const jobs::FitOptions& options = arguments.options;
     if ((!arguments.all.empty() || !arguments.models.empty()) &&
         (options.bootstrap > 0 || options.profile || !options.residuals.empty() ||
-         options.figures || !options.bands.empty()))
+         options.figures || !options.bands.empty() || !options.certificate.empty()))
         throw UsageError(
-            "fit: --bootstrap, --profile, --residuals, --figures and --bands are for one model and "
-            "one DATA");
+            "fit: --bootstrap, --profile, --residuals, --figures, --bands and --certificate are "
+            "for one model and one DATA");
+    if (!options.certificateFields.empty() && options.certificate.empty())
+        throw UsageError("fit: --certificate-fields is for --certificate OUT.pdf");
     if (options.bands.empty() != options.bandsTo.empty() &&
         !(globals.json && !options.bands.empty()))
         throw UsageError(
@@ -284,6 +288,13 @@ void addFit(CLI::App& command, Globals& globals) {
                        "Standard errors and bands of the fitted f at pairs of directions: a CSV "
                        "with wi_x ... wo_z, or plane:30/60 for planes of incidence");
     command.add_option("--bands-to", options.bandsTo, "CSV file for the bands");
+    command.add_option("--certificate", options.certificate,
+                       "PDF for a laboratory to sign: parameters, f and radiance factor with "
+                       "expanded uncertainties, budget, figures, hashes");
+    command.add_option("--certificate-fields", options.certificateFields,
+                       "JSON file of its texts: certificate, laboratory, date, client, sample, "
+                       "instrument, geometry, standard, traceability, conditions, method, "
+                       "remarks, operator, approved_by");
     command.add_flag("--accept", options.accept, "Take a fit that did not converge");
     addRgb(command, options.rgb);
     command.callback([arguments, &globals] { runFit(*arguments, globals); });

@@ -35,6 +35,7 @@ constexpr OptionRow options[] = {
     {"FitOptions::bands", "--bands"},
     {"FitOptions::bandsTo", "--bands-to"},
     {"FitOptions::bootstrap", "--bootstrap"},
+    {"FitOptions::certificate", "--certificate"},
     {"FitOptions::dispersion", "--dispersion"},
     {"FitOptions::instrument.bandwidth", "--bandwidth"},
     {"FitOptions::instrument.dark", "--dark"},

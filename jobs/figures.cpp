@@ -7,8 +7,11 @@
 #include <brdfs/fit/latex_table.h>
 #include <brdfs/fit/prediction.h>
 #include <brdfs/fit/residual_rows.h>
+#include <brdfs/fit/study_figures.h>
 
 #include <iterator>
+#include <memory>
+#include <optional>
 #include <utility>
 
 namespace hshfit::jobs {
@@ -45,6 +48,7 @@ void draw(const std::vector<PrintFigure>& figures, const FigureOptions& options,
     result.names.insert(result.names.end(), added.names.begin(), added.names.end());
     result.undrawn = std::move(added.undrawn);
     result.font = std::move(added.font);
+    result.svgs = std::move(added.svgs);
 }
 
 }  // namespace
@@ -54,50 +58,107 @@ void checkFigures(const FigureOptions& options) {
     brdfs::checkPanels(options.panels);
 }
 
-FigureFiles addFitFigures(const Brdf& data, const brdfs::FitReport& report,
-                          const FigureOptions& options, FileSet& files, const Listener& listener) {
-    FigureFiles result;
-    const auto write = [&](const std::string& name, const std::function<void(AtomicFile&)>& fill) {
-        files.write(name, fill);
-        result.names.push_back(name);
-    };
-    write("parameters.tex", [&](AtomicFile& file) { file.write(brdfs::latexTable(report)); });
-    const bool pixels = report.samples->origin == brdfs::SampleOrigin::pixels;
-    const brdfs::FitSamples& samples = pixels ? *report.ofMetrics : *report.samples;
-    const auto fitted = brdfs::openFit(report.result);
-    brdfs::PlottedModel model{
-        .samples = samples, .brdf = *fitted, .name = "fit", .terms = termsOf(report.result)};
-    model.residuals = brdfs::standardisedResiduals(
-        samples, brdfs::predictedValues(report.result, samples),
-        pixels ? brdfs::Loss::Kind::cosine : report.options.loss, report.result.parameters.size());
-    std::vector<PrintFigure> figures;
-    if (samples.origin == brdfs::SampleOrigin::measured) {
-        if (report.result.uncertainty)
-            write("samples.csv", [&](AtomicFile& file) {
-                brdfs::writeResidualRows(samples, report.result, report.options.loss,
-                                         [&](std::string_view row) { file.write(row); });
-            });
+namespace {
+
+/// A fit with the samples that its figures show: of pixels those of the metrics.
+class PlottedFit {
+public:
+    explicit PlottedFit(const brdfs::FitReport& report)
+        : report_(report),
+          pixels_(report.samples->origin == brdfs::SampleOrigin::pixels),
+          samples_(pixels_ ? *report.ofMetrics : *report.samples),
+          fitted_(brdfs::openFit(report.result)) {}
+
+    const Brdf& brdf() const { return *fitted_; }
+    const brdfs::FitSamples& samples() const { return samples_; }
+    bool measured() const { return samples_.origin == brdfs::SampleOrigin::measured; }
+
+    brdfs::PlottedModel model() const {
+        const brdfs::FitResult& result = report_.result;
+        brdfs::PlottedModel model{
+            .samples = samples_, .brdf = *fitted_, .name = "fit", .terms = termsOf(result)};
+        model.residuals = brdfs::standardisedResiduals(
+            samples_, brdfs::predictedValues(result, samples_),
+            pixels_ ? brdfs::Loss::Kind::cosine : report_.options.loss, result.parameters.size());
         // Fits with terms of the instrument predict no f.
-        if (!report.result.point.channels.empty()) {
-            model.band = [&](std::span<const DirectionPair> pairs) {
-                return halfWidths(report.result, pairs);
+        if (measured() && !result.point.channels.empty()) {
+            model.band = [&result](std::span<const DirectionPair> pairs) {
+                return halfWidths(result, pairs);
             };
             model.bandName = "95 %";
         }
-        if (report.result.instrument)
+        if (measured() && result.instrument)
             model.readings = [&](std::span<const DirectionPair> pairs) {
-                return brdfs::readingsAt(report.result, samples.channels, samples.isotropic, pairs);
+                return brdfs::readingsAt(result, samples_.channels, samples_.isotropic, pairs);
             };
+        return model;
+    }
+
+private:
+    const brdfs::FitReport& report_;
+    bool pixels_;
+    const brdfs::FitSamples& samples_;
+    std::unique_ptr<Brdf> fitted_;
+};
+
+/// parameters.tex, and samples.csv of measured samples with a study.
+void addTables(const brdfs::FitReport& report, FileSet& files, FigureFiles& result) {
+    files.write("parameters.tex", brdfs::latexTable(report));
+    result.names.emplace_back("parameters.tex");
+    if (report.samples->origin != brdfs::SampleOrigin::measured || !report.result.uncertainty)
+        return;
+    files.write("samples.csv", [&](AtomicFile& file) {
+        brdfs::writeResidualRows(*report.samples, report.result, report.options.loss,
+                                 [&](std::string_view row) { file.write(row); });
+    });
+    result.names.emplace_back("samples.csv");
+}
+
+void append(std::optional<PrintFigure> one, std::vector<PrintFigure>& figures) {
+    if (one) figures.push_back(std::move(*one));
+}
+
+}  // namespace
+
+FigureFiles addFitFigures(const Brdf& data, const brdfs::FitReport& report,
+                          const FigureOptions& options, FileSet& files, const Listener& listener) {
+    FigureFiles result;
+    addTables(report, files, result);
+    const PlottedFit plotted(report);
+    const brdfs::PlottedModel model = plotted.model();
+    std::vector<PrintFigure> figures;
+    if (plotted.measured()) {
         figures = ofSamples(model, options, result);
     } else {
         ComparisonOptions how;
         how.progress = how.sphere.progress = listener.part("report");
-        figures = printFigures(makeComparison(data, *fitted, how), options.style);
+        figures = printFigures(makeComparison(data, plotted.brdf(), how), options.style);
         append(brdfs::sampleFigures(model, {}, options.style), figures);
     }
-    if (auto spectrum = brdfs::spectrumFigure(report.result, samples.channels))
-        figures.push_back(std::move(*spectrum));
+    append(brdfs::spectrumFigure(report.result, plotted.samples().channels), figures);
     draw(figures, options, files, result);
+    return result;
+}
+
+std::vector<PrintFigure> pageFigures(const brdfs::FitReport& report, const FigureStyle& style) {
+    const PlottedFit plotted(report);
+    brdfs::SampleCuts cuts;
+    if (plotted.measured()) cuts = brdfs::chosenCuts(brdfs::cutsOf(plotted.samples()), "auto");
+    std::vector<PrintFigure> figures = brdfs::sampleFigures(plotted.model(), cuts, style);
+    // The page of a comparison has a plot of this name.
+    std::erase_if(figures, [](const PrintFigure& figure) { return figure.name == "polar"; });
+    append(brdfs::correlationFigure(report.result), figures);
+    append(brdfs::influenceFigure(report.result), figures);
+    append(brdfs::spectrumFigure(report.result, plotted.samples().channels), figures);
+    return figures;
+}
+
+FigureFiles addPageFigures(const brdfs::FitReport& report, FileSet& files) {
+    constexpr double pageWidth = 174;
+    FigureFiles result;
+    addTables(report, files, result);
+    const FigureOptions options{.style = {.width = pageWidth}};
+    draw(pageFigures(report, options.style), options, files, result);
     return result;
 }
 

@@ -5,6 +5,7 @@
 #include <hshfit/files/file_set.h>
 #include <hshfit/pages/comparison.h>
 #include <hshfit/pages/figure_style.h>
+#include <hshfit/pages/print_figure.h>
 
 #include <brdfs/fit/fit_json.h>
 
@@ -35,6 +36,7 @@ struct FigureFiles {
     std::size_t panels = 0;
     std::string font = {};  ///< AddedFigures
     std::optional<std::string> undrawn = {};
+    std::vector<std::string> svgs = {};  ///< documents of the .svg among `names`, in their order
 };
 
 /// The figures of a fit, with bands of 95 %, under temporary names in `files` until it is
@@ -44,6 +46,12 @@ struct FigureFiles {
 FigureFiles addFitFigures(const Brdf& data, const brdfs::FitReport& report,
                           const FigureOptions& options, FileSet& files,
                           const Listener& listener = {});
+
+/// The figures of a fit for its page, as wide as a page: of measured samples cuts and spectrum, and
+/// residuals, correlations and influence, with parameters.tex and samples.csv likewise.
+FigureFiles addPageFigures(const brdfs::FitReport& report, FileSet& files);
+/// The same before they are drawn.
+std::vector<PrintFigure> pageFigures(const brdfs::FitReport& report, const FigureStyle& style);
 
 /// The figures of a comparison, likewise: its plots, and of measured samples as the reference cuts,
 /// polar and residuals too, with the uncertainties that `sigma` states (brdfs::parseSigma).

@@ -1,6 +1,8 @@
 #include "fit.h"
 
+#include "certificate.h"
 #include "fit_bands.h"
+#include "fit_page.h"
 #include "source.h"
 
 #include <hshfit/brdf/transmission.h>
@@ -32,7 +34,8 @@
 namespace hshfit::jobs {
 namespace {
 
-brdfs::FitOptions optionsOf(const FitOptions& options, const Brdf& data) {
+/// `drawn`: into figures or a page, which have a row for each measured sample.
+brdfs::FitOptions optionsOf(const FitOptions& options, const Brdf& data, bool drawn) {
     brdfs::FitOptions fit;
     fit.model = options.model;
     fit.loss = brdfs::findLoss(lossOf(options, data)).kind;
@@ -46,9 +49,9 @@ brdfs::FitOptions optionsOf(const FitOptions& options, const Brdf& data) {
     fit.uncertainty.report = !options.sigma.empty() || !options.scans.empty() ||
                              options.bootstrap > 0 || options.profile ||
                              !options.residuals.empty() || options.instrument.any();
-    // Of measured samples, figures come with a row for each; a robust kernel has no such study.
-    if (options.figures && fit.robust == brdfs::Robust::none &&
-        fit.loss != brdfs::Loss::Kind::picture && brdfs::areMeasured(data))
+    // A robust kernel has no such study.
+    if (drawn && fit.robust == brdfs::Robust::none && fit.loss != brdfs::Loss::Kind::picture &&
+        brdfs::areMeasured(data))
         fit.uncertainty.report = true;
     fit.uncertainty.bootstrap = options.bootstrap;
     fit.uncertainty.profile = options.profile;
@@ -74,6 +77,7 @@ std::optional<Setting> sampleSetting(const FitOptions& options) {
         {!options.instrument.stray.empty(), "FitOptions::instrument.stray"},
         {!options.instrument.scale.empty(), "FitOptions::instrument.scale"},
         {!options.bands.empty(), "FitOptions::bands"},
+        {!options.certificate.empty(), "FitOptions::certificate"},
     };
     for (const auto& [given, name] : rows)
         if (given) return Setting{name};
@@ -199,6 +203,8 @@ std::vector<TriedFit> triedFits(const Brdf& data, const brdfs::FitSamples& sampl
         how.model = model;
         try {
             const brdfs::FitResult result = brdfs::fit(places, how);
+            // Nearly as many parameters as values describe any data.
+            if (result.values < 2 * result.parameters.size()) return;
             tried.push_back(
                 {.model = model, .loss = loss, .explained = explainedBy(result, places, how.loss)});
             if (seen) tried.back().flip = seen->errorOf(*brdfs::openFit(result)).flip.mean;
@@ -240,27 +246,12 @@ std::optional<Poor> judged(const Fitted& fitted, const Brdf& brdf, const brdfs::
                  .explained = fitted.explained,
                  .relativeError = fitted.relativeError,
                  .factor = fitted.factors ? fitted.factors->median : 1,
-                 .loss = brdfs::lossName(how.loss)};
+                 .loss = brdfs::lossName(how.loss),
+                 .otherwise = adviceBeyondModels(brdf)};
     if (!options.loss.empty()) call.settings.push_back({"FitOptions::loss", options.loss});
     if (!options.sigma.empty()) call.settings.push_back({"FitOptions::sigma", options.sigma});
     return judgeFit(fitted.picture, call,
                     [&] { return triedFits(brdf, samples, options, how, seen); });
-}
-
-/// Writes a page that compares data and fit into the fit's folder. Returns the number of files.
-std::size_t writePage(const std::string& data, const Fitted& fit, const std::string& folder,
-                      bool rgb, const Listener& listener) {
-    FileSet files(folder, true, FileSet::Above::require);
-    const auto measured = openSource(data, rgb);
-    const auto fitted = brdfs::openFit(fit.result);
-    ComparisonOptions options;
-    options.picture = fit.picture;
-    options.progress = options.sphere.progress = listener.part("report");
-    const AddedComparison added = addComparison(makeComparison(*measured, *fitted, options), files);
-    files.write("fit.json", presetText(fit));
-    files.commit();
-    if (added.undrawn) throw NoFigures(*added.undrawn);
-    return added.names.size();
 }
 
 /// The residuals' file, complete but not yet under its name: none if no path is given.
@@ -300,32 +291,53 @@ namespace {
 /// Files that are complete but not yet under their names; null: not asked for.
 struct PreparedFiles {
     std::unique_ptr<AtomicFile> residuals, bands;
-    std::unique_ptr<FileSet> figures;
+    std::unique_ptr<FileSet> figures, page, certificate;
+    FitSection section = {};  ///< of the page
 
     void commit(const Fitted& fitted) const {
         if (residuals) residuals->commit();
         if (bands) bands->commit();
         if (figures) figures->commit();
-        if (fitted.figures.undrawn) throw NoFigures(*fitted.figures.undrawn);
+        if (page) page->commit();
+        if (certificate) certificate->commit();
+        for (const auto& undrawn : {fitted.figures.undrawn, section.undrawn})
+            if (undrawn) throw NoFigures(*undrawn);
     }
 };
 
-/// A fit, and its other files.
+/// Adds the page that shows the fit and compares it with the data, and fit.json.
+void addPage(const Brdf& data, Fitted& fit, PreparedFiles& files, const Listener& listener) {
+    const auto fitted = brdfs::openFit(fit.result);
+    ComparisonOptions options;
+    options.picture = fit.picture;
+    options.progress = options.sphere.progress = listener.part("report");
+    AddedComparison added =
+        addComparison(makeComparison(data, *fitted, options), *files.page, files.section.html);
+    files.page->write("fit.json", presetText(fit));
+    if (!files.section.undrawn) files.section.undrawn = std::move(added.undrawn);
+    fit.pageFiles = added.names.size() + files.section.names.size();
+}
+
+/// A fit, and its other files; `page` is the folder of its page, or empty.
 std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& data,
-                                         const FitOptions& options, const Listener& listener) {
+                                         const FitOptions& options, const std::string& page,
+                                         const Listener& listener) {
     requireReflections(brdf, options.model);
     PreparedFiles files;
     if (!options.bands.empty() && options.instrument.any())
         throw UsageError(fmt::format("{} is for fits without terms of the instrument",
                                      Setting{"FitOptions::bands"}));
-    // A wrong list of pairs is known before the fit.
+    // A wrong list of pairs, or of fields, is known before the fit.
     if (!options.bands.empty()) bandPairs(options.bands);
+    if (!options.certificateFields.empty()) readCertificateFields(options.certificateFields);
     if (options.figures) {
         checkFigures(*options.figures);
         files.figures =
             std::make_unique<FileSet>(options.figures->folder, true, FileSet::Above::require);
     }
-    brdfs::FitOptions how = optionsOf(options, brdf);
+    if (!page.empty()) files.page = std::make_unique<FileSet>(page, true, FileSet::Above::require);
+    brdfs::FitOptions how =
+        optionsOf(options, brdf, options.figures || !page.empty() || !options.certificate.empty());
     const brdfs::FitSamples samples = samplesOf(options, brdf, how.loss);
     const auto search = restrictParts(options, samples, how, listener);
     how.progress = listener.part("fit");
@@ -378,6 +390,13 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
     if (files.figures)
         fitted.figures = addFitFigures(brdf, report, *options.figures, *files.figures, listener);
     files.bands = addBands(options, samples.channels, fitted);
+    if (!options.certificate.empty())
+        files.certificate = makeCertificate(report, presetText(fitted), options.certificateFields,
+                                            options.certificate);
+    if (files.page) {
+        files.section = addFitSection(report, fitted.preset["fit"], *files.page);
+        addPage(brdf, fitted, files, listener);
+    }
     return {std::move(fitted), std::move(files)};
 }
 
@@ -385,7 +404,7 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
 
 Fitted fitBrdf(const Brdf& brdf, const std::string& data, const FitOptions& options,
                const Listener& listener) {
-    auto [fitted, files] = fitOpen(brdf, data, options, listener);
+    auto [fitted, files] = fitOpen(brdf, data, options, {}, listener);
     files.commit(fitted);
     return std::move(fitted);
 }
@@ -393,12 +412,9 @@ Fitted fitBrdf(const Brdf& brdf, const std::string& data, const FitOptions& opti
 Fitted fit(const std::string& data, const std::string& output, const FitOptions& options,
            const Listener& listener) {
     const auto brdf = openSource(data, options.rgb);
-    auto [fitted, files] = fitOpen(*brdf, data, options, listener);
-    if (isPresetPath(output)) {
-        writeFile(output, presetText(fitted));
-    } else if (!output.empty()) {
-        fitted.pageFiles = writePage(data, fitted, output, options.rgb, listener);
-    }
+    const bool preset = isPresetPath(output);
+    auto [fitted, files] = fitOpen(*brdf, data, options, preset ? "" : output, listener);
+    if (preset) writeFile(output, presetText(fitted));
     files.commit(fitted);
     return std::move(fitted);
 }
@@ -419,7 +435,7 @@ RankedModels rankModels(const std::string& data, const std::vector<std::string>&
 RankedModels rankModels(const Brdf& data, const std::vector<std::string>& models,
                         const FitOptions& options) {
     for (const std::string& model : models) requireReflections(data, model);
-    const brdfs::FitOptions how = optionsOf(options, data);
+    const brdfs::FitOptions how = optionsOf(options, data, options.figures.has_value());
     const brdfs::FitSamples samples = samplesOf(options, data, how.loss);
     return {lossOf(options, data), brdfs::compareModels(samples, models, how)};
 }

@@ -52,8 +52,10 @@ struct FitOptions {
     std::string residuals = {};  ///< CSV file, a row for each value; empty: none
     std::optional<FigureOptions> figures = {};  ///< for print; none: not drawn
     brdfs::InstrumentText instrument = {};      ///< between f and the samples
-    std::string bands = {};    ///< pairs at which f has its error (bandPairs); empty: none
-    std::string bandsTo = {};  ///< CSV file of the bands; empty: in `Fitted::bands` alone
+    std::string bands = {};        ///< pairs at which f has its error (bandPairs); empty: none
+    std::string bandsTo = {};      ///< CSV file of the bands; empty: in `Fitted::bands` alone
+    std::string certificate = {};  ///< PDF (certificate.h); empty: none
+    std::string certificateFields = {};  ///< readCertificateFields; empty: none is stated
     /// Where the fit is poor: try others in brief, for Fitted::poor.
     bool advise = true;
 };

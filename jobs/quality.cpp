@@ -11,6 +11,8 @@
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/representation/halfway/halfway.h>
 
+#include <brdfs/fit/fit_samples.h>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -51,6 +53,41 @@ std::vector<Setting> settingsWith(int order, const CoefficientHead& head) {
         settings.push_back({"Form::outgoing", head.outgoing.spec()});
     if (head.quantity == Quantity::brdfCosine) settings.push_back({"Form::quantity"});
     return settings;
+}
+
+/// The measured pairs of directions behind a BRDF; none of functions and tables.
+std::optional<std::size_t> measuredPairs(const Brdf& source) {
+    if (!brdfs::areMeasured(source)) return std::nullopt;
+    try {
+        return brdfs::gatherSamples(source, {}).size();
+    } catch (const NumericError&) {
+        return 0;
+    }
+}
+
+/// Whether the data determine a form of so many functions.
+bool determine(const Brdf& source, std::size_t functions) {
+    const auto pairs = measuredPairs(source);
+    return !pairs || *pairs >= functions;
+}
+
+/// The functions of the halfway form as it is by default.
+std::size_t halfwayFunctions(const Laws& laws) {
+    return HalfwayTerms({}, {laws.isotropic, laws.mirrorSymmetric, laws.reciprocal}).size();
+}
+
+/// The call for a form of so many functions; of data with fewer measured pairs the fit of a model.
+std::string ifDetermined(const std::string& call, std::size_t functions,
+                         const CoefficientHead& head, const Brdf& source) {
+    if (determine(source, functions)) return call;
+    return fmt::format("{}", Call{.function = "fit",
+                                  .subject = head.source,
+                                  .settings = {{"FitOptions::model", "lambert+ggx"}},
+                                  .output = "fit.json"});
+}
+
+std::size_t functionsOf(int order) {
+    return static_cast<std::size_t>(order) * static_cast<std::size_t>(order);
 }
 
 /// To twice the order: every band adds to the energy captured.
@@ -107,23 +144,29 @@ std::string toMoreFunctions(const Representation& kept, const Brdf& source,
     return {};
 }
 
+std::string toHalfway(const CoefficientHead& head, const Brdf& source, const std::string& output) {
+    return ifDetermined(projectedAgain(head, {kindSetting(Kind::halfway)}, output),
+                        halfwayFunctions(source.laws()), head, source);
+}
+
 /// The call that does better than a result of this head; `kept` where it is the halfway form. The
 /// trial of orders is for results that capture too little: it sees energy alone.
 std::string betterThan(const CoefficientHead& head, const Representation* kept, bool lacksEnergy,
                        const Brdf& source, const std::string& output) {
     const auto order = lacksEnergy ? sufficientOrder(source, head) : std::nullopt;
     if (order && *order > head.order)
-        return projectedAgain(head, settingsWith(*order, head), output);
+        return ifDetermined(projectedAgain(head, settingsWith(*order, head), output),
+                            functionsOf(*order), head, source);
     // The halfway form holds f at every direction.
     const bool fits =
         head.quantity == Quantity::brdf &&
         (head.outgoing.directions.empty() || head.outgoing.map != OutgoingSet::Map::direction);
     if (fits && isAboutTheMirror(source)) {
-        if (!kept) return projectedAgain(head, {kindSetting(Kind::halfway)}, output);
+        if (!kept) return toHalfway(head, source, output);
         std::string finer = toMoreFunctions(*kept, source, output);
         if (!finer.empty()) return finer;
     }
-    return toTwiceTheOrder(head, output);
+    return ifDetermined(toTwiceTheOrder(head, output), functionsOf(2 * head.order), head, source);
 }
 
 bool lacksEnergy(const std::optional<double>& captured) {
@@ -261,11 +304,12 @@ std::optional<double> capturedShare(const Representation& kept, const Brdf& sour
 
 std::string betterCall(const CoefficientHead& head, const Brdf& source, const std::string& output) {
     if (const auto order = sufficientOrder(source, head); order && *order > head.order)
-        return projectedAgain(head, settingsWith(*order, head), output);
+        return ifDetermined(projectedAgain(head, settingsWith(*order, head), output),
+                            functionsOf(*order), head, source);
     const bool all =
         head.outgoing.directions.empty() || head.outgoing.map != OutgoingSet::Map::direction;
     if (!all || !isAboutTheMirror(source)) return {};
-    return projectedAgain(head, {kindSetting(Kind::halfway)}, output);
+    return toHalfway(head, source, output);
 }
 
 std::optional<Poor> judge(const Projection& projection, std::optional<double> captured,
@@ -274,8 +318,7 @@ std::optional<Poor> judge(const Projection& projection, std::optional<double> ca
     const Coefficients& c = projection.coefficients;
     const auto reason = poorReason(captured, picture);
     if (!reason) return std::nullopt;
-    if (c.leastSquares)
-        return Poor{*reason, projectedAgain(c, {kindSetting(Kind::halfway)}, output)};
+    if (c.leastSquares) return Poor{*reason, toHalfway(c, source, output)};
     return Poor{*reason, betterThan(c, nullptr, lacksEnergy(captured), source, output)};
 }
 
@@ -330,6 +373,15 @@ std::optional<Poor> judge(const gpu::ErrorSplit& split, const std::optional<Pict
                 worst->better};
 }
 
+std::string adviceBeyondModels(const Brdf& data) {
+    const std::size_t functions = halfwayFunctions(data.laws());
+    if (determine(data, functions)) return {};
+    return fmt::format(
+        "more measurements, as {} pairs of directions do not determine the {} functions of the "
+        "halfway form",
+        *measuredPairs(data), functions);
+}
+
 std::optional<Poor> judgeFit(const std::optional<PictureError>& picture, const FitCall& call,
                              const std::function<std::vector<TriedFit>()>& tried) {
     constexpr double mostFactor = 2;
@@ -354,11 +406,12 @@ std::optional<Poor> judgeFit(const std::optional<PictureError>& picture, const F
         better = withLeast(&TriedFit::factor, "a factor of", call.factor, *reason, call, fits);
     else
         better = withMostExplained(*reason, call, fits);
-    return better ? *better
-                  : Poor{*reason, fmt::format("{}", Call{.function = "writeRepresentation",
-                                                         .subject = call.data,
-                                                         .settings = {kindSetting(Kind::halfway)},
-                                                         .output = "halfway.json"})};
+    if (better) return better;
+    if (!call.otherwise.empty()) return Poor{*reason, call.otherwise};
+    return Poor{*reason, fmt::format("{}", Call{.function = "writeRepresentation",
+                                                .subject = call.data,
+                                                .settings = {kindSetting(Kind::halfway)},
+                                                .output = "halfway.json"})};
 }
 
 }  // namespace hshfit::jobs

@@ -39,7 +39,8 @@ std::optional<double> capturedShare(const Representation& kept, const Brdf& sour
 
 /// Plain coefficients. The call that does better is found by a trial: the order up to 24 that
 /// captures enough at a few outgoing directions; else the halfway form, or a finer one, if f^2 is
-/// about the mirror direction; else twice the order.
+/// about the mirror direction; else twice the order. Of scattered data with fewer measured pairs
+/// than such a form has functions it is the fit of a model, here and below.
 std::optional<Poor> judge(const Projection& projection, std::optional<double> captured,
                           const std::optional<PictureError>& picture, const Brdf& source,
                           const std::string& output);
@@ -76,13 +77,18 @@ struct FitCall {
     double factor = 1;                   ///< the median of brdfs::SampleFactors
     std::string_view loss = {};          ///< that was minimised
     std::vector<Setting> settings = {};  ///< those that a call with another model shares
+    std::string otherwise = {};  ///< advice where no model is better; empty: the halfway form
 };
+/// The advice for data that no model describes well: empty where they determine the halfway form,
+/// else that there are too few measured pairs of directions.
+std::string adviceBeyondModels(const Brdf& data);
 /// A fit, which captures 1 - relativeError^2 of the energy. Where its pictures are poor, better is
 /// the fit of `tried` with the least FLIP, if that is lower by a tenth; where half of the measured
 /// samples are off by a factor of more than 2, likewise that with the least such factor. Else it is
 /// the loss of f cos(theta_i) if the error of that exceeds f itself, in peaks that the fit's own
 /// loss hardly sees, or the model of `tried` that explains most of the data, if that is 2 % more.
-/// Where none is better, it is the halfway form. `tried` is called for poor fits only.
+/// Where none is better, it is `otherwise`, or the halfway form. `tried` is called for poor fits
+/// only.
 std::optional<Poor> judgeFit(const std::optional<PictureError>& picture, const FitCall& call,
                              const std::function<std::vector<TriedFit>()>& tried);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <brdfs/fit/budget.h>
 #include <brdfs/fit/fit_samples.h>
 #include <brdfs/fit/fitted_point.h>
 #include <brdfs/fit/instrument/fitted_instrument.h>
@@ -96,6 +97,7 @@ struct FitResult {
     std::optional<Uncertainty> uncertainty;  ///< only if asked for
     FittedPoint point;                       ///< for predictions (prediction.h)
     std::optional<FittedInstrument> instrument = {};
+    std::optional<Budget> budget = {};  ///< only where contributions are stated
 };
 
 /// The parameters with the least loss, from several starts.

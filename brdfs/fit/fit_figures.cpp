@@ -4,6 +4,7 @@
 #include <brdfs/fit/residual_rows.h>
 #include <brdfs/fit/split_models.h>
 #include <hshfit/pages/comparison.h>
+#include <hshfit/pages/gnuplot.h>
 
 #include <fmt/format.h>
 
@@ -314,16 +315,6 @@ PrintFigure residualFigure(const PlottedModel& model) {
     return figure;
 }
 
-/// Text as gnuplot's enhanced mode shows it as it is.
-std::string plain(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        if (std::string_view("^_{}@&~\\").find(c) != std::string_view::npos) out += '\\';
-        out += c;
-    }
-    return out;
-}
-
 }  // namespace
 
 std::vector<NamedBrdf> termsOf(const FitResult& result) {
@@ -366,7 +357,7 @@ std::optional<PrintFigure> spectrumFigure(const FitResult& result, const Channel
     for (const FittedParameter& p : result.parameters) {
         const auto at = wavelengths.find(p.channel);
         if (at == wavelengths.end()) continue;
-        const std::string title = plain(p.name);
+        const std::string title = unenhanced(p.name);
         auto panel = std::ranges::find(figure.panels, title, &PrintPanel::title);
         if (panel == figure.panels.end()) {
             figure.panels.push_back(

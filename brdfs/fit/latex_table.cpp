@@ -1,6 +1,9 @@
 #include <brdfs/catalog.h>
+#include <brdfs/fit/instrument/instrument_text.h>
 #include <brdfs/fit/latex_table.h>
+#include <brdfs/fit/printed_number.h>
 #include <brdfs/fit/split_models.h>
+#include <brdfs/fit/stated_error.h>
 #include <brdfs/spec.h>
 #include <hshfit/files/printable.h>
 
@@ -9,41 +12,14 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
 namespace hshfit::brdfs {
 namespace {
-
-/// The power of ten of the first digit of a number that is not 0, once rounded to so many digits.
-int powerOf(double number, int digits) {
-    const std::string text = fmt::format("{:.{}e}", std::abs(number), digits - 1);
-    const std::size_t e = text.find('e');
-    int power = 0;
-    std::from_chars(text.data() + e + (text[e + 1] == '+' ? 2 : 1), text.data() + text.size(),
-                    power);
-    return power;
-}
-
-std::string withPower(const std::string& number, int power) {
-    return power == 0 ? number : fmt::format("{}\\times10^{{{}}}", number, power);
-}
-
-/// A number without an error.
-std::string bareNumber(double value, int digits = 6) {
-    if (!std::isfinite(value))
-        return std::isnan(value) ? "\\mathrm{nan}" : value > 0 ? "\\infty" : "-\\infty";
-    std::string text = fmt::format("{:.{}g}", value, digits);
-    const std::size_t e = text.find('e');
-    if (e == text.npos) return text;
-    int power = 0;
-    std::from_chars(text.data() + e + (text[e + 1] == '+' ? 2 : 1), text.data() + text.size(),
-                    power);
-    return withPower(text.substr(0, e), power);
-}
 
 /// The unit of a parameter as its row in the catalog states it.
 std::string unitOf(const std::string& term, const std::string& key) {
@@ -122,31 +98,45 @@ public:
             printable(result_.model), printable(report_.data));
         text += shared();
         text += byChannel();
-        return text + notes() + statistics();
+        return text + notes() + correlations() + budget() + instrument() + statistics();
     }
 
 private:
+    /// The value with its standard uncertainty, or the mark of a note.
     std::string valueOf(const FittedParameter& p) {
         if (p.standardError) return fmt::format("${}$", latexNumber(p.value, *p.standardError));
         char mark = 'c';
         if (!p.bound.empty()) mark = p.bound == "lower" ? 'a' : 'b';
         marks_[static_cast<std::size_t>(mark - 'a')] = true;
-        return fmt::format("${}^{{{}}}$", bareNumber(p.value), mark);
+        return fmt::format("${}$\\textsuperscript{{{}}}", latexValue(p.value), mark);
     }
 
     std::string shared() {
-        Tabular tabular("lrl");
+        Tabular tabular("lrrrrl");
         tabular.rule("toprule");
-        tabular.row({"parameter", "value", "unit"});
+        tabular.row({"parameter", "value", "$U$", "$k$", "$\\nu$", "unit"});
         tabular.rule("midrule");
         bool any = false;
-        for (const FittedParameter& p : result_.parameters) {
+        for (std::size_t i = 0; i < result_.parameters.size(); ++i) {
+            const FittedParameter& p = result_.parameters[i];
             if (!p.channel.empty() || p.isScanScale()) continue;
-            tabular.row({latexText(p.name), valueOf(p), unitOf(result_, p)});
+            std::vector<std::string> cells{latexText(p.name), valueOf(p), "", "", ""};
+            if (const auto stated = statedError(result_, i)) {
+                cells[2] = fmt::format("${}$", latexError(stated->expanded()));
+                cells[3] = fmt::format("{:.2f}", stated->factor);
+                cells[4] = fmt::format("${}$", degreesText(stated->degrees));
+                routes_.insert(stated->route);
+            }
+            cells.push_back(unitOf(result_, p));
+            tabular.row(cells);
             any = true;
         }
         tabular.rule("bottomrule");
         return any ? tabular.text() : std::string();
+    }
+
+    static std::string degreesText(double degrees) {
+        return std::isinf(degrees) ? "\\infty" : fmt::format("{:.0f}", degrees);
     }
 
     std::string byChannel() {
@@ -181,7 +171,112 @@ private:
             tabular.row(cells);
         }
         tabular.rule("bottomrule");
+        return "\\par\\medskip\n" + tabular.text() + factors();
+    }
+
+    /// The factors of the parameters by channel, which have no columns of their own.
+    std::string factors() {
+        double least[2] = {HUGE_VAL, HUGE_VAL}, most[2] = {0, 0};
+        for (std::size_t i = 0; i < result_.parameters.size(); ++i) {
+            const auto stated = statedError(result_, i);
+            if (!stated || result_.parameters[i].channel.empty()) continue;
+            routes_.insert(stated->route);
+            const double own[2] = {stated->factor, stated->degrees};
+            for (int k = 0; k < 2; ++k) {
+                least[k] = std::min(least[k], own[k]);
+                most[k] = std::max(most[k], own[k]);
+            }
+        }
+        if (most[0] == 0) return {};
+        const auto range = [](const std::string& low, const std::string& high) {
+            return low == high ? low : fmt::format("{}$ to ${}", low, high);
+        };
+        return fmt::format(
+            "\\par\\smallskip By {}, $U = k u$ with $k = {}$ for $\\nu = {}$.\n",
+            report_.samples->channels.kind == Channels::Kind::spectral ? "wavelength" : "channel",
+            range(fmt::format("{:.2f}", least[0]), fmt::format("{:.2f}", most[0])),
+            range(degreesText(least[1]), degreesText(most[1])));
+    }
+
+    /// The correlations: all of a few parameters, of many those beyond 0.95.
+    std::string correlations() const {
+        constexpr std::size_t mostColumns = 8, mostPairs = 10;
+        constexpr double strong = 0.95;
+        const std::size_t all = result_.parameters.size();
+        std::vector<std::size_t> own;
+        for (std::size_t i = 0; i < all; ++i)
+            if (result_.parameters[i].standardError && !result_.parameters[i].isScanScale())
+                own.push_back(i);
+        if (own.size() < 2) return {};
+        const auto nameOf = [&](std::size_t i) {
+            const FittedParameter& p = result_.parameters[own[i]];
+            return latexText(p.channel.empty() ? p.name : fmt::format("{} {}", p.name, p.channel));
+        };
+        const auto at = [&](std::size_t i, std::size_t j) {
+            return result_.correlations[own[i] * all + own[j]];
+        };
+        if (own.size() <= mostColumns) {
+            Tabular tabular(fmt::format("l{}", std::string(own.size() - 1, 'r')));
+            tabular.rule("toprule");
+            std::vector<std::string> cells{"correlation"};
+            for (std::size_t j = 0; j + 1 < own.size(); ++j) cells.push_back(nameOf(j));
+            tabular.row(cells);
+            tabular.rule("midrule");
+            for (std::size_t i = 1; i < own.size(); ++i) {
+                cells = {nameOf(i)};
+                for (std::size_t j = 0; j + 1 < own.size(); ++j)
+                    cells.push_back(j < i ? fmt::format("${:.3f}$", at(i, j)) : "");
+                tabular.row(cells);
+            }
+            tabular.rule("bottomrule");
+            return "\\par\\medskip\n" + tabular.text();
+        }
+        std::vector<std::string> pairs;
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < own.size(); ++i)
+            for (std::size_t j = i + 1; j < own.size(); ++j)
+                if (std::abs(at(i, j)) > strong && ++count <= mostPairs)
+                    pairs.push_back(
+                        fmt::format("{} and {} ${:.3f}$", nameOf(i), nameOf(j), at(i, j)));
+        return fmt::format(
+            "\\par\\smallskip Correlations beyond {}: {}{}.\n", strong,
+            count == 0 ? "none" : fmt::format("{}", fmt::join(pairs, ", ")),
+            count > mostPairs ? fmt::format(", and {} more", count - mostPairs) : std::string());
+    }
+
+    /// The budgets of the parameters that all channels share.
+    std::string budget() const {
+        if (!result_.budget) return {};
+        Tabular tabular("lllrrrr");
+        tabular.rule("toprule");
+        tabular.row({"contribution", "type", "distribution", "$u(x)$", "$c$", "$u$", "share"});
+        for (const ParameterBudget& own : result_.budget->parameters) {
+            if (!own.channel.empty()) continue;
+            tabular.rule("midrule");
+            tabular.row({latexText(own.name), "", "", "", "", "", ""});
+            for (const BudgetRow& row : own.rows)
+                tabular.row({latexText(row.name), std::string(1, row.type),
+                             latexText(row.distribution),
+                             fmt::format("${}$ {}", latexValue(row.standard, 3),
+                                         row.unit == "1" ? std::string() : latexText(row.unit)),
+                             fmt::format("${}$", latexValue(row.sensitivity, 3)),
+                             fmt::format("${}$", latexValue(row.contribution, 3)),
+                             fmt::format("{:.3f}", row.share)});
+            tabular.row(
+                {"combined", "", "", "", "", fmt::format("${}$", latexValue(own.combined, 3)), ""});
+            tabular.row({fmt::format("expanded, $k = {:.2f}$", own.coverage), "", "", "", "",
+                         fmt::format("${}$", latexValue(own.expanded, 3)), ""});
+        }
+        tabular.rule("bottomrule");
         return "\\par\\medskip\n" + tabular.text();
+    }
+
+    std::string instrument() const {
+        if (!result_.instrument) return {};
+        std::vector<std::string> terms;
+        for (const auto& [name, text] : instrumentRows(*result_.instrument))
+            terms.push_back(fmt::format("{}: {}", latexText(name), latexText(text)));
+        return fmt::format("\\par\\smallskip Instrument: {}.\n", fmt::join(terms, "; "));
     }
 
     std::string notes() const {
@@ -190,26 +285,38 @@ private:
         std::vector<std::string> lines;
         for (std::size_t k = 0; k < texts.size(); ++k)
             if (marks_[k])
-                lines.push_back(fmt::format("$^{{{}}}$ {}", static_cast<char>('a' + k), texts[k]));
-        return lines.empty() ? std::string()
-                             : fmt::format("\\par\\smallskip {}.\n", fmt::join(lines, "; "));
+                lines.push_back(fmt::format("\\textsuperscript{{{}}} {}",
+                                            static_cast<char>('a' + k), texts[k]));
+        std::string text;
+        if (!routes_.empty())
+            text = fmt::format(
+                "\\par\\smallskip Standard uncertainties $u$ in units of the last digits (route: "
+                "{}{}); $U = k u$ holds the value with {:.4g}\\,\\%.\n",
+                fmt::join(routes_, " or "), result_.budget ? ", combined with the budget" : "",
+                100 * Budget::probability);
+        return lines.empty() ? text
+                             : text + fmt::format("\\par\\smallskip {}.\n", fmt::join(lines, "; "));
     }
 
     std::string statistics() const {
         const std::optional<Uncertainty>& own = result_.uncertainty;
         std::string fitness;
         if (own && own->stated) {
-            fitness = fmt::format("$\\chi^2/\\nu = {}/{} = {}$", bareNumber(own->chiSquare, 5),
-                                  own->degreesOfFreedom, bareNumber(own->reducedChiSquare(), 4));
+            fitness = fmt::format("$\\chi^2/\\nu = {}/{} = {}$", latexValue(own->chiSquare, 5),
+                                  own->degreesOfFreedom, latexValue(own->reducedChiSquare(), 4));
             // Below the least double, the probability is known to be less.
             if (own->probability)
                 fitness += *own->probability > 0
-                               ? fmt::format(", probability ${}$", bareNumber(*own->probability, 3))
+                               ? fmt::format(", probability ${}$", latexValue(*own->probability, 3))
                                : ", probability below $10^{-300}$";
         } else {
             fitness =
                 fmt::format("root mean square residual ${}$ by the loss {}",
-                            bareNumber(result_.loss, 4), latexText(lossName(report_.options.loss)));
+                            latexValue(result_.loss, 4), latexText(lossName(report_.options.loss)));
+            if (own)
+                fitness +=
+                    fmt::format(", variance of residuals ${}$ over {} degrees of freedom",
+                                latexValue(own->reducedChiSquare(), 4), own->degreesOfFreedom);
         }
         std::string text =
             fmt::format("\\par\\smallskip {}; $N = {}$ samples, {} values; {}",
@@ -217,34 +324,46 @@ private:
         if (!report_.sigma.empty())
             text +=
                 fmt::format("; standard uncertainties of the data: {}", latexText(report_.sigma));
+        if (!report_.scans.empty()) text += fmt::format("; scans: {}", latexText(report_.scans));
         return text + fmt::format("; data: {}.\n", latexText(report_.data));
     }
 
     const FitReport& report_;
     const FitResult& result_;
     std::array<bool, 3> marks_{};
+    std::set<std::string_view> routes_;
 };
+
+/// Signs of plainValue, which the fonts of LaTeX do not have.
+constexpr std::array<std::string_view, 2> signs[] = {{"×", "$\\times$"},
+                                                     {"−", "$-$"},
+                                                     {"∞", "$\\infty$"},
+                                                     {"⁻", "\\textsuperscript{-}"},
+                                                     {"⁰", "\\textsuperscript{0}"},
+                                                     {"¹", "\\textsuperscript{1}"},
+                                                     {"²", "\\textsuperscript{2}"},
+                                                     {"³", "\\textsuperscript{3}"},
+                                                     {"⁴", "\\textsuperscript{4}"},
+                                                     {"⁵", "\\textsuperscript{5}"},
+                                                     {"⁶", "\\textsuperscript{6}"},
+                                                     {"⁷", "\\textsuperscript{7}"},
+                                                     {"⁸", "\\textsuperscript{8}"},
+                                                     {"⁹", "\\textsuperscript{9}"}};
 
 }  // namespace
 
-std::string latexNumber(double value, double error) {
-    if (!std::isfinite(value) || !std::isfinite(error) || !(error > 0)) return bareNumber(value);
-    const int last = powerOf(error, 2) - 1;  // of the second digit of the error
-    const double unit = std::pow(10, last), rounded = std::round(value / unit) * unit;
-    const int first = rounded == 0 ? last + 1 : std::max(powerOf(rounded, 15), last + 1);
-    constexpr int mostDigits = 9, leastFixed = -3, mostFixed = 5;
-    if (first - last >= mostDigits)
-        return bareNumber(value) + fmt::format("\\pm {}", bareNumber(error, 2));
-    const bool fixed = last <= 0 && first >= leastFixed && first < mostFixed;
-    const int power = fixed ? 0 : first;
-    const int decimals = power - last;
-    return withPower(
-        fmt::format("{:.{}f}({:.0f})", value / std::pow(10, power), decimals, error / unit), power);
-}
-
 std::string latexText(std::string_view text) {
     std::string out;
-    for (const char c : printable(text)) {
+    const std::string shown = printable(text);
+    for (std::size_t k = 0; k < shown.size(); ++k) {
+        const char c = shown[k];
+        const auto sign = std::ranges::find_if(
+            signs, [&](const auto& own) { return shown.compare(k, own[0].size(), own[0]) == 0; });
+        if (sign != std::end(signs)) {
+            out += (*sign)[1];
+            k += (*sign)[0].size() - 1;
+            continue;
+        }
         switch (c) {
             case '\\':
                 out += "\\textbackslash{}";

@@ -296,12 +296,17 @@ std::vector<std::vector<std::string>> cellsOf(const std::string& tex) {
     return rows;
 }
 
+/// The tabulars of parameters, which stand before that of the correlations.
+std::string parametersOf(const std::string& tex) {
+    return tex.substr(0, tex.find("  correlation &"));
+}
+
 TEST_F(FitFigures, TableHoldsTheParametersToTheirErrors) {
     const Json answer = fitted("--sigma column");
     const std::string tex = read(path("figures/parameters.tex"));
     EXPECT_TRUE(bracesBalance(tex)) << tex;
     std::map<std::string, std::string> values;
-    for (const auto& row : cellsOf(tex)) values[row[0]] = row[1];
+    for (const auto& row : cellsOf(parametersOf(tex))) values[row[0]] = row[1];
     const std::regex form(
         R"(\$(-?[0-9]+)(?:\.([0-9]+))?\(([0-9]+)\)(?:\\times10\^\{(-?[0-9]+)\})?\$)");
     int found = 0;
@@ -384,8 +389,8 @@ TEST_F(FitFigures, UnitsOfLawsAreThoseOfTheirCoefficients) {
                            path("figures"));
     ASSERT_EQ(got.code, 0) << got.err;
     std::map<std::string, std::string> units;
-    for (const auto& row : cellsOf(read(path("figures/parameters.tex"))))
-        if (row.size() == 3) units[row[0]] = row[2];
+    for (const auto& row : cellsOf(parametersOf(read(path("figures/parameters.tex")))))
+        if (row.size() == 6) units[row[0]] = row[5];
     EXPECT_EQ(units["ggx.ior.A"], "1");
     EXPECT_EQ(units["ggx.ior.B"], "$\\mu$m$^{2}$");
     EXPECT_EQ(units["lambert.kd@400nm"], "1");
@@ -414,7 +419,7 @@ TEST_F(FitFigures, SpectraHaveTheirParametersOverTheWavelength) {
     EXPECT_NEAR(kd[400], 0.2, 1e-3);
     EXPECT_NEAR(kd[600], 0.7, 1e-3);
     EXPECT_EQ(markersIn(read(path("figures/spectrum.svg"))), 3);
-    const auto cells = cellsOf(read(path("figures/parameters.tex")));
+    const auto cells = cellsOf(parametersOf(read(path("figures/parameters.tex"))));
     ASSERT_EQ(cells.size(), 4u) << "a head and a row for each wavelength";
     EXPECT_EQ(cells[3][0], "600");
     EXPECT_TRUE(cells[3][1].starts_with("$0.70") || cells[3][1].starts_with("$0.69"));

@@ -1,6 +1,7 @@
 // Numbers with their errors as physicists print them, and text that LaTeX shows as it is.
 
 #include <brdfs/fit/latex_table.h>
+#include <brdfs/fit/printed_number.h>
 
 #include <gtest/gtest.h>
 
@@ -35,11 +36,30 @@ TEST(LatexNumber, StandsAloneWithoutAnError) {
     EXPECT_EQ(latexNumber(1, 1e-12), "1\\pm 1\\times10^{-12}");
 }
 
+TEST(PlainNumber, HasSignsInPlaceOfCommands) {
+    EXPECT_EQ(plainNumber(12350, 680), "1.235(68)×10⁴");
+    EXPECT_EQ(plainNumber(-1e-12, 2e-14), "−1.000(20)×10⁻¹²");
+    EXPECT_EQ(plainNumber(1, 1e-12), "1 ± 1×10⁻¹²");
+    EXPECT_EQ(plainValue(-0.25), "−0.25");
+    EXPECT_EQ(plainValue(std::numeric_limits<double>::infinity()), "∞");
+}
+
+TEST(Uncertainty, HasBothOfItsDigits) {
+    EXPECT_EQ(plainError(0.002), "0.0020");
+    EXPECT_EQ(plainError(0.0998), "0.10");
+    EXPECT_EQ(plainError(2.34), "2.3");
+    EXPECT_EQ(plainError(41.7), "42");
+    EXPECT_EQ(plainError(1234), "1200");
+    EXPECT_EQ(plainError(2e-7), "2.0×10⁻⁷");
+    EXPECT_EQ(latexError(2e-7), "2.0\\times10^{-7}");
+}
+
 TEST(LatexText, HasNoCommandOfItsOwn) {
     EXPECT_EQ(latexText("a_b%$&#{}"), "a\\_b\\%\\$\\&\\#\\{\\}");
     EXPECT_EQ(latexText("~^\\"), "\\textasciitilde{}\\textasciicircum{}\\textbackslash{}");
     EXPECT_EQ(latexText("a\nb"), "a?b");
     EXPECT_EQ(latexText("é"), "é");
+    EXPECT_EQ(latexText("−2×10⁻⁵"), "$-$2$\\times$10\\textsuperscript{-}\\textsuperscript{5}");
 }
 
 }  // namespace

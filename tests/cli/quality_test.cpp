@@ -52,6 +52,24 @@ TEST_F(Quality, OutgoingDirectionsAreElevationsForIsotropicInput) {
     EXPECT_EQ(both[1]["outgoing"], "32x32");
 }
 
+// Five measurements determine no form of hundreds of functions, and no model of four parameters.
+TEST_F(Quality, AdviceForFewMeasurementsIsWhatTheyDetermine) {
+    write("five.csv",
+          "theta_i,phi_i,theta_o,phi_o,brdf\n0,0,45,0,0.3\n30,0,30,180,2.2\n45,0,45,180,3.1\n"
+          "60,0,60,180,9\n30,0,60,90,0.25\n");
+    const std::string fitted =
+        answerOf("fit " + path("five.csv") + " --model lambert", true)["poor"]["better"];
+    EXPECT_TRUE(fitted.starts_with("more measurements, as 5 pairs of directions")) << fitted;
+    const std::string call =
+        answerOf("project " + path("five.csv") + " --cosine --order 4 -o " + path("five.json"),
+                 true)["poor"]["better"];
+    const std::string to = " -o fit.json";
+    ASSERT_TRUE(call.starts_with("hshfit fit ") && call.ends_with(to)) << call;
+    EXPECT_EQ(run(call.substr(7, call.size() - 7 - to.size())).code, 0) << call;
+    const Json report = Json::parse(run("report --json " + path("five.csv")).out);
+    EXPECT_TRUE(report["reports"][0]["better"].get<std::string>().starts_with("hshfit fit "));
+}
+
 TEST_F(Quality, LittleEnergyCapturedIsCalledPoor) {
     const std::string to = " --order 4 --force -o " + path("x.json");
     const Json narrow = answerOf("project ggx:alpha=.02 --outgoing 4" + to, true);

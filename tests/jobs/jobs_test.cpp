@@ -58,6 +58,8 @@ TEST(JudgeFit, NamesWhatIsBetterByTheMeasureThatIsPoor) {
     EXPECT_TRUE(has(betterOf(0.3), "ggx by the loss log has FLIP 0.12 in place of 0.3"));
     EXPECT_TRUE(has(betterOf(0.3), "FitOptions::loss = log"));
     EXPECT_TRUE(has(betterOf(0.13), "halfway.json")) << betterOf(0.13);
+    call.otherwise = "more measurements";
+    EXPECT_TRUE(has(betterOf(0.13), "|more measurements")) << betterOf(0.13);
     // Pictures are good and the energy is not: the loss of energy, or a model that explains more.
     call.relativeError = 1.5;
     EXPECT_TRUE(has(betterOf(0.05), "FitOptions::loss = cosine"));

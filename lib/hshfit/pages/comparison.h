@@ -89,12 +89,13 @@ Comparison makeComparison(const Brdf& reference, const Brdf& approximation,
 std::vector<std::string> writeComparison(const Comparison& comparison, const std::string& folder);
 
 /// The files of a comparison in a set with others, which is yet to be committed, and why figures
-/// are not among them.
+/// are not among them. `opening` is HTML of the caller, sections in front of those of the page.
 struct AddedComparison {
     std::vector<std::string> names;
     std::optional<std::string> undrawn;
 };
-AddedComparison addComparison(const Comparison& comparison, FileSet& files);
+AddedComparison addComparison(const Comparison& comparison, FileSet& files,
+                              const std::string& opening = {});
 
 /// Both in one, with the folder made before the work: a folder that cannot be made costs nothing.
 std::vector<std::string> writeComparison(const Brdf& reference, const Brdf& approximation,

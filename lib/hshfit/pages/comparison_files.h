@@ -36,9 +36,10 @@ double largestRatio(const Comparison& comparison);
 std::string comparisonScript(const Comparison& comparison);
 std::string comparisonJson(const Comparison& comparison);
 
-/// `figures` holds the SVG documents of figuresOf, or nothing at all; `spheres` is a PNG file.
+/// `figures` holds the SVG documents of figuresOf, or nothing at all; `spheres` is a PNG file;
+/// `opening` is HTML in front of its sections.
 std::string comparisonPage(const Comparison& comparison, const std::vector<std::string>& figures,
-                           const std::string& spheres);
+                           const std::string& spheres, const std::string& opening = {});
 
 /// Of the cells of all maps where the reference was measured.
 struct ResidualShares {

@@ -141,8 +141,9 @@ data pictureLines(const PictureError& picture) {
 }  // namespace
 
 std::string comparisonPage(const Comparison& comparison, const std::vector<std::string>& figures,
-                           const std::string& spheres) {
+                           const std::string& spheres, const std::string& opening) {
     data page;
+    page.set("opening", opening);
     page.set("generator", std::string("hshfit ") + version);
     page.set("style", std::string(pageStyle()));
     page.set("plotter", figures.empty() ? "gnuplot" : plotterOf(figures.front()));

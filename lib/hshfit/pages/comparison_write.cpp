@@ -40,7 +40,8 @@ std::vector<std::string> drawFigures(const Comparison& comparison, const std::st
 
 }  // namespace
 
-AddedComparison addComparison(const Comparison& comparison, FileSet& files) {
+AddedComparison addComparison(const Comparison& comparison, FileSet& files,
+                              const std::string& opening) {
     const std::array spheres{comparison.referenceSphere, comparison.approximationSphere,
                              amplified(comparison.difference, comparison.amplification)};
     const std::array linear{comparison.referenceSphere, comparison.approximationSphere,
@@ -77,7 +78,7 @@ AddedComparison addComparison(const Comparison& comparison, FileSet& files) {
     }
     for (std::size_t i = 0; i < figures.size(); ++i)
         added.names.push_back(figuresOf(comparison)[i].file);
-    write("comparison.html", comparisonPage(comparison, figures, png));
+    write("comparison.html", comparisonPage(comparison, figures, png, opening));
     return added;
 }
 

@@ -206,6 +206,15 @@ std::string gnuplotString(const std::string& text) {
     return out + '"';
 }
 
+std::string unenhanced(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+        if (std::string_view("^_{}@&~\\").find(c) != std::string_view::npos) out += '\\';
+        out += c;
+    }
+    return out;
+}
+
 std::string gnuplotFile(const std::string& name, const AtomicFile& file) {
     const auto path = std::filesystem::absolute(file.temporaryPath()).string();
     return fmt::format("{}={}; ", name, gnuplotString(path));

@@ -31,6 +31,9 @@ bool figureIsComplete(const std::string& path);
 /// else run as a command, and control characters become octal escapes.
 std::string gnuplotString(const std::string& text);
 
+/// `text` so that gnuplot's enhanced mode shows it as it is.
+std::string unenhanced(const std::string& text);
+
 /// "NAME='FILE'; ": lets a script use the temporary of a file where it names the file itself.
 std::string gnuplotFile(const std::string& name, const AtomicFile& file);
 

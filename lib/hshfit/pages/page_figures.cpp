@@ -42,8 +42,8 @@ std::string inlinedFigure(std::string svg, std::size_t index, std::span<const in
     svg.erase(0, svg.find("<svg"));
     // Only the tag itself: std::regex recurses over the pictures that an SVG may hold.
     const std::size_t end = std::min(svg.find('>'), svg.size());
-    std::string tag =
-        std::regex_replace(svg.substr(0, end), std::regex(R"re(\s(width|height)="\d+")re"), "");
+    std::string tag = std::regex_replace(svg.substr(0, end),
+                                         std::regex(R"re(\s(width|height)="[\d.]+(mm)?")re"), "");
     tag = std::regex_replace(tag, std::regex("<svg"), "<svg role=\"img\"");
     svg = tag + svg.substr(end);
     svg = std::regex_replace(svg, std::regex("<title>[^<]*</title>"), "");

@@ -84,6 +84,7 @@ struct AddedFigures {
     /// The reason that there is no .pdf and no .svg: gnuplot is missing or failed.
     std::optional<std::string> undrawn = {};
     std::string font = {};  ///< in the PDFs, where it is not the one that was asked for
+    std::vector<std::string> svgs = {};  ///< documents, in the order of the figures, if drawn
 };
 
 /// Adds NAME.csv, NAME.pdf and NAME.svg for each figure, and figures.gp, which draws them again.

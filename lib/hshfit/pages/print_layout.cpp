@@ -104,6 +104,12 @@ double heightOver(const PrintFigure& figure, std::size_t columns) {
 
 }  // namespace
 
+double textWidth(const std::string& text) {
+    return characterWidth * static_cast<double>(std::ranges::count_if(text, [](char c) {
+               return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
+           }));
+}
+
 double ticksWidth(const PrintAxis& axis) {
     double width = 0;
     for (const AxisTick& tick : axis.ticks) width = std::max(width, widthOf(tick.label));

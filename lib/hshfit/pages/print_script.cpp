@@ -2,6 +2,7 @@
 #include <hshfit/files/template_text.h>
 #include <hshfit/pages/gnuplot.h>
 #include <hshfit/pages/internal/print_layout.h>
+#include <hshfit/pages/internal/print_script.h>
 
 #include <fmt/format.h>
 
@@ -11,7 +12,7 @@
 #include <iterator>
 
 namespace hshfit::embedded {
-extern const std::string_view figures_gp;
+extern const std::string_view figure_panels_gp, figure_space_gp, figures_gp;
 }
 
 namespace hshfit::inline pages {
@@ -26,7 +27,7 @@ constexpr std::array<int, 4> markers{6, 4, 8, 12};  ///< circle, square, triangl
 constexpr double markerSize = 0.4;
 
 std::string number(double value) {
-    return fmt::format("{:.7g}", value);
+    return scriptNumber(value);
 }
 
 std::string_view inkOf(const PrintSeries& series) {
@@ -69,8 +70,17 @@ double floorOf(const PrintFigure& figure, const PrintPanel& panel) {
 
 class Script {
 public:
-    Script(const PrintFigure& figure, const FigureStyle& style, std::size_t index)
-        : figure_(figure), style_(style), index_(index), layout_(layoutOf(figure, style)) {}
+    Script(const PrintFigure& figure, const FigureStyle& style, std::size_t index,
+           const FigureFrame& frame)
+        : figure_(figure),
+          style_(style),
+          index_(index),
+          layout_(layoutOf(figure, style)),
+          frame_(frame) {
+        if (frame_.pageWidth > 0) return;
+        frame_.pageWidth = layout_.width;
+        frame_.pageHeight = layout_.height;
+    }
 
     data fields() {
         data fields;
@@ -91,8 +101,13 @@ public:
     }
 
 private:
-    std::string across(double points) const { return number(points / layout_.width); }
-    std::string up(double points) const { return number(points / layout_.height); }
+    std::string across(double points) const {
+        return number((frame_.left + points) / frame_.pageWidth);
+    }
+    std::string up(double points) const {
+        return number((frame_.bottom + points) / frame_.pageHeight);
+    }
+    std::string wide(double points) const { return number(points / frame_.pageWidth); }
     std::string at(double x, double y) const {
         return fmt::format("screen {}, screen {}", across(x), up(y));
     }
@@ -203,8 +218,8 @@ private:
         fields.set("zLow", number(panel.colours.low));
         fields.set("zHigh", number(panel.colours.high));
         fields.set("zTicks", ticksOf(panel.colours, true));
-        fields.set("barGap", across(0.6 * style_.fontSize));
-        fields.set("barWidth", across(0.8 * style_.fontSize));
+        fields.set("barGap", wide(0.6 * style_.fontSize));
+        fields.set("barWidth", wide(0.8 * style_.fontSize));
     }
 
     data seriesFields(const PrintSeries& series) {
@@ -244,6 +259,7 @@ private:
     const FigureStyle& style_;
     std::size_t index_, row_ = 0;
     PrintLayout layout_;
+    FigureFrame frame_;
 };
 
 std::string cell(double value) {
@@ -258,14 +274,31 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
+std::string scriptNumber(double value) {
+    return fmt::format("{:.7g}", value);
+}
+
+data figureFields(const PrintFigure& figure, const FigureStyle& style, std::size_t index,
+                  const FigureFrame& frame) {
+    return Script(figure, style, index, frame).fields();
+}
+
+void addFigureTemplates(data& fields) {
+    using kainjow::mustache::partial;
+    fields.set("figureSpace", data(partial([] { return std::string(embedded::figure_space_gp); })));
+    fields.set("figurePanels",
+               data(partial([] { return std::string(embedded::figure_panels_gp); })));
+}
+
 std::string figuresScript(const std::vector<PrintFigure>& figures, const FigureStyle& style) {
     data fields, list{data::type::list};
     fields.set("font", style.font.empty() ? std::string(defaultFigureFont) : style.font);
     fields.set("fontSize", number(style.fontSize));
     fields.set("ringFont", number(0.8 * style.fontSize));
     for (std::size_t k = 0; k < figures.size(); ++k)
-        list.push_back(Script(figures[k], style, k + 1).fields());
+        list.push_back(figureFields(figures[k], style, k + 1));
     fields.set("figures", list);
+    addFigureTemplates(fields);
     return filledPage(embedded::figures_gp, fields);
 }
 

@@ -107,10 +107,12 @@ AddedFigures addFigures(const std::vector<PrintFigure>& figures, const FigureSty
     try {
         for (const DrawnFile& drawn : drawFigures(figures, data, script, files)) {
             added.names.push_back(drawn.figure->name + (drawn.pdf ? ".pdf" : ".svg"));
-            if (!drawn.pdf)
+            if (!drawn.pdf) {
                 stateSize(drawn, style);
-            else if (added.font.empty())
+                added.svgs.push_back(fileContent(drawn.path()));
+            } else if (added.font.empty()) {
                 added.font = substituteIn(fileContent(drawn.path()), style.font);
+            }
         }
     } catch (const NoFigures& error) {
         added.undrawn = error.what();

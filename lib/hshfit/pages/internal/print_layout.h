@@ -36,6 +36,9 @@ inline constexpr double legendSample = 2.2;
 /// The width of the widest label of an axis, in sizes of the font.
 double ticksWidth(const PrintAxis& axis);
 
+/// The width of a text on one line, in sizes of the font: an estimate for most fonts.
+double textWidth(const std::string& text);
+
 PrintLayout layoutOf(const PrintFigure& figure, const FigureStyle& style);
 
 }  // namespace hshfit::inline pages

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <brdfs/fit/fit.h>
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+namespace hshfit::brdfs {
+
+/// The standard uncertainty that a fit states of a parameter, with the factor of its interval.
+struct StatedError {
+    double error = 0;
+    std::string_view
+        route;  ///< "by scan", "normal" or "sandwich"; with a budget that of its samples
+    /// Of its variance: effective ones of the budget; those by scan; of the stated uncertainties
+    /// infinite; else values less parameters.
+    double degrees = 0;
+    double factor = 0;  ///< Student's, of Budget::probability
+
+    double expanded() const { return factor * error; }
+};
+
+/// None of a parameter at a bound, or that the data do not determine.
+std::optional<StatedError> statedError(const FitResult& result, std::size_t parameter);
+
+/// The factor of a standard uncertainty with these degrees of freedom.
+double coverageFactor(double degrees);
+
+/// The part of a budget that is about a parameter; null: none.
+const ParameterBudget* budgetOf(const FitResult& result, const FittedParameter& parameter);
+
+}  // namespace hshfit::brdfs

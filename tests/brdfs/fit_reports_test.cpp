@@ -1,0 +1,220 @@
+// A fit as a laboratory hands it on: the page, the LaTeX table and the certificate.
+#include <cli/program.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <numbers>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace {
+
+using hshfit::test::Answer;
+using hshfit::test::Cli;
+using Json = nlohmann::json;
+
+namespace fs = std::filesystem;
+
+std::string goniometer(const std::string& name) {
+    return hshfit::test::sourceFolder() + "/examples/goniometer/" + name;
+}
+
+/// The output of a command of the shell, and whether it ended well.
+std::pair<std::string, bool> said(const std::string& command) {
+    std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+    std::string text;
+    char buffer[4096];
+    while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) text.append(buffer, n);
+    return {text, pclose(pipe) == 0};
+}
+
+bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != text.npos;
+}
+
+class FitReports : public Cli {
+protected:
+    void SetUp() override {
+        Cli::SetUp();
+        if (!hshfit::test::hasGnuplot()) GTEST_SKIP() << hshfit::test::noGnuplot;
+    }
+
+    /// Whether the rules of LaTeX hold for the table of a fit; its text.
+    std::string tableOf(const std::string& fit) {
+        const Answer got = run("fit " + fit + " --force --figures " + path("figures"));
+        EXPECT_EQ(got.code, 0) << got.err;
+        const std::string table = path("figures/parameters.tex");
+        const auto [complaints, valid] = said("/usr/bin/python3 " + hshfit::test::sourceFolder() +
+                                              "/tests/brdfs/check_latex.py '" + table + "'");
+        EXPECT_TRUE(valid) << fit << "\n" << complaints << read(table);
+        return read(table);
+    }
+};
+
+/// A spectrum with a single high value: the scale of a lobe that holds it is not determined.
+std::string spectrum() {
+    std::string text = "# Test\n3\n400 500 600\n";
+    for (int i = 0; i < 5; ++i)
+        for (int k = 0; k < 12; ++k) {
+            const double peak = i == 0 && k == 0 ? 400 : 0;
+            text += std::to_string(0.3 * i) + " 0 " + std::to_string(0.13 * k) + " 3.14159265";
+            for (const double kd : {0.2, 0.4, 0.7}) text += " " + std::to_string(kd / 3.14 + peak);
+            text += "\n";
+        }
+    return text;
+}
+
+TEST_F(FitReports, TablesAreLatexThatNeedsNoPackage) {
+    const std::string scans = "'" + goniometer("scans.csv") + "' --model lambert+ggx ";
+    const std::string plain = tableOf(scans + "--sigma column --scans column");
+    EXPECT_TRUE(has(plain, "& $U$ & $k$ & $\\nu$ &")) << plain;
+    EXPECT_TRUE(has(plain, "(route: by scan)")) << plain;
+    EXPECT_TRUE(has(plain, "correlation &")) << plain;
+    const std::string instrument =
+        tableOf(scans +
+                "--sigma column --scans column --scan-scale 1% --dark fit "
+                "--source-aperture cone:0.3");
+    EXPECT_TRUE(has(instrument, "Instrument: source aperture: cone of half angle 0.3 degrees"))
+        << instrument;
+    // A value without an error has a mark behind its power of ten.
+    write("spectrum.brdf", spectrum());
+    const std::string bounds =
+        tableOf("'" + path("spectrum.brdf") + "' --model lambert+ggx --loss l2 --accept");
+    EXPECT_TRUE(has(bounds, "\\times10^{-5}$\\textsuperscript{c}")) << bounds;
+    write("a_b%$&#{}~^.csv", read(goniometer("scans.csv")));
+    tableOf("'" + path("a_b%$&#{}~^.csv") + "' --model phong --accept");
+}
+
+TEST_F(FitReports, PagesHaveTheFit) {
+    const Answer got =
+        run("fit --json '" + goniometer("scans.csv") +
+            "' --model lambert+ggx --sigma column --scans column -o " + path("report"));
+    ASSERT_EQ(got.code, 0) << got.err;
+    EXPECT_TRUE(keepsSchema(got.out, "fit"));
+    const Json fit = Json::parse(got.out)["fit"];
+    const std::string page = read(path("report/comparison.html"));
+    std::size_t rows = 0;
+    for (const Json& p : fit["parameters"]) {
+        char error[32];
+        std::snprintf(error, sizeof error, "<td>%.2g</td>", p["standard_error"].get<double>());
+        rows += has(page, "<td>" + p["name"].get<std::string>() + "</td>") && has(page, error);
+    }
+    EXPECT_EQ(rows, 4u) << "each parameter with its standard uncertainty";
+    EXPECT_TRUE(has(page, std::to_string(fit["uncertainty"]["degrees_of_freedom"].get<int>()) +
+                              " degrees of freedom"));
+    for (const char* title : {"Correlations of the parameters", "Leverage and influence",
+                              "Residuals", "Measured values and fit", "Values that decide"})
+        EXPECT_TRUE(has(page, std::string("<h3>") + title)) << title;
+    for (const char* file : {"correlations.svg", "influence.pdf", "samples.csv", "parameters.tex"})
+        EXPECT_TRUE(fs::exists(path("report/") + file)) << file;
+    // Identifiers of the figures in one page differ.
+    std::set<std::string> identifiers;
+    const std::regex id(R"re( id=["']([^"']+)["'])re");
+    for (std::sregex_iterator at(page.begin(), page.end(), id), end; at != end; ++at)
+        EXPECT_TRUE(identifiers.insert((*at)[1]).second) << (*at)[1];
+    EXPECT_GT(identifiers.size(), 5u);
+    // The drawn correlations are those of the answer.
+    std::istringstream csv(read(path("report/correlations.csv")));
+    std::string line;
+    std::getline(csv, line);
+    std::size_t drawn = 0;
+    for (; std::getline(csv, line); ++drawn) {
+        std::istringstream cells(line);
+        std::vector<std::string> cell(6);
+        for (std::string& one : cell) std::getline(cells, one, ',');
+        const int column = std::stoi(cell[3]) - 1, row = std::stoi(cell[4]) - 1;
+        EXPECT_NEAR(std::stod(cell[5]), fit["correlations"][row][column].get<double>(), 1e-12);
+    }
+    EXPECT_EQ(drawn, 16u);
+}
+
+class Certificates : public FitReports {
+protected:
+    std::string fitTo(const std::string& pdf, const std::string& more = "") const {
+        return "fit --json '" + goniometer("scans.csv") +
+               "' --model lambert+ggx --sigma column --scans column --force --certificate " +
+               path(pdf) + " " + more;
+    }
+};
+
+TEST_F(Certificates, HoldWhatWasStatedAndFound) {
+    if (!said("command -v pdftotext").second) GTEST_SKIP() << "poppler-utils is not installed";
+    const Answer got = run(fitTo("c.pdf", "--certificate-fields '" + goniometer("fields.json") +
+                                              "' -o " + path("fit.json")));
+    ASSERT_EQ(got.code, 0) << got.err;
+    const std::string text = said("pdftotext -layout " + path("c.pdf") + " -").first;
+    // In the order of a laboratory's reports.
+    std::size_t last = 0;
+    for (const char* heading :
+         {"Certificate of bidirectional reflectance", "Client and sample",
+          "Instrument and geometry", "Standard and traceability", "Conditions", "Method", "Results",
+          "Budget of uncertainty", "Figures", "Remarks", "Signatures", "Hashes"}) {
+        const std::size_t at = text.find(heading, last);
+        EXPECT_NE(at, text.npos) << heading << "\n" << text;
+        if (at != text.npos) last = at;
+    }
+    const Json fields = Json::parse(read(goniometer("fields.json")));
+    for (const char* key : {"certificate", "laboratory", "client", "operator", "date"})
+        EXPECT_TRUE(has(text, fields[key].get<std::string>())) << key;
+    const Json answer = Json::parse(got.out);
+    for (const Json& p : answer["fit"]["parameters"])
+        EXPECT_TRUE(has(text, p["name"].get<std::string>()));
+    // The hashes are those of the files, by another program.
+    for (const std::string& file : {goniometer("scans.csv"), goniometer("fields.json")}) {
+        const std::string sum = said("sha256sum '" + file + "'").first.substr(0, 64);
+        EXPECT_TRUE(has(text, sum)) << file << "\n" << text;
+    }
+    const std::string preset = read(path("fit.json"));
+    write("content", preset.substr(0, preset.rfind(",\n  \"made_from\"")));
+    EXPECT_TRUE(has(text, said("sha256sum " + path("content")).first.substr(0, 64))) << text;
+}
+
+// Rows of the table: beta is pi f, and both have the same relative uncertainty.
+TEST_F(Certificates, RadianceFactorIsPiTimesTheBrdf) {
+    if (!said("command -v pdftotext").second) GTEST_SKIP() << "poppler-utils is not installed";
+    ASSERT_EQ(run(fitTo("c.pdf")).code, 0);
+    const std::string text = said("pdftotext -layout " + path("c.pdf") + " -").first;
+    const std::regex row(R"(\n *[0-9.]+ +0 +[0-9.]+ +[0-9.]+ +([0-9.]+) +([0-9.]+)\([0-9]+\) +)"
+                         R"(([0-9.]+) +([0-9.]+)\([0-9]+\) +([0-9.]+) +([0-9.]+))");
+    std::size_t rows = 0;
+    for (std::sregex_iterator at(text.begin(), text.end(), row), end; at != end; ++at, ++rows) {
+        const double f = std::stod((*at)[2]), u = std::stod((*at)[3]), beta = std::stod((*at)[4]),
+                     v = std::stod((*at)[5]);
+        // The digits that are printed end a hundredth of the uncertainty from the value.
+        EXPECT_NEAR(beta, std::numbers::pi * f, 0.05 * v) << (*at)[0];
+        EXPECT_NEAR(v, std::numbers::pi * u, 0.06 * v) << (*at)[0];
+        EXPECT_NEAR(std::stod((*at)[1]), f, 0.1 * f) << (*at)[0];
+    }
+    EXPECT_GE(rows, 50u) << text;
+}
+
+TEST_F(Certificates, AreTheSameBytesForTheSameInputs) {
+    const std::string fields = "--certificate-fields '" + goniometer("fields.json") + "'";
+    ASSERT_EQ(run(fitTo("a.pdf", fields)).code, 0);
+    ASSERT_EQ(run(fitTo("b.pdf", fields + " --threads 1")).code, 0);
+    EXPECT_EQ(read(path("a.pdf")), read(path("b.pdf")));
+    EXPECT_TRUE(read(path("a.pdf")).starts_with("%PDF-"));
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2) << "and no scratch";
+    EXPECT_FALSE(has(read(path("a.pdf")), "/CreationDate"));
+}
+
+TEST_F(Certificates, FieldsThatAreWrongAreNamed) {
+    const auto refuses = [&](const std::string& fields, const std::string& part) {
+        write("fields.json", fields);
+        expectError(fitTo("c.pdf", "--certificate-fields " + path("fields.json")), 3, part, 1);
+    };
+    const std::string head = R"({"format":"hshfit-certificate-fields","version":1,)";
+    refuses(head + R"("labratory":"x"})", "unknown field 'labratory'; known: certificate");
+    refuses(head + R"("client":7})", "client");
+    refuses(R"({"format":"hshfit-preset","version":1})", "hshfit-certificate-fields");
+    refuses(head, "not valid JSON");
+    fs::remove(path("fields.json"));
+    expectError("fit '" + goniometer("scans.csv") + "' --model lambert --certificate-fields x.json",
+                2, "--certificate OUT.pdf", 0);
+    expectError("fit lambert:kd=.5 --model lambert --loss picture --certificate " + path("c.pdf"),
+                2, "--certificate", 0);
+}
+
+}  // namespace
