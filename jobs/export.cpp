@@ -1,5 +1,6 @@
 #include "export.h"
 
+#include "export_engine.h"
 #include "export_loss.h"
 #include "export_three.h"
 #include "export_viewer.h"
@@ -196,12 +197,25 @@ void writeShaders(const Targets& chosen, const ExportOptions& options, const Lis
     }
 }
 
-bool has(const Targets& chosen, Target::Kind kind) {
-    return std::ranges::any_of(chosen, [&](const Target* target) { return target->kind == kind; });
+/// The modules of engines, which look up environments for the source, or for what is exported.
+void writeModules(const Targets& chosen, const Source& source, const Representation& shown,
+                  const ExportOptions& options, const Listener& listener, FileSet& files,
+                  Exported& exported) {
+    std::unique_ptr<Brdf> again;
+    for (const Target* target : chosen) {
+        if (target->kind != Target::Kind::module) continue;
+        if (!source.brdf && !again) again = reconstruct(shown, sourceOpener());
+        const Brdf& brdf = source.brdf ? *source.brdf : *again;
+        if (hasEngineFile(target->name))
+            writeEngine(target->name, brdf, options, listener, files, exported);
+        else
+            writeThree(brdf, options, listener, files, exported);
+    }
 }
 
 bool hasViewer(const Targets& chosen) {
-    return has(chosen, Target::Kind::viewer);
+    return std::ranges::any_of(
+        chosen, [](const Target* target) { return target->kind == Target::Kind::viewer; });
 }
 
 /// Early, so that a wrong light costs no measurement.
@@ -261,10 +275,7 @@ void exportForm(const Representation& stored, const std::string& path, const std
          .proposal = proposalTextOf(exported)},
         sourceOpener(), files);
     writeShaders(chosen, options, listener, files, exported);
-    if (has(chosen, Target::Kind::module)) {
-        const auto again = reconstruct(exported.form->form, sourceOpener());
-        writeThree(source.brdf ? *source.brdf : *again, options, listener, files, exported);
-    }
+    writeModules(chosen, source, exported.form->form, options, listener, files, exported);
     writeViewer(stored, source.brdf.get(), lights, options, listener, files, exported);
     files.commit();
 }
@@ -280,7 +291,8 @@ Targets targetsFor(const Representation& stored, const ExportOptions& options,
         const std::string why = fmt::format(
             "{} draws reflecting surfaces, and {} is a transmission; expected textures and shaders",
             target->name, stored.head.source);
-        if (options.targets != "all") throw UsageError(why);
+        // The textures and shaders of an engine stay.
+        if (options.targets != "all" && !hasEngineFile(target->name)) throw UsageError(why);
         listener.say("left out: " + why);
         return true;
     });
@@ -374,10 +386,7 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
          .proposal = proposalTextOf(exported)},
         files);
     writeShaders(chosen, options, listener, files, exported);
-    if (has(chosen, Target::Kind::module)) {
-        const auto again = reconstruct(stored, sourceOpener());
-        writeThree(source.brdf ? *source.brdf : *again, options, listener, files, exported);
-    }
+    writeModules(chosen, source, stored, options, listener, files, exported);
     writeViewer(stored, source.brdf.get(), lights, options, listener, files, exported);
     files.commit();
     return exported;

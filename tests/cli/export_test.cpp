@@ -50,8 +50,11 @@ TEST_F(Export, EveryTargetIsWrittenAndListed) {
     }
     EXPECT_EQ(named.size(), files.size()) << "a file that is not listed, or twice";
     for (const Json& row : Json::parse(run("list targets --json").out)["targets"])
-        if (row["kind"] != "renderer" && row["kind"] != "material") {
-            EXPECT_TRUE(targets.contains(row["name"])) << row;
+        if (row["kind"] != "renderer" && row["kind"] != "material" &&
+            !targets.contains(row["name"])) {
+            // Files of engines that take no textures are left out, with a note.
+            const std::string name = row["name"];
+            EXPECT_NE(answer.err.find("left out: ward_" + name), std::string::npos) << answer.err;
         }
     // 16 functions of 3 channels, 4 a layer, 12 x 8 texels of 4 halves.
     EXPECT_EQ(document["layers"], 12);

@@ -187,4 +187,19 @@ std::vector<double> decode(const Texels& texels) {
     return values;
 }
 
+Texels samplerTexels(const Texels& texels) {
+    if (texels.number != Number::unorm16) return texels;
+    Texels result = texels;
+    result.number = Number::float32;
+    result.scales.clear();
+    result.bytes.resize(2 * texels.bytes.size());
+    for (std::size_t k = 0; k < texels.count(); ++k) {
+        std::uint16_t stored = 0;
+        std::memcpy(&stored, texels.bytes.data() + 2 * k, sizeof stored);
+        const float value = static_cast<float>(stored) / 65535.0F;
+        std::memcpy(result.bytes.data() + 4 * k, &value, sizeof value);
+    }
+    return result;
+}
+
 }  // namespace hshfit::gpu

@@ -54,5 +54,8 @@ Texels encode(std::span<const double> values, int width, int height, std::size_t
 /// The values that a GPU reads. Throws InputError where `bytes` or `scales` have another length
 /// than the sizes say.
 std::vector<double> decode(const Texels& texels);
+/// The same as every API's textures take them: unorm16, which is no core format, as float32 of the
+/// quotients that a sampler would return. Scales and offsets stay with the shader.
+Texels samplerTexels(const Texels& texels);
 
 }  // namespace hshfit::gpu

@@ -32,6 +32,18 @@ double unityLevel(double r, std::size_t levels) {
 double unrealLevel(double r, std::size_t levels) {
     return std::clamp(last(levels) + 1.2 * std::log2(std::max(r, 1e-3)), 0.0, last(levels));
 }
+/// HDRFiltering of Babylon.js: alpha = 2^(level / 0.8) texels of a face of 128; levels beyond the
+/// fifth are wider than its irradiance, which is the last here.
+double babylonLevel(double r, std::size_t levels) {
+    const double cube = last(levels) - 1;
+    return std::clamp(cube + 0.6 + 1.6 * std::log2(std::max(r, 1e-3)), 0.0, cube) +
+           std::max(0.0, 4.369 * r - 3.369);
+}
+/// EnvLighting.generateAtlas of PlayCanvas: 2/11 in roughness for a level; its irradiance is the
+/// last.
+double playcanvasLevel(double r, std::size_t levels) {
+    return std::max((last(levels) - 0.5) * r, 11 * r - 11 + last(levels));
+}
 constexpr std::array prefilterTable{
     Prefilter{"three", "three.js: six levels, as of a face of 256 texels", 6, quadraticLevel,
               "{0} * r * (2.0 - r)"},
@@ -41,6 +53,12 @@ constexpr std::array prefilterTable{
               "{0} * r * (1.7 - 0.7 * r)"},
     Prefilter{"unreal", "Unreal Engine: seven levels of a reflection capture", 7, unrealLevel,
               "clamp({0} + 1.2 * log2(max(r, 0.001)), 0.0, {0})"},
+    Prefilter{"babylon", "Babylon.js: six levels of its filter of HDR files, and the irradiance", 7,
+              babylonLevel,
+              "clamp({0} - 0.4 + 1.6 * log2(max(r, 0.001)), 0.0, {0} - 1.0) + "
+              "max(0.0, 4.369 * r - 3.369)"},
+    Prefilter{"playcanvas", "PlayCanvas: six levels of an environment atlas, and the ambient light",
+              7, playcanvasLevel, "max(({0} - 0.5) * r, 11.0 * r - 11.0 + {0})"},
 };
 
 /// Nodes of gamma that resolve P_r: even in the logarithm of t = tan(gamma / 2), whose d omega is

@@ -78,6 +78,13 @@ TEST(Prefilters, LevelsAreThoseOfTheEngines) {
     EXPECT_NEAR(prefilterNamed("three").levelOf(0.5), 5 * 0.75, 1e-12);
     EXPECT_NEAR(prefilterNamed("filament").levelOf(0.5), 4 * 0.75, 1e-12);
     EXPECT_NEAR(prefilterNamed("unity").levelOf(0.5), 6 * 0.5 * 1.35, 1e-12);
+    // alpha = 2^(level / 0.8) / 128: level 4 has alpha 1/4; roughness 1 is the irradiance, level 6.
+    EXPECT_NEAR(prefilterNamed("babylon").levelOf(0.5), 4, 1e-12);
+    EXPECT_NEAR(prefilterNamed("babylon").levelOf(1), 6, 1e-12);
+    // Two elevenths a level, and the ambient light for roughness 1.
+    for (const int level : {1, 3, 5})
+        EXPECT_NEAR(prefilterNamed("playcanvas").levelOf(2.0 * level / 11), level, 1e-12);
+    EXPECT_NEAR(prefilterNamed("playcanvas").levelOf(1), 6, 1e-12);
     EXPECT_NEAR(prefilterNamed("unreal").levelOf(0.5), 6 - 1.2, 1e-12);
     for (const Prefilter& engine : prefilters()) {
         const auto last = static_cast<double>(engine.levels - 1);

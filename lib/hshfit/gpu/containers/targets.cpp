@@ -16,14 +16,17 @@ namespace {
 struct Renderer {
     const char *name, *summary;
     std::vector<std::string> parts;
+    bool material = false;  ///< a file of gpu/engines comes with the parts
 };
 
 /// docs/renderers/ has a page for each.
 const Renderer renderers[] = {
-    {"babylon", "Babylon.js: data for a RawTexture2DArray", {"bin", "js", "glsl-es", "wgsl"}},
-    {"godot", "Godot 4: a texture array, or a strip to import as one", {"dds", "exr", "glsl-es"}},
-    {"unity", "Unity: data for a Texture2DArray", {"bin", "hlsl"}},
-    {"unreal", "Unreal: a strip to slice, a custom node's code", {"exr", "hlsl"}},
+    {"babylon", "Babylon.js: a material, and data of one's own", {"bin", "glsl-es", "wgsl"}, true},
+    {"playcanvas", "PlayCanvas: a material, and data of one's own", {"bin", "glsl-es"}, true},
+    {"godot", "Godot 4: a shader, a texture array or a strip", {"dds", "exr", "glsl-es"}, true},
+    {"godot3", "Godot 3: a shader", {"glsl-es"}, true},
+    {"unity", "Unity: a shader, a function for graphs, data", {"bin", "hlsl"}, true},
+    {"unreal", "Unreal: the file of a Custom node, a strip", {"exr", "hlsl"}, true},
     {"falcor", "Falcor: a texture array, a Slang snippet", {"dds", "hlsl"}},
     {"blender",
      "Blender: a strip for image nodes, parts for an OSL script",
@@ -52,7 +55,8 @@ std::vector<Target> makeTargets() {
                     "three.js: modules with a material for WebGL and WebGPU, their types, a page",
                     {"bin", "glsl-es"}});
     for (const Renderer& renderer : renderers) {
-        rows.push_back({Target::Kind::renderer, renderer.name, renderer.summary, renderer.parts});
+        const auto kind = renderer.material ? Target::Kind::module : Target::Kind::renderer;
+        rows.push_back({kind, renderer.name, renderer.summary, renderer.parts});
     }
     rows.push_back({Target::Kind::material,
                     "gltf",

@@ -6,27 +6,8 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
-
 namespace hshfit::gpu::inline three {
 namespace {
-
-/// Texels as both APIs take them: 16-bit integers, which are no core format, as the quotients that
-/// a sampler would return. Scales and offsets are in the shader.
-Texels readable(const Texels& texels) {
-    if (texels.number != Number::unorm16) return texels;
-    Texels result = texels;
-    result.number = Number::float32;
-    result.scales.clear();
-    result.bytes.resize(2 * texels.bytes.size());
-    for (std::size_t k = 0; k < texels.count(); ++k) {
-        std::uint16_t stored = 0;
-        std::memcpy(&stored, texels.bytes.data() + 2 * k, sizeof stored);
-        const float value = static_cast<float>(stored) / 65535.0F;
-        std::memcpy(result.bytes.data() + 4 * k, &value, sizeof value);
-    }
-    return result;
-}
 
 /// WGSL snippets declare texture and sampler for the whole module, where three.js puts its own:
 /// here every function that needs them has them as its first arguments; the sampler if `filtered`.
@@ -124,7 +105,7 @@ ThreeInput threeInput(const Payload& given, const ThreeOptions& options) {
     input.glsl = shaderSource(Language::glslEs, payload, options.shader);
     input.wgsl =
         withArguments(shaderSource(Language::wgsl, payload, options.shader), input.prefix, true);
-    input.texels = readable(payload.coefficients);
+    input.texels = samplerTexels(payload.coefficients);
     return input;
 }
 
@@ -150,7 +131,7 @@ ThreeInput threeInput(const FormPayload& given, const ThreeOptions& options) {
     input.filtered = false;
     if (shader.storage == Storage::texture) {
         input.wgsl = withArguments(input.wgsl, input.prefix, false);
-        input.texels = readable(payload.texels);
+        input.texels = samplerTexels(payload.texels);
     }
     return input;
 }

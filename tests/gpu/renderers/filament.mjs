@@ -1,0 +1,107 @@
+// Filament in Chromium: filament.mjs DRIVER HSHFIT FOLDER [KIND…] draws the scene with the glTF fit, lit
+// by the engine's sun and by the cube of `export --lighting prefiltered --engine filament`, and states the
+// errors against `hshfit render`. The package compiles no materials, so that there is no shader of ours.
+import { trial } from './chromium.mjs';
+import * as scene from './scene.mjs';
+
+// E / pi as Filament's polynomial of nine factors, of coefficients of radiance.
+function polynomial(radiance) {
+  const share = [1, 2 / 3, 1 / 4],
+    factor = [0.28209479, 0.48860251, 0.48860251, 0.48860251, 1.09254843, 1.09254843, 0.31539157, 1.09254843, 0.54627422];
+  return radiance.flatMap((rgb, k) => rgb.map((x) => x * factor[k] * share[Math.floor(Math.sqrt(k))]));
+}
+
+// In the page, z up: float pixels from the bottom row on, as Base64. The canvas has 8 bits, so that
+// pictures under light of three strengths are put together.
+async function draw({ kind, side, eye, angle, towards, irradiance, glb, cube, levels, bands }) {
+  Object.assign(window, window.glMatrix);
+  await new Promise((resolve) => Filament.init([glb, ...(cube ? [cube] : [])], resolve));
+  const canvas = document.getElementById('c');
+  canvas.width = canvas.height = side;
+  const engine = Filament.Engine.create(canvas, { preserveDrawingBuffer: true, antialias: false, alpha: true });
+  const world = engine.createScene();
+  let dim; // all light to a share
+  if (kind === 'direct') {
+    const lamp = Filament.EntityManager.get().create();
+    Filament.LightManager.Builder(Filament.LightManager$Type.DIRECTIONAL)
+      .color([1, 1, 1]).intensity(irradiance).direction(towards.map((x) => -x)).castShadows(false).build(engine, lamp);
+    world.addEntity(lamp);
+    const lights = engine.getLightManager();
+    dim = (share) => lights.setIntensity(lights.getInstance(lamp), irradiance * share);
+  } else {
+    const bytes = Filament.assets[cube];
+    const texture = Filament.Texture.Builder().width(levels[0].face).height(levels[0].face).levels(levels.length)
+      .sampler(Filament.Texture$Sampler.SAMPLER_CUBEMAP).format(Filament.Texture$InternalFormat.RGBA16F).build(engine);
+    levels.forEach(({ offset, bytes: count }, k) => {
+      const part = new Uint8Array(bytes.buffer, bytes.byteOffset + offset, count);
+      texture.setImageCube(engine, k, Filament.PixelBuffer(part, Filament.PixelDataFormat.RGBA, Filament.PixelDataType.HALF));
+    });
+    const surroundings = Filament.IndirectLight.Builder().reflections(texture).irradianceSh(3, bands).intensity(1).build(engine);
+    world.setIndirectLight(surroundings);
+    dim = (share) => surroundings.setIntensity(share);
+  }
+  const loader = engine.createAssetLoader();
+  const asset = loader.createAsset(Filament.assets[glb]);
+  await new Promise((resolve) => asset.loadResources(resolve, () => {}, '/', 1));
+  const transforms = engine.getTransformManager();
+  const root = transforms.getInstance(asset.getRoot());
+  // +y up to +z up.
+  transforms.setTransform(root, [1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1]);
+  root.delete();
+  world.addEntities(asset.getEntities());
+  const camera = engine.createCamera(Filament.EntityManager.get().create());
+  camera.setProjectionFov((angle * 180) / Math.PI, 1, 0.1, 50, Filament.Camera$Fov.VERTICAL);
+  camera.lookAt(eye, [0, 0, 0], [0, 0, 1]);
+  camera.setExposureDirect(1);
+  const view = engine.createView();
+  view.setCamera(camera);
+  view.setScene(world);
+  view.setViewport([0, 0, side, side]);
+  view.setPostProcessingEnabled(false);
+  const chain = engine.createSwapChain(),
+    renderer = engine.createRenderer();
+  renderer.setClearOptions({ clearColor: [0, 0, 0, 0], clear: true });
+  const result = new Float32Array(4 * side * side);
+  const gl = canvas.getContext('webgl2'),
+    bytes = new Uint8Array(4 * side * side);
+  for (const exposure of [0.02, 0.2, 1]) {
+    dim(exposure);
+    for (let k = 0; k < 3; ++k) {
+      renderer.render(chain, view);
+      engine.execute();
+      await new Promise((resolve) => requestAnimationFrame(resolve));
+    }
+    renderer.render(chain, view);
+    engine.execute();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.readPixels(0, 0, side, side, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    for (let k = 0; k < bytes.length; k += 4) {
+      const fits = Math.max(bytes[k], bytes[k + 1], bytes[k + 2]) < 255;
+      for (let c = 0; c < 3; ++c)
+        if (fits || result[k + c] === 0) result[k + c] = bytes[k + c] / 255 / exposure;
+      result[k + 3] = bytes[k + 3] / 255;
+    }
+  }
+  const all = new Uint8Array(result.buffer);
+  let text = '';
+  for (let k = 0; k < all.length; k += 32768) text += String.fromCharCode(...all.subarray(k, k + 32768));
+  return btoa(text);
+}
+
+// The cube that the program filters for Filament, and the irradiance, of the picture as it is turned.
+let surroundings;
+function moreOf(kind, { hshfit, folder }) {
+  if (kind === 'direct') return { ...zUp, cube: null };
+  if (!surroundings) {
+    const light = `${scene.picture}:turn=${scene.turn}`;
+    scene.run(hshfit, 'export', 'lambert', '-o', `${folder}/cube`, '--name', 'cube', '--lighting', 'prefiltered', '--engine', 'filament',
+      '--light', light, '--target', 'bin', '--force');
+    const { levels } = scene.readJson(`${folder}/cube/cube.lighting.json`).models[0].cube;
+    const { radiance } = JSON.parse(scene.run(hshfit, 'irradiance', light, '--json'));
+    surroundings = { levels, bands: polynomial(radiance), cube: '/files/cube/cube.prefiltered.cube.f16.bin' };
+  }
+  return { ...zUp, ...surroundings };
+}
+const zUp = { eye: scene.eye, towards: scene.towardsLight };
+
+await trial({ title: 'Filament', name: 'filament', target: null, scripts: ['/npm/gl-matrix/gl-matrix.js', '/npm/filament/filament.js'], draw, more: moreOf });
