@@ -1,8 +1,9 @@
 // Our fits next to published ones, on the same samples in the same metric:
 //     fit_slices FOLDER CSV [MODEL [MATERIAL [CUT]]]
-// writes a row per collection, loss and material of FOLDER (MERL slices, NAME.slice) to CSV, the
-// summary in Markdown to stdout and progress to stderr. MODEL and MATERIAL keep those whose names
-// hold them; samples with an angle beyond CUT degrees (80) are left out.
+// writes a row per collection, loss and material of FOLDER (MERL slices, NAME.slice, or whole
+// tables, NAME.binary, of which 20,000 cells are drawn) to CSV, the summary in Markdown to stdout
+// and progress to stderr. MODEL and MATERIAL keep those whose names hold them; samples with an
+// angle beyond CUT degrees (80) are left out.
 
 #include "../../tests/brdfs/fit_rivals.h"
 
@@ -27,14 +28,17 @@ struct Row {
     Duel duel;
 };
 
-std::vector<std::string> materialsIn(const std::string& folder, const std::string& part) {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-        if (entry.path().extension() == ".slice" &&
-            entry.path().stem().string().find(part) != std::string::npos)
-            names.push_back(entry.path().stem().string());
-    std::ranges::sort(names);
-    return names;
+/// Slices and tables whose names hold `part`, in order.
+std::vector<std::filesystem::path> filesIn(const std::string& folder, const std::string& part) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const std::filesystem::path& path = entry.path();
+        if ((path.extension() == ".slice" || path.extension() == ".binary") &&
+            path.stem().string().find(part) != std::string::npos)
+            files.push_back(path);
+    }
+    std::ranges::sort(files);
+    return files;
 }
 
 double median(std::vector<double> values) {
@@ -83,10 +87,12 @@ void writeRows(std::ofstream& file, const Rival& rival, const std::vector<Row>& 
 
 void run(const std::string& folder, const std::string& path, const std::string& model,
          const std::string& material, double cut) {
-    const std::vector<std::string> materials = materialsIn(folder, material);
+    std::vector<std::string> materials;
     std::vector<FitSamples> samples;
-    for (const std::string& name : materials)
-        samples.push_back(samplesOfSlice(folder + "/" + name + ".slice", cut));
+    for (const std::filesystem::path& path : filesIn(folder, material)) {
+        materials.push_back(path.stem().string());
+        samples.push_back(samplesOfSlice(path.string(), cut));
+    }
     std::ofstream file(path);
     file << "collection,model,loss,material,published,ours,ratio,converged\n";
     fmt::print(

@@ -39,11 +39,14 @@ inline constexpr std::array rivals{
 };
 
 /// The samples that both sides are measured on: the cells of a slice with both directions within 80
-/// degrees of the normal (Ngan et al. 2005 leave out the rest), weighted by solid angle.
+/// degrees of the normal (Ngan et al. 2005 leave out the rest), weighted by solid angle; of a whole
+/// table so many that are drawn evenly.
 inline FitSamples samplesOfSlice(const std::string& path, double grazingCut = 80) {
+    constexpr std::size_t mostOfTable = 20000;
     return gatherSamples(*open(path), {.weights = SampleWeights::solidAngle,
                                        .places = SamplePlaces::cells,
-                                       .grazingCut = grazingCut});
+                                       .grazingCut = grazingCut,
+                                       .most = path.ends_with(".binary") ? mostOfTable : 0});
 }
 
 struct Duel {

@@ -62,5 +62,39 @@ TEST(LatexText, HasNoCommandOfItsOwn) {
     EXPECT_EQ(latexText("−2×10⁻⁵"), "$-$2$\\times$10\\textsuperscript{-}\\textsuperscript{5}");
 }
 
+// By hand: 0.03 of the samples and 0.04 that they share make 0.05, and twice that expanded.
+TEST(LatexTable, HasTheBudgetOfAParameter) {
+    FitSamples samples;
+    FitReport report;
+    report.data = "d.csv";
+    report.samples = &samples;
+    report.result.model = "lambert";
+    FittedParameter& kd = report.result.parameters.emplace_back();
+    kd.name = "kd";
+    kd.value = 0.5;
+    kd.standardError = 0.05;
+    report.result.correlations = {1};
+    ParameterBudget own;
+    own.name = "kd";
+    own.value = 0.5;
+    own.rows.resize(2);
+    own.rows[0].name = "samples";
+    own.rows[0].type = 'A';
+    own.rows[0].standard = 0.03;
+    own.rows[0].sensitivity = 1;
+    own.rows[1].name = "standard & scale";
+    own.rows[1].standard = 0.08;
+    own.rows[1].sensitivity = -0.5;
+    combine(own);
+    report.result.budget.emplace().parameters = {own};
+    const std::string table = latexTable(report);
+    const auto has = [&](const std::string& part) { return table.find(part) != table.npos; };
+    EXPECT_TRUE(has("kd & $0.500(50)$ & $0.10$ & 2.00 & $\\infty$ & 1")) << table;
+    EXPECT_TRUE(has("standard \\& scale & B &")) << table;
+    EXPECT_TRUE(has("$-0.5$ & $0.04$ & 0.640")) << table;
+    EXPECT_TRUE(has("combined &  &  &  &  & $0.05$")) << table;
+    EXPECT_TRUE(has("combined with the budget")) << table;
+}
+
 }  // namespace
 }  // namespace hshfit::brdfs
