@@ -2,6 +2,7 @@
 
 #include <hshfit/pages/comparison_print.h>
 
+#include <brdfs/fit/budget_latex.h>
 #include <brdfs/fit/fit_figures.h>
 #include <brdfs/fit/instrument/instrument_fit.h>
 #include <brdfs/fit/latex_table.h>
@@ -62,6 +63,9 @@ FigureFiles addFitFigures(const Brdf& data, const brdfs::FitReport& report,
         result.names.push_back(name);
     };
     write("parameters.tex", [&](AtomicFile& file) { file.write(brdfs::latexTable(report)); });
+    if (report.result.budget)
+        write("budget.tex",
+              [&](AtomicFile& file) { file.write(brdfs::latexBudget(*report.result.budget)); });
     const bool pixels = report.samples->origin == brdfs::SampleOrigin::pixels;
     const brdfs::FitSamples& samples = pixels ? *report.ofMetrics : *report.samples;
     const auto fitted = brdfs::openFit(report.result);
@@ -77,8 +81,8 @@ FigureFiles addFitFigures(const Brdf& data, const brdfs::FitReport& report,
                 brdfs::writeResidualRows(samples, report.result, report.options.loss,
                                          [&](std::string_view row) { file.write(row); });
             });
-        // Fits with terms of the instrument predict no f.
-        if (!report.result.point.channels.empty()) {
+        // Curves of fits with terms of the instrument are readings; bands are those of f.
+        if (!report.result.instrument && !report.result.point.channels.empty()) {
             model.band = [&](std::span<const DirectionPair> pairs) {
                 return halfWidths(report.result, pairs);
             };
