@@ -2,6 +2,7 @@
 
 #include <hshfit/pages/comparison_print.h>
 
+#include <brdfs/fit/budget_latex.h>
 #include <brdfs/fit/fit_figures.h>
 #include <brdfs/fit/instrument/instrument_fit.h>
 #include <brdfs/fit/latex_table.h>
@@ -80,8 +81,8 @@ public:
         model.residuals = brdfs::standardisedResiduals(
             samples_, brdfs::predictedValues(result, samples_),
             pixels_ ? brdfs::Loss::Kind::cosine : report_.options.loss, result.parameters.size());
-        // Fits with terms of the instrument predict no f.
-        if (measured() && !result.point.channels.empty()) {
+        // Curves of fits with terms of the instrument are readings; bands are those of f.
+        if (measured() && !result.instrument && !result.point.channels.empty()) {
             model.band = [&result](std::span<const DirectionPair> pairs) {
                 return halfWidths(result, pairs);
             };
