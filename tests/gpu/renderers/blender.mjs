@@ -1,5 +1,6 @@
-// Blender without a window: blender.mjs HSHFIT FOLDER [ENGINE…] draws the scene with the glTF fit as its
-// importer reads it (a Principled BSDF) in Cycles, and states the errors against `hshfit render`.
+// Blender without a window: blender.mjs HSHFIT FOLDER [ENGINE…] draws the scene with the glTF fit as
+// its importer reads it (a Principled BSDF) in CYCLES, the default, or BLENDER_EEVEE, and states the
+// errors against `hshfit render`.
 import { writeFileSync } from 'node:fs';
 import { resolve } from 'node:path';
 import { readExr, writeSheet } from './pictures.mjs';
@@ -24,7 +25,10 @@ for (const name of scene.names) {
         lookup_turn: -scene.turn,
       });
       writeFileSync(words, text);
-      scene.run('blender', '-b', '--factory-startup', '--python-exit-code', '1', '-P', `${scene.here}/blender.py`, '--', words);
+      // EEVEE draws with OpenGL, which needs a display.
+      const display = engine === 'CYCLES' ? [] : ['xvfb-run', '-a'];
+      process.env.LIBGL_ALWAYS_SOFTWARE = '1';
+      scene.run(...display, 'blender', '-b', '--factory-startup', '--python-exit-code', '1', '-P', `${scene.here}/blender.py`, '--', words);
       row.push(scene.judged(`Blender, ${engine}`, { name, kind, given: 'glTF' }, expected, await readExr(out)));
     }
     rows.push(row);

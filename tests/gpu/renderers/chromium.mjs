@@ -19,11 +19,10 @@ export async function trial({ title, name: engine, target, scripts, draw, more =
   await finish(async () => {
     for (const name of scene.names) {
       scene.exported(hshfit, folder, name, target ?? 'bin');
-      scene.standard(hshfit, folder, name);
       for (const kind of kinds) {
         const expected = await scene.references(hshfit, folder, name, kind, size);
         const row = [];
-        for (const given of target ? ['ours', 'glTF'] : ['glTF']) {
+        for (const given of target ? scene.given : ['glTF']) {
           const words = { ...scene.forPage(kind), name, side: samples * size, glb: given === 'glTF' ? `/files/${name}/${name}.glb` : null };
           // A fresh browser for each: engines keep their contexts.
           const text = await withBrowser(

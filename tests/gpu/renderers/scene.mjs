@@ -23,6 +23,9 @@ export const names = (process.env.HSHFIT_TRIAL?.split(',') ?? Object.keys(materi
   (name) => !materials[name].spec.startsWith('/') || existsSync(materials[name].spec),
 );
 
+// What engines are given, or that alone which HSHFIT_GIVEN names: our material, the glTF fit.
+export const given = process.env.HSHFIT_GIVEN?.split(',') ?? ['ours', 'glTF'];
+
 // z up: elevation and azimuth in degrees.
 export const light = { elevation: 40, azimuth: 60, irradiance: 4 };
 export const view = { theta: 75, azimuth: 0, angle: 30 };
@@ -98,12 +101,15 @@ async function rendered(hshfit, folder, name, spec, kind, size) {
 
 // Pictures of the source, of the form and of the glTF fit, which the engines are given.
 export async function references(hshfit, folder, name, kind, size) {
-  const bytes = readFileSync(standard(hshfit, folder, name));
-  const glb = JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)).toString());
+  const fitted = () => {
+    const bytes = readFileSync(standard(hshfit, folder, name));
+    const glb = JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)).toString());
+    return glb.materials[0].extras.hshfit.spec;
+  };
   return {
     source: await rendered(hshfit, folder, name, materials[name].spec, kind, size),
     ours: await rendered(hshfit, folder, `${name}-form`, join(folder, `${name}.json`), kind, size),
-    glTF: await rendered(hshfit, folder, `${name}-gltf`, glb.materials[0].extras.hshfit.spec, kind, size),
+    glTF: given.includes('glTF') ? await rendered(hshfit, folder, `${name}-gltf`, fitted(), kind, size) : null,
   };
 }
 
