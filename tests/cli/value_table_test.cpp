@@ -21,17 +21,37 @@ namespace {
 
 /// Options and arguments of free text that name no file.
 const std::set<std::string> plainTexts{"--bandwidth",
+                                       "--calibration",
 
-                                       "--camera",    "--components", "--detector-aperture",
-                                       "--device",    "--dispersion", "--euler",
-                                       "--exposure",  "--exposures",  "--extensions",
-                                       "--font",      "--font-size",  "--halfway",
+                                       "--camera",
+                                       "--components",
+                                       "--detector-aperture",
+                                       "--detector-zero",
+                                       "--device",
+                                       "--dispersion",
+                                       "--euler",
+                                       "--exposure",
+                                       "--exposures",
+                                       "--extensions",
+                                       "--font",
+                                       "--font-size",
+                                       "--halfway",
+                                       "--incidence-zero",
 
-                                       "--method",    "--name",       "--normal",
-                                       "--of",        "--outgoing",   "--parameter",
-                                       "--prefix",    "--shard",      "--source-aperture",
-                                       "--up",        "--view",       "--wi",
-                                       "--wo",        "WORDS"};
+                                       "--method",
+                                       "--name",
+                                       "--normal",
+                                       "--of",
+                                       "--outgoing",
+                                       "--parameter",
+                                       "--prefix",
+                                       "--shard",
+                                       "--source-aperture",
+                                       "--up",
+                                       "--view",
+                                       "--wi",
+                                       "--wo",
+                                       "WORDS"};
 
 class ValueTable : public test::Cli {
 protected:
