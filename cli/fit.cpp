@@ -188,6 +188,8 @@ void runFit(FitArguments& arguments, Globals& globals) {
             "for one model and one DATA");
     if (!options.certificateFields.empty() && options.certificate.empty())
         throw UsageError("fit: --certificate-fields is for --certificate OUT.pdf");
+    if (!arguments.models.empty() && (!options.calibration.empty() || !options.budget.empty()))
+        throw UsageError("fit: --calibration and --budget are for one model");
     if (options.bands.empty() != options.bandsTo.empty() &&
         !(globals.json && !options.bands.empty()))
         throw UsageError(
@@ -271,6 +273,13 @@ void addFit(CLI::App& command, Globals& globals) {
     command.add_option("--sigma", options.sigma,
                        "Standard uncertainty of a sample: 2%+0.001 (relative and absolute, in "
                        "squares), column, or FILE.csv with a row for each sample");
+    command.add_option("--calibration", options.calibration,
+                       "Relative standard uncertainty of a calibration common to all samples: "
+                       "0.8%");
+    command.add_option("--budget", options.budget,
+                       "JSON or CSV file of uncertainties common to all samples: name, on (scale, "
+                       "linearity, offset, dark, incidence, detector), half_width or "
+                       "standard_uncertainty, ...");
     command.add_option("--scans", options.scans,
                        "Samples with correlated errors: column, incidence, or so many after one "
                        "another");

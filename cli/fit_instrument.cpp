@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hshfit::cli {
 
@@ -33,6 +34,11 @@ void addInstrumentOptions(CLI::App& command, brdfs::InstrumentText& instrument) 
     command.add_option("--scan-scale", instrument.scale,
                        "A scale for each of the --scans: the standard deviation about 1 that is "
                        "expected (2%), or fit, relative to the first");
+    command.add_option("--incidence-zero", instrument.incidenceZero,
+                       "The zero of the angle of incidence is fitted: its standard uncertainty in "
+                       "degrees, with :scan for one for each of the --scans (0.05:scan)");
+    command.add_option("--detector-zero", instrument.detectorZero,
+                       "The zero of the detector's angle, likewise");
 }
 
 std::string instrumentText(const brdfs::FitResult& result) {
@@ -49,6 +55,15 @@ std::string instrumentText(const brdfs::FitResult& result) {
             "squares\n",
             fitted.scales.size(), *low, number(low), *high, number(high),
             std::sqrt(squares / static_cast<double>(fitted.scales.size())));
+    }
+    for (const auto& [name, zeros] : {std::pair{"incidence", &fitted.incidenceZeros},
+                                      std::pair{"detector", &fitted.detectorZeros}}) {
+        if (zeros->size() < 2) continue;
+        const auto [low, high] = std::ranges::minmax_element(*zeros);
+        lines += fmt::format(
+            "  zeros of the angle of {} of {} scans: {:.3g} (scan {}) to {:.3g} degrees (scan "
+            "{})\n",
+            name, zeros->size(), *low, low - zeros->begin() + 1, *high, high - zeros->begin() + 1);
     }
     if (fitted.instrument.averages())
         lines += fmt::format(

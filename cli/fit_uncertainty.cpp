@@ -36,6 +36,13 @@ std::string chiSquareLine(const Document& uncertainty) {
         uncertainty["reduced_chi_square"].get<double>(), uncertainty["probability"].get<double>());
 }
 
+/// Whether a parameter is the scale, or the zero of an angle, of one scan.
+bool isOfScan(const Document& parameter) {
+    const auto name = parameter["name"].get<std::string>();
+    const std::size_t blank = name.rfind(' ');
+    return blank != name.npos && name.find_first_not_of("0123456789", blank + 1) == name.npos;
+}
+
 /// The errors of every parameter, a column for each route.
 std::string errorTable(const Document& uncertainty) {
     const bool scans = uncertainty.contains("scans"), bootstrap = uncertainty.contains("bootstrap");
@@ -44,7 +51,7 @@ std::string errorTable(const Document& uncertainty) {
                     scans ? "    by scan   df" : "", bootstrap ? "  bootstrap" : "");
     for (const Document& own : uncertainty["parameters"]) {
         // Of scans there may be hundreds; FIT.json has them all.
-        if (own["name"].get<std::string>().starts_with("scale ")) continue;
+        if (isOfScan(own)) continue;
         lines +=
             fmt::format("  {:<24} {:>2} {:>10} {:>10}", own["name"].get<std::string>(),
                         own.value("channel", ""), number(own["normal"]), number(own["sandwich"]));
@@ -91,6 +98,41 @@ std::string correlationLine(const Document& uncertainty) {
     if (count == 0) return {};
     return fmt::format("  correlated beyond {}: {}{}\n", strong, fmt::join(pairs, ", "),
                        count > most ? fmt::format(", and {} more", count - most) : "");
+}
+
+/// The budget of each parameter: a line for each contribution.
+std::string budgetText(const Document& budget) {
+    const auto degreesText = [](const Document& degrees) {
+        return degrees.is_number() ? fmt::format("{:.1f}", degrees.get<double>())
+                                   : std::string("infinite");
+    };
+    std::string lines;
+    for (const Document& own : budget["parameters"]) {
+        if (isOfScan(own)) continue;
+        const std::string channel = own.value("channel", "");
+        lines += fmt::format(
+            "  {}{} = {:.6g}, U = {:.3g} (k = {:.3g} for {:.4g} %, {} degrees of freedom)\n",
+            own["name"].get<std::string>(), channel.empty() ? "" : " " + channel,
+            own["value"].get<double>(), own["expanded_uncertainty"].get<double>(),
+            own["coverage_factor"].get<double>(),
+            100 * budget["coverage_probability"].get<double>(),
+            degreesText(own["effective_degrees_of_freedom"]));
+        lines += fmt::format("    {:<22} {:<4} {:<12} {:>16} {:>11} {:>12} {:>7} {:>8}\n",
+                             "contribution", "type", "distribution", "uncertainty", "sensitivity",
+                             "contribution", "share", "degrees");
+        for (const Document& row : own["contributions"]) {
+            const std::string unit = row.value("unit", "");
+            lines += fmt::format(
+                "    {:<22} {:<4} {:<12} {:>16} {:>11.4g} {:>12.3g} {:>5.1f} % {:>8}\n",
+                row["name"].get<std::string>(), row["type"].get<std::string>(),
+                row["distribution"].get<std::string>(),
+                fmt::format("{:.3g}{}", row["standard_uncertainty"].get<double>(),
+                            unit.empty() || unit == "1" ? "" : " " + unit),
+                row["sensitivity"].get<double>(), row["contribution"].get<double>(),
+                100 * row["share"].get<double>(), degreesText(row["degrees_of_freedom"]));
+        }
+    }
+    return lines;
 }
 
 std::string profileTable(const Document& uncertainty) {
@@ -169,7 +211,8 @@ std::string uncertaintyText(const Document& fit) {
                 ? predictionLine(uncertainty["prediction"],
                                  fit["influence"]["rows"] == "lines" ? "line" : "sample")
                 : "") +
-           bands + influenceText(fit["influence"]);
+           bands + influenceText(fit["influence"]) +
+           (fit.contains("budget") ? budgetText(fit["budget"]) : "");
 }
 
 }  // namespace hshfit::cli

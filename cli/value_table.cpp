@@ -225,6 +225,7 @@ constexpr ValueRow valueRows[] = {
     {"fit", "--offset", fitWords},
     {"fit", "--bands", nullptr, Syntax::word, Files::read, ".csv"},
     {"fit", "--bands-to", nullptr, Syntax::word, Files::written, ".csv"},
+    {"fit", "--budget", nullptr, Syntax::word, Files::read, ""},
     {"fit", "--residuals", nullptr, Syntax::word, Files::written, ".csv"},
     {"fit", "--scan-scale", fitWords},
     {"fit", "--scans", scanWords},

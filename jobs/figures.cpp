@@ -2,6 +2,7 @@
 
 #include <hshfit/pages/comparison_print.h>
 
+#include <brdfs/fit/budget_latex.h>
 #include <brdfs/fit/fit_figures.h>
 #include <brdfs/fit/instrument/instrument_fit.h>
 #include <brdfs/fit/latex_table.h>
@@ -80,8 +81,8 @@ public:
         model.residuals = brdfs::standardisedResiduals(
             samples_, brdfs::predictedValues(result, samples_),
             pixels_ ? brdfs::Loss::Kind::cosine : report_.options.loss, result.parameters.size());
-        // Fits with terms of the instrument predict no f.
-        if (measured() && !result.point.channels.empty()) {
+        // Curves of fits with terms of the instrument are readings; bands are those of f.
+        if (measured() && !result.instrument && !result.point.channels.empty()) {
             model.band = [&result](std::span<const DirectionPair> pairs) {
                 return halfWidths(result, pairs);
             };
@@ -101,10 +102,14 @@ private:
     std::unique_ptr<Brdf> fitted_;
 };
 
-/// parameters.tex, and samples.csv of measured samples with a study.
+/// parameters.tex, budget.tex where there is one, and samples.csv of measured samples with a study.
 void addTables(const brdfs::FitReport& report, FileSet& files, FigureFiles& result) {
     files.write("parameters.tex", brdfs::latexTable(report));
     result.names.emplace_back("parameters.tex");
+    if (report.result.budget) {
+        files.write("budget.tex", brdfs::latexBudget(*report.result.budget));
+        result.names.emplace_back("budget.tex");
+    }
     if (report.samples->origin != brdfs::SampleOrigin::measured || !report.result.uncertainty)
         return;
     files.write("samples.csv", [&](AtomicFile& file) {

@@ -48,6 +48,12 @@ brdfs::FitOptions optionsOf(const FitOptions& options, const Brdf& data, bool dr
     fit.uncertainty.report = !options.sigma.empty() || !options.scans.empty() ||
                              options.bootstrap > 0 || options.profile ||
                              !options.residuals.empty() || options.instrument.any();
+    if (!options.calibration.empty())
+        fit.contributions.push_back(brdfs::parseCalibration(options.calibration));
+    if (!options.budget.empty())
+        for (brdfs::Contribution& own : brdfs::readContributions(options.budget))
+            fit.contributions.push_back(std::move(own));
+    fit.uncertainty.report = fit.uncertainty.report || !fit.contributions.empty();
     // A robust kernel has no such study.
     if (drawn && fit.robust == brdfs::Robust::none && fit.loss != brdfs::Loss::Kind::picture &&
         brdfs::areMeasured(data))
@@ -65,6 +71,8 @@ std::optional<Setting> sampleSetting(const FitOptions& options) {
         {options.places != "auto", "FitOptions::places"},
         {!options.sigma.empty(), "FitOptions::sigma"},
         {!options.scans.empty(), "FitOptions::scans"},
+        {!options.calibration.empty(), "FitOptions::calibration"},
+        {!options.budget.empty(), "FitOptions::budget"},
         {options.bootstrap > 0, "FitOptions::bootstrap"},
         {options.profile, "FitOptions::profile"},
         {!options.residuals.empty(), "FitOptions::residuals"},
@@ -75,6 +83,8 @@ std::optional<Setting> sampleSetting(const FitOptions& options) {
         {!options.instrument.dark.empty(), "FitOptions::instrument.dark"},
         {!options.instrument.stray.empty(), "FitOptions::instrument.stray"},
         {!options.instrument.scale.empty(), "FitOptions::instrument.scale"},
+        {!options.instrument.incidenceZero.empty(), "FitOptions::instrument.incidenceZero"},
+        {!options.instrument.detectorZero.empty(), "FitOptions::instrument.detectorZero"},
         {!options.bands.empty(), "FitOptions::bands"},
         {!options.certificate.empty(), "FitOptions::certificate"},
     };
@@ -194,6 +204,7 @@ std::vector<TriedFit> triedFits(const Brdf& data, const brdfs::FitSamples& sampl
     how.iterations = 60;
     how.progress = {};
     how.uncertainty = {};
+    how.contributions.clear();
     how.dispersion = {};
     std::vector<TriedFit> tried;
     const auto attempt = [&](const std::string& model, const brdfs::FitSamples& places,
@@ -322,9 +333,6 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
                                          const Listener& listener) {
     requireReflections(brdf, options.model);
     PreparedFiles files;
-    if (!options.bands.empty() && options.instrument.any())
-        throw UsageError(fmt::format("{} is for fits without terms of the instrument",
-                                     Setting{"FitOptions::bands"}));
     // A wrong list of pairs, or of fields, is known before the fit.
     if (!options.bands.empty()) bandPairs(options.bands);
     if (!options.certificateFields.empty()) readCertificateFields(options.certificateFields);

@@ -26,8 +26,8 @@ struct FitOptions {
     std::string model;
     /// brdfs::findLoss. Empty: l2 with stated uncertainties; for scattered samples cosine, or
     /// log-relative where they span more than brdfs::mostDecades; cosine where another option is
-    /// about single samples (robust, weights, places, scans, bootstrap, profile, residuals, bands);
-    /// else picture, whose spheres look most like those of the data.
+    /// about single samples (robust, weights, places, scans, budget, bootstrap, profile, residuals,
+    /// bands); else picture, whose spheres look most like those of the data.
     std::string loss = {};
     std::string robust = "none";   ///< brdfs::findRobust
     std::string weights = "auto";  ///< brdfs::findSampleWeights
@@ -45,11 +45,13 @@ struct FitOptions {
     /// Optional parts of the model (brdfs::ModelPart): "auto" for those that held-out directions
     /// find worth it, "none", "all", or names with commas. Empty: auto where the model has parts.
     std::string parts = {};
-    std::string sigma = {};      ///< standard uncertainty of the samples: brdfs::parseSigma
-    std::string scans = {};      ///< samples with correlated errors: brdfs::parseScans
-    std::size_t bootstrap = 0;   ///< fits to resampled data; 0: none
-    bool profile = false;        ///< intervals by profile likelihood
-    std::string residuals = {};  ///< CSV file, a row for each value; empty: none
+    std::string sigma = {};        ///< standard uncertainty of the samples: brdfs::parseSigma
+    std::string scans = {};        ///< samples with correlated errors: brdfs::parseScans
+    std::string calibration = {};  ///< common to all samples: brdfs::parseCalibration
+    std::string budget = {};       ///< file of what is: brdfs::readContributions
+    std::size_t bootstrap = 0;     ///< fits to resampled data; 0: none
+    bool profile = false;          ///< intervals by profile likelihood
+    std::string residuals = {};    ///< CSV file, a row for each value; empty: none
     std::optional<FigureOptions> figures = {};  ///< for print; none: not drawn
     brdfs::InstrumentText instrument = {};      ///< between f and the samples
     std::string bands = {};        ///< pairs at which f has its error (bandPairs); empty: none

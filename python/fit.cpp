@@ -62,10 +62,6 @@ py::dict predicted(const jobs::Fitted& fitted, const py::object& wi, const py::o
                    double probability, std::uint64_t seed) {
     if (!(probability > 0 && probability < 1))
         throw UsageError(fmt::format("probability: {} is not between 0 and 1", probability));
-    if (fitted.result.instrument)
-        throw UsageError(
-            "predict is for fits without terms of the instrument, whose errors are those of "
-            "readings");
     const auto [in, out] = broadcast(wi, "wi", wo, "wo");
     const std::vector<Direction> from = directionsIn(in, "wi"), to = directionsIn(out, "wo");
     std::vector<DirectionPair> pairs;
@@ -115,7 +111,9 @@ brdfs::InstrumentText instrumentFrom(const py::dict& given) {
         {"offset", &Text::offset},
         {"dark", &Text::dark},
         {"stray", &Text::stray},
-        {"scan_scale", &Text::scale}};
+        {"scan_scale", &Text::scale},
+        {"incidence_zero", &Text::incidenceZero},
+        {"detector_zero", &Text::detectorZero}};
     Text text;
     for (const auto& [name, value] : given) {
         const auto key = py::str(name).cast<std::string>();
@@ -127,7 +125,8 @@ brdfs::InstrumentText instrumentFrom(const py::dict& given) {
         else
             throw UsageError(
                 fmt::format("instrument: '{}' is none of source_aperture, detector_aperture, "
-                            "aperture_tolerance, bandwidth, offset, dark, stray, scan_scale",
+                            "aperture_tolerance, bandwidth, offset, dark, stray, scan_scale, "
+                            "incidence_zero, detector_zero",
                             key));
     }
     return text;
@@ -164,11 +163,12 @@ std::shared_ptr<jobs::Fitted> fitted(
     const std::string& robust, double robustScale, const std::string& weights, bool perChannel,
     double grazingCut, std::size_t samples, int starts, int iterations, std::uint64_t seed,
     bool accept, const py::object& parts, bool rgb, const std::string& places,
-    const std::string& dispersion, const std::string& sigma, const py::object& scans,
-    std::size_t bootstrap, bool profile, const py::object& residuals, const py::dict& instrument,
-    const py::object& bands, const py::object& bandsTo, const py::object& figures,
-    const std::string& width, const std::string& font, double fontSize, const std::string& axis,
-    const std::string& panels, const py::object& progress) {
+    const std::string& dispersion, const std::string& sigma, const std::string& calibration,
+    const py::object& budget, const py::object& scans, std::size_t bootstrap, bool profile,
+    const py::object& residuals, const py::dict& instrument, const py::object& bands,
+    const py::object& bandsTo, const py::object& figures, const std::string& width,
+    const std::string& font, double fontSize, const std::string& axis, const std::string& panels,
+    const py::object& progress) {
     jobs::FitOptions options =
         optionsFrom(model, loss, robust, robustScale, weights, perChannel, grazingCut, samples,
                     starts, iterations, seed, accept, parts);
@@ -181,6 +181,8 @@ std::shared_ptr<jobs::Fitted> fitted(
     options.places = places;
     options.dispersion = dispersion;
     options.sigma = sigma;
+    options.calibration = calibration;
+    options.budget = fileOrNone(budget, "budget");
     options.scans = scans.is_none() ? "" : py::str(scans).cast<std::string>();
     options.bootstrap = bootstrap;
     options.profile = profile;
@@ -329,7 +331,8 @@ void bindFit(py::module_& module) {
                py::arg("seed") = options.seed, py::arg("accept") = options.accept,
                py::arg("parts") = py::none(), py::arg("rgb") = options.rgb,
                py::arg("at") = options.places, py::arg("dispersion") = options.dispersion,
-               py::arg("sigma") = options.sigma, py::arg("scans") = py::none(),
+               py::arg("sigma") = options.sigma, py::arg("calibration") = options.calibration,
+               py::arg("budget") = py::none(), py::arg("scans") = py::none(),
                py::arg("bootstrap") = options.bootstrap, py::arg("profile") = options.profile,
                py::arg("residuals") = py::none(), py::arg("instrument") = py::dict(),
                py::arg("bands") = py::none(), py::arg("bands_to") = py::none(),
@@ -351,9 +354,11 @@ parts     of models with optional parts: "auto", "none", "all" or names
 at        places of samples: "auto", "cells" or "nodes"
 dispersion  of spectra: "PARAMETER=LAW[:N],..." with cauchy, sellmeier, poly, spline, shared, free
 sigma     standard uncertainty of samples: "2%+0.001", "column" or a CSV; scans: of correlated ones
+calibration, budget  what is common to all samples: "0.8%"; a JSON or CSV file of contributions
 bootstrap, profile  errors by so many resampled fits; intervals by profile likelihood
 instrument  between f and samples: {"source_aperture": "cone:2", "bandwidth": "gauss:5", "offset":
-          "fit", ...} with detector_aperture, aperture_tolerance, dark, stray, scan_scale
+          "fit", ...} with detector_aperture, aperture_tolerance, dark, stray, scan_scale,
+          incidence_zero, detector_zero
 bands     pairs for errors of f: "plane:30/60" (degrees) or a CSV; bands_to, residuals: CSV files
 figures   a folder for PDF and SVG, of figure_width ("column", "page", "120mm"), font, font_size
           (points), axis ("auto", "linear", "log") and panels

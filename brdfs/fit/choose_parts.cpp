@@ -75,6 +75,7 @@ public:
         own.options.model = std::move(model);
         own.options.progress = {};
         own.options.uncertainty = {};
+        own.options.contributions.clear();
         own.options.starts = std::max(1, fit_.starts / 4);
         // Along a level valley a search goes on for long after the held-out error has settled.
         own.options.iterations = std::min(fit_.iterations, 30);

@@ -93,6 +93,7 @@ HeldOut heldOutOf(const FitSamples& samples, const Folds& folds, const FitResult
     options.from = shapesOf(whole, options, samples);
     options.progress = {};
     options.uncertainty = {};
+    options.contributions.clear();
     double squares = 0, weights = 0;
     HeldOut heldOut;
     if (stated(samples)) heldOut.squares.assign(samples.size(), 0);

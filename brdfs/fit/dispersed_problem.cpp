@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace hshfit::brdfs {
 namespace {
@@ -178,8 +180,8 @@ std::string DispersedModel::specAt(double nanometres, std::span<const double> co
 }
 
 DispersedProblem::DispersedProblem(const FitSamples& samples, const DispersedModel& model,
-                                   Loss::Kind loss)
-    : samples_(samples), model_(model) {
+                                   Loss::Kind loss, std::vector<double> mix)
+    : samples_(samples), model_(model), loss_(loss), mix_(std::move(mix)) {
     const std::size_t count = samples.channels.count();
     channels_.reserve(count);
     problems_.reserve(count);
@@ -187,6 +189,10 @@ DispersedProblem::DispersedProblem(const FitSamples& samples, const DispersedMod
         channels_.push_back(samples.channel(c));
         problems_.emplace_back(channels_[c], model.sum(c), loss);
         normalisation_ += problems_[c].normalisation();
+        if (mix_.empty()) continue;
+        bare_.push_back(channels_[c]);
+        bare_.back().sigmas.clear();
+        std::ranges::fill(bare_.back().weights, 1.0);
     }
 }
 
@@ -196,6 +202,7 @@ void DispersedProblem::setRobust(Robust robust, double scale) {
 
 Equations DispersedProblem::joint(std::span<const double> coefficients, bool derivatives,
                                   std::span<const double> inverse) const {
+    if (!mix_.empty()) return mixedEquations(coefficients, derivatives, inverse);
     const Eigen::Index n = at(coefficients.size());
     std::vector<Equations> parts(problems_.size());
     std::vector<Matrix> slopes(problems_.size());
@@ -234,8 +241,77 @@ Equations DispersedProblem::joint(std::span<const double> coefficients, bool der
     return result;
 }
 
+namespace {
+
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+}  // namespace
+
+WeightedRows DispersedProblem::mixedRows(std::span<const double> coefficients) const {
+    const std::size_t count = samples_.size(), n = coefficients.size(), channels = bare_.size();
+    std::vector<Rows> slopes(channels);
+    std::vector<std::vector<double>> f(channels);
+    eachInParallel(channels, [&](std::size_t c) {
+        Matrix byCoefficient;
+        const std::vector<double> x = model_.pointAt(c, coefficients, &byCoefficient);
+        const WeightedRows own =
+            FitProblem(bare_[c], model_.sum(c), Loss::Kind::l2).weightedRows(x);
+        slopes[c] =
+            Eigen::Map<const Rows>(own.slopes.data(), at(count), at(own.columns)) * byCoefficient;
+        f[c] = own.values;
+    });
+    WeightedRows result{.samples = count * channels, .channels = 1, .columns = n};
+    result.slopes.assign(result.samples * n, 0);
+    result.values.assign(result.samples, 0);
+    result.residuals.resize(result.samples);
+    eachInParallel(channels, [&](std::size_t c) {
+        Eigen::Map<Rows> own(result.slopes.data() + c * count * n, at(count), at(n));
+        for (std::size_t from = 0; from < channels; ++from) {
+            const double share = mix_[c * channels + from];
+            if (share == 0) continue;
+            own += share * slopes[from];
+            for (std::size_t k = 0; k < count; ++k)
+                result.values[c * count + k] += share * f[from][k];
+        }
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::size_t v = c * count + k;
+            const double root = std::sqrt(samples_.weight(c, k)) *
+                                mapValue(loss_, samples_.value(c, k), samples_.wiZ[k]).slope;
+            own.row(at(k)) *= root;
+            result.residuals[v] = root * (samples_.values[v] - result.values[v]);
+        }
+    });
+    return result;
+}
+
+// With `inverse`, residuals are those over 1 - leverage, as FitProblem::joint has them.
+Equations DispersedProblem::mixedEquations(std::span<const double> coefficients, bool derivatives,
+                                           std::span<const double> inverse) const {
+    const WeightedRows rows = mixedRows(coefficients);
+    const Eigen::Index n = at(rows.columns);
+    const Eigen::Map<const Rows> slopes(rows.slopes.data(), at(rows.samples), n);
+    const Eigen::Map<const Eigen::VectorXd> residuals(rows.residuals.data(), at(rows.samples));
+    Equations result;
+    result.cost = 0.5 * residuals.squaredNorm() / normalisation_;
+    if (!derivatives) return result;
+    const Eigen::VectorXd gradient = -slopes.transpose() * residuals / normalisation_;
+    const Matrix hessian = slopes.transpose() * slopes / normalisation_;
+    result.gradient.assign(gradient.data(), gradient.data() + n);
+    result.hessian.assign(hessian.data(), hessian.data() + n * n);
+    if (inverse.empty()) return result;
+    constexpr double leastFreedom = 1e-6;
+    const Matrix own = Eigen::Map<const Matrix>(inverse.data(), n, n) / normalisation_;
+    const Eigen::VectorXd leverages = (slopes * own).cwiseProduct(slopes).rowwise().sum();
+    const Eigen::VectorXd out =
+        residuals.cwiseQuotient((1 - leverages.array()).max(leastFreedom).matrix());
+    const Rows pulls = out.asDiagonal() * slopes;
+    const Matrix spread = pulls.transpose() * pulls / (normalisation_ * normalisation_);
+    result.spread.assign(spread.data(), spread.data() + n * n);
+    return result;
+}
+
 WeightedRows DispersedProblem::weightedRows(std::span<const double> coefficients) const {
-    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    if (!mix_.empty()) return mixedRows(coefficients);
     const std::size_t count = samples_.size(), n = coefficients.size();
     WeightedRows result{.samples = count * problems_.size(), .channels = 1, .columns = n};
     result.slopes.resize(result.samples * n);
@@ -253,6 +329,15 @@ WeightedRows DispersedProblem::weightedRows(std::span<const double> coefficients
 
 std::vector<double> DispersedProblem::residuals(std::span<const double> coefficients) const {
     std::vector<double> all;
+    if (!mix_.empty()) {
+        const std::vector<double> values = mixedRows(coefficients).values;
+        for (std::size_t v = 0; v < values.size(); ++v) {
+            const double cosine = samples_.wiZ[v % samples_.size()];
+            all.push_back(mapValue(loss_, values[v], cosine).value -
+                          mapValue(loss_, samples_.values[v], cosine).value);
+        }
+        return all;
+    }
     for (std::size_t c = 0; c < problems_.size(); ++c) {
         const std::vector<double> own =
             problems_[c].residuals(model_.pointAt(c, coefficients, nullptr));

@@ -66,15 +66,19 @@ private:
 std::string sumAtWavelength(std::string_view sum, double nanometres);
 
 /// The least-squares problem of a spectrum in the coefficients of a DispersedModel: the sum of the
-/// FitProblems of its wavelengths, each linearised by the chain rule.
+/// FitProblems of its wavelengths, each linearised by the chain rule. With a slit values are those
+/// of readings, mixed among the wavelengths by `mix` (slitMatrix); the loss is then linear, without
+/// a robust kernel, and problemAt is that without the slit.
 class DispersedProblem {
 public:
-    DispersedProblem(const FitSamples& samples, const DispersedModel& model, Loss::Kind loss);
+    DispersedProblem(const FitSamples& samples, const DispersedModel& model, Loss::Kind loss,
+                     std::vector<double> mix = {});
 
     const DispersedModel& model() const { return model_; }
     const FitSamples& samples() const { return samples_; }
     FitProblem& problemAt(std::size_t c) { return problems_[c]; }
     double normalisation() const { return normalisation_; }
+    const std::vector<double>& mix() const { return mix_; }
     void setRobust(Robust robust, double scale);
 
     /// As FitProblem::joint.
@@ -86,9 +90,16 @@ public:
     std::vector<double> residuals(std::span<const double> coefficients) const;
 
 private:
+    WeightedRows mixedRows(std::span<const double> coefficients) const;
+    Equations mixedEquations(std::span<const double> coefficients, bool derivatives,
+                             std::span<const double> inverse) const;
+
     const FitSamples& samples_;
     const DispersedModel& model_;
+    Loss::Kind loss_;
+    std::vector<double> mix_;  ///< empty: no slit
     std::vector<FitSamples> channels_;
+    std::vector<FitSamples> bare_;  ///< channels without weights, with a slit
     std::vector<FitProblem> problems_;
     double normalisation_ = 0;
 };

@@ -11,6 +11,8 @@
 #include <brdfs/fit/minimum_study.h>
 #include <brdfs/fit/normal_equations.h>
 #include <brdfs/fit/parametric_sum.h>
+#include <brdfs/fit/propagated_errors.h>
+#include <brdfs/fit/scan_spread.h>
 #include <brdfs/fit/unseen_lobes.h>
 #include <brdfs/spectrum.h>
 #include <hshfit/error.h>
@@ -19,6 +21,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hshfit::brdfs {
 namespace {
@@ -29,8 +32,38 @@ struct Part {
     std::vector<double> shapes, linear;
     std::vector<double> covariance;  ///< of all values: FittedPoint
     std::shared_ptr<const VarianceFreedom> freedom;
+    std::vector<std::vector<double>> changes;  ///< CommonChanges::parameters
+    std::vector<double> degrees;               ///< of the standard errors, with changes
     double squares = 0, weights = 0;
 };
+
+/// Sets what contributions change, and the degrees of freedom beside them.
+void addChanges(const FitProblem& problem, const std::vector<double>& x,
+                const std::vector<double>& inverse, const std::vector<double>& slope,
+                const FitOptions& options, Part& part) {
+    if (options.contributions.empty()) return;
+    const auto n = static_cast<Eigen::Index>(x.size());
+    const FitSamples& samples = problem.samples();
+    const Eigen::Map<const Eigen::MatrixXd> own(inverse.data(), n, n);
+    const WeightedRows rows = problem.weightedRows(x);
+    for (const Contribution& contribution : options.contributions) {
+        const std::vector<double> shift = shiftOf(
+            contribution, samples, options.instrument.darkOver, [&](const FitSamples& turned) {
+                return FitProblem(turned, problem.sum(), problem.loss()).values(x);
+            });
+        const Eigen::VectorXd change =
+            own * pullOf(rows, shift, samples, problem.loss(), x.size(), problem.shapeCount()) /
+            problem.normalisation();
+        part.changes.emplace_back(change.begin(), change.end());
+        for (std::size_t i = 0; i < x.size(); ++i) part.changes.back()[i] *= slope[i];
+    }
+    constexpr double known = std::numeric_limits<double>::infinity();
+    // Without freedom, errors are those of stated uncertainties, or of very many values.
+    part.degrees.assign(x.size(), known);
+    if (!part.freedom) return;
+    part.degrees = part.freedom->degrees(Eigen::MatrixXd::Identity(n, n));
+    for (double& degrees : part.degrees) degrees = degrees > 0 ? std::max(degrees, 1.0) : known;
+}
 
 void describe(const FitProblem& problem, const std::vector<double>& x, const FitOptions& options,
               Part& part) {
@@ -84,6 +117,7 @@ void describe(const FitProblem& problem, const std::vector<double>& x, const Fit
         covariance = covarianceOf(equations, fixed);
         if (!scansSuffice(problem, *part.freedom)) part.freedom.reset();
     }
+    addChanges(problem, x, inverse, slope, options, part);
     part.covariance = covariance.whole;
     for (std::size_t i = 0; i < x.size(); ++i)
         for (std::size_t j = 0; j < x.size(); ++j)
@@ -254,13 +288,27 @@ FittedPoint pointOf(const std::vector<Part>& parts, const ParametricSum& sum,
     return point;
 }
 
+/// The budget of parts together.
+void addBudget(const std::vector<Part>& parts, const FitOptions& options, FitResult& result) {
+    CommonChanges changes;
+    changes.parameters.resize(options.contributions.size());
+    std::vector<double> degrees;
+    for (const Part& part : parts) {
+        for (std::size_t j = 0; j < part.changes.size(); ++j)
+            changes.parameters[j].insert(changes.parameters[j].end(), part.changes[j].begin(),
+                                         part.changes[j].end());
+        degrees.insert(degrees.end(), part.degrees.begin(), part.degrees.end());
+    }
+    addBudget(options.contributions, changes, degrees, result);
+}
+
 void checkStatements(const FitSamples& samples, const FitOptions& options) {
     if (!samples.sigmas.empty() && options.loss != Loss::Kind::l2)
         throw UsageError(
             "stated uncertainties are those of f, and weight its squared residuals; the loss has "
             "to be l2");
-    const bool studied =
-        options.uncertainty.report || !samples.sigmas.empty() || !samples.scans.empty();
+    const bool studied = options.uncertainty.report || !samples.sigmas.empty() ||
+                         !samples.scans.empty() || !options.contributions.empty();
     if (studied && options.robust != Robust::none)
         throw UsageError(
             "uncertainties are those of a sum of squares; leave out the robust kernel");
@@ -271,15 +319,12 @@ void checkStatements(const FitSamples& samples, const FitOptions& options) {
 FitResult fit(const FitSamples& samples, const FitOptions& options) {
     checkStatements(samples, options);
     const bool dispersed = !options.dispersion.empty() || namesMetals(options.model);
-    if (dispersed && options.instrument.any())
-        throw UsageError(
-            "terms of the instrument are for fits without laws over the wavelength and metals");
     if (!options.from.empty() && (dispersed || options.instrument.any()))
         throw UsageError(
             "values to start from are for fits without laws over the wavelength, metals and terms "
             "of the instrument");
-    if (options.instrument.any()) return fitWithInstrument(samples, options);
     if (dispersed) return fitDispersed(samples, options);
+    if (options.instrument.any()) return fitWithInstrument(samples, options);
     const ParametricSum sum(options.model, samples.isotropic);
     if (!options.from.empty() && options.from.size() != sum.shapes().size())
         throw UsageError(fmt::format("'{}' has {} shapes, and {} values to start from were given",
@@ -302,6 +347,7 @@ FitResult fit(const FitSamples& samples, const FitOptions& options) {
     }
     result.model = sum.spec();
     result.point = pointOf(parts, sum, samples);
+    addBudget(parts, options, result);
     fillIn(sum, shapes, linear, samples.channels, result);
     result.startCount = options.starts;
     result.seed = options.seed;

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <brdfs/fit/budget.h>
+#include <brdfs/fit/contributions.h>
 #include <brdfs/fit/fit_samples.h>
 #include <brdfs/fit/fitted_point.h>
 #include <brdfs/fit/instrument/fitted_instrument.h>
 #include <brdfs/fit/loss.h>
 #include <brdfs/fit/uncertainty.h>
 
+#include <cctype>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -44,6 +46,9 @@ struct FitOptions {
     /// Between f and the samples; with it the loss has to be l2 or cosine, without a robust kernel
     /// or shapes for each channel.
     Instrument instrument = {};
+    /// Errors that all samples share: they add to standard errors, correlations and predictions
+    /// (propagated_errors.h). None with a robust kernel and of pixels.
+    std::vector<Contribution> contributions = {};
 };
 
 /// A free parameter after a fit.
@@ -57,8 +62,11 @@ struct FittedParameter {
     bool linear = false;
     bool instrument = false;  ///< of the instrument, not of the material
 
-    /// Whether it is the scale of a scan, of which there may be hundreds.
-    bool isScanScale() const { return instrument && name.starts_with("scale "); }
+    /// Whether it is the scale, or the zero of an angle, of one scan, of which there may be
+    /// hundreds.
+    bool isScanScale() const {
+        return instrument && std::isdigit(static_cast<unsigned char>(name.back()));
+    }
 };
 
 /// The fit at one wavelength: the specification of a grey BRDF.

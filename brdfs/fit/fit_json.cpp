@@ -1,5 +1,6 @@
 #include <brdfs/fit/fit_json.h>
 
+#include <brdfs/fit/budget_json.h>
 #include <brdfs/fit/dispersion_json.h>
 #include <brdfs/fit/instrument/instrument_json.h>
 #include <brdfs/fit/uncertainty_json.h>
@@ -108,6 +109,7 @@ Json fitPreset(const FitReport& report) {
     if (!result.laws.empty()) fit["dispersion"] = dispersionJson(result);
     if (options.robust != Robust::none) fit["robust_scale"] = result.robustScale;
     if (result.instrument) fit["instrument"] = instrumentJson(*result.instrument);
+    if (result.budget) fit["budget"] = budgetJson(*result.budget);
     if (result.uncertainty) {
         fit["uncertainty"] = uncertaintyJson(report);
         fit["influence"] = influenceJson(samples, *result.uncertainty);

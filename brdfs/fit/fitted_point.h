@@ -37,6 +37,13 @@ struct FittedPoint {
         std::shared_ptr<const VarianceFreedom> of;
     };
     std::vector<Freedom> freedom;
+    /// An error common to all samples: the change of the coefficients by one standard uncertainty,
+    /// a part of `covariance`, and its degrees of freedom.
+    struct Common {
+        std::vector<double> change;
+        double degrees = 0;
+    };
+    std::vector<Common> common = {};
     /// Fits to resampled data: [draw][channel] as FittedChannel::values; a draw that did not
     /// converge is empty.
     std::vector<std::vector<std::vector<double>>> draws;

@@ -98,7 +98,7 @@ public:
             printable(result_.model), printable(report_.data));
         text += shared();
         text += byChannel();
-        return text + notes() + correlations() + budget() + instrument() + statistics();
+        return text + notes() + correlations() + instrument() + statistics();
     }
 
 private:
@@ -242,33 +242,6 @@ private:
             "\\par\\smallskip Correlations beyond {}: {}{}.\n", strong,
             count == 0 ? "none" : fmt::format("{}", fmt::join(pairs, ", ")),
             count > mostPairs ? fmt::format(", and {} more", count - mostPairs) : std::string());
-    }
-
-    /// The budgets of the parameters that all channels share.
-    std::string budget() const {
-        if (!result_.budget) return {};
-        Tabular tabular("lllrrrr");
-        tabular.rule("toprule");
-        tabular.row({"contribution", "type", "distribution", "$u(x)$", "$c$", "$u$", "share"});
-        for (const ParameterBudget& own : result_.budget->parameters) {
-            if (!own.channel.empty()) continue;
-            tabular.rule("midrule");
-            tabular.row({latexText(own.name), "", "", "", "", "", ""});
-            for (const BudgetRow& row : own.rows)
-                tabular.row({latexText(row.name), std::string(1, row.type),
-                             latexText(row.distribution),
-                             fmt::format("${}$ {}", latexValue(row.standard, 3),
-                                         row.unit == "1" ? std::string() : latexText(row.unit)),
-                             fmt::format("${}$", latexValue(row.sensitivity, 3)),
-                             fmt::format("${}$", latexValue(row.contribution, 3)),
-                             fmt::format("{:.3f}", row.share)});
-            tabular.row(
-                {"combined", "", "", "", "", fmt::format("${}$", latexValue(own.combined, 3)), ""});
-            tabular.row({fmt::format("expanded, $k = {:.2f}$", own.coverage), "", "", "", "",
-                         fmt::format("${}$", latexValue(own.expanded, 3)), ""});
-        }
-        tabular.rule("bottomrule");
-        return "\\par\\medskip\n" + tabular.text();
     }
 
     std::string instrument() const {

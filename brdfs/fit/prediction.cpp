@@ -81,8 +81,8 @@ Eigen::MatrixXd partOf(const std::vector<double>& covariance,
     return part;
 }
 
-/// Of the variances of f.
-std::vector<double> degreesOf(const FittedPoint& point, const Gradients& g) {
+/// Of the variances of f without what is common to all samples.
+std::vector<double> degreesOfSamples(const FittedPoint& point, const Gradients& g) {
     for (const FittedPoint::Freedom& part : point.freedom) {
         const Eigen::Index count = part.of->count();
         Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(g.slopes.rows(), count);
@@ -99,6 +99,28 @@ std::vector<double> degreesOf(const FittedPoint& point, const Gradients& g) {
         return degrees;
     }
     return std::vector<double>(static_cast<std::size_t>(g.slopes.rows()), unlimited);
+}
+
+/// Of the variances of f (Welch-Satterthwaite).
+std::vector<double> degreesOf(const FittedPoint& point, const Gradients& g,
+                              const Eigen::VectorXd& variance) {
+    std::vector<double> degrees = degreesOfSamples(point, g);
+    if (point.common.empty()) return degrees;
+    Eigen::VectorXd own = variance, fourths = Eigen::VectorXd::Zero(variance.size());
+    for (const FittedPoint::Common& common : point.common) {
+        Eigen::VectorXd change(static_cast<Eigen::Index>(g.coefficients.size()));
+        for (std::size_t i = 0; i < g.coefficients.size(); ++i)
+            change(static_cast<Eigen::Index>(i)) = common.change[g.coefficients[i]];
+        const Eigen::VectorXd part = (g.slopes * change).cwiseAbs2();
+        own -= part;
+        fourths += part.cwiseAbs2() / common.degrees;
+    }
+    for (Eigen::Index k = 0; k < variance.size(); ++k) {
+        double& d = degrees[static_cast<std::size_t>(k)];
+        const double sum = fourths(k) + own(k) * own(k) / d;
+        d = sum > 0 ? std::max(1.0, variance(k) * variance(k) / sum) : unlimited;
+    }
+    return degrees;
 }
 
 void addBootstrapBands(const FitResult& fit, const FitSamples& samples, std::size_t first,
@@ -159,7 +181,7 @@ Prediction predict(const FitResult& fit, std::span<const DirectionPair> pairs, b
             const Eigen::MatrixXd covariance = partOf(fit.point.covariance, g.coefficients);
             const Eigen::VectorXd variance =
                 (g.slopes * covariance).cwiseProduct(g.slopes).rowwise().sum();
-            const std::vector<double> degrees = degreesOf(fit.point, g);
+            const std::vector<double> degrees = degreesOf(fit.point, g, variance);
             for (std::size_t k = 0; k < samples.size(); ++k) {
                 const std::size_t v = c * result.pairs + first + k;
                 result.values[v] = g.values[k];
@@ -210,11 +232,12 @@ double simultaneousFactor(const FitResult& fit, std::span<const DirectionPair> p
         for (const FittedChannel& channel : fit.point.channels) {
             const Gradients g = gradientsOf(channel, samples);
             const Eigen::MatrixXd own = partOf(fit.point.covariance, g.coefficients);
-            Eigen::VectorXd error =
-                (g.slopes * own).cwiseProduct(g.slopes).rowwise().sum().cwiseMax(0).cwiseSqrt();
+            const Eigen::VectorXd variance =
+                (g.slopes * own).cwiseProduct(g.slopes).rowwise().sum();
+            Eigen::VectorXd error = variance.cwiseMax(0).cwiseSqrt();
             for (double& e : error) e = e > 0 ? 1 / e : 0;
             std::vector<Eigen::Index> rows(g.coefficients.begin(), g.coefficients.end());
-            degrees = std::min(degrees, std::ranges::min(degreesOf(fit.point, g)));
+            degrees = std::min(degrees, std::ranges::min(degreesOf(fit.point, g, variance)));
             const Eigen::MatrixXd z = error.asDiagonal() * g.slopes * changes(rows, Eigen::all);
             most = most.cwiseMax(z.cwiseAbs().colwise().maxCoeff().transpose());
         }

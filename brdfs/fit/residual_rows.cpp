@@ -85,8 +85,8 @@ double aspecularAngle(const FitSamples& samples, std::size_t k) {
 
 void writeResidualRows(const FitSamples& samples, const FitResult& result, Loss::Kind loss,
                        const std::function<void(std::string_view)>& write) {
-    // Fits with terms of the instrument have none.
-    const bool predicted = !result.point.channels.empty();
+    // Models of fits with terms of the instrument are readings; errors are those of f.
+    const bool predicted = !result.instrument && !result.point.channels.empty();
     const Prediction prediction = predicted ? predict(result, samples) : Prediction{};
     write(fmt::format(
         "row,wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,channel,value,sigma,model,residual,studentised,"

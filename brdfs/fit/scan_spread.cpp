@@ -25,7 +25,10 @@ Eigen::MatrixXd rootOf(const Eigen::MatrixXd& inverse) {
 }
 
 double satterthwaite(double trace, double squares) {
-    return trace > 0 && squares > 0 ? trace * trace / squares : 0;
+    // Where one scan decides alone, rounding is all there is.
+    constexpr double least = 0.1;
+    const double degrees = trace > 0 && squares > 0 ? trace * trace / squares : 0;
+    return degrees > least ? degrees : 0;
 }
 
 }  // namespace

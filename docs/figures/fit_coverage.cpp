@@ -4,7 +4,13 @@
 // their instrument and without any, and writes a row per parameter and kind of fit: coverage of
 // intervals of one and of 1.96 errors by scan, sandwich and normal errors, and of Student's
 // intervals by scan (scans_student of FIT.json), mean deviation from the truth and mean error.
+//     fit_coverage campaigns CSV [REPEATS]
+// fits REPEATS (3000) times the campaigns of tests/brdfs/campaigns.h, whose errors the fit is told
+// of, and writes a row for each parameter: coverage of intervals of 68.27 and 95.45 % (one and two
+// standard errors; by scan, Student's), mean deviation and scatter over the mean half width of the
+// first.
 
+#include <brdfs/campaigns.h>
 #include <brdfs/fit/distributions.h>
 #include <brdfs/instrument_scans.h>
 
@@ -15,6 +21,8 @@
 #include <cstdlib>
 #include <exception>
 #include <fstream>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
@@ -60,11 +68,48 @@ void report(const char* kind, const char* name, double value, const Routes& own,
         100 * bias / value, bias / error, own.scans.deviation() / error);
 }
 
+int runCampaigns(const char* path, std::size_t repeats) {
+    std::ofstream csv(path);
+    csv << "campaign,parameter,within_1,within_2,deviation,scatter\n";
+    for (const test::Campaign& campaign : test::campaigns()) {
+        std::vector<FitResult> results(repeats);
+        tbb::parallel_for(std::size_t{0}, repeats, [&](std::size_t r) {
+            results[r] = fit(campaign.measured(1000 + r), campaign.options);
+            results[r].uncertainty->values.clear();
+        });
+        for (std::size_t i = 0; i < results.front().parameters.size(); ++i) {
+            const FittedParameter& first = results.front().parameters[i];
+            if (first.instrument) continue;
+            test::Coverage own;
+            for (const FitResult& result : results) {
+                const double one = test::coverageFactor(result, i, 0.6827),
+                             two = test::coverageFactor(result, i, 0.9545);
+                own.add(result.parameters[i].value - test::truthOf(first.name),
+                        one * *result.parameters[i].standardError, two / one);
+            }
+            const std::string name =
+                first.channel.empty() ? first.name : first.name + " " + first.channel;
+            const double bias = own.bias() / own.error(), scatter = own.deviation() / own.error();
+            csv << fmt::format("{},{},{},{},{},{}\n", campaign.name, name, own.one(), own.two(),
+                               bias, scatter);
+            fmt::print("{:<24} {:<18} {:.3f} {:.3f}  off by {:+.2f} half widths, scatter {:.2f}\n",
+                       campaign.name, name, own.one(), own.two(), bias, scatter);
+        }
+    }
+    csv.close();
+    return csv ? 0 : 5;
+}
+
 int run(int argc, char** argv) {
-    if (argc < 2) {
-        fmt::print(stderr, "usage: fit_coverage CSV [REPEATS] [SCANS]\n");
+    if (argc < 2 || (std::string_view(argv[1]) == "campaigns" && argc < 3)) {
+        fmt::print(stderr,
+                   "usage: fit_coverage CSV [REPEATS] [SCANS]\n"
+                   "       fit_coverage campaigns CSV [REPEATS]\n");
         return 2;
     }
+    if (std::string_view(argv[1]) == "campaigns")
+        return runCampaigns(argv[2],
+                            argc > 3 ? static_cast<std::size_t>(std::atol(argv[3])) : 3000);
     const auto count = [&](int k, std::size_t otherwise) {
         return argc > k ? static_cast<std::size_t>(std::atol(argv[k])) : otherwise;
     };

@@ -504,6 +504,8 @@ def fit(
     at: str = ...,
     dispersion: str = ...,
     sigma: str = ...,
+    calibration: str = ...,
+    budget: Optional[Path] = ...,
     scans: Optional[Union[str, int]] = ...,
     bootstrap: int = ...,
     profile: bool = ...,

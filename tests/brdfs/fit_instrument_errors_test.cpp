@@ -7,6 +7,7 @@
 #include <brdfs/fit/compare_models.h>
 #include <brdfs/fit/fit.h>
 #include <brdfs/fit/instrument/veil.h>
+#include <brdfs/fit/prediction.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -117,6 +118,29 @@ TEST(InstrumentErrors, OfLinearTermsAreThoseOfGsl) {
         EXPECT_TRUE(study.parameters[i].profile->quadratic);
         EXPECT_NEAR((*study.parameters[i].profile->within95.high - reference.values[i]) / error,
                     gsl_cdf_ugaussian_Qinv(0.025), 1e-3);
+    }
+}
+
+// Three scans give the errors of stated uncertainties: those of f are g^T C g, g its two columns.
+TEST(InstrumentErrors, OfFAreThoseOfTheMaterialByGsl) {
+    const FitSamples samples = pointScans(3, 3);
+    FitOptions options{.model = "lambert + ggx:F0=.9,alpha=.1", .loss = Loss::Kind::l2};
+    options.uncertainty.report = true;
+    options.instrument = parseInstrument({.dark = "fit:both"});
+    const FitResult result = fit(samples, options);
+    const LinearReadings reference(samples, {});
+    const Prediction own = predict(result, samples);
+    const std::vector<double> diffuse = valuesOf(*open("lambert:kd=1"), samples),
+                              lobe = valuesOf(*open("ggx:ks=1,F0=.9,alpha=.1"), samples);
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const double g[2] = {diffuse[k], lobe[k]};
+        double f = 0, variance = 0;
+        for (int i = 0; i < 2; ++i) {
+            f += g[i] * reference.values[i];
+            for (int j = 0; j < 2; ++j) variance += g[i] * reference.covariances[i][j] * g[j];
+        }
+        EXPECT_NEAR(own.values[k], f, 1e-6 * f);
+        EXPECT_NEAR(own.errors[k], std::sqrt(variance), 1e-7 * std::sqrt(variance));
     }
 }
 

@@ -102,14 +102,14 @@ inline brdfs::FitOptions scanFit(const ScanTruth& truth, bool instrument) {
     return options;
 }
 
-/// The share of intervals of one and of 1.96 standard errors that hold the truth, and the mean
-/// deviation.
+/// The share of intervals of one and of 1.96 (or `two`) standard errors that hold the truth, and
+/// the mean deviation.
 struct Coverage {
     std::size_t within = 0, within2 = 0, count = 0;
     double sum = 0, squares = 0, errors = 0;
 
-    void add(double deviation, double error) {
-        constexpr double two = 1.959963984540054;  // 97.5 % of a normal distribution
+    /// `two`: 97.5 % of a normal distribution.
+    void add(double deviation, double error, double two = 1.959963984540054) {
         ++count;
         within += std::abs(deviation) < error;
         within2 += std::abs(deviation) < two * error;

@@ -150,6 +150,9 @@ class SameNumbers(program.InFolder):
         cases = [(["BRDF"], {"sigma": "1%+0.001", "instrument": {"source_aperture": "cone:0.5",
                                                                  "dark": "fit"}},
                   ["--sigma", "1%+0.001", "--source-aperture", "cone:0.5", "--dark", "fit"]),
+                 (["BRDF"], {"sigma": "1%+0.001", "calibration": "0.8%",
+                             "instrument": {"detector_zero": "0.05"}},
+                  ["--sigma", "1%+0.001", "--calibration", "0.8%", "--detector-zero", "0.05"]),
                  (["400nm", "410nm", "420nm", "430nm"],
                   {"loss": "l2", "dispersion": "kd=poly:1,ks=shared,exponent=shared"},
                   ["--loss", "l2", "--dispersion", "kd=poly:1,ks=shared,exponent=shared"])]
@@ -162,10 +165,12 @@ class SameNumbers(program.InFolder):
                                  "theirs.json", *words)
                 self.assertEqual(self.bytes_of("ours.json"), self.bytes_of("theirs.json"))
                 self.assertEqual(found.brdf().channels, hshfit.open("ours.json").channels)
-        with self.assertRaisesRegex(hshfit.UsageError, "instrument"):
-            self.write_scans(["BRDF"])
-            hshfit.fit("scans.astm", "phong", starts=2, sigma="1%+0.001",
-                       instrument={"dark": "fit"}).predict([0, 0, 1], [0, 0, 1])
+        self.write_scans(["BRDF"])
+        with_dark = hshfit.fit("scans.astm", "phong", starts=2, sigma="1%+0.001",
+                               instrument={"dark": "fit"})
+        at = with_dark.predict([0, 0, 1], [0, 0, 1])
+        np.testing.assert_allclose(at["f"], with_dark.brdf().eval([0, 0, 1], [0, 0, 1]))
+        self.assertTrue((at["standard_error"] > 0).all())
 
     def test_curves_are_those_of_the_program(self):
         found = hshfit.curves("ward:ax=0.2,ay=0.3", max_order=5, outgoing=(40, 10), cosine=True)

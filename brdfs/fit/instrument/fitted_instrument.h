@@ -8,13 +8,15 @@
 namespace hshfit::brdfs {
 
 /// The instrument after a fit: stated and fitted numbers alike. Errors of the fitted ones are those
-/// of FitResult::parameters named "offset", "dark", "stray" and "scale N", N the number of the scan
-/// from 1 on.
+/// of FitResult::parameters named "offset", "dark", "stray", "incidence zero", "detector zero" and
+/// "scale N", N the number of the scan from 1 on; zeros of scans have its number too.
 struct FittedInstrument {
     Instrument instrument;             ///< as it was asked for
     std::vector<double> offset, dark;  ///< of each channel; empty: none
     double stray = 0;
     std::vector<double> scales;  ///< of each scan; empty: none
+    /// Degrees, of all samples or of each scan; empty: none.
+    std::vector<double> incidenceZeros, detectorZeros;
     /// Pairs of directions over which f is averaged, in all, and at most for one sample.
     std::size_t nodes = 0, mostNodes = 0;
     /// The largest relative change of an average, and of the hemisphere's mean for stray light,

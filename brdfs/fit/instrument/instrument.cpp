@@ -36,16 +36,37 @@ InstrumentTerm termIn(std::string_view text, const char* what, double low, doubl
     return {From::stated, *value};
 }
 
+AngleZero zeroIn(std::string_view text) {
+    constexpr std::string_view scan = ":scan";
+    constexpr double most = 5;  // degrees
+    if (text.empty()) return {};
+    AngleZero result{AngleZero::Of::campaign, 0};
+    std::string_view width = text;
+    if (width.ends_with(scan)) {
+        result.of = AngleZero::Of::scan;
+        width.remove_suffix(scan.size());
+    }
+    const auto value = numberIn(width);
+    if (!value || !(*value > 0) || *value > most)
+        throw UsageError(fmt::format(
+            "'{}' is no zero of an angle; valid: its standard uncertainty, above 0 and at most {} "
+            "degrees, with :scan behind it for one for each scan, such as 0.05 or 0.05:scan",
+            text, most));
+    result.width = *value;
+    return result;
+}
+
 }  // namespace
 
 bool Instrument::any() const {
     using From = InstrumentTerm::From;
     return averages() || slit.finite() || offset.from != From::nothing ||
-           dark.from != From::nothing || stray.from != From::nothing || scales;
+           dark.from != From::nothing || stray.from != From::nothing || scales || zeros();
 }
 
 bool InstrumentText::any() const {
-    for (const std::string* text : {&source, &detector, &bandwidth, &offset, &dark, &stray, &scale})
+    for (const std::string* text : {&source, &detector, &bandwidth, &offset, &dark, &stray, &scale,
+                                    &incidenceZero, &detectorZero})
         if (!text->empty()) return true;
     return false;
 }
@@ -75,6 +96,8 @@ Instrument parseInstrument(const InstrumentText& text) {
         result.darkOver = static_cast<Cosines>(found - cosineNames.begin());
     }
     result.stray = termIn(text.stray, "share of stray light", 0, 0.9);
+    result.incidenceZero = zeroIn(text.incidenceZero);
+    result.detectorZero = zeroIn(text.detectorZero);
     if (text.scale.empty()) return result;
     result.scales = true;
     if (text.scale == "fit") return result;
@@ -100,16 +123,23 @@ void checkInstrument(const Instrument& instrument, const FitSamples& samples) {
             : samples.origin == SampleOrigin::nodes ? "values of a function"
                                                     : "pixels"));
     slitMatrix(instrument.slit, samples.channels);
-    if (!instrument.scales) return;
-    if (samples.scans.empty())
-        throw UsageError(
-            "a scale for each scan needs scans: say which samples belong to one (column, "
-            "incidence, or the number of samples in each)");
-    if (instrument.scaleWidth > 0 && samples.sigmas.empty())
+    const bool zeroOfScan = instrument.incidenceZero.of == AngleZero::Of::scan ||
+                            instrument.detectorZero.of == AngleZero::Of::scan;
+    if ((instrument.scales || zeroOfScan) && samples.scans.empty())
+        throw UsageError(fmt::format(
+            "a {} for each scan needs scans: say which samples belong to one (column, incidence, "
+            "or the number of samples in each)",
+            instrument.scales ? "scale" : "zero of an angle"));
+    if (!samples.sigmas.empty()) return;
+    if (instrument.scaleWidth > 0)
         throw UsageError(
             "the width of the scales of scans weighs them against the samples, whose "
             "uncertainties have to be stated too; state them, or take fit, by which the first scan "
             "is the reference");
+    if (instrument.zeros())
+        throw UsageError(
+            "the width of the zero of an angle weighs it against the samples, whose uncertainties "
+            "have to be stated too");
 }
 
 std::string_view nameOf(Cosines cosines) {

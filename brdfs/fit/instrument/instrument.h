@@ -18,12 +18,23 @@ struct InstrumentTerm {
     bool fitted() const { return from == From::fitted; }
 };
 
+/// The zero of an angle as a number that the fit finds, one for all samples or one for each scan:
+/// normal about 0 with a standard deviation of `width` degrees (turned.h).
+struct AngleZero {
+    enum class Of { nothing, campaign, scan };
+    Of of = Of::nothing;
+    double width = 0;
+    bool fitted() const { return of != Of::nothing; }
+};
+
 /// The cosines by which readings were divided: cos(theta_o), cos(theta_i), or both.
 enum class Cosines { scatter, incidence, both };
 
 /// The terms between f and a reading of scan s at one wavelength:
 ///     a_s ((1 - v) F + v V) + o + d / c
-///     F  f averaged over both apertures, weighted by cos(theta_i) cos(theta_o), and over the slit
+///     F  f averaged over both apertures, weighted by cos(theta_i) cos(theta_o), and over the slit,
+///        at the stated directions turned by the zeros of the angles, times the cosines c there
+///        over those at the stated ones
 ///     V  directional albedo of wi over pi: the mean radiance of the hemisphere
 ///     v  stray light, the share that reaches the detector from all of the hemisphere
 ///     o  offset, 1/sr
@@ -39,18 +50,21 @@ struct Instrument {
     Cosines darkOver = Cosines::scatter;
     bool scales = false;
     double scaleWidth = 0;
+    AngleZero incidenceZero, detectorZero;
 
     bool any() const;
+    bool zeros() const { return incidenceZero.fitted() || detectorZero.fitted(); }
     bool averages() const { return source.finite() || detector.finite(); }
 };
 
 /// An instrument in words: apertures and slit as parseAperture and parseSlit take them; "fit" or a
 /// number for offset, dark (with ":out", ":in" or ":both" behind it: its cosines; ASTM E2392
 /// divides by that of the scattered direction) and stray; "fit" or a width such as "2%" for the
-/// scale of each scan. Empty: none.
+/// scale of each scan; degrees for the width of a zero, with ":scan" behind it for one for each
+/// scan. Empty: none.
 struct InstrumentText {
     std::string source = {}, detector = {}, bandwidth = {}, offset = {}, dark = {}, stray = {},
-                scale = {};
+                scale = {}, incidenceZero = {}, detectorZero = {};
     double tolerance = Instrument().tolerance;
 
     bool any() const;
@@ -59,8 +73,8 @@ struct InstrumentText {
 /// Throws UsageError.
 Instrument parseInstrument(const InstrumentText& text);
 
-/// Throws UsageError for samples that are no readings of an instrument, a scale per scan without
-/// scans, and a width of scales without stated uncertainties.
+/// Throws UsageError for samples that are no readings of an instrument, a scale or zero per scan
+/// without scans, and a width of scales or zeros without stated uncertainties.
 void checkInstrument(const Instrument& instrument, const FitSamples& samples);
 
 /// "out", "in" or "both".

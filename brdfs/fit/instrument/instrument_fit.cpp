@@ -3,7 +3,7 @@
 #include <brdfs/fit/filled_in.h>
 #include <brdfs/fit/instrument/instrument_problem.h>
 #include <brdfs/fit/instrument/instrument_study.h>
-#include <brdfs/fit/instrument/patch_sums.h>
+#include <brdfs/fit/instrument/quadratures.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -15,19 +15,6 @@
 
 namespace hshfit::brdfs {
 namespace {
-
-void checkOptions(const FitSamples& samples, const FitOptions& options) {
-    checkInstrument(options.instrument, samples);
-    if (options.loss != Loss::Kind::l2 && options.loss != Loss::Kind::cosine)
-        throw UsageError(
-            "terms of an instrument are fitted with the losses l2 and cosine, which are linear in "
-            "readings");
-    if (options.robust != Robust::none)
-        throw UsageError("terms of an instrument are fitted without a robust kernel");
-    if (options.perChannel && samples.channels.count() > 1)
-        throw UsageError(
-            "terms of an instrument are those of all channels; leave out shapes for each channel");
-}
 
 /// x of the material in a result.
 std::vector<double> materialOf(const FitResult& result, const ParametricSum& sum,
@@ -60,6 +47,7 @@ FitResult searchMaterial(const FitSamples& samples, const FitOptions& options) {
     FitOptions plain = options;
     plain.instrument = {};
     plain.uncertainty = {};
+    plain.contributions.clear();
     plain.progress = {};
     return fit(samples, plain);
 }
@@ -103,40 +91,6 @@ void setMaterial(const InstrumentProblem& problem, const std::vector<double>& x,
     fillIn(problem.sum(), {values}, linear, problem.readings().samples.channels, result);
 }
 
-/// Quadratures for a material.
-struct Quadratures {
-    std::vector<PatchLevels> levels;
-    std::optional<Veil> veil;
-    double averageChange = 0, strayChange = 0;
-};
-
-bool wantsVeil(const Instrument& instrument) {
-    return instrument.stray.from != InstrumentTerm::From::nothing;
-}
-
-/// Whether the quadratures keep the tolerance for this material; else they do afterwards.
-bool refine(const Brdf& material, const FitSamples& samples, const Instrument& instrument,
-            Quadratures& now) {
-    const PatchSearch search = searchLevels(material, samples, instrument, now.levels);
-    bool same = true;
-    for (std::size_t k = 0; k < samples.size(); ++k)
-        same = same && search.levels[k].source == now.levels[k].source &&
-               search.levels[k].detector == now.levels[k].detector;
-    if (same && search.exhausted)
-        throw NumericError(fmt::format(
-            "the average over the apertures at sample {} changes by {:.2g} with the next finer "
-            "quadrature, expected at most {:.2g}: the lobe that was fitted is too narrow for this "
-            "aperture",
-            search.sample + 1, search.change, instrument.tolerance));
-    now.levels = search.levels;
-    now.averageChange = search.change;
-    if (!wantsVeil(instrument)) return same;
-    now.strayChange = now.veil ? veilChange(*now.veil, material, instrument.tolerance) : 1;
-    if (now.strayChange <= instrument.tolerance) return same;
-    now.veil = veilOf(material, samples, instrument.tolerance);
-    return false;
-}
-
 FittedInstrument fittedAt(const InstrumentProblem& problem, const std::vector<double>& x,
                           const Quadratures& quadratures) {
     using From = InstrumentTerm::From;
@@ -154,23 +108,22 @@ FittedInstrument fittedAt(const InstrumentProblem& problem, const std::vector<do
     result.dark = of(instrument.dark, problem.darkPlace());
     result.stray = problem.strayPlace() ? x[*problem.strayPlace()] : instrument.stray.value;
     if (instrument.scales) result.scales = problem.rows(x, false).scales;
-    result.averageChange = quadratures.averageChange;
-    result.strayChange = quadratures.strayChange;
-    if (const auto& sums = problem.readings().samples.sums) {
-        result.nodes = sums->size();
-        for (const NodeSums::Row& row : sums->rows)
-            result.mostNodes = std::max(result.mostNodes, row.nodes);
+    for (const InstrumentProblem::Zero& zero : problem.zeros()) {
+        const auto first = x.begin() + static_cast<std::ptrdiff_t>(zero.first);
+        (zero.detector ? result.detectorZeros : result.incidenceZeros)
+            .assign(first, first + static_cast<std::ptrdiff_t>(zero.priors.size()));
     }
+    quadratures.describe(problem.readings().samples, result);
     return result;
 }
 
-/// Loss and information criteria; scales without a width are parameters, those with one are held
-/// by it.
+/// Loss and information criteria; scales without a width are parameters, those with one, and zeros
+/// of angles, are held by it.
 void addStatistics(const InstrumentProblem& problem, const std::vector<double>& x,
                    FitResult& result) {
     const ReadingRows rows = problem.rows(x, false);
     const FitSamples& samples = problem.readings().samples;
-    double squares = 0, weights = 0, priors = 0, free = 0;
+    double squares = 0, weights = 0, priors = problem.zeroSquares(x), free = 0;
     for (std::size_t v = 0; v < rows.material.size(); ++v) {
         const double r = rows.scales[problem.scanOf(v % samples.size())] * rows.material[v] +
                          rows.added[v] - samples.values[v];
@@ -181,6 +134,8 @@ void addStatistics(const InstrumentProblem& problem, const std::vector<double>& 
         priors += problem.priorSquare(s, rows.scales[s]);
         free += problem.freeScale(s) && !(problem.priorOf(s) > 0) ? 1 : 0;
     }
+    for (const InstrumentProblem::Zero& zero : problem.zeros())
+        free -= static_cast<double>(zero.priors.size());
     result.loss = std::sqrt(squares / weights);
     const bool stated = !samples.sigmas.empty();
     const double count = static_cast<double>(samples.values.size()),
@@ -193,8 +148,21 @@ void addStatistics(const InstrumentProblem& problem, const std::vector<double>& 
 
 }  // namespace
 
+void checkReadings(const FitSamples& samples, const FitOptions& options) {
+    checkInstrument(options.instrument, samples);
+    if (options.loss != Loss::Kind::l2 && options.loss != Loss::Kind::cosine)
+        throw UsageError(
+            "terms of an instrument are fitted with the losses l2 and cosine, which are linear in "
+            "readings");
+    if (options.robust != Robust::none)
+        throw UsageError("terms of an instrument are fitted without a robust kernel");
+    if (options.perChannel && samples.channels.count() > 1)
+        throw UsageError(
+            "terms of an instrument are those of all channels; leave out shapes for each channel");
+}
+
 FitResult fitWithInstrument(const FitSamples& samples, const FitOptions& options) {
-    checkOptions(samples, options);
+    checkReadings(samples, options);
     const Instrument& instrument = options.instrument;
     const ParametricSum sum(options.model, samples.isotropic);
     Readings readings{.samples = samples, .instrument = instrument};
@@ -203,18 +171,11 @@ FitResult fitWithInstrument(const FitSamples& samples, const FitOptions& options
     quadratures.levels.resize(samples.size());
 
     // At the nominal directions, without anything that is fitted.
-    FitSamples stated = samples;
+    FitSamples stated = withoutStated(samples, instrument);
     stated.scans.clear();
-    for (std::size_t v = 0; v < stated.values.size(); ++v) {
-        const std::size_t k = v % samples.size();
-        stated.values[v] -= instrument.offset.value +
-                            instrument.dark.value *
-                                overCosines(instrument.darkOver, samples.wiZ[k], samples.wo[k].z);
-    }
     FitResult result = searchMaterial(stated, options);
-    result.point = {};  // of the material without the fitted terms: it predicts nothing here
     std::vector<double> x = materialOf(result, sum, samples.channels.count());
-    refine(*openFit(result), samples, instrument, quadratures);
+    quadratures.refine(*openFit(result), samples, instrument);
     constexpr int most = 8;
     int iterations = result.iterations, evaluations = result.evaluations;
     for (int round = 0; round < most; ++round) {
@@ -226,7 +187,7 @@ FitResult fitWithInstrument(const FitSamples& samples, const FitOptions& options
         x = minimum.x;
         iterations += minimum.iterations, evaluations += minimum.evaluations;
         setMaterial(problem, x, result);
-        if (!refine(*openFit(result), samples, instrument, quadratures)) continue;
+        if (!quadratures.refine(*openFit(result), samples, instrument)) continue;
         result.converged = minimum.converged;
         result.message = minimum.message;
         result.iterations = iterations;
@@ -250,12 +211,13 @@ FitResult fitWithInstrument(const FitSamples& samples, const FitOptions& options
 
 std::vector<double> readingsOf(const FitResult& result, const FitSamples& samples) {
     const FittedInstrument& fitted = *result.instrument;
+    if (!result.laws.empty()) return statedReadings(*openFit(result), samples, fitted.instrument);
     const ParametricSum sum(result.model, samples.isotropic);
     Readings readings{.samples = samples, .instrument = fitted.instrument};
     readings.mix = slitMatrix(fitted.instrument.slit, samples.channels);
     Quadratures quadratures;
     quadratures.levels.resize(samples.size());
-    refine(*openFit(result), samples, fitted.instrument, quadratures);
+    quadratures.refine(*openFit(result), samples, fitted.instrument);
     readings.samples = averaged(samples, fitted.instrument, quadratures.levels);
     readings.veil = std::move(quadratures.veil);
     const InstrumentProblem problem(readings, sum, Loss::Kind::l2);
@@ -266,6 +228,10 @@ std::vector<double> readingsOf(const FitResult& result, const FitSamples& sample
     set(problem.offsetPlace(), fitted.offset);
     set(problem.darkPlace(), fitted.dark);
     set(problem.strayPlace(), {fitted.stray});
+    for (const InstrumentProblem::Zero& zero : problem.zeros())
+        if (!zero.ofScan)
+            set(zero.first, zero.detector ? fitted.detectorZeros : fitted.incidenceZeros);
+    problem.setZerosOfScans(x);
     return problem.model(x);
 }
 
@@ -274,7 +240,10 @@ std::vector<double> readingsAt(const FitResult& result, const Channels& channels
     FitSamples samples = unmeasuredSamples(pairs, channels, isotropic);
     samples.origin = SampleOrigin::measured;
     FitResult unscaled = result;
-    unscaled.instrument->instrument.scales = false;
+    Instrument& own = unscaled.instrument->instrument;
+    own.scales = false;
+    for (AngleZero* zero : {&own.incidenceZero, &own.detectorZero})
+        if (zero->of == AngleZero::Of::scan) *zero = {};
     return readingsOf(unscaled, samples);
 }
 

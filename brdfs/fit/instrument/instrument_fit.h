@@ -15,11 +15,14 @@ namespace hshfit::brdfs {
 /// each channel; NumericError where a quadrature does not reach its tolerance.
 FitResult fitWithInstrument(const FitSamples& samples, const FitOptions& options);
 
+/// Throws UsageError for samples and options that no fit with terms of the instrument takes.
+void checkReadings(const FitSamples& samples, const FitOptions& options);
+
 /// predictedValues() of such a fit.
 std::vector<double> readingsOf(const FitResult& result, const FitSamples& samples);
 
-/// Readings by its instrument of the fitted material at pairs of directions, in a scan of scale 1:
-/// [channel * pairs + pair], 1/sr. Throws as fitWithInstrument.
+/// Readings by its instrument of the fitted material at pairs of directions, in a scan of scale 1
+/// and zeros of 0: [channel * pairs + pair], 1/sr. Throws as fitWithInstrument.
 std::vector<double> readingsAt(const FitResult& result, const Channels& channels, bool isotropic,
                                std::span<const DirectionPair> pairs);
 

@@ -19,6 +19,12 @@ Json termJson(const InstrumentTerm& term, const std::vector<double>& values) {
     return {{"fitted", term.fitted()}, {"values", values}};
 }
 
+Json zeroJson(const AngleZero& zero, const std::vector<double>& values) {
+    return {{"width", zero.width},
+            {"of", zero.of == AngleZero::Of::scan ? "scan" : "campaign"},
+            {"values", values}};
+}
+
 const char* nameOf(Slit::Shape shape) {
     if (shape == Slit::Shape::box) return "box";
     return shape == Slit::Shape::triangle ? "triangle" : "gauss";
@@ -48,6 +54,10 @@ Json instrumentJson(const FittedInstrument& fitted) {
         json["stray"] = {{"fitted", own.stray.fitted()},
                          {"value", fitted.stray},
                          {"largest_change", fitted.strayChange}};
+    if (own.incidenceZero.fitted())
+        json["incidence_zero"] = zeroJson(own.incidenceZero, fitted.incidenceZeros);
+    if (own.detectorZero.fitted())
+        json["detector_zero"] = zeroJson(own.detectorZero, fitted.detectorZeros);
     if (own.scales) {
         json["scales"] = {{"values", fitted.scales}};
         if (own.scaleWidth > 0) json["scales"]["width"] = own.scaleWidth;

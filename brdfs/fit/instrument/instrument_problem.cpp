@@ -33,7 +33,7 @@ std::vector<double> veilColumns(const Veil& veil, const ParametricSum& sum,
 
 InstrumentProblem::InstrumentProblem(const Readings& readings, const ParametricSum& sum,
                                      Loss::Kind loss, std::vector<double> times)
-    : readings_(readings), samples_(readings.samples), sum_(sum) {
+    : readings_(readings), samples_(readings.samples), sum_(sum), times_(std::move(times)) {
     const Instrument& instrument = readings.instrument;
     const std::size_t samples = samples_.size();
     double squares = 0, weights = 0;
@@ -41,7 +41,7 @@ InstrumentProblem::InstrumentProblem(const Readings& readings, const ParametricS
         for (std::size_t k = 0; k < samples; ++k) {
             const double slope = mapValue(loss, samples_.value(c, k), samples_.wiZ[k]).slope;
             weights_.push_back(samples_.weight(c, k) * slope * slope *
-                               (times.empty() ? 1 : times[k]));
+                               (times_.empty() ? 1 : times_[k]));
             const double value = samples_.value(c, k);
             squares += weights_.back() * value * value;
             weights += weights_.back();
@@ -54,13 +54,14 @@ InstrumentProblem::InstrumentProblem(const Readings& readings, const ParametricS
     if (instrument.offset.fitted()) offset_ = count_, count_ += channels();
     if (instrument.dark.fitted()) dark_ = count_, count_ += channels();
     if (instrument.stray.fitted()) stray_ = count_++;
+    placeZeros();
     if (!instrument.scales) return;
     scanCount_ = *std::ranges::max_element(samples_.scans) + 1;
     if (!(instrument.scaleWidth > 0)) return;
     priors_.assign(scanCount_, 0);
     for (std::size_t k = 0; k < samples; ++k)
         priors_[samples_.scans[k]] =
-            (times.empty() ? 1 : times[k]) / (instrument.scaleWidth * instrument.scaleWidth);
+            (times_.empty() ? 1 : times_[k]) / (instrument.scaleWidth * instrument.scaleWidth);
 }
 
 Bounds InstrumentProblem::bounds() const {
@@ -71,6 +72,11 @@ Bounds InstrumentProblem::bounds() const {
     bounds.upper.insert(bounds.upper.end(), signedCount, most);
     constexpr double mostStray = 0.9;
     if (stray_) bounds.lower.push_back(0), bounds.upper.push_back(mostStray);
+    constexpr double mostWidths = 10;
+    for (const Zero& zero : zeros_) {
+        bounds.lower.insert(bounds.lower.end(), zero.priors.size(), -mostWidths * zero.width);
+        bounds.upper.insert(bounds.upper.end(), zero.priors.size(), mostWidths * zero.width);
+    }
     return bounds;
 }
 
@@ -155,7 +161,7 @@ void InstrumentProblem::fillBlock(std::span<const double> x, bool derivatives, s
     });
 }
 
-ReadingRows InstrumentProblem::rows(std::span<const double> x, bool derivatives) const {
+ReadingRows InstrumentProblem::unscaled(std::span<const double> x, bool derivatives) const {
     const std::size_t count = samples_.size(), shapes = shapeCount(), terms = sum_.linears().size();
     ReadingRows rows;
     rows.material.resize(channels() * count);
@@ -175,7 +181,12 @@ ReadingRows InstrumentProblem::rows(std::span<const double> x, bool derivatives)
         rows.places.push_back(std::move(places));
     }
     const std::span<const double> u = x.first(shapes);
-    const ColumnBlocks columns(samples_, sum_, u, derivatives);
+    const FitSamples moved = zeros_.empty() ? FitSamples() : turned(samples_, zerosAt(x));
+    const FitSamples& samples = zeros_.empty() ? samples_ : moved;
+    const std::vector<double> ratios =
+        zeros_.empty() ? std::vector<double>()
+                       : cosineRatios(samples, samples_, readings_.instrument.darkOver);
+    const ColumnBlocks columns(samples, sum_, u, derivatives);
     const double stray = strayOf(x);
     const bool veiled = readings_.veil.has_value();
     const std::vector<double> veil =
@@ -186,6 +197,8 @@ ReadingRows InstrumentProblem::rows(std::span<const double> x, bool derivatives)
                           size = std::min(ColumnBlocks::blockSize, count - begin);
         std::vector<double> z(columns.count() * size), difference;
         columns.fill(begin, size, z.data());
+        for (std::size_t i = 0; i < (ratios.empty() ? 0 : z.size()); ++i)
+            z[i] *= ratios[begin + i % size];
         if (veiled) {
             const std::size_t directions = readings_.veil->sums.size();
             difference.resize(z.size());
@@ -197,6 +210,16 @@ ReadingRows InstrumentProblem::rows(std::span<const double> x, bool derivatives)
         }
         fillBlock(x, derivatives, begin, size, z, difference, columns, rows);
     });
+    return rows;
+}
+
+std::vector<double> InstrumentProblem::materialAt(std::span<const double> x) const {
+    return unscaled(x, false).material;
+}
+
+ReadingRows InstrumentProblem::rows(std::span<const double> x, bool derivatives) const {
+    ReadingRows rows = unscaled(x, derivatives);
+    if (derivatives) addZeroSlopes(x, rows);
     setScales(rows);
     return rows;
 }
@@ -243,6 +266,9 @@ void InstrumentProblem::setScales(ReadingRows& rows) const {
         if (freeScale(s) && squares[s] + priorOf(s) > 0)
             rows.scales[s] = bestScale(s, squares[s], products[s]);
     }
+    for (ReadingRows::ByZero& zero : rows.zeros)
+        for (std::size_t v = 0; v < zero.slopes.size(); ++v)
+            zero.slopes[v] *= rows.scales[scanOf(v % count)];
     for (std::size_t c = 0; c < channels(); ++c) {
         if (rows.slopes[c].empty()) continue;
         const std::vector<std::size_t>& places = rows.places[c];
@@ -282,7 +308,11 @@ Equations InstrumentProblem::equations(std::span<const double> x, bool derivativ
                 rows.slopes[c].data() + k * places.size(), width);
             own.selfadjointView<Eigen::Lower>().rankUpdate(slopes, weight);
             pull += weight * r * slopes;
+            addZeroProducts(rows, c, k, r, hessian, gradient);
             if (!scales) continue;
+            for (const ReadingRows::ByZero& zero : rows.zeros)
+                across(static_cast<Eigen::Index>(zero.places[k]),
+                       static_cast<Eigen::Index>(scan)) += weight * m * zero.slopes[v];
             squares[scan] += weight * m * m;
             const auto column = static_cast<Eigen::Index>(scan);
             for (Eigen::Index i = 0; i < width; ++i)
@@ -295,6 +325,8 @@ Equations InstrumentProblem::equations(std::span<const double> x, bool derivativ
         gradient(at) += pull;
         hessian(at, at) += own;
     }
+    cost += 0.5 * zeroSquares(x);
+    if (derivatives) addZeroPriors(x, hessian, gradient);
     for (std::size_t s = 0; s < scanCount_; ++s) {
         cost += 0.5 * priorSquare(s, rows.scales[s]);
         const double own = squares[s] + priorWeight(s, rows.scales[s]);

@@ -1,8 +1,10 @@
 #include <brdfs/fit/instrument/instrument_study.h>
 
 #include <brdfs/fit/covariance.h>
+#include <brdfs/fit/instrument/instrument_system.h>
 #include <brdfs/fit/minimum_study.h>
 #include <brdfs/fit/percentiles.h>
+#include <brdfs/fit/propagated_errors.h>
 #include <brdfs/fit/resampling.h>
 #include <brdfs/fit/scan_spread.h>
 #include <brdfs/fit/unseen_lobes.h>
@@ -15,6 +17,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
+#include <memory>
 
 namespace hshfit::brdfs {
 namespace {
@@ -27,109 +31,6 @@ Eigen::Index at(std::size_t i) {
     return static_cast<Eigen::Index>(i);
 }
 
-Equations equationsOf(const Matrix& hessian, const Matrix& spread) {
-    Equations result;
-    result.hessian.assign(hessian.data(), hessian.data() + hessian.size());
-    result.spread.assign(spread.data(), spread.data() + spread.size());
-    return result;
-}
-
-/// The normal equations of x and of the scales that are free, in units of the weights.
-class WholeSystem {
-public:
-    WholeSystem(const InstrumentProblem& problem, const std::vector<double>& x)
-        : problem_(problem),
-          samples_(problem.readings().samples),
-          rows_(problem.rows(x, true)),
-          count_(x.size()) {
-        for (std::size_t s = 0; s < problem.scanCount(); ++s) {
-            scalePlaces_.push_back(problem.freeScale(s) ? at(count_ + scales_.size()) : -1);
-            if (problem.freeScale(s)) scales_.push_back(s);
-        }
-        hessian_ = Matrix::Zero(size(), size());
-        forEachValue([&](std::size_t, const Indices& places, const Vector& slopes, double) {
-            for (Eigen::Index i = 0; i < slopes.size(); ++i)
-                for (Eigen::Index j = 0; j < slopes.size(); ++j)
-                    hessian_(places[static_cast<std::size_t>(i)],
-                             places[static_cast<std::size_t>(j)]) += slopes(i) * slopes(j);
-        });
-        for (const std::size_t s : scales_) {
-            const Eigen::Index place = scalePlaces_[s];
-            hessian_(place, place) += problem.priorWeight(s, rows_.scales[s]);
-        }
-    }
-
-    Eigen::Index size() const { return at(count_ + scales_.size()); }
-    const Matrix& hessian() const { return hessian_; }
-    const std::vector<std::size_t>& scales() const { return scales_; }
-    const ReadingRows& rows() const { return rows_; }
-
-    /// work(value, places, slopes, residual), the last two times the root of the weight; residual =
-    /// measured - model.
-    template <class Work>
-    void forEachValue(const Work& work) const {
-        for (std::size_t c = 0; c < problem_.channels(); ++c) {
-            const std::vector<std::size_t>& own = rows_.places[c];
-            Indices places(own.begin(), own.end());
-            Vector slopes(at(own.size()));
-            for (std::size_t k = 0; k < samples_.size(); ++k) {
-                const std::size_t v = c * samples_.size() + k, scan = problem_.scanOf(k);
-                const double root = std::sqrt(rows_.weights[v]);
-                places.resize(own.size());
-                slopes.resize(at(own.size()));
-                for (std::size_t i = 0; i < own.size(); ++i)
-                    slopes(at(i)) = root * rows_.slopes[c][k * own.size() + i];
-                if (scalePlaces_[scan] >= 0) {
-                    places.push_back(scalePlaces_[scan]);
-                    slopes.conservativeResize(at(own.size()) + 1);
-                    slopes(at(own.size())) = root * rows_.material[v];
-                }
-                work(v, places, slopes, root * (samples_.values[v] - modelAt(v, scan)));
-            }
-        }
-    }
-    double modelAt(std::size_t v, std::size_t scan) const {
-        return rows_.scales[scan] * rows_.material[v] + rows_.added[v];
-    }
-
-    /// Of each scan of the samples, with its scale eliminated.
-    std::vector<ScanSums> scanSums() const {
-        const std::vector<std::size_t>& scans = samples_.scans;
-        const std::size_t all = *std::ranges::max_element(scans) + 1;
-        std::vector<ScanSums> sums(
-            all, {Matrix::Zero(at(count_), at(count_)), Vector::Zero(at(count_))});
-        forEachValue([&](std::size_t v, const Indices& places, const Vector& slopes, double r) {
-            ScanSums& scan = sums[scans[v % samples_.size()]];
-            for (std::size_t i = 0; i < places.size() && places[i] < at(count_); ++i) {
-                scan.gradient(places[i]) += slopes(at(i)) * r;
-                for (std::size_t j = 0; j < places.size() && places[j] < at(count_); ++j)
-                    scan.matrix(places[i], places[j]) += slopes(at(i)) * slopes(at(j));
-            }
-        });
-        for (const std::size_t s : scales_) {
-            const Vector across = acrossOf(s);
-            sums[s].matrix -= across * across.transpose() / ownOf(s);
-        }
-        return sums;
-    }
-    /// The part of the matrix of a scale with x, and its own.
-    Vector acrossOf(std::size_t scan) const {
-        return hessian_.col(scalePlaces_[scan]).head(at(count_));
-    }
-    double ownOf(std::size_t scan) const {
-        return hessian_(scalePlaces_[scan], scalePlaces_[scan]);
-    }
-
-private:
-    const InstrumentProblem& problem_;
-    const FitSamples& samples_;
-    ReadingRows rows_;
-    std::size_t count_;
-    std::vector<std::size_t> scales_;  ///< scans whose scale is free
-    Indices scalePlaces_;              ///< of each scan; -1: none
-    Matrix hessian_;
-};
-
 /// Leverages of values and, in all, of priors; the sum of squared gradient terms (HC3).
 struct Leverages {
     std::vector<double> values;
@@ -137,8 +38,7 @@ struct Leverages {
     Matrix spread;
 };
 
-Leverages leveragesOf(const InstrumentProblem& problem, const WholeSystem& system,
-                      const Matrix& inverse) {
+Leverages leveragesOf(const WholeSystem& system, const Matrix& inverse) {
     constexpr double leastFreedom = 1e-6;
     Leverages result;
     result.values.resize(system.rows().material.size());
@@ -152,75 +52,11 @@ Leverages leveragesOf(const InstrumentProblem& problem, const WholeSystem& syste
             for (std::size_t j = 0; j < places.size(); ++j)
                 result.spread(places[i], places[j]) += pull(at(i)) * pull(at(j));
     });
-    const Eigen::Index first = system.size() - at(system.scales().size());
-    for (std::size_t i = 0; i < system.scales().size(); ++i) {
-        const Eigen::Index place = first + at(i);
-        const std::size_t scan = system.scales()[i];
-        const double prior = problem.priorWeight(scan, system.rows().scales[scan]);
-        result.priors += prior * inverse(place, place);
-        result.spread(place, place) += prior;
+    for (const WholeSystem::Prior& prior : system.priors()) {
+        result.priors += prior.weight * inverse(prior.place, prior.place);
+        result.spread(prior.place, prior.place) += prior.weight;
     }
     return result;
-}
-
-/// Errors by scan of x, and of the scales by what they follow of x and by their own.
-Covariance covarianceByScan(const InstrumentProblem& problem, const WholeSystem& system,
-                            const Equations& reduced, const std::vector<bool>& fixed,
-                            double variance) {
-    const std::size_t count = problem.count(), total = static_cast<std::size_t>(system.size());
-    const double scale = problem.normalisation();
-    const std::vector<double> inverse = inverseOf(reduced, fixed);
-    const Matrix own = Eigen::Map<const Matrix>(inverse.data(), at(count), at(count)) / scale;
-    Equations equations = reduced;
-    const Matrix spread = scanSpread(system.scanSums(), own) / (scale * scale);
-    equations.spread.assign(spread.data(), spread.data() + spread.size());
-    const Covariance ofX = covarianceOf(equations, fixed);
-    if (system.scales().empty()) return ofX;
-    Matrix among = Matrix::Zero(at(count), at(count));
-    for (std::size_t i = 0; i < count; ++i)
-        for (std::size_t j = 0; j < count; ++j)
-            if (ofX.variance[i] >= 0 && ofX.variance[j] >= 0)
-                among(at(i), at(j)) = (i == j ? 1 : ofX.correlations[i * count + j]) *
-                                      std::sqrt(ofX.variance[i] * ofX.variance[j]);
-    // Derivatives of scales by x.
-    Matrix follow(at(system.scales().size()), at(count));
-    for (std::size_t i = 0; i < system.scales().size(); ++i) {
-        const std::size_t scan = system.scales()[i];
-        follow.row(at(i)) = -system.acrossOf(scan).transpose() / system.ownOf(scan);
-    }
-    Matrix whole(system.size(), system.size());
-    const Matrix mixed = follow * among;
-    whole.topLeftCorner(at(count), at(count)) = among;
-    whole.bottomLeftCorner(follow.rows(), at(count)) = mixed;
-    whole.topRightCorner(at(count), follow.rows()) = mixed.transpose();
-    whole.bottomRightCorner(follow.rows(), follow.rows()) = mixed * follow.transpose();
-    for (std::size_t i = 0; i < system.scales().size(); ++i)
-        whole(at(count + i), at(count + i)) += variance / system.ownOf(system.scales()[i]);
-    Covariance result;
-    result.ambiguous = ofX.ambiguous;
-    result.correlations.assign(total * total, 0);
-    for (std::size_t i = 0; i < total; ++i) {
-        const bool none = i < count && ofX.variance[i] < 0;
-        result.variance.push_back(none ? -1 : whole(at(i), at(i)));
-    }
-    for (std::size_t i = 0; i < total; ++i)
-        for (std::size_t j = 0; j < total; ++j) {
-            const double size = result.variance[i] * result.variance[j];
-            if (result.variance[i] > 0 && result.variance[j] > 0)
-                result.correlations[i * total + j] = whole(at(i), at(j)) / std::sqrt(size);
-        }
-    return result;
-}
-
-/// Of the errors of x by scan.
-std::vector<double> degreesByScan(const InstrumentProblem& problem, const WholeSystem& system,
-                                  const Equations& reduced, const std::vector<bool>& fixed) {
-    const Eigen::Index count = at(problem.count());
-    const std::vector<double> inverse = inverseOf(reduced, fixed);
-    return scanDegrees(
-        system.scanSums(),
-        Eigen::Map<const Matrix>(inverse.data(), count, count) / problem.normalisation(),
-        Matrix::Identity(count, count));
 }
 
 /// Names and values of x, then of the free scales; where a bound holds them.
@@ -230,6 +66,53 @@ struct Described {
     std::vector<double> slope;
     double projectedGradient = 0;
 };
+
+/// The parameters that scans share: their matrix, and the degrees of freedom of variances by scan.
+struct Shared {
+    Equations equations;  ///< in units of the cost
+    std::vector<bool> fixed;
+    std::shared_ptr<const VarianceFreedom> freedom;
+};
+
+Shared sharedBy(const InstrumentProblem& problem, const WholeSystem& system,
+                const Described& described) {
+    const Eigen::Index count = system.commonCount();
+    Shared result;
+    result.equations = equationsOf(system.reduced() / problem.normalisation(), {});
+    result.fixed.assign(described.fixed.begin(), described.fixed.begin() + count);
+    const std::vector<double> inverse = inverseOf(result.equations, result.fixed);
+    result.freedom = std::make_shared<const VarianceFreedom>(
+        system.scanSums(),
+        Eigen::Map<const Matrix>(inverse.data(), count, count) / problem.normalisation(),
+        Eigen::Map<const Vector>(described.slope.data(), count));
+    return result;
+}
+
+/// Errors by scan of what scans share, and of the places of scans by what they follow of it and by
+/// their own.
+Covariance covarianceByScan(const InstrumentProblem& problem, const WholeSystem& system,
+                            Shared& shared, double variance) {
+    const std::size_t count = problem.commonCount(),
+                      total = static_cast<std::size_t>(system.size());
+    const double unit = problem.normalisation();
+    Matrix spread = shared.freedom->spread();
+    for (const WholeSystem::Prior& prior : system.priors())
+        if (prior.place < at(count)) spread(prior.place, prior.place) += prior.weight;
+    spread /= unit * unit;
+    shared.equations.spread.assign(spread.data(), spread.data() + spread.size());
+    Covariance result = covarianceOf(shared.equations, shared.fixed);
+    const Matrix whole = system.followed(
+        Eigen::Map<const Matrix>(result.whole.data(), at(count), at(count)), variance);
+    for (std::size_t i = count; i < total; ++i) result.variance.push_back(whole(at(i), at(i)));
+    result.correlations.assign(total * total, 0);
+    result.whole.assign(whole.data(), whole.data() + whole.size());
+    for (std::size_t i = 0; i < total; ++i)
+        for (std::size_t j = 0; j < total; ++j)
+            if (result.variance[i] > 0 && result.variance[j] > 0)
+                result.correlations[i * total + j] =
+                    whole(at(i), at(j)) / std::sqrt(result.variance[i] * result.variance[j]);
+    return result;
+}
 
 FittedParameter parameterOf(std::string name, std::string channel, double value) {
     FittedParameter parameter;
@@ -249,6 +132,14 @@ FittedParameter named(const InstrumentProblem& problem, std::size_t i, double va
     const auto ofChannel = [&](const std::string& name, std::size_t c) {
         parameter = parameterOf(name, names.size() > 1 ? names[c] : "", value);
     };
+    for (const InstrumentProblem::Zero& zero : problem.zeros()) {
+        if (i < zero.first || i >= zero.first + zero.priors.size()) continue;
+        const char* name = zero.detector ? "detector zero" : "incidence zero";
+        parameter = parameterOf(zero.ofScan ? fmt::format("{} {}", name, i - zero.first + 1) : name,
+                                "", value);
+        parameter.instrument = true;
+        return parameter;
+    }
     if (i == problem.strayPlace())
         parameter = parameterOf("stray", "", value);
     else if (problem.darkPlace() && i >= *problem.darkPlace())
@@ -292,6 +183,15 @@ Described describedAt(const InstrumentProblem& problem, const std::vector<double
     return result;
 }
 
+/// The places in x of the shapes and of one channel's linear parameters.
+std::vector<std::size_t> placesOf(const InstrumentProblem& problem, std::size_t c) {
+    std::vector<std::size_t> places;
+    for (std::size_t j = 0; j < problem.shapeCount(); ++j) places.push_back(j);
+    for (std::size_t k = 0; k < problem.sum().linears().size(); ++k)
+        places.push_back(problem.shapeCount() + k * problem.channels() + c);
+    return places;
+}
+
 void addBootstrapOfReadings(const InstrumentProblem& problem, const std::vector<double>& x,
                             const FitOptions& options, Uncertainty& result) {
     const Readings& readings = problem.readings();
@@ -327,6 +227,10 @@ void addBootstrapOfReadings(const InstrumentProblem& problem, const std::vector<
                                      : draw[i]);
         result.parameters[i].bootstrap = summarised(std::move(values));
     }
+    for (std::vector<double>& draw : draws)
+        for (std::size_t i = 0; !draw.empty() && i < problem.shapeCount(); ++i)
+            draw[i] = problem.sum().shapes()[i].toValue(draw[i]);
+    result.draws = std::move(draws);
 }
 
 std::vector<std::vector<std::string>> namesOf(const std::vector<std::vector<std::size_t>>& sets,
@@ -342,24 +246,54 @@ std::vector<std::vector<std::string>> namesOf(const std::vector<std::vector<std:
     return result;
 }
 
-}  // namespace
+/// The values of one channel's sum, from those of all parameters.
+std::vector<double> ofChannel(const InstrumentProblem& problem, const std::vector<double>& values,
+                              std::size_t c) {
+    std::vector<double> own;
+    for (const std::size_t i : placesOf(problem, c)) own.push_back(values[i]);
+    return own;
+}
 
-void describeReadings(const InstrumentProblem& problem, const std::vector<double>& x,
-                      const FitOptions& options, FitResult& result) {
+/// The material as a point about which f is predicted: its parameters are coefficients.
+FittedPoint pointOf(const InstrumentProblem& problem, const Covariance& covariance,
+                    const Described& described) {
+    FittedPoint point;
+    point.isotropic = problem.readings().samples.isotropic;
+    const std::size_t n = described.slope.size();
+    std::vector<double> values;
+    for (const FittedParameter& own : described.parameters) values.push_back(own.value);
+    for (std::size_t c = 0; c < problem.channels(); ++c) {
+        FittedChannel channel{problem.sum().spec(), ofChannel(problem, values, c), {}};
+        for (const std::size_t i : placesOf(problem, c)) channel.slopes.push_back({{i, 1}});
+        point.channels.push_back(std::move(channel));
+    }
+    point.covariance = covariance.whole;
+    for (std::size_t i = 0; i < n * n; ++i)
+        point.covariance[i] *= described.slope[i / n] * described.slope[i % n];
+    return point;
+}
+
+/// Degrees of freedom of errors by the sandwich, of values and priors; null: very many values.
+std::shared_ptr<const VarianceFreedom> freedomOfValues(const WholeSystem& system,
+                                                       const Matrix& inverse,
+                                                       const Described& described) {
+    constexpr std::size_t mostValues = 20'000;
+    const std::size_t values = system.rows().material.size();
+    if (values > mostValues) return {};
+    Matrix rows = Matrix::Zero(at(values + system.priors().size()), system.size());
+    system.forEachValue([&](std::size_t v, const Indices& places, const Vector& slopes, double) {
+        rows(at(v), places) = slopes;
+    });
+    for (std::size_t i = 0; i < system.priors().size(); ++i)
+        rows(at(values + i), system.priors()[i].place) = std::sqrt(system.priors()[i].weight);
+    return std::make_shared<const VarianceFreedom>(
+        std::move(rows), inverse, Eigen::Map<const Vector>(described.slope.data(), system.size()));
+}
+
+/// The values at the minimum, with squares and leverages of the priors.
+StudiedValues valuesOf(const InstrumentProblem& problem, const WholeSystem& system,
+                       const std::vector<double>& x, const Leverages& leverages, bool byScan) {
     const FitSamples& samples = problem.readings().samples;
-    const Equations reduced = problem.equations(x, true);
-    const WholeSystem system(problem, x);
-    Described described = describedAt(problem, x, reduced, system);
-    const std::vector<bool>& fixed = described.fixed;
-    const double unit = problem.normalisation();
-    Equations whole = equationsOf(system.hessian() / unit, {});
-    const std::vector<double> scaled = inverseOf(whole, fixed);
-    const Matrix inverse =
-        Eigen::Map<const Matrix>(scaled.data(), system.size(), system.size()) / unit;
-    const Leverages leverages = leveragesOf(problem, system, inverse);
-    whole = equationsOf(system.hessian() / unit, leverages.spread / (unit * unit));
-    const Covariance sandwich = covarianceOf(whole, fixed);
-
     StudiedValues values{.stated = !samples.sigmas.empty()};
     values.leverages = leverages.values;
     values.residuals.resize(leverages.values.size());
@@ -368,29 +302,120 @@ void describeReadings(const InstrumentProblem& problem, const std::vector<double
     for (std::size_t v = 0; v < values.residuals.size(); ++v)
         values.models.push_back(system.modelAt(v, problem.scanOf(v % samples.size())));
     values.otherRank = leverages.priors;
-    for (const std::size_t s : system.scales()) {
+    values.otherCount = static_cast<double>(system.priors().size());
+    values.otherSquares = problem.zeroSquares(x);
+    for (const std::size_t s : system.scales())
         values.otherSquares += problem.priorSquare(s, system.rows().scales[s]);
-        values.otherCount += problem.priorOf(s) > 0 ? 1 : 0;
-    }
-    const bool byScan = options.uncertainty.report && !samples.scans.empty();
     if (byScan) values.scans = *std::ranges::max_element(samples.scans) + 1;
     for (const auto& places : system.rows().places)
         values.scanParameters = std::max(values.scanParameters, places.size());
     if (byScan) requireScans(values.scans, values.scanParameters, values.stated);
-    Uncertainty study = influences(values);
-    const std::vector<bool> fixedX(fixed.begin(),
-                                   fixed.begin() + static_cast<std::ptrdiff_t>(x.size()));
+    return values;
+}
+
+/// The changes by contributions, with scales as they are, of all parameters.
+CommonChanges changesOf(const InstrumentProblem& problem, const WholeSystem& system,
+                        const std::vector<double>& x, const Matrix& inverse,
+                        const Described& described, const FitOptions& options) {
+    const Readings& readings = problem.readings();
+    CommonChanges changes;
+    for (const Contribution& contribution : options.contributions) {
+        const std::vector<double> shift = shiftOf(
+            contribution, readings.samples, readings.instrument.darkOver,
+            [&](const FitSamples& turned) {
+                Readings other = readings;
+                other.samples = turned;
+                std::vector<double> values =
+                    InstrumentProblem(other, problem.sum(), options.loss).rows(x, false).material;
+                for (std::size_t v = 0; v < values.size(); ++v)
+                    values[v] *= system.rows().scales[problem.scanOf(v % turned.size())];
+                return values;
+            });
+        Vector pull = Vector::Zero(system.size());
+        system.forEachValue(
+            [&](std::size_t v, const Indices& places, const Vector& slopes, double) {
+                pull(places) += std::sqrt(system.rows().weights[v]) * shift[v] * slopes;
+            });
+        const Vector change =
+            (inverse * pull)
+                .cwiseProduct(Eigen::Map<const Vector>(described.slope.data(), system.size()));
+        changes.parameters.emplace_back(change.begin(), change.end());
+    }
+    return changes;
+}
+
+/// Of the errors of all parameters: infinite for those that have none here.
+std::vector<double> degreesOf(std::vector<double> degrees, std::size_t count) {
+    constexpr double known = std::numeric_limits<double>::infinity();
+    for (double& own : degrees) own = own > 0 ? std::max(own, 1.0) : known;
+    degrees.resize(count, known);
+    return degrees;
+}
+
+/// Adds bootstrap and profiles, as far as they are asked for.
+void addStudies(const InstrumentProblem& problem, const std::vector<double>& x,
+                const Equations& equations, const Described& described, const FitOptions& options,
+                Uncertainty& study) {
+    const std::size_t shapes = problem.shapeCount();
+    if (options.uncertainty.bootstrap > 0) addBootstrapOfReadings(problem, x, options, study);
+    if (!options.uncertainty.profile) return;
+    const auto count = static_cast<std::ptrdiff_t>(x.size());
+    const std::vector<double> slope(described.slope.begin(), described.slope.begin() + count);
+    const std::vector<bool> fixed(described.fixed.begin(), described.fixed.begin() + count);
+    addProfiles({.joint = [&](std::span<const double> other,
+                              bool derivatives) { return problem.equations(other, derivatives); },
+                 .bounds = problem.bounds(),
+                 .normalisation = problem.normalisation(),
+                 .valueOf =
+                     [&](std::size_t i, double value) {
+                         return i < shapes ? problem.sum().shapes()[i].toValue(value) : value;
+                     },
+                 .x = x,
+                 .equations = equations,
+                 .fixed = fixed,
+                 .slope = slope},
+                options.uncertainty, study);
+}
+
+}  // namespace
+
+void describeReadings(const InstrumentProblem& problem, const std::vector<double>& x,
+                      const FitOptions& options, FitResult& result) {
+    const FitSamples& samples = problem.readings().samples;
+    const Equations equations = problem.equations(x, true);
+    const WholeSystem system(problem, x);
+    Described described = describedAt(problem, x, equations, system);
+    const std::vector<bool>& fixed = described.fixed;
+    const double unit = problem.normalisation();
+    Equations whole = equationsOf(system.hessian() / unit, {});
+    const std::vector<double> scaled = inverseOf(whole, fixed);
+    const Matrix inverse =
+        Eigen::Map<const Matrix>(scaled.data(), system.size(), system.size()) / unit;
+    const Leverages leverages = leveragesOf(system, inverse);
+    whole = equationsOf(system.hessian() / unit, leverages.spread / (unit * unit));
+    const Covariance sandwich = covarianceOf(whole, fixed);
+    const bool byScan = options.uncertainty.report && !samples.scans.empty();
+    std::shared_ptr<const VarianceFreedom> freedom;
+    Uncertainty study = influences(valuesOf(problem, system, x, leverages, byScan));
     Covariance covariance = sandwich;
-    if (study.scansSuffice())
-        covariance = covarianceByScan(problem, system, reduced, fixedX,
-                                      study.stated ? 1 : study.reducedChiSquare());
-    else if (byScan)
+    if (study.scansSuffice()) {
+        Shared shared = sharedBy(problem, system, described);
+        covariance =
+            covarianceByScan(problem, system, shared, study.stated ? 1 : study.reducedChiSquare());
+        freedom = shared.freedom;
+    } else if (byScan) {
         covariance = covarianceOf(
             equationsOf(system.hessian() / unit, system.hessian() / (unit * unit)), fixed);
+    } else {
+        freedom = freedomOfValues(system, inverse, described);
+    }
+    const std::vector<double> degrees =
+        freedom ? freedom->degrees(Matrix::Identity(freedom->count(), freedom->count()))
+                : std::vector<double>();
     const std::size_t shapes = problem.shapeCount(), channels = problem.channels();
     reportUnseenLobes(
         {shapes, channels, shapes + problem.sum().linears().size() * channels},
-        [&](std::span<const double> other) { return problem.equations(other, true); }, x, reduced,
+        [&](std::span<const double> other) { return problem.equations(other, true); }, x, equations,
         fixed, covariance);
     for (std::size_t i = 0; i < fixed.size(); ++i)
         if (covariance.variance[i] >= 0)
@@ -399,35 +424,22 @@ void describeReadings(const InstrumentProblem& problem, const std::vector<double
     result.ambiguous = namesOf(covariance.ambiguous, described.parameters);
     result.correlations = covariance.correlations;
     result.projectedGradient = described.projectedGradient;
-    if (options.uncertainty.report) {
-        addErrors({inverse.data(), fixed.size() * fixed.size()}, described.slope, covariance,
-                  sandwich,
-                  study.scansSuffice() ? degreesByScan(problem, system, reduced, fixedX)
-                                       : std::vector<double>(),
-                  study);
-        if (options.uncertainty.bootstrap > 0) addBootstrapOfReadings(problem, x, options, study);
-        if (options.uncertainty.profile) {
-            const std::vector<double> slopeX(
-                described.slope.begin(),
-                described.slope.begin() + static_cast<std::ptrdiff_t>(x.size()));
-            addProfiles(
-                {.joint = [&](std::span<const double> other,
-                              bool derivatives) { return problem.equations(other, derivatives); },
-                 .bounds = problem.bounds(),
-                 .normalisation = unit,
-                 .valueOf =
-                     [&](std::size_t i, double value) {
-                         return i < shapes ? problem.sum().shapes()[i].toValue(value) : value;
-                     },
-                 .x = x,
-                 .equations = reduced,
-                 .fixed = fixedX,
-                 .slope = slopeX},
-                options.uncertainty, study);
-        }
-        result.uncertainty = std::move(study);
+    result.parameters = described.parameters;
+    result.point = pointOf(problem, covariance, described);
+    if (freedom) result.point.freedom.push_back({0, freedom});
+    if (!options.contributions.empty())
+        addBudget(options.contributions, changesOf(problem, system, x, inverse, described, options),
+                  degreesOf(degrees, fixed.size()), result);
+    if (!options.uncertainty.report) return;
+    addErrors({inverse.data(), fixed.size() * fixed.size()}, described.slope, covariance, sandwich,
+              study.scansSuffice() ? degrees : std::vector<double>(), study);
+    addStudies(problem, x, equations, described, options, study);
+    for (const std::vector<double>& draw : study.draws) {
+        result.point.draws.emplace_back();
+        for (std::size_t c = 0; !draw.empty() && c < channels; ++c)
+            result.point.draws.back().push_back(ofChannel(problem, draw, c));
     }
-    result.parameters = std::move(described.parameters);
+    result.uncertainty = std::move(study);
 }
 
 }  // namespace hshfit::brdfs
