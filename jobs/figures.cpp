@@ -102,10 +102,14 @@ private:
     std::unique_ptr<Brdf> fitted_;
 };
 
-/// parameters.tex, and samples.csv of measured samples with a study.
+/// parameters.tex, budget.tex where there is one, and samples.csv of measured samples with a study.
 void addTables(const brdfs::FitReport& report, FileSet& files, FigureFiles& result) {
     files.write("parameters.tex", brdfs::latexTable(report));
     result.names.emplace_back("parameters.tex");
+    if (report.result.budget) {
+        files.write("budget.tex", brdfs::latexBudget(*report.result.budget));
+        result.names.emplace_back("budget.tex");
+    }
     if (report.samples->origin != brdfs::SampleOrigin::measured || !report.result.uncertainty)
         return;
     files.write("samples.csv", [&](AtomicFile& file) {

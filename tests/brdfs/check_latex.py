@@ -103,7 +103,7 @@ class Reader:
                 self.command(at, name)
             elif sign:
                 self.sign(at, sign)
-            elif other and other in "<>|\"":
+            elif other and other in "<>|\"" and not self.maths:
                 self.fail(at, f"a bare '{other}'")
             elif other and ord(other) > LAST:
                 self.fail(at, f"'{other}' is in no font of LaTeX")

@@ -29,6 +29,13 @@ std::string textOf(const InstrumentTerm& term, const std::vector<double>& values
                        term.fitted() ? "fitted" : "stated");
 }
 
+std::string textOf(const AngleZero& zero, const std::vector<double>& values) {
+    const auto [low, high] = std::ranges::minmax_element(values);
+    return fmt::format("{}{} degrees, expected 0 within {:.3g}{}", plainValue(*low, 3),
+                       *low == *high ? std::string() : fmt::format(" to {}", plainValue(*high, 3)),
+                       zero.width, zero.of == AngleZero::Of::scan ? ", one for each scan" : "");
+}
+
 /// The root mean square of scales about 1.
 double spreadOf(const std::vector<double>& scales) {
     double squares = 0;
@@ -57,6 +64,10 @@ std::vector<std::pair<std::string, std::string>> instrumentRows(const FittedInst
                         own.scaleWidth > 0 ? fmt::format(", expected {:.3g}", own.scaleWidth)
                                            : std::string(", free")));
     }
+    if (!fitted.incidenceZeros.empty())
+        rows.emplace_back("zero of incidence", textOf(own.incidenceZero, fitted.incidenceZeros));
+    if (!fitted.detectorZeros.empty())
+        rows.emplace_back("zero of the detector", textOf(own.detectorZero, fitted.detectorZeros));
     if (own.stray.from != From::nothing)
         rows.emplace_back("stray light", textOf(own.stray, {fitted.stray}, ""));
     if (own.offset.from != From::nothing)
