@@ -226,6 +226,8 @@ constexpr ValueRow valueRows[] = {
     {"fit", "--bands", nullptr, Syntax::word, Files::read, ".csv"},
     {"fit", "--bands-to", nullptr, Syntax::word, Files::written, ".csv"},
     {"fit", "--budget", nullptr, Syntax::word, Files::read, ""},
+    {"fit", "--certificate", nullptr, Syntax::word, Files::written, ".pdf"},
+    {"fit", "--certificate-fields", nullptr, Syntax::word, Files::read, ".json"},
     {"fit", "--residuals", nullptr, Syntax::word, Files::written, ".csv"},
     {"fit", "--scan-scale", fitWords},
     {"fit", "--scans", scanWords},

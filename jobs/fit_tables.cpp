@@ -134,22 +134,23 @@ TextTable budgetTable(const brdfs::FitResult& result) {
                               "sensitivity", "contribution to u", "share", "ν"},
                     .rows = {}};
     if (!result.budget) return table;
-    for (const brdfs::ParameterBudget& own : result.budget->parameters) {
-        std::string name =
-            own.channel.empty() ? own.name : fmt::format("{} {}", own.name, own.channel);
-        for (const brdfs::BudgetRow& row : own.rows) {
+    for (const brdfs::FittedParameter& p : result.parameters) {
+        const brdfs::ParameterBudget* own = brdfs::budgetOf(result, p);
+        if (!own || p.isScanScale()) continue;
+        std::string name = p.channel.empty() ? p.name : fmt::format("{} {}", p.name, p.channel);
+        for (const brdfs::BudgetRow& row : own->rows) {
             table.rows.push_back(
                 {name, row.name, std::string(1, row.type), row.distribution,
                  brdfs::plainValue(row.standard, 3) +
                      (row.unit.empty() || row.unit == "1" ? "" : fmt::format(" {}", row.unit)),
                  brdfs::plainValue(row.sensitivity, 3), brdfs::plainValue(row.contribution, 3),
-                 percent(row.share), degreesText(row.degrees)});
+                 fmt::format("{:.1f} %", 100 * row.share), degreesText(row.degrees)});
             name.clear();
         }
-        table.rows.push_back({"", "combined", "", "", "", "", brdfs::plainValue(own.combined, 3),
-                              "", degreesText(own.degrees)});
-        table.rows.push_back({"", fmt::format("expanded, k = {:.2f}", own.coverage), "", "", "", "",
-                              brdfs::plainValue(own.expanded, 3), "", ""});
+        table.rows.push_back({"", "combined", "", "", "", "", brdfs::plainValue(own->combined, 3),
+                              "", degreesText(own->degrees)});
+        table.rows.push_back({"", fmt::format("U, k = {:.2f}", own->coverage), "", "", "", "",
+                              brdfs::plainValue(own->expanded, 3), "", ""});
     }
     return table;
 }

@@ -53,6 +53,7 @@ std::optional<std::string> unitOfLaw(const FitResult& result, const std::string&
 /// and the key.
 std::string unitOf(const FitResult& result, const std::string& name) {
     if (const auto unit = unitOfLaw(result, name)) return *unit;
+    if (name.starts_with("incidence zero") || name.starts_with("detector zero")) return "$^\\circ$";
     const std::string parameter = name.substr(0, name.find('@'));  // of a coefficient of a spline
     const std::vector<std::string> terms = splitModels(result.model);
     const std::size_t dot = parameter.find('.');

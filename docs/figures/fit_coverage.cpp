@@ -80,13 +80,7 @@ int runCampaigns(const char* path, std::size_t repeats) {
         for (std::size_t i = 0; i < results.front().parameters.size(); ++i) {
             const FittedParameter& first = results.front().parameters[i];
             if (first.instrument) continue;
-            test::Coverage own;
-            for (const FitResult& result : results) {
-                const double one = test::coverageFactor(result, i, 0.6827),
-                             two = test::coverageFactor(result, i, 0.9545);
-                own.add(result.parameters[i].value - test::truthOf(first.name),
-                        one * *result.parameters[i].standardError, two / one);
-            }
+            const test::Coverage own = test::coverageOf(results, i);
             const std::string name =
                 first.channel.empty() ? first.name : first.name + " " + first.channel;
             const double bias = own.bias() / own.error(), scatter = own.deviation() / own.error();

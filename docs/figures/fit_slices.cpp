@@ -89,9 +89,9 @@ void run(const std::string& folder, const std::string& path, const std::string& 
          const std::string& material, double cut) {
     std::vector<std::string> materials;
     std::vector<FitSamples> samples;
-    for (const std::filesystem::path& path : filesIn(folder, material)) {
-        materials.push_back(path.stem().string());
-        samples.push_back(samplesOfSlice(path.string(), cut));
+    for (const std::filesystem::path& slice : filesIn(folder, material)) {
+        materials.push_back(slice.stem().string());
+        samples.push_back(samplesOfSlice(slice.string(), cut));
     }
     std::ofstream file(path);
     file << "collection,model,loss,material,published,ours,ratio,converged\n";

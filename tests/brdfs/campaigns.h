@@ -7,6 +7,7 @@
 #include <brdfs/fit/fit.h>
 #include <brdfs/fit/instrument/turned.h>
 #include <brdfs/fit/prediction.h>
+#include <brdfs/instrument_scans.h>
 #include <brdfs/random_draws.h>
 
 #include <algorithm>
@@ -31,7 +32,8 @@ inline double truthOf(const std::string& parameter) {
 
 /// Exact readings in the plane of incidence, every 5 degrees; sigma is 1 % of f.
 inline brdfs::FitSamples exactSweeps(const std::vector<double>& incidences,
-                                     const std::vector<double>& wavelengths = {}) {
+                                     const std::vector<double>& wavelengths = {},
+                                     const std::string& truth = campaignTruth) {
     brdfs::FitSamples samples;
     samples.isotropic = true;
     samples.origin = brdfs::SampleOrigin::measured;
@@ -49,7 +51,7 @@ inline brdfs::FitSamples exactSweeps(const std::vector<double>& incidences,
         samples.channels.kind = Channels::Kind::spectral;
         samples.channels.wavelengths = wavelengths;
     }
-    samples.values = brdfs::valuesOf(*brdfs::open(campaignTruth), samples);
+    samples.values = brdfs::valuesOf(*brdfs::open(truth), samples);
     for (const double f : samples.values) samples.sigmas.push_back(0.01 * f);
     return samples;
 }
@@ -84,6 +86,18 @@ inline double coverageFactor(const brdfs::FitResult& result, std::size_t paramet
     const auto& degrees = result.uncertainty->parameters[parameter].scanDegrees;
     return brdfs::Prediction::pointwise(
         probability, degrees ? *degrees : std::numeric_limits<double>::infinity());
+}
+
+/// The share of fits whose intervals hold the truth of a parameter.
+inline Coverage coverageOf(const std::vector<brdfs::FitResult>& results, std::size_t parameter) {
+    Coverage own;
+    for (const brdfs::FitResult& result : results) {
+        const double one = coverageFactor(result, parameter, 0.6827),
+                     two = coverageFactor(result, parameter, 0.9545);
+        const brdfs::FittedParameter& p = result.parameters[parameter];
+        own.add(p.value - truthOf(p.name), one * *p.standardError, two / one);
+    }
+    return own;
 }
 
 /// Turns directions by zeros in degrees, one for each sample, of a detector that divides by

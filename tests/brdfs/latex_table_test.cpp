@@ -93,5 +93,19 @@ TEST(LatexTable, HasTheErrorsOfABudget) {
     EXPECT_TRUE(has("combined with the budget")) << table;
 }
 
+TEST(LatexTable, ZerosOfAnglesAreDegrees) {
+    FitSamples samples;
+    FitReport report;
+    report.samples = &samples;
+    report.result.model = "lambert";
+    FittedParameter& zero = report.result.parameters.emplace_back();
+    zero.name = "incidence zero";
+    zero.value = 0.02;
+    zero.standardError = 0.01;
+    report.result.correlations = {1};
+    const std::string table = latexTable(report);
+    EXPECT_NE(table.find("& $^\\circ$"), table.npos) << table;
+}
+
 }  // namespace
 }  // namespace hshfit::brdfs

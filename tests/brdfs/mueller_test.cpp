@@ -13,8 +13,10 @@
 #include <brdfs/tensor_writer.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 

@@ -169,7 +169,7 @@ class SameNumbers(program.InFolder):
         with_dark = hshfit.fit("scans.astm", "phong", starts=2, sigma="1%+0.001",
                                instrument={"dark": "fit"})
         at = with_dark.predict([0, 0, 1], [0, 0, 1])
-        np.testing.assert_allclose(at["f"], with_dark.brdf().eval([0, 0, 1], [0, 0, 1]))
+        np.testing.assert_allclose(at["f"], with_dark.brdf()([0, 0, 1], [0, 0, 1]))
         self.assertTrue((at["standard_error"] > 0).all())
 
     def test_curves_are_those_of_the_program(self):

@@ -19,6 +19,15 @@ std::string commentText(std::string text) {
     return text;
 }
 
+std::string backquoted(std::string_view text) {
+    std::string result;
+    for (const char c : text) {
+        if (c == '\\' || c == '`' || c == '$') result += '\\';
+        result += c;
+    }
+    return result;
+}
+
 std::string sourceComment(const std::string& specification) {
     const std::string comment = commentText(specification);
     if (transmissionSide(specification).empty()) return comment;

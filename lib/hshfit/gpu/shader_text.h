@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace hshfit::gpu {
 
@@ -9,6 +10,9 @@ std::string commentText(std::string text);
 /// The same of the specification of what a shader evaluates, with the meaning of wo where it is a
 /// transmission.
 std::string sourceComment(const std::string& specification);
+
+/// Text within the backquotes of a JavaScript template.
+std::string backquoted(std::string_view text);
 
 /// Throws UsageError for a prefix that no shading language takes for the beginning of a name.
 void checkPrefix(const std::string& prefix);

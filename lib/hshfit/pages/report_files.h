@@ -20,7 +20,8 @@ std::string reportScript(const Report& report);
 /// report.html. `figures` holds an SVG document for each BRDF, or nothing at all.
 std::string reportPage(const Report& report, const std::vector<std::string>& figures);
 
-/// The specification on one line, printable, shortened in its middle to `limit` bytes.
+/// The specification on one line, printable, parameters with four digits, shortened in its middle
+/// to `limit` bytes: for titles.
 std::string shortName(const std::string& brdf, std::size_t limit);
 
 /// The specification with files by their names alone: "lambert:kd=.1 + 0.5 * paint.bsdf" for a file

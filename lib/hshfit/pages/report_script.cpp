@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <iterator>
+#include <regex>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -101,7 +103,17 @@ bases::Style curveStyle(const std::string& basis) {
 }
 
 std::string shortName(const std::string& brdf, std::size_t limit) {
-    return shortened(printable(brdf), limit);
+    // A parameter with five decimals or more.
+    static const std::regex number(R"(([=/*+] ?)(-?\d*\.\d{5,}(?:e[-+]?\d+)?)(?![\w.]))");
+    const std::string text = printable(brdf);
+    std::string few;
+    auto rest = text.cbegin();
+    for (std::sregex_iterator one(text.begin(), text.end(), number), end; one != end; ++one) {
+        few.append(rest, (*one)[2].first);
+        few += fmt::format("{:.4g}", std::strtod((*one)[2].str().c_str(), nullptr));
+        rest = (*one)[2].second;
+    }
+    return shortened(few.append(rest, text.cend()), limit);
 }
 
 std::string withoutFolders(const std::string& brdf) {

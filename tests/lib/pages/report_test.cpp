@@ -303,6 +303,11 @@ TEST(ReportNames, FilesAreShownWithoutTheirFolders) {
         {"gold.bsdf", "gold.bsdf"},
         {"", ""}};
     for (const auto& [spec, name] : cases) EXPECT_EQ(withoutFolders(spec), name);
+    EXPECT_EQ(
+        shortName("lambert:kd=0.4005668148951401/0.2 + 0.30000000000000004*a1.234567.bsdf", 90),
+        "lambert:kd=0.4006/0.2 + 0.3*a1.234567.bsdf");
+    EXPECT_EQ(shortName("ggx:F0=0.04998893803521518,alpha=1.2345678e-320", 90),
+              "ggx:F0=0.04999,alpha=1.235e-320");
 }
 
 // A basis that another entry of the report has, and this one has not, is not in this one's key.

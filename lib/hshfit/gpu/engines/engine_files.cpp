@@ -43,16 +43,6 @@ std::string_view templateOf(const EngineFile& row) {
     return texts.at(row.suffix);
 }
 
-/// Text within backquotes.
-std::string quoted(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        if (c == '\\' || c == '`' || c == '$') result += '\\';
-        result += c;
-    }
-    return result;
-}
-
 /// Text of a comment of any language, and of a string.
 std::string remark(const std::string& text) {
     std::string result = commentText(text);
@@ -91,7 +81,7 @@ void setTexels(const EngineMaterial& material, data& page) {
 void setLookUps(const EngineMaterial& material, bool script, data& page) {
     data row;
     const std::string text = withoutPrecision(material.lookUps);
-    row.set("text", script ? quoted(text) : text);
+    row.set("text", script ? backquoted(text) : text);
     row.set("width", std::to_string(material.lookUpWidth));
     row.set("height", std::to_string(material.lookUpHeight));
     row.set("base64", base64(std::as_bytes(std::span(material.lookUpTexels))));
@@ -138,7 +128,7 @@ std::string engineFile(const EngineFile& row, const EngineMaterial& material) {
     page.set("file", material.name);
     page.set("prefix", material.prefix);
     page.set("upper", upper);
-    page.set("snippet", row.script ? quoted(snippet) : snippet);
+    page.set("snippet", row.script ? backquoted(snippet) : snippet);
     page.set("cosine", material.cosine);
     page.set("fetched", material.fetched);
     page.set("three", row.target == "godot3");

@@ -44,16 +44,6 @@ std::string rendered(std::string_view text, const data& page) {
     return result;
 }
 
-/// Text within backquotes.
-std::string quoted(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        if (c == '\\' || c == '`' || c == '$') result += '\\';
-        result += c;
-    }
-    return result;
-}
-
 /// Text of an element of the page.
 std::string escaped(const std::string& text) {
     std::string result;
@@ -208,14 +198,14 @@ std::string dataModule(const ThreeInput& input, const ThreeOptions& options) {
 std::string materialModule(const ThreeInput& input, const ThreeOptions& options) {
     data page = wordsOf(input, options);
     page.set("snippet", input.glsl);
-    page.set("fragment", quoted(rendered(embedded::three_fragment, page)));
+    page.set("fragment", backquoted(rendered(embedded::three_fragment, page)));
     page.set("vertex", std::string(embedded::three_vertex));
     return rendered(embedded::three_material, page);
 }
 
 std::string nodeModule(const ThreeInput& input, const ThreeOptions& options) {
     data page = wordsOf(input, options);
-    page.set("snippet", quoted(input.wgsl));
+    page.set("snippet", backquoted(input.wgsl));
     page.set("response", rendered(embedded::three_response, page));
     page.set("surroundings", rendered(embedded::three_surroundings, page));
     return rendered(embedded::three_nodes, page);
