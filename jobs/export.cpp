@@ -46,6 +46,20 @@ struct Source {
     std::string reason;  ///< why there is none
 };
 
+/// Throws InputError for the specification of a BRDF in place of a file of coefficients.
+void requireCoefficients(const std::string& path) {
+    if (path == "-" || std::filesystem::exists(path)) return;
+    try {
+        openBrdf(path, false, Sides::either);
+    } catch (const std::exception&) {
+        return;  // no BRDF: the path of a file that is missing
+    }
+    throw InputError(
+        fmt::format("{}: is a BRDF; expected a file of coefficients, such as its projection in the "
+                    "halfway form",
+                    path));
+}
+
 Source openSourceOf(const ExportOptions& options, const CoefficientHead& coefficients) {
     if (!options.source.empty()) {
         Source named{openBrdf(options.source, false, Sides::either), {}};
@@ -334,6 +348,7 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
             "projected as {}:x=0,y=0,level=0, are exported",
             path, path));
     }
+    requireCoefficients(path);
     const Representation stored = readRepresentation(path);
     const Targets chosen = targetsFor(stored, options, listener);
     const std::vector<LightSpecification> lights = lightsOf(chosen, options);

@@ -337,6 +337,9 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
     PreparedFiles files;
     // A wrong list of pairs, or of fields, is known before the fit.
     if (!options.bands.empty()) bandPairs(options.bands);
+    if (!options.certificate.empty() && !options.certificate.ends_with(".pdf"))
+        throw UsageError(fmt::format("{} has to end in .pdf",
+                                     Setting{"FitOptions::certificate", options.certificate}));
     if (!options.certificateFields.empty()) readCertificateFields(options.certificateFields);
     if (options.figures) {
         checkFigures(*options.figures);

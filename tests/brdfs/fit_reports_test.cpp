@@ -213,6 +213,7 @@ TEST_F(Certificates, FieldsThatAreWrongAreNamed) {
     fs::remove(path("fields.json"));
     expectError("fit '" + goniometer("scans.csv") + "' --model lambert --certificate-fields x.json",
                 2, "--certificate OUT.pdf", 0);
+    expectError(fitTo("c.txt"), 2, "has to end in .pdf", 0);
     expectError("fit lambert:kd=.5 --model lambert --loss picture --certificate " + path("c.pdf"),
                 2, "--certificate", 0);
 }

@@ -62,18 +62,26 @@ TEST(LatexText, HasNoCommandOfItsOwn) {
     EXPECT_EQ(latexText("−2×10⁻⁵"), "$-$2$\\times$10\\textsuperscript{-}\\textsuperscript{5}");
 }
 
-// By hand: 0.03 of the samples and 0.04 that they share make 0.05, and twice that expanded.
-TEST(LatexTable, HasTheErrorsOfABudget) {
+/// The report of a fit with one parameter.
+struct OneParameter {
     FitSamples samples;
     FitReport report;
-    report.data = "d.csv";
-    report.samples = &samples;
-    report.result.model = "lambert";
-    FittedParameter& kd = report.result.parameters.emplace_back();
-    kd.name = "kd";
-    kd.value = 0.5;
-    kd.standardError = 0.05;
-    report.result.correlations = {1};
+
+    OneParameter(const std::string& name, double value, double error) {
+        report.data = "d.csv";
+        report.samples = &samples;
+        report.result.model = "lambert";
+        FittedParameter& parameter = report.result.parameters.emplace_back();
+        parameter.name = name;
+        parameter.value = value;
+        parameter.standardError = error;
+        report.result.correlations = {1};
+    }
+};
+
+// By hand: 0.03 of the samples and 0.04 that they share make 0.05, and twice that expanded.
+TEST(LatexTable, HasTheErrorsOfABudget) {
+    OneParameter kd("kd", 0.5, 0.05);
     ParameterBudget own;
     own.name = "kd";
     own.value = 0.5;
@@ -86,24 +94,15 @@ TEST(LatexTable, HasTheErrorsOfABudget) {
     own.rows[1].standard = 0.08;
     own.rows[1].sensitivity = -0.5;
     combine(own);
-    report.result.budget.emplace().parameters = {own};
-    const std::string table = latexTable(report);
+    kd.report.result.budget.emplace().parameters = {own};
+    const std::string table = latexTable(kd.report);
     const auto has = [&](const std::string& part) { return table.find(part) != table.npos; };
     EXPECT_TRUE(has("kd & $0.500(50)$ & $0.10$ & 2.00 & $\\infty$ & 1")) << table;
     EXPECT_TRUE(has("combined with the budget")) << table;
 }
 
 TEST(LatexTable, ZerosOfAnglesAreDegrees) {
-    FitSamples samples;
-    FitReport report;
-    report.samples = &samples;
-    report.result.model = "lambert";
-    FittedParameter& zero = report.result.parameters.emplace_back();
-    zero.name = "incidence zero";
-    zero.value = 0.02;
-    zero.standardError = 0.01;
-    report.result.correlations = {1};
-    const std::string table = latexTable(report);
+    const std::string table = latexTable(OneParameter("incidence zero", 0.02, 0.01).report);
     EXPECT_NE(table.find("& $^\\circ$"), table.npos) << table;
 }
 

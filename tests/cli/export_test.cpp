@@ -121,6 +121,8 @@ TEST_F(Export, NothingIsHalfWritten) {
 TEST_F(Export, ImpossibleExportsAreReported) {
     const std::string job = "export " + path("ward.json") + " -o " + path("out");
     expectError(job + " --target vrml", 2, "known: all, bin", 1);
+    expectError("export ggx:alpha=.3 -o " + path("out") + " --target three", 3,
+                "expected a file of coefficients", 1);
     expectError(job + " --number float8", 2, "float16", 1);
     expectError(job + " --chroma-order 9", 2, "1 to 4", 1);
     expectError(job + " --no-error --target exr --number unorm8", 2, "exr", 1);
