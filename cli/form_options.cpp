@@ -22,8 +22,10 @@ void FormOptions::addTo(CLI::App& command) {
     option(
         "--form", form_,
         "outgoing (coefficients per outgoing direction), basis (both directions in the basis) or "
-        "halfway (ln(1 + f) over the half and the difference vector)");
-    option("--halfway", halfway_, "With --form halfway: functions along each axis, as 9,8,6");
+        "halfway (a smooth part and a lobe over the half and the difference vector)");
+    option("--halfway", halfway_,
+           "With --form halfway: functions along each axis, as 9,8,6 (default: by symmetry, a "
+           "kilobyte)");
     flag("--reciprocal", reciprocal_, "With --form basis: the symmetric half only");
     option("--split", split_,
            "diffuse, or a BRDF or FIT.json: kept exactly beside the coefficients of the remainder");

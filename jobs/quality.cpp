@@ -73,7 +73,9 @@ bool determine(const Brdf& source, std::size_t functions) {
 
 /// The functions of the halfway form as it is by default.
 std::size_t halfwayFunctions(const Laws& laws) {
-    return HalfwayTerms({}, {laws.isotropic, laws.mirrorSymmetric, laws.reciprocal}).size();
+    return HalfwayTerms(halfwayOrdersOr({}, laws.isotropic, laws.reciprocal),
+                        {laws.isotropic, laws.mirrorSymmetric, laws.reciprocal})
+        .size();
 }
 
 /// The call for a form of so many functions; of data with fewer measured pairs the fit of a model.

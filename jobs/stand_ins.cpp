@@ -11,6 +11,7 @@
 #include <hshfit/files/mapped_file.h>
 #include <hshfit/files/temporary_file.h>
 #include <hshfit/representation/forms/represented_brdf.h>
+#include <hshfit/representation/halfway/halfway_terms.h>
 #include <hshfit/tradeoff/projection_cache.h>
 #include <hshfit/tradeoff/sweep.h>
 #include <hshfit/wording.h>
@@ -167,10 +168,10 @@ std::vector<Form> formsFor(const Brdf& brdf) {
     Form form;
     form.kind = Kind::halfway;
     for (const HalfwayOrders& orders : tradeoff::Sweep{}.halfway) {
-        form.halfway = orders;
+        form.halfway = halfwayOrdersOr(orders, brdf.laws().isotropic, brdf.laws().reciprocal);
         // Eight bits are too few for the highest orders.
         for (const Precision precision : {Precision::unorm8, Precision::half}) {
-            if (precision == Precision::unorm8 && orders.half > 9) continue;
+            if (precision == Precision::unorm8 && form.halfway.half > 9) continue;
             form.precision = precision;
             forms.push_back(form);
         }

@@ -20,7 +20,7 @@ from halfway_sheet import MERL, MODELS, RGL, run
 
 FORMS = {
     'halfway 5,4,3': ['--form', 'halfway', '--halfway', '5,4,3'],
-    'halfway 9,8,6': ['--form', 'halfway'],
+    'halfway 9,8,6': ['--form', 'halfway', '--halfway', '9,8,6'],
     'halfway 13,12,8': ['--form', 'halfway', '--halfway', '13,12,8'],
     'hsh 4': ['--order', '4', '--outgoing', '24', '--tolerance', '.01'],
     'hsh 10': ['--order', '10', '--outgoing', '24', '--tolerance', '.01'],

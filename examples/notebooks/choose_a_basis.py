@@ -23,8 +23,8 @@ plt.show()
 
 # %% [markdown]
 # The forms of a coefficient file: per outgoing direction in full, factored, in fewer bits, and
-# ln(1 + f) over half and difference vectors. Errors are relative to f cos θ over outgoing
-# elevations.
+# the halfway form, two exponentials over half and difference vectors. Errors are relative to f
+# cos θ over outgoing elevations.
 
 # %%
 forms = {

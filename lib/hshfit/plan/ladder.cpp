@@ -18,7 +18,7 @@ using Kind = Representation::Kind;
 constexpr std::array elevationCounts{2, 3, 4, 6, 8, 12, 16, 24, 32};
 constexpr std::array mapSizes{4, 6, 8, 10, 12, 16, 20, 24, 32};
 constexpr std::array halfwaySizes{HalfwayOrders{4, 3, 2}, HalfwayOrders{5, 4, 3},
-                                  HalfwayOrders{7, 6, 5}, HalfwayOrders{9, 8, 6},
+                                  HalfwayOrders{7, 6, 5}, HalfwayOrders{},
                                   HalfwayOrders{13, 12, 8}};
 constexpr std::array ranks{2, 4, 8, 16};
 constexpr int leastFactoredOrder = 5;
@@ -66,10 +66,10 @@ public:
         for (const HalfwayOrders& orders : halfwaySizes) {
             Form form;
             form.kind = Kind::halfway;
-            form.halfway = orders;
+            form.halfway = halfwayOrdersOr(orders, laws_.isotropic, laws_.reciprocal);
             form.reciprocal = laws_.reciprocal;
             form.split = split_;
-            const HalfwayTerms terms(orders,
+            const HalfwayTerms terms(form.halfway,
                                      {laws_.isotropic, laws_.mirrorSymmetric, form.reciprocal});
             add(form, {{channels_, terms.size()}}, lobeBytes());
         }

@@ -20,9 +20,9 @@ struct RepresentationStep {
 };
 
 /// The numbers of functions of the halfway form along the half vector, the difference vector and
-/// the elevations; see halfway_terms.h.
+/// the elevations; see halfway_terms.h. All 0 where none are asked for: halfwayOrdersOr.
 struct HalfwayOrders {
-    int half = 9, difference = 8, azimuth = 6;
+    int half = 0, difference = 0, azimuth = 0;
 };
 
 /// One way to keep a BRDF, as a coefficient file holds it.

@@ -1,6 +1,7 @@
 #include <hshfit/tradeoff/sweep.h>
 
 #include <hshfit/error.h>
+#include <hshfit/representation/halfway/halfway_terms.h>
 #include <hshfit/spelling.h>
 
 #include <fmt/format.h>
@@ -43,9 +44,11 @@ std::vector<Form> projectedForms(const Sweep& sweep, const Brdf& brdf) {
             if (sweep.reciprocal) addBases(form);
         } else {
             for (const HalfwayOrders& orders : sweep.halfway) {
-                form.halfway = orders;
+                const Laws laws = brdf.laws();
+                form.halfway = halfwayOrdersOr(orders, laws.isotropic, laws.reciprocal);
                 forms.push_back(form);
-                if (!sweep.reciprocal || brdf.laws().reciprocal) continue;
+                if (!sweep.reciprocal || laws.reciprocal) continue;
+                form.halfway = halfwayOrdersOr(orders, laws.isotropic, true);
                 forms.push_back(form);
                 forms.back().reciprocal = true;
             }

@@ -1,5 +1,6 @@
 // The halfway form keeps the shape of highlights, and grows nowhere beyond its source.
 #include "lib/formula_brdf.h"
+#include "places.h"
 
 #include <hshfit/accuracy/pair_sample.h>
 #include <hshfit/pictures/picture_error.h>
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <tuple>
@@ -22,11 +24,13 @@ namespace {
 
 using test::FormulaBrdf;
 
+const std::string data = test::sharedFolder() + "/data";
+
 std::unique_ptr<RepresentedBrdf> asBrdf(const Representation& r) {
     return reconstruct(r, [](const std::string&) { return std::unique_ptr<Brdf>(); });
 }
 
-const std::vector<HalfwayOrders> named{{5, 4, 3}, {7, 6, 5}, {9, 8, 6}, {13, 12, 8}};
+const std::vector<HalfwayOrders> named{{5, 4, 3}, {7, 6, 5}, {9, 8, 6}, {}, {13, 12, 8}};
 
 /// Highlights without rings, pinholes and tints, at the orders that docs and `tradeoff` name.
 class HalfwayHighlight : public testing::TestWithParam<std::tuple<std::string, std::size_t>> {};
@@ -50,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Combine(testing::Values("ggx:alpha=.25,F0=.9/.6/.3",
                                      "lambert:kd=.35/.02/.03+ggx:alpha=.1,F0=.05",
                                      "disney:roughness=.35,baseColor=.2/.4/.6", "lambert"),
-                     testing::Range<std::size_t>(0, 4)));
+                     testing::Range<std::size_t>(0, 5)));
 
 /// At the normal the paint has 0.51, where an earlier form had 0.
 TEST(HalfwayForms, HaveTheValueAtTheNormalOfACarPaint) {
@@ -59,6 +63,45 @@ TEST(HalfwayForms, HaveTheValueAtTheNormalOfACarPaint) {
     const Direction normal{0, 0, 1};
     const auto f = evaluate(*source, normal, normal), g = evaluate(*form, normal, normal);
     for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(g[c], f[c], 0.02 * f[c]);
+}
+
+/// Eight bits a coefficient cost the eye nothing: the coefficients make up for one another. With
+/// one regularisation for all, the second of these had FLIP .28 for .07.
+TEST(HalfwayForms, LookTheSameInEightBits) {
+    for (const std::string name : {"rgl/cc_ibiza_sunset_rgb.bsdf", "rgl/cg_sunflower_rgb.bsdf",
+                                   "merl_slices/chrome-steel.slice"}) {
+        if (!std::filesystem::exists(data + "/" + name)) GTEST_SKIP() << data << " is absent";
+        const auto source = brdfs::open(data + "/" + name);
+        const Representation fitted = projectHalfway(*source, {});
+        const auto flip = [&](Precision precision) {
+            Representation stored = fitted;
+            quantiseHalfway(stored, precision, *source);
+            return pictureError(*source, *asBrdf(stored)).flip.mean;
+        };
+        EXPECT_LE(flip(Precision::unorm8), 1.15 * flip(Precision::float32)) << name;
+    }
+}
+
+/// The lobe of obsidian lies in the first degree of its table. With albedos at one direction of
+/// each stratum alone it swung between them, and its highlight had a black disc.
+TEST(HalfwayForms, KeepAHighlightOfLessThanADegree) {
+    const std::string file = data + "/merl_slices/black-obsidian.slice";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is absent";
+    const auto source = brdfs::open(file);
+    const PictureError error = pictureError(*source, *asBrdf(projectHalfway(*source, {})));
+    EXPECT_LE(error.dip.value, 0.02) << textOf(error);
+    EXPECT_LE(error.peak.value, 0.03) << textOf(error);
+    EXPECT_LE(error.flip.mean, 0.24) << textOf(error);
+}
+
+/// Three channels in half precision: 46 bytes hold the lobe and the ceilings.
+TEST(HalfwayForms, TakeAKilobyteByDefault) {
+    for (const bool isotropic : {true, false}) {
+        const HalfwayOrders orders = halfwayOrdersOr({}, isotropic, true);
+        EXPECT_LE(6 * HalfwayTerms(orders, {isotropic, true, true}).size() + 46, 1024U);
+    }
+    EXPECT_LE(6 * HalfwayTerms(halfwayOrdersOr({}, true, false), {true, true, false}).size() + 46,
+              1024U);
 }
 
 double slopeSquared(const Direction& wi, const Direction& wo) {
@@ -133,8 +176,9 @@ TEST_P(HalfwayBound, HoldsAtEveryPairOfElevations) {
          .reciprocal = each.reciprocal,
          .isotropic = true,
          .mirrorSymmetric = true});
-    const Representation fitted = projectHalfway(brdf, {9, 8, 6});
-    for (const Precision precision : {Precision::float32, Precision::half, Precision::unorm16}) {
+    const Representation fitted = projectHalfway(brdf, {});
+    for (const Precision precision :
+         {Precision::float32, Precision::half, Precision::unorm16, Precision::unorm8}) {
         Representation stored = fitted;
         quantiseHalfway(stored, precision, brdf);
         const auto made = asBrdf(stored);

@@ -104,7 +104,7 @@ void quantise(Representation& representation, Precision precision, const Brdf& s
     addStep(representation, before, std::string(precisionName(precision)));
 }
 
-/// Holds options to the form halfway: ln(1 + f) keeps f and is not linear in it.
+/// Holds options to the form halfway: it keeps f and is not linear in its coefficients.
 void requireConsistentHalfway(const Form& form, const Laws& laws) {
     const Setting halfway{"Form::kind", std::string(kindName(Kind::halfway))};
     if (form.quantity == Quantity::brdfCosine) {
@@ -160,7 +160,7 @@ std::vector<Setting> settingsOf(const Form& form) {
     add(form.kind != Kind::outgoing, "Form::kind", std::string(kindName(form.kind)));
     add(!halfway, "Form::basis", form.basis);
     add(!halfway, "Form::order", fmt::format("{}", form.order));
-    add(halfway, "Form::halfway",
+    add(halfway && form.halfway.half != 0, "Form::halfway",
         fmt::format("{},{},{}", form.halfway.half, form.halfway.difference, form.halfway.azimuth));
     add(form.quantity == Quantity::brdfCosine, "Form::quantity", quantityName(form.quantity));
     add(form.condonShortley, "Form::condonShortley");

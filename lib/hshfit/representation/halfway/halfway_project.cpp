@@ -112,10 +112,11 @@ private:
 
 }  // namespace
 
-Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
+Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& asked,
                               const ProjectionOptions& options, bool reciprocal) {
     Representation r;
     r.head = headFor(brdf, reciprocal);
+    const HalfwayOrders orders = halfwayOrdersOr(asked, r.head.isotropic, r.head.reciprocal);
     r.halfway = orders;
     const HalfwaySymmetry symmetry = halfwaySymmetryOf(r.head);
     const HalfwayTerms terms(orders, symmetry);
@@ -190,7 +191,7 @@ double storedLoss(const Representation& r, const HalfwaySamples& left, double fl
 constexpr std::array ladder{
     HalfwayOrders{3, 2, 1},   HalfwayOrders{4, 3, 2},   HalfwayOrders{5, 4, 3},
     HalfwayOrders{6, 5, 4},   HalfwayOrders{7, 6, 5},   HalfwayOrders{9, 8, 6},
-    HalfwayOrders{12, 6, 6},  HalfwayOrders{9, 8, 9},   HalfwayOrders{11, 10, 7},
+    HalfwayOrders{9, 13, 5},  HalfwayOrders{9, 8, 9},   HalfwayOrders{11, 10, 7},
     HalfwayOrders{13, 12, 8}, HalfwayOrders{16, 12, 9}, HalfwayOrders{18, 14, 11},
     HalfwayOrders{22, 17, 13}};
 

@@ -8,14 +8,18 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace hshfit::inline representation::inline halfway {
 namespace {
 
-/// Of the mean of the diagonal: directions that no pair sees are left to rounding.
-constexpr double regularisation = 1e-9;
+/// Of the mean of the diagonal: directions that no pair sees are left to rounding. Little of it
+/// leaves more for the other coefficients to make up, beyond what their grids hold or the normal
+/// equations tell: each is tried.
+constexpr std::array regularisations{1e-9, 1e-7, 1e-5, 1e-3};
 constexpr double greatestHalf = 65504;
 
 /// The numbers that one coefficient may have.
@@ -52,8 +56,8 @@ Grid gridOf(const StoredArray& rounded, std::size_t at) {
 }
 
 /// Rounds one channel, given H.
-void roundChannel(const Eigen::MatrixXd& gram, const double* fitted, const StoredArray& rounded,
-                  std::size_t first, double* out) {
+void roundChannel(const Eigen::MatrixXd& gram, double regularisation, const double* fitted,
+                  const StoredArray& rounded, std::size_t first, double* out) {
     const auto terms = static_cast<std::size_t>(gram.rows());
     std::vector<std::size_t> order;
     for (std::size_t t = 0; t < terms; ++t) {
@@ -102,12 +106,26 @@ void quantiseHalfway(Representation& representation, Precision precision, const 
     appendSamples(brdf, HalfwayPart::fitted, 0,
                   halfwayPairsFor(terms, representation.head.isotropic), samples);
     const HalfwayAlbedo albedo = albedoOf(brdf, representation.head.reciprocal);
-    const std::vector<HalfwaySystem> systems =
-        halfwaySystems({terms, axes, halfwayFloor(albedo)}, {samples, &albedo, fineHuber}, values);
-    std::vector<double> found(fitted.size());
-    for (std::size_t c = 0; c < channels; ++c) {
-        const std::size_t first = c * terms.size();
-        roundChannel(systems[c].gram, fitted.data() + first, rounded, first, found.data() + first);
+    const HalfwayModel model{terms, axes, halfwayFloor(albedo)};
+    const HalfwayData data{samples, &albedo, fineHuber};
+    const std::vector<HalfwaySystem> systems = halfwaySystems(model, data, values);
+    std::vector<double> found(fitted.size()), tried(fitted.size());
+    std::vector<double> least(channels, std::numeric_limits<double>::infinity());
+    for (const double regularisation : regularisations) {
+        for (std::size_t c = 0; c < channels; ++c) {
+            const std::size_t first = c * terms.size();
+            roundChannel(systems[c].gram, regularisation, fitted.data() + first, rounded, first,
+                         tried.data() + first);
+        }
+        const auto losses = halfwaySystems(
+            model, data,
+            Eigen::Map<const HalfwayValues>(tried.data(), values.rows(), values.cols()));
+        for (std::size_t c = 0; c < channels; ++c) {
+            if (!(losses[c].loss < least[c])) continue;
+            least[c] = losses[c].loss;
+            const auto first = static_cast<std::ptrdiff_t>(c * terms.size());
+            std::copy_n(tried.begin() + first, terms.size(), found.begin() + first);
+        }
     }
     rounded.values = std::move(found);
 }

@@ -184,6 +184,12 @@ void HalfwayTerms::evaluate(const HalfwayPoint& point, double* out) const {
     }
 }
 
+HalfwayOrders halfwayOrdersOr(const HalfwayOrders& asked, bool isotropic, bool reciprocal) {
+    if (asked.half != 0) return asked;
+    if (!isotropic) return {8, 8, 6};
+    return reciprocal ? HalfwayOrders{9, 13, 5} : HalfwayOrders{9, 8, 6};
+}
+
 HalfwaySymmetry halfwaySymmetryOf(const CoefficientHead& head) {
     return {head.isotropic, head.bilateral, head.reciprocal};
 }

@@ -9,9 +9,11 @@
 namespace hshfit::inline representation::inline halfway {
 namespace {
 
-constexpr int outgoingStrata = 12, incomingPairs = 512;
-/// Azimuths of wo in a stratum where f depends on them.
-constexpr int azimuthStrata = 6;
+constexpr int outgoingStrata = 12;
+/// Directions wo in a stratum, and pairs of each. With one alone the form has the right albedo at
+/// it, and swings between the strata.
+constexpr int elevations = 8, isotropicPairs = 256;
+constexpr int azimuths = 6, anisotropicPairs = 512;
 constexpr double albedoWeight = 10;
 /// Cosines of theta_o below that of 85 degrees do not count: what measured files have there would
 /// rule the rest.
@@ -54,9 +56,11 @@ double HalfwayAlbedo::greatestMean() const {
 }
 
 HalfwayAlbedo albedoOf(const Brdf& brdf, bool reciprocal) {
-    const int replicates = brdf.laws().isotropic ? 1 : azimuthStrata;
-    const PairSample pairs = spreadPairs(
-        {.replicates = replicates, .outgoing = outgoingStrata, .incoming = incomingPairs});
+    const bool isotropic = brdf.laws().isotropic;
+    const PairSample pairs =
+        spreadPairs({.replicates = isotropic ? elevations : azimuths,
+                     .outgoing = outgoingStrata,
+                     .incoming = isotropic ? isotropicPairs : anisotropicPairs});
     const std::size_t channels = brdf.channels().count();
     std::vector<double> values = evaluateOn(brdf, pairs);
     HalfwayAlbedo albedo;
