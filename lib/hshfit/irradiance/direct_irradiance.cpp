@@ -47,7 +47,10 @@ struct Moments {
 class DirectIrradiance::Picture {
 public:
     explicit Picture(const PictureLight& light) : light_(light), geometry_(geometryOf(light)) {
-        if (light.layout == PictureLayout::latlong) setLatlong();
+        if (light.layout == PictureLayout::latlong)
+            setLatlong();
+        else
+            setVectors();
         Level first{.width = blocks(light.width), .height = blocks(light.height), .nodes = {}};
         first.nodes.reserve(first.width * first.height);
         for (std::size_t row = 0; row < first.height; ++row)
@@ -104,14 +107,23 @@ private:
         }
     }
 
+    void setVectors() {
+        vectors_.reserve(light_.width * light_.height);
+        for (std::size_t r = 0; r < light_.height; ++r) {
+            for (std::size_t c = 0; c < light_.width; ++c) {
+                const double omega = geometry_.solidAngle(c, r);
+                const Direction d =
+                    geometry_.direction(static_cast<double>(c) + 0.5, static_cast<double>(r) + 0.5);
+                vectors_.push_back({omega * d.x, omega * d.y, omega * d.z});
+            }
+        }
+    }
+
     /// Integral of w d omega over a pixel.
     Direction vectorOf(std::size_t row, std::size_t column) const {
         if (light_.layout == PictureLayout::latlong)
             return {across_[row] * columnX_[column], across_[row] * columnY_[column], up_[row]};
-        const double omega = geometry_.solidAngle(column, row);
-        const Direction d =
-            geometry_.direction(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
-        return {omega * d.x, omega * d.y, omega * d.z};
+        return vectors_[row * light_.width + column];
     }
     Direction corner(std::size_t row, std::size_t column) const {
         if (light_.layout == PictureLayout::latlong)
@@ -217,6 +229,7 @@ private:
     PictureGeometry geometry_;
     std::vector<double> rowCosine_, rowSine_, columnCosine_, columnSine_;
     std::vector<double> across_, up_, columnX_, columnY_;  ///< of rows, of columns
+    std::vector<Direction> vectors_;  ///< of pixels, row by row, in other layouts
     std::vector<Level> levels_;
 };
 
