@@ -29,11 +29,14 @@ std::string chiSquareLine(const Document& uncertainty) {
     if (!uncertainty["chi_square"].is_number())
         return fmt::format("  variance of residuals {:.6g} over {} degrees of freedom\n",
                            uncertainty["residual_variance"].get<double>(), degrees);
-    return fmt::format(
-        "  chi-square {:.6g} over {} degrees of freedom, {:.4g} each, "
-        "probability {:.3g}\n",
-        uncertainty["chi_square"].get<double>(), degrees,
-        uncertainty["reduced_chi_square"].get<double>(), uncertainty["probability"].get<double>());
+    std::string line = fmt::format("  chi-square {:.6g} over {} degrees of freedom, {:.4g} each",
+                                   uncertainty["chi_square"].get<double>(), degrees,
+                                   uncertainty["reduced_chi_square"].get<double>());
+    if (uncertainty["probability"].is_number())
+        line += fmt::format(", probability {:.3g}", uncertainty["probability"].get<double>());
+    if (uncertainty.contains("correlation"))
+        line += "\n  errors by the stated correlation; weights are those of independent values";
+    return line + "\n";
 }
 
 /// Whether a parameter is the scale, or the zero of an angle, of one scan.
@@ -45,16 +48,21 @@ bool isOfScan(const Document& parameter) {
 
 /// The errors of every parameter, a column for each route.
 std::string errorTable(const Document& uncertainty) {
-    const bool scans = uncertainty.contains("scans"), bootstrap = uncertainty.contains("bootstrap");
+    const bool scans = uncertainty.contains("scans"),
+               correlated = uncertainty.contains("correlation"),
+               bootstrap = uncertainty.contains("bootstrap");
     std::string lines =
-        fmt::format("  {:<27} {:>10} {:>10}{}{}\n", "standard errors", "normal", "sandwich",
-                    scans ? "    by scan   df" : "", bootstrap ? "  bootstrap" : "");
+        fmt::format("  {:<27} {:>10} {:>10}{}{}{}\n", "standard errors", "normal", "sandwich",
+                    correlated ? " correlated" : "", scans ? "    by scan   df" : "",
+                    bootstrap ? "  bootstrap" : "");
     for (const Document& own : uncertainty["parameters"]) {
         // Of scans there may be hundreds; FIT.json has them all.
         if (isOfScan(own)) continue;
         lines +=
             fmt::format("  {:<24} {:>2} {:>10} {:>10}", own["name"].get<std::string>(),
                         own.value("channel", ""), number(own["normal"]), number(own["sandwich"]));
+        if (correlated)
+            lines += fmt::format(" {:>10}", number(own.value("correlated", Document())));
         if (scans) {
             const auto student = own.find("scans_student");
             lines += fmt::format(

@@ -35,10 +35,14 @@ std::string chiSquareText(const Json& study) {
             "none, as no uncertainties of the samples are stated; variance of the residuals {} "
             "over {} degrees of freedom",
             numberOf(study["residual_variance"]), degrees);
-    return fmt::format("{} over {} degrees of freedom, {} each; probability of as much {}",
+    const std::string probability =
+        study.contains("correlation")
+            ? "no probability, as errors are correlated"
+            : fmt::format("probability of as much {}", numberOf(study["probability"]));
+    return fmt::format("{} over {} degrees of freedom, {} each; {}",
                        brdfs::plainValue(study["chi_square"].get<double>()), degrees,
                        brdfs::plainValue(study["reduced_chi_square"].get<double>(), 4),
-                       numberOf(study["probability"]));
+                       probability);
 }
 
 const Json* studyOf(const Json& fit) {
@@ -50,6 +54,7 @@ const Json* studyOf(const Json& fit) {
 std::vector<std::string> routeCells(const Json& study, std::size_t parameter) {
     const Json& own = study["parameters"][parameter];
     std::vector<std::string> cells{numberOf(own["normal"]), numberOf(own["sandwich"])};
+    if (study.contains("correlation")) cells.push_back(numberOf(own["correlated"]));
     if (study.contains("scans")) cells.push_back(numberOf(own.value("scans", Json())));
     if (study.contains("bootstrap"))
         cells.push_back(own.contains("bootstrap") ? numberOf(own["bootstrap"]["standard_error"])
@@ -59,6 +64,7 @@ std::vector<std::string> routeCells(const Json& study, std::size_t parameter) {
 
 std::vector<std::string> routeHeads(const Json& study) {
     std::vector<std::string> heads{"u normal", "u sandwich"};
+    if (study.contains("correlation")) heads.emplace_back("u correlated");
     if (study.contains("scans")) heads.emplace_back("u by scan");
     if (study.contains("bootstrap")) heads.emplace_back("u bootstrap");
     return heads;

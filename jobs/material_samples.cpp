@@ -26,12 +26,22 @@ struct Gathered {
     std::size_t all = 0;  ///< samples that there were
 };
 
+brdfs::SigmaStatement independentSigma(const std::string& text) {
+    brdfs::SigmaStatement sigma = brdfs::parseSigma(text);
+    if (sigma.correlation.any())
+        throw UsageError(fmt::format(
+            "{} '{}': a library takes the errors of samples as independent; leave out the "
+            "correlation",
+            Setting{"FitOptions::sigma"}, text));
+    return sigma;
+}
+
 Gathered gather(const Brdf& data, const std::string& spec, const std::string& sigma,
                 std::size_t most) {
     if (data.channels().kind == Channels::Kind::spectral)
         throw UsageError(
             fmt::format("{}: is spectral; libraries are grey and RGB, so give rgb:{}", spec, spec));
-    brdfs::SampleOptions options{.sigma = brdfs::parseSigma(sigma)};
+    brdfs::SampleOptions options{.sigma = independentSigma(sigma)};
     brdfs::FitSamples samples = brdfs::gatherSamples(data, options);
     if (samples.sums)
         throw UsageError(fmt::format("{}: has sums of f over directions, not samples of f", spec));
@@ -131,7 +141,7 @@ ReconstructedMaterial reconstructMaterial(const std::string& samples, const std:
 std::vector<ml::NextPair> nextPairs(const std::string& samples, const std::string& output,
                                     const NextPairsOptions& options) {
     const ml::Library library = ml::readLibrary(options.library);
-    const brdfs::SigmaStatement sigma = brdfs::parseSigma(options.sigma);
+    const brdfs::SigmaStatement sigma = independentSigma(options.sigma);
     using From = brdfs::SigmaStatement::From;
     if (sigma.from != From::nothing && sigma.from != From::formula)
         throw UsageError(

@@ -102,9 +102,10 @@ nlohmann::ordered_json predictionJson(const FitSamples& samples, const FitResult
     }
     const double count = static_cast<double>(prediction.values.size());
     const Uncertainty none, &own = result.uncertainty ? *result.uncertainty : none;
-    return {{"route", own.scansSuffice() ? "scans"
-                      : own.scans > 0    ? "normal"
-                                         : "sandwich"},
+    return {{"route", own.correlated       ? "correlated"
+                      : own.scansSuffice() ? "scans"
+                      : own.scans > 0      ? "normal"
+                                           : "sandwich"},
             {"rms_error", std::sqrt(squares / count)},
             {"rms_relative_error", std::sqrt(relativeSquares / count)},
             {"largest_error",

@@ -1,5 +1,6 @@
 #include <brdfs/fit/dispersed_study.h>
 
+#include <brdfs/fit/correlated_spread.h>
 #include <brdfs/fit/covariance.h>
 #include <brdfs/fit/dispersed_profile.h>
 #include <brdfs/fit/minimum_study.h>
@@ -205,6 +206,7 @@ void addErrors(const Report& report, const Covariance& independent, const Covari
             if (known[j]) uncertainty.covariance[i * n + j] = stated(at(i), at(j));
         own.normal = std::sqrt(std::max(0.0, stated(at(i), at(i))));
         own.sandwich = std::sqrt(std::max(0.0, sandwich(at(i), at(i))));
+        if (uncertainty.correlated) own.correlated = *result.parameters[i].standardError;
         if (uncertainty.scans == 0) continue;
         own.scans = *result.parameters[i].standardError;
         if (degrees[i] > 0) own.scanDegrees = degrees[i];
@@ -282,10 +284,11 @@ void describeDispersed(const DispersedProblem& problem, const Minimum& found,
     equations.spread = problem.joint(found.x, true, inverse).spread;
     Covariance covariance = covarianceOf(equations, fixed);
     const Covariance independent = covariance;
-    const bool byScan = !samples.scans.empty();
+    const bool correlated = samples.correlation.any();
+    const bool byScan = !samples.scans.empty() && !correlated;
     const Matrix unscaled = mapped(inverse, n) / problem.normalisation();
     const bool common = !options.contributions.empty();
-    const WeightedRows rows = options.uncertainty.report || byScan || common
+    const WeightedRows rows = options.uncertainty.report || byScan || common || correlated
                                   ? problem.weightedRows(found.x)
                                   : WeightedRows{};
     std::vector<double> degrees;
@@ -300,12 +303,19 @@ void describeDispersed(const DispersedProblem& problem, const Minimum& found,
         equations.spread.assign(spread.data(), spread.data() + spread.size());
         covariance = covarianceOf(equations, fixed);
     }
+    if (correlated) {
+        const Matrix spread = correlatedSpread(samples, rows, n, 0) /
+                              (problem.normalisation() * problem.normalisation());
+        equations.spread.assign(spread.data(), spread.data() + spread.size());
+        covariance = covarianceOf(equations, fixed);
+    }
     if (options.uncertainty.report)
         result.uncertainty =
             influences({.residuals = rows.residuals,
                         .models = rows.values,
                         .leverages = leveragesOf(rows, unscaled),
                         .stated = !samples.sigmas.empty(),
+                        .correlated = correlated,
                         .scans = byScan ? *std::ranges::max_element(samples.scans) + 1 : 0});
     std::vector<double> normal = inverse;
     for (double& value : normal) value /= problem.normalisation();
@@ -322,10 +332,12 @@ void describeDispersed(const DispersedProblem& problem, const Minimum& found,
     result.point.covariance = covariance.whole;
     valuesAt(model, found.x, &result.point);
     if (common) {
+        constexpr double known = std::numeric_limits<double>::infinity();
         const double freedom = static_cast<double>(rows.samples) - static_cast<double>(n);
-        addBudget(options.contributions,
-                  changesOf(problem, found.x, rows, unscaled, report, options),
-                  byScan ? degrees : std::vector<double>(n, std::max(1.0, freedom)), result);
+        addBudget(
+            options.contributions, changesOf(problem, found.x, rows, unscaled, report, options),
+            byScan ? degrees : std::vector<double>(n, correlated ? known : std::max(1.0, freedom)),
+            result);
     }
     if (options.uncertainty.bootstrap > 0) addDraws(problem, found, options, result);
     if (options.uncertainty.profile)

@@ -1,6 +1,7 @@
 #include <brdfs/fit/fit.h>
 
 #include <brdfs/catalog.h>
+#include <brdfs/fit/correlated_spread.h>
 #include <brdfs/fit/covariance.h>
 #include <brdfs/fit/dispersion.h>
 #include <brdfs/fit/distributions.h>
@@ -112,7 +113,14 @@ void describe(const FitProblem& problem, const std::vector<double>& x, const Fit
     Covariance covariance = covarianceOf(equations, fixed);
     const Covariance sandwich = covariance;
     part.freedom = freedomAt(problem, x, inverse, slope);
-    if (!problem.samples().scans.empty()) {
+    if (problem.samples().correlation.any()) {
+        const Eigen::MatrixXd spread =
+            correlatedSpread(problem.samples(), problem.weightedRows(x), x.size(), shapes) /
+            (problem.normalisation() * problem.normalisation());
+        equations.spread.assign(spread.data(), spread.data() + spread.size());
+        covariance = covarianceOf(equations, fixed);
+        part.freedom.reset();
+    } else if (!problem.samples().scans.empty()) {
         equations.spread = spreadOfScans(problem, *part.freedom, equations);
         covariance = covarianceOf(equations, fixed);
         if (!scansSuffice(problem, *part.freedom)) part.freedom.reset();
@@ -181,13 +189,14 @@ void addStudy(const Uncertainty& own, std::size_t first, std::size_t n,
     if (!sum) {
         sum.emplace();
         sum->stated = own.stated;
+        sum->correlated = own.correlated;
         sum->scans = own.scans;
         sum->scanParameters = own.scanParameters;
         sum->covariance.assign(n * n, 0);
     }
     sum->chiSquare += own.chiSquare;
     sum->degreesOfFreedom += own.degreesOfFreedom;
-    if (own.stated)
+    if (own.stated && !own.correlated)
         sum->probability =
             chiSquareProbability(sum->chiSquare, static_cast<double>(sum->degreesOfFreedom));
     const std::size_t count = own.parameters.size();
@@ -309,6 +318,16 @@ void checkStatements(const FitSamples& samples, const FitOptions& options) {
             "to be l2");
     const bool studied = options.uncertainty.report || !samples.sigmas.empty() ||
                          !samples.scans.empty() || !options.contributions.empty();
+    if (samples.correlation.angle > 0 && samples.scans.empty())
+        throw UsageError(
+            "a correlation over angles is that of samples of one scan: say which samples belong to "
+            "one (column, incidence, or the number of samples in each)");
+    if (samples.correlation.wavelength > 0 &&
+        (samples.channels.kind != Channels::Kind::spectral ||
+         (options.perChannel && samples.channels.count() > 1)))
+        throw UsageError(
+            "a correlation over wavelengths is for data with wavelengths that are fitted together; "
+            "leave out shapes for each channel");
     if (studied && options.robust != Robust::none)
         throw UsageError(
             "uncertainties are those of a sum of squares; leave out the robust kernel");

@@ -278,6 +278,7 @@ FitSamples FitSamples::subset(const std::vector<std::size_t>& indices) const {
     result.solidAngles = solidAngles;
     result.origin = origin;
     result.masked = masked;
+    result.correlation = correlation;
     result.sums = sums;
     double sum = 0;
     for (const std::size_t k : indices) {

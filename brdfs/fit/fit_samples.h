@@ -63,6 +63,7 @@ struct FitSamples {
     std::vector<double> weights;  ///< mean 1
     /// Standard uncertainties, [channel * size() + sample], 1/sr; empty: not stated.
     std::vector<double> sigmas;
+    SigmaCorrelation correlation = {};  ///< of the errors of values with stated uncertainties
     /// Number of the scan of each sample, from 0 on; empty: each sample is its own.
     std::vector<std::size_t> scans;
     /// Line (or number) in the file of each measured value, [channel * size() + sample]; empty for

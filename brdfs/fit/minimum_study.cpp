@@ -90,7 +90,9 @@ std::size_t parametersOfChannel(const FitProblem& problem) {
 }
 
 std::size_t scanCount(const FitSamples& samples) {
-    return samples.scans.empty() ? 0 : *std::ranges::max_element(samples.scans) + 1;
+    return samples.scans.empty() || samples.correlation.any()
+               ? 0
+               : *std::ranges::max_element(samples.scans) + 1;
 }
 
 }  // namespace
@@ -134,6 +136,7 @@ std::vector<double> spreadOfScans(const FitProblem& problem, const VarianceFreed
 Uncertainty influences(const StudiedValues& values) {
     Uncertainty result;
     result.stated = values.stated;
+    result.correlated = values.correlated;
     result.scans = values.scans;
     result.scanParameters = values.scanParameters;
     double rank = values.otherRank;
@@ -146,7 +149,8 @@ Uncertainty influences(const StudiedValues& values) {
                  determined = std::round(rank);
     const double degrees = std::max(0.0, count + values.otherCount - determined);
     result.degreesOfFreedom = static_cast<std::size_t>(degrees);
-    if (result.stated) result.probability = chiSquareProbability(result.chiSquare, degrees);
+    if (result.stated && !result.correlated)
+        result.probability = chiSquareProbability(result.chiSquare, degrees);
     const double variance = result.reducedChiSquare();
 
     result.values.resize(values.leverages.size());
@@ -182,6 +186,7 @@ void addErrors(std::span<const double> inverse, const std::vector<double>& slope
                 result.covariance[i * n + j] = scale * inverse[i * n + j] * slope[i] * slope[j];
         own.normal = std::sqrt(result.covariance[i * n + i]);
         if (sandwich.variance[i] >= 0) own.sandwich = std::sqrt(sandwich.variance[i]) * slope[i];
+        if (result.correlated) own.correlated = std::sqrt(stated.variance[i]) * slope[i];
         if (!result.scansSuffice()) continue;
         own.scans = std::sqrt(stated.variance[i]) * slope[i];
         if (i < scanDegrees.size() && scanDegrees[i] > 0) own.scanDegrees = scanDegrees[i];
@@ -198,6 +203,7 @@ Uncertainty studied(const StudiedMinimum& minimum) {
                                      .models = rows.values,
                                      .leverages = leveragesOf(rows, inverse, shapes),
                                      .stated = !problem.samples().sigmas.empty(),
+                                     .correlated = problem.samples().correlation.any(),
                                      .scans = scanCount(problem.samples()),
                                      .scanParameters = parametersOfChannel(problem)});
     std::vector<double> degrees;

@@ -50,7 +50,8 @@ struct StudiedValues {
     std::vector<double> residuals = {};  ///< root(w) (measured - model)
     std::vector<double> models = {};     ///< 1/sr
     std::vector<double> leverages = {};
-    bool stated = false;  ///< weights are 1 / sigma^2
+    bool stated = false;      ///< weights are 1 / sigma^2
+    bool correlated = false;  ///< Uncertainty::correlated
     std::size_t scans = 0;
     std::size_t scanParameters = 0;  ///< Uncertainty::scanParameters
     /// Of terms beside the values, such as priors: squares, number, and sum of leverages.

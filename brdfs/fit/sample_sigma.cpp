@@ -1,9 +1,11 @@
 #include <brdfs/fit/sample_sigma.h>
 
+#include <hshfit/brdf/directions.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -17,10 +19,47 @@ UsageError noUncertainty(std::string_view text) {
         text));
 }
 
+constexpr std::string_view correlationMark = ",correlation:";
+
+/// "angle=3deg", "wavelength=20nm" or both.
+SigmaCorrelation correlationIn(std::string_view list, std::string_view text) {
+    SigmaCorrelation result;
+    while (!list.empty()) {
+        const std::string_view entry = list.substr(0, list.find(','));
+        const bool angle = entry.starts_with("angle="),
+                   wavelength = entry.starts_with("wavelength=");
+        double& length = angle ? result.angle : result.wavelength;
+        const std::string_view number = entry.substr(std::min(entry.find('=') + 1, entry.size()));
+        double value = 0;
+        const auto parsed = std::from_chars(number.data(), number.data() + number.size(), value);
+        const std::string_view unit(parsed.ptr, number.data() + number.size());
+        if (!(angle || wavelength) || length > 0 || parsed.ec != std::errc() || !(value > 0) ||
+            !std::isfinite(value) || !(unit.empty() || unit == (angle ? "deg" : "nm")))
+            throw UsageError(fmt::format(
+                "'{}' states no correlation of uncertainties; valid: correlation:angle=3deg, "
+                "correlation:wavelength=20nm or correlation:angle=3deg,wavelength=20nm",
+                text));
+        length = angle ? radians(value) : value;
+        list.remove_prefix(std::min(entry.size() + 1, list.size()));
+    }
+    if (!result.any())
+        throw UsageError(fmt::format(
+            "'{}' states no length of the correlation; valid: correlation:angle=3deg, for example",
+            text));
+    return result;
+}
+
 }  // namespace
 
 SigmaStatement parseSigma(std::string_view text) {
     using From = SigmaStatement::From;
+    if (const std::size_t mark = text.find(correlationMark); mark != text.npos) {
+        SigmaStatement result = parseSigma(text.substr(0, mark));
+        if (result.from == From::nothing) throw noUncertainty(text);
+        result.correlation = correlationIn(text.substr(mark + correlationMark.size()), text);
+        result.text = text;
+        return result;
+    }
     SigmaStatement result;
     result.text = text;
     if (text.empty()) return result;

@@ -6,6 +6,14 @@
 
 namespace hshfit::brdfs {
 
+/// Errors of two values may be correlated: exp(-apart / length), of the outgoing directions of two
+/// samples of a scan, of the wavelengths of one, and the product of both.
+struct SigmaCorrelation {
+    double angle = 0;       ///< length in radians; 0: samples are independent
+    double wavelength = 0;  ///< in nm; 0: wavelengths are independent
+    bool any() const { return angle > 0 || wavelength > 0; }
+};
+
 /// The standard uncertainty of each measured value, as somebody states it:
 ///     formula   sigma^2 = (relative |f|)^2 + absolute^2
 ///     column    a column of the data file (ASTM: sigma, or sigma_NAME for each channel)
@@ -19,9 +27,12 @@ struct SigmaStatement {
     double relative = 0, absolute = 0;  ///< absolute in 1/sr
     std::string path;
     std::string text;  ///< as it was stated
+    SigmaCorrelation correlation = {};
 };
 
-/// "2%", "0.001", "2%+0.001", "column" or "FILE.csv"; empty: nothing. Throws UsageError.
+/// "2%", "0.001", "2%+0.001", "column" or "FILE.csv", with ",correlation:angle=3deg" or
+/// ",correlation:wavelength=20nm" or both with a comma behind it; empty: nothing. Throws
+/// UsageError.
 SigmaStatement parseSigma(std::string_view text);
 
 /// The samples whose errors may be correlated:

@@ -233,6 +233,7 @@ void stateSigmas(const SigmaStatement& sigma, const SampleSource& source, FitSam
         sigmasOfColumn(source, samples);
     else
         sigmasOfFormula(sigma, source, samples);
+    samples.correlation = sigma.correlation;
     checkSizes(source, samples);
 }
 

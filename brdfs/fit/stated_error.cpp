@@ -26,7 +26,10 @@ std::optional<StatedError> statedError(const FitResult& result, std::size_t para
     if (const auto& study = result.uncertainty) {
         stated.degrees = static_cast<double>(std::max<std::size_t>(study->degreesOfFreedom, 1));
         const ParameterUncertainty& errors = study->parameters[parameter];
-        if (study->scans > 0 && !study->scansSuffice()) {
+        if (errors.correlated) {
+            stated.route = "correlated";
+            stated.degrees = std::numeric_limits<double>::infinity();
+        } else if (study->scans > 0 && !study->scansSuffice()) {
             stated.route = "normal";
             stated.degrees = std::numeric_limits<double>::infinity();
         } else if (errors.scans && errors.scanDegrees) {

@@ -12,7 +12,7 @@ namespace hshfit::brdfs {
 struct StatedError {
     double error = 0;
     std::string_view
-        route;  ///< "by scan", "normal" or "sandwich"; with a budget that of its samples
+        route;  ///< "by scan", "correlated", "normal" or "sandwich"; with a budget that of samples
     /// Of its variance: effective ones of the budget; those by scan; of the stated uncertainties
     /// infinite; else values less parameters.
     double degrees = 0;

@@ -26,6 +26,7 @@ Document errorsJson(const FittedParameter& parameter, const ParameterUncertainty
     json["value"] = parameter.value;
     json["normal"] = finiteOrNull(own.normal);
     json["sandwich"] = finiteOrNull(own.sandwich);
+    if (own.correlated) json["correlated"] = *own.correlated;
     if (byScan) json["scans"] = finiteOrNull(own.scans);
     if (own.scanDegrees) {
         const auto within = [&](double outside) {
@@ -93,7 +94,13 @@ Document uncertaintyJson(const FitReport& report) {
     json["reduced_chi_square"] = own.stated ? Document(own.reducedChiSquare()) : Document();
     json["probability"] = finiteOrNull(own.probability);
     json["residual_variance"] = own.reducedChiSquare();
-    if (!report.scans.empty()) json["scans"] = {{"by", report.scans}, {"count", own.scans}};
+    const SigmaCorrelation& correlation = report.samples->correlation;
+    if (correlation.any()) {
+        json["correlation"] = {{"used_in", "errors"}};
+        if (correlation.angle > 0) json["correlation"]["angle"] = degrees(correlation.angle);
+        if (correlation.wavelength > 0) json["correlation"]["wavelength"] = correlation.wavelength;
+    } else if (!report.scans.empty())
+        json["scans"] = {{"by", report.scans}, {"count", own.scans}};
     if (own.scans > 0 && !own.scansSuffice())
         json["scans"]["reason"] = fmt::format(
             "{} scans give no errors of {} parameters by scan; those of the stated "

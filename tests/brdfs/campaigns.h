@@ -62,20 +62,40 @@ struct Campaign {
     brdfs::FitOptions options = {};
     /// Adds errors to exact readings, before their noise.
     std::function<void(brdfs::FitSamples&, std::mt19937_64&)> err = {};
-    double shared = 0;  ///< share of the variance of noise that all wavelengths of a sample share
 
+    /// Noise has the correlation that `exact` states: exponential, so that along a scan and over
+    /// the wavelengths each value follows from the one before.
     brdfs::FitSamples measured(std::uint64_t seed) const {
         std::mt19937_64 random(seed);
         brdfs::FitSamples samples = exact;
         if (err) err(samples, random);
+        const std::size_t channels = samples.channels.count();
+        std::vector<double> noise(channels, 0);
         for (std::size_t k = 0; k < samples.size(); ++k) {
-            const double common = std::sqrt(shared) * normal(random);
-            for (std::size_t v = k; v < samples.values.size(); v += samples.size()) {
-                const double own = std::sqrt(1 - shared) * normal(random);
-                samples.values[v] += samples.sigmas[v] * (common + own);
+            const double from = alongScan(k), fresh = std::sqrt(1 - from * from);
+            double last = 0;
+            for (std::size_t c = 0; c < channels; ++c) {
+                const double before = overWavelengths(c);
+                last = before * last + std::sqrt(1 - before * before) * normal(random);
+                noise[c] = from * noise[c] + fresh * last;
+                samples.values[c * samples.size() + k] +=
+                    samples.sigmas[c * samples.size() + k] * noise[c];
             }
         }
         return samples;
+    }
+
+private:
+    double alongScan(std::size_t k) const {
+        const double length = exact.correlation.angle;
+        if (!(length > 0) || k == 0 || exact.scans[k] != exact.scans[k - 1]) return 0;
+        return std::exp(-std::acos(std::min(1.0, dot(exact.wo[k], exact.wo[k - 1]))) / length);
+    }
+    double overWavelengths(std::size_t c) const {
+        const double length = exact.correlation.wavelength;
+        if (!(length > 0) || c == 0) return 0;
+        const std::vector<double>& nanometres = exact.channels.wavelengths;
+        return std::exp(-(nanometres[c] - nanometres[c - 1]) / length);
     }
 };
 
@@ -135,10 +155,11 @@ inline std::vector<Campaign> campaigns() {
         for (double& value : samples.values) value *= scale;
     };
 
-    // Each sample is a scan: its wavelengths are what is correlated.
     all.push_back({"correlated wavelengths", exactSweeps(many, {450, 500, 550, 600}), plain});
-    all.back().shared = 0.7;
-    for (std::size_t k = 0; k < all.back().exact.size(); ++k) all.back().exact.scans[k] = k;
+    all.back().exact.correlation.wavelength = 100;
+
+    all.push_back({"correlated angles", exactSweeps(many), plain});
+    all.back().exact.correlation.angle = radians(8.0);
 
     for (const bool scan : {false, true}) {
         const std::string width = scan ? "0.1:scan" : "0.1";

@@ -249,6 +249,64 @@ TEST(Budget, ChangesCorrelationsAsOneErrorDoes) {
     EXPECT_NEAR(*result.parameters[1].standardError, 0.01 * result.parameters[1].value, 1e-5);
 }
 
+// kd at a wavelength is pi times a mean, of readings that are correlated along scans: its variance
+// by hand. Two wavelengths have the correlation of their readings.
+TEST(CorrelatedErrors, OfALambertianSurfaceAreThoseByHand) {
+    FitSamples samples = sweeps("lambert:kd=.5", {20, 40});
+    samples.channels = Channels::spectral({500, 550});
+    samples.values = valuesOf(*open("lambert:kd=.5"), samples);
+    samples.sigmas.assign(samples.values.size(), 0.002);
+    samples.correlation = parseSigma("1%,correlation:angle=10deg,wavelength=100nm").correlation;
+    FitOptions options{.model = "lambert", .loss = Loss::Kind::l2};
+    options.uncertainty.report = true;
+    double sum = 0;
+    for (std::size_t j = 0; j < samples.size(); ++j)
+        for (std::size_t k = 0; k < samples.size(); ++k) {
+            const double apart =
+                std::acos(std::clamp(dot(samples.wo[j], samples.wo[k]), -1.0, 1.0));
+            if (samples.scans[j] == samples.scans[k]) sum += std::exp(-apart / radians(10.0));
+        }
+    const double error = pi / static_cast<double>(samples.size()) * 0.002 * std::sqrt(sum);
+    // Along the scans errors are larger than those of independent readings by more than 1.9.
+    EXPECT_GT(sum, 3.61 * static_cast<double>(samples.size()));
+    for (const bool laws : {false, true}) {
+        options.dispersion = laws ? "kd=free" : "";
+        const FitResult result = fit(samples, options);
+        ASSERT_EQ(result.parameters.size(), 2u);
+        for (std::size_t c = 0; c < 2; ++c) {
+            EXPECT_NEAR(*result.parameters[c].standardError, error, 1e-8 * error);
+            EXPECT_NEAR(*result.uncertainty->parameters[c].correlated, error, 1e-8 * error);
+            EXPECT_FALSE(result.uncertainty->parameters[c].scans);
+        }
+        EXPECT_NEAR(result.correlations[1], std::exp(-0.5), 1e-8);
+        EXPECT_FALSE(result.uncertainty->probability);
+    }
+    options.dispersion = "";
+    options.instrument = parseInstrument({.dark = "0"});
+    const FitResult read = fit(samples, options);
+    EXPECT_NEAR(*read.parameters[1].standardError, error, 1e-8 * error);
+    EXPECT_NEAR(read.correlations[1], std::exp(-0.5), 1e-8);
+}
+
+TEST(CorrelatedErrors, NameWhatTheyLack) {
+    FitSamples samples = sweeps("lambert:kd=.5", {20, 40});
+    samples.sigmas.assign(samples.values.size(), 0.002);
+    samples.correlation.wavelength = 10;
+    FitOptions options{.model = "lambert", .loss = Loss::Kind::l2};
+    EXPECT_THROW(fit(samples, options), UsageError);
+    samples.correlation = {.angle = 0.1};
+    samples.scans.clear();
+    EXPECT_THROW(fit(samples, options), UsageError);
+    EXPECT_DOUBLE_EQ(parseSigma("2%,correlation:angle=3deg").correlation.angle, radians(3.0));
+    EXPECT_EQ(parseSigma("column,correlation:wavelength=20").correlation.wavelength, 20);
+    EXPECT_EQ(parseSigma("s.csv,correlation:angle=3").path, "s.csv");
+    for (const char* text :
+         {"2%,correlation:", "2%,correlation:angle", "2%,correlation:angle=0",
+          "2%,correlation:angle=3nm", "2%,correlation:time=3", ",correlation:angle=3",
+          "2%,correlation:angle=3,angle=4", "2%,correlation:angle=3,wavelength=x"})
+        EXPECT_THROW(parseSigma(text), UsageError) << text;
+}
+
 // 300 campaigns of each kind, whose errors the fit is told of: shares of one and two standard
 // errors within three of their own standard deviations.
 TEST(Campaigns, HoldTheTruthAsOftenAsStated) {

@@ -40,6 +40,7 @@ FitSamples corrected(const InstrumentProblem& problem, const std::vector<double>
         if (!samples.sigmas.empty()) samples.sigmas[v] /= scale;
     }
     samples.scans.clear();
+    samples.correlation = {};
     return samples;
 }
 
@@ -173,6 +174,7 @@ FitResult fitWithInstrument(const FitSamples& samples, const FitOptions& options
     // At the nominal directions, without anything that is fitted.
     FitSamples stated = withoutStated(samples, instrument);
     stated.scans.clear();
+    stated.correlation = {};
     FitResult result = searchMaterial(stated, options);
     std::vector<double> x = materialOf(result, sum, samples.channels.count());
     quadratures.refine(*openFit(result), samples, instrument);

@@ -294,7 +294,8 @@ std::shared_ptr<const VarianceFreedom> freedomOfValues(const WholeSystem& system
 StudiedValues valuesOf(const InstrumentProblem& problem, const WholeSystem& system,
                        const std::vector<double>& x, const Leverages& leverages, bool byScan) {
     const FitSamples& samples = problem.readings().samples;
-    StudiedValues values{.stated = !samples.sigmas.empty()};
+    StudiedValues values{.stated = !samples.sigmas.empty(),
+                         .correlated = samples.correlation.any()};
     values.leverages = leverages.values;
     values.residuals.resize(leverages.values.size());
     system.forEachValue(
@@ -394,11 +395,15 @@ void describeReadings(const InstrumentProblem& problem, const std::vector<double
     const Leverages leverages = leveragesOf(system, inverse);
     whole = equationsOf(system.hessian() / unit, leverages.spread / (unit * unit));
     const Covariance sandwich = covarianceOf(whole, fixed);
-    const bool byScan = options.uncertainty.report && !samples.scans.empty();
+    const bool correlated = samples.correlation.any();
+    const bool byScan = options.uncertainty.report && !samples.scans.empty() && !correlated;
     std::shared_ptr<const VarianceFreedom> freedom;
     Uncertainty study = influences(valuesOf(problem, system, x, leverages, byScan));
     Covariance covariance = sandwich;
-    if (study.scansSuffice()) {
+    if (correlated) {
+        covariance = covarianceOf(
+            equationsOf(system.hessian() / unit, system.correlatedSpread() / (unit * unit)), fixed);
+    } else if (study.scansSuffice()) {
         Shared shared = sharedBy(problem, system, described);
         covariance =
             covarianceByScan(problem, system, shared, study.stated ? 1 : study.reducedChiSquare());

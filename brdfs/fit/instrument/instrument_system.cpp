@@ -1,5 +1,6 @@
 #include <brdfs/fit/instrument/instrument_system.h>
 
+#include <brdfs/fit/correlated_spread.h>
 #include <hshfit/linear_algebra/decompositions.h>
 
 #include <algorithm>
@@ -78,6 +79,18 @@ WholeSystem::Matrix WholeSystem::across(const Indices& own) const {
 WholeSystem::Matrix WholeSystem::solved(const Indices& own) const {
     const Matrix inner = hessian_(own, own);
     return inner.ldlt().solve(across(own).transpose());
+}
+
+WholeSystem::Matrix WholeSystem::correlatedSpread() const {
+    Matrix spread = brdfs::correlatedSpread(samples_, static_cast<std::size_t>(size()),
+                                            [&](std::size_t v, Eigen::Ref<Eigen::RowVectorXd> row) {
+                                                const auto [places, slopes] = slopesOf(
+                                                    v / samples_.size(), v % samples_.size());
+                                                for (std::size_t i = 0; i < places.size(); ++i)
+                                                    row(places[i]) += slopes(at(i));
+                                            });
+    for (const Prior& prior : priors_) spread(prior.place, prior.place) += prior.weight;
+    return spread;
 }
 
 std::vector<ScanSums> WholeSystem::scanSums() const {

@@ -55,6 +55,8 @@ public:
         return rows_.scales[scan] * rows_.material[v] + rows_.added[v];
     }
 
+    /// The spread of values with stated correlations (correlated_spread.h), and of priors.
+    Matrix correlatedSpread() const;
     /// Of each scan of the samples, with its own places eliminated.
     std::vector<ScanSums> scanSums() const;
     /// The matrix of what scans share, with the places of scans eliminated.

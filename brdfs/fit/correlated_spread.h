@@ -1,0 +1,24 @@
+#pragma once
+
+#include <brdfs/fit/fit_samples.h>
+#include <brdfs/fit/normal_equations.h>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <functional>
+
+namespace hshfit::brdfs {
+
+/// J^T W C W J of values whose errors have the covariance C that SigmaCorrelation states, with the
+/// weights W = 1 / sigma^2: the spread of the gradient of a fit by independent weights. `addRow`
+/// adds value v's root(w) times its derivatives by the n parameters to a row of zeros.
+Eigen::MatrixXd correlatedSpread(
+    const FitSamples& samples, std::size_t n,
+    const std::function<void(std::size_t v, Eigen::Ref<Eigen::RowVectorXd> row)>& addRow);
+
+/// The same of rows. `shapes`: WeightedRows::place.
+Eigen::MatrixXd correlatedSpread(const FitSamples& samples, const WeightedRows& rows, std::size_t n,
+                                 std::size_t shapes);
+
+}  // namespace hshfit::brdfs
