@@ -39,7 +39,10 @@ MODELS = ("lambert:kd=.5", "oren-nayar:sigma=30", "eon:roughness=.5", "openpbr-d
           "he:sigma=.15,tau=3", "abc:B=100,C=1", "sgd:alpha=.1,kd=.3", "beckmann:alpha=.3",
           "ggx:alpha=.3", "ggx:alpha=.1", "ggx:alpha=.02", "gtr:gamma=1.5,alpha=.2",
           "gltf-pbr:baseColorFactor=.8/.5/.2,metallicFactor=.5,roughnessFactor=.5",
-          "openpbr:base_color=.5,specular_roughness=.4,coat_weight=.5,coat_roughness=.3")
+          "openpbr:base_color=.5,specular_roughness=.4,coat_weight=.5,coat_roughness=.3",
+          "abg:A=.001,B=.01,g=2", "harvey-shack:b0=3,l=.1,s=-2", "ross-li:iso=.3,vol=.1,geo=.03",
+          "rpv:rho0=.2,k=.8", "hapke:w=.8", "lambert-transmission",
+          "rough-glass:alpha=.3")
 
 
 def run(program, *arguments):
