@@ -45,23 +45,6 @@ Json curveJson(const LightCurve& curve) {
     return {{"basis", curve.basis}, {"points", points}};
 }
 
-Json splitJson(const jobs::SplitLight& split) {
-    const Direction& towards = split.split.sun.towards;
-    return {{"sun", split.sun},
-            {"rest", split.rest},
-            {"specification", split.specification},
-            {"elevation", 90 - degrees(polarAngle(towards))},
-            {"azimuth", degrees(azimuth(towards))},
-            {"angle", degrees(2 * split.split.sun.radius)},
-            {"radiance", split.split.sun.radiance},
-            {"irradiance", split.split.irradiance},
-            {"pixels", split.split.rest.size()},
-            {"peak", split.split.peak},
-            {"surroundings", split.split.surroundings},
-            {"error", split.error},
-            {"mean_error", split.meanError}};
-}
-
 std::string splitText(const jobs::SplitLight& split) {
     return fmt::format(
         "{}: the picture without its sun, {} pixels filled\n  sun: {}\n"
@@ -108,7 +91,7 @@ Json answer(const jobs::ProjectedLight& result, const std::string& output) {
                  {"bands", result.bands},
                  {"enough", enoughJson(result.enough)},
                  {"curves", curves}};
-    if (result.split) json["split"] = splitJson(*result.split);
+    if (result.split) json["split"] = jobs::splitJson(*result.split);
     return json;
 }
 

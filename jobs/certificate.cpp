@@ -20,8 +20,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -62,8 +64,41 @@ std::string valueOf(const JsonFields& fields, const char* key) {
     return fmt::format("{}", fmt::join(fields.words(key), "\n"));
 }
 
-/// The pairs of directions with results: all of a few, else evenly spaced ones.
-std::vector<std::size_t> shownSamples(std::size_t count) {
+/// A pair of directions and its readings: repeated scans have several.
+struct ReadPair {
+    DirectionPair directions;
+    std::vector<std::size_t> samples;
+
+    double mean(const brdfs::FitSamples& of, std::size_t channel) const {
+        double sum = 0;
+        for (const std::size_t k : samples) sum += of.value(channel, k);
+        return sum / static_cast<double>(samples.size());
+    }
+    /// The number of its scans; of its readings where samples have no scans.
+    std::size_t scans(const brdfs::FitSamples& of) const {
+        if (of.scans.empty()) return samples.size();
+        std::set<std::size_t> different;
+        for (const std::size_t k : samples) different.insert(of.scans[k]);
+        return different.size();
+    }
+};
+
+/// In the order of the first readings.
+std::vector<ReadPair> readPairs(const brdfs::FitSamples& samples) {
+    std::vector<ReadPair> pairs;
+    std::map<std::array<double, 6>, std::size_t> found;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const DirectionPair own{{samples.wiX[k], samples.wiY[k], samples.wiZ[k]}, samples.wo[k]};
+        const auto [at, first] = found.try_emplace(
+            {own.wi.x, own.wi.y, own.wi.z, own.wo.x, own.wo.y, own.wo.z}, pairs.size());
+        if (first) pairs.push_back({own, {}});
+        pairs[at->second].samples.push_back(k);
+    }
+    return pairs;
+}
+
+/// Numbers of the pairs with results: all of a few, else evenly spaced ones.
+std::vector<std::size_t> shownPairs(std::size_t count) {
     constexpr std::size_t most = 60;
     std::vector<std::size_t> shown;
     const std::size_t rows = std::min(count, most);
@@ -92,6 +127,7 @@ public:
                 std::string fieldsPath)
         : report_(report),
           samples_(*report.samples),
+          pairs_(readPairs(samples_)),
           resultText_(result),
           preset_(Json::parse(result)),
           fit_(preset_["fit"]),
@@ -159,7 +195,8 @@ private:
         }
         NamedTexts pairs{{"incidence θi", rangeText(incidence, "°")},
                          {"detection θo", rangeText(detection, "°")},
-                         {"pairs of directions", fmt::format("{}", samples_.size())}};
+                         {"pairs of directions", fmt::format("{}", pairs_.size())}};
+        if (repeated()) pairs.emplace_back("readings", fmt::format("{}", samples_.size()));
         const Channels& channels = samples_.channels;
         if (channels.kind == Channels::Kind::spectral)
             pairs.emplace_back("wavelengths", fmt::format("{}, {}", channels.count(),
@@ -181,6 +218,7 @@ private:
         return pairs;
     }
 
+    bool repeated() const { return pairs_.size() < samples_.size(); }
     Direction incoming(std::size_t k) const {
         return {samples_.wiX[k], samples_.wiY[k], samples_.wiZ[k]};
     }
@@ -196,17 +234,18 @@ private:
 
     /// f, measured and fitted, and the radiance factor at pairs of directions.
     void addValues() {
-        const std::vector<std::size_t> shown = shownSamples(samples_.size());
+        const std::vector<std::size_t> shown = shownPairs(pairs_.size());
         const std::vector<std::size_t> channels = drawnChannels(samples_.channels);
         const bool certain = !report_.result.point.channels.empty();
         std::vector<DirectionPair> pairs;
-        for (const std::size_t k : shown) pairs.push_back({incoming(k), samples_.wo[k]});
+        for (const std::size_t p : shown) pairs.push_back(pairs_[p].directions);
         std::optional<brdfs::Prediction> prediction;
         if (certain) prediction = brdfs::predict(report_.result, pairs, false);
         const auto fitted = brdfs::openFit(report_.result);
         const bool several = samples_.channels.count() > 1;
         const std::vector<std::string> names = samples_.channels.names();
         TextTable table{.heads = {"θi", "φi", "θo", "φo"}, .rows = {}};
+        if (repeated()) table.heads.emplace_back(samples_.scans.empty() ? "readings" : "scans");
         if (several) table.heads.emplace_back("channel");
         for (const char* head :
              {"f measured, 1/sr", "f, 1/sr", "U(f), 1/sr", "β = π f", "U(β)", "k"})
@@ -217,10 +256,12 @@ private:
                 std::vector<std::string> cells{
                     angle(polarAngle(pairs[i].wi)), angle(azimuth(pairs[i].wi)),
                     angle(polarAngle(pairs[i].wo)), angle(azimuth(pairs[i].wo))};
+                const ReadPair& read = pairs_[shown[i]];
+                if (repeated()) cells.push_back(fmt::format("{}", read.scans(samples_)));
                 if (several) cells.push_back(names[c]);
                 const double value = f[f.size() == 1 ? 0 : c];
                 const double beta = std::numbers::pi * value;
-                cells.push_back(brdfs::plainValue(samples_.value(c, shown[i]), 5));
+                cells.push_back(brdfs::plainValue(read.mean(samples_, c), 5));
                 if (prediction) {
                     const std::size_t v = c * prediction->pairs + i;
                     const double k = brdfs::coverageFactor(prediction->degrees[v]),
@@ -238,7 +279,8 @@ private:
             }
         }
         addText(valuesLegend(shown.size(), channels.size(), certain));
-        addTable(std::move(table), several ? "rrrrlrrrrrr" : "rrrrrrrrrr");
+        addTable(std::move(table),
+                 fmt::format("rrrr{}{}rrrrrr", repeated() ? "r" : "", several ? "l" : ""));
     }
 
     std::string valuesLegend(std::size_t rows, std::size_t channels, bool certain) const {
@@ -247,11 +289,13 @@ private:
             "degrees, from the normal and about it. f and β are those of the model; their standard "
             "uncertainties stand in units of the last digits, and U = k u holds them with {:.4g} "
             "%.",
-            rows, samples_.size(),
+            rows, pairs_.size(),
             channels < samples_.channels.count()
                 ? fmt::format(", {} of {} channels", channels, samples_.channels.count())
                 : std::string(),
             100 * brdfs::Budget::probability);
+        if (repeated())
+            text += " Measured values of repeated scans are the mean of their readings.";
         if (!certain)
             text +=
                 " With these terms of the instrument no uncertainty of f is calculated; those "
@@ -326,6 +370,7 @@ private:
 
     const brdfs::FitReport& report_;
     const brdfs::FitSamples& samples_;
+    const std::vector<ReadPair> pairs_;
     const std::string& resultText_;
     Json preset_;
     const Json& fit_;

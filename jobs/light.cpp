@@ -17,6 +17,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <filesystem>
@@ -122,6 +123,23 @@ SplitLight split(const PictureLight& picture, const std::string& term, const std
 }
 
 }  // namespace
+
+nlohmann::ordered_json splitJson(const SplitLight& split) {
+    const Direction& towards = split.split.sun.towards;
+    return {{"sun", split.sun},
+            {"rest", split.rest},
+            {"specification", split.specification},
+            {"elevation", 90 - degrees(polarAngle(towards))},
+            {"azimuth", degrees(azimuth(towards))},
+            {"angle", degrees(2 * split.split.sun.radius)},
+            {"radiance", split.split.sun.radiance},
+            {"irradiance", split.split.irradiance},
+            {"pixels", split.split.rest.size()},
+            {"peak", split.split.peak},
+            {"surroundings", split.split.surroundings},
+            {"error", split.error},
+            {"mean_error", split.meanError}};
+}
 
 ProjectedLight light(const std::vector<std::string>& specs, const std::string& output,
                      const LightOptions& options) {

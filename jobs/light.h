@@ -4,6 +4,8 @@
 #include <hshfit/light/light_nodes.h>
 #include <hshfit/light/sun_split.h>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +32,9 @@ struct SplitLight {
     /// of all bands and of band 0 alone.
     double error = 0, meanError = 0;
 };
+
+/// `split` of docs/schemas/light.schema.json.
+nlohmann::ordered_json splitJson(const SplitLight& split);
 
 struct ProjectedLight {
     LightCoefficients light;

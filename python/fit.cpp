@@ -168,6 +168,7 @@ std::shared_ptr<jobs::Fitted> fitted(
     const py::object& residuals, const py::dict& instrument, const py::object& bands,
     const py::object& bandsTo, const py::object& figures, const std::string& width,
     const std::string& font, double fontSize, const std::string& axis, const std::string& panels,
+    const py::object& certificate, const py::object& certificateFields,
     const py::object& progress) {
     jobs::FitOptions options =
         optionsFrom(model, loss, robust, robustScale, weights, perChannel, grazingCut, samples,
@@ -175,8 +176,13 @@ std::shared_ptr<jobs::Fitted> fitted(
     if (bootstrap != 0) requireWithin("bootstrap", static_cast<double>(bootstrap), 2, 1e6);
     if (bands.is_none() && !bandsTo.is_none())
         throw UsageError("bands_to is the file of bands; give bands, their pairs, too");
+    if (certificate.is_none() && !certificateFields.is_none())
+        throw UsageError("certificate_fields is for certificate='OUT.pdf'");
     const auto fileOrNone = [](const py::object& path, const char* name) {
-        return path.is_none() ? std::string() : pathOf(path, name);
+        std::string text = path.is_none() ? std::string() : pathOf(path, name);
+        if (text.empty() && !path.is_none())
+            throw UsageError(fmt::format("{}: an empty path; valid: None or a name", name));
+        return text;
     };
     options.places = places;
     options.dispersion = dispersion;
@@ -190,6 +196,8 @@ std::shared_ptr<jobs::Fitted> fitted(
     options.instrument = instrumentFrom(instrument);
     options.bands = fileOrNone(bands, "bands");
     options.bandsTo = fileOrNone(bandsTo, "bands_to");
+    options.certificate = fileOrNone(certificate, "certificate");
+    options.certificateFields = fileOrNone(certificateFields, "certificate_fields");
     options.figures = figuresFrom(figures, width, font, fontSize, axis, panels);
     Source source(data, rgb, "data");
     std::shared_ptr<jobs::Fitted> result;
@@ -322,25 +330,26 @@ addition.)")
 void bindFit(py::module_& module) {
     bindResult(module);
     const jobs::FitOptions options;
-    module.def("fit", fitted, py::arg("data"), py::arg("model"), py::kw_only(),
-               py::arg("loss") = options.loss, py::arg("robust") = options.robust,
-               py::arg("robust_scale") = options.robustScale, py::arg("weights") = options.weights,
-               py::arg("per_channel") = options.perChannel,
-               py::arg("grazing_cut") = options.grazingCut, py::arg("samples") = options.samples,
-               py::arg("starts") = options.starts, py::arg("iterations") = options.iterations,
-               py::arg("seed") = options.seed, py::arg("accept") = options.accept,
-               py::arg("parts") = py::none(), py::arg("rgb") = options.rgb,
-               py::arg("at") = options.places, py::arg("dispersion") = options.dispersion,
-               py::arg("sigma") = options.sigma, py::arg("calibration") = options.calibration,
-               py::arg("budget") = py::none(), py::arg("scans") = py::none(),
-               py::arg("bootstrap") = options.bootstrap, py::arg("profile") = options.profile,
-               py::arg("residuals") = py::none(), py::arg("instrument") = py::dict(),
-               py::arg("bands") = py::none(), py::arg("bands_to") = py::none(),
-               py::arg("figures") = py::none(), py::arg("figure_width") = figureWidth,
-               py::arg("font") = std::string(defaultFigureFont),
-               py::arg("font_size") = FigureStyle{}.fontSize, py::arg("axis") = figureAxis,
-               py::arg("panels") = jobs::FigureOptions{}.panels, py::arg("progress") = py::none(),
-               R"(Fit a model to a Brdf, or to a specification or path.
+    module.def(
+        "fit", fitted, py::arg("data"), py::arg("model"), py::kw_only(),
+        py::arg("loss") = options.loss, py::arg("robust") = options.robust,
+        py::arg("robust_scale") = options.robustScale, py::arg("weights") = options.weights,
+        py::arg("per_channel") = options.perChannel, py::arg("grazing_cut") = options.grazingCut,
+        py::arg("samples") = options.samples, py::arg("starts") = options.starts,
+        py::arg("iterations") = options.iterations, py::arg("seed") = options.seed,
+        py::arg("accept") = options.accept, py::arg("parts") = py::none(),
+        py::arg("rgb") = options.rgb, py::arg("at") = options.places,
+        py::arg("dispersion") = options.dispersion, py::arg("sigma") = options.sigma,
+        py::arg("calibration") = options.calibration, py::arg("budget") = py::none(),
+        py::arg("scans") = py::none(), py::arg("bootstrap") = options.bootstrap,
+        py::arg("profile") = options.profile, py::arg("residuals") = py::none(),
+        py::arg("instrument") = py::dict(), py::arg("bands") = py::none(),
+        py::arg("bands_to") = py::none(), py::arg("figures") = py::none(),
+        py::arg("figure_width") = figureWidth, py::arg("font") = std::string(defaultFigureFont),
+        py::arg("font_size") = FigureStyle{}.fontSize, py::arg("axis") = figureAxis,
+        py::arg("panels") = jobs::FigureOptions{}.panels, py::arg("certificate") = py::none(),
+        py::arg("certificate_fields") = py::none(), py::arg("progress") = py::none(),
+        R"(Fit a model to a Brdf, or to a specification or path.
 
 model     "MODEL[:key=value,...][+MODEL...]": parameters with a value are held fixed
 loss      "picture" (default for functions and tables), "l2", "cosine" (default for scattered
@@ -362,6 +371,7 @@ instrument  between f and samples: {"source_aperture": "cone:2", "bandwidth": "g
 bands     pairs for errors of f: "plane:30/60" (degrees) or a CSV; bands_to, residuals: CSV files
 figures   a folder for PDF and SVG, of figure_width ("column", "page", "120mm"), font, font_size
           (points), axis ("auto", "linear", "log") and panels
+certificate  a PDF for a laboratory to sign; certificate_fields: a JSON file of its texts
 
 Returns a Fit. The same numbers as by the command fit.)");
     module.def(

@@ -29,6 +29,7 @@ struct Lit {
     std::vector<double> bands = {};
     std::vector<std::optional<int>> enough = {};
     std::optional<LightCurve> wavelets = {};
+    std::optional<jobs::SplitLight> split = {};
 };
 
 py::array_t<double> valuesOf(const py::object& self) {
@@ -72,7 +73,7 @@ std::vector<std::string> specificationsOf(const py::object& specs) {
 
 std::shared_ptr<Lit> projected(const py::object& specs, const std::string& basis, int order,
                                const py::object& normal, bool condonShortley, double tolerance,
-                               bool wavelets) {
+                               bool wavelets, const py::object& splitSun) {
     requireWithin("order", order, jobs::bounds::lightOrder);
     requireWithin("tolerance", tolerance, jobs::bounds::tolerance);
     jobs::LightOptions options;
@@ -81,6 +82,10 @@ std::shared_ptr<Lit> projected(const py::object& specs, const std::string& basis
     options.condonShortley = condonShortley;
     options.tolerance = tolerance;
     options.wavelets = wavelets;
+    options.splitSun = !splitSun.is_none();
+    const std::string output = options.splitSun ? pathOf(splitSun, "split_sun") : "";
+    if (options.splitSun && output.empty())
+        throw UsageError("split_sun: an empty path; valid: None or NAME.json");
     if (!normal.is_none()) {
         const std::vector<double> angles = numbersOf(normal, "normal");
         if (angles.size() != 2) throw UsageError("normal: (theta, phi) in degrees");
@@ -88,11 +93,13 @@ std::shared_ptr<Lit> projected(const py::object& specs, const std::string& basis
     }
     const std::vector<std::string> texts = specificationsOf(specs);
     jobs::ProjectedLight done;
-    watched(py::none(), {}, [&](const jobs::Listener&) { done = jobs::light(texts, "", options); });
+    watched(py::none(), {},
+            [&](const jobs::Listener&) { done = jobs::light(texts, output, options); });
     return std::make_shared<Lit>(Lit{.light = std::move(done.light),
                                      .bands = std::move(done.bands),
                                      .enough = std::move(done.enough),
-                                     .wavelets = std::move(done.wavelets)});
+                                     .wavelets = std::move(done.wavelets),
+                                     .split = std::move(done.split)});
 }
 
 std::pair<std::shared_ptr<Lit>, py::dict> rotated(const Lit& lit, const Rotation& rotation,
@@ -145,6 +152,15 @@ light() and read().)")
                                "{basis: (order,)}, the captured share of the energy by order.")
         .def_property_readonly("enough", enoughOf,
                                "{share: least order that captures it, or None}.")
+        .def_property_readonly(
+            "split",
+            [](const Lit& l) -> py::object {
+                if (!l.split) return py::none();
+                return fromJson(jobs::splitJson(*l.split));
+            },
+            "Of light(split_sun=...): \"sun\", \"rest\" and their sum \"specification\", with "
+            "what\n"
+            "the command's JSON says of them; else None.")
         .def_property_readonly("source", [](const Lit& l) { return l.light.source; })
         .def("rotate", rotated, py::arg("rotation"), py::kw_only(), py::arg("method") = "exact",
              py::arg("tolerance") = HemisphereRotationOptions{}.tolerance,
@@ -225,12 +241,15 @@ void bindLight(py::module_& module) {
                py::arg("order") = options.order, py::arg("normal") = py::none(),
                py::arg("condon_shortley") = options.condonShortley,
                py::arg("tolerance") = options.tolerance, py::arg("wavelets") = options.wavelets,
+               py::arg("split_sun") = py::none(),
                R"(Project light onto a basis.
 
 spec     a picture, coefficients of light, or a kind of catalog("lights") ("sky:type=12,
          elevation=40"); joined by " + ", or as a sequence, they add up
 basis    "sh" for the sphere; any for the hemisphere about normal=(theta, phi) in degrees
 wavelets the captured energy of the best SOHO wavelets too
+split_sun  NAME.json for the coefficients of one picture, which NAME_rest.exr beside it and a sun:
+         add up to; InputError where it has no sun
 
 Returns a Light.)");
     const jobs::IrradianceOptions irradiance;

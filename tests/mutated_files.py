@@ -5,8 +5,9 @@
 SEEDS is the folder that make_seeds fills, with what fuzz targets kept in it; FOLDER has real files
 (../shared/data, left out where absent). N times, a reader is picked, one of its files is damaged
 one to three times (`MUTATIONS` below: bits, numbers, lengths, nesting, control characters), and
-PROGRAM runs on it with one thread: `info` mostly, else `eval`, `project`, `convert`, `import` or
-`plan`. File K is the same in every run with the seed S. Each run has to
+PROGRAM runs on it with one thread: `info` mostly, else `eval`, `project`, `convert`, `import`, or
+a command of the reader (`COMMANDS` below). File K is the same in every run with the seed S.
+Each run has to
 
 - end by itself, with 0, 2, 3, 4 or 5, within 5 s of CPU (5 s per MB of larger files) and 2 GiB;
 - print no line of standard error beyond 500 characters, and no raw control character;
@@ -37,7 +38,8 @@ TARGETS = {"alta": ".alta", "astm": ".astm", "cornell": ".brdf", "csv": ".csv", 
            "xompt": ".xompt",
            "mit": ".dat", "pbsdf": ".pbsdf", "rgl": ".bsdf", "presets": ".json",
            "gaussians": ".json", "bsdf_xml": ".xml", "merl_slice": ".slice", "utia": ".bin",
-           "merl": ".binary", "coefficients": ".json", "gpu_containers": None}
+           "merl": ".binary", "pab_opto": ".dat", "bird": ".json",
+           "material_library": ".library", "coefficients": ".json", "gpu_containers": None}
 DATA = {"alta": "alta", "bsdf_xml": "bsdf_xml", "cornell": "cornell", "nist_ptfe": "nist",
         "rgl": "rgl", "merl_slices": "merl_slice", "hostile": "alta", "env": "pictures"}
 EXR = b"\x76\x2f\x31\x01"
@@ -48,6 +50,13 @@ SCENE = {"format": "hshfit-scene", "version": 1,
                     {"kind": "sky", "model": "overcast", "radiance": [1, 2, 3]}],
          "views": {"theta": [0, 70], "tangent": "fixed"},
          "budget": {"metric": "relative_l2", "error": 0.2}}
+# Commands of readers whose files are no BRDF by themselves.
+COMMANDS = {"pairs": ["eval lambert --pairs {path} -o {out}.csv"],
+            "scene": ["plan {path} -o {out}.plan --max-order 2"],
+            "material_library": ["info {path}:b --json", "library list {path}",
+                                 "library list {path} --json", "eval {path}:a --wi 30,0 --wo 45,10",
+                                 "library decode {path}:a -o {out}.json",
+                                 "library search {path} lambert"]}
 NUMBER = re.compile(rb"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 ODD_NUMBERS = [b"nan", b"NaN", b"-nan", b"inf", b"-inf", b"Infinity", b"1e308", b"-1e308", b"1e309",
                b"1e-320", b"1e99999", b"-0", b"0", b"-1", b"1", b"90", b"3.1415927", b"2147483647",
@@ -264,10 +273,9 @@ class Trial:
     def words(self, reader, path, sidecar, rng):
         """The command line for a file, and where it asks for JSON."""
         out = path.parent / "out"
-        if reader == "pairs":
-            return ["eval", "lambert", "--pairs", path, "-o", f"{out}.csv"], False
-        if reader == "scene":
-            return ["plan", path, "-o", f"{out}.plan", "--max-order", "2"], False
+        if reader in COMMANDS:
+            words = rng.choice(COMMANDS[reader]).split()
+            return [word.format(path=path, out=out) for word in words], "--json" in words
         if reader == "gpu_containers":
             path = sidecar if sidecar and rng.random() < 0.8 else path
             if rng.random() < 0.4:

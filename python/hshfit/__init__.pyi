@@ -367,6 +367,8 @@ class Light:
     @property
     def enough(self) -> Dict[float, Optional[int]]: ...
     @property
+    def split(self) -> Optional[Row]: ...
+    @property
     def source(self) -> str: ...
     def rotate(
         self, rotation: Rotation, *, method: str = ..., tolerance: float = ..., tables: int = ...
@@ -519,6 +521,8 @@ def fit(
     font_size: float = ...,
     axis: str = ...,
     panels: str = ...,
+    certificate: Optional[Path] = ...,
+    certificate_fields: Optional[Path] = ...,
     progress: Progress = ...,
 ) -> Fit: ...
 def rank_models(
@@ -540,6 +544,7 @@ def light(
     condon_shortley: bool = ...,
     tolerance: float = ...,
     wavelets: bool = ...,
+    split_sun: Optional[Path] = ...,
 ) -> Light: ...
 def irradiance(
     spec: LightLike,

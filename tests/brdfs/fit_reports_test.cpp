@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <cstdio>
+#include <map>
 #include <numbers>
 #include <regex>
 #include <set>
@@ -171,23 +173,87 @@ TEST_F(Certificates, HoldWhatWasStatedAndFound) {
     EXPECT_TRUE(has(text, said("sha256sum " + path("content")).first.substr(0, 64))) << text;
 }
 
-// Rows of the table: beta is pi f, and both have the same relative uncertainty.
+/// Rows of the table of values in the text of a certificate. `scans` is 0 in a table without them.
+struct ValueRow {
+    double thetaI, thetaO, phiO;
+    int scans;
+    double measured, f, expandedF, beta, expandedBeta;
+};
+std::vector<ValueRow> valueRows(const std::string& text, bool scans) {
+    const std::regex row(std::string(R"(\n *([0-9.]+) +0 +([0-9.]+) +([0-9.]+) +)") +
+                         (scans ? R"(([0-9]+) +)" : "()") +
+                         R"(([0-9.]+) +([0-9.]+)\([0-9]+\) +([0-9.]+) +)" +
+                         R"(([0-9.]+)\([0-9]+\) +([0-9.]+) +[0-9.]+(?=\n))");
+    std::vector<ValueRow> rows;
+    for (std::sregex_iterator at(text.begin(), text.end(), row), end; at != end; ++at) {
+        const auto number = [&](int k) { return std::stod((*at)[static_cast<std::size_t>(k)]); };
+        rows.push_back({number(1), number(2), number(3), scans ? std::stoi((*at)[4]) : 0, number(5),
+                        number(6), number(7), number(8), number(9)});
+    }
+    return rows;
+}
+
+// Beta is pi f, and both have the same relative uncertainty.
 TEST_F(Certificates, RadianceFactorIsPiTimesTheBrdf) {
     if (!said("command -v pdftotext").second) GTEST_SKIP() << "poppler-utils is not installed";
     ASSERT_EQ(run(fitTo("c.pdf")).code, 0);
     const std::string text = said("pdftotext -layout " + path("c.pdf") + " -").first;
-    const std::regex row(R"(\n *[0-9.]+ +0 +[0-9.]+ +[0-9.]+ +([0-9.]+) +([0-9.]+)\([0-9]+\) +)"
-                         R"(([0-9.]+) +([0-9.]+)\([0-9]+\) +([0-9.]+) +([0-9.]+))");
-    std::size_t rows = 0;
-    for (std::sregex_iterator at(text.begin(), text.end(), row), end; at != end; ++at, ++rows) {
-        const double f = std::stod((*at)[2]), u = std::stod((*at)[3]), beta = std::stod((*at)[4]),
-                     v = std::stod((*at)[5]);
+    const std::vector<ValueRow> rows = valueRows(text, true);
+    for (const ValueRow& row : rows) {
         // The digits that are printed end a hundredth of the uncertainty from the value.
-        EXPECT_NEAR(beta, std::numbers::pi * f, 0.05 * v) << (*at)[0];
-        EXPECT_NEAR(v, std::numbers::pi * u, 0.06 * v) << (*at)[0];
-        EXPECT_NEAR(std::stod((*at)[1]), f, 0.1 * f) << (*at)[0];
+        EXPECT_NEAR(row.beta, std::numbers::pi * row.f, 0.05 * row.expandedBeta) << row.thetaO;
+        EXPECT_NEAR(row.expandedBeta, std::numbers::pi * row.expandedF, 0.06 * row.expandedBeta);
+        EXPECT_NEAR(row.measured, row.f, 0.1 * row.f) << row.thetaO;
     }
-    EXPECT_GE(rows, 50u) << text;
+    EXPECT_GE(rows.size(), 50u) << text;
+}
+
+/// The readings of a pair of directions in the goniometer's table, by both signed angles.
+using Readings = std::map<std::pair<double, double>, std::vector<double>>;
+
+// The goniometer's scans stand twice in its table.
+TEST_F(Certificates, RepeatedScansAreOneRowWithTheirNumber) {
+    if (!said("command -v pdftotext").second) GTEST_SKIP() << "poppler-utils is not installed";
+    std::istringstream table(read(goniometer("scans.csv")));
+    std::string line, once;
+    std::getline(table, line);
+    once = line + "\n";
+    Readings readings;
+    while (std::getline(table, line)) {
+        double thetaI = 0, thetaO = 0, f = 0;
+        ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", &thetaI, &thetaO, &f), 3) << line;
+        auto& own = readings[{thetaI, thetaO}];
+        if (own.empty()) once += line + "\n";
+        own.push_back(f);
+    }
+    const auto certified = [&](bool scans, const std::string& facts) {
+        const std::string text = said("pdftotext -layout " + path("c.pdf") + " -").first;
+        EXPECT_TRUE(std::regex_search(text, std::regex(facts))) << text;
+        const std::vector<ValueRow> rows = valueRows(text, scans);
+        EXPECT_GE(rows.size(), 50u) << text;
+        std::set<std::pair<double, double>> seen;
+        for (const ValueRow& row : rows) {
+            // The mirror direction, at positive angles, is opposite in azimuth.
+            const double thetaO = row.phiO == 0 ? -row.thetaO : row.thetaO;
+            EXPECT_TRUE(seen.insert({row.thetaI, thetaO}).second) << row.thetaI << " " << thetaO;
+            std::vector<double> own = readings[{row.thetaI, thetaO}];
+            ASSERT_EQ(own.size(), 2u) << row.thetaI << " " << thetaO;
+            EXPECT_EQ(row.scans, scans ? 2 : 0);
+            const double mean = scans ? (own[0] + own[1]) / 2 : own[0];
+            EXPECT_NEAR(row.measured, mean, 1e-4 * mean) << row.thetaI << " " << thetaO;
+        }
+    };
+    ASSERT_EQ(run(fitTo("c.pdf")).code, 0);
+    const std::string count = std::to_string(readings.size());
+    certified(true, "pairs of directions +" + count + "\n *readings +" +
+                        std::to_string(2 * readings.size()) + "\n");
+    // Without repetition there is no column.
+    write("once.csv", once);
+    const Answer got =
+        run("fit --json " + path("once.csv") +
+            " --model lambert+ggx --sigma column --force --certificate " + path("c.pdf"));
+    ASSERT_EQ(got.code, 0) << got.err;
+    certified(false, "pairs of directions +" + count + "\n *channels");
 }
 
 TEST_F(Certificates, AreTheSameBytesForTheSameInputs) {

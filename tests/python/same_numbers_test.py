@@ -2,6 +2,7 @@
 import csv
 import json
 import os
+import shutil
 import subprocess
 
 import numpy as np
@@ -136,6 +137,33 @@ class SameNumbers(program.InFolder):
         self.assertEqual(found.figures, expected["files"])
         self.assertEqual(sorted(os.listdir("ours")), sorted(os.listdir("theirs")))
 
+    def test_certificates_are_those_of_the_program(self):
+        if not shutil.which("gnuplot"):
+            self.skipTest("gnuplot is not installed")
+        folder = os.path.join(os.environ["HSHFIT_SOURCE"], "examples", "goniometer")
+        data, fields = (os.path.join(folder, name) for name in ("scans.csv", "fields.json"))
+        fit = {"starts": 2, "sigma": "column", "scans": "column"}
+        words = ["fit", data, "--model", "lambert+ggx", "--starts", "2", "--sigma", "column",
+                 "--scans", "column"]
+        for options, more in (({}, []), ({"certificate_fields": fields},
+                                         ["--certificate-fields", fields])):
+            with self.subTest(options=options):
+                hshfit.fit(data, "lambert+ggx", certificate="ours.pdf", **fit, **options)
+                self.run_program(*words, "--force", "--certificate", "theirs.pdf", *more)
+                self.assertEqual(self.bytes_of("ours.pdf"), self.bytes_of("theirs.pdf"))
+        for name, text in (("ours.txt", "certificate='ours.txt' has to end in .pdf"),
+                           ("", "certificate: an empty path")):
+            with self.assertRaisesRegex(hshfit.UsageError, text):
+                hshfit.fit(data, "lambert+ggx", certificate=name, **fit)
+        with open("wrong.json", "w", encoding="ascii") as file:
+            json.dump({"format": "hshfit-certificate-fields", "version": 1, "labratory": "x"}, file)
+        with self.assertRaisesRegex(hshfit.InputError, "wrong.json: unknown field 'labratory'"):
+            hshfit.fit(data, "lambert+ggx", certificate="new.pdf",
+                       certificate_fields="wrong.json", **fit)
+        with self.assertRaisesRegex(hshfit.UsageError, "certificate_fields is for certificate="):
+            hshfit.fit(data, "lambert+ggx", certificate_fields=fields, **fit)
+        self.assertFalse(os.path.exists("new.pdf"))
+
     def write_scans(self, columns):
         """Scans of a lobe with a dark signal, as ASTM E1392."""
         with open("scans.astm", "w", encoding="ascii") as file:
@@ -197,6 +225,32 @@ class SameNumbers(program.InFolder):
                 self.assertTrue(np.isnan(found[row["name"]]), row["name"])
             else:
                 self.assertEqual(found[row["name"]], row["value"], row["name"])
+
+    def test_a_sun_is_split_off_as_by_the_program(self):
+        pixels = np.ones((16, 32, 3), "<f4")
+        for name, peak in (("plain.pfm", 1), ("sun.pfm", 5e4)):
+            pixels[9, 10] = peak
+            with open(name, "wb") as file:
+                file.write(b"PF\n32 16\n-1\n" + pixels.tobytes())
+        light = hshfit.light("sun.pfm:turn=20", order=4, split_sun="day.json")
+        ours = [self.bytes_of(name) for name in ("day.json", "day_rest.exr")]
+        for name in ("day.json", "day_rest.exr"):
+            os.remove(name)
+        expected = self.json_of("light", "sun.pfm:turn=20", "--order", "4", "--split-sun", "-o",
+                                "day.json")["split"]
+        self.assertEqual(ours, [self.bytes_of(name) for name in ("day.json", "day_rest.exr")])
+        self.assertEqual(light.split, expected)
+        self.assertIsNone(hshfit.light("sun.pfm", order=4).split)
+        total = hshfit.light(light.split["specification"], order=4)
+        np.testing.assert_allclose(total.values[:, 0], light.values[:, 0], rtol=1e-5)
+        for spec, kind, text in (("plain.pfm", hshfit.InputError, "has no sun"),
+                                 ("uniform:", hshfit.UsageError, "one picture"),
+                                 (["sun.pfm", "uniform:"], hshfit.UsageError, "a sum")):
+            with self.assertRaisesRegex(kind, text):
+                hshfit.light(spec, split_sun="new.json")
+        with self.assertRaisesRegex(hshfit.UsageError, "split_sun: an empty path"):
+            hshfit.light("sun.pfm", split_sun="")
+        self.assertFalse([name for name in os.listdir(".") if name.startswith("new")])
 
     def test_light_is_that_of_the_program(self):
         light = hshfit.light("sky:type=12,elevation=40", order=6)
