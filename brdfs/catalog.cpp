@@ -206,7 +206,8 @@ std::unique_ptr<Brdf> openFile(const std::string& path, std::string_view options
     if (!format) format = &formatByExtension(path, head, size);
     // The words after the path are the name of a material.
     if (format->name == materialLibraryFormat().name) return openLibraryMaterial(path, options);
-    return format->open(path, parseParameters(format->name, format->parameters, options));
+    const std::string owner = fmt::format("{}: {}", path, format->name);
+    return format->open(path, parseParameters(owner, format->parameters, options));
 }
 
 /// Whether a text is a path rather than a misspelt model: it has a folder or an extension.

@@ -38,7 +38,7 @@ TARGETS = {"alta": ".alta", "astm": ".astm", "cornell": ".brdf", "csv": ".csv", 
            "xompt": ".xompt",
            "mit": ".dat", "pbsdf": ".pbsdf", "rgl": ".bsdf", "presets": ".json",
            "gaussians": ".json", "bsdf_xml": ".xml", "merl_slice": ".slice", "utia": ".bin",
-           "merl": ".binary", "pab_opto": ".dat", "bird": ".json",
+           "merl": ".binary", "pab_opto": ".dat", "bird": ".json", "weather": ".epw",
            "material_library": ".library", "coefficients": ".json", "gpu_containers": None}
 DATA = {"alta": "alta", "bsdf_xml": "bsdf_xml", "cornell": "cornell", "nist_ptfe": "nist",
         "rgl": "rgl", "merl_slices": "merl_slice", "hostile": "alta", "env": "pictures"}
@@ -53,10 +53,15 @@ SCENE = {"format": "hshfit-scene", "version": 1,
 # Commands of readers whose files are no BRDF by themselves.
 COMMANDS = {"pairs": ["eval lambert --pairs {path} -o {out}.csv"],
             "scene": ["plan {path} -o {out}.plan --max-order 2"],
+            "weather": [f"light {kind}:file={{path}},date={moment} -o {{out}}.json --order 3"
+                        for kind in ("perez", "sun")
+                        for moment in ("1996-06-21,time=12:30", "1995-01-01,time=12:30")],
             "material_library": ["info {path}:b --json", "library list {path}",
                                  "library list {path} --json", "eval {path}:a --wi 30,0 --wo 45,10",
                                  "library decode {path}:a -o {out}.json",
                                  "library search {path} lambert"]}
+# Readers of Mueller matrices, and elements beside the default.
+MUELLER, ELEMENTS = {"nist", "scatmech", "pbsdf"}, ["m01", "m12", "m22", "dolp"]
 NUMBER = re.compile(rb"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 ODD_NUMBERS = [b"nan", b"NaN", b"-nan", b"inf", b"-inf", b"Infinity", b"1e308", b"-1e308", b"1e309",
                b"1e-320", b"1e99999", b"-0", b"0", b"-1", b"1", b"90", b"3.1415927", b"2147483647",
@@ -280,6 +285,8 @@ class Trial:
             path = sidecar if sidecar and rng.random() < 0.8 else path
             if rng.random() < 0.4:
                 return ["import", path, "-o", f"{out}.json", "--force"], False
+        if reader in MUELLER and rng.random() < 0.5:
+            path = f"{path}:mueller={rng.choice(ELEMENTS)}"
         kind = rng.random()
         if kind < 0.10:
             return ["eval", path, "--wi", "30,0", "--wo", "45,10"], False

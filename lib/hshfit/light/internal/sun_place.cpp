@@ -49,7 +49,8 @@ PlacedSun sunOfWeather(std::string_view owner, const Parameters& p) {
     Moment moment = parseMoment(owner, p.choice("date"), p.choice("time"), 0);
     const Weather weather = readWeather(p.choice("file"), moment);
     moment.hour -= weather.place.zone;
-    return {riseOf(owner, p, moment, weather.place.latitude, weather.place.longitude), weather,
+    const std::string named = fmt::format("{}: {}", owner, p.choice("file"));
+    return {riseOf(named, p, moment, weather.place.latitude, weather.place.longitude), weather,
             sunDistance(moment)};
 }
 
