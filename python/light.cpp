@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>
