@@ -1,12 +1,18 @@
 #include <brdfs/fit/correlated_spread.h>
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hshfit::brdfs {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
+
+/// Sums are made in this many parts whatever the number of threads, so that it does not show.
+constexpr std::size_t parts = 8;
 
 Eigen::Index at(std::size_t i) {
     return static_cast<Eigen::Index>(i);
@@ -36,7 +42,6 @@ std::vector<std::vector<std::size_t>> blocksOf(const FitSamples& samples) {
 }
 
 double correlationOfSamples(const FitSamples& samples, std::size_t j, std::size_t k) {
-    if (j == k) return 1;
     const double apart = std::acos(std::clamp(dot(samples.wo[j], samples.wo[k]), -1.0, 1.0));
     return std::exp(-apart / samples.correlation.angle);
 }
@@ -61,12 +66,19 @@ Matrix correlatedSpread(
             }
             mixed.emplace_back(ofChannels * own.back());
         }
-        for (std::size_t j = 0; j < block.size(); ++j) {
-            Matrix sum = Matrix::Zero(at(channels), at(n));
-            for (std::size_t k = 0; k < block.size(); ++k)
-                sum += correlationOfSamples(samples, block[j], block[k]) * mixed[k];
-            result += own[j].transpose() * sum;
-        }
+        for (std::size_t j = 0; j < block.size(); ++j)
+            result.noalias() += own[j].transpose() * mixed[j];
+        std::array<Matrix, parts> later;
+        tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
+            later[part] = Matrix::Zero(at(n), at(n));
+            for (std::size_t j = part; j < block.size(); j += parts) {
+                Matrix sum = Matrix::Zero(at(channels), at(n));
+                for (std::size_t k = 0; k < j; ++k)
+                    sum += correlationOfSamples(samples, block[j], block[k]) * mixed[k];
+                later[part].noalias() += own[j].transpose() * sum;
+            }
+        });
+        for (const Matrix& sum : later) result += sum + sum.transpose();
     }
     return result;
 }

@@ -311,6 +311,21 @@ void addBudget(const std::vector<Part>& parts, const FitOptions& options, FitRes
     addBudget(options.contributions, changes, degrees, result);
 }
 
+void checkCorrelatedScans(const FitSamples& samples) {
+    if (samples.scans.empty())
+        throw UsageError(
+            "a correlation over angles is that of samples of one scan: say which samples belong to "
+            "one (column, incidence, or the number of samples in each)");
+    std::vector<std::size_t> counts(*std::ranges::max_element(samples.scans) + 1);
+    for (const std::size_t scan : samples.scans) ++counts[scan];
+    const auto longest = std::ranges::max_element(counts);
+    if (*longest > mostCorrelated)
+        throw UsageError(fmt::format(
+            "scan {} has {} samples; a correlation over angles takes scans of up to {}: take fewer "
+            "samples, or leave out the correlation",
+            longest - counts.begin() + 1, *longest, mostCorrelated));
+}
+
 void checkStatements(const FitSamples& samples, const FitOptions& options) {
     if (!samples.sigmas.empty() && options.loss != Loss::Kind::l2)
         throw UsageError(
@@ -318,10 +333,7 @@ void checkStatements(const FitSamples& samples, const FitOptions& options) {
             "to be l2");
     const bool studied = options.uncertainty.report || !samples.sigmas.empty() ||
                          !samples.scans.empty() || !options.contributions.empty();
-    if (samples.correlation.angle > 0 && samples.scans.empty())
-        throw UsageError(
-            "a correlation over angles is that of samples of one scan: say which samples belong to "
-            "one (column, incidence, or the number of samples in each)");
+    if (samples.correlation.angle > 0) checkCorrelatedScans(samples);
     if (samples.correlation.wavelength > 0 &&
         (samples.channels.kind != Channels::Kind::spectral ||
          (options.perChannel && samples.channels.count() > 1)))

@@ -11,8 +11,8 @@ namespace hshfit::brdfs {
 /// The standard uncertainty that a fit states of a parameter, with the factor of its interval.
 struct StatedError {
     double error = 0;
-    std::string_view
-        route;  ///< "by scan", "correlated", "normal" or "sandwich"; with a budget that of samples
+    /// "by scan", "correlated", "normal" or "sandwich"; with a budget the route of its first row.
+    std::string_view route;
     /// Of its variance: effective ones of the budget; those by scan; of the stated uncertainties
     /// infinite; else values less parameters.
     double degrees = 0;

@@ -27,9 +27,9 @@ struct ParameterUncertainty {
     /// (J^T W J)^-1 with the stated uncertainties, or without any times the variance of residuals.
     std::optional<double> normal;
     std::optional<double> sandwich;  ///< HC3, samples independent
-    /// (J^T W J)^-1 with the stated correlation of the errors (SigmaCorrelation).
+    std::optional<double> scans;     ///< likewise by scan: its samples may be correlated (CR3)
+    /// (J^T W J)^-1 J^T W C W J (J^T W J)^-1 with the stated correlations (SigmaCorrelation) in C.
     std::optional<double> correlated = {};
-    std::optional<double> scans;  ///< likewise by scan: its samples may be correlated (CR3)
     /// Of `scans`: degrees of freedom of its variance (scanDegrees), which are those of the scans
     /// that determine the parameter; none for the scale of a scan.
     std::optional<double> scanDegrees;
@@ -62,8 +62,8 @@ struct Uncertainty {
     bool correlated = false;           ///< and their correlation: `correlated` is what a fit states
     double chiSquare = 0;              ///< sum of weighted squared residuals
     std::size_t degreesOfFreedom = 0;  ///< values less determined parameters
-    std::optional<double>
-        probability;        ///< of a chi-square as large; only if `stated` as independent
+    /// Of a chi-square as large; only if uncertainties were stated, without correlation.
+    std::optional<double> probability;
     std::size_t scans = 0;  ///< 0: every sample on its own
     /// Of one channel. Where there are no more scans than these, there are no errors by scan, and
     /// the errors that a fit states are those of the stated uncertainties (`normal`).

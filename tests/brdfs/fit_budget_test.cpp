@@ -297,6 +297,12 @@ TEST(CorrelatedErrors, NameWhatTheyLack) {
     samples.correlation = {.angle = 0.1};
     samples.scans.clear();
     EXPECT_THROW(fit(samples, options), UsageError);
+    FitSamples many = sweeps("lambert:kd=.5", std::vector<double>(1100, 20));
+    many.sigmas.assign(many.values.size(), 0.002);
+    many.scans.assign(many.size(), 0);
+    ASSERT_GT(many.size(), 30000u);
+    many.correlation = {.angle = 0.1};
+    EXPECT_THROW(fit(many, options), UsageError);
     EXPECT_DOUBLE_EQ(parseSigma("2%,correlation:angle=3deg").correlation.angle, radians(3.0));
     EXPECT_EQ(parseSigma("column,correlation:wavelength=20").correlation.wavelength, 20);
     EXPECT_EQ(parseSigma("s.csv,correlation:angle=3").path, "s.csv");
