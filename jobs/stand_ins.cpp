@@ -161,17 +161,15 @@ double secondsOf(const Form& form) {
     return form.kind == Kind::halfway ? 0.1 * form.halfway.half * form.halfway.half : 3;
 }
 
-/// The forms that are tried: of the halfway form few functions and many, in half and, where it
-/// holds them, in bytes; both directions in one basis, and coefficients per outgoing direction.
+/// The forms that are tried: of the halfway form few functions and many, in half and in bytes;
+/// both directions in one basis, and coefficients per outgoing direction.
 std::vector<Form> formsFor(const Brdf& brdf) {
     std::vector<Form> forms;
     Form form;
     form.kind = Kind::halfway;
     for (const HalfwayOrders& orders : tradeoff::Sweep{}.halfway) {
         form.halfway = halfwayOrdersOr(orders, brdf.laws().isotropic, brdf.laws().reciprocal);
-        // Eight bits are too few for the highest orders.
         for (const Precision precision : {Precision::unorm8, Precision::half}) {
-            if (precision == Precision::unorm8 && form.halfway.half > 9) continue;
             form.precision = precision;
             forms.push_back(form);
         }

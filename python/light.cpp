@@ -159,9 +159,8 @@ light() and read().)")
                 if (!l.split) return py::none();
                 return fromJson(jobs::splitJson(*l.split));
             },
-            "Of light(split_sun=...): \"sun\", \"rest\" and their sum \"specification\", with "
-            "what\n"
-            "the command's JSON says of them; else None.")
+            "Of light(split_sun=...): \"sun\", \"rest\" and their sum \"specification\", with\n"
+            "what the command's JSON says of them; else None.")
         .def_property_readonly("source", [](const Lit& l) { return l.light.source; })
         .def("rotate", rotated, py::arg("rotation"), py::kw_only(), py::arg("method") = "exact",
              py::arg("tolerance") = HemisphereRotationOptions{}.tolerance,

@@ -68,9 +68,9 @@ TEST(HalfwayForms, HaveTheValueAtTheNormalOfACarPaint) {
 /// Eight bits a coefficient cost the eye nothing: the coefficients make up for one another. With
 /// one regularisation for all, the second of these had FLIP .28 for .07.
 TEST(HalfwayForms, LookTheSameInEightBits) {
+    if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is absent";
     for (const std::string name : {"rgl/cc_ibiza_sunset_rgb.bsdf", "rgl/cg_sunflower_rgb.bsdf",
                                    "merl_slices/chrome-steel.slice"}) {
-        if (!std::filesystem::exists(data + "/" + name)) GTEST_SKIP() << data << " is absent";
         const auto source = brdfs::open(data + "/" + name);
         const Representation fitted = projectHalfway(*source, {});
         const auto flip = [&](Precision precision) {
@@ -85,9 +85,8 @@ TEST(HalfwayForms, LookTheSameInEightBits) {
 /// The lobe of obsidian lies in the first degree of its table. With albedos at one direction of
 /// each stratum alone it swung between them, and its highlight had a black disc.
 TEST(HalfwayForms, KeepAHighlightOfLessThanADegree) {
-    const std::string file = data + "/merl_slices/black-obsidian.slice";
-    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is absent";
-    const auto source = brdfs::open(file);
+    if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is absent";
+    const auto source = brdfs::open(data + "/merl_slices/black-obsidian.slice");
     const PictureError error = pictureError(*source, *asBrdf(projectHalfway(*source, {})));
     EXPECT_LE(error.dip.value, 0.02) << textOf(error);
     EXPECT_LE(error.peak.value, 0.03) << textOf(error);

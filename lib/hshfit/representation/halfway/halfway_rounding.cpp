@@ -16,9 +16,9 @@
 namespace hshfit::inline representation::inline halfway {
 namespace {
 
-/// Of the mean of the diagonal: directions that no pair sees are left to rounding. Little of it
-/// leaves more for the other coefficients to make up, beyond what their grids hold or the normal
-/// equations tell: each is tried.
+/// Parts of the mean of the diagonal, which leave to rounding what no pair sees. With a small part
+/// the other coefficients make up for much: more, at times, than their grids hold, or than the
+/// normal equations hold for. All are tried.
 constexpr std::array regularisations{1e-9, 1e-7, 1e-5, 1e-3};
 constexpr double greatestHalf = 65504;
 
