@@ -3,6 +3,7 @@
 #include "command_table.h"
 #include "option_values.h"
 #include "outputs.h"
+#include "page.h"
 #include "standard_files.h"
 #include "within.h"
 
@@ -101,13 +102,22 @@ void writeOutput(std::string_view text) {
 
 }  // namespace
 
-void printText(std::string_view given) {
-    const std::string text = printableLines(given);
+namespace {
+
+void writeAnswer(const std::string& text) {
     isOutputTaken() ? writeError(withoutPathOfOutput(text)) : writeOutput(text);
 }
 
+}  // namespace
+
+void printText(std::string_view given) {
+    const std::string text = printableLines(given);
+    const auto width = terminalWidth(isOutputTaken() ? Stream::error : Stream::output);
+    writeAnswer(width ? folded(text, *width) : text);
+}
+
 void printJson(const nlohmann::ordered_json& document) {
-    printText(jsonText(document, 2) + "\n");
+    writeAnswer(printableLines(jsonText(document, 2) + "\n"));
 }
 
 namespace {
@@ -115,8 +125,8 @@ namespace {
 /// A line of at most 500 bytes with its beginning and its line feed.
 std::string messageLine(std::string_view beginning, std::string_view message) {
     constexpr std::size_t longest = 500;
-    return fmt::format("{}{}\n", beginning,
-                       shortened(printable(message), longest - beginning.size() - 1));
+    const std::string text = withoutPathOfOutput(printable(message));
+    return fmt::format("{}{}\n", beginning, shortened(text, longest - beginning.size() - 1));
 }
 
 }  // namespace

@@ -51,7 +51,8 @@ Direction parseDirection(const std::string& text, std::string_view option, doubl
 
 /// Prints a JSON document to standard output. Throws OutputError if it cannot be written.
 void printJson(const nlohmann::ordered_json& document);
-/// Prints text to standard output, likewise, without control characters but line feeds and tabs.
+/// Prints text to standard output, likewise, without control characters but line feeds and tabs; on
+/// a terminal lines are broken at spaces where they reach its width.
 void printText(std::string_view text);
 /// Prints a page of help, colours included. Throws likewise.
 void printHelp(std::string_view text, Stream stream = Stream::output);

@@ -429,7 +429,7 @@ void addExport(CLI::App& command, Globals& globals) {
     command.add_option(
         "--light", options.lights,
         "Environment of the viewer: a light of hshfit list lights, a picture, or a sum "
-        "by '+'; repeated: several to choose from (default: a studio)");
+        "by '+'; repeated: several to choose from (default: studio)");
     command.add_option("--lighting", arguments->lighting,
                        "Tables, light and shaders for environments and area lights in place of "
                        "textures: all, or of coefficients, split-sum, ltc and prefiltered those "

@@ -89,6 +89,8 @@ std::string text(const jobs::Fitted& fitted, const FitArguments& arguments) {
     if (fitted.pageFiles > 0)
         lines += fmt::format("written to {}: fit.json, comparison.html and {} files beside it\n",
                              arguments.output, fitted.pageFiles - 1);
+    else if (!arguments.output.empty())
+        lines += fmt::format("written to {}\n", arguments.output);
     if (!arguments.options.certificate.empty())
         lines += fmt::format("certificate written to {}\n", arguments.options.certificate);
     return lines + figuresText(fitted.figures, arguments.figures);

@@ -103,6 +103,7 @@ Json lightsJson() {
                         {"parameters", parametersJson(kind.parameters)}});
     };
     for (const LightKind& kind : lightKinds()) add(kind);
+    add(studioKind());
     add(pictureKind());
     add(coefficientsKind());
     return rows;

@@ -96,6 +96,32 @@ std::string wrapped(std::string_view text, std::size_t width, std::size_t indent
     return lines(text, width, indent, start, "");
 }
 
+std::string folded(std::string_view text, std::size_t width) {
+    std::string out;
+    while (!text.empty()) {
+        const std::string_view line = text.substr(0, text.find('\n'));
+        const bool ends = line.size() < text.size();
+        text.remove_prefix(line.size() + (ends ? 1 : 0));
+        const std::size_t margin = std::min(line.find_first_not_of(' '), line.size());
+        std::string rest(line);
+        while (columnsOf(rest) > width) {
+            const std::size_t from = rest.find_first_not_of(' ');
+            std::size_t at = std::string::npos;
+            for (std::size_t k = rest.find(' ', from); k != std::string::npos;
+                 k = rest.find(' ', k + 1)) {
+                if (at != std::string::npos && columnsOf(rest.substr(0, k)) > width) break;
+                at = k;
+            }
+            if (at == std::string::npos) break;
+            out += rest.substr(0, rest.find_last_not_of(' ', at) + 1) + "\n";
+            rest = std::string(margin + 4, ' ') +
+                   rest.substr(std::min(rest.find_first_not_of(' ', at), rest.size()));
+        }
+        out += rest + (ends ? "\n" : "");
+    }
+    return out;
+}
+
 std::string textOf(const Page& page, std::size_t width, bool colour) {
     std::string out;
     std::size_t column = explanationColumn(page, 0, width);

@@ -37,6 +37,10 @@ std::string textOf(const Page& page, std::size_t width, bool colour);
 std::string wrapped(std::string_view text, std::size_t width, std::size_t indent,
                     std::size_t start);
 
+/// Lines longer than `width` columns broken at spaces; what follows is indented by four more.
+/// Spaces within a line stay, so that columns do. A word that is longer stays whole.
+std::string folded(std::string_view text, std::size_t width);
+
 /// Characters of a UTF-8 text, each taken to be one column wide.
 std::size_t columnsOf(std::string_view text);
 

@@ -42,7 +42,7 @@ int run(const std::vector<std::string>& words, Outputs outputs) {
     }
     CLI::App app("hshfit: BRDFs as hemispherical-basis coefficients", "hshfit");
     usePagesForHelp(app);
-    app.set_version_flag("--version", std::string("hshfit ") + version, "Print the version");
+    app.set_version_flag("-V,--version", std::string("hshfit ") + version, "Print the version");
     app.require_subcommand(1);
 
     Globals globals;

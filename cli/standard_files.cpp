@@ -69,8 +69,9 @@ bool isOutputTaken() {
 }
 
 std::string withoutPathOfOutput(const std::string& text) {
+    static const std::regex option("-o /dev/stdout\\.[a-z0-9]+( --force)?");
     static const std::regex path("/dev/stdout(\\.[a-z0-9]+)?");
-    return std::regex_replace(text, path, "standard output");
+    return std::regex_replace(std::regex_replace(text, option, "-o -"), path, "standard output");
 }
 
 }  // namespace hshfit::cli

@@ -26,13 +26,22 @@ std::size_t statedColumns() {
     return parsed.ec == std::errc() && parsed.ptr == text.data() + text.size() ? count : 0;
 }
 
+int descriptorOf(Stream stream) {
+    return stream == Stream::output ? STDOUT_FILENO : STDERR_FILENO;
+}
+
 /// 0 if standard output is no terminal, or one that does not know its size.
-std::size_t terminalColumns() {
+std::size_t terminalColumns(Stream stream = Stream::output) {
     winsize size{};
-    return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+    return ::ioctl(descriptorOf(stream), TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
 }  // namespace
+
+std::optional<std::size_t> terminalWidth(Stream stream) {
+    const std::size_t count = terminalColumns(stream);
+    return count == 0 ? std::nullopt : std::optional(std::max(count, least));
+}
 
 std::size_t columns() {
     constexpr std::size_t usual = 80, most = 100;
@@ -48,8 +57,8 @@ std::optional<std::size_t> tableColumns() {
 }
 
 bool hasColour(Stream stream) {
-    const int descriptor = stream == Stream::output ? STDOUT_FILENO : STDERR_FILENO;
-    return variable("NO_COLOR").empty() && variable("TERM") != "dumb" && ::isatty(descriptor) == 1;
+    return variable("NO_COLOR").empty() && variable("TERM") != "dumb" &&
+           ::isatty(descriptorOf(stream)) == 1;
 }
 
 }  // namespace hshfit::cli

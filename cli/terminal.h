@@ -15,6 +15,9 @@ std::optional<std::size_t> tableColumns();
 
 enum class Stream { output, error };
 
+/// Columns of the terminal that a stream is; none where it is no terminal, or one of unknown size.
+std::optional<std::size_t> terminalWidth(Stream stream);
+
 /// Whether text on a stream may have colours: it is a terminal, other than a dumb one, and NO_COLOR
 /// (https://no-color.org) is absent or empty.
 bool hasColour(Stream stream);

@@ -97,7 +97,7 @@ Page lights() {
     Page page;
     addHeading(page, "A light is one of");
     addRows(page, lightKinds());
-    for (const LightKind* kind : {&pictureKind(), &coefficientsKind()})
+    for (const LightKind* kind : {&studioKind(), &pictureKind(), &coefficientsKind()})
         addRow(page, std::string(kind->name), std::string(kind->help));
     addRow(page, "LIGHT+LIGHT", std::string(lightSumHelp));
     addHeading(page, "Examples");

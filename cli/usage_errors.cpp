@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <optional>
 
 namespace hshfit::cli {
 namespace {
@@ -55,12 +56,55 @@ std::string unknownChoice(const std::string& message) {
            spelling::unknown("value", message.substr(word, end - word), choices).what();
 }
 
+/// The words between the two ends of a message; none if it has other ends.
+std::optional<std::string> between(const std::string& message, std::string_view begin,
+                                   std::string_view end) {
+    if (!message.starts_with(begin) || !message.ends_with(end)) return std::nullopt;
+    if (message.size() < begin.size() + end.size()) return std::nullopt;
+    return message.substr(begin.size(), message.size() - begin.size() - end.size());
+}
+
+/// CLI11's messages about values and commands in words of a reader; "" for others.
+std::string inPlainWords(const CLI::App& app, const std::string& message) {
+    if (between(message, "A subcommand is required", ""))
+        return "no command is given, as in hshfit list models";
+    for (const std::string_view many : {" was", "s were"})
+        if (const auto said =
+                between(message, fmt::format("The following argument{} not expected: ", many), ""))
+            return fmt::format("unexpected '{}'", *said);
+    constexpr std::string_view equals = " = ", colon = ": ";
+    if (const auto said = between(message, "Could not convert: ", "")) {
+        const std::size_t middle = said->find(equals);
+        if (middle == std::string::npos) return "";
+        const std::string name = said->substr(0, middle);
+        const auto chosen = app.get_subcommands();
+        const CLI::Option* option =
+            chosen.empty() ? nullptr : chosen.front()->get_option_no_throw(name);
+        const std::string type = option ? option->get_type_name() : "";
+        const bool whole = type.starts_with("INT") || type.starts_with("UINT");
+        return fmt::format("{} '{}': give {}", name, said->substr(middle + equals.size()),
+                           whole ? "a whole number" : "a number");
+    }
+    if (const auto said = between(message, "", " missing")) {
+        const std::size_t middle = said->find(colon);
+        if (middle != std::string::npos)
+            return fmt::format("{}: a value is missing", said->substr(0, middle));
+    }
+    const std::size_t middle = message.find(" excludes ");
+    if (middle != std::string::npos)
+        return fmt::format("{} and {} exclude one another; give one of them",
+                           message.substr(0, middle),
+                           message.substr(middle + std::string_view(" excludes ").size()));
+    return "";
+}
+
 }  // namespace
 
 std::string usageMessage(const CLI::App& app, const CLI::Error& error,
                          const std::vector<std::string>& words) {
     std::string message = unknownWord(app, words);
     if (message.empty()) message = unknownChoice(error.what());
+    if (message.empty()) message = inPlainWords(app, error.what());
     if (message.empty()) message = error.what();
     std::ranges::replace(message, '\n', ' ');
     return message;

@@ -109,8 +109,10 @@ Candidates valuesOf(const ValueRow& row, const std::string& typed) {
     if (row.words) candidates.words = row.words();
     if (row.syntax == Syntax::brdf || row.syntax == Syntax::either)
         addBrdfs(candidates.words, last);
-    if (row.syntax == Syntax::light || row.syntax == Syntax::either)
+    if (row.syntax == Syntax::light || row.syntax == Syntax::either) {
         addRows(candidates.words, lightKinds(), last);
+        addRows(candidates.words, std::span(&studioKind(), 1), last);
+    }
     if (row.syntax == Syntax::list) candidates.open = begin > 0 || !row.words;
     for (Word& word : candidates.words) word.text = typed.substr(0, begin) + word.text;
     std::erase_if(candidates.words,

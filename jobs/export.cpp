@@ -241,7 +241,7 @@ std::vector<LightSpecification> lightsOf(const Targets& chosen, const ExportOpti
         throw UsageError(fmt::format("{} is for the target viewer, which is not among '{}'",
                                      Setting{"ExportOptions::lights"}, options.targets));
     }
-    if (viewer && lights.empty()) lights.push_back(parseLights(std::string(gpu::studioLight)));
+    if (viewer && lights.empty()) lights.push_back(parseLights(std::string(studioKind().name)));
     return lights;
 }
 

@@ -32,7 +32,7 @@ struct ExportOptions {
     std::string basis = "hsh";  ///< of the form halfway projected anew
     int order = 7;              ///< likewise
     /// Specifications of lights (light/catalog.h) that the viewer offers as its environment, each
-    /// on its own; empty: gpu::studioLight.
+    /// on its own; empty: studio.
     std::vector<std::string> lights = {};
     /// The place of three.js for the page of the target three, a path or an address; empty: that of
     /// gpu::ThreeOptions.

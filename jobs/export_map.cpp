@@ -80,7 +80,7 @@ private:
         }
         for (const std::string& text : options_.lights) lights.push_back(parseLights(text));
         if (lights.empty() && hasViewer())
-            lights.push_back(parseLights(std::string(gpu::studioLight)));
+            lights.push_back(parseLights(std::string(studioKind().name)));
         return lights;
     }
 

@@ -15,7 +15,7 @@ struct MapExportOptions {
     std::string prefix = "hsh";  ///< of every name in a shader
     int environmentOrder = 5;    ///< of the light that shaders' shade() takes; 0: no shade()
     std::string wrap = "clamp";  ///< parseWrap
-    /// Specifications of lights that the viewer offers; empty: gpu::studioLight.
+    /// Specifications of lights that the viewer offers; empty: studio.
     std::vector<std::string> lights = {};
     bool force = false;  ///< replace existing files
 };

@@ -123,6 +123,7 @@ py::list lightsList() {
         rows.append(one);
     };
     for (const LightKind& kind : lightKinds()) add(kind);
+    add(studioKind());
     add(pictureKind());
     add(coefficientsKind());
     return rows;

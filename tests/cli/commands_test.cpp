@@ -37,6 +37,13 @@ TEST_F(Cli, UsageErrorsNameWhatIsValid) {
     expectError("project lambert --frobnicate", 2,
                 "project: unknown option '--frobnicate'; see hshfit help project", 0);
     expectError("project lambert --tolerance high -o " + path("x.json"), 2, "high", 0);
+    expectError("project lambert --order 2.5 -o " + path("x.json"), 2,
+                "--order '2.5': give a whole number; see", 0);
+    expectError("project lambert -o", 2, "--output: a value is missing; see", 0);
+    expectError("info lambert -q", 2, "unexpected '-q'; see hshfit help info", 0);
+    expectError("-x", 2, "no command is given", 0);
+    expectError("export x.json -o " + path("y") + " --sampling --no-sampling", 2,
+                "--sampling and --no-sampling exclude one another; give one of them", 0);
     expectError("eval lambret --wi 0,0 --wo 0,0", 2, "lambert", 0);
     expectError("eval phong:expnent=3 --wi 0,0 --wo 0,0", 2, "exponent", 0);
     expectError("eval lambert --wi 0 --wo 0,0", 2, "THETA,PHI", 0);

@@ -64,6 +64,7 @@ TEST_F(Completion, CommandsModelsLightsAndBasesAreThoseOfTheTables) {
     EXPECT_EQ(after({"project", ""}), expected);
     expected.clear();
     for (const auto& kind : lightKinds()) expected.emplace(kind.name);
+    expected.insert("studio");
     EXPECT_EQ(after({"light", ""}), expected);
     expected.clear();
     for (const auto& basis : bases::catalog()) expected.emplace(basis.name);

@@ -135,5 +135,25 @@ TEST_F(Help, ColoursAreForTerminalsOnlyAndNoColorTurnsThemOff) {
     }
 }
 
+TEST_F(Help, ResultsAreFoldedOnTerminalsOnly) {
+    if (std::system("script -qec true /dev/null >/dev/null 2>&1 </dev/null") != 0)
+        GTEST_SKIP() << "script (bsdutils) is not installed";
+    const std::string command = "compare ggx:alpha=.3 lambert+ggx:alpha=.2 --outgoing 30,0";
+    const std::string whole = run(command).out, seen = onTerminal("NO_COLOR=1", command);
+    EXPECT_EQ(wordsOf(seen), wordsOf(whole));
+    bool isLong = false;
+    std::istringstream before(whole), lines(seen);
+    for (std::string line; std::getline(before, line);) isLong |= columnsOf(line) > 60;
+    EXPECT_TRUE(isLong);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.ends_with('\r')) line.pop_back();
+        EXPECT_LE(columnsOf(line), 60U) << line;
+    }
+    // JSON is for programs: a line stays whole.
+    const std::string json = onTerminal("NO_COLOR=1", "info ggx:alpha=.3 --json");
+    EXPECT_NE(json.find("\n"), std::string::npos);
+    EXPECT_EQ(wordsOf(json), wordsOf(run("info ggx:alpha=.3 --json").out));
+}
+
 }  // namespace
 }  // namespace hshfit::test

@@ -159,8 +159,8 @@ Json lightsJson(const ViewerInput& input) {
     Json lights = Json::array();
     for (const ViewerLight& light : input.lights) lights.push_back(lightJson(light));
     if (lights.empty()) {
-        lights.push_back(
-            lightJson(viewerLight(parseLights(std::string(studioLight)), input.environmentOrder)));
+        lights.push_back(lightJson(
+            viewerLight(parseLights(std::string(studioKind().name)), input.environmentOrder)));
     }
     return lights;
 }

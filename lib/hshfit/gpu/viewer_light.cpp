@@ -219,7 +219,6 @@ ViewerLight viewerLight(const LightSpecification& light, int order, int height) 
         if (!result.name.empty()) result.name += '+';
         result.name += shownName(term);
     }
-    if (light.text == studioLight) result.name = "studio";
     const auto basis = bases::make("sh", order);
     result.coefficients = projectLight(light.lights, *basis, {.tolerance = 1e-6});
     result.captured = std::numeric_limits<double>::quiet_NaN();

@@ -10,14 +10,6 @@
 
 namespace hshfit::gpu {
 
-/// The light of a viewer for which none is given: a sky and three soft panels.
-inline constexpr std::string_view studioLight =
-    "sky:type=3,elevation=35,azimuth=-138,radiance=0.3/0.35/0.45+"
-    "panel:elevation=33,azimuth=-138,width=50,height=40,radiance=6/5.6/5+"
-    "panel:elevation=15,azimuth=-21,width=30,height=60,radiance=1.8/2.1/2.6+"
-    "panel:elevation=20,azimuth=84,width=60,height=30,radiance=3/2.7/2.2+"
-    "uniform:radiance=0.06";
-
 /// A light as a page carries it: a latitude-longitude picture of mean radiances, and coefficients.
 struct ViewerLight {
     std::string name;  ///< the specification, without the folders of its files

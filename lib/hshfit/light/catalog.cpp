@@ -316,12 +316,34 @@ Light placed(Light light, const Parameters& p) {
     return turned(scaled(std::move(light), p.number("scale")), radians(p.number("turn")));
 }
 
+/// A sky and three soft panels.
+constexpr std::string_view studio =
+    "sky:type=3,elevation=35,azimuth=-138,radiance=0.3/0.35/0.45+"
+    "panel:elevation=33,azimuth=-138,width=50,height=40,radiance=6/5.6/5+"
+    "panel:elevation=15,azimuth=-21,width=30,height=60,radiance=1.8/2.1/2.6+"
+    "panel:elevation=20,azimuth=84,width=60,height=30,radiance=3/2.7/2.2+"
+    "uniform:radiance=0.06";
+
+/// The terms that a term stands for: those of the studio with its own turn and scale, or itself.
+std::vector<std::string> termsOf(std::string_view term) {
+    const std::size_t colon = std::min(term.find(':'), term.size());
+    const LightKind& row = studioKind();
+    if (term.substr(0, colon) != row.name) return {std::string(term)};
+    const std::string_view options = term.substr(std::min(colon + 1, term.size()));
+    parseParameters(row.name, row.parameters, options);
+    std::vector<std::string> terms;
+    for (const std::string_view each : splitTerms(studio, ""))
+        terms.push_back(fmt::format("{}{}{}", each, options.empty() ? "" : ",", options));
+    return terms;
+}
+
 [[noreturn]] void failUnknown(std::string_view term, const std::string& folder) {
     const std::string_view name = term.substr(0, term.find(':'));
     if (name.find('/') != std::string_view::npos || std::filesystem::path(name).has_extension())
         throw InputError(fmt::format("{}: no such file", within(folder, name)));
     std::vector<std::string_view> names;
     for (const LightKind& row : lightKinds()) names.push_back(row.name);
+    names.push_back(studioKind().name);
     throw UsageError(fmt::format("unknown light '{}'{}; valid: {}, or the path of a picture", name,
                                  suggestion(name, names), joined(names)));
 }
@@ -363,6 +385,12 @@ std::span<const LightKind> lightKinds() {
     return table;
 }
 
+const LightKind& studioKind() {
+    static const LightKind row = kind("studio", "a sky and three soft panels, the light of viewers",
+                                      "", "studio:turn=90,scale=2", {}, nullptr);
+    return row;
+}
+
 const LightKind& pictureKind() {
     static const LightKind row = kind(
         "PATH", "a picture: OpenEXR, Radiance HDR; PNG, JPEG, TIFF and others with a curve", "",
@@ -378,7 +406,8 @@ const LightKind& coefficientsKind() {
 }
 
 bool namesLight(std::string_view text) {
-    return findKind(text.substr(0, text.find_first_of(":+ "))) != nullptr;
+    const std::string_view name = text.substr(0, text.find_first_of(":+ "));
+    return name == studioKind().name || findKind(name) != nullptr;
 }
 
 bool looksLikeLight(const std::string& text) {
@@ -415,9 +444,10 @@ LightSpecification parseLights(const std::string& text, const std::string& folde
     if (withoutSpaces(text).empty())
         throw UsageError(fmt::format("empty light specification; valid: {}", form));
     LightSpecification specification{.text = text, .lights = {}, .terms = {}};
-    for (const std::string_view term : splitTerms(text, folder)) {
-        specification.lights.push_back(parseTerm(term, folder, invalid));
-        specification.terms.emplace_back(term);
+    for (const std::string_view given : splitTerms(text, folder)) {
+        for (const std::string& term : termsOf(given))
+            specification.lights.push_back(parseTerm(term, folder, invalid));
+        specification.terms.emplace_back(given);
     }
     return specification;
 }

@@ -17,7 +17,7 @@ inline constexpr std::string_view lightSumHelp =
 /// A light specification and its lights, whose radiances add up.
 struct LightSpecification {
     std::string text;
-    std::vector<Light> lights;  ///< one per term, in the order of the text
+    std::vector<Light> lights;  ///< in the order of the text; several for the term studio
     /// The terms as the text has them. A path may contain '+', so that the text alone does not
     /// tell.
     std::vector<std::string> terms = {};
@@ -55,6 +55,10 @@ struct LightKind {
 
 /// The analytic lights.
 std::span<const LightKind> lightKinds();
+
+/// The name of several lights: a sky and three soft panels, which viewers and previews have where
+/// no light is given. `make` is null.
+const LightKind& studioKind();
 
 /// Pictures and files of coefficients, which a path stands for; `make` is null.
 const LightKind& pictureKind();

@@ -82,6 +82,24 @@ TEST(LightCatalog, ExamplesParseToOneLightEach) {
     }
 }
 
+TEST(LightCatalog, AStudioIsSeveralLightsThatTurnAndScaleTogether) {
+    const auto plain = parseLights("studio"), turned = parseLights("studio:turn=30,scale=2");
+    EXPECT_EQ(plain.lights.size(), 5U);
+    ASSERT_EQ(parseLights("uniform+studio").lights.size(), 6U);
+    EXPECT_EQ(turned.terms, std::vector<std::string>{"studio:turn=30,scale=2"});
+    for (const Direction& d : directions(2000)) {
+        const double phi = radians(-30);
+        const Direction back{d.x * std::cos(phi) - d.y * std::sin(phi),
+                             d.x * std::sin(phi) + d.y * std::cos(phi), d.z};
+        const auto expected = radianceFrom(plain.lights, back);
+        const auto found = radianceFrom(turned.lights, d);
+        ASSERT_EQ(found.size(), expected.size());
+        for (std::size_t c = 0; c < found.size(); ++c)
+            EXPECT_NEAR(found[c], 2 * expected[c], 1e-9 * (1 + found[c])) << d.x << ' ' << d.y;
+    }
+    EXPECT_THROW(parseLights("studio:elevation=3"), UsageError);
+}
+
 TEST(LightCatalog, EveryKindIsHeldToTheLaws) {
     for (const LightKind& kind : lightKinds()) {
         const auto isOfKind = [&](const std::string& spec) {

@@ -183,7 +183,7 @@ std::string dataModule(const ThreeInput& input, const ThreeOptions& options) {
     if (input.texels) setTexels(*input.texels, input.filtered, page);
     const int bands = bandsOf(input, options);
     const ViewerLight light =
-        viewerLight(parseLights(std::string(studioLight)), std::max(bands, 2), 8);
+        viewerLight(parseLights(std::string(studioKind().name)), std::max(bands, 2), 8);
     std::string numbers;
     for (std::size_t j = 0; j < static_cast<std::size_t>(bands * bands); ++j) {
         for (std::size_t c = 0; c < 3; ++c)
