@@ -2,7 +2,7 @@
 // weighting the cells, and the fit itself. CPU time is that of all threads.
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit.h>
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 
 #include <benchmark/benchmark.h>
 #include <unistd.h>

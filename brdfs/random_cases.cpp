@@ -1,6 +1,6 @@
 #include <brdfs/random_cases.h>
 
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/files/temporary_file.h>

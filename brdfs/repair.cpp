@@ -1,6 +1,6 @@
 #include <brdfs/measured/measured_brdf.h>
 #include <brdfs/repair.h>
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 #include <hshfit/brdf/kink_curve.h>
 #include <hshfit/brdf/steps.h>
 #include <hshfit/brdf/transmission.h>

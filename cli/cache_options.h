@@ -2,7 +2,7 @@
 
 #include <hshfit/transport/radiance_cache/cache.h>
 
-#include <jobs/illuminate.h>
+#include <jobs/scenes/illuminate.h>
 
 #include <CLI/CLI.hpp>
 

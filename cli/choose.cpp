@@ -2,7 +2,7 @@
 
 #include <hshfit/choice/choice_files.h>
 
-#include <jobs/choose.h>
+#include <jobs/studies/choose.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

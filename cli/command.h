@@ -4,8 +4,8 @@
 
 #include <hshfit/brdf/directions.h>
 
-#include <jobs/batch.h>
-#include <jobs/listener.h>
+#include <jobs/common/inputs.h>
+#include <jobs/common/listener.h>
 
 #include <nlohmann/json_fwd.hpp>
 

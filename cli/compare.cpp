@@ -9,8 +9,8 @@
 #include <hshfit/pages/picture_error_json.h>
 #include <hshfit/percent.h>
 
-#include <jobs/compare.h>
-#include <jobs/kept_outputs.h>
+#include <jobs/common/kept_outputs.h>
+#include <jobs/studies/compare.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

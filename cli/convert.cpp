@@ -9,7 +9,7 @@
 
 #include <brdfs/catalog.h>
 
-#include <jobs/convert.h>
+#include <jobs/studies/convert.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

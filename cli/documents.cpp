@@ -20,26 +20,6 @@ Json lawsJson(const Laws& laws) {
             {"energy_conserving", laws.energyConserving}};
 }
 
-Json metricJson(const MetricValue& result) {
-    Json json = {{"name", result.metric->name},
-                 {"value", result.value ? Json(*result.value) : Json(nullptr)}};
-    if (result.value) json["error"] = result.error;
-    if (!result.reason.empty()) json["reason"] = result.reason;
-    if (result.wo) {
-        Json at;
-        if (result.wi) at["wi"] = directionJson(*result.wi);
-        at["wo"] = directionJson(*result.wo);
-        json["at"] = at;
-    }
-    return json;
-}
-
-Json metricValuesJson(const std::vector<MetricValue>& results) {
-    Json rows = Json::array();
-    for (const MetricValue& result : results) rows.push_back(metricJson(result));
-    return rows;
-}
-
 std::string metricText(const MetricValue& result) {
     std::string text = fmt::format("  {:<20} ", result.metric->name);
     if (!result.value) return text + "-  (" + result.reason + ")\n";

@@ -4,7 +4,8 @@
 
 #include <hshfit/accuracy/metrics.h>
 
-#include <jobs/direction_json.h>
+#include <jobs/common/direction_json.h>
+#include <jobs/common/metric_json.h>
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -13,6 +14,8 @@
 namespace hshfit::cli {
 
 using jobs::directionJson;
+using jobs::metricJson;
+using jobs::metricValuesJson;
 
 /// "52.00,10.00": theta and phi in degrees.
 std::string directionText(const Direction& d);
@@ -22,8 +25,6 @@ nlohmann::ordered_json lawsJson(const Laws& laws);
 /// Every line after the first begins with two spaces.
 std::string indented(const std::string& text);
 
-nlohmann::ordered_json metricJson(const MetricValue& result);
-nlohmann::ordered_json metricValuesJson(const std::vector<MetricValue>& results);
 /// An indented line with its line feed.
 std::string metricText(const MetricValue& result);
 

@@ -3,7 +3,7 @@
 
 #include <hshfit/error.h>
 
-#include <jobs/eval.h>
+#include <jobs/studies/eval.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -7,8 +7,8 @@
 #include <hshfit/gpu/error_split.h>
 #include <hshfit/pages/picture_error_json.h>
 
-#include <jobs/export.h>
-#include <jobs/many.h>
+#include <jobs/common/many.h>
+#include <jobs/exports/export.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -2,7 +2,7 @@
 
 #include "command.h"
 
-#include <jobs/lighting.h>
+#include <jobs/lighting/lighting.h>
 
 #include <string>
 

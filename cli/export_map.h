@@ -2,7 +2,7 @@
 
 #include "command.h"
 
-#include <jobs/export_map.h>
+#include <jobs/exports/export_map.h>
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -2,7 +2,7 @@
 
 #include "command.h"
 
-#include <jobs/export_material.h>
+#include <jobs/exports/export_material.h>
 
 #include <string>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <jobs/figures.h>
+#include <jobs/fits/figures.h>
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -11,7 +11,7 @@
 #include <hshfit/files/output_rule.h>
 #include <hshfit/percent.h>
 
-#include <jobs/fit.h>
+#include <jobs/fits/fit.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

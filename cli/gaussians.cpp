@@ -1,7 +1,7 @@
 #include "command.h"
 #include "documents.h"
 
-#include <jobs/gaussians.h>
+#include <jobs/fits/gaussians.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -17,25 +17,10 @@ struct GaussianArguments {
 
 void runGaussians(GaussianArguments& arguments, const Globals& globals) {
     brdfs::GaussianFitOptions& fit = arguments.options.fit;
-    fit.kind =
-        arguments.kind == "sg" ? brdfs::GaussianKind::spherical : brdfs::GaussianKind::anisotropic;
-    fit.cosine = arguments.weight == "cosine";
+    jobs::parseGaussians(arguments.kind, arguments.weight, fit);
     const jobs::FittedGaussians fitted = jobs::fitGaussians(
         arguments.spec, arguments.output, arguments.options, listenerFor(globals));
-    if (globals.json) {
-        printJson({{"format", "hshfit-gaussians-answer"},
-                   {"version", 1},
-                   {"brdf", fitted.brdf},
-                   {"output", arguments.output},
-                   {"kind", arguments.kind},
-                   {"lobes", fit.lobes},
-                   {"outgoing", fitted.outgoing.spec()},
-                   {"mean_error", fitted.meanError},
-                   {"largest_energy_error", fitted.largestEnergyError},
-                   {"unsettled", fitted.unsettled},
-                   {"metrics", metricValuesJson(fitted.metrics)}});
-        return;
-    }
+    if (globals.json) return printJson(jobs::gaussiansJson(fitted, arguments.output, fit));
     std::string text = fmt::format(
         "{}: {} {} lobes for each of {} outgoing directions; relative error {:.4f}, albedo off by "
         "at most {:.2f} %\n",

@@ -2,7 +2,7 @@
 
 // The answer of `info` on the health of a BRDF.
 
-#include <jobs/info.h>
+#include <jobs/studies/info.h>
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -5,8 +5,8 @@
 #include <hshfit/error.h>
 #include <hshfit/percent.h>
 
-#include <jobs/illuminate.h>
-#include <jobs/quality.h>
+#include <jobs/scenes/illuminate.h>
+#include <jobs/source/quality.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

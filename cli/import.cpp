@@ -1,6 +1,6 @@
 #include "command.h"
 
-#include <jobs/import.h>
+#include <jobs/studies/import.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -7,8 +7,8 @@
 #include <hshfit/brdf/transmission.h>
 #include <hshfit/files/json_fields.h>
 
-#include <jobs/info.h>
-#include <jobs/many.h>
+#include <jobs/common/many.h>
+#include <jobs/studies/info.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

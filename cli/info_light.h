@@ -2,7 +2,7 @@
 
 // `info` of a light: what it is and a report on its health.
 
-#include <jobs/info.h>
+#include <jobs/studies/info.h>
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -4,7 +4,7 @@
 
 #include <hshfit/error.h>
 
-#include <jobs/irradiance.h>
+#include <jobs/lighting/irradiance.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -6,8 +6,8 @@
 #include <hshfit/pages/picture_error_json.h>
 #include <hshfit/pictures/poor.h>
 
-#include <jobs/material_library.h>
-#include <jobs/material_samples.h>
+#include <jobs/library/material_library.h>
+#include <jobs/library/material_samples.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

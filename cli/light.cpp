@@ -6,7 +6,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
 
-#include <jobs/light.h>
+#include <jobs/lighting/light.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -1,13 +1,11 @@
 #include "command.h"
 
-#include <jobs/ltc.h>
+#include <jobs/fits/ltc.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-
-#include <map>
 
 namespace hshfit::cli {
 namespace {
@@ -18,32 +16,13 @@ struct LtcArguments {
     brdfs::LtcTableOptions table;
 };
 
-const std::map<std::string, brdfs::RoughnessMapping> mappings{
-    {"square", brdfs::RoughnessMapping::square},
-    {"linear", brdfs::RoughnessMapping::linear},
-    {"exponent", brdfs::RoughnessMapping::exponent}};
-
 void runLtc(LtcArguments& arguments, const Globals& globals) {
-    arguments.table.mapping = mappings.at(arguments.mapping);
+    arguments.table.mapping = jobs::parseMapping(arguments.mapping);
     const jobs::FittedLtc fitted =
         jobs::fitLtc(arguments.spec, arguments.outputs, arguments.table, listenerFor(globals));
     const brdfs::LtcTable& table = fitted.table;
     const auto& summary = fitted.summary;
-    if (globals.json) {
-        printJson({{"format", "hshfit-ltc-answer"},
-                   {"version", 1},
-                   {"brdf", table.spec},
-                   {"parameter", table.parameter},
-                   {"size", table.size},
-                   {"outputs", fitted.files},
-                   {"mean_error", summary.meanError},
-                   {"largest_error", summary.largestError},
-                   {"mean_misplaced", summary.meanMisplaced},
-                   {"largest_uncertainty", summary.largestUncertainty},
-                   {"unsettled", summary.unsettled},
-                   {"seconds", fitted.seconds}});
-        return;
-    }
+    if (globals.json) return printJson(jobs::ltcJson(fitted));
     printText(fmt::format(
         "{}: {} x {} over {} from {:.4g} to {:.4g}; cubed lobe error {:.4f}, at most {:.3f}; "
         "{:.2f} % of the light misplaced; {:.0f} s\n",

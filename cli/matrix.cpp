@@ -2,7 +2,7 @@
 #include "rotation_options.h"
 #include "within.h"
 
-#include <jobs/rotate.h>
+#include <jobs/lighting/rotate.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

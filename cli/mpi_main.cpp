@@ -6,8 +6,8 @@
 
 #include <hshfit/files/atomic_file.h>
 
+#include <jobs/maps/map_processes.h>
 #include <jobs/mpi/mpi_processes.h>
-#include <jobs/svbrdf/map_processes.h>
 
 #include <fmt/format.h>
 

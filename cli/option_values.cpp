@@ -8,7 +8,7 @@
 #include <hshfit/tradeoff/sweep.h>
 
 #include <brdfs/repair.h>
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

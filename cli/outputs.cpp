@@ -9,8 +9,8 @@
 #include <hshfit/files/standard_streams.h>
 #include <hshfit/version.h>
 
-#include <jobs/batch.h>
-#include <jobs/kept_outputs.h>
+#include <jobs/common/inputs.h>
+#include <jobs/common/kept_outputs.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

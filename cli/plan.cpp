@@ -4,8 +4,8 @@
 #include <hshfit/error.h>
 #include <hshfit/plan/plan_files.h>
 
-#include <jobs/plan.h>
-#include <jobs/plan_lighting.h>
+#include <jobs/scenes/plan.h>
+#include <jobs/scenes/plan_lighting.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -1,7 +1,7 @@
 #include "command.h"
 #include "within.h"
 
-#include <jobs/plot.h>
+#include <jobs/studies/plot.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -9,8 +9,8 @@
 #include <hshfit/pages/pair_summary_json.h>
 #include <hshfit/pages/picture_error_json.h>
 
-#include <jobs/kept_outputs.h>
-#include <jobs/project.h>
+#include <jobs/common/kept_outputs.h>
+#include <jobs/studies/project.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -3,9 +3,9 @@
 
 #include <hshfit/error.h>
 
-#include <jobs/render.h>
-#include <jobs/render_json.h>
-#include <jobs/spheres.h>
+#include <jobs/scenes/render.h>
+#include <jobs/scenes/render_json.h>
+#include <jobs/scenes/spheres.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

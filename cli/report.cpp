@@ -6,7 +6,7 @@
 #include <hshfit/files/output_rule.h>
 #include <hshfit/pages/report.h>
 
-#include <jobs/report.h>
+#include <jobs/studies/report.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -2,7 +2,7 @@
 #include "documents.h"
 #include "within.h"
 
-#include <jobs/sample.h>
+#include <jobs/exports/sample.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,6 +1,6 @@
 #include "command.h"
 
-#include <jobs/stress.h>
+#include <jobs/studies/stress.h>
 
 #include <CLI/CLI.hpp>
 

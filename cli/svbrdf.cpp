@@ -8,10 +8,10 @@
 #include <hshfit/pictures/poor.h>
 #include <hshfit/representation/forms/form.h>
 
-#include <jobs/quality.h>
-#include <jobs/svbrdf/map_answers.h>
-#include <jobs/svbrdf/map_processes.h>
-#include <jobs/svbrdf/svbrdf.h>
+#include <jobs/maps/map_answers.h>
+#include <jobs/maps/map_processes.h>
+#include <jobs/maps/svbrdf.h>
+#include <jobs/source/quality.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -2,8 +2,8 @@
 
 #include <hshfit/percent.h>
 
-#include <jobs/quality.h>
-#include <jobs/svbrdf/map_answers.h>
+#include <jobs/maps/map_answers.h>
+#include <jobs/source/quality.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

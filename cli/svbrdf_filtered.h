@@ -2,7 +2,7 @@
 
 #include "command.h"
 
-#include <jobs/svbrdf/filtered.h>
+#include <jobs/maps/filtered.h>
 
 #include <string>
 

@@ -7,14 +7,14 @@
 #include <hshfit/light/catalog.h>
 
 #include <brdfs/catalog.h>
+#include <brdfs/catalog/metal_spec.h>
+#include <brdfs/catalog/preset.h>
+#include <brdfs/composed/sum.h>
 #include <brdfs/fit/dispersion_law.h>
 #include <brdfs/fit/loss.h>
-#include <brdfs/metal_spec.h>
-#include <brdfs/metals.h>
-#include <brdfs/preset.h>
-#include <brdfs/preset_collection.h>
+#include <brdfs/presets/metals.h>
+#include <brdfs/presets/preset_collection.h>
 #include <brdfs/repair.h>
-#include <brdfs/sum.h>
 
 #include <fmt/format.h>
 

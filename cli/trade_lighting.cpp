@@ -1,6 +1,6 @@
 #include "trade_lighting.h"
 
-#include <jobs/source.h>
+#include <jobs/source/source.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -2,7 +2,7 @@
 
 #include "command.h"
 
-#include <jobs/lighting_trade.h>
+#include <jobs/lighting/lighting_trade.h>
 
 #include <string>
 #include <vector>

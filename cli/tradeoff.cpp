@@ -6,7 +6,7 @@
 #include <hshfit/error.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
 
-#include <jobs/tradeoff.h>
+#include <jobs/studies/tradeoff.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -3,8 +3,8 @@
 
 #include <hshfit/percent.h>
 
-#include <jobs/quality.h>
-#include <jobs/transfer.h>
+#include <jobs/scenes/transfer.h>
+#include <jobs/source/quality.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -9,12 +9,12 @@
 #include <hshfit/irradiance/conventions.h>
 
 #include <brdfs/catalog.h>
+#include <brdfs/catalog/preset.h>
 #include <brdfs/fit/loss.h>
-#include <brdfs/preset.h>
-#include <brdfs/preset_collection.h>
+#include <brdfs/presets/preset_collection.h>
 #include <brdfs/repair.h>
-#include <jobs/choose_renderers.h>
-#include <jobs/lighting_models.h>
+#include <jobs/lighting/lighting_models.h>
+#include <jobs/studies/choose_renderers.h>
 
 #include <CLI/CLI.hpp>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <jobs/bounds.h>
+#include <jobs/common/bounds.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
-"""room_graph.py [--table]: the rooms of lib/hshfit against the includes of their files.
+"""room_graph.py [--table]: the rooms of lib/hshfit, brdfs and jobs against the includes of their
+files.
 
-The order of add_subdirectory in lib/CMakeLists.txt is the order of the rooms, the lowest first.
+The order of add_subdirectory in lib/CMakeLists.txt is the order of the rooms, the lowest first; for
+brdfs and jobs it is the list hshfit_brdfs_rooms or hshfit_jobs_rooms of their CMakeLists.txt.
 Prints each breach as file:line and ends with 1 if there is one:
   - a room includes only rooms below it, so that no two rooms include each other, and the front
     door none but in hshfit.h;
   - the NEEDS of a room in its CMakeLists.txt are the rooms that it includes;
   - a header under internal/ is included from its own room, from tests and from benchmarks only;
-  - the namespace of a file is its folder.
+  - the namespace of a file is its folder (lib);
+  - files of brdfs or jobs that lie in no room, the front door, are included by no room.
 With --table: files, lines and needed rooms of each, as a table in Markdown.
 """
 import re
@@ -96,6 +99,55 @@ class Rooms:
             self.check_needs(room)
 
 
+class HouseRooms:
+    """The rooms of brdfs or jobs."""
+
+    def __init__(self, house):
+        self.house = house
+        text = (TOP / house / "CMakeLists.txt").read_text()
+        stated = re.search(rf"set\(hshfit_{house}_rooms ([\w\s]+)\)", text)
+        self.order = stated.group(1).split()
+        self.needs = {room: set() for room in self.order}
+        self.breaches = []
+
+    def of(self, path):
+        """The room of a path below the house; '' at its front door."""
+        first = Path(path).parts[0]
+        return first if first in self.order else ""
+
+    def check(self):
+        for path in tracked(f"{self.house}/*.h", f"{self.house}/*.cpp"):
+            home = self.of(path.relative_to(TOP / self.house))
+            place = path.relative_to(TOP / self.house)
+            if not home and len(place.parts) > 1:
+                self.breaches.append(f"{path.relative_to(TOP)}:1: its folder is no room")
+            for number, line in enumerate(path.read_text().split("\n"), 1):
+                found = re.match(rf"\s*#include <{self.house}/([^>]+)>", line)
+                if not found or not home:
+                    continue
+                room = self.of(found.group(1))
+                if room == home:
+                    continue
+                self.needs[home].add(room)
+                if not room or self.order.index(room) > self.order.index(home):
+                    above = room or "the front door"
+                    self.breaches.append(f"{path.relative_to(TOP)}:{number}: {home} includes "
+                                         f"{found.group(1)}, of {above} above it")
+
+
+    def table(self):
+        sizes = {room: [0, 0] for room in self.order}
+        for path in tracked(f"{self.house}/*.h", f"{self.house}/*.cpp"):
+            room = self.of(path.relative_to(TOP / self.house))
+            if room:
+                sizes[room][0] += 1
+                sizes[room][1] += len(path.read_text().split("\n")) - 1
+        print(f"\n| room of `{self.house}/` | files | lines | includes |\n|---|---|---|---|")
+        for room in self.order:
+            below = ", ".join(sorted(self.needs[room], key=self.order.index)) or "none"
+            print(f"| {room} | {sizes[room][0]} | {sizes[room][1]} | {below} |")
+
+
 def table(rooms):
     sizes = {room: [0, 0] for room in rooms.order}
     for path in tracked("lib/hshfit"):
@@ -114,11 +166,17 @@ def table(rooms):
 def main():
     rooms = Rooms()
     rooms.check()
+    houses = [HouseRooms(house) for house in ("brdfs", "jobs")]
+    for house in houses:
+        house.check()
     if sys.argv[1:] == ["--table"]:
         table(rooms)
-    for breach in rooms.breaches:
+        for house in houses:
+            house.table()
+    breaches = rooms.breaches + [breach for house in houses for breach in house.breaches]
+    for breach in breaches:
         print(breach, file=sys.stderr if sys.argv[1:] else sys.stdout)
-    return 1 if rooms.breaches else 0
+    return 1 if breaches else 0
 
 
 if __name__ == "__main__":

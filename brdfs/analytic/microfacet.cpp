@@ -1,7 +1,7 @@
 #include <brdfs/analytic/microfacet.h>
 
 #include <brdfs/analytic/parameters.h>
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <brdfs/catalog.h>
+#include <brdfs/rows/model.h>
 
 namespace hshfit::brdfs {
 

@@ -1,6 +1,7 @@
 #include <brdfs/analytic/sheen_albedo.h>
 
-#include <brdfs/catalog.h>
+#include <brdfs/analytic/charlie.h>
+#include <brdfs/rows/model.h>
 #include <hshfit/brdf/directions.h>
 #include <hshfit/quadrature/quadrature.h>
 
@@ -65,7 +66,9 @@ SheenAlbedoTable::SheenAlbedoTable() {
     const Nodes nodes;
     for (int j = 0; j < roughnesses; ++j) {
         const double roughness = leastRoughness + (1 - leastRoughness) * j / (roughnesses - 1);
-        const auto lobe = openModel(fmt::format("charlie:r={}", roughness * roughness));
+        const Model charlie = charlieModel();
+        const auto lobe = charlie.make(parseParameters(charlie.name, charlie.parameters,
+                                                       fmt::format("r={}", roughness * roughness)));
         Row& row = rows_[j + 1];
         for (int k = 0; k <= steps; ++k) {
             // E at the horizon is its limit, from a height at which nothing underflows.

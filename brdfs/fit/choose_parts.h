@@ -1,6 +1,6 @@
 #pragma once
 
-#include <brdfs/catalog.h>
+#include <brdfs/catalog/tables.h>
 #include <brdfs/fit/fit.h>
 
 #include <functional>

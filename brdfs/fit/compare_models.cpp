@@ -1,6 +1,6 @@
 #include <brdfs/fit/compare_models.h>
 
-#include <brdfs/catalog.h>
+#include <brdfs/catalog/tables.h>
 #include <brdfs/fit/dispersion.h>
 #include <brdfs/fit/distributions.h>
 #include <brdfs/fit/parametric_sum.h>

@@ -1,8 +1,8 @@
 #include <brdfs/fit/dispersed_problem.h>
 
+#include <brdfs/catalog/metal_spec.h>
 #include <brdfs/fit/split_models.h>
-#include <brdfs/metal_spec.h>
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 

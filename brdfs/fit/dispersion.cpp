@@ -1,5 +1,6 @@
 #include <brdfs/fit/dispersion.h>
 
+#include <brdfs/catalog/metal_spec.h>
 #include <brdfs/fit/dispersed_problem.h>
 #include <brdfs/fit/dispersed_study.h>
 #include <brdfs/fit/fit_search.h>
@@ -7,7 +8,6 @@
 #include <brdfs/fit/instrument/instrument_fit.h>
 #include <brdfs/fit/instrument/quadratures.h>
 #include <brdfs/fit/split_models.h>
-#include <brdfs/metal_spec.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>

@@ -1,10 +1,10 @@
 #include <brdfs/fit/dispersion_json.h>
 
+#include <brdfs/catalog/metal_spec.h>
+#include <brdfs/catalog/preset.h>
+#include <brdfs/composed/spectrum.h>
 #include <brdfs/fit/dispersed_problem.h>
-#include <brdfs/metal_spec.h>
-#include <brdfs/preset.h>
-#include <brdfs/preset_json.h>
-#include <brdfs/spectrum.h>
+#include <brdfs/presets/preset_json.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -80,7 +80,7 @@ std::unique_ptr<Brdf> openDispersed(std::string_view text, const std::string& wh
                              "parameter");
         const std::vector<double> coefficients = coefficientsIn(model, laws);
         for (const double nanometres : asked)
-            lines.push_back({nanometres, open(model.specAt(nanometres, coefficients))});
+            lines.push_back({nanometres, openModels(model.specAt(nanometres, coefficients))});
     } catch (const UsageError& error) {
         throw UsageError(fmt::format("{}: {}", where, error.what()));
     }

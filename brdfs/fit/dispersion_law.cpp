@@ -2,7 +2,7 @@
 
 #include <brdfs/fit/minimise.h>
 #include <brdfs/fit/sellmeier.h>
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>

@@ -1,6 +1,7 @@
 #include <brdfs/fit/fit.h>
 
-#include <brdfs/catalog.h>
+#include <brdfs/catalog/tables.h>
+#include <brdfs/composed/spectrum.h>
 #include <brdfs/fit/correlated_spread.h>
 #include <brdfs/fit/covariance.h>
 #include <brdfs/fit/dispersion.h>
@@ -15,7 +16,6 @@
 #include <brdfs/fit/propagated_errors.h>
 #include <brdfs/fit/scan_spread.h>
 #include <brdfs/fit/unseen_lobes.h>
-#include <brdfs/spectrum.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -391,10 +391,10 @@ FitResult fit(const FitSamples& samples, const FitOptions& options) {
 }
 
 std::unique_ptr<Brdf> openFit(const FitResult& result) {
-    if (result.spectrum.empty()) return open(result.spec);
+    if (result.spectrum.empty()) return openModels(result.spec);
     std::vector<Spectrum::Line> lines;
     for (const FittedWavelength& own : result.spectrum)
-        lines.push_back({own.nanometres, open(own.spec)});
+        lines.push_back({own.nanometres, openModels(own.spec)});
     return std::make_unique<Spectrum>(std::move(lines), "fit of " + result.model);
 }
 

@@ -1,4 +1,4 @@
-#include <brdfs/catalog.h>
+#include <brdfs/catalog/tables.h>
 #include <brdfs/fit/distributions.h>
 #include <brdfs/fit/fit_figures.h>
 #include <brdfs/fit/residual_rows.h>
@@ -326,7 +326,7 @@ std::vector<NamedBrdf> termsOf(const FitResult& result) {
         std::string name = term.substr(0, term.find(':'));
         const int times = ++taken[name];
         if (times > 1) name += fmt::format(" ({})", times);
-        terms.push_back({std::move(name), open(term)});
+        terms.push_back({std::move(name), openModels(term)});
         if (terms.back().brdf->channels().count() > 1) return {};
     }
     if (terms.size() < 2) terms.clear();

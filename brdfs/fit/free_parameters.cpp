@@ -1,6 +1,6 @@
 #include <brdfs/fit/free_parameters.h>
 
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 #include <hshfit/files/json_fields.h>
 #include <hshfit/files/json_format.h>
 
-#include <brdfs/preset_json.h>
+#include <brdfs/presets/preset_json.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>

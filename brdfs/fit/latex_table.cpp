@@ -1,10 +1,10 @@
-#include <brdfs/catalog.h>
+#include <brdfs/catalog/tables.h>
 #include <brdfs/fit/instrument/instrument_text.h>
 #include <brdfs/fit/latex_table.h>
 #include <brdfs/fit/printed_number.h>
 #include <brdfs/fit/split_models.h>
 #include <brdfs/fit/stated_error.h>
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 #include <hshfit/files/printable.h>
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include <brdfs/fit/loss.h>
 
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 #include <hshfit/error.h>
 #include <hshfit/spelling.h>
 

@@ -1,7 +1,7 @@
 #include <brdfs/fit/ltc_table.h>
 
-#include <brdfs/catalog.h>
-#include <brdfs/spec.h>
+#include <brdfs/catalog/tables.h>
+#include <brdfs/rows/spec.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include <brdfs/fit/parametric_sum.h>
 #include <brdfs/fit/split_models.h>
 
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>

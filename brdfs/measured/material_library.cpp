@@ -1,6 +1,6 @@
 #include <brdfs/measured/material_library.h>
 
-#include <brdfs/preset_collection.h>
+#include <brdfs/presets/preset_collection.h>
 #include <hshfit/error.h>
 #include <hshfit/material_library/library_file.h>
 

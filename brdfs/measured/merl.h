@@ -1,9 +1,9 @@
 #pragma once
 
-#include <brdfs/catalog.h>
 #include <brdfs/measured/measured_brdf.h>
 #include <brdfs/measured/merl_layout.h>
 #include <brdfs/measured/merl_positions.h>
+#include <brdfs/rows/format.h>
 #include <hshfit/files/mapped_file.h>
 
 #include <atomic>

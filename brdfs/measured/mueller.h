@@ -1,6 +1,6 @@
 #pragma once
 
-#include <brdfs/catalog.h>
+#include <brdfs/rows/spec.h>
 #include <hshfit/brdf/brdf.h>
 
 #include <cstddef>

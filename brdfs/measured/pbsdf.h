@@ -1,8 +1,8 @@
 #pragma once
 
-#include <brdfs/catalog.h>
 #include <brdfs/measured/measured_brdf.h>
 #include <brdfs/measured/mueller.h>
+#include <brdfs/rows/format.h>
 
 #include <memory>
 #include <span>

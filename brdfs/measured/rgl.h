@@ -1,8 +1,8 @@
 #pragma once
 
-#include <brdfs/catalog.h>
 #include <brdfs/measured/measured_brdf.h>
 #include <brdfs/measured/rgl_tables.h>
+#include <brdfs/rows/format.h>
 #include <hshfit/brdf/brdf.h>
 #include <hshfit/files/tensor_file.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <brdfs/catalog.h>
 #include <brdfs/measured/rgl_normals.h>
+#include <brdfs/rows/writer.h>
 
 #include <cstddef>
 #include <optional>

@@ -3,8 +3,8 @@
 // ordinary mips (the mean normal with the lobe of a texel). For maps whose texels differ in their
 // normals alone.
 
-#include <jobs/svbrdf/facet_lobes.h>
-#include <jobs/svbrdf/filtered_texel_brdf.h>
+#include <jobs/source/facet_lobes.h>
+#include <jobs/source/filtered_texel_brdf.h>
 
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/files/atomic_file.h>

@@ -5,7 +5,7 @@
 // removed.
 
 #include <brdfs/catalog.h>
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/error.h>
 

@@ -9,7 +9,7 @@
 #include "../../tests/brdfs/merl_slice.h"
 
 #include <brdfs/catalog.h>
-#include <brdfs/preset_collection.h>
+#include <brdfs/presets/preset_collection.h>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "item_key.h"
 
-#include "../named_files.h"
+#include <jobs/common/named_files.h>
 #include "manifest.h"
 #include "program.h"
 

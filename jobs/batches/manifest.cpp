@@ -1,7 +1,7 @@
 #include "manifest.h"
 
-#include "../batch.h"
-#include "../source.h"
+#include <jobs/common/inputs.h>
+#include <jobs/source/source.h>
 #include "program.h"
 
 #include <hshfit/error.h>

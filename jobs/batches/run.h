@@ -4,7 +4,7 @@
 #include "shards.h"
 #include "store.h"
 
-#include "../listener.h"
+#include <jobs/common/listener.h>
 
 #include <cstddef>
 #include <functional>

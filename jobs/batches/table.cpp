@@ -1,7 +1,7 @@
 #include "table.h"
 
-#include "../batch.h"
-#include "../spheres.h"
+#include <jobs/common/inputs.h>
+#include <jobs/scenes/spheres.h>
 #include "costs.h"
 #include "program.h"
 

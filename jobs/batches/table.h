@@ -4,7 +4,7 @@
 #include "manifest.h"
 #include "store.h"
 
-#include "../listener.h"
+#include <jobs/common/listener.h>
 
 #include <cstddef>
 #include <optional>

@@ -4,7 +4,7 @@
 #include <brdfs/measured/scattered/alta_writer.h>
 #include <brdfs/measured/scattered/scattered.h>
 #include <brdfs/measured_files.h>
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 
 #include <gtest/gtest.h>
 

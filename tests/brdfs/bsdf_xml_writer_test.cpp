@@ -1,7 +1,7 @@
 // Written files, read back: averages over cells, reflectances, orientation.
 
 #include <brdfs/catalog.h>
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 #include <hshfit/projection/albedo.h>
 
 #include "bsdf_xml_files.h"

@@ -6,7 +6,7 @@
 #include <brdfs/fit/distributions.h>
 #include <brdfs/fit/fit.h>
 #include <brdfs/fit/free_parameters.h>
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

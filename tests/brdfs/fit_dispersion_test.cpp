@@ -2,14 +2,14 @@
 // against fits without, a known truth, and resampled data.
 
 #include <brdfs/catalog.h>
+#include <brdfs/catalog/preset.h>
 #include <brdfs/fit/dispersed_problem.h>
 #include <brdfs/fit/dispersion_json.h>
 #include <brdfs/fit/dispersion_law.h>
 #include <brdfs/fit/fit.h>
 #include <brdfs/fit/fit_json.h>
 #include <brdfs/fit/prediction.h>
-#include <brdfs/metals.h>
-#include <brdfs/preset.h>
+#include <brdfs/presets/metals.h>
 #include <brdfs/spectral_samples.h>
 #include <hshfit/error.h>
 

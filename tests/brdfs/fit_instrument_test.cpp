@@ -2,10 +2,10 @@
 // derivatives of the model that an instrument sees.
 
 #include <brdfs/catalog.h>
+#include <brdfs/composed/spectrum.h>
 #include <brdfs/fit/fit.h>
 #include <brdfs/fit/instrument/instrument_problem.h>
 #include <brdfs/fit/instrument/patch_sums.h>
-#include <brdfs/spectrum.h>
 #include <hshfit/error.h>
 #include <hshfit/projection/albedo.h>
 

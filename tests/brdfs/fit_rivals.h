@@ -2,7 +2,7 @@
 
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit.h>
-#include <brdfs/preset_collection.h>
+#include <brdfs/presets/preset_collection.h>
 
 #include <array>
 #include <chrono>

@@ -2,9 +2,9 @@
 // spectra by way of the BRDF that the fit opens.
 
 #include <brdfs/catalog.h>
+#include <brdfs/catalog/preset.h>
+#include <brdfs/composed/spectrum.h>
 #include <brdfs/fit/fit.h>
-#include <brdfs/preset.h>
-#include <brdfs/spectrum.h>
 #include <hshfit/error.h>
 
 #include <places.h>

@@ -3,8 +3,8 @@
 
 #include <brdfs/analytic/fresnel.h>
 #include <brdfs/catalog.h>
-#include <brdfs/metal_spec.h>
-#include <brdfs/metals.h>
+#include <brdfs/catalog/metal_spec.h>
+#include <brdfs/presets/metals.h>
 #include <hshfit/brdf/cie_1931.h>
 #include <hshfit/error.h>
 

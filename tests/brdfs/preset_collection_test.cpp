@@ -4,8 +4,8 @@
 #include "models_grid.h"
 #include "places.h"
 
-#include <brdfs/preset.h>
-#include <brdfs/preset_collection.h>
+#include <brdfs/catalog/preset.h>
+#include <brdfs/presets/preset_collection.h>
 #include <gtest/gtest.h>
 #include <hshfit/error.h>
 

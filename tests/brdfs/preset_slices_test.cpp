@@ -5,7 +5,7 @@
 #include "places.h"
 
 #include <brdfs/catalog.h>
-#include <brdfs/preset_collection.h>
+#include <brdfs/presets/preset_collection.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -2,7 +2,7 @@
 #include <brdfs/measured/rgl.h>
 #include <brdfs/measured/rgl_normals.h>
 #include <brdfs/measured/rgl_writer.h>
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 #include <hshfit/projection/albedo.h>
 
 #include <brdfs/measured_files.h>

@@ -3,7 +3,7 @@
 
 #include "models_grid.h"
 
-#include <brdfs/preset.h>
+#include <brdfs/catalog/preset.h>
 #include <hshfit/sampling/axis_lobes.h>
 #include <hshfit/sampling/make_sampler.h>
 

@@ -1,8 +1,8 @@
 // Specifications, presets and what is said about those that are wrong.
 
 #include <brdfs/catalog.h>
-#include <brdfs/preset.h>
-#include <brdfs/spec.h>
+#include <brdfs/catalog/preset.h>
+#include <brdfs/rows/spec.h>
 #include <gtest/gtest.h>
 #include <hshfit/error.h>
 

@@ -10,7 +10,7 @@
 #include <brdfs/analytic/sheen_albedo.h>
 #include <brdfs/catalog.h>
 #include <brdfs/random_cases.h>
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 
 #include <gsl/gsl_integration.h>
 #include <gtest/gtest.h>

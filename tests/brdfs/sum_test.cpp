@@ -3,7 +3,7 @@
 #include "models_grid.h"
 
 #include <brdfs/catalog.h>
-#include <brdfs/sum.h>
+#include <brdfs/composed/sum.h>
 #include <gtest/gtest.h>
 #include <hshfit/error.h>
 #include <hshfit/projection/albedo.h>

@@ -3,7 +3,7 @@
 
 #include <brdfs/catalog.h>
 #include <brdfs/repair.h>
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 #include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
 

@@ -2,8 +2,8 @@
 // finite and not negative, and the name to open the same again.
 
 #include <brdfs/catalog.h>
-#include <brdfs/preset.h>
-#include <brdfs/preset_collection.h>
+#include <brdfs/catalog/preset.h>
+#include <brdfs/presets/preset_collection.h>
 #include <hshfit/error.h>
 
 #include <cmath>

@@ -5,13 +5,13 @@
 #include <hshfit/error.h>
 #include <hshfit/pages/report.h>
 
-#include <jobs/batch.h>
-#include <jobs/export.h>
-#include <jobs/fit.h>
-#include <jobs/project.h>
-#include <jobs/quality.h>
-#include <jobs/report.h>
-#include <jobs/source.h>
+#include <jobs/common/inputs.h>
+#include <jobs/exports/export.h>
+#include <jobs/fits/fit.h>
+#include <jobs/source/quality.h>
+#include <jobs/source/source.h>
+#include <jobs/studies/project.h>
+#include <jobs/studies/report.h>
 
 #include <tbb/parallel_for.h>
 

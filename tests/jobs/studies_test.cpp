@@ -9,21 +9,21 @@
 #include <hshfit/wording.h>
 
 #include <cli/wording.h>
-#include <jobs/compare.h>
-#include <jobs/eval.h>
-#include <jobs/export.h>
-#include <jobs/gaussians.h>
-#include <jobs/import.h>
-#include <jobs/info.h>
-#include <jobs/ltc.h>
-#include <jobs/plan.h>
-#include <jobs/plot.h>
-#include <jobs/project.h>
-#include <jobs/rotate.h>
-#include <jobs/sample.h>
-#include <jobs/spheres.h>
-#include <jobs/stress.h>
-#include <jobs/tradeoff.h>
+#include <jobs/exports/export.h>
+#include <jobs/exports/sample.h>
+#include <jobs/fits/gaussians.h>
+#include <jobs/fits/ltc.h>
+#include <jobs/lighting/rotate.h>
+#include <jobs/scenes/plan.h>
+#include <jobs/scenes/spheres.h>
+#include <jobs/studies/compare.h>
+#include <jobs/studies/eval.h>
+#include <jobs/studies/import.h>
+#include <jobs/studies/info.h>
+#include <jobs/studies/plot.h>
+#include <jobs/studies/project.h>
+#include <jobs/studies/stress.h>
+#include <jobs/studies/tradeoff.h>
 
 #include <nlohmann/json.hpp>
 

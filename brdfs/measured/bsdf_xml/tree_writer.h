@@ -1,6 +1,6 @@
 #pragma once
 
-#include <brdfs/catalog.h>
+#include <brdfs/rows/writer.h>
 
 namespace hshfit::brdfs {
 
@@ -8,7 +8,7 @@ namespace hshfit::brdfs {
 /// rank 4 if not: averages of f over pairs of cells of 2^levels steps along the square, by
 /// projected solid angle. Branches whose values differ by no more than `prune`, relative to their
 /// mean, become leaves with that mean. RGB and spectra become luminance. Throws as stated for
-/// `Writer` (brdfs/catalog.h), and UsageError for more than 6 levels at rank 4.
+/// `Writer` (brdfs/rows/writer.h), and UsageError for more than 6 levels at rank 4.
 const Writer& bsdfTreeWriter();
 
 }  // namespace hshfit::brdfs

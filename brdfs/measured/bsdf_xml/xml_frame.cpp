@@ -1,6 +1,6 @@
 #include <brdfs/measured/bsdf_xml/bsdf_xml.h>
 #include <brdfs/measured/bsdf_xml/xml_frame.h>
-#include <brdfs/spec.h>
+#include <brdfs/rows/spec.h>
 #include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <brdfs/catalog.h>
 #include <brdfs/measured/bsdf_xml/cell_averages.h>
 #include <brdfs/measured/bsdf_xml/document.h>
 #include <brdfs/measured/bsdf_xml/selection.h>
+#include <brdfs/rows/writer.h>
 
 #include <functional>
 #include <memory>

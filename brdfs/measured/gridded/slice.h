@@ -1,7 +1,7 @@
 #pragma once
 
-#include <brdfs/catalog.h>
 #include <brdfs/measured/measured_brdf.h>
+#include <brdfs/rows/format.h>
 
 #include <memory>
 #include <span>

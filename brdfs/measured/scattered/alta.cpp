@@ -1,10 +1,10 @@
+#include <brdfs/composed/sum.h>
 #include <brdfs/measured/scattered/alta.h>
 #include <brdfs/measured/scattered/alta_coordinates.h>
 #include <brdfs/measured/scattered/alta_parameters.h>
 #include <brdfs/measured/scattered/scattered.h>
 #include <brdfs/measured/scattered/text_file.h>
 #include <brdfs/measured/text_reader.h>
-#include <brdfs/sum.h>
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <brdfs/catalog.h>
 #include <brdfs/measured/scattered/samples.h>
 #include <brdfs/measured/scattered/table_columns.h>
+#include <brdfs/rows/format.h>
 
 #include <string>
 #include <string_view>

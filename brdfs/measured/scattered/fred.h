@@ -1,7 +1,7 @@
 #pragma once
 
-#include <brdfs/catalog.h>
 #include <brdfs/measured/scattered/samples.h>
+#include <brdfs/rows/format.h>
 
 #include <string>
 #include <string_view>

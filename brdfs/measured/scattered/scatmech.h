@@ -1,7 +1,7 @@
 #pragma once
 
-#include <brdfs/catalog.h>
 #include <brdfs/measured/mueller.h>
+#include <brdfs/rows/format.h>
 #include <hshfit/brdf/brdf.h>
 
 #include <memory>

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <brdfs/catalog.h>
 #include <brdfs/measured/measured_brdf.h>
 #include <brdfs/measured/scattered/interpolant.h>
 #include <brdfs/measured/scattered/sample_lobes.h>
 #include <brdfs/measured/scattered/samples.h>
+#include <brdfs/rows/spec.h>
 #include <hshfit/projection/least_squares.h>
 
 #include <memory>

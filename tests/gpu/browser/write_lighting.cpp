@@ -9,8 +9,8 @@
 
 #include <hshfit/coefficient_files/representation_file.h>
 
-#include <jobs/lighting.h>
-#include <jobs/source.h>
+#include <jobs/lighting/lighting.h>
+#include <jobs/source/source.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -11,9 +11,9 @@
 #include <hshfit/filtered_maps/exports/filtered_shader.h>
 #include <hshfit/filtered_maps/exports/lobe_numbers.h>
 
-#include <jobs/svbrdf/filtered.h>
-#include <jobs/svbrdf/filtered_texel_brdf.h>
-#include <jobs/svbrdf/lobe_text.h>
+#include <jobs/maps/filtered.h>
+#include <jobs/maps/lobe_text.h>
+#include <jobs/source/filtered_texel_brdf.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

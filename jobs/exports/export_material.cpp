@@ -1,0 +1,343 @@
+#include "export_material.h"
+
+#include <jobs/fits/fit.h>
+#include <jobs/source/picture.h>
+#include <jobs/source/source.h>
+
+#include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/coefficient_files/representation_file.h>
+#include <hshfit/error.h>
+#include <hshfit/files/file_set.h>
+#include <hshfit/files/json_fields.h>
+#include <hshfit/gpu/containers/targets.h>
+#include <hshfit/materials/glb.h>
+#include <hshfit/materials/materialx.h>
+#include <hshfit/meshes/mesh_file.h>
+#include <hshfit/pages/picture_error_json.h>
+#include <hshfit/pictures/picture_strips.h>
+#include <hshfit/wording.h>
+
+#include <brdfs/catalog.h>
+#include <brdfs/rows/spec.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <utility>
+
+namespace hshfit::jobs {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using gpu::Target;
+
+/// The input, as a specification, and the BRDF that the loss is measured against.
+struct Input {
+    std::string spec;    ///< canonical
+    std::string fitTo;   ///< the specification that a fit takes
+    std::string source;  ///< as named
+    std::unique_ptr<Brdf> brdf;
+    std::string reason;  ///< why there is none
+};
+
+/// The data of a fit, from its preset; empty for anything else.
+std::string dataOf(const std::string& path) {
+    std::error_code error;
+    if (!path.ends_with(".json") || std::filesystem::file_size(path, error) > (1 << 20) || error)
+        return {};
+    std::ifstream file(path, std::ios::binary);
+    const Json json = Json::parse(file, nullptr, false);
+    if (!json.is_object() || json.value("format", Json()) != "hshfit-preset" ||
+        !json.contains("fit"))
+        return {};
+    const Json& fit = json["fit"];
+    return fit.is_object() && fit.contains("data") && fit["data"].is_string()
+               ? fit["data"].get<std::string>()
+               : std::string();
+}
+
+std::string_view modelOf(std::string_view spec) {
+    const std::string_view name = spec.substr(0, spec.find(':'));
+    const bool sum = spec.find(" + ") != spec.npos;
+    return !sum && (name == "gltf-pbr" || name == "openpbr") ? name : std::string_view();
+}
+
+Input openInput(const std::string& text, const MaterialExportOptions& options) {
+    Input input;
+    input.source = options.source;
+    if (looksLikeCoefficients(text)) {
+        if (input.source.empty()) input.source = readRepresentation(text).head.source;
+        try {
+            input.brdf = openBrdf(input.source, true);
+        } catch (const Error& error) {
+            if (!options.source.empty()) throw;
+            throw InputError(fmt::format(
+                "{}: the BRDF that a material would be fitted to does not open ({}); name it with "
+                "{}",
+                text, error.what(), Setting{"ExportOptions::source"}));
+        }
+        input.fitTo = input.source;
+        input.spec = input.brdf->name();
+        return input;
+    }
+    auto own = openBrdf(text, true);
+    input.spec = own->name();
+    input.fitTo = text;
+    if (input.source.empty()) input.source = dataOf(text);
+    if (input.source.empty() && modelOf(input.spec).empty()) {
+        input.source = text;
+        input.brdf = std::move(own);
+    } else if (input.source.empty()) {
+        input.reason = "the material is given by its parameters";
+    } else {
+        try {
+            input.brdf = openSource(input.source, true);
+        } catch (const Error& error) {
+            if (!options.source.empty()) throw;
+            input.reason = fmt::format("the data of the fit do not open ({}); name them with {}",
+                                       error.what(), Setting{"ExportOptions::source"});
+        }
+    }
+    return input;
+}
+
+/// The parameters of a specification of one model, with defaults.
+Parameters parametersOf(const std::string& spec) {
+    const std::string_view name = modelOf(spec);
+    const auto row = std::ranges::find(brdfs::models(), name, &brdfs::Model::name);
+    const std::string_view values =
+        spec.size() > name.size() ? std::string_view(spec).substr(name.size() + 1) : "";
+    return parseParameters(name, row->parameters, values);
+}
+
+MaterialColour colourOf(const Parameters& p, std::string_view name) {
+    const std::vector<double> values = p.colour(name);
+    return values.size() == 1 ? MaterialColour{values[0], values[0], values[0]}
+                              : MaterialColour{values[0], values[1], values[2]};
+}
+
+/// Extensions at their defaults, which leave them out, are not written.
+GltfMaterial gltfOf(const std::string& name, const Parameters& p) {
+    GltfMaterial material{.name = name,
+                          .baseColour = colourOf(p, "baseColorFactor"),
+                          .metallic = p.number("metallicFactor"),
+                          .roughness = p.number("roughnessFactor"),
+                          .ior = {},
+                          .specular = {},
+                          .sheen = {},
+                          .clearcoat = {},
+                          .anisotropy = {}};
+    constexpr MaterialColour black{0, 0, 0}, white{1, 1, 1};
+    if (p.number("ior") != 1.5) material.ior = p.number("ior");
+    const GltfMaterial::Specular specular{p.number("specularFactor"),
+                                          colourOf(p, "specularColorFactor")};
+    if (specular.factor != 1 || specular.colour != white) material.specular = specular;
+    const GltfMaterial::Sheen sheen{colourOf(p, "sheenColorFactor"),
+                                    p.number("sheenRoughnessFactor")};
+    if (sheen.colour != black) material.sheen = sheen;
+    if (p.number("clearcoatFactor") > 0)
+        material.clearcoat = {p.number("clearcoatFactor"), p.number("clearcoatRoughnessFactor")};
+    if (p.number("anisotropyStrength") > 0)
+        material.anisotropy = {p.number("anisotropyStrength"), p.number("anisotropyRotation")};
+    return material;
+}
+
+/// glTF's names for parameters of MaterialX's node gltf_pbr; `factor` is no part of them.
+std::string nodeInput(std::string_view name) {
+    static constexpr std::pair<std::string_view, std::string_view> renamed[] = {
+        {"baseColorFactor", "base_color"},
+        {"metallicFactor", "metallic"},
+        {"roughnessFactor", "roughness"},
+        {"specularFactor", "specular"},
+        {"specularColorFactor", "specular_color"},
+        {"sheenColorFactor", "sheen_color"},
+        {"sheenRoughnessFactor", "sheen_roughness"},
+        {"clearcoatFactor", "clearcoat"},
+        {"clearcoatRoughnessFactor", "clearcoat_roughness"},
+        {"anisotropyStrength", "anisotropy_strength"},
+        {"anisotropyRotation", "anisotropy_rotation"}};
+    for (const auto& [from, to] : renamed)
+        if (from == name) return std::string(to);
+    return std::string(name);
+}
+
+/// Inputs with other values than the model's defaults, or that the node does not share, and the
+/// base in any case.
+std::vector<MaterialXInput> inputsOf(std::string_view model, const Parameters& p) {
+    const auto row = std::ranges::find(brdfs::models(), model, &brdfs::Model::name);
+    std::vector<MaterialXInput> inputs;
+    for (const Parameter& parameter : row->parameters) {
+        const bool colour = parameter.kind == Parameter::Kind::colour;
+        const bool optional = std::ranges::any_of(row->parts, [&](const brdfs::ModelPart& part) {
+            return std::ranges::find(part.parameters, parameter.name) != part.parameters.end();
+        });
+        const std::vector<double> values = p.colour(parameter.name);
+        if (optional && values == std::vector<double>{*parameter.fallback}) continue;
+        MaterialXInput input{nodeInput(parameter.name), values};
+        if (colour && values.size() == 1) input.values.assign(3, values[0]);
+        inputs.push_back(std::move(input));
+    }
+    return inputs;
+}
+
+std::string wantedModel(const std::string& target, const Input& input) {
+    if (target == "gltf") return "gltf-pbr";
+    const std::string_view own = modelOf(input.spec);
+    return own.empty() ? "openpbr" : std::string(own);
+}
+
+/// The material of a target: the input itself, or a fit to it.
+ExportedMaterial materialFor(const std::string& target, const Input& input,
+                             const MaterialExportOptions& options, const Listener& listener) {
+    ExportedMaterial material;
+    material.target = target;
+    const std::string model = wantedModel(target, input);
+    if (modelOf(input.spec) == model) {
+        material.spec = input.spec;
+    } else {
+        FitOptions how{.model = model};
+        how.parts = options.parts;
+        how.accept = true;
+        how.rgb = true;
+        how.advise = options.advise;
+        const Fitted fitted = fit(input.fitTo, "", how, listener);
+        material.spec = brdfs::open(fitted.result.spec)->name();
+        material.fitted = true;
+        material.converged = fitted.result.converged;
+        material.search = fitted.search;
+        material.poor = fitted.poor;
+    }
+    if (!input.brdf) {
+        material.reason = input.reason;
+        return material;
+    }
+    const auto own = openBeside(material.spec, *input.brdf);
+    if (own->channels().count() != input.brdf->channels().count())
+        material.reason = "the source has other channels than the material";
+    else {
+        material.loss = summaryOf(*input.brdf, *own);
+        material.picture = pictureErrorOf(*input.brdf, *own);
+    }
+    return material;
+}
+
+Json statement(const ExportedMaterial& material, const std::string& source) {
+    Json json = {{"spec", material.spec}};
+    if (!source.empty()) json["source"] = source;
+    json["loss"] = lossJson(material);
+    return json;
+}
+
+std::string sentence(const ExportedMaterial& material, const std::string& source) {
+    std::string text = fmt::format("{} by hshfit", material.spec);
+    if (!material.loss) return text + fmt::format("; no loss stated: {}", material.reason);
+    const PairSummary& loss = *material.loss;
+    const Direction &wi = loss.at.wi, &wo = loss.at.wo;
+    return text + fmt::format(
+                      "; against {}: {}{}mean log error {:.4g}, largest error of f cos(theta_i) "
+                      "{:.4g} at wi ({:.4g}, {:.4g}, {:.4g}), wo ({:.4g}, {:.4g}, {:.4g})",
+                      source, material.picture ? summaryOf(*material.picture) : "",
+                      material.picture ? ", " : "", loss.meanLog.value, loss.maximum, wi.x, wi.y,
+                      wi.z, wo.x, wo.y, wo.z);
+}
+
+}  // namespace
+
+std::string exportName(const std::string& input) {
+    const std::string_view path = pathIn(input);
+    if (!path.empty()) return std::filesystem::path(path).stem().string();
+    const std::string_view preset = "preset:";
+    if (input.starts_with(preset))
+        return std::filesystem::path(input.substr(preset.size())).filename().string();
+    return input.substr(0, input.find_first_of(": "));
+}
+
+bool areMaterials(const std::string& targets) {
+    const auto chosen = gpu::selectTargets(targets);
+    const auto isMaterial = [](const Target* target) {
+        return target->kind == Target::Kind::material;
+    };
+    if (std::ranges::none_of(chosen, isMaterial)) return false;
+    if (!std::ranges::all_of(chosen, isMaterial))
+        throw UsageError(fmt::format(
+            "'{}': gltf and materialx are written apart from the other targets", targets));
+    return true;
+}
+
+Json lossJson(const ExportedMaterial& material) {
+    if (!material.loss) return {{"reason", material.reason}};
+    const PairSummary& loss = *material.loss;
+    const auto array = [](const Direction& d) { return Json::array({d.x, d.y, d.z}); };
+    Json json = {{"metric", "mean |ln(1 + f cos(theta_i)) - ln(1 + g cos(theta_i))|"},
+                 {"pairs", loss.pairs},
+                 {"mean_log", loss.meanLog.value},
+                 {"mean_log_error", loss.meanLog.error},
+                 {"maximum",
+                  {{"value", loss.maximum}, {"wi", array(loss.at.wi)}, {"wo", array(loss.at.wo)}}},
+                 {"albedo",
+                  {{"difference", loss.albedo.value},
+                   {"of", loss.albedoThere},
+                   {"theta_from", degrees(loss.albedoFrom)},
+                   {"theta_to", degrees(loss.albedoTo)}}}};
+    if (material.picture) json["picture"] = pictureErrorJson(*material.picture);
+    return json;
+}
+
+ExportedMaterials makeMaterials(const std::string& text, const MaterialExportOptions& options,
+                                const Listener& listener) {
+    if (!areMaterials(options.targets))
+        throw UsageError(fmt::format("'{}': no standard material", options.targets));
+    const Surface surface =
+        options.mesh.empty() ? sphereSurface() : surfaceOf(readMesh(options.mesh).mesh);
+    const Input input = openInput(text, options);
+    ExportedMaterials exported{.name = options.name.empty() ? exportName(text) : options.name,
+                               .source = input.source,
+                               .vertices = surface.positions.size(),
+                               .triangles = surface.indices.size() / 3,
+                               .files = {}};
+    for (const Target* target : gpu::selectTargets(options.targets)) {
+        ExportedMaterial material = materialFor(target->name, input, options, listener);
+        const Parameters parameters = parametersOf(material.spec);
+        if (target->name == "gltf") {
+            material.path = exported.name + ".glb";
+            const Json extras = {{"hshfit", statement(material, input.source)}};
+            material.content =
+                glbBytes(gltfOf(exported.name, parameters), surface, jsonText(extras));
+        } else {
+            const std::string_view model = modelOf(material.spec);
+            material.path = exported.name + ".mtlx";
+            material.content =
+                materialXText(exported.name, model == "openpbr" ? "open_pbr_surface" : "gltf_pbr",
+                              inputsOf(model, parameters), sentence(material, input.source));
+        }
+        if (material.picture)
+            material.pictures = fmt::format("{}_{}.png", exported.name, target->name);
+        material.bytes = material.content.size();
+        exported.files.push_back(std::move(material));
+    }
+    if (input.brdf) requireReadable(*input.brdf);
+    return exported;
+}
+
+ExportedMaterials exportMaterials(const std::string& text, const std::string& folder,
+                                  const MaterialExportOptions& options, const Listener& listener) {
+    FileSet files(folder, options.force);
+    ExportedMaterials exported = makeMaterials(text, options, listener);
+    std::vector<SpherePicture> source;
+    for (const ExportedMaterial& material : exported.files) {
+        files.write(material.path, material.content);
+        if (material.pictures.empty()) continue;
+        const auto brdf = openSource(exported.source, true);
+        if (source.empty()) source = stripSpheres(*brdf);
+        const auto own = stripSpheres(*openBeside(material.spec, *brdf));
+        files.write(material.pictures, pngOf(pictureStrips(source, own)));
+    }
+    files.commit();
+    return exported;
+}
+
+}  // namespace hshfit::jobs

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <jobs/common/listener.h>
+
+#include <hshfit/accuracy/metrics.h>
+
+#include <brdfs/fit/gaussian_mixture_fit.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace hshfit::jobs {
+
+struct GaussianOptions {
+    brdfs::GaussianFitOptions fit = {};  ///< its `progress` is not called: the listener is
+    std::string outgoing = "16";         ///< OutgoingSet::parse; elevations or one direction
+    std::string metrics = {};            ///< names separated by commas, or "all"; empty: none
+    bool rgb = false;                    ///< wavelengths as linear Rec. 709
+};
+
+struct FittedGaussians {
+    std::string brdf;
+    brdfs::GaussianMixture mixture;
+    OutgoingSet outgoing;
+    double meanError = 0;           ///< relative, over the outgoing directions
+    double largestEnergyError = 0;  ///< of the albedo, relative
+    std::size_t unsettled = 0;      ///< outgoing directions whose fit did not converge
+    std::vector<MetricValue> metrics = {};
+};
+
+/// Gaussians over wi for every outgoing direction of a BRDF (fitGaussians), written to `output` as
+/// a mixture, .json. Throws UsageError, InputError, NumericError and OutputError.
+FittedGaussians fitGaussians(const std::string& spec, const std::string& output,
+                             const GaussianOptions& options, const Listener& listener = {});
+
+/// sg or asg, and cosine or none. Throws UsageError naming them.
+void parseGaussians(const std::string& kind, const std::string& weight,
+                    brdfs::GaussianFitOptions& options);
+/// The answer of the command, for what was written to `output`.
+nlohmann::ordered_json gaussiansJson(const FittedGaussians& fitted, const std::string& output,
+                                     const brdfs::GaussianFitOptions& options);
+
+}  // namespace hshfit::jobs

@@ -1,0 +1,72 @@
+#include "ltc.h"
+
+#include <hshfit/spelling.h>
+
+#include <brdfs/fit/ltc_files.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+
+namespace hshfit::jobs {
+namespace {
+
+struct MappingName {
+    std::string_view name;
+    brdfs::RoughnessMapping mapping;
+};
+constexpr MappingName mappings[] = {{"square", brdfs::RoughnessMapping::square},
+                                    {"linear", brdfs::RoughnessMapping::linear},
+                                    {"exponent", brdfs::RoughnessMapping::exponent}};
+
+}  // namespace
+
+FittedLtc fitLtc(const std::string& model, const std::vector<std::string>& outputs,
+                 const brdfs::LtcTableOptions& options, const Listener& listener) {
+    for (const std::string& output : outputs) brdfs::ltcOutputs(output);
+    const auto start = std::chrono::steady_clock::now();
+    brdfs::LtcTableOptions how = options;
+    how.progress = listener.part("ltc");
+    FittedLtc result{.table = brdfs::fitLtcTable(model, how)};
+    result.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+    FileSet files(".", true);
+    for (const std::string& output : outputs)
+        for (const std::string& path : brdfs::writeLtcTable(result.table, output, files))
+            result.files.push_back(path);
+    files.commit();
+
+    result.summary = result.table.summary();
+    if (result.summary.unsettled > 0)
+        listener.say(fmt::format("{} of {} fits ended before they had settled",
+                                 result.summary.unsettled, result.table.cells.size()));
+    return result;
+}
+
+brdfs::RoughnessMapping parseMapping(std::string_view name) {
+    const auto* row = std::ranges::find(mappings, name, &MappingName::name);
+    if (row == std::end(mappings))
+        throw spelling::unknown("mapping", name, spelling::namesOf(mappings));
+    return row->mapping;
+}
+
+nlohmann::ordered_json ltcJson(const FittedLtc& fitted) {
+    const auto& summary = fitted.summary;
+    return {{"format", "hshfit-ltc-answer"},
+            {"version", 1},
+            {"brdf", fitted.table.spec},
+            {"parameter", fitted.table.parameter},
+            {"size", fitted.table.size},
+            {"outputs", fitted.files},
+            {"mean_error", summary.meanError},
+            {"largest_error", summary.largestError},
+            {"mean_misplaced", summary.meanMisplaced},
+            {"largest_uncertainty", summary.largestUncertainty},
+            {"unsettled", summary.unsettled},
+            {"seconds", fitted.seconds}};
+}
+
+}  // namespace hshfit::jobs

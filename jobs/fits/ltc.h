@@ -1,0 +1,34 @@
+#pragma once
+
+#include <jobs/common/listener.h>
+
+#include <brdfs/fit/ltc_table.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hshfit::jobs {
+
+struct FittedLtc {
+    brdfs::LtcTable table;
+    brdfs::LtcTable::Summary summary = {};
+    std::vector<std::string> files = {};
+    double seconds = 0;  ///< that the fit took
+};
+
+/// Linearly transformed cosines of a model over roughness and elevation (fitLtcTable), written to
+/// each of `outputs` as its extension says (writeLtcTable); the files appear together.
+/// `options.progress` is not called: the listener is. Throws UsageError, NumericError and
+/// OutputError.
+FittedLtc fitLtc(const std::string& model, const std::vector<std::string>& outputs,
+                 const brdfs::LtcTableOptions& options, const Listener& listener = {});
+
+/// square, linear or exponent. Throws UsageError naming them.
+brdfs::RoughnessMapping parseMapping(std::string_view name);
+/// The answer of the command.
+nlohmann::ordered_json ltcJson(const FittedLtc& fitted);
+
+}  // namespace hshfit::jobs

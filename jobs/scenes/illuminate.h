@@ -1,0 +1,96 @@
+#pragma once
+
+#include <jobs/common/listener.h>
+
+#include <hshfit/transport/path_tracer.h>
+#include <hshfit/transport/radiance_cache/cost_prediction.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hshfit::jobs {
+
+/// Of the records of a radiance cache, unless told otherwise: 256 MB.
+inline constexpr std::size_t defaultCacheBytes = 256'000'000;
+
+struct IlluminateOptions {
+    std::string camera = {};  ///< the one to take; empty: all of the scene
+    PathOptions path = {};    ///< its `progress` is not called: the listener is
+    /// Pictures by a radiance cache; then bounces, seed and samples are those of `path` too.
+    std::optional<CacheOptions> cache = {};
+    bool chooseByCost =
+        true;  ///< have materials sampled where predictCosts says that it is cheaper
+    /// A file of records, read where it stands and written with those that were added; empty: none.
+    std::string records = {};
+    /// An OpenEXR picture of the same size that `relative_mse` is measured against; empty: none.
+    std::string reference = {};
+    std::optional<double> stops = {};  ///< of PNG files; none: automatic
+    bool force = false;                ///< replace existing files
+    /// Keep the finished rows of each camera in FOLDER/.hshfit-CAMERA.partial until the files are
+    /// written, and take those that an earlier run kept there.
+    bool resume = false;
+};
+
+/// The distance of a picture from a reference.
+struct ReferenceError {
+    /// Mean over pixels and R, G, B of (L - R)^2 / (R^2 + (m / 10)^2), m the mean of R.
+    double relativeMse = 0;
+    double maximum = 0;  ///< the largest of these terms
+    int column = 0, row = 0;
+};
+
+/// The picture of one camera.
+struct IlluminatedCamera {
+    std::string name;
+    int width = 0, height = 0;
+    double seconds = 0, cpuSeconds = 0;  ///< of the picture
+    std::size_t rays = 0, cut = 0;
+    std::size_t resumedRows = 0;                                     ///< of an earlier run
+    std::optional<std::size_t> records = {}, made = {}, bytes = {};  ///< of the cache
+    std::size_t uncovered = 0;  ///< lines of sight that no record reached
+    double mean = 0;            ///< radiance, over pixels and R, G, B
+    /// The root of the mean square of the standard errors, and the largest of them with its pixel,
+    /// over the mean; none of one sample, or of a dark picture. Errors of records are no part.
+    std::optional<double> standardError = {}, largestError = {};
+    int errorColumn = 0, errorRow = 0;
+    double stops = 0;
+    std::optional<ReferenceError> reference = {};
+    std::vector<std::string> files = {};
+};
+
+/// The way in which a material got its indirect light from the cache.
+struct LitMaterial {
+    std::string name;
+    LightWay way = LightWay::sampled;
+    int order = 0;
+    double loss = 0;
+    std::string reason;
+    int walks = 1;                          ///< of each line of sight, if sampled
+    std::optional<MaterialCost> cost = {};  ///< where a camera sees it and it has coefficients
+};
+
+struct Illuminated {
+    std::string scene;
+    std::size_t triangles = 0, degenerate = 0;
+    double preparationSeconds = 0;  ///< reading, samplers, the tree of the rays, the cache
+    double cacheCpuSeconds = 0;     ///< of choosing for materials and of light on diffuse surfaces
+    std::vector<LitMaterial> materials = {};  ///< with a cache
+    std::vector<IlluminatedCamera> cameras = {};
+};
+
+/// Pictures of a scene file (scene::readScene) with global illumination, in `folder`: CAMERA.exr
+/// with R, G, B and their standard errors as error.R, error.G, error.B, and CAMERA.png. The
+/// pictures do not depend on the number of threads. Throws UsageError, InputError, NumericError and
+/// OutputError.
+Illuminated illuminate(const std::string& scene, const std::string& folder,
+                       const IlluminateOptions& options, const Listener& listener = {});
+
+/// The answer of `illuminate` (docs/schemas/illuminate.schema.json); `method` is "path" or
+/// "radiance-cache".
+nlohmann::ordered_json illuminateJson(const Illuminated& done, const std::string& method);
+
+}  // namespace hshfit::jobs

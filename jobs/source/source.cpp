@@ -1,0 +1,141 @@
+#include "source.h"
+
+#include <hshfit/accuracy/metrics.h>
+#include <hshfit/brdf/colour.h>
+#include <hshfit/brdf/transmission.h>
+#include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/coefficient_files/light_file.h>
+#include <hshfit/coefficient_files/representation_file.h>
+#include <hshfit/coefficients/reconstruction.h>
+#include <hshfit/error.h>
+#include <hshfit/filtered_maps/filtered_sidecar.h>
+#include <hshfit/gpu/containers/containers.h>
+#include <hshfit/gpu/forms/form_files.h>
+#include <hshfit/material_maps/material_map.h>
+#include <hshfit/representation/forms/represented_brdf.h>
+#include <hshfit/specification/parameters.h>
+
+#include "filtered_texel_brdf.h"
+
+#include <brdfs/catalog.h>
+#include <brdfs/measured/measured_brdf.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+namespace hshfit::jobs {
+namespace {
+
+std::unique_ptr<Brdf> seenAsRgb(std::unique_ptr<Brdf> brdf, bool rgb) {
+    if (!rgb || brdf->channels().kind != Channels::Kind::spectral) return brdf;
+    return asRgb(std::move(brdf));
+}
+
+/// A texel of a material map, "FILE:x=3,y=5,level=0"; null where SPEC is none.
+std::unique_ptr<Brdf> openTexel(const std::string& spec) {
+    const std::string path(pathIn(spec));
+    const bool filtered = !path.empty() && isFilteredSidecar(path);
+    if (path.empty() || !(filtered || isMapSidecar(path))) return nullptr;
+    constexpr double most = 1 << 20;
+    const Parameter parameters[] = {
+        {.name = "x", .help = "column", .fallback = 0, .max = most},
+        {.name = "y", .help = "row, from the top", .fallback = 0, .max = most},
+        {.name = "level", .help = "0 is the full size", .fallback = 0, .max = 30}};
+    const std::string rest = spec.substr(path.size());
+    const Parameters texel =
+        parseParameters(path, parameters, rest.empty() ? rest : rest.substr(1));
+    const auto index = [&](std::string_view name) {
+        const double value = texel.number(name);
+        if (value != std::floor(value))
+            throw UsageError(
+                fmt::format("{}: {} is {}; it has to be a whole number", path, name, value));
+        return static_cast<std::size_t>(value);
+    };
+    if (filtered) return openFilteredTexel(path, index("level"), index("x"), index("y"));
+    const MaterialMap map(path);
+    if (map.sidecar().form == "halfway") {
+        const std::size_t material = map.material(index("level"), index("x"), index("y"));
+        map.checkIntact();
+        const std::string& file = map.sidecar().files[material];
+        if (file.empty())
+            throw InputError(fmt::format("{}: material {} has no file", path, material));
+        return reconstruct(readRepresentation(file), {});
+    }
+    Coefficients coefficients = map.coefficients(index("level"), index("x"), index("y"));
+    map.checkIntact();
+    return std::make_unique<Reconstruction>(std::move(coefficients));
+}
+
+std::unique_ptr<Brdf> checked(std::unique_ptr<Brdf> brdf, Sides sides) {
+    if (sides == Sides::reflection) requireReflection(*brdf, "this command");
+    return brdf;
+}
+
+/// Opens every source that `openSource` takes, reflections and transmissions.
+std::unique_ptr<Brdf> openAnySource(const std::string& spec, bool rgb) {
+    if (auto texel = openTexel(spec)) return texel;
+    if (auto read = gpu::readIfForm(spec, sourceOpener()))
+        return seenAsRgb(reconstruct(std::move(read->payload.form), sourceOpener()), rgb);
+    if (gpu::looksLikePayload(spec)) {
+        auto coefficients = gpu::unpack(gpu::readPayload(spec).payload);
+        return seenAsRgb(std::make_unique<Reconstruction>(std::move(coefficients)), rgb);
+    }
+    if (!looksLikeCoefficients(spec)) return openBrdf(spec, rgb, Sides::either);
+    Representation representation = readRepresentation(spec);
+    const bool plain = representation.steps.empty() && representation.added.empty() &&
+                       representation.as<CoefficientArray>();
+    if (plain) {
+        return seenAsRgb(std::make_unique<Reconstruction>(decoded(representation)), rgb);
+    }
+    return seenAsRgb(reconstruct(std::move(representation), sourceOpener()), rgb);
+}
+
+}  // namespace
+
+std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb, Sides sides) {
+    if (auto texel = openTexel(spec)) return texel;
+    if (isLightFile(spec))
+        throw InputError(fmt::format(
+            "{}: has coefficients of light, where a BRDF or coefficients of one belong", spec));
+    return checked(seenAsRgb(brdfs::open(spec), rgb), sides);
+}
+
+std::unique_ptr<Brdf> openSource(const std::string& spec, bool rgb, Sides sides) {
+    return checked(openAnySource(spec, rgb), sides);
+}
+
+std::unique_ptr<Brdf> openBeside(const std::string& spec, const Brdf& source) {
+    auto brdf = openBrdf(spec, true);
+    if (brdf->channels().count() < source.channels().count())
+        brdf = openBrdf(spec + " + 0 * lambert:kd=0/0.5/1", true);
+    return brdf;
+}
+
+BrdfOpener sourceOpener() {
+    return [](const std::string& spec) { return openAnySource(spec, false); };
+}
+
+void requireReadable(const Brdf& brdf) {
+    if (const auto* measured = dynamic_cast<const brdfs::MeasuredBrdf*>(&brdf))
+        measured->checkReadable();
+    else
+        brdf.checkIntact();
+}
+
+std::string whyZero(const Brdf& brdf) {
+    const auto* measured = dynamic_cast<const brdfs::MeasuredBrdf*>(&brdf);
+    if (!measured) return {};
+    const brdfs::Census census = measured->census();
+    if (census.negative == 0 || census.greatest > 0) return {};
+    return fmt::format("{}: f is 0: of {} values none is above 0, and {} are below", brdf.name(),
+                       census.values, census.negative);
+}
+
+OutgoingSet outgoingOrDefault(const std::string& text, const Brdf& brdf) {
+    if (!text.empty()) return OutgoingSet::parse(text);
+    return comparedOutgoing(brdf.laws().isotropic);
+}
+
+}  // namespace hshfit::jobs

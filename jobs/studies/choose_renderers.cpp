@@ -1,0 +1,73 @@
+#include "choose_renderers.h"
+
+#include <hshfit/spelling.h>
+
+#include <algorithm>
+
+namespace hshfit::jobs {
+namespace {
+
+using Kinds = std::vector<std::string>;
+
+/// Formulas that a shader may evaluate, and coefficients, whose shader is written.
+const Kinds shaded{"model", "lobes", "halfway", "coefficients"};
+/// Programs that load glTF, and shaders or textures of one's own.
+const Kinds engine{"gltf", "halfway", "coefficients"};
+
+const Renderer table[] = {
+    {"any",
+     "any of them but a measured file, which few read",
+     {"model", "lobes", "gltf", "openpbr", "halfway", "coefficients"}},
+    {"three", "three.js", engine, "three"},
+    {"babylon", "Babylon.js", engine, "babylon"},
+    {"playcanvas", "PlayCanvas", engine, "playcanvas"},
+    {"filament", "Filament, by gltfio", {"gltf"}},
+    {"godot", "Godot 4", engine, "godot"},
+    {"unity", "Unity", engine, "unity"},
+    {"unreal", "Unreal", engine, "unreal"},
+    {"falcor", "Falcor", engine, "falcor"},
+    {"blender", "Blender", engine, "blender"},
+    {"gltf", "readers of glTF 2.0", {"gltf"}},
+    {"openpbr", "renderers with OpenPBR Surface, by MaterialX", {"openpbr"}},
+    {"mitsuba", "Mitsuba 3, by its plugin measured", {"bsdf"}},
+    {"pbrt", "pbrt-v4, by its material measured", {"bsdf"}},
+    {"glsl", "GLSL 4.50", shaded, "glsl"},
+    {"glsl-es", "GLSL ES 3.00", shaded, "glsl-es"},
+    {"hlsl", "HLSL", shaded, "hlsl"},
+    {"wgsl", "WGSL", shaded, "wgsl"},
+    {"metal", "Metal 2", shaded, "metal"},
+    {"osl", "OSL 1.10", shaded, "osl"},
+};
+
+constexpr CandidateKind kindTable[] = {
+    {"model", "the specification itself, of models"},
+    {"lobes", "fits of Lambert and GGX lobes"},
+    {"gltf", "glTF's material"},
+    {"openpbr", "OpenPBR Surface"},
+    {"halfway", "the halfway form"},
+    {"coefficients", "both directions in a basis, or coefficients per outgoing direction"},
+    {"bsdf", "a file of the RGL format"},
+};
+
+}  // namespace
+
+std::span<const CandidateKind> candidateKinds() {
+    return kindTable;
+}
+
+void requireKind(std::string_view name) {
+    if (std::ranges::find(kindTable, name, &CandidateKind::name) == std::end(kindTable))
+        throw spelling::unknown("kind", name, spelling::namesOf(candidateKinds()));
+}
+
+std::span<const Renderer> renderers() {
+    return table;
+}
+
+const Renderer& findRenderer(std::string_view name) {
+    const auto row = std::ranges::find(table, name, &Renderer::name);
+    if (row != std::end(table)) return *row;
+    throw spelling::unknown("renderer", name, spelling::namesOf(renderers()));
+}
+
+}  // namespace hshfit::jobs

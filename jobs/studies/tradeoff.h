@@ -1,0 +1,35 @@
+#pragma once
+
+#include <jobs/common/inputs.h>
+#include <jobs/common/listener.h>
+
+#include <hshfit/tradeoff/tradeoff.h>
+
+#include <string>
+#include <vector>
+
+namespace hshfit::jobs {
+
+struct TradeoffOptions {
+    tradeoff::TradeoffOptions measurement = {};  ///< its `progress` is not called: the listener is
+    std::string pairs = {};  ///< CSV of pairs (readPairSample); empty: spread pairs
+    int pairCount = 32768;   ///< of spread pairs, about
+    /// CSV to write: the pairs, their weights and the values of the one BRDF; empty: none.
+    std::string writePairs = {};
+    bool rgb = false;  ///< wavelengths as linear Rec. 709
+};
+
+struct MeasuredTradeoffs {
+    std::vector<std::string> specs;               ///< with folders expanded
+    std::vector<tradeoff::Tradeoff> trades = {};  ///< of those that did not fail, in their order
+    std::vector<InputFailure> failures = {};
+};
+
+/// The trade of bytes, time and error of each BRDF, with its files in the folder `output`
+/// (tradeoff::writeTradeoffs) unless that is empty. BRDFs are measured one at a time, so that
+/// times compare. The error of a single one is thrown; those of several are in `failures`. Throws
+/// UsageError, InputError, NumericError and OutputError.
+MeasuredTradeoffs measureTradeoffs(const std::vector<std::string>& specs, const std::string& output,
+                                   const TradeoffOptions& options, const Listener& listener = {});
+
+}  // namespace hshfit::jobs
