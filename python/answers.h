@@ -8,8 +8,8 @@
 #include <hshfit/coefficients/coefficients.h>
 #include <hshfit/pictures/picture_error.h>
 
-#include <jobs/convert.h>
-#include <jobs/quality.h>
+#include <jobs/source/quality.h>
+#include <jobs/studies/convert.h>
 
 #include <optional>
 #include <vector>

@@ -4,7 +4,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
 
-#include <jobs/pair_file.h>
+#include <jobs/common/pair_file.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -6,8 +6,8 @@
 
 #include <hshfit/brdf/directions.h>
 
-#include <jobs/bounds.h>
-#include <jobs/eval.h>
+#include <jobs/common/bounds.h>
+#include <jobs/studies/eval.h>
 
 #include <pybind11/numpy.h>
 #include <nlohmann/json_fwd.hpp>

@@ -5,8 +5,8 @@
 #include <hshfit/error.h>
 #include <hshfit/stop_request.h>
 
-#include <jobs/plot.h>
-#include <jobs/rotate.h>
+#include <jobs/lighting/rotate.h>
+#include <jobs/studies/plot.h>
 
 #include <pybind11/stl.h>
 

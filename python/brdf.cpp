@@ -8,10 +8,10 @@
 #include <hshfit/pictures/sphere_picture.h>
 #include <hshfit/projection/albedo.h>
 
-#include <jobs/convert.h>
-#include <jobs/eval.h>
-#include <jobs/quality.h>
-#include <jobs/source.h>
+#include <jobs/source/quality.h>
+#include <jobs/source/source.h>
+#include <jobs/studies/convert.h>
+#include <jobs/studies/eval.h>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>

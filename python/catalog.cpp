@@ -6,8 +6,8 @@
 #include <hshfit/light/catalog.h>
 
 #include <brdfs/catalog.h>
-#include <brdfs/preset.h>
-#include <brdfs/preset_collection.h>
+#include <brdfs/catalog/preset.h>
+#include <brdfs/presets/preset_collection.h>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>

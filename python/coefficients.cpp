@@ -9,7 +9,7 @@
 #include <hshfit/error.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 
-#include <jobs/source.h>
+#include <jobs/source/source.h>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>

@@ -4,7 +4,7 @@
 
 #include "module.h"
 
-#include <jobs/figures.h>
+#include <jobs/fits/figures.h>
 
 #include <optional>
 #include <string>

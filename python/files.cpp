@@ -8,11 +8,11 @@
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
 
-#include <jobs/convert.h>
-#include <jobs/export.h>
-#include <jobs/import.h>
-#include <jobs/info.h>
-#include <jobs/sample.h>
+#include <jobs/exports/export.h>
+#include <jobs/exports/sample.h>
+#include <jobs/studies/convert.h>
+#include <jobs/studies/import.h>
+#include <jobs/studies/info.h>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>

@@ -8,7 +8,7 @@
 
 #include <brdfs/fit/prediction.h>
 
-#include <jobs/fit.h>
+#include <jobs/fits/fit.h>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>

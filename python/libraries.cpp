@@ -6,8 +6,8 @@
 #include <hshfit/material_library/library_file.h>
 #include <hshfit/material_library/log_terms.h>
 
-#include <jobs/material_library.h>
-#include <jobs/material_samples.h>
+#include <jobs/library/material_library.h>
+#include <jobs/library/material_samples.h>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>

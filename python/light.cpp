@@ -7,8 +7,8 @@
 #include <hshfit/error.h>
 #include <hshfit/irradiance/conventions.h>
 
-#include <jobs/irradiance.h>
-#include <jobs/light.h>
+#include <jobs/lighting/irradiance.h>
+#include <jobs/lighting/light.h>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>

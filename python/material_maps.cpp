@@ -4,7 +4,7 @@
 #include <hshfit/error.h>
 #include <hshfit/representation/forms/form.h>
 
-#include <jobs/svbrdf/map_answers.h>
+#include <jobs/maps/map_answers.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

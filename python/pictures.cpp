@@ -3,7 +3,7 @@
 
 #include <hshfit/error.h>
 
-#include <jobs/render_json.h>
+#include <jobs/scenes/render_json.h>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>

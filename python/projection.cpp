@@ -10,8 +10,8 @@
 #include <hshfit/representation/stored_array.h>
 #include <hshfit/transfer/windows.h>
 
-#include <jobs/project.h>
-#include <jobs/source.h>
+#include <jobs/source/source.h>
+#include <jobs/studies/project.h>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>

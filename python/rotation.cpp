@@ -4,7 +4,7 @@
 
 #include <hshfit/error.h>
 
-#include <jobs/rotate.h>
+#include <jobs/lighting/rotate.h>
 
 #include <pybind11/stl.h>
 

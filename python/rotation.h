@@ -2,7 +2,7 @@
 
 #include "module.h"
 
-#include <jobs/rotate.h>
+#include <jobs/lighting/rotate.h>
 
 #include <string>
 

@@ -4,9 +4,9 @@
 #include <hshfit/error.h>
 #include <hshfit/plan/plan_files.h>
 
-#include <jobs/illuminate.h>
-#include <jobs/plan.h>
-#include <jobs/transfer.h>
+#include <jobs/scenes/illuminate.h>
+#include <jobs/scenes/plan.h>
+#include <jobs/scenes/transfer.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -7,9 +7,9 @@
 #include <hshfit/pages/pair_summary_json.h>
 #include <hshfit/pages/report.h>
 
-#include <jobs/compare.h>
-#include <jobs/picture.h>
-#include <jobs/report.h>
+#include <jobs/source/picture.h>
+#include <jobs/studies/compare.h>
+#include <jobs/studies/report.h>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>

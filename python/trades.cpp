@@ -2,14 +2,21 @@
 #include "watched.h"
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/choice/choice_files.h>
 #include <hshfit/coefficients/outgoing.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
 
-#include <jobs/tradeoff.h>
+#include <jobs/fits/gaussians.h>
+#include <jobs/fits/ltc.h>
+#include <jobs/studies/choose.h>
+#include <jobs/studies/stress.h>
+#include <jobs/studies/tradeoff.h>
 
 #include <pybind11/stl.h>
 #include <nlohmann/json.hpp>
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -100,12 +107,133 @@ py::object traded(const py::object& specs, const py::object& folder, const Names
     return fromJson(answer);
 }
 
+py::object chosen(const std::string& spec, const py::object& folder, const std::string& renderer,
+                  const py::object& kinds, const std::optional<std::size_t>& bytes,
+                  const std::optional<double>& error, const py::object& progress) {
+    if (bytes) requireWithin("bytes", static_cast<double>(*bytes), 1, 1e15);
+    if (error) requireWithin("error", *error, 0, 1);
+    jobs::ChooseOptions options{.renderer = renderer, .bytes = bytes, .error = error};
+    if (!kinds.is_none())
+        for (const py::handle kind : kinds) options.kinds.push_back(kind.cast<std::string>());
+    const std::string output = folder.is_none() ? std::string() : pathOf(folder, "folder");
+    std::string answer;
+    watched(progress, {}, [&](const jobs::Listener& listener) {
+        answer = choice::choiceJson(jobs::choose(spec, output, options, listener));
+    });
+    return fromJson(nlohmann::ordered_json::parse(answer));
+}
+
+py::object cosines(const std::string& model, const py::object& files, int size,
+                   const std::string& parameter, const std::string& mapping,
+                   const py::object& progress) {
+    requireWithin("size", size, 2, 1024);
+    const bool one = py::isinstance<py::str>(files) || py::hasattr(files, "__fspath__");
+    std::vector<std::string> outputs;
+    for (const py::handle file : one ? py::object(py::make_tuple(files)) : files)
+        outputs.push_back(pathOf(py::reinterpret_borrow<py::object>(file), "files"));
+    nlohmann::ordered_json answer;
+    watched(progress, {}, [&](const jobs::Listener& listener) {
+        answer = jobs::ltcJson(jobs::fitLtc(
+            model, outputs,
+            {.size = size, .parameter = parameter, .mapping = jobs::parseMapping(mapping)},
+            listener));
+    });
+    return fromJson(answer);
+}
+
+py::object mixed(const std::string& spec, const py::object& file, int lobes,
+                 const std::string& kind, const py::object& outgoing, const std::string& weight,
+                 bool keepEnergy, const py::object& metrics, bool rgb, const py::object& progress) {
+    requireWithin("lobes", lobes, 1, 16);
+    jobs::GaussianOptions options{.rgb = rgb};
+    options.fit.lobes = lobes;
+    options.fit.keepEnergy = keepEnergy;
+    if (!outgoing.is_none()) options.outgoing = outgoingText(outgoing);
+    if (!metrics.is_none()) options.metrics = listText(metrics);
+    jobs::parseGaussians(kind, weight, options.fit);
+    const std::string output = pathOf(file, "file");
+    nlohmann::ordered_json answer;
+    watched(progress, {}, [&](const jobs::Listener& listener) {
+        answer = jobs::gaussiansJson(jobs::fitGaussians(spec, output, options, listener), output,
+                                     options.fit);
+    });
+    return fromJson(answer);
+}
+
+py::object stressed(const py::object& specs, const py::object& folder, const py::object& bases,
+                    int maxOrder, const std::optional<std::size_t>& trials, std::uint64_t seed,
+                    const py::object& of, const py::object& progress) {
+    requireWithin("max_order", maxOrder, 2, 1000);
+    jobs::StressOptions options{.maxOrder = maxOrder, .trials = trials, .seed = seed};
+    if (!bases.is_none()) options.bases = listText(bases);
+    for (const py::handle spec : specs) options.lobes.push_back(spec.cast<std::string>());
+    for (const py::handle name : of) options.of.push_back(name.cast<std::string>());
+    const std::string output = folder.is_none() ? std::string() : pathOf(folder, "folder");
+    std::string answer;
+    watched(progress, {}, [&](const jobs::Listener& listener) {
+        answer = stability::stressJson(jobs::stress(output, options, listener));
+    });
+    return fromJson(nlohmann::ordered_json::parse(answer));
+}
+
+/// Studies that answer with the document of their command.
+void bindAnswers(py::module_& module) {
+    const py::none none;
+    module.def("choose", chosen, py::arg("spec"), py::arg("folder") = none, py::kw_only(),
+               py::arg("renderer") = jobs::ChooseOptions{}.renderer, py::arg("kinds") = none,
+               py::arg("bytes") = none, py::arg("error") = none, py::arg("progress") = none,
+               R"(The smallest faithful material for a renderer, and what every candidate loses.
+
+renderer  a row of `hshfit help choose --for`, such as "three", "gltf" or "any"; kinds limits the
+          candidates; bytes and error (mean FLIP) are the most that is recommended
+folder    takes a page with strips of spheres, choice.json and the files of what is taken
+
+Returns the answer of the command; "recommended" is None where nothing is.)");
+    const brdfs::LtcTableOptions table;
+    module.def("ltc", cosines, py::arg("model"), py::arg("files"), py::kw_only(),
+               py::arg("size") = table.size, py::arg("parameter") = table.parameter,
+               py::arg("mapping") = "square", py::arg("progress") = none,
+               R"(Linearly transformed cosines of a model over roughness and elevation.
+
+files    .json, or NAME.exr or NAME.dds for NAME_1 and NAME_2; one or a sequence
+mapping  the parameter's value for the roughness r of a column: "square" (r^2), "linear" (r) or
+         "exponent" (2 / r^4 - 2)
+
+Returns the answer of the command: errors of the lobes, mean and largest.)");
+    const jobs::GaussianOptions mixture;
+    module.def("gaussians", mixed, py::arg("spec"), py::arg("file"), py::kw_only(),
+               py::arg("lobes") = mixture.fit.lobes, py::arg("kind") = "sg",
+               py::arg("outgoing") = none, py::arg("weight") = "cosine",
+               py::arg("keep_energy") = mixture.fit.keepEnergy, py::arg("metrics") = none,
+               py::arg("rgb") = mixture.rgb, py::arg("progress") = none,
+               R"(Spherical ("sg") or anisotropic ("asg") Gaussians over wi for every outgoing
+direction of an isotropic BRDF, written to a .json that open() reads.
+
+outgoing  elevations, or one direction; None: 16. weight: least squares of f cos(theta_i)
+          ("cosine") or of f ("none"). keep_energy scales amplitudes so that albedos are kept
+
+Returns the answer of the command.)");
+    const jobs::StressOptions stress;
+    module.def("stress", stressed, py::arg("specs") = py::tuple(), py::arg("folder") = none,
+               py::kw_only(), py::arg("bases") = none, py::arg("max_order") = stress.maxOrder,
+               py::arg("trials") = none, py::arg("seed") = stress.seed, py::arg("of") = py::tuple(),
+               py::arg("progress") = none,
+               R"(The accuracy of each computation by degree, order and width of the lobe.
+
+specs   lobes to project; none: Lambert, and Phong, GGX and Ward from broad to a mirror
+trials  random projections over the catalog whose stated errors are tried, with seed, of the models
+        and formats `of`
+
+Returns the answer of the command; folder takes stress.json, stress.md and stress.csv.)");
+}
+
 }  // namespace
 
 void bindTrades(py::module_& module) {
     const jobs::TradeoffOptions options;
     const tradeoff::TradeoffOptions& measured = options.measurement;
     const py::none none;
+    bindAnswers(module);
     module.def("tradeoff", traded, py::arg("specs"), py::arg("folder") = none, py::kw_only(),
                py::arg("forms") = none, py::arg("bases") = none, py::arg("orders") = none,
                py::arg("outgoing") = none, py::arg("halfway") = none, py::arg("ranks") = none,

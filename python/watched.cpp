@@ -7,8 +7,8 @@
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/stop_request.h>
 
-#include <jobs/named_errors.h>
-#include <jobs/source.h>
+#include <jobs/common/named_errors.h>
+#include <jobs/source/source.h>
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 #include "function_brdf.h"
 
-#include <jobs/listener.h>
+#include <jobs/common/listener.h>
 
 #include <functional>
 #include <memory>

@@ -15,19 +15,21 @@ tangent; angles are in degrees; f is in 1/sr and never has a cosine.
 from ._hshfit import (
     Basis, Brdf, Coefficients, Comparison, Curve, Curves, Error, Fit, FittedParameter, Form,
     InputError, Library, Light, NumericError, Outgoing, OutputError, Projection, Rotation,
-    UsageError, __version__, catalog, compare, convert, curves, describe, direction, export,
-    fit, function, illuminate, import_coefficients, irradiance, light, matrix, open,
-    picture_error, plan, plot, project, project_all, rank_models, read, render, sample,
-    set_threads, svbrdf, threads, tradeoff, transfer)
-from . import _html
+    UsageError, __version__, catalog, choose, compare, convert, curves, describe, direction,
+    export, fit, function, gaussians, illuminate, import_coefficients, irradiance, light,
+    ltc, matrix, open, picture_error, plan, plot, project, project_all, rank_models, read,
+    render, sample, set_threads, stress, svbrdf, threads, tradeoff, transfer)
+from . import _arguments, _html
 
 _html.attach()
 
 __all__ = [
     "Basis", "Brdf", "Coefficients", "Comparison", "Curve", "Curves", "Error", "Fit",
     "FittedParameter", "Form", "InputError", "Library", "Light", "NumericError", "Outgoing",
-    "OutputError", "Projection", "Rotation", "UsageError", "catalog", "compare", "convert",
-    "curves", "describe", "direction", "export", "fit", "function", "illuminate",
-    "import_coefficients", "irradiance", "light", "matrix", "open", "picture_error", "plan",
-    "plot", "project", "project_all", "rank_models", "read", "render", "sample", "set_threads",
-    "svbrdf", "threads", "tradeoff", "transfer"]
+    "OutputError", "Projection", "Rotation", "UsageError", "catalog", "choose", "compare",
+    "convert", "curves", "describe", "direction", "export", "fit", "function", "gaussians",
+    "illuminate", "import_coefficients", "irradiance", "light", "ltc", "matrix", "open",
+    "picture_error", "plan", "plot", "project", "project_all", "rank_models", "read",
+    "render", "sample", "set_threads", "stress", "svbrdf", "threads", "tradeoff", "transfer"]
+
+_arguments.attach(globals(), __all__)

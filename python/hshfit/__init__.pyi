@@ -701,6 +701,49 @@ def plan(
     by_time: bool = ...,
     progress: Progress = ...,
 ) -> Row: ...
+def choose(
+    spec: str,
+    folder: Optional[Path] = ...,
+    *,
+    renderer: str = ...,
+    kinds: Optional[Sequence[str]] = ...,
+    bytes: Optional[int] = ...,
+    error: Optional[float] = ...,
+    progress: Progress = ...,
+) -> Dict[str, Any]: ...
+def ltc(
+    model: str,
+    files: Union[Path, Sequence[Path]],
+    *,
+    size: int = ...,
+    parameter: str = ...,
+    mapping: str = ...,
+    progress: Progress = ...,
+) -> Dict[str, Any]: ...
+def gaussians(
+    spec: str,
+    file: Path,
+    *,
+    lobes: int = ...,
+    kind: str = ...,
+    outgoing: Optional[Union[str, int, Sequence[float], Outgoing]] = ...,
+    weight: str = ...,
+    keep_energy: bool = ...,
+    metrics: Optional[Union[str, Sequence[str]]] = ...,
+    rgb: bool = ...,
+    progress: Progress = ...,
+) -> Dict[str, Any]: ...
+def stress(
+    specs: Sequence[str] = ...,
+    folder: Optional[Path] = ...,
+    *,
+    bases: Optional[Union[str, Sequence[str]]] = ...,
+    max_order: int = ...,
+    trials: Optional[int] = ...,
+    seed: int = ...,
+    of: Sequence[str] = ...,
+    progress: Progress = ...,
+) -> Dict[str, Any]: ...
 def tradeoff(
     specs: Union[Path, Sequence[Path]],
     folder: Optional[Path] = ...,

@@ -4,6 +4,10 @@
 #include "places.h"
 #include "program.h"
 
+#include <hshfit/gpu/containers/targets.h>
+
+#include <jobs/studies/choose_renderers.h>
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -112,6 +116,18 @@ TEST_F(ChooseCommand, TakesWhatTheRendererReadsWithinTheBounds) {
             EXPECT_GE(std::max(128, each["bytes"].get<int>()),
                       std::max(128, row["bytes"].get<int>()));
         }
+}
+
+TEST_F(ChooseCommand, EveryTargetOfARendererIsOneOfExports) {
+    for (const jobs::Renderer& renderer : jobs::renderers()) {
+        if (renderer.target.empty()) continue;
+        EXPECT_TRUE(std::ranges::any_of(gpu::targets(), [&](const auto& each) {
+            return each.name == renderer.target;
+        })) << renderer.name;
+    }
+    const Json filament = choose(std::string(matte) + quick + " --for filament");
+    for (const Json& row : filament["rows"])
+        EXPECT_EQ(row["unfit"].is_null(), row["kind"] == "gltf") << row["name"];
 }
 
 TEST_F(ChooseCommand, WritesThePageAndTheMaterial) {

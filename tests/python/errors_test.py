@@ -47,6 +47,23 @@ class Kinds(program.InFolder):
                    "--order", "30", "--max-evaluations", "1000", "-o", "c.json")
         self.assertFalse(os.path.exists("c.json"))
 
+    def test_wrong_arguments_are_named_in_one_line(self):
+        brdf = hshfit.open("lambert")
+        for call, message in [
+                (lambda: hshfit.project("lambert", base="hsh"),
+                 r"project\(\) has no argument 'base' \(did you mean 'basis'\?\)"),
+                (lambda: hshfit.project("lambert", order="five"),
+                 r"project\(\): order is 'five', expected int"),
+                (lambda: hshfit.project(), r"project\(\): brdf is missing"),
+                (lambda: hshfit.project("lambert", "hsh"),
+                 r"project\(\) takes 1 by place \(brdf\); name the others"),
+                (lambda: hshfit.direction(1, 2, 3), r"direction\(\) takes 2 by place"),
+                (lambda: brdf.albedo(UP, tol=1e-3), r"did you mean 'tolerance'\?"),
+                (lambda: hshfit.tradeoff("lambert", zzz=1), r"'zzz'; it takes specs, folder, ")]:
+            with self.subTest(message=message), self.assertRaisesRegex(TypeError, message) as got:
+                call()
+            self.assertNotIn("\n", str(got.exception))
+
     def test_usage_errors_name_the_right_words(self):
         with self.assertRaisesRegex(hshfit.UsageError, "unknown model 'gxx' .did you mean 'ggx'"):
             hshfit.open("gxx")

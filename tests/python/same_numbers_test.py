@@ -24,14 +24,6 @@ def directions(count, seed):
     return np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=-1)
 
 
-def without_calls(document):
-    """Without the calls that make a form again, which Python and the program word differently."""
-    if isinstance(document, dict):
-        return {key: without_calls(value) for key, value in document.items()
-                if key not in ("command", "options")}
-    return [without_calls(value) for value in document] if isinstance(document, list) else document
-
-
 class SameNumbers(program.InFolder):
     def eval_by_program(self, spec, wi, wo, *words):
         with open("in.csv", "w", newline="", encoding="ascii") as file:
@@ -377,7 +369,8 @@ class SameNumbers(program.InFolder):
         done = subprocess.run([program.PROGRAM, "plan", self.scene("car_paint.json"), "-o",
                                "theirs", "--bases", "hsh", "--max-order", "4", "--json",
                                "--quiet"], check=False, capture_output=True, text=True)
-        self.assertEqual(without_calls(ours), without_calls(json.loads(done.stdout)))
+        theirs = json.loads(done.stdout)
+        self.assertEqual(program.without_calls(ours), program.without_calls(theirs))
 
     def test_trades_are_those_of_the_program(self):
         ours = hshfit.tradeoff("ggx:alpha=0.5", bases=["hsh"], orders=[3], forms=["outgoing"],
@@ -386,7 +379,7 @@ class SameNumbers(program.InFolder):
         theirs = self.json_of("tradeoff", "ggx:alpha=0.5", "--bases", "hsh", "--orders", "3",
                               "--forms", "outgoing", "--ranks", "0,2", "--precisions", "half",
                               "--outgoing", "8", "--no-timing", "--pair-count", "256")
-        self.assertEqual(without_calls(ours), without_calls(theirs))
+        self.assertEqual(program.without_calls(ours), program.without_calls(theirs))
 
     def test_libraries_are_those_of_the_program(self):
         specs = ["ggx:alpha=.2,F0=.9/.6/.3", "ggx:alpha=.3,F0=.8/.7/.6", "lambert:kd=.5/.5/.1",
@@ -436,7 +429,12 @@ class SameNumbers(program.InFolder):
                      lambda: hshfit.svbrdf("m.json", "x", form="cluster"),
                      lambda: hshfit.svbrdf("m.json", "x", form="outgoing", precision="byte"),
                      lambda: hshfit.svbrdf("m.json", "x", form="clusters", clusters=65537),
-                     lambda: hshfit.tradeoff("lambert", orders=[0])]:
+                     lambda: hshfit.tradeoff("lambert", orders=[0]),
+                     lambda: hshfit.choose("lambert", renderer="threa"),
+                     lambda: hshfit.ltc("ggx", "x.json", mapping="cube"),
+                     lambda: hshfit.gaussians("lambert", "x.json", kind="gauss"),
+                     lambda: hshfit.gaussians("lambert", "x.json", lobes=17),
+                     lambda: hshfit.stress(max_order=1)]:
             with self.assertRaises(hshfit.UsageError):
                 work()
         for option in [{"basis": "hsh"}, {"order": 4}, {"loss": 0.1}, {"rays": 64},
