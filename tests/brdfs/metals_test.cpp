@@ -5,7 +5,7 @@
 #include <brdfs/catalog.h>
 #include <brdfs/catalog/metal_spec.h>
 #include <brdfs/presets/metals.h>
-#include <hshfit/brdf/cie_1931.h>
+#include <hshfit/brdf/internal/cie_1931.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 // place on the Earth; what cannot be read is an error of one line.
 
 #include <hshfit/error.h>
-#include <hshfit/light/weather_file.h>
+#include <hshfit/light/internal/weather_file.h>
 
 #include <cmath>
 #include <cstdint>

@@ -1,12 +1,12 @@
 #include <hshfit/bases/catalog.h>
 
-#include <hshfit/bases/h_basis.h>
-#include <hshfit/bases/hsh.h>
+#include <hshfit/bases/internal/h_basis.h>
+#include <hshfit/bases/internal/hsh.h>
+#include <hshfit/bases/internal/makhotkin.h>
+#include <hshfit/bases/internal/slepian.h>
+#include <hshfit/bases/internal/zernike.h>
 #include <hshfit/bases/lsosh.h>
-#include <hshfit/bases/makhotkin.h>
 #include <hshfit/bases/sh.h>
-#include <hshfit/bases/slepian.h>
-#include <hshfit/bases/zernike.h>
 #include <hshfit/error.h>
 #include <hshfit/spelling.h>
 

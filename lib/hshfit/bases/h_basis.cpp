@@ -1,4 +1,4 @@
-#include <hshfit/bases/h_basis.h>
+#include <hshfit/bases/internal/h_basis.h>
 
 #include <algorithm>
 #include <cmath>

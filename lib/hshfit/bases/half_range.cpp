@@ -1,4 +1,4 @@
-#include <hshfit/bases/half_range.h>
+#include <hshfit/bases/internal/half_range.h>
 
 #include <cassert>
 #include <cmath>

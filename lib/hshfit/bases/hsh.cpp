@@ -1,4 +1,4 @@
-#include <hshfit/bases/hsh.h>
+#include <hshfit/bases/internal/hsh.h>
 
 #include <hshfit/bases/jacobi.h>
 

@@ -1,6 +1,6 @@
 #include <hshfit/bases/lsosh.h>
 
-#include <hshfit/bases/half_range.h>
+#include <hshfit/bases/internal/half_range.h>
 #include <hshfit/bases/sh.h>
 #include <hshfit/linear_algebra/decompositions.h>
 

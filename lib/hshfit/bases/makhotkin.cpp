@@ -1,4 +1,4 @@
-#include <hshfit/bases/makhotkin.h>
+#include <hshfit/bases/internal/makhotkin.h>
 
 #include <hshfit/bases/jacobi.h>
 

@@ -1,4 +1,4 @@
-#include <hshfit/bases/slepian.h>
+#include <hshfit/bases/internal/slepian.h>
 
 #include <hshfit/bases/sh.h>
 #include <hshfit/linear_algebra/decompositions.h>

@@ -1,4 +1,4 @@
-#include <hshfit/bases/zernike.h>
+#include <hshfit/bases/internal/zernike.h>
 
 #include <hshfit/bases/jacobi.h>
 

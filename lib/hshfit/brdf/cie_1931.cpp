@@ -1,4 +1,4 @@
-#include <hshfit/brdf/cie_1931.h>
+#include <hshfit/brdf/internal/cie_1931.h>
 
 namespace hshfit::inline brdf {
 

@@ -1,6 +1,6 @@
 #include <hshfit/brdf/channel_view.h>
-#include <hshfit/brdf/cie_1931.h>
 #include <hshfit/brdf/colour.h>
+#include <hshfit/brdf/internal/cie_1931.h>
 #include <hshfit/error.h>
 #include <hshfit/wording.h>
 

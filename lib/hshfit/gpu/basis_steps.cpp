@@ -1,4 +1,4 @@
-#include <hshfit/gpu/basis_steps.h>
+#include <hshfit/gpu/internal/basis_steps.h>
 
 #include <hshfit/bases/jacobi.h>
 #include <hshfit/bases/sh.h>
@@ -51,7 +51,7 @@ BasisSteps jacobiSteps(const JacobiBasis& basis) {
     return result;
 }
 
-/// 1, sqrt(3) (2 z - 1), sqrt(3/2) u, sqrt(15/8) u^2 (bases/h_basis.h).
+/// 1, sqrt(3) (2 z - 1), sqrt(3/2) u, sqrt(15/8) u^2 (bases/internal/h_basis.h).
 BasisSteps habelSteps(const Basis& basis) {
     const double root3 = std::sqrt(3.0);
     BasisSteps result;

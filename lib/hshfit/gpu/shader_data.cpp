@@ -1,6 +1,6 @@
 #include <hshfit/gpu/shader_data.h>
 
-#include <hshfit/gpu/basis_steps.h>
+#include <hshfit/gpu/internal/basis_steps.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

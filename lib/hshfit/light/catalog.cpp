@@ -5,9 +5,9 @@
 #include <hshfit/error.h>
 #include <hshfit/files/exr_header.h>
 #include <hshfit/light/coefficient_light.h>
+#include <hshfit/light/internal/perez_sky.h>
 #include <hshfit/light/internal/picture_terms.h>
 #include <hshfit/light/internal/sun_place.h>
-#include <hshfit/light/perez_sky.h>
 #include <hshfit/light/picture_light.h>
 #include <hshfit/light/placement.h>
 #include <hshfit/light/sky.h>

@@ -3,9 +3,9 @@
 #include <hshfit/bases/sh.h>
 #include <hshfit/error.h>
 #include <hshfit/light/coefficient_light.h>
+#include <hshfit/light/internal/node_moments.h>
 #include <hshfit/light/latlong_projection.h>
 #include <hshfit/light/light_energy.h>
-#include <hshfit/light/node_moments.h>
 #include <hshfit/light/picture_light.h>
 #include <hshfit/rotation/sh_rotation.h>
 #include <hshfit/version.h>

@@ -1,4 +1,4 @@
-#include <hshfit/light/node_moments.h>
+#include <hshfit/light/internal/node_moments.h>
 
 #include <hshfit/projection/lane_products.h>
 #include <hshfit/stop_request.h>

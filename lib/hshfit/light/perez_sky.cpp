@@ -1,4 +1,4 @@
-#include <hshfit/light/perez_sky.h>
+#include <hshfit/light/internal/perez_sky.h>
 
 #include <hshfit/error.h>
 #include <hshfit/light/sky.h>

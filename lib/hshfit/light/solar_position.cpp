@@ -1,4 +1,4 @@
-#include <hshfit/light/solar_position.h>
+#include <hshfit/light/internal/solar_position.h>
 
 #include <hshfit/error.h>
 

@@ -1,4 +1,4 @@
-#include <hshfit/light/weather_file.h>
+#include <hshfit/light/internal/weather_file.h>
 
 #include <hshfit/error.h>
 #include <hshfit/files/mapped_file.h>

@@ -6,7 +6,7 @@
 #include <hshfit/gpu/shader_data.h>
 #include <hshfit/gpu/shader_text.h>
 #include <hshfit/lighting/harmonics.h>
-#include <hshfit/lighting/lobe_taps.h>
+#include <hshfit/lighting/internal/lobe_taps.h>
 
 #include <fmt/format.h>
 

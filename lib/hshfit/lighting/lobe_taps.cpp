@@ -1,4 +1,4 @@
-#include <hshfit/lighting/lobe_taps.h>
+#include <hshfit/lighting/internal/lobe_taps.h>
 
 #include <algorithm>
 #include <cassert>

@@ -3,8 +3,8 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/light/light_projection.h>
 #include <hshfit/lighting/harmonics.h>
+#include <hshfit/lighting/internal/lobe_taps.h>
 #include <hshfit/lighting/lobe_nodes.h>
-#include <hshfit/lighting/lobe_taps.h>
 
 #include <tbb/parallel_for.h>
 

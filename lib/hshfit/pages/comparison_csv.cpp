@@ -1,4 +1,4 @@
-#include <hshfit/pages/comparison_files.h>
+#include <hshfit/pages/internal/comparison_files.h>
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 #include <hshfit/files/json_fields.h>
-#include <hshfit/pages/comparison_files.h>
+#include <hshfit/pages/internal/comparison_files.h>
 #include <hshfit/pages/picture_error_json.h>
 #include <hshfit/pictures/sphere_picture.h>
 #include <hshfit/version.h>

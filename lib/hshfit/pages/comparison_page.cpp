@@ -1,6 +1,6 @@
 #include <hshfit/files/checksum.h>
 #include <hshfit/files/template_text.h>
-#include <hshfit/pages/comparison_files.h>
+#include <hshfit/pages/internal/comparison_files.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/pages/report_files.h>
 #include <hshfit/pictures/sphere_picture.h>

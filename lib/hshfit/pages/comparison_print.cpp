@@ -1,5 +1,5 @@
-#include <hshfit/pages/comparison_files.h>
 #include <hshfit/pages/comparison_print.h>
+#include <hshfit/pages/internal/comparison_files.h>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include <hshfit/files/template_text.h>
 #include <hshfit/pages/axis_ticks.h>
-#include <hshfit/pages/comparison_files.h>
 #include <hshfit/pages/gnuplot.h>
+#include <hshfit/pages/internal/comparison_files.h>
 #include <hshfit/pages/report_files.h>
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
-#include <hshfit/pages/comparison_files.h>
 #include <hshfit/pages/gnuplot.h>
+#include <hshfit/pages/internal/comparison_files.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/pictures/sphere_picture.h>
 

@@ -1,4 +1,4 @@
-#include <hshfit/pictures/false_extrema.h>
+#include <hshfit/pictures/internal/false_extrema.h>
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include <hshfit/pictures/highlight_lines.h>
+#include <hshfit/pictures/internal/highlight_lines.h>
 
 #include <cmath>
 

@@ -1,12 +1,12 @@
 #include <hshfit/pictures/picture_error.h>
 
 #include <hshfit/percent.h>
-#include <hshfit/pictures/channel_colours.h>
 #include <hshfit/pictures/ciede2000.h>
-#include <hshfit/pictures/false_extrema.h>
 #include <hshfit/pictures/flip.h>
-#include <hshfit/pictures/highlight_lines.h>
-#include <hshfit/pictures/picture_lights.h>
+#include <hshfit/pictures/internal/channel_colours.h>
+#include <hshfit/pictures/internal/false_extrema.h>
+#include <hshfit/pictures/internal/highlight_lines.h>
+#include <hshfit/pictures/internal/picture_lights.h>
 #include <hshfit/pictures/sphere_picture.h>
 
 #include <fmt/format.h>

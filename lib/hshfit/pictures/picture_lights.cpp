@@ -1,4 +1,4 @@
-#include <hshfit/pictures/picture_lights.h>
+#include <hshfit/pictures/internal/picture_lights.h>
 
 #include <hshfit/brdf/vectors.h>
 

@@ -1,6 +1,6 @@
 #include <hshfit/pictures/picture_strips.h>
 
-#include <hshfit/pictures/picture_lights.h>
+#include <hshfit/pictures/internal/picture_lights.h>
 #include <hshfit/pictures/sphere_picture.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include <hshfit/pictures/channel_colours.h>
+#include <hshfit/pictures/internal/channel_colours.h>
 #include <hshfit/pictures/sphere.h>
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,4 @@
-#include <hshfit/plan/ladder.h>
+#include <hshfit/plan/internal/ladder.h>
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/representation/basis_matrix.h>

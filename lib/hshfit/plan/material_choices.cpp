@@ -1,8 +1,8 @@
-#include <hshfit/plan/material_search.h>
+#include <hshfit/plan/internal/material_search.h>
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
-#include <hshfit/plan/timing.h>
+#include <hshfit/plan/internal/timing.h>
 #include <hshfit/representation/forms/pair_evaluators.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 

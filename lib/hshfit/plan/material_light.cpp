@@ -1,4 +1,4 @@
-#include <hshfit/plan/material_light.h>
+#include <hshfit/plan/internal/material_light.h>
 
 #include <hshfit/bases/catalog.h>
 

@@ -1,4 +1,4 @@
-#include <hshfit/plan/material_search.h>
+#include <hshfit/plan/internal/material_search.h>
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/brdf/one_channel.h>

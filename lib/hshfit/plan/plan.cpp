@@ -2,7 +2,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
-#include <hshfit/plan/material_search.h>
+#include <hshfit/plan/internal/material_search.h>
 #include <hshfit/wording.h>
 
 #include <fmt/format.h>

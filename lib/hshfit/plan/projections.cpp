@@ -1,4 +1,4 @@
-#include <hshfit/plan/projections.h>
+#include <hshfit/plan/internal/projections.h>
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>

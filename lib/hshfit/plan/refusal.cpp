@@ -1,4 +1,4 @@
-#include <hshfit/plan/material_search.h>
+#include <hshfit/plan/internal/material_search.h>
 #include <hshfit/wording.h>
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include <hshfit/plan/timing.h>
+#include <hshfit/plan/internal/timing.h>
 
 #include <hshfit/representation/forms/pair_evaluators.h>
 

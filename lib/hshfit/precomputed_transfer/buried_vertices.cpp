@@ -1,4 +1,4 @@
-#include <hshfit/precomputed_transfer/buried_vertices.h>
+#include <hshfit/precomputed_transfer/internal/buried_vertices.h>
 
 #include <algorithm>
 #include <map>

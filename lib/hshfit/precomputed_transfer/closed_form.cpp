@@ -1,4 +1,4 @@
-#include <hshfit/precomputed_transfer/closed_form.h>
+#include <hshfit/precomputed_transfer/internal/closed_form.h>
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/brdf/vectors.h>

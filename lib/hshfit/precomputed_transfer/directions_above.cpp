@@ -1,4 +1,4 @@
-#include <hshfit/precomputed_transfer/directions_above.h>
+#include <hshfit/precomputed_transfer/internal/directions_above.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include <hshfit/precomputed_transfer/gathering.h>
 
-#include <hshfit/precomputed_transfer/buried_vertices.h>
-#include <hshfit/precomputed_transfer/closed_form.h>
-#include <hshfit/precomputed_transfer/directions_above.h>
+#include <hshfit/precomputed_transfer/internal/buried_vertices.h>
+#include <hshfit/precomputed_transfer/internal/closed_form.h>
+#include <hshfit/precomputed_transfer/internal/directions_above.h>
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/brdf/vectors.h>

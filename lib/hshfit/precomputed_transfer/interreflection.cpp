@@ -1,7 +1,7 @@
 #include <hshfit/precomputed_transfer/interreflection.h>
 
-#include <hshfit/precomputed_transfer/buried_vertices.h>
-#include <hshfit/precomputed_transfer/ray_passes.h>
+#include <hshfit/precomputed_transfer/internal/buried_vertices.h>
+#include <hshfit/precomputed_transfer/internal/ray_passes.h>
 
 #include <hshfit/error.h>
 

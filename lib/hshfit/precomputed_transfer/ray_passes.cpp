@@ -1,4 +1,4 @@
-#include <hshfit/precomputed_transfer/ray_passes.h>
+#include <hshfit/precomputed_transfer/internal/ray_passes.h>
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/brdf/vectors.h>

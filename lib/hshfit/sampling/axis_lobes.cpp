@@ -1,6 +1,6 @@
 #include <hshfit/sampling/axis_lobes.h>
 
-#include <hshfit/sampling/folded.h>
+#include <hshfit/sampling/internal/folded.h>
 
 #include <algorithm>
 #include <cmath>

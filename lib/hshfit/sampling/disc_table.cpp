@@ -1,7 +1,7 @@
 #include <hshfit/sampling/disc_table.h>
 
-#include <hshfit/sampling/elevation_bins.h>
-#include <hshfit/sampling/folded.h>
+#include <hshfit/sampling/internal/elevation_bins.h>
+#include <hshfit/sampling/internal/folded.h>
 #include <hshfit/sampling/internal/mirror_cells.h>
 #include <hshfit/sampling/internal/target.h>
 #include <hshfit/stop_request.h>

@@ -1,4 +1,4 @@
-#include <hshfit/sampling/folded.h>
+#include <hshfit/sampling/internal/folded.h>
 
 #include <cmath>
 #include <limits>

@@ -1,7 +1,7 @@
 #include <hshfit/sampling/make_sampler.h>
 
 #include <hshfit/sampling/axis_lobes.h>
-#include <hshfit/sampling/elevation_bins.h>
+#include <hshfit/sampling/internal/elevation_bins.h>
 #include <hshfit/sampling/internal/target.h>
 #include <hshfit/stop_request.h>
 

@@ -1,7 +1,7 @@
 #include <hshfit/sampling/mixture.h>
 
-#include <hshfit/sampling/elevation_bins.h>
-#include <hshfit/sampling/folded.h>
+#include <hshfit/sampling/internal/elevation_bins.h>
+#include <hshfit/sampling/internal/folded.h>
 
 #include <cassert>
 #include <utility>

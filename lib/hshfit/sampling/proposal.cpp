@@ -2,7 +2,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/sampling/axis_lobes.h>
-#include <hshfit/sampling/folded.h>
+#include <hshfit/sampling/internal/folded.h>
 #include <hshfit/sampling/visible_normals.h>
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include <hshfit/sampling/proposal.h>
 
 #include <hshfit/sampling/axis_lobes.h>
-#include <hshfit/sampling/folded.h>
+#include <hshfit/sampling/internal/folded.h>
 #include <hshfit/sampling/internal/target.h>
 #include <hshfit/sampling/visible_normals.h>
 #include <hshfit/stop_request.h>

@@ -1,6 +1,6 @@
 #include <hshfit/sampling/visible_normals.h>
 
-#include <hshfit/sampling/folded.h>
+#include <hshfit/sampling/internal/folded.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include <hshfit/stability/basis_change_errors.h>
+#include <hshfit/stability/internal/basis_change_errors.h>
 
 #include <hshfit/bases/jacobi.h>
 #include <hshfit/quadrature/quadrature.h>
 #include <hshfit/rotation/basis_change.h>
-#include <hshfit/stability/reference.h>
+#include <hshfit/stability/internal/reference.h>
 
 #include <tbb/parallel_for.h>
 

@@ -3,7 +3,7 @@
 #include <hshfit/bases/jacobi.h>
 #include <hshfit/error.h>
 #include <hshfit/quadrature/quadrature.h>
-#include <hshfit/stability/reference.h>
+#include <hshfit/stability/internal/reference.h>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>

@@ -1,4 +1,4 @@
-#include <hshfit/stability/reference.h>
+#include <hshfit/stability/internal/reference.h>
 
 #include <hshfit/bases/jacobi.h>
 

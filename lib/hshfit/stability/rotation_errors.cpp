@@ -1,4 +1,4 @@
-#include <hshfit/stability/rotation_errors.h>
+#include <hshfit/stability/internal/rotation_errors.h>
 
 #include <hshfit/rotation/band_matrix.h>
 #include <hshfit/rotation/hemisphere_rotation.h>

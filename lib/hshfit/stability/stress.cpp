@@ -4,8 +4,8 @@
 #include <hshfit/error.h>
 #include <hshfit/projection/projection.h>
 #include <hshfit/rotation/sh_rotation.h>
-#include <hshfit/stability/basis_change_errors.h>
-#include <hshfit/stability/rotation_errors.h>
+#include <hshfit/stability/internal/basis_change_errors.h>
+#include <hshfit/stability/internal/rotation_errors.h>
 
 #include <tbb/parallel_for.h>
 

@@ -1,4 +1,4 @@
-#include <hshfit/tradeoff/front.h>
+#include <hshfit/tradeoff/internal/front.h>
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <hshfit/representation/forms/pair_evaluators.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/representation/split.h>
-#include <hshfit/tradeoff/front.h>
+#include <hshfit/tradeoff/internal/front.h>
 #include <hshfit/tradeoff/projection_cache.h>
 #include <hshfit/wording.h>
 

@@ -9,7 +9,7 @@
 #include <hshfit/error.h>
 #include <hshfit/filtered_maps/exports/filtered_sampler.h>
 #include <hshfit/filtered_maps/exports/filtered_shader.h>
-#include <hshfit/filtered_maps/exports/lobe_numbers.h>
+#include <hshfit/filtered_maps/exports/internal/lobe_numbers.h>
 
 #include <jobs/maps/filtered.h>
 #include <jobs/maps/lobe_text.h>

@@ -3,7 +3,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/bases/sh.h>
 #include <hshfit/error.h>
-#include <hshfit/gpu/basis_steps.h>
+#include <hshfit/gpu/internal/basis_steps.h>
 #include <hshfit/light/environment_matrix.h>
 
 #include <gtest/gtest.h>

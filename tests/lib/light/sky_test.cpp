@@ -1,7 +1,7 @@
 #include <hshfit/error.h>
-#include <hshfit/light/perez_sky.h>
+#include <hshfit/light/internal/perez_sky.h>
+#include <hshfit/light/internal/solar_position.h>
 #include <hshfit/light/sky.h>
-#include <hshfit/light/solar_position.h>
 
 #include <gtest/gtest.h>
 

@@ -4,10 +4,10 @@
 
 #include <hshfit/error.h>
 #include <hshfit/light/catalog.h>
+#include <hshfit/light/internal/perez_sky.h>
+#include <hshfit/light/internal/weather_file.h>
 #include <hshfit/light/light_samples.h>
-#include <hshfit/light/perez_sky.h>
 #include <hshfit/light/sky.h>
-#include <hshfit/light/weather_file.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -4,8 +4,8 @@
 #include "lit_formulas.h"
 
 #include <hshfit/lighting/harmonics.h>
+#include <hshfit/lighting/internal/lobe_taps.h>
 #include <hshfit/lighting/lobe_nodes.h>
-#include <hshfit/lighting/lobe_taps.h>
 #include <hshfit/lighting/split_sum.h>
 #include <hshfit/lighting/transformed_cosines.h>
 

@@ -3,7 +3,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/files/checksum.h>
-#include <hshfit/pages/comparison_files.h>
+#include <hshfit/pages/internal/comparison_files.h>
 #include <hshfit/pages/page_figures.h>
 
 #include "lib/coefficient_files/coefficient_samples.h"

@@ -1,10 +1,10 @@
 // The picture error against closed forms: scaled and tinted materials, and dips and peaks that are
 // put into a highlight.
 
-#include <hshfit/pictures/false_extrema.h>
-#include <hshfit/pictures/highlight_lines.h>
+#include <hshfit/pictures/internal/false_extrema.h>
+#include <hshfit/pictures/internal/highlight_lines.h>
+#include <hshfit/pictures/internal/picture_lights.h>
 #include <hshfit/pictures/picture_error.h>
-#include <hshfit/pictures/picture_lights.h>
 #include <hshfit/pictures/poor.h>
 #include <hshfit/pictures/sphere_albedo.h>
 #include <hshfit/representation/forms/form.h>

@@ -4,10 +4,10 @@
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/exr_picture.h>
 #include <hshfit/light/picture_light.h>
-#include <hshfit/plan/ladder.h>
-#include <hshfit/plan/material_light.h>
+#include <hshfit/plan/internal/ladder.h>
+#include <hshfit/plan/internal/material_light.h>
+#include <hshfit/plan/internal/projections.h>
 #include <hshfit/plan/plan_files.h>
-#include <hshfit/plan/projections.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 
 #include <brdfs/catalog.h>

@@ -1,7 +1,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/brdf/vectors.h>
 #include <hshfit/error.h>
-#include <hshfit/precomputed_transfer/closed_form.h>
+#include <hshfit/precomputed_transfer/internal/closed_form.h>
 #include <hshfit/precomputed_transfer/interreflection.h>
 #include <hshfit/precomputed_transfer/matrix_clusters.h>
 #include <hshfit/projection/projection.h>

@@ -2,10 +2,10 @@
 
 #include <hshfit/error.h>
 #include <hshfit/projection/albedo.h>
-#include <hshfit/representation/constraints/constraints_albedo.h>
-#include <hshfit/representation/constraints/constraints_both.h>
 #include <hshfit/representation/constraints/constraints_cone.h>
-#include <hshfit/representation/constraints/constraints_least_change.h>
+#include <hshfit/representation/constraints/internal/constraints_albedo.h>
+#include <hshfit/representation/constraints/internal/constraints_both.h>
+#include <hshfit/representation/constraints/internal/constraints_least_change.h>
 #include <hshfit/representation/split.h>
 #include <lib/representation/representation_measures.h>
 

@@ -3,9 +3,9 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/bases/jacobi.h>
-#include <hshfit/stability/basis_change_errors.h>
-#include <hshfit/stability/reference.h>
-#include <hshfit/stability/rotation_errors.h>
+#include <hshfit/stability/internal/basis_change_errors.h>
+#include <hshfit/stability/internal/reference.h>
+#include <hshfit/stability/internal/rotation_errors.h>
 #include <hshfit/stability/stress.h>
 
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include <hshfit/projection/albedo.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/representation/named_arrays.h>
-#include <hshfit/tradeoff/front.h>
+#include <hshfit/tradeoff/internal/front.h>
 #include <hshfit/tradeoff/projection_cache.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
 

@@ -2,7 +2,7 @@
 
 #include <hshfit/files/json_fields.h>
 #include <hshfit/filtered_maps/exports/filtered_shader.h>
-#include <hshfit/filtered_maps/exports/lobe_numbers.h>
+#include <hshfit/filtered_maps/exports/internal/lobe_numbers.h>
 #include <hshfit/gpu/containers/sidecar.h>
 #include <hshfit/material_maps/exports/map_json.h>
 #include <hshfit/material_maps/exports/map_viewer.h>

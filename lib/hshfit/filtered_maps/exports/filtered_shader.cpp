@@ -1,8 +1,8 @@
 #include <hshfit/filtered_maps/exports/filtered_shader.h>
 
 #include <hshfit/error.h>
+#include <hshfit/filtered_maps/exports/internal/lobe_numbers.h>
 #include <hshfit/filtered_maps/exports/internal/shader_functions.h>
-#include <hshfit/filtered_maps/exports/lobe_numbers.h>
 #include <hshfit/gpu/shader_data.h>
 #include <hshfit/gpu/shader_text.h>
 #include <hshfit/material_maps/exports/map_text.h>

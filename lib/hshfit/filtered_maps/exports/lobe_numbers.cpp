@@ -1,4 +1,4 @@
-#include <hshfit/filtered_maps/exports/lobe_numbers.h>
+#include <hshfit/filtered_maps/exports/internal/lobe_numbers.h>
 
 #include <hshfit/material_maps/exports/shared_numbers.h>
 

@@ -1,7 +1,7 @@
 #include <hshfit/light/internal/sun_place.h>
 
 #include <hshfit/error.h>
-#include <hshfit/light/solar_position.h>
+#include <hshfit/light/internal/solar_position.h>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <hshfit/brdf/directions.h>
-#include <hshfit/light/weather_file.h>
+#include <hshfit/light/internal/weather_file.h>
 #include <hshfit/specification/parameters.h>
 
 #include <optional>

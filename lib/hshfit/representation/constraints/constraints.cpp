@@ -3,9 +3,9 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/representation/change.h>
-#include <hshfit/representation/constraints/constraints_albedo.h>
-#include <hshfit/representation/constraints/constraints_both.h>
 #include <hshfit/representation/constraints/constraints_cone.h>
+#include <hshfit/representation/constraints/internal/constraints_albedo.h>
+#include <hshfit/representation/constraints/internal/constraints_both.h>
 #include <hshfit/representation/split.h>
 #include <hshfit/wording.h>
 

@@ -1,4 +1,4 @@
-#include <hshfit/representation/constraints/constraints_albedo.h>
+#include <hshfit/representation/constraints/internal/constraints_albedo.h>
 
 #include <hshfit/error.h>
 #include <hshfit/projection/albedo.h>

@@ -1,12 +1,12 @@
-#include <hshfit/representation/constraints/constraints_both.h>
+#include <hshfit/representation/constraints/internal/constraints_both.h>
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/linear_algebra/descend.h>
 #include <hshfit/representation/basis_matrix.h>
-#include <hshfit/representation/constraints/constraints_albedo.h>
 #include <hshfit/representation/constraints/constraints_cone.h>
-#include <hshfit/representation/constraints/constraints_least_change.h>
 #include <hshfit/representation/constraints/constraints_scan.h>
+#include <hshfit/representation/constraints/internal/constraints_albedo.h>
+#include <hshfit/representation/constraints/internal/constraints_least_change.h>
 
 #include <tbb/parallel_for.h>
 

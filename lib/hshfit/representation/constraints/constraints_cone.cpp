@@ -3,7 +3,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/linear_algebra/descend.h>
-#include <hshfit/representation/constraints/constraints_least_change.h>
+#include <hshfit/representation/constraints/internal/constraints_least_change.h>
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include <hshfit/representation/constraints/constraints_least_change.h>
+#include <hshfit/representation/constraints/internal/constraints_least_change.h>
 
 #include <hshfit/error.h>
 

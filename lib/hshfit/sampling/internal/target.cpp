@@ -2,7 +2,7 @@
 
 #include <hshfit/quadrature/quadrature.h>
 #include <hshfit/quadrature/ring_points.h>
-#include <hshfit/sampling/elevation_bins.h>
+#include <hshfit/sampling/internal/elevation_bins.h>
 #include <hshfit/sampling/internal/mirror_cells.h>
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <hshfit/plan/material_light.h>
+#include <hshfit/plan/internal/material_light.h>
+#include <hshfit/plan/internal/projections.h>
 #include <hshfit/plan/plan.h>
-#include <hshfit/plan/projections.h>
 
 #include <map>
 #include <memory>

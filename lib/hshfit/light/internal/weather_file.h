@@ -1,6 +1,6 @@
 #pragma once
 
-#include <hshfit/light/solar_position.h>
+#include <hshfit/light/internal/solar_position.h>
 
 #include <cstddef>
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <hshfit/plan/ladder.h>
+#include <hshfit/plan/internal/ladder.h>
 #include <hshfit/representation/forms/form.h>
 
 #include <functional>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <hshfit/precomputed_transfer/directions_above.h>
 #include <hshfit/precomputed_transfer/gathering.h>
+#include <hshfit/precomputed_transfer/internal/directions_above.h>
 #include <hshfit/precomputed_transfer/transfer_material.h>
 
 #include <functional>
