@@ -1,5 +1,5 @@
-// The limits of the machine on one core: the floors that docs/performance.md measures the library
-// against.
+// The limits of the machine on one core: the floors that docs/results/performance.md measures the
+// library against.
 //     fma      independent chains of a x + b in registers, on each instruction set: items are
 //              floating-point operations, two for each lane and step
 //     product  Eigen's matrix product (machine_product.h), items as above: what a projection

@@ -180,8 +180,9 @@ void runBatch(BatchArguments& arguments, Globals& globals) {
 void addBatch(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<BatchArguments>();
     command
-        .add_option("MANIFEST", arguments->manifest,
-                    "JSON lines, each a command, its input and its options (docs/batch.md)")
+        .add_option(
+            "MANIFEST", arguments->manifest,
+            "JSON lines, each a command, its input and its options (docs/reference/batch.md)")
         ->required();
     command.add_option("-o,--output", arguments->folder,
                        "Folder of the results, one folder for each item in its items/");

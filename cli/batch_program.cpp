@@ -25,7 +25,7 @@ namespace {
 
 using Output = jobs::BatchCommand::Output;
 
-/// Costs are mean processor seconds of small items: docs/batch.md, "Shards".
+/// Costs are mean processor seconds of small items: docs/reference/batch.md, "Shards".
 constexpr jobs::BatchCommand items[] = {
     {.name = "project", .output = Output::file, .outputName = "coefficients.json", .cost = .006},
     {.name = "report", .output = Output::folder, .outputName = "report", .cost = .1},

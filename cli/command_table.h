@@ -10,8 +10,8 @@ namespace hshfit::cli {
 
 struct Globals;
 
-/// A command. The help, the shell completion, the index in docs/commands.md and the law tests
-/// all come from its row.
+/// A command. The help, the shell completion, the index in docs/reference/commands.md and the law
+/// tests all come from its row.
 struct Command {
     const char* name;
     const char* group;    ///< heading in the help of the program

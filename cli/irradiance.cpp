@@ -141,7 +141,7 @@ void addIrradiance(CLI::App& command, Globals& globals) {
     command
         .add_option("SPEC", arguments->specs,
                     "One or more lights, which add up: kind:key=value,…, the path of a picture, or "
-                    "PATH:convention=NAME of nine numbers (docs/irradiance.md)")
+                    "PATH:convention=NAME of nine numbers (docs/explanation/irradiance.md)")
         ->required();
     command
         .add_option("--convention", arguments->convention,

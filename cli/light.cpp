@@ -156,7 +156,7 @@ void addLight(CLI::App& command, Globals& globals) {
     command
         .add_option("SPEC", arguments->specs,
                     "One or more lights, which add up: kind:key=value,…, the path of a picture, or "
-                    "PATH:convention=NAME of nine numbers (docs/irradiance.md)")
+                    "PATH:convention=NAME of nine numbers (docs/explanation/irradiance.md)")
         ->required();
     command.add_option("-o,--output", arguments->output, "File of coefficients, .json")->required();
     command.add_option("--basis", options.basis, "sh; with --normal any of hshfit list bases")

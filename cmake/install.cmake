@@ -1,7 +1,7 @@
 # Installation: components `program`, `pictures` (its module), `mpi` (hshfit-mpi), `development`,
 # `documentation`, and `python` (python/CMakeLists.txt).
-# Headers are those outside internal/ without the PRIVATE_HEADERS of their room; docs/library.md
-# lists them.
+# Headers are those outside internal/ without the PRIVATE_HEADERS of their room;
+# docs/reference/library.md lists them.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 

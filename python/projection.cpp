@@ -214,7 +214,7 @@ void bindResult(py::module_& module) {
         .def_property_readonly(
             "poor", [](const Result& r) { return poorDict(r.projected.poor); },
             "None, or {\"reason\", \"better\"} where the result is poor\n"
-            "(docs/picture_error.md).")
+            "(docs/explanation/picture_error.md).")
         .def_property_readonly(
             "picture", [](const Result& r) { return pictureDict(r.projected.picture); },
             "The picture error of the result; None for one outgoing direction.")

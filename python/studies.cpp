@@ -191,9 +191,10 @@ py::object pictureErrorOfPair(const py::object& a, const py::object& b,
 }
 
 void bindPictureError(py::module_& module) {
-    module.def("picture_error", pictureErrorOfPair, py::arg("a"), py::arg("b"), py::kw_only(),
-               py::arg("progress") = py::none(),
-               R"(How far b is from a to the eye (docs/picture_error.md), each as in compare().
+    module.def(
+        "picture_error", pictureErrorOfPair, py::arg("a"), py::arg("b"), py::kw_only(),
+        py::arg("progress") = py::none(),
+        R"(How far b is from a to the eye (docs/explanation/picture_error.md), each as in compare().
 
 Returns a dict: "flip" and "ciede2000" of lit spheres ("mean", "largest", "light"), "albedo" by
 channel to 85 degrees, "last_albedo" from there, "false_dip", "false_peak" and "ridge" ("value" as

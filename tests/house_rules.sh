@@ -58,11 +58,11 @@ tests/room_graph.py | rule 'rooms of lib: arrows only go down, namespace = folde
 version=$(sed -n 's/^project(hshfit VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 grep -qF "\"version-semver\": \"$version\"" packaging/vcpkg/vcpkg.json ||
     echo packaging/vcpkg/vcpkg.json | rule "the version is that of CMakeLists.txt, $version"
-tests/public_headers.py | rule 'public headers and docs/library.md agree' || true
+tests/public_headers.py | rule 'public headers and docs/reference/library.md agree' || true
 # shellcheck disable=SC2016  # back-quotes of Markdown
 [ "$(sed -n 's/^add_subdirectory(hshfit\/\(.*\))$/\1/p' lib/CMakeLists.txt)" = \
-    "$(sed -n 's/^| `\([a-z_/]*\)` | .*/\1/p' docs/rooms.md)" ] ||
-    echo docs/rooms.md | rule 'the page has the rooms of lib/CMakeLists.txt in their order'
+    "$(sed -n 's/^| `\([a-z_/]*\)` | .*/\1/p' docs/project/rooms.md)" ] ||
+    echo docs/project/rooms.md | rule 'the page has the rooms of lib/CMakeLists.txt in their order'
 # A clause is no subject: "What a fit returns", "How a team runs", or "Where the nodes lie" without
 # a comma. `private` has words that hide the field's terms.
 openings='(What|Whoever|Which|Whatever|Whichever|How) [^?]*$'

@@ -5,7 +5,7 @@ Public are the headers of lib/hshfit outside internal/ without the PRIVATE_HEADE
 those of the front door in lib/CMakeLists.txt, and the list `public` in brdfs/CMakeLists.txt.
 Prints each breach and ends with 1 if there is one:
   - a public header includes public ones, the standard library, POSIX and fmt only;
-  - the table of docs/library.md has every public header, by room;
+  - the table of docs/reference/library.md has every public header, by room;
   - the quick start of that page is examples/quick_start.cpp, of at most 20 lines.
 With --update: writes that table into the page. With --list: the headers as programs include them.
 """
@@ -14,7 +14,7 @@ import sys
 
 from room_graph import LIB, TOP, room_order
 
-PAGE = TOP / "docs" / "library.md"
+PAGE = TOP / "docs" / "reference" / "library.md"
 GENERATED = "hshfit/version.h"
 
 

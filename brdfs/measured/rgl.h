@@ -31,10 +31,10 @@ struct RglTables {
     /// Throws InputError naming the field and its offset.
     static RglTables load(const TensorFile& file);
 
-    /// Takes out two defects of files that pictures show (docs/measured.md): detail of ndf that is
-    /// finer than the vertices of the colours, which these cannot make up for in between (ln ndf is
-    /// smoothed along elevation, and f stays at every vertex), and, for isotropic materials, the
-    /// azimuths of the slice at the normal, of which the mean is taken.
+    /// Takes out two defects of files that pictures show (docs/reference/measured.md): detail of
+    /// ndf that is finer than the vertices of the colours, which these cannot make up for in
+    /// between (ln ndf is smoothed along elevation, and f stays at every vertex), and, for
+    /// isotropic materials, the azimuths of the slice at the normal, of which the mean is taken.
     void smooth();
 
     /// The meaning of a vertex of a colour slice: f(wi, wo) wo.z = value * factor. A value with

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""batch.py [HSHFIT]: the figures of docs/batch.md, printed as Markdown. Takes some minutes, and
-wants an idle machine.
+"""batch.py [HSHFIT]: the figures of docs/reference/batch.md, printed as Markdown. Takes some
+minutes, and wants an idle machine.
 
 1. 2,000 small projections: one process against two, and the overhead of an item.
 2. A manifest of 100,000 lines: time and memory of its check.

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The table of docs/export.md: errors of exported representations, split into their causes.
+"""The table of docs/reference/export.md: errors of exported representations, split into their
+causes.
 
     docs/figures/export_errors.py build/hshfit SPEC…
 """

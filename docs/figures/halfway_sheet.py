@@ -3,7 +3,7 @@
 
 Writes FOLDER/sheet.png: two materials a line, for each the source, its form and eight times their
 difference under a lamp near the camera, then under one at 60 degrees; prints the
-table of docs/halfway.md with the picture error of `compare`. Needs oiiotool.
+table of docs/explanation/halfway.md with the picture error of `compare`. Needs oiiotool.
 """
 
 import json

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Prints the errors of fills in docs/conversion.md: docs/figures/hole_errors.py PROGRAM TABLE
+"""Prints the errors of fills in docs/reference/conversion.md: docs/figures/hole_errors.py PROGRAM
+TABLE
 
 PROGRAM is build/hshfit, TABLE a full table in MERL's layout. Cells of it are marked as not
 measured: a blind spot of 3 degrees about retroreflection, then all beyond an arm's 80 and 70

@@ -1,8 +1,8 @@
 // hops SPEC FORMAT[:OPTIONS] [FORMAT[:OPTIONS]…]: writes a BRDF in one format after the other,
 // each from the file before, and prints the error of every hop and of all hops together:
 // relative L2 error with the cosine, over all outgoing directions and at 45 degrees,
-// as rows of the tables in docs/conversion.md. The files go to the temporary folder and are
-// removed.
+// as rows of the tables in docs/reference/conversion.md. The files go to the temporary folder and
+// are removed.
 
 #include <brdfs/catalog.h>
 #include <brdfs/rows/spec.h>

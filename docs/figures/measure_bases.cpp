@@ -1,5 +1,5 @@
-// The tables of docs/bases.md: the errors of each basis in double and in float. It is no test
-// and only prints its measurements.
+// The tables of docs/explanation/bases.md: the errors of each basis in double and in float. It is
+// no test and only prints its measurements.
 
 #include <hshfit/bases/catalog.h>
 

@@ -1,6 +1,6 @@
-// normal_filtering PICTURE: prints the tables of docs/normal_filtering.md, and draws a plane of 128
-// x 128 mip texels of level 3 under a lamp close above it: base texels averaged, ellipses,
-// harmonics of order 17, ordinary mips; bumpy above, brushed below.
+// normal_filtering PICTURE: prints the tables of docs/explanation/normal_filtering.md, and draws a
+// plane of 128 x 128 mip texels of level 3 under a lamp close above it: base texels averaged,
+// ellipses, harmonics of order 17, ordinary mips; bumpy above, brushed below.
 
 #include <lib/normal_filtering/surfaces.h>
 

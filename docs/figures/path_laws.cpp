@@ -1,7 +1,7 @@
-// path_laws PATHS [box|cornell|furnace|bias] [MESHES]: the laws of docs/illuminate.md that path
-// tracing is held to, measured at length: light in a box, and in the Cornell box of the folder
-// MESHES, by bounce against radiosity with exact form factors, a white scene in a furnace, and the
-// scatter of runs against one long run. Prints the rows of its tables.
+// path_laws PATHS [box|cornell|furnace|bias] [MESHES]: the laws of docs/explanation/illuminate.md
+// that path tracing is held to, measured at length: light in a box, and in the Cornell box of the
+// folder MESHES, by bounce against radiosity with exact form factors, a white scene in a furnace,
+// and the scatter of runs against one long run. Prints the rows of its tables.
 
 #include <lib/transport/box_radiosity.h>
 #include <lib/transport/cornell_radiosity.h>

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Tables and figures of docs/performance.md from the benchmarks' JSON.
+"""Tables and figures of docs/results/performance.md from the benchmarks' JSON.
 
 usage: docs/figures/performance.py [FOLDER = out/bench]
 
-Replaces the text between `<!-- NAME -->` and `<!-- /NAME -->` in docs/performance.md and draws
+Replaces the text between `<!-- NAME -->` and `<!-- /NAME -->` in docs/results/performance.md and
+draws
 docs/figures/performance-*.svg with gnuplot. Sections whose benchmark was not run stay as they are.
 """
 import pathlib
@@ -12,7 +13,7 @@ import sys
 import performance_floors as floors
 from benchmark_results import DASHED, HERE, SOLID, load, ms, plot, series, table
 
-PAGE = HERE.parent / "performance.md"
+PAGE = HERE.parent / "results" / "performance.md"
 
 
 def by_order(found):

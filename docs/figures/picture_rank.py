@@ -6,7 +6,7 @@ largest error of spheres under twelve lights that the picture error does not use
 places, one to eight at a time: the mean of |a - b| in sRGB over the lit pixels, at the exposure
 that shows the source's mean as 18 % grey and at two stops more and less. Prints Spearman's rank
 correlation of the judge with each number of `compare`, over all pairs and within materials, with
-the 95 % of a bootstrap over materials, as the table of docs/picture_error.md.
+the 95 % of a bootstrap over materials, as the table of docs/explanation/picture_error.md.
 """
 
 import json

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""precomputed_transfer.py PROGRAM SHARED OUT: the tables of docs/transfer.md, as Markdown, and the
+"""precomputed_transfer.py PROGRAM SHARED OUT: the tables of docs/explanation/transfer.md, as
+Markdown, and the
 pictures beside them in OUT. SHARED/data has mesh/bun_zipper_res3.ply, mesh/wdas_teapot.obj and
 env/stpeters_probe_latlong.hdr."""
 import json

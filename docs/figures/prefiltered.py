@@ -3,7 +3,8 @@
 
 Four RGL files, four tables of MERL layout (DATA/../tools/merl_hybrid.py makes them in FOLDER),
 glossy and brushed metal, under four probes and two lamps. Runs `tradeoff --lighting prefiltered`
-and prints, as the table of docs/prefiltered.md, for each material and number of lobes: the error
+and prints, as the table of docs/explanation/prefiltered.md, for each material and number of
+lobes: the error
 over all turns, the median and the worst of the probes; and of the sphere as it stands the relative
 L2 and FLIP, the median over the six lights.
 """

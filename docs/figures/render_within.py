@@ -1,5 +1,5 @@
 """Pictures by coefficients at the order that `report` says is enough for 1 %, against direct
-integration: twelve materials under five lights (docs/render.md).
+integration: twelve materials under five lights (docs/reference/render.md).
 
     docs/figures/render_within.py [--program build/hshfit] [--shared ../shared] [--size 32]
         [--tolerance 1e-3] [SPEC…]

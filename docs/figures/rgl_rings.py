@@ -3,7 +3,7 @@
 
 FILE is isotropic, as cc_ibiza_sunset_rgb.bsdf. Writes FOLDER/rgl_rings.svg (the slope of ln f
 beside that of ln ndf; f around the normal) and FOLDER/rgl_rings.png (spheres by both readings
-under three lamps); prints the table of docs/measured.md. Needs gnuplot and oiiotool.
+under three lamps); prints the table of docs/reference/measured.md. Needs gnuplot and oiiotool.
 """
 
 import csv

@@ -1,7 +1,7 @@
-// sample_brdf albedo SPEC…: a table of directional albedos (channels averaged), for docs/brdfs.md.
-// sample_brdf lobe THETA SPEC: f in the plane of incidence for wo at THETA degrees in that plane,
-// as columns x z of a lobe scaled to a largest radius of 1, for brdfs.gp. Signed angles: the mirror
-// direction has the sign of +x.
+// sample_brdf albedo SPEC…: a table of directional albedos (channels averaged), for
+// docs/reference/brdfs.md. sample_brdf lobe THETA SPEC: f in the plane of incidence for wo at THETA
+// degrees in that plane, as columns x z of a lobe scaled to a largest radius of 1, for brdfs.gp.
+// Signed angles: the mirror direction has the sign of +x.
 
 #include <brdfs/catalog.h>
 #include <hshfit/error.h>

@@ -2,7 +2,7 @@
 // incidence, for wo at THETA degrees: signed angle of wi in degrees (the mirror direction is
 // positive), truth, fit. For ltc.gp.
 // sample_ltc published FOLDER: the table of GGX against the published one in FOLDER, at the cells
-// and between them, for docs/ltc.md.
+// and between them, for docs/explanation/ltc.md.
 
 #include <brdfs/catalog.h>
 #include <brdfs/fit/ltc_files.h>

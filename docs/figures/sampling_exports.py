@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The table of docs/sampling.md: proposals of exports.
+"""The table of docs/explanation/sampling.md: proposals of exports.
 
     docs/figures/sampling_exports.py build/hshfit FILE.json…
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""svbrdf_scale.py FOLDER [--side 4096] [--runs 3]: what docs/svbrdf_scale.md quotes of the program.
+"""svbrdf_scale.py FOLDER [--side 4096] [--runs 3]: what docs/explanation/svbrdf_scale.md quotes
+of the program.
 
 FOLDER has hshfit and hshfit-mpi. Maps of ggx (kd, ks and alpha, 8 bits, waves with noise) are made
 here. Prints a line for each form of a map; the rates of one and of two processes with one thread

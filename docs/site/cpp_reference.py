@@ -205,7 +205,7 @@ def write(folder):
         rows.append(f"| [{where}]({name}.md) | {len(content)} | {names} |")
     lines = ["# C++ names", "",
              f"The {count} public names of the library, with the comments of their headers. "
-             "[hshfit as a library](../../library.md) has the ways to link and the promise on "
+             "[hshfit as a library](../library.md) has the ways to link and the promise on "
              "stability.", "", "| folder | headers | names |", "|---|---|---|", *rows, "",
              "```{toctree}", ":hidden:", "", *pages, "```", ""]
     (folder / "index.md").write_text("\n".join(lines), encoding="utf-8")

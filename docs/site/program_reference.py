@@ -34,7 +34,7 @@ def write_commands(program, folder):
     known = json.loads(answer(program, "help", "--json"))
     for kind, title, introduction in (
             ("commands", "Commands and their options",
-             "The help of each command, as the program prints it. [Commands](../../commands.md) "
+             "The help of each command, as the program prints it. [Commands](../commands.md) "
              "describes their answers and files."),
             ("topics", "Topics of the help", "As `hshfit help TOPIC` prints them.")):
         place = folder / kind
@@ -113,4 +113,4 @@ def write_schemas(folder):
         (place / path.name).write_bytes(path.read_bytes())
     write_index(place, "Schemas of the JSON documents",
                 "JSON Schema 2020-12 of every document that the program prints or writes. "
-                "[Files](../../files.md) describes formats and versions.", names)
+                "[Files](../files.md) describes formats and versions.", names)

@@ -30,10 +30,10 @@ struct Manifest {
     std::vector<std::string> mistakes;
 };
 
-/// Reads a manifest: JSON lines (docs/batch.md), of which the first may state defaults. Globs and
-/// folders become an item for each file. Checks every line as far as that is possible without
-/// reading whole measurements: keys, options as the command takes them, inputs that exist, models
-/// that parse, names that differ. Paths are relative to the current folder.
+/// Reads a manifest: JSON lines (docs/reference/batch.md), of which the first may state defaults.
+/// Globs and folders become an item for each file. Checks every line as far as that is possible
+/// without reading whole measurements: keys, options as the command takes them, inputs that exist,
+/// models that parse, names that differ. Paths are relative to the current folder.
 ///
 /// Throws InputError for a manifest that cannot be read.
 Manifest readManifest(const std::string& path, const BatchProgram& program);

@@ -59,15 +59,16 @@ struct MaterialDescription {
     std::vector<DescribedParameter> parameters = {};
     std::optional<NormalReference> normal = {};
     std::optional<DirectionReference> direction = {};
-    /// A file of measured texels (docs/svbrdf.md) in place of a model.
+    /// A file of measured texels (docs/explanation/svbrdf.md) in place of a model.
     std::string texels = {};
     bool isotropic = false;  ///< of measured texels
 };
 
-/// Reads {"format": "hshfit-svbrdf", "version": 1, "model": …, "parameters": {…}} (docs/svbrdf.md),
-/// with "normal" and "direction" if need be, or with "texels" in place of all of these. Paths of
-/// maps are relative to the file. Parameters are checked against the model by name and kind; maps
-/// are not opened. Throws InputError that starts with `file` and names the field.
+/// Reads {"format": "hshfit-svbrdf", "version": 1, "model": …, "parameters": {…}}
+/// (docs/explanation/svbrdf.md), with "normal" and "direction" if need be, or with "texels" in
+/// place of all of these. Paths of maps are relative to the file. Parameters are checked against
+/// the model by name and kind; maps are not opened. Throws InputError that starts with `file` and
+/// names the field.
 MaterialDescription readMaterialDescription(const std::string& file);
 
 }  // namespace hshfit::jobs

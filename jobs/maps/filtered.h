@@ -84,9 +84,9 @@ bool turnsTexels(const std::string& description);
 
 /// A description of materials as textures of filtered lobes in FOLDER: material.ktx2 with all
 /// levels, harmonics.ktx2 where the form has them, material.json and errors.png
-/// (docs/filtered_maps.md). All maps are read and checked before anything is written. Results are
-/// the same bytes for any number of threads and processes (map_processes.h). Throws UsageError,
-/// InputError, NumericError and OutputError.
+/// (docs/explanation/filtered_maps.md). All maps are read and checked before anything is written.
+/// Results are the same bytes for any number of threads and processes (map_processes.h). Throws
+/// UsageError, InputError, NumericError and OutputError.
 FilteredMapAnswer filteredMap(const std::string& description, const std::string& folder,
                               const FilteredMapOptions& options, const Listener& listener = {});
 

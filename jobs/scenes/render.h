@@ -35,7 +35,7 @@ struct RenderOptions {
     double viewTheta = 75, viewPhi = 0;  ///< direction to the viewer in the world, degrees
     double fieldOfView = 0;              ///< of perspective, degrees; 0: parallel lines of sight
     /// Bound of the estimated relative error of integration at a point; none: 5 % of a picture by
-    /// integration alone (docs/render.md has real errors), and 0.5 % beside coefficients.
+    /// integration alone (docs/reference/render.md has real errors), and 0.5 % beside coefficients.
     std::optional<double> tolerance = {};
 
     double bound() const {

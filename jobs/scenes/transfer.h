@@ -44,7 +44,7 @@ struct TransferOptions {
     std::size_t components = 16;  ///< the most of a cluster
     /// The smallest of the compressed forms with at most this error is written, or the best with at
     /// most so many bytes. At 10 % the borders of clusters are seen on a glossy ball, at 5 % they
-    /// are not; noise of the default number of rays is 2 % (docs/transfer.md).
+    /// are not; noise of the default number of rays is 2 % (docs/explanation/transfer.md).
     double error = 0.05;
     std::optional<std::size_t> bytes = {};
     /// Lights of the pictures and of the page, as specifications; those of the scene come first.

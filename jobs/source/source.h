@@ -13,7 +13,7 @@ namespace hshfit::jobs {
 /// (hshfit/brdf/transmission.h), so that a job has to ask for them.
 enum class Sides { reflection, either };
 
-/// Opens a BRDF specification (docs/brdfs.md) or a texel of a material map
+/// Opens a BRDF specification (docs/reference/brdfs.md) or a texel of a material map
 /// (FILE:x=3,y=5,level=0). `rgb` converts a spectral BRDF to linear Rec.
 /// 709 and leaves others unchanged. Throws UsageError for a transmission unless `sides` is
 /// `either`.

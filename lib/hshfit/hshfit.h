@@ -2,7 +2,7 @@
 
 // The usual of the library in one header: a BRDF or a function of two directions, a basis, its
 // projection, the error of that, and files of coefficients. Each of these headers can be included
-// by itself, and is the manual of its part; docs/library.md lists them all.
+// by itself, and is the manual of its part; docs/reference/library.md lists them all.
 
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/bases/basis.h>

@@ -1,5 +1,5 @@
-// Matrices and trees written here are read with the conventions of docs/bsdf_xml.md, derived a
-// second time.
+// Matrices and trees written here are read with the conventions of docs/reference/bsdf_xml.md,
+// derived a second time.
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/projection/albedo.h>

@@ -1,7 +1,7 @@
 // Every model of the catalog, with every choice that frees other parameters, isotropic and not:
 // parameters drawn over the whole ranges of its own table row come back within the errors that the
 // fit states, or the fit says what it cannot tell. HSHFIT_DRAWS sets how many of each,
-// HSHFIT_VERBOSE prints them; without, one on fewer samples (docs/fit.md).
+// HSHFIT_VERBOSE prints them; without, one on fewer samples (docs/reference/fit.md).
 #include <brdfs/catalog.h>
 #include <brdfs/fit/distributions.h>
 #include <brdfs/fit/fit.h>

@@ -221,7 +221,8 @@ TEST(Albedo, SumsExceedOneWhereTheyDoNotClaim) {
     }
 }
 
-// The raw Ward lobes as docs/brdfs.md has them: both albedos grow without bound towards grazing.
+// The raw Ward lobes as docs/reference/brdfs.md has them: both albedos grow without bound towards
+// grazing.
 TEST(Albedo, RawWardGrowsWithoutBound) {
     for (const std::string variant : {"1992", "duer"}) {
         const auto brdf = open("ward:ax=.2,ay=.2,variant=" + variant);

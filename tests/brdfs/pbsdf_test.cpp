@@ -162,7 +162,7 @@ TEST(Pbsdf, spectralonIsWhiteAndNearlyLambertian) {
         least = std::min(least, *low);
         greatest = std::max(greatest, *high);
     }
-    // The albedo is constant. Its value depends on the file's scale (docs/measured.md).
+    // The albedo is constant. Its value depends on the file's scale (docs/reference/measured.md).
     EXPECT_LT(greatest / least, 1.05);
 }
 

@@ -119,7 +119,7 @@ TEST_F(Cli, HelpOfTheProgramListsEveryCommandUnderItsGroup) {
 TEST(CommandDocs, IndexHasExactlyTheCommandsOfTheTable) {
     std::set<std::string> known, indexed;
     for (const Command& command : commands()) known.insert(command.name);
-    std::ifstream page(hshfit::test::sourceFolder() + "/docs/commands.md");
+    std::ifstream page(hshfit::test::sourceFolder() + "/docs/reference/commands.md");
     for (std::string line; std::getline(page, line) && !line.starts_with("## ");)
         if (line.starts_with("| `")) indexed.insert(wordsOf(line.substr(3))[0]);
     EXPECT_EQ(indexed, known);

@@ -92,7 +92,8 @@ TEST_F(ManyInputs, AReportLeavesOutWhatFailed) {
     EXPECT_EQ(document["reports"][1]["brdf"], "phong:exponent=5");
 }
 
-/// Inputs of a folder as that of docs/commands.md: two measured files, coefficients, others.
+/// Inputs of a folder as that of docs/reference/commands.md: two measured files, coefficients,
+/// others.
 class ManyFiles : public Cli {
 protected:
     void SetUp() override {

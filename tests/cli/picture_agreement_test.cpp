@@ -58,7 +58,7 @@ TEST_F(PictureAgreement, OfEveryFormWhereTheFrontsWeighIt) {
                    &after = trade["forms"][front[k]["form"].get<std::size_t>()];
         EXPECT_LT(after["picture"]["flip"]["mean"], before["picture"]["flip"]["mean"]);
         EXPECT_GT(after["bytes"], before["bytes"]);
-        // docs/picture_error.md: poor by one of its three bounds.
+        // docs/explanation/picture_error.md: poor by one of its three bounds.
         const Json& p = after["picture"];
         const bool poor = p["flip"]["mean"] > 0.1 || p["false_dip"]["value"] > 0.1 ||
                           p["false_peak"]["value"] > 0.1 ||
@@ -95,7 +95,7 @@ TEST_F(PictureAgreement, OfCoefficientsFitsConversionsAndPlansWithTheirFiles) {
 }
 
 TEST_F(PictureAgreement, CalibrationAndPoorAreThoseOfTheDocs) {
-    // docs/picture_error.md: Lambert surfaces that are 2 to 25 % too bright.
+    // docs/explanation/picture_error.md: Lambert surfaces that are 2 to 25 % too bright.
     double before = 0;
     for (const std::string kd : {".51", ".525", ".55", ".625"}) {
         const Json compared = answerOf("compare lambert:kd=.5 lambert:kd=" + kd + " --outgoing 2");

@@ -13,7 +13,7 @@ Prints each breach as page:line and ends with 1 if there is one.
 
 run_pages.py --script PAGE: prints the blocks that are run, as one script for bash, to run them on
 another machine, where the program is installed. With the language of other blocks, as in
-`run_pages.py --script docs/library.md cmake`, prints these.
+`run_pages.py --script docs/reference/library.md cmake`, prints these.
 """
 import os
 import re

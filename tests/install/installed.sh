@@ -18,8 +18,8 @@ fail() {
     echo "installed: $1" >&2
     exit 1
 }
-# block LANGUAGE: the blocks of docs/library.md in a language.
-block() { "$source/tests/docs/run_pages.py" --script "$source/docs/library.md" "$1"; }
+# block LANGUAGE: the blocks of docs/reference/library.md in a language.
+block() { "$source/tests/docs/run_pages.py" --script "$source/docs/reference/library.md" "$1"; }
 # makeProject NAME FOLDER OPTION…: configures and builds an outside project in $work/NAME.
 makeProject() {
     name=$1
@@ -107,7 +107,7 @@ examples)
         awk '{ exit !(($1 / (109 / (240 * 3.14159265358979)) - 1) ^ 2 < 1e-18 && $2 <= 1) }' ||
         fail "the energy of own_brdf.cpp differs from 109 / (240 pi)"
     ;;
-# The quick start from the text of docs/library.md, by the commands of that page.
+# The quick start from the text of docs/reference/library.md, by the commands of that page.
 page)
     rm -rf "$work/page"
     mkdir "$work/page"
@@ -125,8 +125,9 @@ components)
     components=$(sed -n 's/^set(hshfit_built \(.*\))/\1/p' "$prefix"/lib/cmake/hshfit/*Config.cmake)
     rm -rf "$work/alone" "$work/linked"
     for component in $(echo "$components" | tr ';' ' '); do
-        grep -q "^| \`$component\` | \`hshfit::$component\` |" "$source/docs/library.md" ||
-            fail "docs/library.md lacks the component $component"
+        grep -q "^| \`$component\` | \`hshfit::$component\` |" \
+            "$source/docs/reference/library.md" ||
+            fail "docs/reference/library.md lacks the component $component"
         mkdir -p "$work/alone/$component"
         cd "$work/alone/$component"
         block cmake | sed "s/brdfs/$component/" >CMakeLists.txt

@@ -1,4 +1,5 @@
-"""The virtual environment of docs/python.md, in a folder with the files of the checkout."""
+"""The virtual environment of docs/reference/python.md, in a folder with the files of the
+checkout."""
 import os
 import re
 import subprocess
@@ -11,7 +12,7 @@ FOLDER = Path(os.environ["HSHFIT_PROGRAM"]).parent / "python-environment"
 
 def commands():
     """Lines of the page's sh blocks, without comments: the last one runs the notebooks."""
-    page = (SOURCE / "docs" / "python.md").read_text(encoding="utf-8")
+    page = (SOURCE / "docs" / "reference" / "python.md").read_text(encoding="utf-8")
     blocks = re.findall(r"^```sh\n(.*?)^```", page, re.DOTALL | re.MULTILINE)
     return [line.partition("  #")[0].strip() for block in blocks for line in block.splitlines()]
 

@@ -1,4 +1,5 @@
-"""The commands of docs/python.md make a virtual environment with the package, without a network."""
+"""The commands of docs/reference/python.md make a virtual environment with the package, without a
+network."""
 import os
 import re
 import shlex

@@ -1,5 +1,5 @@
 """notebooks_test.py NAME: a notebook is that of its source, runs in the environment of
-install_test.py by the command of docs/python.md, and shows what it should."""
+install_test.py by the command of docs/reference/python.md, and shows what it should."""
 import json
 import subprocess
 import sys

@@ -1,4 +1,5 @@
-"""The blocks of docs/python.md run in their order, and their comments "= VALUE" are true."""
+"""The blocks of docs/reference/python.md run in their order, and their comments "= VALUE" are
+true."""
 import ast
 import os
 import re
@@ -7,7 +8,7 @@ from pathlib import Path
 
 import program
 
-PAGE = Path(os.environ["HSHFIT_SOURCE"]) / "docs" / "python.md"
+PAGE = Path(os.environ["HSHFIT_SOURCE"]) / "docs" / "reference" / "python.md"
 
 
 def shown(value, text):

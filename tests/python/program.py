@@ -55,7 +55,8 @@ class InFolder(unittest.TestCase):
         return done.returncode, done.stderr.strip().removeprefix("hshfit: ")
 
     def bytes_of(self, path):
-        """Of a file, without the key that the program states at the end of JSON (docs/files.md)."""
+        """Of a file, without the key that the program states at the end of JSON
+        (docs/reference/files.md)."""
         with open(path, "rb") as file:
             content = file.read()
         return re.sub(rb',(\s*)"made_from": ?\{[^{}]*\}\s*\}\n\Z',

@@ -34,10 +34,11 @@ std::vector<Lobe> outgoingLobesOf(const Brdf& brdf, const Direction& wi) {
 
 void requireReflection(const Brdf& brdf, std::string_view taker) {
     if (!transmits(brdf)) return;
-    throw UsageError(fmt::format(
-        "{}: is a transmission, and {} takes reflections; docs/transmission.md says which commands "
-        "take transmissions",
-        brdf.name(), taker));
+    throw UsageError(
+        fmt::format("{}: is a transmission, and {} takes reflections; "
+                    "docs/reference/transmission.md says which commands "
+                    "take transmissions",
+                    brdf.name(), taker));
 }
 
 void requireSameSide(const Brdf& a, const Brdf& b) {

@@ -19,7 +19,7 @@ struct Loss {
 };
 
 // Differences that are just seen. A Lambert surface that is 5 % too bright has CIEDE2000 0.90, and
-// a difference of 1 between patches side by side is just seen (docs/picture_error.md).
+// a difference of 1 between patches side by side is just seen (docs/explanation/picture_error.md).
 constexpr double seenColour = 1, seenAlbedo = 0.05, seenExtremum = 0.03, seenRidge = 0.1,
                  seenRim = 0.2, seenFlip = 0.03;
 constexpr std::size_t shown = 3;

@@ -7,7 +7,7 @@
 
 namespace hshfit::inline coefficient_files {
 
-/// Writes a coefficient file; docs/files.md describes both forms.
+/// Writes a coefficient file; docs/reference/files.md describes both forms.
 ///
 /// .json  every number exact: reading back gives the same doubles.
 /// .exr   float32 (relative rounding 2^-24), one channel per coefficient and colour, width x height

@@ -8,9 +8,9 @@
 
 namespace hshfit::inline coefficient_files {
 
-/// Writes coefficients of light as a JSON file (docs/light.md, schema light_file): every number
-/// exact, so that reading back gives the same doubles. Throws NumericError for a coefficient that
-/// is not finite, and OutputError where the file cannot be written.
+/// Writes coefficients of light as a JSON file (docs/explanation/light.md, schema light_file):
+/// every number exact, so that reading back gives the same doubles. Throws NumericError for a
+/// coefficient that is not finite, and OutputError where the file cannot be written.
 void writeLight(const LightCoefficients& light, const std::string& path);
 /// The same to an open file; not committed.
 void writeLight(const LightCoefficients& light, AtomicFile& file);

@@ -17,7 +17,7 @@ namespace {
 
 /// Lowest elevation kept: 1 degree above the horizon. Texels beyond stand for what bilinear lookups
 /// blend in from outside the disc; models with 1/cos(theta_o) would make them dominate their
-/// neighbours further down (docs/accuracy.md measures it).
+/// neighbours further down (docs/explanation/accuracy.md measures it).
 constexpr double horizonRing = 89 * (pi / 180);
 /// A function, so that sets made before main() find it ready.
 double horizonRadius() {

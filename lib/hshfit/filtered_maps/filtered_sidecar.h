@@ -35,7 +35,7 @@ struct StoredLobe {
 };
 
 /// A map of turned and filtered lobes as its JSON file states it, "hshfit-filtered-map"
-/// (docs/filtered_maps.md).
+/// (docs/explanation/filtered_maps.md).
 struct FilteredSidecar {
     std::string form;        ///< "ellipse" or "harmonics"
     MipLayout layout = {};   ///< order 1 without harmonics

@@ -45,9 +45,9 @@ struct ViewerInput {
 /// One self-contained HTML page (WebGL 2, no network): a sphere and a teapot under a point
 /// light and an environment, one of `lights` or a picture that is dropped in. It shows exact, both
 /// bases and their difference, side by side or divided, with controls for order and exposure, and
-/// numbers (docs/viewer.md). The environment is turned by rotating its coefficients; a form, which
-/// has no product with them, is lit by a mean over directions like the exact pane. The panes
-/// of the payloads run `shaderSource` of GLSL ES as it is exported; lower orders set stored
+/// numbers (docs/reference/viewer.md). The environment is turned by rotating its coefficients; a
+/// form, which has no product with them, is lit by a mean over directions like the exact pane. The
+/// panes of the payloads run `shaderSource` of GLSL ES as it is exported; lower orders set stored
 /// bands to 0, which equals a lower order for every basis but lsosh. Throws UsageError for
 /// spectral payloads and forms, more than two of both, or no payload, and for lights of another
 /// order.

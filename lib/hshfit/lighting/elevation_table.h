@@ -29,7 +29,8 @@ struct ElevationRows {
 /// the mirror image of a lobe; any other needs the whole circle, of which the first node follows
 /// the last.
 struct AzimuthNodes {
-    static constexpr std::size_t defaultSteps = 8;  ///< docs/lighting.md has the errors of others
+    static constexpr std::size_t defaultSteps =
+        8;  ///< docs/explanation/lighting.md has the errors of others
     std::size_t count = 1;
     bool folded = false;
 

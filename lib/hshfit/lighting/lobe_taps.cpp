@@ -10,7 +10,7 @@ namespace {
 constexpr int scales = 240;  // of the tabulated moments, even in the logarithm
 constexpr double widestScale = 30, narrowestScale = 1e-3;
 // Between taps, in root mean squares of the kernel across a meridian. Beyond it, a lobe of few taps
-// shows them under a sun (docs/lighting.md).
+// shows them under a sun (docs/explanation/lighting.md).
 constexpr double mostStep = 1;
 
 }  // namespace

@@ -30,7 +30,8 @@ struct Prefilter {
     double roughnessOf(double level) const;
 };
 
-/// One row for each engine. Formulas are those of the engines' sources (docs/prefiltered.md).
+/// One row for each engine. Formulas are those of the engines' sources
+/// (docs/explanation/prefiltered.md).
 std::span<const Prefilter> prefilters();
 /// Throws UsageError with the known names.
 const Prefilter& prefilterNamed(std::string_view name);

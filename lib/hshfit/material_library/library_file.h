@@ -10,7 +10,7 @@
 namespace hshfit::material_library {
 
 /// The first field of the tensor file (tensor_file.h) that a library is: JSON with the materials.
-/// docs/library_of_materials.md has the others.
+/// docs/explanation/library_of_materials.md has the others.
 inline constexpr const char* headField = "hshfit_library";
 
 /// Whether the first bytes of a file are those of a library.

@@ -15,7 +15,8 @@ class JsonFields;
 
 namespace hshfit::inline material_maps {
 
-/// A map of materials as its JSON file states it, "hshfit-material-map" (docs/svbrdf.md).
+/// A map of materials as its JSON file states it, "hshfit-material-map"
+/// (docs/explanation/svbrdf.md).
 struct MapSidecar {
     std::string form;  ///< "outgoing", "low-rank", "clusters" or "halfway"
     std::string texture = {}, basis = {};

@@ -28,7 +28,7 @@ struct Ray {
 ///
 /// Embree's test misses a mesh where a ray passes through a vertex to within rounding. So a ray
 /// that meets nothing is traced once more, turned by `secondTurn`, which closes those leaks and
-/// blurs an outline by that angle (figures: docs/illuminate.md).
+/// blurs an outline by that angle (figures: docs/explanation/illuminate.md).
 class RayScene {
 public:
     /// Throws NumericError if Embree cannot build it.

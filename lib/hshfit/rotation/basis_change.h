@@ -25,7 +25,8 @@ namespace hshfit::inline rotation {
 /// catalog: 2e-13 at order 1000 against 50 digits. Vectors of high order go through the values at
 /// the nodes, O(order^3) operations for all m, and C is not made. The recurrence over the degree of
 /// the SH, 2 [b' C_(l,l'+1) + b C_(l,l'-1)] - C_(l,l') = ..., is stable for small |m| alone: at
-/// order 100 it errs by 5e-15 for m = 2, 3e-8 for m = 10 and 8e-4 for m = 20 (docs/rotation.md).
+/// order 100 it errs by 5e-15 for m = 2, 3e-8 for m = 10 and 8e-4 for m = 20
+/// (docs/explanation/rotation.md).
 class BasisChange {
 public:
     BasisChange(const Basis& from, const Basis& to, std::optional<Basis::Inner> weight = {});

@@ -16,9 +16,9 @@ namespace hshfit::inline rotation {
 /// turns about z as 2 x 2 blocks in +-m, S as a sparse symmetric matrix per band that is made once.
 ///
 /// Errors relative to the norm of a vector: below 1e-13 at order 100, 1e-12 at 300, 1e-11 at 1000
-/// (docs/rotation.md). Tables take 12 bytes for each coefficient; a band of S is made when it is
-/// applied, and takes 4 bytes for each entry of the band's matrix. Immutable; safe to use from many
-/// threads; bands run in parallel.
+/// (docs/explanation/rotation.md). Tables take 12 bytes for each coefficient; a band of S is made
+/// when it is applied, and takes 4 bytes for each entry of the band's matrix. Immutable; safe to
+/// use from many threads; bands run in parallel.
 class ShRotation {
 public:
     static constexpr int maxOrder = 1000;

@@ -56,9 +56,9 @@ struct Scene {
 /// and light.
 enum class Purpose { plan, transport };
 
-/// Reads a scene (docs/plan.md, docs/illuminate.md, docs/schemas/scene.schema.json). Paths of
-/// pictures and meshes are relative to the scene file. Throws InputError that names file and field
-/// and, for unknown keys, the valid ones.
+/// Reads a scene (docs/reference/plan.md, docs/explanation/illuminate.md,
+/// docs/schemas/scene.schema.json). Paths of pictures and meshes are relative to the scene file.
+/// Throws InputError that names file and field and, for unknown keys, the valid ones.
 Scene readScene(const std::string& path, Purpose purpose);
 
 }  // namespace hshfit::scene

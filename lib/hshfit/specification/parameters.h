@@ -10,7 +10,7 @@
 
 namespace hshfit::inline specification {
 
-/// The range of a parameter in fits (docs/fit.md), within the parameter's bounds.
+/// The range of a parameter in fits (docs/reference/fit.md), within the parameter's bounds.
 struct FitRange {
     enum class Data { any, isotropic, anisotropic };
     double low = 0, high = 0;       ///< range of starting values; equal: held there

@@ -57,7 +57,7 @@ StressReport stress(std::span<const bases::Entry* const> bases, std::span<const 
 
 /// The document of docs/schemas/stress.schema.json.
 std::string stressJson(const StressReport& report);
-/// The Markdown tables of docs/stability.md.
+/// The Markdown tables of docs/results/stability.md.
 std::string stressMarkdown(const StressReport& report);
 /// degree,basis,quantity,precision,error
 std::string stressCsv(const StressReport& report);

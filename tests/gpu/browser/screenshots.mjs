@@ -1,4 +1,4 @@
-// screenshots.mjs PROGRAM MEASURED FOLDER [NAME…]: the pictures of docs/viewer.md,
+// screenshots.mjs PROGRAM MEASURED FOLDER [NAME…]: the pictures of docs/reference/viewer.md,
 // by the program and Chromium. MEASURED: an RGL file, whose folder the program runs in. Not in the
 // page, but to be looked at: viewer-form-dark, viewer-form-narrow. tutorial-viewer is
 // of docs/tutorial.md.

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """read_raw.py KIND FILE…: the texels of each exported file as raw bytes in FILE.raw.
 
-Reads by the layouts that docs/export_files.md and the formats' own documents give, with nothing of
+Reads by the layouts that docs/reference/export_files.md and the formats' own documents give, with
+nothing of
 hshfit: KIND is dds, tensor, or oiio for what `oiiotool --dumpdata` printed of half floats.
 """
 import re

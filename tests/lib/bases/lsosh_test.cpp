@@ -115,7 +115,8 @@ TEST(Lsosh, ResidualIsOrthogonalToShOnTheHemisphere) {
 }
 
 // No singular value is dropped up to order 16, so the spaces are nested and nothing is lost there;
-// what noise in all moments loses beyond that is what docs/bases.md calls the rank loss.
+// what noise in all moments loses beyond that is what docs/explanation/bases.md calls the rank
+// loss.
 TEST(Lsosh, CapturedEnergyIsNestedUntilTheRankIsLost) {
     const auto basis = bases::make("lsosh", 32);
     std::mt19937 generator(7);

@@ -90,7 +90,7 @@ struct Comparison {
         }
         return out;
     }
-    /// Every metric of the table; prints them as a row of docs/halfway.md.
+    /// Every metric of the table; prints them as a row of docs/explanation/halfway.md.
     double print(const std::string& name, const std::string& what, std::size_t bytes,
                  const std::vector<double>& g) const {
         double result = 0;

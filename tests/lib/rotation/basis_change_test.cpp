@@ -311,7 +311,7 @@ TEST(BasisChange, EveryRuleIsExactAtHighOrders) {
     }
 }
 
-/// The recurrence of docs/rotation.md over the degree of the SH, from the first column.
+/// The recurrence of docs/explanation/rotation.md over the degree of the SH, from the first column.
 double errorOfRecurrence(const BasisChange& c, int m, int order) {
     const int size = c.toOrder() - m;
     const auto beside = [m](int l) {

@@ -29,8 +29,8 @@ struct TexelFile {
     bool zstd = false;  ///< compress, where the container can (KTX2)
 };
 
-/// A row of the container table: a file around texels laid out as in `Texels`. docs/export_files.md
-/// has the bytes of each.
+/// A row of the container table: a file around texels laid out as in `Texels`.
+/// docs/reference/export_files.md has the bytes of each.
 struct Container {
     std::string_view name;        ///< as on the command line
     std::string_view suffix;      ///< of the file: NAME.coef + suffix; {} is the number, "f16"

@@ -25,7 +25,7 @@ double withoutAccident(const Changes& changes) {
 /// shrink as those of a smooth f do. Errors are about exp(-c 1.4^k) at level k: their ratios go
 /// down with every level, and an error is the last change to the power of 1.4. The larger of the
 /// two counts, since either may be an accident. Factors from trials over the catalog
-/// (docs/stability.md).
+/// (docs/results/stability.md).
 double smoothFactor(const Changes& changes) {
     const auto& [last, before, earlier] = changes.values;
     constexpr double ofPower = 20, fast = 0.3;

@@ -37,7 +37,7 @@ struct PanelError {
 /// lead to is raised to that. `mayBeSmooth`: whether the first is possible at all. If not, as with
 /// interpolated tables, whose next level costs more than all before it, refinement goes by the last
 /// change alone, and three times that error is stated, ten times where there is one change.
-/// Factors from trials over tables of all formats (docs/stability.md).
+/// Factors from trials over tables of all formats (docs/results/stability.md).
 PanelError panelError(const Changes& changes, bool mayBeSmooth);
 
 }  // namespace hshfit::inline projection

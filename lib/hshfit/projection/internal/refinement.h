@@ -49,8 +49,8 @@ struct ProjectionTables {
 /// norm of each basis' moments and to each energy that exists: panels that hold next to nothing
 /// stay coarse, others show three changes. Errors follow from the changes of the last levels
 /// (convergence.h). Of an interpolated table, one change is enough, the last is held to the
-/// tolerance, and the error stated is larger: in trials 3 times the tolerance (docs/stability.md).
-/// None but 0 is stated below 1e-12, the accuracy of values.
+/// tolerance, and the error stated is larger: in trials 3 times the tolerance
+/// (docs/results/stability.md). None but 0 is stated below 1e-12, the accuracy of values.
 ///
 /// Throws NumericError where the moments do not exist, do not converge within the evaluations
 /// allowed, or q is not finite.

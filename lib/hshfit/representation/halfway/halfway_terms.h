@@ -81,9 +81,9 @@ private:
 };
 
 /// The orders asked for; where they are 0, those with the least picture error that keep three
-/// channels in half precision within a kilobyte (docs/halfway.md): an isotropic reciprocal BRDF
-/// takes 9,13,5, since its ridge wants functions along v, other isotropic ones 9,8,6, and an
-/// anisotropic one 8,8,6.
+/// channels in half precision within a kilobyte (docs/explanation/halfway.md): an isotropic
+/// reciprocal BRDF takes 9,13,5, since its ridge wants functions along v, other isotropic ones
+/// 9,8,6, and an anisotropic one 8,8,6.
 HalfwayOrders halfwayOrdersOr(const HalfwayOrders& asked, bool isotropic, bool reciprocal);
 
 /// The symmetries that the head of a representation of kind halfway states.

@@ -19,7 +19,7 @@ namespace {
 
 /// Radii by second derivatives are the geometric mean of the one of even relative errors and this
 /// share of the picture's height, and at most so much longer along one axis: the least error for
-/// the number of records among factors of 2 (docs/illuminate.md).
+/// the number of records among factors of 2 (docs/explanation/illuminate.md).
 constexpr double evenness = 0.15, mostStretch = 4;
 
 /// Bytes of a record beside its coefficients: itself and its shares of index and deque, rounded up.

@@ -10,7 +10,7 @@
 namespace hshfit::inline transport::inline radiance_cache {
 namespace {
 
-/// Seconds, measured on one machine as docs/illuminate.md says.
+/// Seconds, measured on one machine as docs/explanation/illuminate.md says.
 constexpr double raySeconds = 0.9e-6;       ///< of a ray of a walk with what it meets
 constexpr double tabulationSeconds = 4e-9;  ///< of a function in a cell of a record
 constexpr double reachSeconds = 3e-7;       ///< of a record that a look-up uses
