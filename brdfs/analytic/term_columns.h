@@ -51,27 +51,7 @@ public:
 
     HWY_ATTR void fill(const PairBatch& pairs, double* base, double* linear,
                        double* slopes) const override {
-        const std::size_t count = pairs.wi.count, columns = 1 + linears_;
-        for (std::size_t k = 0; k < count; k += lanesIn<Lanes>()) {
-            const std::size_t size = std::min(lanesIn<Lanes>(), count - k);
-            const LanePairs in(pairs, k);
-            for (std::size_t p = 0; p < passes_.size(); ++p) {
-                const Pass& pass = passes_[p];
-                const typename Formula::template Terms<T> terms(pass.shape, in.wo);
-                T term[TermBatch::maxTerms];
-                terms(in.wi, term);
-                const std::size_t first = p * std::max(n, 1);
-                for (std::size_t c = 0; c < columns; ++c) {
-                    const T sum = pass.weighted(c, term);
-                    if (p == 0)
-                        put(sum.value, size, c == 0,
-                            c == 0 ? base + k : linear + (c - 1) * count + k);
-                    for (std::size_t i = 0; i < std::size_t(n) && first + i < shapes_; ++i)
-                        put(sum.by[i], size, false,
-                            slopes + ((first + i) * columns + c) * count + k);
-                }
-            }
-        }
+        for (std::size_t p = 0; p < passes_.size(); ++p) fillPass(p, pairs, base, linear, slopes);
     }
 
 private:
@@ -102,6 +82,43 @@ private:
             return sum;
         }
     };
+
+    HWY_ATTR void fillPass(std::size_t p, const PairBatch& pairs, double* base, double* linear,
+                           double* slopes) const {
+        const Pass& pass = passes_[p];
+        const std::size_t count = pairs.wi.count, columns = 1 + linears_;
+        const std::size_t first = p * std::max(n, 1);
+        for (std::size_t k = 0; k < count;) {
+            const typename Formula::template Terms<T> terms(pass.shape, LanePairs(pairs, k).wo);
+            for (const std::size_t end = endOfOutgoing(pairs, k); k < end; k += lanesIn<Lanes>()) {
+                const std::size_t size = std::min(lanesIn<Lanes>(), count - k);
+                T term[TermBatch::maxTerms];
+                terms(LanePairs(pairs, k).wi, term);
+                for (std::size_t c = 0; c < columns; ++c) {
+                    const T sum = pass.weighted(c, term);
+                    if (p == 0)
+                        put(sum.value, size, c == 0,
+                            c == 0 ? base + k : linear + (c - 1) * count + k);
+                    for (std::size_t i = 0; i < std::size_t(n) && first + i < shapes_; ++i)
+                        put(sum.by[i], size, false,
+                            slopes + ((first + i) * columns + c) * count + k);
+                }
+            }
+        }
+    }
+
+    /// The end of the vectors from k on that have one outgoing direction in all lanes, and so share
+    /// what depends on it alone; at least the end of the first vector.
+    static std::size_t endOfOutgoing(const PairBatch& pairs, std::size_t k) {
+        const Direction& wo = pairs.wo[k];
+        std::size_t same = k + 1;
+        while (same < pairs.wi.count && pairs.wo[same].x == wo.x && pairs.wo[same].y == wo.y &&
+               pairs.wo[same].z == wo.z)
+            ++same;
+        const std::size_t lanes = lanesIn<Lanes>();
+        if (same == pairs.wi.count) return same;
+        return k + std::max(lanes, (same - k) / lanes * lanes);
+    }
 
     static HWY_INLINE void put(Lanes value, std::size_t size, bool added, double* to) {
         double buffer[HWY_MAX_BYTES / sizeof(double)];

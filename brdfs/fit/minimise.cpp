@@ -41,7 +41,7 @@ public:
         // each step there, and search along it at the price of an evaluation each.
         for (Eigen::Index i = 0; i < n; ++i) {
             const double x = parameters[0][i], pull = gradient(i);
-            if ((x > lower_[i] || pull < 0) && (x < upper_[i] || pull > 0)) continue;
+            if ((!isAt(lower_[i], x) || pull < 0) && (!isAt(upper_[i], x) || pull > 0)) continue;
             hessian.row(i).setZero(), hessian.col(i).setZero();
             gradient(i) = 0;
         }
@@ -72,6 +72,11 @@ public:
     double pull() const { return pull_; }
 
 private:
+    /// Steps that are cut at a bound end within rounding of it.
+    static bool isAt(double bound, double x) {
+        constexpr double rounding = 1e-12;
+        return std::abs(x - bound) <= rounding * std::max(1.0, std::abs(bound));
+    }
     const Equations& at(const double* x, bool derivatives) const {
         if (last_.size() != count_ || !std::equal(last_.begin(), last_.end(), x) ||
             (derivatives && remembered_.hessian.empty())) {

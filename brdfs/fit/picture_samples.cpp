@@ -136,6 +136,7 @@ public:
     Collector(const Brdf& data, const PictureSampleOptions& options)
         : isotropic_(data.laws().isotropic),
           order_(options.order),
+          level_(options.level),
           lowest_(std::max(options.grazingCut < 90 ? std::cos(radians(options.grazingCut)) : 0,
                            1e-6)) {}
 
@@ -156,21 +157,24 @@ public:
                  const std::vector<Pixel>& pixels) {
         std::vector<Surface> surfaces;
         for (const Pixel& pixel : pixels) surfaces.emplace_back(pixel.normal, isotropic_);
-        const Direction wo = surfaces.front().toLocal(viewer);
+        Direction wo = surfaces.front().toLocal(viewer);
+        if (isotropic_) wo = {std::hypot(wo.x, wo.y), 0, wo.z};
         if (wo.z < lowest_) return;
         const std::size_t first = sums_.size();
         std::vector<double> weights;
         const HemisphereGrid grid =
-            gridFor(data.lobes(wo), wo, {.order = order_, .squeezed = true});
+            gridFor(data.lobes(wo), wo,
+                    {.order = order_, .level = level_, .squeezed = true, .even = isotropic_});
         RingPoints points;
         for (const auto& panel : grid.panels) {
             points.start(panel);
             for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring) {
                 points.move(grid, ring);
-                for (std::size_t j = 0; j < points.count(); ++j) {
-                    addNode(points.direction(j), wo);
-                    const double cosine = points.direction(j).z;
-                    weights.push_back(cosine >= lowest_ ? points.weight(j) * cosine : 0);
+                if (points.direction(0).z < lowest_) continue;
+                // The other half of the ring are mirror images in the plane of incidence.
+                for (std::size_t j = 0; j < points.count() / (isotropic_ ? 2 : 1); ++j) {
+                    addNode(points.direction(j), wo, isotropic_);
+                    weights.push_back(points.weight(j) * points.direction(j).z);
                 }
             }
         }
@@ -188,12 +192,14 @@ public:
         for (std::size_t p = 0; p < pixels.size(); ++p)
             for (const auto& [light, own] : from) {
                 std::vector<double> factors(weights.size(), 0);
+                const auto radianceOf = [&](const Direction& wi) {
+                    return radianceFrom(own.extended, surfaces[p].toWorld(wi))[0];
+                };
                 for (std::size_t k = 0; k < spread; ++k) {
-                    if (weights[k] == 0) continue;
                     const Direction wi{sums_.wiX[first + k], sums_.wiY[first + k],
                                        sums_.wiZ[first + k]};
-                    factors[k] =
-                        weights[k] * radianceFrom(own.extended, surfaces[p].toWorld(wi))[0];
+                    const double mirrored = isotropic_ ? radianceOf({wi.x, -wi.y, wi.z}) : 0;
+                    factors[k] = weights[k] * (radianceOf(wi) + mirrored);
                 }
                 for (std::size_t i = 0; i < own.parallel.size(); ++i, ++next)
                     factors[next] = weights[next];
@@ -204,11 +210,12 @@ public:
     FitSamples finish(const Brdf& data, std::size_t lightCount);
 
 private:
-    void addNode(const Direction& wi, const Direction& wo) {
+    void addNode(const Direction& wi, const Direction& wo, bool mirrored = false) {
         sums_.wiX.push_back(wi.x);
         sums_.wiY.push_back(wi.y);
         sums_.wiZ.push_back(wi.z);
         sums_.wo.push_back(wo);
+        sums_.mirrored.push_back(mirrored);
     }
     void addRow(std::size_t light, const Direction& wo, const Pixel& pixel, std::size_t firstNode,
                 const std::vector<double>& factors) {
@@ -221,7 +228,7 @@ private:
     }
 
     bool isotropic_;
-    int order_;
+    int order_, level_;
     double lowest_;
     NodeSums sums_;
     std::vector<std::size_t> lights_;
@@ -327,6 +334,7 @@ FitSamples pictureSamples(const Brdf& data, const PictureSampleOptions& options)
                                   .around = std::max(options.around / 3, 3),
                                   .points = std::max(options.points / 4, 32),
                                   .order = std::max(options.order / 2, 4),
+                                  .level = options.level - 1,
                                   .grazingCut = options.grazingCut,
                                   .fewer = false}));
     return samples;

@@ -18,8 +18,9 @@ struct PictureSampleOptions {
     int rings = 12, around = 12;  ///< pixels of lights with an extent
     int points = 512;             ///< pixels of parallel light, each of two kinds
     int order = 12;               ///< of gridFor, which integrates over lights with an extent
+    int level = 0;                ///< of gridFor
     double grazingCut = 90;       ///< degrees: beyond it there are neither pixels nor light
-    bool fewer = true;            ///< add a ninth of the pixels for the starts of a search
+    bool fewer = true;            ///< add a ninth of the pixels, on a coarser grid, for starts
 };
 
 /// The radiance of a sphere of the material in the pixels of an orthographic picture, under each of

@@ -114,6 +114,13 @@ double offOfIndex(const Truth& truth, const FitResult& result) {
     return std::abs((own - target) / slope);
 }
 
+/// The distance of two values of a parameter; a lobe turned by half a turn is the same lobe.
+double distance(const FreeParameter& parameter, double a, double b) {
+    const double apart = std::abs(a - b);
+    return parameter.keys.front() == "anisotropyRotation" ? std::abs(std::remainder(apart, pi))
+                                                          : apart;
+}
+
 /// `reported`: not converged, or parameters that the fit calls ambiguous, at a bound, or correlated
 /// by more than 0.95, with a loss that is as low as that of the truth.
 enum class Outcome { recovered, reported, wrong };
@@ -157,7 +164,7 @@ Judged judge(const Truth& truth, const FitSamples& samples, const FitResult& res
         const double off = shared ? offOfIndex(truth, result)
                            : p.logarithmic
                                ? std::abs(std::log(found->value / truth.values[i])) * found->value
-                               : std::abs(found->value - truth.values[i]);
+                               : distance(p, found->value, truth.values[i]);
         judged.why += fmt::format("{} {:.4g}: {:.6g} +- {:.2g}{}; ", p.keys.front(),
                                   truth.values[i], found->value, error,
                                   found->standardError   ? ""

@@ -116,6 +116,56 @@ TEST(PictureSamples, OfLambertAreIrradiance) {
     EXPECT_NEAR(weights, static_cast<double>(samples.size()), 1e-9 * weights);
 }
 
+/// Lambert's f with a part of the sign of the turn from wo to wi, which images in the plane of
+/// incidence do not share. `isotropic`: what it claims.
+class OneSided : public Brdf {
+public:
+    OneSided(double share, bool isotropic) : share_(share) { laws_.isotropic = isotropic; }
+    std::string name() const override { return "one-sided"; }
+    const Channels& channels() const override { return channels_; }
+    const Laws& laws() const override { return laws_; }
+    void eval(const Direction& wo, DirectionBatch wi, double* out) const override {
+        for (std::size_t k = 0; k < wi.count; ++k)
+            out[k] = (1 + share_ * (wo.x * wi.y[k] - wo.y * wi.x[k])) / pi;
+    }
+
+private:
+    double share_;
+    Channels channels_;
+    Laws laws_;
+};
+
+/// Pixels of what claims to be isotropic take half of the directions, those of the same f without
+/// the claim all of them.
+TEST(PictureSamples, OfIsotropicDataAreThoseOfAllDirections) {
+    // Many nodes for the edges of the panel.
+    const PictureSampleOptions options{
+        .rings = 4, .around = 6, .points = 16, .order = 96, .fewer = false};
+    const FitSamples half = pictureSamples(OneSided(0, true), options),
+                     whole = pictureSamples(OneSided(0, false), options);
+    ASSERT_EQ(half.size(), whole.size());
+    EXPECT_LT(half.sums->size(), whole.sums->size());
+    double squares = 0;
+    for (std::size_t k = 0; k < half.size(); ++k)
+        squares += std::pow(half.value(0, k) - whole.value(0, k), 2);
+    EXPECT_LT(std::sqrt(squares / static_cast<double>(half.size())), 3e-3);
+}
+
+/// A node that stands for its image has the mean of f at both.
+TEST(PictureSamples, AverageImagesInThePlaneOfIncidence) {
+    const OneSided data(0.5, true);
+    const FitSamples samples = pictureSamples(data, {.rings = 3, .around = 4, .points = 16});
+    const NodeSums& sums = *samples.sums;
+    const std::vector<double> f = valuesAt(data, sums);
+    std::size_t mirrored = 0;
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+        const double odd = sums.wo[k].x * sums.wiY[k] - sums.wo[k].y * sums.wiX[k];
+        EXPECT_NEAR(f[k], (1 + (sums.mirrored[k] ? 0 : 0.5 * odd)) / pi, 1e-15);
+        mirrored += sums.mirrored[k] ? 1 : 0;
+    }
+    EXPECT_GT(mirrored, sums.size() / 2);
+}
+
 /// 95 % of the pixels of a light are at or below 0.8 of white.
 TEST(PictureSamples, AreExposedForTheData) {
     const FitSamples dark = pictureSamples(*open("lambert:kd=.01"));

@@ -151,5 +151,21 @@ TEST(Minimise, SecondDerivativesOfFewerSamplesLeadToTheSameMinimum) {
     for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(found.x[i], plain.x[i], 1e-5);
 }
 
+// (10 (a - b)^2 + (b - 3)^2) / 2 with b <= 1 is least at a = b = 1.
+TEST(Minimise, AParameterWithinRoundingOfItsBoundLeavesTheOthersFree) {
+    const SumOfSquares sum = [](std::span<const double> x, bool) {
+        const double apart = x[0] - x[1], beyond = x[1] - 3;
+        return Equations{(10 * apart * apart + beyond * beyond) / 2,
+                         {10 * apart, beyond - 10 * apart},
+                         {10, -10, -10, 11},
+                         {}};
+    };
+    const std::vector<double> lower{-50, -50}, upper{50, 1};
+    const Minimum found = minimise(sum, {0, 1 - 1e-15}, lower, upper);
+    EXPECT_TRUE(found.converged);
+    EXPECT_LE(found.evaluations, 12);
+    for (const double x : found.x) EXPECT_NEAR(x, 1, 1e-6);
+}
+
 }  // namespace
 }  // namespace hshfit::brdfs
