@@ -333,7 +333,7 @@ Minimum refined(const FitProblem& problem, bool linear, const Minimum& start,
 }
 
 Fitted searchMinimum(FitProblem& problem, const FitOptions& options) {
-    const bool linear = options.loss == Loss::Kind::l2 || options.loss == Loss::Kind::cosine;
+    const bool linear = problem.isLinear();
     const FitSamples& samples = problem.samples();
     const bool few = !samples.fewer && samples.size() <= coarseCount;
     const FitSamples coarse =
