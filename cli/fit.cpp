@@ -275,7 +275,8 @@ void addFit(CLI::App& command, Globals& globals) {
     command.add_option("--sigma", options.sigma,
                        "Standard uncertainty of a sample: 2%+0.001 (relative and absolute, in "
                        "squares), column, or FILE.csv with a row for each sample; behind it "
-                       ",correlation:angle=3deg,wavelength=20nm where errors are correlated");
+                       ",correlation:angle=3deg,wavelength=20nm or ,covariance=FILE where errors "
+                       "are correlated");
     command.add_option("--calibration", options.calibration,
                        "Relative standard uncertainty of a calibration common to all samples: "
                        "0.8%");

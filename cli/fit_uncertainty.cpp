@@ -35,7 +35,10 @@ std::string chiSquareLine(const Document& uncertainty) {
     if (uncertainty["probability"].is_number())
         line += fmt::format(", probability {:.3g}", uncertainty["probability"].get<double>());
     if (uncertainty.contains("correlation"))
-        line += "\n  errors by the stated correlation; weights are those of independent values";
+        line +=
+            uncertainty["correlation"]["used_in"] == "fit"
+                ? "\n  weights, chi-square and errors by the stated correlation"
+                : "\n  errors by the stated correlation; weights are those of independent values";
     return line + "\n";
 }
 

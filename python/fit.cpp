@@ -362,7 +362,8 @@ accept    take a fit that did not converge, which raises NumericError otherwise
 parts     of models with optional parts: "auto", "none", "all" or names
 at        places of samples: "auto", "cells" or "nodes"
 dispersion  of spectra: "PARAMETER=LAW[:N],..." with cauchy, sellmeier, poly, spline, shared, free
-sigma     standard uncertainty of samples: "2%+0.001", "column" or a CSV; scans: of correlated ones
+sigma     standard uncertainty of samples: "2%+0.001", "column" or a CSV, and behind it correlations
+          (",correlation:angle=3deg", ",covariance=FILE"); scans: samples with correlated errors
 calibration, budget  what is common to all samples: "0.8%"; a JSON or CSV file of contributions
 bootstrap, profile  errors by so many resampled fits; intervals by profile likelihood
 instrument  between f and samples: {"source_aperture": "cone:2", "bandwidth": "gauss:5", "offset":

@@ -50,8 +50,13 @@ SCENE = {"format": "hshfit-scene", "version": 1,
                     {"kind": "sky", "model": "overcast", "radiance": [1, 2, 3]}],
          "views": {"theta": [0, 70], "tangent": "fixed"},
          "budget": {"metric": "relative_l2", "error": 0.2}}
+COVARIANCE = {"format": "hshfit-covariance", "version": 1,
+              "wavelength": {"nodes": [450, 550], "matrix": [[1, 0.5], [0.5, 1]]},
+              "angle": {"nodes": [-40, 0, 40], "matrix": [[4, 1, 0], [1, 4, 1], [0, 1, 4]]}}
 # Commands of readers whose files are no BRDF by themselves.
 COMMANDS = {"pairs": ["eval lambert --pairs {path} -o {out}.csv"],
+            "covariance": ["fit lambert --model lambert --loss l2 -o {out}.fit.json "
+                           "--scans incidence --sigma 2%,covariance={path}"],
             "scene": ["plan {path} -o {out}.plan --max-order 2"],
             "weather": [f"light {kind}:file={{path}},date={moment} -o {{out}}.json --order 3"
                         for kind in ("perez", "sun")
@@ -232,7 +237,8 @@ def from_target(target, path, folder):
 
 def gather(seeds, data):
     found = {"pairs": [Seed(PAIRS, "pairs.csv")],
-             "scene": [Seed(json.dumps(SCENE).encode(), "scene.json")]}
+             "scene": [Seed(json.dumps(SCENE).encode(), "scene.json")],
+             "covariance": [Seed(json.dumps(COVARIANCE).encode(), "covariance.json")]}
     for target in TARGETS:
         folder = Path(seeds) / f"fuzz_{target}"
         files = sorted(path for path in folder.glob("*") if path.is_file())

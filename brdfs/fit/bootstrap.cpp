@@ -27,7 +27,7 @@ void addBootstrap(const StudiedMinimum& minimum, const UncertaintyOptions& optio
                   std::uint64_t seed, Uncertainty& result) {
     const FitProblem& problem = minimum.problem;
     const FitSamples& samples = problem.samples();
-    const bool linear = problem.loss() == Loss::Kind::l2 || problem.loss() == Loss::Kind::cosine;
+    const bool linear = problem.isLinear();
     std::vector<std::vector<double>> draws(options.bootstrap);
     std::atomic<std::size_t> done = 0;
     tbb::parallel_for(std::size_t{0}, draws.size(), [&](std::size_t b) {

@@ -1,10 +1,10 @@
 #include <brdfs/fit/correlated_spread.h>
 
+#include <brdfs/fit/whitening.h>
+
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace hshfit::brdfs {
 namespace {
@@ -18,34 +18,6 @@ Eigen::Index at(std::size_t i) {
     return static_cast<Eigen::Index>(i);
 }
 
-Matrix correlationOfChannels(const FitSamples& samples) {
-    const std::size_t count = samples.channels.count();
-    Matrix result = Matrix::Identity(at(count), at(count));
-    const double length = samples.correlation.wavelength;
-    if (!(length > 0)) return result;
-    const std::vector<double>& nanometres = samples.channels.wavelengths;
-    for (std::size_t c = 0; c < count; ++c)
-        for (std::size_t d = 0; d < count; ++d)
-            result(at(c), at(d)) = std::exp(-std::abs(nanometres[c] - nanometres[d]) / length);
-    return result;
-}
-
-/// Samples whose errors are correlated with one another.
-std::vector<std::vector<std::size_t>> blocksOf(const FitSamples& samples) {
-    std::vector<std::vector<std::size_t>> blocks;
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-        const std::size_t block = samples.correlation.angle > 0 ? samples.scans[k] : k;
-        if (block >= blocks.size()) blocks.resize(block + 1);
-        blocks[block].push_back(k);
-    }
-    return blocks;
-}
-
-double correlationOfSamples(const FitSamples& samples, std::size_t j, std::size_t k) {
-    const double apart = std::acos(std::clamp(dot(samples.wo[j], samples.wo[k]), -1.0, 1.0));
-    return std::exp(-apart / samples.correlation.angle);
-}
-
 }  // namespace
 
 Matrix correlatedSpread(
@@ -54,7 +26,7 @@ Matrix correlatedSpread(
     const std::size_t channels = samples.channels.count();
     const Matrix ofChannels = correlationOfChannels(samples);
     Matrix result = Matrix::Zero(at(n), at(n));
-    for (const std::vector<std::size_t>& block : blocksOf(samples)) {
+    for (const std::vector<std::size_t>& block : correlatedBlocks(samples)) {
         // Of each sample of the block: its rows, and these mixed among the channels.
         std::vector<Matrix> own, mixed;
         for (const std::size_t k : block) {

@@ -187,6 +187,7 @@ DispersedProblem::DispersedProblem(const FitSamples& samples, const DispersedMod
     problems_.reserve(count);
     for (std::size_t c = 0; c < count; ++c) {
         channels_.push_back(samples.channel(c));
+        channels_.back().correlation = {};  // in errors, not in weights
         problems_.emplace_back(channels_[c], model.sum(c), loss);
         normalisation_ += problems_[c].normalisation();
         if (mix_.empty()) continue;

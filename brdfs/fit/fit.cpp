@@ -16,6 +16,7 @@
 #include <brdfs/fit/propagated_errors.h>
 #include <brdfs/fit/scan_spread.h>
 #include <brdfs/fit/unseen_lobes.h>
+#include <brdfs/fit/whitening.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -36,6 +37,7 @@ struct Part {
     std::vector<std::vector<double>> changes;  ///< CommonChanges::parameters
     std::vector<double> degrees;               ///< of the standard errors, with changes
     double squares = 0, weights = 0;
+    double chiSquare = 0;  ///< `squares` of independent values
 };
 
 /// Sets what contributions change, and the degrees of freedom beside them.
@@ -48,12 +50,15 @@ void addChanges(const FitProblem& problem, const std::vector<double>& x,
     const Eigen::Map<const Eigen::MatrixXd> own(inverse.data(), n, n);
     const WeightedRows rows = problem.weightedRows(x);
     for (const Contribution& contribution : options.contributions) {
-        const std::vector<double> shift = shiftOf(
-            contribution, samples, options.instrument.darkOver, [&](const FitSamples& turned) {
+        const std::vector<double> shift =
+            shiftOf(contribution, samples, options.instrument.darkOver, [&](FitSamples turned) {
+                turned.correlation = {};
                 return FitProblem(turned, problem.sum(), problem.loss()).values(x);
             });
         const Eigen::VectorXd change =
-            own * pullOf(rows, shift, samples, problem.loss(), x.size(), problem.shapeCount()) /
+            own *
+            pullOf(rows, rows.whitened ? problem.weighted(shift) : shift, samples, problem.loss(),
+                   x.size(), problem.shapeCount()) /
             problem.normalisation();
         part.changes.emplace_back(change.begin(), change.end());
         for (std::size_t i = 0; i < x.size(); ++i) part.changes.back()[i] *= slope[i];
@@ -114,10 +119,8 @@ void describe(const FitProblem& problem, const std::vector<double>& x, const Fit
     const Covariance sandwich = covariance;
     part.freedom = freedomAt(problem, x, inverse, slope);
     if (problem.samples().correlation.any()) {
-        const Eigen::MatrixXd spread =
-            correlatedSpread(problem.samples(), problem.weightedRows(x), x.size(), shapes) /
-            (problem.normalisation() * problem.normalisation());
-        equations.spread.assign(spread.data(), spread.data() + spread.size());
+        equations.spread = equations.hessian;
+        for (double& value : equations.spread) value /= problem.normalisation();
         covariance = covarianceOf(equations, fixed);
         part.freedom.reset();
     } else if (!problem.samples().scans.empty()) {
@@ -165,6 +168,11 @@ Part fitShared(const FitSamples& samples, const ParametricSum& sum, const FitOpt
             fmt::format("'{}': {} values cannot determine {} free parameters; give some of them, "
                         "or more samples",
                         sum.spec(), values, parameters));
+    if (problem.whitening() && values * parameters > Whitening::most)
+        throw UsageError(fmt::format(
+            "{} values of correlated errors with {} parameters are more than a fit holds in "
+            "memory ({} derivatives): take fewer samples, or leave out the correlation",
+            values, parameters, Whitening::most));
     const Fitted fitted = searchMinimum(problem, options);
     Part part;
     describe(problem, fitted.minimum.x, options, part);
@@ -180,6 +188,8 @@ Part fitShared(const FitSamples& samples, const ParametricSum& sum, const FitOpt
         part.squares += weight * residuals[k] * residuals[k];
         part.weights += weight;
     }
+    part.chiSquare =
+        problem.whitening() ? 2 * fitted.minimum.cost * problem.normalisation() : part.squares;
     return part;
 }
 
@@ -190,13 +200,14 @@ void addStudy(const Uncertainty& own, std::size_t first, std::size_t n,
         sum.emplace();
         sum->stated = own.stated;
         sum->correlated = own.correlated;
+        sum->whitened = own.whitened;
         sum->scans = own.scans;
         sum->scanParameters = own.scanParameters;
         sum->covariance.assign(n * n, 0);
     }
     sum->chiSquare += own.chiSquare;
     sum->degreesOfFreedom += own.degreesOfFreedom;
-    if (own.stated && !own.correlated)
+    if (own.probability)
         sum->probability =
             chiSquareProbability(sum->chiSquare, static_cast<double>(sum->degreesOfFreedom));
     const std::size_t count = own.parameters.size();
@@ -311,11 +322,13 @@ void addBudget(const std::vector<Part>& parts, const FitOptions& options, FitRes
     addBudget(options.contributions, changes, degrees, result);
 }
 
-void checkCorrelatedScans(const FitSamples& samples) {
+void checkCorrelatedScans(const FitSamples& samples, const FitOptions& options) {
     if (samples.scans.empty())
         throw UsageError(
             "a correlation over angles is that of samples of one scan: say which samples belong to "
             "one (column, incidence, or the number of samples in each)");
+    if (!options.instrument.any() && options.dispersion.empty() && !namesMetals(options.model))
+        return;  // Whitening has a limit of its own
     std::vector<std::size_t> counts(*std::ranges::max_element(samples.scans) + 1);
     for (const std::size_t scan : samples.scans) ++counts[scan];
     const auto longest = std::ranges::max_element(counts);
@@ -333,13 +346,15 @@ void checkStatements(const FitSamples& samples, const FitOptions& options) {
             "to be l2");
     const bool studied = options.uncertainty.report || !samples.sigmas.empty() ||
                          !samples.scans.empty() || !options.contributions.empty();
-    if (samples.correlation.angle > 0) checkCorrelatedScans(samples);
-    if (samples.correlation.wavelength > 0 &&
+    if (samples.correlation.ofAngles()) checkCorrelatedScans(samples, options);
+    if (samples.correlation.ofWavelengths() &&
         (samples.channels.kind != Channels::Kind::spectral ||
          (options.perChannel && samples.channels.count() > 1)))
         throw UsageError(
-            "a correlation over wavelengths is for data with wavelengths that are fitted together; "
-            "leave out shapes for each channel");
+            fmt::format("{}a correlation over wavelengths is for data with wavelengths that are "
+                        "fitted together; leave out shapes for each channel",
+                        samples.correlation.blocks ? samples.correlation.blocks->path + ": " : ""));
+    checkCorrelations(samples);
     if (studied && options.robust != Robust::none)
         throw UsageError(
             "uncertainties are those of a sum of squares; leave out the robust kernel");
@@ -384,9 +399,11 @@ FitResult fit(const FitSamples& samples, const FitOptions& options) {
     result.seed = options.seed;
     result.samples = samples.size();
     result.values = samples.size() * channels;
-    double squares = 0, weights = 0;
-    for (const Part& part : parts) squares += part.squares, weights += part.weights;
+    double squares = 0, weights = 0, chiSquare = 0;
+    for (const Part& part : parts)
+        squares += part.squares, weights += part.weights, chiSquare += part.chiSquare;
     addStatistics(squares, weights, !samples.sigmas.empty(), result);
+    result.aic += chiSquare - squares, result.bic += chiSquare - squares;
     return result;
 }
 

@@ -299,6 +299,8 @@ FitSamples FitSamples::subset(const std::vector<std::size_t>& indices) const {
     if (!scans.empty()) {
         // Numbers again from 0 on, because others count scans by their largest number.
         std::map<std::size_t, std::size_t> numbers;
+        if (!scanPlaces.empty())
+            for (const std::size_t k : indices) result.scanPlaces.push_back(scanPlaces[k]);
         for (const std::size_t k : indices)
             result.scans.push_back(numbers.try_emplace(scans[k], numbers.size()).first->second);
     }
@@ -388,6 +390,8 @@ FitSamples gatherSamples(const Brdf& data, const SampleOptions& options) {
                             .name = data.name()};
     numberRows(from, samples);
     stateScans(options.scans, options.sigma, from, samples);
+    std::vector<std::size_t> counts(samples.scans.size());
+    for (const std::size_t scan : samples.scans) samples.scanPlaces.push_back(counts[scan]++);
     stateSigmas(options.sigma, from, samples);
     if (options.most == 0 || options.most >= samples.size()) return samples;
     FitSamples drawn = samples.drawn(options.most, options.seed);

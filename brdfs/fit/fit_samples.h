@@ -66,6 +66,8 @@ struct FitSamples {
     SigmaCorrelation correlation = {};  ///< of the errors of values with stated uncertainties
     /// Number of the scan of each sample, from 0 on; empty: each sample is its own.
     std::vector<std::size_t> scans;
+    /// Place of each sample among those of its scan that were gathered; empty without scans.
+    std::vector<std::size_t> scanPlaces = {};
     /// Line (or number) in the file of each measured value, [channel * size() + sample]; empty for
     /// tables and functions.
     std::vector<std::size_t> rows;

@@ -310,6 +310,28 @@ double medianSize(std::vector<double> residuals) {
     return *middle;
 }
 
+/// Steps to the minimum of the sum of squares that is linear about x, within the bounds, while the
+/// cost falls: Ceres stops where the cost settles, and x follows its root.
+void settle(const FitProblem& problem, Minimum& minimum) {
+    constexpr int most = 3;
+    const Bounds bounds = jointBounds(problem.sum(), problem.channels());
+    const std::size_t n = minimum.x.size();
+    for (int step = 0; step < most; ++step) {
+        const Equations about = problem.joint(minimum.x, true);
+        std::vector<double> right(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            right[i] = -about.gradient[i];
+            for (std::size_t j = 0; j < n; ++j) right[i] += about.hessian[i * n + j] * minimum.x[j];
+        }
+        const std::vector<double> next =
+            solveBounded(about.hessian, right, bounds.lower, bounds.upper);
+        const double cost = problem.joint(next, false).cost;
+        ++minimum.evaluations;
+        if (!(cost < minimum.cost)) return;
+        minimum.x = next, minimum.cost = cost;
+    }
+}
+
 }  // namespace
 
 Bounds jointBounds(const ParametricSum& sum, std::size_t channels) {
@@ -333,7 +355,7 @@ Minimum refined(const FitProblem& problem, bool linear, const Minimum& start,
 }
 
 Fitted searchMinimum(FitProblem& problem, const FitOptions& options) {
-    const bool linear = options.loss == Loss::Kind::l2 || options.loss == Loss::Kind::cosine;
+    const bool linear = problem.isLinear();
     const FitSamples& samples = problem.samples();
     const bool few = !samples.fewer && samples.size() <= coarseCount;
     const FitSamples coarse =
@@ -376,6 +398,7 @@ Fitted searchMinimum(FitProblem& problem, const FitOptions& options) {
     }
     best.minimum.iterations = iterations;
     best.minimum.evaluations = evaluations;
+    if (problem.whitening()) settle(problem, best.minimum);
     return best;
 }
 

@@ -137,6 +137,7 @@ Uncertainty influences(const StudiedValues& values) {
     Uncertainty result;
     result.stated = values.stated;
     result.correlated = values.correlated;
+    result.whitened = values.whitened;
     result.scans = values.scans;
     result.scanParameters = values.scanParameters;
     double rank = values.otherRank;
@@ -149,7 +150,7 @@ Uncertainty influences(const StudiedValues& values) {
                  determined = std::round(rank);
     const double degrees = std::max(0.0, count + values.otherCount - determined);
     result.degreesOfFreedom = static_cast<std::size_t>(degrees);
-    if (result.stated && !result.correlated)
+    if (result.stated && (result.whitened || !result.correlated))
         result.probability = chiSquareProbability(result.chiSquare, degrees);
     const double variance = result.reducedChiSquare();
 
@@ -204,6 +205,7 @@ Uncertainty studied(const StudiedMinimum& minimum) {
                                      .leverages = leveragesOf(rows, inverse, shapes),
                                      .stated = !problem.samples().sigmas.empty(),
                                      .correlated = problem.samples().correlation.any(),
+                                     .whitened = rows.whitened,
                                      .scans = scanCount(problem.samples()),
                                      .scanParameters = parametersOfChannel(problem)});
     std::vector<double> degrees;

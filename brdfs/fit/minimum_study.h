@@ -52,6 +52,7 @@ struct StudiedValues {
     std::vector<double> leverages = {};
     bool stated = false;      ///< weights are 1 / sigma^2
     bool correlated = false;  ///< Uncertainty::correlated
+    bool whitened = false;    ///< Uncertainty::whitened
     std::size_t scans = 0;
     std::size_t scanParameters = 0;  ///< Uncertainty::scanParameters
     /// Of terms beside the values, such as priors: squares, number, and sum of leverages.

@@ -2,6 +2,7 @@
 
 #include <brdfs/fit/column_blocks.h>
 #include <brdfs/fit/column_products.h>
+#include <brdfs/fit/whitening.h>
 
 #include <tbb/parallel_for.h>
 #include <Eigen/Dense>
@@ -140,6 +141,11 @@ FitProblem::FitProblem(const FitSamples& samples, const ParametricSum& sum, Loss
                 projectionWeights_[c].push_back(std::sqrt(weight) * g.slope);
         }
     normalisation_ = squares > 0 ? squares : weights;
+    if (samples.correlation.any()) whitening_ = std::make_shared<const Whitening>(samples);
+}
+
+bool FitProblem::isLinear() const {
+    return !whitening_ && (loss_ == Loss::Kind::l2 || loss_ == Loss::Kind::cosine);
 }
 
 Equations FitProblem::eliminated(std::span<const double> u, bool derivatives,
@@ -212,6 +218,7 @@ Equations FitProblem::eliminated(std::span<const double> u, bool derivatives,
 
 Equations FitProblem::joint(std::span<const double> x, bool derivatives,
                             std::span<const double> inverse) const {
+    if (whitening_) return whitenedJoint(x, derivatives, inverse);
     const bool spread = !inverse.empty();
     const std::size_t shapes = shapeCount(), terms = sum_.linears().size();
     const ColumnBlocks columns(samples_, sum_, x.first(shapes), derivatives);
@@ -297,7 +304,7 @@ Equations FitProblem::joint(std::span<const double> x, bool derivatives,
     return result;
 }
 
-WeightedRows FitProblem::weightedRows(std::span<const double> x) const {
+WeightedRows FitProblem::rowsAt(std::span<const double> x) const {
     const std::size_t shapes = shapeCount(), terms = sum_.linears().size(), count = samples_.size();
     const ColumnBlocks columns(samples_, sum_, x.first(shapes), true);
     WeightedRows result{.samples = count, .channels = channels(), .columns = shapes + terms};

@@ -5,10 +5,13 @@
 #include <brdfs/fit/parametric_sum.h>
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
 namespace hshfit::brdfs {
+
+class Whitening;
 
 /// A sum of squares (or of robust kernels of squares) at a point: half its value, the gradient and
 /// the Gauss-Newton matrix. gradient^T hessian^-1 gradient <= 2 cost.
@@ -24,7 +27,9 @@ struct Equations {
 /// The problem linearised at a point, value by value.
 struct WeightedRows {
     std::size_t samples = 0, channels = 0;
-    std::size_t columns = 0;  ///< shapes, then the linear parameters of the value's channel
+    /// Shapes, then the linear parameters of the value's channel; of whitened values all of x.
+    std::size_t columns = 0;
+    bool whitened = false;
     std::vector<double> slopes =
         {};  ///< of root(w) g(f) by x: [(channel * samples + k) * columns + i]
     std::vector<double> residuals = {};  ///< root(w) (g(measured) - g(f)): [channel * samples + k]
@@ -32,7 +37,7 @@ struct WeightedRows {
 
     /// The place in x of column i for a channel.
     std::size_t place(std::size_t i, std::size_t channel, std::size_t shapes) const {
-        return i < shapes ? i : shapes + (i - shapes) * channels + channel;
+        return i < shapes || whitened ? i : shapes + (i - shapes) * channels + channel;
     }
 };
 
@@ -41,7 +46,9 @@ struct WeightedRows {
 /// grow with samples times parameters.
 ///
 /// cost = sum_{k,c} w_kc rho((g(f) - g(measured))^2) / 2, divided by sum_{k,c} w_kc g(measured)^2
-/// (by sum w where all is zero), w_kc = FitSamples::weight.
+/// (by sum w where all is zero), w_kc = FitSamples::weight. With correlated errors
+/// (SigmaCorrelation) joint() and weightedRows() are those of whitened values (Whitening), held in
+/// memory as a whole.
 class FitProblem {
 public:
     FitProblem(const FitSamples& samples, const ParametricSum& sum, Loss::Kind loss);
@@ -53,6 +60,9 @@ public:
     std::size_t shapeCount() const { return sum_.shapes().size(); }
     std::size_t linearCount() const { return sum_.linears().size() * channels(); }
     double normalisation() const { return normalisation_; }
+    const Whitening* whitening() const { return whitening_.get(); }
+    /// Whether eliminated() is exact: the loss is linear in f, and errors are independent.
+    bool isLinear() const;
 
     void setRobust(Robust robust, double scale) { robust_ = robust, scale_ = scale; }
 
@@ -71,6 +81,8 @@ public:
 
     /// Without a robust kernel.
     WeightedRows weightedRows(std::span<const double> x) const;
+    /// root(w) times changes of the values, [channel * samples + k], made independent likewise.
+    std::vector<double> weighted(std::vector<double> changes) const;
 
     /// g(f) - g(measured) at x: [channel * samples + k].
     std::vector<double> residuals(std::span<const double> x) const;
@@ -78,12 +90,17 @@ public:
     std::vector<double> values(std::span<const double> x) const;
 
 private:
+    WeightedRows rowsAt(std::span<const double> x) const;
+    Equations whitenedJoint(std::span<const double> x, bool derivatives,
+                            std::span<const double> inverse) const;
+
     const FitSamples& samples_;
     const ParametricSum& sum_;
     Loss::Kind loss_;
     Robust robust_ = Robust::none;
     double scale_ = 1;
     double normalisation_ = 1;
+    std::shared_ptr<const Whitening> whitening_;
     std::vector<std::vector<double>> projectionWeights_;  ///< roots; of all channels or of each
 };
 

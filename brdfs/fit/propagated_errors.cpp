@@ -76,8 +76,10 @@ Eigen::VectorXd pullOf(const WeightedRows& rows, const std::vector<double>& shif
     Eigen::VectorXd pull = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
     for (std::size_t v = 0; v < shift.size(); ++v) {
         const std::size_t k = v % samples.size();
-        const double own = std::sqrt(samples.weight(v / samples.size(), k)) *
-                           mapValue(loss, samples.values[v], samples.wiZ[k]).slope * shift[v];
+        const double own =
+            rows.whitened ? shift[v]
+                          : std::sqrt(samples.weight(v / samples.size(), k)) *
+                                mapValue(loss, samples.values[v], samples.wiZ[k]).slope * shift[v];
         for (std::size_t i = 0; i < rows.columns; ++i)
             pull(static_cast<Eigen::Index>(rows.place(i, v / rows.samples, shapes))) +=
                 rows.slopes[v * rows.columns + i] * own;

@@ -18,7 +18,8 @@ std::vector<double> shiftOf(
     const Contribution& contribution, const FitSamples& samples, Cosines cosines,
     const std::function<std::vector<double>(const FitSamples& turned)>& modelAt);
 
-/// J^T W times a shift of the values, in the loss: what it adds to the gradient of x [n].
+/// J^T W times a shift of the values, in the loss: what it adds to the gradient of x [n]. Of
+/// whitened rows the shift is FitProblem::weighted.
 Eigen::VectorXd pullOf(const WeightedRows& rows, const std::vector<double>& shift,
                        const FitSamples& samples, Loss::Kind loss, std::size_t n,
                        std::size_t shapes);

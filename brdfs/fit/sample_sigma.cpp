@@ -19,7 +19,7 @@ UsageError noUncertainty(std::string_view text) {
         text));
 }
 
-constexpr std::string_view correlationMark = ",correlation:";
+constexpr std::string_view correlationMark = ",correlation:", fileMark = ",covariance=";
 
 /// "angle=3deg", "wavelength=20nm" or both.
 SigmaCorrelation correlationIn(std::string_view list, std::string_view text) {
@@ -57,6 +57,15 @@ SigmaStatement parseSigma(std::string_view text) {
         SigmaStatement result = parseSigma(text.substr(0, mark));
         if (result.from == From::nothing) throw noUncertainty(text);
         result.correlation = correlationIn(text.substr(mark + correlationMark.size()), text);
+        result.text = text;
+        return result;
+    }
+    if (const std::size_t mark = text.find(fileMark); mark != text.npos) {
+        SigmaStatement result = parseSigma(text.substr(0, mark));
+        const std::string path(text.substr(mark + fileMark.size()));
+        if (result.from == From::nothing) throw noUncertainty(text);
+        if (path.empty()) throw UsageError(fmt::format("'{}' names no file of correlations", text));
+        result.correlation.blocks = readCorrelations(path);
         result.text = text;
         return result;
     }

@@ -1,17 +1,26 @@
 #pragma once
 
+#include <brdfs/fit/correlation_file.h>
+
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <string_view>
 
 namespace hshfit::brdfs {
 
 /// Errors of two values may be correlated: exp(-apart / length), of the outgoing directions of two
-/// samples of a scan, of the wavelengths of one, and the product of both.
+/// samples of a scan, of the wavelengths of one, and the product of both; or as a file states.
 struct SigmaCorrelation {
     double angle = 0;       ///< length in radians; 0: samples are independent
     double wavelength = 0;  ///< in nm; 0: wavelengths are independent
-    bool any() const { return angle > 0 || wavelength > 0; }
+    std::shared_ptr<const CorrelationBlocks> blocks = {};  ///< in place of lengths
+
+    bool ofAngles() const {
+        return angle > 0 || (blocks && blocks->angle.size + blocks->scan.size > 0);
+    }
+    bool ofWavelengths() const { return wavelength > 0 || (blocks && blocks->wavelength.size > 0); }
+    bool any() const { return ofAngles() || ofWavelengths(); }
 };
 
 /// The standard uncertainty of each measured value, as somebody states it:
@@ -31,8 +40,8 @@ struct SigmaStatement {
 };
 
 /// "2%", "0.001", "2%+0.001", "column" or "FILE.csv", with ",correlation:angle=3deg" or
-/// ",correlation:wavelength=20nm" or both with a comma behind it; empty: nothing. Throws
-/// UsageError.
+/// ",correlation:wavelength=20nm" or both with a comma behind it, or ",covariance=FILE";
+/// empty: nothing. Throws UsageError, and InputError for the file.
 SigmaStatement parseSigma(std::string_view text);
 
 /// The samples whose errors may be correlated:

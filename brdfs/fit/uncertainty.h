@@ -28,7 +28,8 @@ struct ParameterUncertainty {
     std::optional<double> normal;
     std::optional<double> sandwich;  ///< HC3, samples independent
     std::optional<double> scans;     ///< likewise by scan: its samples may be correlated (CR3)
-    /// (J^T W J)^-1 J^T W C W J (J^T W J)^-1 with the stated correlations (SigmaCorrelation) in C.
+    /// With the stated correlations (SigmaCorrelation) in C: (J^T C^-1 J)^-1, or (J^T W J)^-1 J^T W
+    /// C W J (J^T W J)^-1 of a fit that weights values as independent ones.
     std::optional<double> correlated = {};
     /// Of `scans`: degrees of freedom of its variance (scanDegrees), which are those of the scans
     /// that determine the parameter; none for the scale of a scan.
@@ -60,9 +61,10 @@ struct ValueInfluence {
 struct Uncertainty {
     bool stated = false;               ///< uncertainties of the samples were
     bool correlated = false;           ///< and their correlation: `correlated` is what a fit states
+    bool whitened = false;             ///< and the fit weights by it; chi-square is r^T C^-1 r
     double chiSquare = 0;              ///< sum of weighted squared residuals
     std::size_t degreesOfFreedom = 0;  ///< values less determined parameters
-    /// Of a chi-square as large; only if uncertainties were stated, without correlation.
+    /// Of a chi-square as large; only if uncertainties were stated, and correlations are in it.
     std::optional<double> probability;
     std::size_t scans = 0;  ///< 0: every sample on its own
     /// Of one channel. Where there are no more scans than these, there are no errors by scan, and

@@ -96,7 +96,8 @@ Document uncertaintyJson(const FitReport& report) {
     json["residual_variance"] = own.reducedChiSquare();
     const SigmaCorrelation& correlation = report.samples->correlation;
     if (correlation.any()) {
-        json["correlation"] = {{"used_in", "errors"}};
+        json["correlation"] = {{"used_in", own.whitened ? "fit" : "errors"}};
+        if (correlation.blocks) json["correlation"]["file"] = correlation.blocks->path;
         if (correlation.angle > 0) json["correlation"]["angle"] = degrees(correlation.angle);
         if (correlation.wavelength > 0) json["correlation"]["wavelength"] = correlation.wavelength;
     } else if (!report.scans.empty())

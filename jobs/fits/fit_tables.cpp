@@ -36,7 +36,7 @@ std::string chiSquareText(const Json& study) {
             "over {} degrees of freedom",
             numberOf(study["residual_variance"]), degrees);
     const std::string probability =
-        study.contains("correlation")
+        study["probability"].is_null()
             ? "no probability, as errors are correlated"
             : fmt::format("probability of as much {}", numberOf(study["probability"]));
     return fmt::format("{} over {} degrees of freedom, {} each; {}",

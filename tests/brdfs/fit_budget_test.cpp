@@ -13,6 +13,7 @@
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
+#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
@@ -250,7 +251,8 @@ TEST(Budget, ChangesCorrelationsAsOneErrorDoes) {
 }
 
 // kd at a wavelength is pi times a mean, of readings that are correlated along scans: its variance
-// by hand. Two wavelengths have the correlation of their readings.
+// by hand, for the weights of generalised least squares and for the equal ones of fits with laws
+// and with terms of the instrument. Two wavelengths have the correlation of their readings.
 TEST(CorrelatedErrors, OfALambertianSurfaceAreThoseByHand) {
     FitSamples samples = sweeps("lambert:kd=.5", {20, 40});
     samples.channels = Channels::spectral({500, 550});
@@ -259,14 +261,20 @@ TEST(CorrelatedErrors, OfALambertianSurfaceAreThoseByHand) {
     samples.correlation = parseSigma("1%,correlation:angle=10deg,wavelength=100nm").correlation;
     FitOptions options{.model = "lambert", .loss = Loss::Kind::l2};
     options.uncertainty.report = true;
-    double sum = 0;
+    const auto count = static_cast<Eigen::Index>(samples.size());
+    Eigen::MatrixXd r = Eigen::MatrixXd::Zero(count, count);
     for (std::size_t j = 0; j < samples.size(); ++j)
         for (std::size_t k = 0; k < samples.size(); ++k) {
             const double apart =
-                std::acos(std::clamp(dot(samples.wo[j], samples.wo[k]), -1.0, 1.0));
-            if (samples.scans[j] == samples.scans[k]) sum += std::exp(-apart / radians(10.0));
+                j == k ? 0 : std::acos(std::clamp(dot(samples.wo[j], samples.wo[k]), -1.0, 1.0));
+            if (samples.scans[j] == samples.scans[k])
+                r(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(k)) =
+                    std::exp(-apart / radians(10.0));
         }
+    const double sum = r.sum();
     const double error = pi / static_cast<double>(samples.size()) * 0.002 * std::sqrt(sum);
+    const double generalised = pi * 0.002 / std::sqrt(r.inverse().sum());
+    EXPECT_LT(generalised, 0.999 * error);
     // Along the scans errors are larger than those of independent readings by more than 1.9.
     EXPECT_GT(sum, 3.61 * static_cast<double>(samples.size()));
     for (const bool laws : {false, true}) {
@@ -274,12 +282,13 @@ TEST(CorrelatedErrors, OfALambertianSurfaceAreThoseByHand) {
         const FitResult result = fit(samples, options);
         ASSERT_EQ(result.parameters.size(), 2u);
         for (std::size_t c = 0; c < 2; ++c) {
-            EXPECT_NEAR(*result.parameters[c].standardError, error, 1e-8 * error);
-            EXPECT_NEAR(*result.uncertainty->parameters[c].correlated, error, 1e-8 * error);
+            const double own = laws ? error : generalised;
+            EXPECT_NEAR(*result.parameters[c].standardError, own, 1e-8 * own);
+            EXPECT_NEAR(*result.uncertainty->parameters[c].correlated, own, 1e-8 * own);
             EXPECT_FALSE(result.uncertainty->parameters[c].scans);
         }
         EXPECT_NEAR(result.correlations[1], std::exp(-0.5), 1e-8);
-        EXPECT_FALSE(result.uncertainty->probability);
+        EXPECT_EQ(result.uncertainty->probability.has_value(), !laws);
     }
     options.dispersion = "";
     options.instrument = parseInstrument({.dark = "0"});
