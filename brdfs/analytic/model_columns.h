@@ -1,6 +1,6 @@
 #pragma once
 
-#include <brdfs/rows/spec.h>
+#include <brdfs/rows/model.h>
 
 #include <span>
 #include <string>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <hshfit/bases/basis.h>
 #include <hshfit/stability/basis_errors.h>
 
 namespace hshfit::stability {
