@@ -110,9 +110,10 @@ void rethrow(std::span<Source* const> sources) {
         if (source->function()) source->function()->rethrow();
 }
 
+/// At the caller of the function around it (python/hshfit/_arguments.py).
 void warn(const std::vector<std::string>& notes) {
     for (const std::string& note : notes)
-        if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) != 0) throw py::error_already_set();
+        if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 2) != 0) throw py::error_already_set();
 }
 
 }  // namespace

@@ -190,7 +190,8 @@ public:
                 }
         std::size_t next = spread;
         for (std::size_t p = 0; p < pixels.size(); ++p)
-            for (const auto& [light, own] : from) {
+            for (const auto& each : from) {
+                const auto& own = each.second;
                 std::vector<double> factors(weights.size(), 0);
                 const auto radianceOf = [&](const Direction& wi) {
                     return radianceFrom(own.extended, surfaces[p].toWorld(wi))[0];
@@ -203,7 +204,7 @@ public:
                 }
                 for (std::size_t i = 0; i < own.parallel.size(); ++i, ++next)
                     factors[next] = weights[next];
-                addRow(light, wo, pixels[p], first, factors);
+                addRow(each.first, wo, pixels[p], first, factors);
             }
     }
 

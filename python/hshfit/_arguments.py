@@ -22,13 +22,15 @@ def _signature(doc, name):
 def _reason(name, signature, places, given, named):
     """The first mistake among the arguments, as far as the signature tells."""
     known = [argument for argument, _, _ in signature]
+    own = [argument for argument in known if argument != "self"]
     if len(given) > places:
         shown = [argument for argument in known[:places] if argument != "self"]
         return f"{name}() takes {len(shown)} by place ({', '.join(shown)}); name the others"
     for word in named:
         if word not in known:
-            near = difflib.get_close_matches(word, known, 1)
-            hint = f" (did you mean '{near[0]}'?)" if near else f"; it takes {', '.join(known)}"
+            near = ([argument for argument in own if argument.startswith(word)]
+                    or difflib.get_close_matches(word, own, 1))
+            hint = f" (did you mean '{near[0]}'?)" if near else f"; it takes {', '.join(own)}"
             return f"{name}() has no argument '{word}'{hint}"
     values = dict(zip(known, given)) | named
     for argument, kind, needed in signature:

@@ -38,7 +38,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
         constexpr BsdfSide sides[] = {BsdfSide::front, BsdfSide::back, BsdfSide::transmissionFront,
                                       BsdfSide::transmissionBack};
-        check(*openBsdfXml({data + 1, size - 1}, "input", sides[data[0] & 1 | data[0] >> 1 & 2],
+        check(*openBsdfXml({data + 1, size - 1}, "input",
+                           sides[(data[0] & 1) | ((data[0] >> 1) & 2)],
                            data[0] & 2 ? "solar" : "visible"));
     } catch (const hshfit::InputError&) {
     }
