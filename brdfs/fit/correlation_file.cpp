@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t mostNodes = 2000;
 
-/// Rows of a matrix from 1 on, as messages name them.
+/// The correlations of a matrix of covariances. Messages count its rows from 1.
 Eigen::MatrixXd correlationsIn(const JsonFields& block, std::size_t count) {
     const std::vector<std::vector<double>> rows = block.table("matrix", count, count);
     const auto n = static_cast<Eigen::Index>(count);
@@ -54,11 +54,11 @@ CorrelationBlock blockOf(const JsonFields& root, const char* name, bool nodes) {
                                    result.nodes[i], result.nodes[i - 1]),
                        "nodes");
     const Eigen::MatrixXd matrix = correlationsIn(block, result.size);
-    const Cholesky root2(matrix);
-    if (root2.failed)
+    const Cholesky factor(matrix);
+    if (factor.failed)
         block.fail(fmt::format("row {} makes it not positive definite: its errors would be known "
                                "from those of the rows before it",
-                               *root2.failed + 1),
+                               *factor.failed + 1),
                    "matrix");
     result.matrix.assign(matrix.data(), matrix.data() + matrix.size());
     return result;

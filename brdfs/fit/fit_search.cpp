@@ -310,8 +310,9 @@ double medianSize(std::vector<double> residuals) {
     return *middle;
 }
 
-/// Steps to the minimum of the sum of squares that is linear about x, within the bounds, while the
-/// cost falls: Ceres stops where the cost settles, and x follows its root.
+/// Goes to the minimum of the problem that is linear about x, within the bounds, while the cost
+/// falls. Ceres stops at a relative change e of the cost, where x may still be off by root(e).
+/// Throws NumericError as solveBounded does.
 void settle(const FitProblem& problem, Minimum& minimum) {
     constexpr int most = 3;
     const Bounds bounds = jointBounds(problem.sum(), problem.channels());
