@@ -59,7 +59,7 @@ void addOption(std::vector<std::string>& words, const std::string& key,
 /// A value that is none of the words of its option, "--basis=hhs"; empty if all are.
 std::string unknownValue(const CLI::App& command) {
     for (const CLI::Option* option : command.get_options()) {
-        const ValueRow* row = findValues(command, *option);
+        const Values* row = findValues(command, *option);
         const bool closed = row && row->words && row->files == Files::none &&
                             row->syntax != Syntax::brdf && row->syntax != Syntax::light &&
                             row->syntax != Syntax::either;

@@ -53,7 +53,7 @@ const CLI::Option* nextArgument(const CLI::App& command, std::span<const std::st
 
 Candidates valuesOf(const CLI::App& command, const CLI::Option& option, const std::string& typed) {
     Candidates candidates;
-    if (const ValueRow* row = findValues(command, option)) return valuesOf(*row, typed);
+    if (const Values* row = findValues(command, option)) return cli::valuesOf(*row, typed);
     for (const std::string& choice : choicesOf(option)) candidates.words.push_back({choice});
     keep(candidates, "", typed);
     return candidates;

@@ -22,6 +22,6 @@ struct Candidates {
 Candidates candidatesOf(const CLI::App& program, const std::vector<std::string>& words);
 
 /// Completions of the value of an option.
-Candidates valuesOf(const ValueRow& row, const std::string& typed);
+Candidates valuesOf(const Values& row, const std::string& typed);
 
 }  // namespace hshfit::cli

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "command_rows.h"
+
 #include <span>
 
 namespace CLI {
@@ -20,6 +22,8 @@ struct Command {
     const char* example;  ///< runs in a folder after the examples that write its inputs
     /// Adds the options and the function that runs the command.
     void (*add)(CLI::App& command, Globals& globals);
+    /// The rows of its options; null where `add` states each.
+    OptionTables (*options)() = nullptr;
 };
 
 /// Every command, in the order in which messages list them.

@@ -1,7 +1,9 @@
 #include "command.h"
+#include "command_rows.h"
 #include "export_lighting.h"
 #include "export_map.h"
 #include "export_material.h"
+#include "job_options.h"
 
 #include <hshfit/filtered_maps/filtered_sidecar.h>
 #include <hshfit/gpu/error_split.h>
@@ -25,14 +27,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct ExportArguments {
-    std::vector<std::string> coefficients;
-    std::string output, number, storage = "auto", packing = "coef4";
-    std::string lighting;  ///< models; empty: none
-    jobs::LightingTableOptions tables;
-    bool chroma = false, noError = false, sampling = false, noSampling = false;
+    std::vector<std::string> inputs;
+    std::string output;
     jobs::ExportOptions options;
+    // Each with the options that it alone has; the others are those above.
+    jobs::LightingExportOptions lighting{.models = {}};  ///< none
     jobs::MaterialExportOptions material;
-    std::string wrap = "clamp";  ///< of maps of materials
+    jobs::MapExportOptions map;
 };
 
 Json describe(const gpu::Payload& payload) {
@@ -195,67 +196,58 @@ Json document(const jobs::Exported& exported, const std::string& folder) {
     return document;
 }
 
-/// Refuses options that do not go with the targets: materials have some of their own, and none of
-/// those of coefficients.
-void requireOptions(const CLI::App& command, bool materials) {
-    constexpr std::string_view both[] = {"COEFFS",  "--output", "--target", "--name",    "--source",
-                                         "--force", "--json",   "--quiet",  "--threads", "--help"};
-    constexpr std::string_view own[] = {"--mesh", "--extensions"};
-    for (const CLI::Option* option : command.get_options()) {
-        const std::string name =
-            option->get_lnames().empty() ? option->get_name() : "--" + option->get_lnames().front();
-        const auto isIn = [&](const auto& names) {
-            return std::ranges::find(names, name) != std::end(names);
-        };
-        if (option->count() == 0 || isIn(both) || isIn(own) == materials) continue;
-        throw UsageError(fmt::format("export: {} is for {}", name,
-                                     isIn(own) ? "the targets gltf and materialx"
-                                               : "other targets than gltf and materialx"));
-    }
-}
-
 bool isMap(const std::string& input) {
     return isMapSidecar(input) || isFilteredSidecar(input);
 }
 
-/// Refuses options that maps of materials do not have, and those that they alone have.
-void requireMapOptions(const CLI::App& command, const std::vector<std::string>& inputs) {
-    constexpr std::string_view those[] = {
-        "COEFFS",  "--output", "--target",  "--name",   "--force", "--json",
-        "--quiet", "--help",   "--threads", "--prefix", "--light", "--environment-order",
-        "--wrap"};
-    const auto map = std::ranges::find_if(inputs, isMap);
-    if (map == inputs.end()) {
-        if (command.get_option("--wrap")->count() > 0)
-            throw UsageError("export: --wrap is for maps of materials");
-        return;
+/// A kind of export (OptionRow::inputs) as messages name it.
+struct Kind {
+    unsigned bit;
+    std::string_view name;
+};
+constexpr Kind kinds[] = {{jobs::exports::coefficients, "coefficients"},
+                          {jobs::exports::materials, "the targets gltf and materialx"},
+                          {jobs::exports::maps, "maps of materials"},
+                          {jobs::exports::lighting, "--lighting"}};
+
+unsigned kindOf(const ExportArguments& arguments) {
+    namespace exports = jobs::exports;
+    if (jobs::areMaterials(arguments.options.targets)) return exports::materials;
+    if (!arguments.lighting.models.empty()) return exports::lighting;
+    return std::ranges::any_of(arguments.inputs, isMap) ? exports::maps : exports::coefficients;
+}
+
+/// Refuses options that are for other kinds of exports.
+void requireOptions(const CLI::App& command, const ExportArguments& arguments, unsigned kind) {
+    std::vector<std::string_view> names;
+    for (const auto rows : exportRows()) {
+        const auto given = misplacedOption(command, rows, kind);
+        if (!given) continue;
+        for (const Kind& each : kinds)
+            if (given->row->inputs & each.bit) names.push_back(each.name);
+        throw UsageError(fmt::format("export: {} is for {}, not for {}", given->name,
+                                     fmt::join(names, " and "),
+                                     std::ranges::find(kinds, kind, &Kind::bit)->name));
     }
-    for (const CLI::Option* option : command.get_options()) {
-        const std::string name =
-            option->get_lnames().empty() ? option->get_name() : "--" + option->get_lnames().front();
-        if (option->count() > 0 && std::ranges::find(those, name) == std::end(those)) {
-            throw UsageError(fmt::format("export: {} is for coefficients; {} is a map of materials",
-                                         name, *map));
-        }
-        const bool light = name == "--light" || name == "--environment-order";
-        if (light && option->count() > 0 && isFilteredSidecar(*map)) {
+    if (kind != jobs::exports::maps) return;
+    const auto filtered = std::ranges::find_if(arguments.inputs, isFilteredSidecar);
+    for (const char* name : {"--light", "--environment-order"})
+        if (filtered != arguments.inputs.end() && command.get_option(name)->count() > 0)
             throw UsageError(
-                fmt::format("export: {}: {} is a map of filtered lobes, which take no "
-                            "light of an environment",
-                            name, *map));
-        }
-    }
+                fmt::format("export: {}: {} is a map of filtered lobes, which take no light of an "
+                            "environment",
+                            name, *filtered));
 }
 
 /// The options of textures that maps share.
 jobs::MapExportOptions mapOptions(const ExportArguments& arguments) {
     const jobs::ExportOptions& shared = arguments.options;
-    jobs::MapExportOptions options{.name = shared.name,
-                                   .prefix = shared.shader.prefix,
-                                   .environmentOrder = shared.shader.environmentOrder,
-                                   .wrap = arguments.wrap,
-                                   .lights = shared.lights,
-                                   .force = shared.force};
+    jobs::MapExportOptions options = arguments.map;
+    options.name = shared.name;
+    options.prefix = shared.shader.prefix;
+    options.environmentOrder = shared.shader.environmentOrder;
+    options.lights = shared.lights;
+    options.force = shared.force;
     if (shared.targets != jobs::ExportOptions().targets) options.targets = shared.targets;
     return options;
 }
@@ -263,22 +255,31 @@ jobs::MapExportOptions mapOptions(const ExportArguments& arguments) {
 /// The options of textures that lighting shares.
 void runLighting(const ExportArguments& arguments, const Globals& globals) {
     const jobs::ExportOptions& shared = arguments.options;
-    jobs::LightingExportOptions options{.models = arguments.lighting,
-                                        .targets = shared.targets,
-                                        .name = shared.name,
-                                        .source = shared.source,
-                                        .prefix = shared.shader.prefix,
-                                        .measureError = !arguments.noError,
-                                        .force = shared.force};
-    if (!arguments.number.empty()) options.number = gpu::parseNumber(arguments.number);
-    options.errors.tables = arguments.tables;
+    jobs::LightingExportOptions options = arguments.lighting;
+    options.targets = shared.targets;
+    options.name = shared.name;
+    options.source = shared.source;
+    options.prefix = shared.shader.prefix;
+    options.number = shared.number;
+    options.measureError = shared.measureError;
+    options.force = shared.force;
     options.errors.tables.order = shared.shader.environmentOrder;
     if (!shared.lights.empty()) options.light = fmt::format("{}", fmt::join(shared.lights, "+"));
     // Errors under the light that is written, and under those of the catalog.
     options.errors.lights = jobs::catalogLights();
     if (!shared.lights.empty())
         options.errors.lights.insert(options.errors.lights.begin(), options.light);
-    runExportLighting(arguments.coefficients[0], arguments.output, options, globals);
+    runExportLighting(arguments.inputs[0], arguments.output, options, globals);
+}
+
+void runMaterials(const ExportArguments& arguments, Globals& globals) {
+    const jobs::ExportOptions& shared = arguments.options;
+    jobs::MaterialExportOptions options = arguments.material;
+    options.targets = shared.targets;
+    options.name = shared.name;
+    options.source = shared.source;
+    options.force = shared.force;
+    runMaterialExport(arguments.inputs[0], arguments.output, options, globals);
 }
 
 std::string answerText(const Json& answer) {
@@ -302,7 +303,7 @@ Json exported(const ExportArguments& arguments, const std::string& input, const 
 
 void exportOne(const ExportArguments& arguments, const Globals& globals) {
     const Json answer =
-        exported(arguments, arguments.coefficients[0], arguments.output, listenerFor(globals));
+        exported(arguments, arguments.inputs[0], arguments.output, listenerFor(globals));
     if (globals.json)
         printJson(answer);
     else
@@ -311,7 +312,7 @@ void exportOne(const ExportArguments& arguments, const Globals& globals) {
 
 /// Every coefficient file to a folder of its own in the folder `-o`.
 void exportMany(const ExportArguments& arguments, Globals& globals) {
-    jobs::ExportPlaces places = jobs::exportPlaces(arguments.coefficients, arguments.output);
+    jobs::ExportPlaces places = jobs::exportPlaces(arguments.inputs, arguments.output);
     const auto many = jobs::makeMany<Json>(
         std::move(places.inputs), std::move(places.folders), "export", listenerFor(globals),
         [&](const std::string& input, const std::string& folder, const jobs::Listener& each) {
@@ -336,41 +337,33 @@ void exportMany(const ExportArguments& arguments, Globals& globals) {
     reportFailures(many.failures, many.specs.size() + many.kept.size(), globals);
 }
 
-void runExport(ExportArguments& arguments, const CLI::App& command, Globals& globals) {
-    jobs::ExportOptions& options = arguments.options;
-    const bool materials = jobs::areMaterials(options.targets);
-    requireOptions(command, materials);
-    requireMapOptions(command, arguments.coefficients);
-    const bool many = jobs::areMany(arguments.coefficients);
-    if (many && (materials || !arguments.lighting.empty()))
+void runExport(const ExportArguments& arguments, const CLI::App& command, Globals& globals) {
+    namespace exports = jobs::exports;
+    const unsigned kind = kindOf(arguments);
+    requireOptions(command, arguments, kind);
+    const bool many = jobs::areMany(arguments.inputs);
+    if (many && (kind == exports::materials || kind == exports::lighting))
         throw UsageError("export: the targets gltf and materialx and --lighting take one input");
-    requirePrefiltered(command, arguments.lighting);
-    if (!arguments.lighting.empty()) return runLighting(arguments, globals);
-    if (materials) {
-        jobs::MaterialExportOptions& material = arguments.material;
-        material.targets = options.targets;
-        material.name = options.name;
-        material.source = options.source;
-        material.force = options.force;
-        return runMaterialExport(arguments.coefficients[0], arguments.output, material, globals);
+    if (kind == exports::lighting) {
+        requirePrefiltered(command, arguments.lighting.models);
+        return runLighting(arguments, globals);
     }
-    if (!arguments.number.empty()) options.number = gpu::parseNumber(arguments.number);
-    options.storage = gpu::parseStorage(arguments.storage);
-    options.pack.packing = arguments.packing == "rgb" ? gpu::Packing::rgb : gpu::Packing::coef4;
-    options.pack.luminanceChroma = arguments.chroma || options.pack.chromaOrder > 0;
-    options.measureError = !arguments.noError;
-    if (arguments.sampling || arguments.noSampling) options.sampling = arguments.sampling;
+    if (kind == exports::materials) return runMaterials(arguments, globals);
     many ? exportMany(arguments, globals) : exportOne(arguments, globals);
 }
 
 }  // namespace
 
+OptionTables exportRows() {
+    return {jobs::exportOptions().rows, jobs::lightingExportOptions().rows,
+            jobs::mapExportOptions().rows, jobs::materialExportOptions().rows};
+}
+
 void addExport(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ExportArguments>();
-    jobs::ExportOptions& options = arguments->options;
     command
         .add_option(
-            "COEFFS", arguments->coefficients,
+            "COEFFS", arguments->inputs,
             "Coefficient file of hshfit project, one or more, or a folder of them; material.json "
             "of hshfit svbrdf; for gltf, materialx and --lighting a BRDF too")
         ->required();
@@ -378,86 +371,10 @@ void addExport(CLI::App& command, Globals& globals) {
         .add_option("-o,--output", arguments->output,
                     "Folder, made if absent; with many COEFFS, of one folder for each")
         ->required();
-    command
-        .add_option(
-            "--target", options.targets,
-            "all that is possible, or containers, languages, renderers, three and viewer from "
-            "hshfit list targets; or gltf, materialx: a material fitted to the source")
-        ->capture_default_str();
-    command.add_option(
-        "--outgoing", options.outgoing,
-        "Outgoing set of the textures, WxH or N; other than COEFFS' own: projected "
-        "anew (default: its own; the forms halfway and basis are exported as they are)");
-    command
-        .add_option("--basis", options.basis,
-                    "With --outgoing, of the form halfway: what it is projected to")
-        ->capture_default_str();
-    command.add_option("--order", options.order, "With --basis")->capture_default_str();
-    command.add_option("--name", options.name,
-                       "What the files' names begin with (default: that of COEFFS)");
-    command.add_option("--number", arguments->number,
-                       "float16, float32, unorm16 or unorm8 (default: float16; for the "
-                       "forms halfway and basis, the least that holds the file; with --lighting "
-                       "float16 or float32 of the cube, by default float32 beyond 65504)");
-    command
-        .add_option("--storage", arguments->storage,
-                    "Numbers of these forms in shaders: constants, block (one uniform block), "
-                    "texture, or auto: texture above 4096 numbers, else constants")
-        ->capture_default_str();
-    command
-        .add_option("--packing", arguments->packing,
-                    "coef4: four coefficients a texel; rgb: one coefficient, its channels a texel")
-        ->check(CLI::IsMember({"coef4", "rgb"}))
-        ->capture_default_str();
-    command.add_flag("--chroma", arguments->chroma, "Store luminance and chroma (Y, Co, Cg)");
-    command.add_option("--chroma-order", options.pack.chromaOrder,
-                       "Bands kept of the chroma; implies --chroma (default: all)");
-    command.add_option("--basis-textures", options.pack.basisSize,
-                       "Side of basis textures; without it shaders evaluate the basis");
-    command
-        .add_option("--environment-order", options.shader.environmentOrder,
-                    "Bands of the SH environment that shaders' shade() takes; 0: no shade()")
-        ->capture_default_str();
-    command
-        .add_option("--prefix", options.shader.prefix, "What every name in a shader begins with")
-        ->capture_default_str();
-    command.add_option("--source", options.source,
-                       "BRDF that the error is measured against (default: as COEFFS says)");
-    command.add_flag("--allow-loss", options.allowLoss,
-                     "Accept an export more than twice as far from its source as COEFFS is");
-    command.add_flag("--no-error", arguments->noError, "Do not measure the error");
-    command.add_option(
-        "--light", options.lights,
-        "Environment of the viewer: a light of hshfit list lights, a picture, or a sum "
-        "by '+'; repeated: several to choose from (default: studio)");
-    command.add_option("--lighting", arguments->lighting,
-                       "Tables, light and shaders for environments and area lights in place of "
-                       "textures: all, or of coefficients, split-sum, ltc and prefiltered those "
-                       "named; with --light the light that is written; shaders of materials that "
-                       "are not isotropic take a tangent");
-    addPrefiltered(command, arguments->tables);
-    command.add_option("--library", options.library,
-                       "Of the target three: where its page finds three.js, a path from the folder "
-                       "or an address (default: ./node_modules/three)");
-    auto* sampling = command.add_flag("--sampling", arguments->sampling,
-                                      "Fit a proposal for path tracing: in the sidecar, and as "
-                                      "sample() and pdf() in shaders (default: with shaders)");
-    command.add_flag("--no-sampling", arguments->noSampling, "No proposal")->excludes(sampling);
-    command
-        .add_option("--wrap", arguments->wrap,
-                    "Of a map of materials: what lies beyond its edge, clamp or repeat")
-        ->check(CLI::IsMember({"clamp", "repeat"}))
-        ->capture_default_str();
-    command.add_flag("--zstd", options.zstd, "Compress KTX2 with Zstandard");
-    command.add_flag("--force", options.force, "Replace files that are there");
-    command.add_option("--mesh", arguments->material.mesh,
-                       "With gltf: OBJ, PLY or glTF file, +y up (default: a sphere)");
-    command
-        .add_option("--extensions", arguments->material.parts,
-                    "With gltf and materialx, of a fit: auto for the extensions (of OpenPBR: "
-                    "lobes) that held-out directions find worth it, none, all, or names with "
-                    "commas")
-        ->capture_default_str();
+    addOptions(command, jobs::exportOptions(), arguments->options);
+    addOptions(command, jobs::lightingExportOptions(), arguments->lighting);
+    addOptions(command, jobs::mapExportOptions(), arguments->map);
+    addOptions(command, jobs::materialExportOptions(), arguments->material);
     command.callback([arguments, &command, &globals] { runExport(*arguments, command, globals); });
 }
 

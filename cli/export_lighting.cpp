@@ -59,18 +59,6 @@ std::string lightingText(const Json& answer) {
 
 }  // namespace
 
-void addPrefiltered(CLI::App& command, jobs::LightingTableOptions& options) {
-    command
-        .add_option("--engine", options.engine,
-                    "Of --lighting prefiltered, the engine whose environment is looked up")
-        ->capture_default_str();
-    command
-        .add_option("--lobes", options.lobes,
-                    "Of --lighting prefiltered, lookups besides the diffuse one, 1 to 3")
-        ->check(CLI::Range(1, 3))
-        ->capture_default_str();
-}
-
 void requirePrefiltered(const CLI::App& command, const std::string& models) {
     const auto isIt = [](const jobs::LightingModel* model) {
         return model->kind == jobs::LightingModel::Kind::prefiltered;

@@ -8,9 +8,7 @@
 
 namespace hshfit::cli {
 
-/// --engine and --lobes of prefiltered environments.
-void addPrefiltered(CLI::App& command, jobs::LightingTableOptions& options);
-/// Refuses them without that model among `models`.
+/// Refuses --engine and --lobes without prefiltered environments among `models`.
 void requirePrefiltered(const CLI::App& command, const std::string& models);
 
 /// Writes tables, light and shaders to `folder` and prints their sizes and errors, or with --json

@@ -28,7 +28,7 @@ std::vector<const char*> groupNames() {
 
 /// "FILE", "SPEC", … for an option of the table of values, else the type of its value.
 std::string typeWord(const CLI::App& command, const CLI::Option& option) {
-    if (const ValueRow* row = findValues(command, option)) {
+    if (const Values* row = findValues(command, option)) {
         if (row->syntax == Syntax::light) return "LIGHT";
         if (row->syntax == Syntax::brdf) return "SPEC";
         if (row->files == Files::folder || row->files == Files::readFolder) return "DIR";

@@ -1,6 +1,6 @@
 #include "command.h"
 #include "documents.h"
-#include "form_options.h"
+#include "form_lines.h"
 #include "health.h"
 #include "info_light.h"
 

@@ -39,7 +39,7 @@ bool isAnyOf(std::string_view name, std::initializer_list<std::string_view> name
 bool isOutput(const CLI::App& command, const CLI::Option& option) {
     // With a folder for the results, convert's second argument is an input.
     if (nameOf(option) == "OUT") return command.get_option("--output")->count() == 0;
-    const ValueRow* row = findValues(command, option);
+    const Values* row = findValues(command, option);
     return row && (row->files == Files::written || row->files == Files::folder);
 }
 

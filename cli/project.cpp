@@ -1,8 +1,9 @@
 #include "command.h"
+#include "command_rows.h"
 #include "documents.h"
-#include "form_options.h"
+#include "form_lines.h"
+#include "job_options.h"
 #include "measured_numbers.h"
-#include "within.h"
 
 #include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
@@ -24,8 +25,6 @@ using Json = nlohmann::ordered_json;
 struct ProjectArguments {
     std::vector<std::string> specs;
     std::string output, files = "json";
-    FormOptions form;
-    double maxEvaluations = static_cast<double>(jobs::ProjectOptions{}.maxEvaluations);
     jobs::ProjectOptions options;
 };
 
@@ -150,9 +149,7 @@ void projectMany(const ProjectArguments& arguments, Globals& globals) {
     reportFailures(many.failures, many.specs.size() + many.kept.size(), globals);
 }
 
-void runProject(ProjectArguments& arguments, Globals& globals) {
-    arguments.options.maxEvaluations = static_cast<std::size_t>(arguments.maxEvaluations);
-    arguments.options.form = arguments.form.build();
+void runProject(const ProjectArguments& arguments, Globals& globals) {
     if (jobs::areMany(arguments.specs))
         projectMany(arguments, globals);
     else
@@ -161,9 +158,12 @@ void runProject(ProjectArguments& arguments, Globals& globals) {
 
 }  // namespace
 
+OptionTables projectRows() {
+    return {jobs::projectOptions().rows, jobs::formOptions().rows};
+}
+
 void addProject(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ProjectArguments>();
-    jobs::ProjectOptions& options = arguments->options;
     command
         .add_option("SPEC", arguments->specs,
                     "One or more BRDFs; of a folder, the measured files in it")
@@ -175,31 +175,8 @@ void addProject(CLI::App& command, Globals& globals) {
     command.add_option("--files", arguments->files, "With many BRDFs: json or exr")
         ->check(CLI::IsMember({"json", "exr"}))
         ->capture_default_str();
-    command.add_option("--basis", options.basis, "See hshfit list bases")->capture_default_str();
-    command.add_option("--order", options.order, "Number of bands: l = 0 .. order-1")
-        ->capture_default_str();
-    command
-        .add_option("--outgoing", options.outgoing,
-                    "WxH (parabolic map), N (elevations, isotropic) or THETA,PHI in degrees")
-        ->default_str("32 if isotropic, else 32x32");
-    addRgb(command, options.rgb);
-    command.add_flag("--cosine", options.cosine, "Project f cos(theta_i) instead of f");
-    command.add_flag("--condon-shortley", options.condonShortley,
-                     "Give functions of odd m the Condon-Shortley sign");
-    addQuadrature(command, options.tolerance, arguments->maxEvaluations);
-    command.add_flag("--least-squares", options.leastSquares,
-                     "Fit scattered samples themselves, not the interpolation between them");
-    command
-        .add_option("--regularise", options.regularise,
-                    "With --least-squares: Tikhonov weight, relative to the system's own scale")
-        ->check(within(jobs::bounds::regularise))
-        ->capture_default_str();
-    command
-        .add_option("--kernel", options.kernel,
-                    "With --least-squares: degrees about an outgoing direction that count at most")
-        ->check(within(jobs::bounds::kernel))
-        ->capture_default_str();
-    arguments->form.addTo(command);
+    addOptions(command, jobs::projectOptions(), arguments->options);
+    addOptions(command, jobs::formOptions(), arguments->options.form, "Form");
     command.callback([arguments, &globals] { runProject(*arguments, globals); });
 }
 

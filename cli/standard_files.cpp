@@ -45,7 +45,7 @@ std::string readPath(const std::string& text, const std::string& option) {
 
 void acceptStandardStreams(CLI::App& command) {
     for (CLI::Option* option : command.get_options()) {
-        const ValueRow* row = findValues(command, *option);
+        const Values* row = findValues(command, *option);
         if (!row) continue;
         if (row->files == Files::folder || row->files == Files::readFolder) {
             const std::string name = option->get_name();

@@ -97,7 +97,7 @@ std::size_t lastTerm(const std::string& typed, Syntax syntax) {
 
 }  // namespace
 
-Candidates valuesOf(const ValueRow& row, const std::string& typed) {
+Candidates valuesOf(const Values& row, const std::string& typed) {
     Candidates candidates{.words = {}, .files = row.files, .open = row.syntax != Syntax::word};
     std::size_t begin = 0;
     if (row.syntax == Syntax::list) {

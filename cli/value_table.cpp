@@ -1,11 +1,10 @@
 #include "value_table.h"
 
 #include "command_table.h"
+#include "job_options.h"
 #include "topics.h"
 
 #include <hshfit/accuracy/metrics.h>
-#include <hshfit/bases/catalog.h>
-#include <hshfit/gpu/containers/targets.h>
 #include <hshfit/irradiance/conventions.h>
 
 #include <brdfs/catalog.h>
@@ -13,6 +12,7 @@
 #include <brdfs/fit/loss.h>
 #include <brdfs/presets/preset_collection.h>
 #include <brdfs/repair.h>
+#include <jobs/common/option_words.h>
 #include <jobs/lighting/lighting_models.h>
 #include <jobs/studies/choose_renderers.h>
 
@@ -25,30 +25,14 @@ namespace {
 
 using Words = std::vector<Word>;
 
-/// Names and helps of a table.
-template <class Rows>
-Words wordsOf(const Rows& rows) {
-    Words words;
-    for (const auto& row : rows) words.push_back({std::string(row.name), std::string(row.help)});
-    return words;
-}
-
-/// The same of tables whose rows call the help a summary.
-template <class Rows>
-Words summariesOf(const Rows& rows) {
-    Words words;
-    for (const auto& row : rows) words.push_back({std::string(row.name), std::string(row.summary)});
-    return words;
-}
-
-Words withAll(Words words) {
-    words.push_back({"all", "every one of them"});
-    return words;
-}
-
-Words basisWords() {
-    return wordsOf(bases::catalog());
-}
+using jobs::basisWords;
+using jobs::formWords;
+using jobs::lightingWords;
+using jobs::precisionWords;
+using jobs::splitWords;
+using jobs::windowWords;
+using jobs::withAll;
+using jobs::wordsOf;
 
 Words basisLists() {
     return withAll(basisWords());
@@ -60,10 +44,6 @@ Words metricWords() {
 
 Words metricLists() {
     return withAll(metricWords());
-}
-
-Words targetWords() {
-    return withAll(summariesOf(gpu::targets()));
 }
 
 Words modelWords() {
@@ -80,14 +60,6 @@ Words repairWords() {
 
 Words lossWords() {
     return wordsOf(brdfs::losses());
-}
-
-Words lightingWords() {
-    return withAll(summariesOf(jobs::lightingModels()));
-}
-
-Words engineWords() {
-    return wordsOf(lighting::prefilters());
 }
 
 Words rendererWords() {
@@ -118,15 +90,6 @@ Words helpWords() {
     return words;
 }
 
-// Names that the library has as enumerations, in the order of its messages.
-Words windowWords() {
-    return {{"none"}, {"hann"}, {"lanczos"}, {"bending"}};
-}
-
-Words formWords() {
-    return {{"outgoing"}, {"basis"}, {"halfway"}};
-}
-
 Words mapFormWords() {
     return {{"outgoing"}, {"low-rank"},  {"clusters"}, {"halfway"},
             {"ellipse"},  {"harmonics"}, {"filtered"}};
@@ -136,20 +99,8 @@ Words mapPrecisionWords() {
     return {{"half"}, {"float32"}};
 }
 
-Words precisionWords() {
-    return {{"float64"}, {"float32"}, {"half"}, {"unorm16"}, {"unorm8"}};
-}
-
 Words constraintWords() {
     return {{"none"}, {"non-negative"}, {"energy-preserving"}, {"both"}};
-}
-
-Words storageWords() {
-    return {{"auto"}, {"constants"}, {"block"}, {"texture"}};
-}
-
-Words numberWords() {
-    return {{"float16"}, {"float32"}, {"unorm16"}, {"unorm8"}};
 }
 
 Words placeWords() {
@@ -199,125 +150,114 @@ Words sigmaWords() {
     return {{"column", "of the file"}};
 }
 
-Words splitWords() {
-    return {{"diffuse", "the constant part"}};
-}
-
 // A row for one command stands before the row for all.
 constexpr ValueRow valueRows[] = {
-    {"batch", "MANIFEST", nullptr, Syntax::word, Files::read, ""},
-    {"batch", "--output", nullptr, Syntax::word, Files::folder},
-    {"batch", "--costs", nullptr, Syntax::word, Files::read},
-    {"batch", "--progress", nullptr, Syntax::word, Files::added},
-    {"choose", "--for", rendererWords},
-    {"choose", "--kinds", kindWords, Syntax::list},
-    {"choose", "--output", nullptr, Syntax::word, Files::folder},
-    {"compare", "--output", nullptr, Syntax::word, Files::folder},
-    {"compare", "--sigma", sigmaWords, Syntax::word, Files::read, ".csv"},
-    {"convert", "--output", nullptr, Syntax::word, Files::folder},
-    {"convert", "MORE", nullptr, Syntax::brdf, Files::read},
-    {"completion", "--output", nullptr, Syntax::word, Files::written, ""},
-    {"eval", "--output", nullptr, Syntax::word, Files::written, ".csv"},
-    {"export", "--output", nullptr, Syntax::word, Files::folder},
-    {"fit", "--all", nullptr, Syntax::word, Files::readFolder},
-    {"fit", "--at", placeWords},
-    {"fit", "--dark", darkWords},
-    {"fit", "--offset", fitWords},
-    {"fit", "--bands", nullptr, Syntax::word, Files::read, ".csv"},
-    {"fit", "--bands-to", nullptr, Syntax::word, Files::written, ".csv"},
-    {"fit", "--budget", nullptr, Syntax::word, Files::read, ""},
-    {"fit", "--certificate", nullptr, Syntax::word, Files::written, ".pdf"},
-    {"fit", "--certificate-fields", nullptr, Syntax::word, Files::read, ".json"},
-    {"fit", "--residuals", nullptr, Syntax::word, Files::written, ".csv"},
-    {"fit", "--scan-scale", fitWords},
-    {"fit", "--scans", scanWords},
-    {"fit", "--sigma", sigmaWords, Syntax::word, Files::read, ".csv"},
-    {"fit", "--stray", fitWords},
-    {"fit", "--weights", weightWords},
-    {"help", "WORD", helpWords},
-    {"illuminate", "--output", nullptr, Syntax::word, Files::folder},
-    {"import", "FILE", nullptr, Syntax::word, Files::read, ""},
-    {"info", "SPEC", nullptr, Syntax::either, Files::read, ""},
-    {"irradiance", "--by-normal", nullptr, Syntax::word, Files::written, ".csv"},
-    {"irradiance", "SPEC", nullptr, Syntax::light, Files::read, ""},
-    {"library", "--add-to", nullptr, Syntax::word, Files::read, ""},
-    {"library", "--bands", nullptr, Syntax::word, Files::read, ".csv"},
-    {"library", "--bands-to", nullptr, Syntax::word, Files::written, ".csv"},
-    {"library", "--library", nullptr, Syntax::word, Files::read, ""},
-    {"library", "--output", nullptr, Syntax::word, Files::written, ".library"},
-    {"library", "--sigma", sigmaWords, Syntax::word, Files::read, ".csv"},
-    {"library", "INPUT", nullptr, Syntax::brdf, Files::read, ""},
-    {"light", "SPEC", nullptr, Syntax::light, Files::read, ""},
-    {"list", "TEXT", presetWords},
-    {"manual", "--output", nullptr, Syntax::word, Files::folder},
-    {"plan", "--output", nullptr, Syntax::word, Files::folder},
-    {"irradiance", "--for", conventionWords},
-    {"plot", "--output", nullptr, Syntax::word, Files::written},
-    {"render", "--output", nullptr, Syntax::word, Files::written, ".png"},
-    {"report", "--output", nullptr, Syntax::word, Files::folder},
-    {"rotate", "--method", rotationWords},
-    {"sample", "--output", nullptr, Syntax::word, Files::written, ".csv"},
-    {"stress", "--output", nullptr, Syntax::word, Files::folder},
-    {"svbrdf", "DESCRIPTION", nullptr, Syntax::word, Files::read, ".json"},
-    {"svbrdf", "--form", mapFormWords},
-    {"svbrdf", "--output", nullptr, Syntax::word, Files::folder},
-    {"svbrdf", "--precision", mapPrecisionWords},
-    {"tradeoff", "--output", nullptr, Syntax::word, Files::folder},
+    {"batch", "MANIFEST", {nullptr, Syntax::word, Files::read, ""}},
+    {"batch", "--output", {nullptr, Syntax::word, Files::folder}},
+    {"batch", "--costs", {nullptr, Syntax::word, Files::read}},
+    {"batch", "--progress", {nullptr, Syntax::word, Files::added}},
+    {"choose", "--for", {rendererWords}},
+    {"choose", "--kinds", {kindWords, Syntax::list}},
+    {"choose", "--output", {nullptr, Syntax::word, Files::folder}},
+    {"compare", "--output", {nullptr, Syntax::word, Files::folder}},
+    {"compare", "--sigma", {sigmaWords, Syntax::word, Files::read, ".csv"}},
+    {"convert", "--output", {nullptr, Syntax::word, Files::folder}},
+    {"convert", "MORE", {nullptr, Syntax::brdf, Files::read}},
+    {"completion", "--output", {nullptr, Syntax::word, Files::written, ""}},
+    {"eval", "--output", {nullptr, Syntax::word, Files::written, ".csv"}},
+    {"export", "--output", {nullptr, Syntax::word, Files::folder}},
+    {"fit", "--all", {nullptr, Syntax::word, Files::readFolder}},
+    {"fit", "--at", {placeWords}},
+    {"fit", "--dark", {darkWords}},
+    {"fit", "--offset", {fitWords}},
+    {"fit", "--bands", {nullptr, Syntax::word, Files::read, ".csv"}},
+    {"fit", "--bands-to", {nullptr, Syntax::word, Files::written, ".csv"}},
+    {"fit", "--budget", {nullptr, Syntax::word, Files::read, ""}},
+    {"fit", "--certificate", {nullptr, Syntax::word, Files::written, ".pdf"}},
+    {"fit", "--certificate-fields", {nullptr, Syntax::word, Files::read, ".json"}},
+    {"fit", "--residuals", {nullptr, Syntax::word, Files::written, ".csv"}},
+    {"fit", "--scan-scale", {fitWords}},
+    {"fit", "--scans", {scanWords}},
+    {"fit", "--sigma", {sigmaWords, Syntax::word, Files::read, ".csv"}},
+    {"fit", "--stray", {fitWords}},
+    {"fit", "--weights", {weightWords}},
+    {"help", "WORD", {helpWords}},
+    {"illuminate", "--output", {nullptr, Syntax::word, Files::folder}},
+    {"import", "FILE", {nullptr, Syntax::word, Files::read, ""}},
+    {"info", "SPEC", {nullptr, Syntax::either, Files::read, ""}},
+    {"irradiance", "--by-normal", {nullptr, Syntax::word, Files::written, ".csv"}},
+    {"irradiance", "SPEC", {nullptr, Syntax::light, Files::read, ""}},
+    {"library", "--add-to", {nullptr, Syntax::word, Files::read, ""}},
+    {"library", "--bands", {nullptr, Syntax::word, Files::read, ".csv"}},
+    {"library", "--bands-to", {nullptr, Syntax::word, Files::written, ".csv"}},
+    {"library", "--library", {nullptr, Syntax::word, Files::read, ""}},
+    {"library", "--output", {nullptr, Syntax::word, Files::written, ".library"}},
+    {"library", "--sigma", {sigmaWords, Syntax::word, Files::read, ".csv"}},
+    {"library", "INPUT", {nullptr, Syntax::brdf, Files::read, ""}},
+    {"light", "SPEC", {nullptr, Syntax::light, Files::read, ""}},
+    {"list", "TEXT", {presetWords}},
+    {"manual", "--output", {nullptr, Syntax::word, Files::folder}},
+    {"plan", "--output", {nullptr, Syntax::word, Files::folder}},
+    {"irradiance", "--for", {conventionWords}},
+    {"plot", "--output", {nullptr, Syntax::word, Files::written}},
+    {"render", "--output", {nullptr, Syntax::word, Files::written, ".png"}},
+    {"report", "--output", {nullptr, Syntax::word, Files::folder}},
+    {"rotate", "--method", {rotationWords}},
+    {"sample", "--output", {nullptr, Syntax::word, Files::written, ".csv"}},
+    {"stress", "--output", {nullptr, Syntax::word, Files::folder}},
+    {"svbrdf", "DESCRIPTION", {nullptr, Syntax::word, Files::read, ".json"}},
+    {"svbrdf", "--form", {mapFormWords}},
+    {"svbrdf", "--output", {nullptr, Syntax::word, Files::folder}},
+    {"svbrdf", "--precision", {mapPrecisionWords}},
+    {"tradeoff", "--output", {nullptr, Syntax::word, Files::folder}},
     {"tradeoff", "--halfway"},
-    {"transfer", "--material", nullptr, Syntax::brdf, Files::read},
-    {"transfer", "--output", nullptr, Syntax::word, Files::folder},
-    {"", "--axis", figureAxisWords},
-    {"", "--basis", basisWords},
-    {"", "--bases", basisLists, Syntax::list},
-    {"", "--compare-models", modelWords, Syntax::sum},
-    {"", "--constraints", constraintWords, Syntax::list},
-    {"", "--convention", conventionWords},
-    {"", "--engine", engineWords},
-    {"", "--figure-width", figureWidthWords},
-    {"", "--figures", nullptr, Syntax::word, Files::folder},
+    {"transfer", "--material", {nullptr, Syntax::brdf, Files::read}},
+    {"transfer", "--output", {nullptr, Syntax::word, Files::folder}},
+    {"", "--axis", {figureAxisWords}},
+    {"", "--basis", {basisWords}},
+    {"", "--bases", {basisLists, Syntax::list}},
+    {"", "--compare-models", {modelWords, Syntax::sum}},
+    {"", "--constraints", {constraintWords, Syntax::list}},
+    {"", "--convention", {conventionWords}},
+    {"", "--figure-width", {figureWidthWords}},
+    {"", "--figures", {nullptr, Syntax::word, Files::folder}},
     {"", "--font"},
     {"", "--font-size"},
-    {"", "--form", formWords},
-    {"", "--forms", formWords, Syntax::list},
-    {"", "--library", nullptr, Syntax::word, Files::read},
-    {"", "--light", nullptr, Syntax::light, Files::read, ""},
-    {"", "--lighting", lightingWords, Syntax::list},
-    {"", "--loss", lossWords},
-    {"", "--mesh", nullptr, Syntax::word, Files::read},
-    {"", "--metric", metricWords},
-    {"", "--metrics", metricLists, Syntax::list},
-    {"", "--model", modelWords, Syntax::sum},
-    {"", "--number", numberWords},
-    {"", "--output", nullptr, Syntax::word, Files::written, ".json"},
-    {"", "--pairs", nullptr, Syntax::word, Files::read, ""},
-    {"", "--panels", panelWords},
-    {"", "--precision", precisionWords},
-    {"", "--precisions", precisionWords, Syntax::list},
-    {"", "--records", nullptr, Syntax::word, Files::added},
-    {"", "--reference", nullptr, Syntax::word, Files::read, ""},
-    {"", "--repair", repairWords, Syntax::list},
-    {"", "--robust", robustWords},
-    {"", "--source", nullptr, Syntax::brdf, Files::read, ""},
-    {"", "--split", splitWords, Syntax::brdf, Files::read, ""},
-    {"", "--storage", storageWords},
-    {"", "--target", targetWords, Syntax::list},
-    {"", "--to", writerWords},
-    {"", "--window", windowWords},
-    {"", "--windows", windowWords, Syntax::list},
-    {"", "--write-pairs", nullptr, Syntax::word, Files::written, ".csv"},
-    {"", "A", nullptr, Syntax::brdf, Files::read, ""},
-    {"", "B", nullptr, Syntax::brdf, Files::read, ""},
-    {"", "BASIS", basisWords},
-    {"", "COEFFS", nullptr, Syntax::brdf, Files::read, ""},
-    {"", "DATA", nullptr, Syntax::brdf, Files::read, ""},
-    {"", "FILE", nullptr, Syntax::word, Files::read, ""},
-    {"", "FROM", basisWords},
-    {"", "IN", nullptr, Syntax::brdf, Files::read, ""},
-    {"", "MODEL", modelWords},
-    {"", "OUT", nullptr, Syntax::word, Files::written, ""},
-    {"", "SCENE", nullptr, Syntax::word, Files::read},
-    {"", "SPEC", nullptr, Syntax::brdf, Files::read, ""},
-    {"", "TO", basisWords},
+    {"", "--forms", {formWords, Syntax::list}},
+    {"", "--light", {nullptr, Syntax::light, Files::read, ""}},
+    {"", "--lighting", {lightingWords, Syntax::list}},
+    {"", "--loss", {lossWords}},
+    {"", "--mesh", {nullptr, Syntax::word, Files::read}},
+    {"", "--metric", {metricWords}},
+    {"", "--metrics", {metricLists, Syntax::list}},
+    {"", "--model", {modelWords, Syntax::sum}},
+    {"", "--output", {nullptr, Syntax::word, Files::written, ".json"}},
+    {"", "--pairs", {nullptr, Syntax::word, Files::read, ""}},
+    {"", "--panels", {panelWords}},
+    {"", "--precisions", {precisionWords, Syntax::list}},
+    {"", "--records", {nullptr, Syntax::word, Files::added}},
+    {"", "--reference", {nullptr, Syntax::word, Files::read, ""}},
+    {"", "--repair", {repairWords, Syntax::list}},
+    {"", "--robust", {robustWords}},
+    {"", "--source", {nullptr, Syntax::brdf, Files::read, ""}},
+    {"", "--split", {splitWords, Syntax::brdf, Files::read, ""}},
+    {"", "--to", {writerWords}},
+    {"", "--window", {windowWords}},
+    {"", "--windows", {windowWords, Syntax::list}},
+    {"", "--write-pairs", {nullptr, Syntax::word, Files::written, ".csv"}},
+    {"", "A", {nullptr, Syntax::brdf, Files::read, ""}},
+    {"", "B", {nullptr, Syntax::brdf, Files::read, ""}},
+    {"", "BASIS", {basisWords}},
+    {"", "COEFFS", {nullptr, Syntax::brdf, Files::read, ""}},
+    {"", "DATA", {nullptr, Syntax::brdf, Files::read, ""}},
+    {"", "FILE", {nullptr, Syntax::word, Files::read, ""}},
+    {"", "FROM", {basisWords}},
+    {"", "IN", {nullptr, Syntax::brdf, Files::read, ""}},
+    {"", "MODEL", {modelWords}},
+    {"", "OUT", {nullptr, Syntax::word, Files::written, ""}},
+    {"", "SCENE", {nullptr, Syntax::word, Files::read}},
+    {"", "SPEC", {nullptr, Syntax::brdf, Files::read, ""}},
+    {"", "TO", {basisWords}},
 };
 
 }  // namespace
@@ -326,18 +266,33 @@ std::span<const ValueRow> valueTable() {
     return valueRows;
 }
 
-const ValueRow* findValues(const CLI::App& command, const CLI::Option& option) {
+namespace {
+
+/// Null for what the type and the range of an option tell.
+const Values* statedIn(const Values& values) {
+    const bool plain = values.syntax == Syntax::word || values.syntax == Syntax::list ||
+                       values.syntax == Syntax::outgoing;
+    return plain && !values.words && values.files == Files::none ? nullptr : &values;
+}
+
+}  // namespace
+
+const Values* findValues(const CLI::App& command, const CLI::Option& option) {
+    const auto named = std::ranges::find(commands(), command.get_name(), &Command::name);
+    if (named != commands().end() && named->options)
+        for (const auto rows : named->options())
+            if (const jobs::OptionRow* row = rowOf(rows, option)) return statedIn(row->values);
     const auto row = std::ranges::find_if(valueRows, [&](const ValueRow& each) {
         return (each.command.empty() || each.command == command.get_name()) &&
                (each.option.starts_with("--")
                     ? option.check_lname(std::string(each.option.substr(2)))
                     : option.get_positional() && option.get_name(true, false) == each.option);
     });
-    return row == std::end(valueRows) ? nullptr : row;
+    return row == std::end(valueRows) ? nullptr : &row->values;
 }
 
 bool isWritten(const CLI::App& command, const CLI::Option& option) {
-    const ValueRow* row = findValues(command, option);
+    const Values* row = findValues(command, option);
     return row && (row->files == Files::written || row->files == Files::folder ||
                    row->files == Files::added);
 }

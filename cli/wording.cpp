@@ -6,117 +6,41 @@
 namespace hshfit::cli {
 namespace {
 
-enum class Value {
-    shown,   ///< --option VALUE
-    quoted,  ///< --option 'VALUE'
-    none,    ///< a flag
-};
-
-struct OptionRow {
+/// A member whose option is not its own name with dashes.
+struct RenamedMember {
     std::string_view member, option;
-    Value value = Value::shown;
+    bool flag = false;  ///< its value is not said
 };
-
-constexpr OptionRow options[] = {
+constexpr RenamedMember renamedMembers[] = {
     {"ConvertOptions::format", "--to"},
     {"ConvertOptions::measureLoss", "--report-loss"},
     {"ConvertOptions::repairs", "--repair"},
-    {"ConvertOptions::rgb", "--rgb", Value::none},
-    {"ExportOptions::allowLoss", "--allow-loss"},
-    {"ExportOptions::force", "--force"},
     {"ExportOptions::lights", "--light"},
-    {"ExportOptions::name", "--name"},
-    {"ExportOptions::outgoing", "--outgoing"},
-    {"ExportOptions::source", "--source"},
-    {"ExportOptions::storage", "--storage"},
     {"ExportOptions::targets", "--target"},
-    {"FileSet::force", "--force"},
-    {"FitOptions::accept", "--accept"},
-    {"FitOptions::bands", "--bands"},
-    {"FitOptions::bandsTo", "--bands-to"},
-    {"FitOptions::bootstrap", "--bootstrap"},
-    {"FitOptions::budget", "--budget"},
-    {"FitOptions::calibration", "--calibration"},
-    {"FitOptions::certificate", "--certificate"},
-    {"FitOptions::dispersion", "--dispersion"},
-    {"FitOptions::instrument.bandwidth", "--bandwidth"},
-    {"FitOptions::instrument.dark", "--dark"},
     {"FitOptions::instrument.detector", "--detector-aperture"},
-    {"FitOptions::instrument.detectorZero", "--detector-zero"},
-    {"FitOptions::instrument.incidenceZero", "--incidence-zero"},
-    {"FitOptions::instrument.offset", "--offset"},
     {"FitOptions::instrument.scale", "--scan-scale"},
     {"FitOptions::instrument.source", "--source-aperture"},
-    {"FitOptions::instrument.stray", "--stray"},
-    {"FitOptions::loss", "--loss"},
-    {"FitOptions::model", "--model", Value::quoted},
     {"FitOptions::parts", "--extensions"},
     {"FitOptions::places", "--at"},
-    {"FitOptions::profile", "--profile"},
-    {"FitOptions::residuals", "--residuals"},
-    {"FitOptions::scans", "--scans"},
-    {"FitOptions::sigma", "--sigma"},
-    {"FitOptions::weights", "--weights"},
-    {"Form::basis", "--basis"},
-    {"Form::condonShortley", "--condon-shortley"},
-    {"Form::energyPreserving", "--energy-preserving"},
-    {"Form::halfway", "--halfway"},
-    {"Form::keep", "--keep"},
     {"Form::kind", "--form"},
-    {"Form::nonNegative", "--non-negative"},
-    {"Form::nonNegativeFactors", "--non-negative-factors"},
-    {"Form::order", "--order"},
-    {"Form::outgoing", "--outgoing"},
-    {"Form::precision", "--precision"},
-    {"Form::quantity", "--cosine", Value::none},
-    {"Form::rank", "--rank"},
-    {"Form::rankError", "--rank-error"},
-    {"Form::reciprocal", "--reciprocal"},
-    {"Form::split", "--split", Value::quoted},
-    {"Form::window", "--window"},
-    {"ImportOptions::force", "--force"},
-    {"LearnLibraryOptions::final", "--final"},
-    {"LearnOptions::bytes", "--bytes"},
-    {"LightDomain::normal", "--normal"},
-    {"MatrixOptions::weight", "--weight"},
-    {"PackOptions::number", "--number"},
-    {"PlanOptions::bases", "--bases"},
-    {"PlanOptions::byTime", "--by-time"},
-    {"ProjectOptions::leastSquares", "--least-squares"},
-    {"ProjectionOptions::maxEvaluations", "--max-evaluations"},
-    {"ProjectionOptions::quantity", "--cosine", Value::none},
-    {"ProjectionOptions::tolerance", "--tolerance"},
-    {"GatheringOptions::rays", "--rays"},
-    {"IlluminateOptions::camera", "--camera"},
-    {"IlluminateOptions::reference", "--reference"},
-    {"CacheOptions::accuracy", "--accuracy"},
-    {"CacheOptions::basis", "--basis"},
-    {"CacheOptions::rays", "--rays"},
+    {"Form::quantity", "--cosine", true},
     {"PathOptions::fewestBounces", "--from-bounce"},
-    {"TradeoffOptions::byTime", "--by-time"},
-    {"TradeoffOptions::gpu", "--gpu"},
-    {"TransferMeshOptions::edge", "--edge"},
-    {"TransferOptions::clusters", "--clusters"},
-    {"TransferOptions::components", "--components"},
-    {"TransferOptions::lights", "--light"},
-    {"TransferOptions::localOrder", "--local-order"},
-    {"TransferOptions::memory", "--memory"},
-    {"TransferOptions::order", "--order"},
-    {"TradeoffOptions::maxBytes", "--max-bytes"},
+    {"ProjectionOptions::quantity", "--cosine", true},
     {"TradeoffOptions::maxNanoseconds", "--max-ns"},
-    {"TradeoffOptions::metric", "--metric"},
-    {"TradeoffOptions::timing", "--no-timing", Value::none},
-    {"TradeoffOptions::writePairs", "--write-pairs"},
+    {"TradeoffOptions::timing", "--no-timing", true},
+    {"TransferOptions::lights", "--light"},
     {"output", "-o"},
 };
 
-std::string optionOf(const Setting& setting) {
-    const auto* row = std::ranges::find(options, setting.member, &OptionRow::member);
-    if (row == std::end(options)) return asMember(setting);
-    const std::string option(row->option);
-    if (setting.value.empty() || row->value == Value::none) return option;
-    return row->value == Value::quoted ? option + " '" + setting.value + "'"
-                                       : option + " " + setting.value;
+/// "--non-negative" for "Form::nonNegative" and "--dark" for "FitOptions::instrument.dark".
+std::string optionNamed(std::string_view member) {
+    std::string text = "--";
+    for (const char c : member.substr(member.find_last_of(":.") + 1)) {
+        const auto letter = static_cast<unsigned char>(c);
+        if (std::isupper(letter) != 0) text += '-';
+        text += static_cast<char>(std::tolower(letter));
+    }
+    return text;
 }
 
 std::string quoted(const std::string& text) {
@@ -137,6 +61,14 @@ std::string forShell(const std::string& text) {
                std::string_view("._-/:=,+@%").find(c) != std::string_view::npos;
     };
     return !text.empty() && std::ranges::all_of(text, plain) ? text : quoted(text);
+}
+
+std::string optionOf(const Setting& setting) {
+    const auto* row = std::ranges::find(renamedMembers, setting.member, &RenamedMember::member);
+    const bool renamed = row != std::end(renamedMembers);
+    const std::string option = renamed ? std::string(row->option) : optionNamed(setting.member);
+    return setting.value.empty() || (renamed && row->flag) ? option
+                                                           : option + " " + forShell(setting.value);
 }
 
 std::string optionsOf(const Call& call) {

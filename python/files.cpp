@@ -1,5 +1,6 @@
 #include "answers.h"
 #include "arrays.h"
+#include "job_options.h"
 #include "watched.h"
 
 #include <hshfit/coefficient_files/coefficient_file.h>
@@ -18,6 +19,7 @@
 #include <pybind11/stl.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -65,19 +67,13 @@ py::dict converted(const py::object& input, const py::object& output, const std:
     return convertedDict(done);
 }
 
-/// The options of an export as words.
-struct ExportWords {
-    std::string number, storage, packing;
-    bool chroma = false;
-};
-
-void apply(const ExportWords& words, jobs::ExportOptions& options) {
-    if (!words.number.empty()) options.number = gpu::parseNumber(words.number);
-    options.storage = gpu::parseStorage(words.storage);
-    if (words.packing != "coef4" && words.packing != "rgb")
-        throw UsageError(fmt::format("packing: 'coef4' or 'rgb', not '{}'", words.packing));
-    options.pack.packing = words.packing == "rgb" ? gpu::Packing::rgb : gpu::Packing::coef4;
-    options.pack.luminanceChroma = words.chroma || options.pack.chromaOrder > 0;
+/// The options of coefficients.
+Options optionsOf(jobs::ExportOptions& options) {
+    Options own = boundOptions(jobs::exportOptions(), options);
+    std::erase_if(own, [](const jobs::BoundOption& option) {
+        return (option.row->inputs & jobs::exports::coefficients) == 0;
+    });
+    return own;
 }
 
 py::dict exportedDict(const jobs::Exported& done) {
@@ -103,31 +99,12 @@ py::dict exportedDict(const jobs::Exported& done) {
 }
 
 py::dict exported(const py::object& coefficients, const py::object& folder,
-                  const py::object& targets, const std::string& name, const py::object& source,
-                  const py::object& outgoing, const std::string& basis, int order,
-                  const std::vector<std::string>& lights, const std::string& number,
-                  const std::string& storage, const std::string& packing, bool chroma,
-                  int chromaOrder, int basisTextures, int environmentOrder,
-                  const std::string& prefix, const std::optional<bool>& sampling, bool measureError,
-                  bool allowLoss, bool zstd, bool force, const py::object& progress) {
+                  const py::kwargs& keywords) {
     jobs::ExportOptions options;
-    options.targets = listText(targets);
-    options.name = name;
-    if (!source.is_none()) options.source = pathOf(source, "source");
-    options.outgoing = outgoingText(outgoing);
-    options.basis = basis;
-    options.order = order;
-    options.lights = lights;
-    options.pack.chromaOrder = chromaOrder;
-    options.pack.basisSize = basisTextures;
-    options.shader.environmentOrder = environmentOrder;
-    options.shader.prefix = prefix;
-    options.sampling = sampling;
-    options.measureError = measureError;
-    options.allowLoss = allowLoss;
-    options.zstd = zstd;
-    options.force = force;
-    apply({.number = number, .storage = storage, .packing = packing, .chroma = chroma}, options);
+    Keywords given(keywords);
+    given.set(optionsOf(options));
+    const py::object progress = given.take("progress");
+    given.finish();
     const std::string from = pathOf(coefficients, "coefficients"), to = pathOf(folder, "folder");
     jobs::Exported done;
     watched(progress, {}, [&](const jobs::Listener& listener) {
@@ -201,26 +178,20 @@ py::dict sampled(const py::object& spec, const py::object& outgoing, std::size_t
 }
 
 void bindExport(py::module_& module) {
-    const jobs::ExportOptions options;
-    module.def("export", exported, py::arg("coefficients"), py::arg("folder"), py::kw_only(),
-               py::arg("targets") = options.targets, py::arg("name") = options.name,
-               py::arg("source") = py::none(), py::arg("outgoing") = py::none(),
-               py::arg("basis") = options.basis, py::arg("order") = options.order,
-               py::arg("lights") = options.lights, py::arg("number") = "",
-               py::arg("storage") = "auto", py::arg("packing") = "coef4",
-               py::arg("chroma") = options.pack.luminanceChroma,
-               py::arg("chroma_order") = options.pack.chromaOrder,
-               py::arg("basis_textures") = options.pack.basisSize,
-               py::arg("environment_order") = options.shader.environmentOrder,
-               py::arg("prefix") = options.shader.prefix, py::arg("sampling") = options.sampling,
-               py::arg("measure_error") = options.measureError,
-               py::arg("allow_loss") = options.allowLoss, py::arg("zstd") = options.zstd,
-               py::arg("force") = options.force, py::arg("progress") = py::none(),
-               R"(Export a coefficient file to a folder: textures, shaders, a viewer.
+    jobs::ExportOptions options;
+    {
+        py::options signatures;
+        signatures.disable_function_signatures();
+        module.def(
+            "export", exported, py::arg("coefficients"), py::arg("folder"),
+            documented("export", "coefficients: Path, folder: Path", optionsOf(options), "Row",
+                       R"(Export a coefficient file to a folder: textures, shaders, a viewer.
 
-targets: "all", or containers, shader languages and renderers with commas, or a sequence; the page
-export.md of the documents lists them with the other options. Returns a dict: "files" (role,
-target, path), "fit_error" against the source, "poor". All files are written, or none.)");
+Returns a dict: "files" (role, target, path), "fit_error" against the source, "poor". All files are
+written, or none.
+)")
+                .c_str());
+    }
     module.def("import_coefficients", imported, py::arg("input"), py::arg("output"), py::kw_only(),
                py::arg("force") = false,
                "Write the coefficients of a file of an export to .json or .exr.");

@@ -1,5 +1,6 @@
 #include "answers.h"
 #include "arrays.h"
+#include "job_options.h"
 #include "watched.h"
 
 #include <hshfit/bases/catalog.h>
@@ -7,8 +8,6 @@
 #include <hshfit/error.h>
 #include <hshfit/pages/pair_summary_json.h>
 #include <hshfit/representation/forms/represented_brdf.h>
-#include <hshfit/representation/stored_array.h>
-#include <hshfit/transfer/windows.h>
 
 #include <jobs/source/source.h>
 #include <jobs/studies/project.h>
@@ -44,75 +43,20 @@ Result resultOf(jobs::Projected projected) {
     return result;
 }
 
-/// The options of a form as words; nothing given means plain coefficients.
-struct FormWords {
-    std::string form, halfway, split, window, precision;
-    bool reciprocal = false, nonNegative = false, energyPreserving = false;
-    bool nonNegativeFactors = false;
-    int rank = 0;
-    double rankError = 0;
-    std::size_t keep = 0;
+Options optionsOf(jobs::ProjectOptions& options) {
+    Options all = boundOptions(jobs::projectOptions(), options);
+    const Options form = boundOptions(jobs::formOptions(), options.form);
+    all.insert(all.end(), form.begin(), form.end());
+    return all;
+}
 
-    std::optional<Form> build() const {
-        const bool asked = !form.empty() || !halfway.empty() || !split.empty() || !window.empty() ||
-                           !precision.empty() || reciprocal || nonNegative || energyPreserving ||
-                           nonNegativeFactors || rank > 0 || rankError > 0 || keep > 0;
-        if (!asked) return std::nullopt;
-        Form made;
-        if (!form.empty()) made.kind = parseKind(form);
-        if (!halfway.empty()) {
-            if (made.kind != Representation::Kind::halfway)
-                throw UsageError("halfway belongs to form='halfway'");
-            made.halfway = parseHalfway(halfway);
-        }
-        if (!window.empty()) made.window = parseWindow(window);
-        if (!precision.empty()) made.precision = parsePrecision(precision);
-        made.split = split;
-        made.reciprocal = reciprocal;
-        made.nonNegative = nonNegative;
-        made.energyPreserving = energyPreserving;
-        made.nonNegativeFactors = nonNegativeFactors;
-        made.rank = rank;
-        made.rankError = rankError;
-        made.keep = keep;
-        return made;
-    }
-};
-
-std::shared_ptr<Result> projected(
-    const py::object& brdf, const std::string& basis, int order, const py::object& outgoing,
-    bool cosine, bool condonShortley, bool rgb, double tolerance, double maxEvaluations,
-    bool leastSquares, double regularise, double kernel, const std::string& form,
-    const py::object& halfway, bool reciprocal, const std::string& split, const std::string& window,
-    bool nonNegative, bool energyPreserving, int rank, double rankError, bool nonNegativeFactors,
-    std::size_t keep, const std::string& precision, const py::object& progress) {
-    requireQuadrature(tolerance, maxEvaluations);
-    requireWithin("regularise", regularise, jobs::bounds::regularise);
-    requireWithin("kernel", kernel, jobs::bounds::kernel);
-    const FormWords words{.form = form,
-                          .halfway = halfway.is_none() ? "" : listText(halfway),
-                          .split = split,
-                          .window = window,
-                          .precision = precision,
-                          .reciprocal = reciprocal,
-                          .nonNegative = nonNegative,
-                          .energyPreserving = energyPreserving,
-                          .nonNegativeFactors = nonNegativeFactors,
-                          .rank = rank,
-                          .rankError = rankError,
-                          .keep = keep};
-    const jobs::ProjectOptions options{.basis = basis,
-                                       .order = order,
-                                       .outgoing = outgoingText(outgoing),
-                                       .cosine = cosine,
-                                       .condonShortley = condonShortley,
-                                       .tolerance = tolerance,
-                                       .maxEvaluations = static_cast<std::size_t>(maxEvaluations),
-                                       .leastSquares = leastSquares,
-                                       .regularise = regularise,
-                                       .kernel = kernel,
-                                       .form = words.build()};
-    Source source(brdf, rgb);
+std::shared_ptr<Result> projected(const py::object& brdf, const py::kwargs& keywords) {
+    jobs::ProjectOptions options;
+    Keywords given(keywords);
+    given.set(optionsOf(options));
+    const py::object progress = given.take("progress");
+    given.finish();
+    Source source(brdf, options.rgb);
     jobs::Projected done;
     Source* const sources[] = {&source};
     watched(progress, sources, [&](const jobs::Listener& listener) {
@@ -225,41 +169,23 @@ void bindResult(py::module_& module) {
 }
 
 void bindProject(py::module_& module) {
-    const jobs::ProjectOptions options;
-    const Form form;
-    module.def(
-        "project", projected, py::arg("brdf"), py::kw_only(), py::arg("basis") = options.basis,
-        py::arg("order") = options.order, py::arg("outgoing") = py::none(),
-        py::arg("cosine") = options.cosine, py::arg("condon_shortley") = options.condonShortley,
-        py::arg("rgb") = options.rgb, py::arg("tolerance") = options.tolerance,
-        py::arg("max_evaluations") = static_cast<double>(options.maxEvaluations),
-        py::arg("least_squares") = options.leastSquares, py::arg("regularise") = options.regularise,
-        py::arg("kernel") = options.kernel, py::arg("form") = "", py::arg("halfway") = py::none(),
-        py::arg("reciprocal") = form.reciprocal, py::arg("split") = form.split,
-        py::arg("window") = "", py::arg("non_negative") = form.nonNegative,
-        py::arg("energy_preserving") = form.energyPreserving, py::arg("rank") = form.rank,
-        py::arg("rank_error") = form.rankError,
-        py::arg("non_negative_factors") = form.nonNegativeFactors, py::arg("keep") = form.keep,
-        py::arg("precision") = "", py::arg("progress") = py::none(),
-        R"(Project a BRDF over wi onto a basis, for every outgoing direction.
+    jobs::ProjectOptions options;
+    {
+        py::options signatures;
+        signatures.disable_function_signatures();
+        module.def("project", projected, py::arg("brdf"),
+                   documented("project", "brdf: BrdfLike", optionsOf(options), "Projection",
+                              R"(Project a BRDF over wi onto a basis, for every outgoing direction.
 
     c_{l,m}(wo) = integral of q(wi, wo) B_{l,m}(wi) d omega_i   (Gautron et al. 2004, Eq. 17)
 
-brdf        a Brdf, or a specification or path as for open()
-basis, order  catalog("bases"); bands l = 0 .. order-1
-outgoing    "32x32", 16 (elevations) or (theta, phi) in degrees; None: 32 elevations of an
-            isotropic BRDF, else 32x32
-cosine      q = f cos(theta_i) instead of f
-tolerance   relative, of quadrature; 0: the BRDF's own
-least_squares, regularise, kernel
-            fit scattered samples themselves; Tikhonov weight; degrees about wo that count
-form        "outgoing", "basis" or "halfway" (`halfway` as (12, 6, 3)): a compressed form, as does
-            any of reciprocal, split, window, non_negative, energy_preserving, rank, rank_error,
-            non_negative_factors, keep and precision
-progress    called as progress(part, done, total) from this thread; an exception from it stops
-
-Returns a Projection. The same numbers as by the command project. Raises NumericError where the
-coefficients do not exist or do not converge.)");
+brdf: a Brdf, or a specification or path as for open(). outgoing: "32x32", 16 (elevations) or
+(theta, phi) in degrees. form and the arguments behind it ask for a compressed form. Returns a
+Projection: the same numbers as by the command project. Raises NumericError where the coefficients
+do not exist or do not converge.
+)")
+                       .c_str());
+    }
     module.def(
         "project_all", projectedAll, py::arg("brdf"), py::kw_only(), py::arg("bases") = "all",
         py::arg("order") = options.order, py::arg("outgoing") = py::none(),

@@ -57,6 +57,7 @@ std::string quoted(const std::string& text) {
 std::string settingOf(const Setting& setting) {
     const std::string argument = argumentOf(setting.member);
     if (argument == "cosine" || setting.value == "true") return argument + "=True";
+    if (setting.value == "false") return argument + "=False";
     if (setting.value.empty()) return argument;
     return argument + "=" + (isNumber(setting.value) ? setting.value : quoted(setting.value));
 }

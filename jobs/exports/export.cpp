@@ -249,8 +249,8 @@ std::vector<LightSpecification> lightsOf(const Targets& chosen, const ExportOpti
 void requireFormOptions(const ExportOptions& options) {
     const ExportOptions plain;
     if (options.pack.packing != plain.pack.packing || options.pack.luminanceChroma ||
-        options.pack.basisSize > 0 || options.basis != plain.basis ||
-        options.order != plain.order ||
+        options.pack.chromaOrder > 0 || options.pack.basisSize > 0 ||
+        options.basis != plain.basis || options.order != plain.order ||
         options.shader.environmentOrder != plain.shader.environmentOrder) {
         throw UsageError(fmt::format(
             "basis, order, packing, chroma, basis textures and the light of shaders are for "
@@ -369,6 +369,7 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
     const Coefficients& coefficients = given.coefficients;
     gpu::PackOptions pack = options.pack;
     pack.number = options.number.value_or(pack.number);
+    pack.luminanceChroma |= pack.chromaOrder > 0;
     exported.payload = gpu::pack(coefficients, pack);
 
     FileSet files(folder, options.force);

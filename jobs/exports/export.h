@@ -2,6 +2,7 @@
 
 #include <jobs/common/inputs.h>
 #include <jobs/common/listener.h>
+#include <jobs/common/option_row.h>
 #include <jobs/source/quality.h>
 
 #include <hshfit/gpu/containers/containers.h>
@@ -43,7 +44,7 @@ struct ExportOptions {
     gpu::Storage storage = gpu::Storage::automatic;  ///< of such a form in shaders
     /// Accept an export that is more than twice as far from its source as its file.
     bool allowLoss = false;
-    gpu::PackOptions pack = {};
+    gpu::PackOptions pack = {};  ///< fewer bands of the chroma imply that it is stored
     gpu::ShaderOptions shader = {};
     bool measureError = true;
     /// A proposal for sampling in the sidecar and functions for it in the shaders; none: if there
@@ -52,6 +53,13 @@ struct ExportOptions {
     bool zstd = false;   ///< compress KTX2
     bool force = false;  ///< replace existing files
 };
+/// With those that exports of materials, maps and lighting share, as `inputs` of the rows say.
+OptionRows<ExportOptions> exportOptions();
+
+/// The kinds of exports that an option is for (OptionRow::inputs).
+namespace exports {
+inline constexpr unsigned coefficients = 1, materials = 2, maps = 4, lighting = 8;
+}
 
 /// Mean |ln(1 + f cos(theta_i)) - ln(1 + g cos(theta_i))| over spreadPairs() against the BRDF that
 /// was projected, of the coefficient file and of its export.

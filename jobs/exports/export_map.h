@@ -1,6 +1,7 @@
 #pragma once
 
 #include <jobs/common/listener.h>
+#include <jobs/common/option_row.h>
 #include "exportable_map.h"
 
 #include <string>
@@ -19,6 +20,8 @@ struct MapExportOptions {
     std::vector<std::string> lights = {};
     bool force = false;  ///< replace existing files
 };
+/// The options that maps alone have.
+OptionRows<MapExportOptions> mapExportOptions();
 
 /// A shader or the viewer.
 struct ExportedMapText {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <jobs/common/listener.h>
+#include <jobs/common/option_row.h>
 #include <jobs/source/quality.h>
 
 #include <brdfs/fit/choose_parts.h>
@@ -27,6 +28,8 @@ struct MaterialExportOptions {
     bool force = false;          ///< replace existing files
     bool advise = true;          ///< FitOptions::advise
 };
+/// The options that materials alone have.
+OptionRows<MaterialExportOptions> materialExportOptions();
 
 /// One file: a standard material.
 struct ExportedMaterial {

@@ -2,6 +2,8 @@
 
 #include "lighting_errors.h"
 
+#include <jobs/common/option_row.h>
+
 #include <hshfit/gpu/texels.h>
 
 #include <nlohmann/json.hpp>
@@ -28,6 +30,8 @@ struct LightingExportOptions {
     bool force = false;                ///< replace existing files
     LightingErrorOptions errors = {};  ///< `tables` has the options of the tables
 };
+
+OptionRows<LightingExportOptions> lightingExportOptions();
 
 struct LightingExport {
     /// The sidecar: tables, the light, shaders, tests, errors (docs/schemas/lighting.schema.json).

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <jobs/common/listener.h>
+#include <jobs/common/option_row.h>
 
 #include <hshfit/lighting/harmonics.h>
 #include <hshfit/lighting/lit_surface.h>
@@ -25,6 +26,7 @@ struct LightingModel {
     std::string_view name, summary;
 };
 std::span<const LightingModel> lightingModels();
+std::vector<Word> lightingWords();  ///< their names, and "all"
 /// Models of a comma-separated list of names, or "all". Throws UsageError with the known ones.
 std::vector<const LightingModel*> selectLightingModels(std::string_view names);
 

@@ -33,7 +33,7 @@ Quantity quantityOf(const ProjectOptions& options) {
 }
 
 std::optional<Form> formOf(const ProjectOptions& options) {
-    std::optional<Form> form = options.form;
+    std::optional<Form> form = options.form.form();
     if (!form) return form;
     if (options.leastSquares) {
         throw UsageError(fmt::format("{} writes plain coefficients: leave out the form",
@@ -112,10 +112,11 @@ public:
 
     Projected projected(const Brdf& brdf, const std::string& output,
                         const ProgressCall& progress) const {
-        const ProjectionOptions how = {.quantity = quantityOf(options_),
-                                       .tolerance = options_.tolerance,
-                                       .maxEvaluations = options_.maxEvaluations,
-                                       .progress = progress};
+        const ProjectionOptions how = {
+            .quantity = quantityOf(options_),
+            .tolerance = options_.tolerance,
+            .maxEvaluations = static_cast<std::size_t>(options_.maxEvaluations),
+            .progress = progress};
         Projected result{.projection = {}, .output = output};
         if (form_ && form_->reciprocal && transmits(brdf))
             throw UsageError(

@@ -3,12 +3,11 @@
 #include <jobs/common/inputs.h>
 #include <jobs/common/listener.h>
 #include <jobs/source/quality.h>
+#include <jobs/studies/form_options.h>
 
 #include <hshfit/accuracy/pair_errors.h>
 #include <hshfit/projection/projection.h>
-#include <hshfit/representation/forms/form.h>
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,15 +23,16 @@ struct ProjectOptions {
     bool condonShortley = false;
     bool rgb = false;      ///< wavelengths as linear Rec. 709
     double tolerance = 0;  ///< as in ProjectionOptions
-    std::size_t maxEvaluations = ProjectionOptions{}.maxEvaluations;
+    double maxEvaluations = static_cast<double>(ProjectionOptions{}.maxEvaluations);
     /// Least squares over the samples of a scattered measurement, without interpolation.
     bool leastSquares = false;
     double regularise = 1e-3;  ///< Tikhonov weight of least squares
     double kernel = 20;        ///< degrees about an outgoing direction that least squares uses
-    /// The form in which coefficients are stored; none: plain, in float64. Its basis, order,
-    /// quantity, sign and outgoing set are those above.
-    std::optional<Form> form = {};
+    /// The form in which coefficients are stored, with basis, order, quantity, sign and outgoing
+    /// set as above.
+    FormOptions form = {};
 };
+OptionRows<ProjectOptions> projectOptions();
 
 /// A projection and, where a form was asked for, its representation in the file.
 struct Projected {

@@ -9,7 +9,7 @@ __version__: str
 
 Floats = NDArray[numpy.float64]
 Path = Union[str, "os.PathLike[str]"]
-Names = Union[str, Sequence[str]]
+Names = Union[str, Sequence[Union[str, int]]]
 OutgoingLike = Union[str, int, Tuple[float, float], "Outgoing", None]
 Progress = Optional[Callable[[str, int, int], object]]
 Row = Dict[str, Any]
@@ -419,18 +419,18 @@ def project(
     basis: str = ...,
     order: int = ...,
     outgoing: OutgoingLike = ...,
+    rgb: bool = ...,
     cosine: bool = ...,
     condon_shortley: bool = ...,
-    rgb: bool = ...,
     tolerance: float = ...,
     max_evaluations: float = ...,
     least_squares: bool = ...,
     regularise: float = ...,
     kernel: float = ...,
     form: str = ...,
-    halfway: Union[str, Sequence[int], None] = ...,
+    halfway: Names = ...,
     reciprocal: bool = ...,
-    split: str = ...,
+    split: Path = ...,
     window: str = ...,
     non_negative: bool = ...,
     energy_preserving: bool = ...,
@@ -573,12 +573,10 @@ def export(
     folder: Path,
     *,
     targets: Names = ...,
-    name: str = ...,
-    source: Optional[Path] = ...,
     outgoing: OutgoingLike = ...,
     basis: str = ...,
     order: int = ...,
-    lights: Sequence[str] = ...,
+    name: str = ...,
     number: str = ...,
     storage: str = ...,
     packing: str = ...,
@@ -587,9 +585,12 @@ def export(
     basis_textures: int = ...,
     environment_order: int = ...,
     prefix: str = ...,
-    sampling: Optional[bool] = ...,
-    measure_error: bool = ...,
+    source: Path = ...,
     allow_loss: bool = ...,
+    measure_error: bool = ...,
+    lights: Names = ...,
+    library: Path = ...,
+    sampling: Optional[bool] = ...,
     zstd: bool = ...,
     force: bool = ...,
     progress: Progress = ...,

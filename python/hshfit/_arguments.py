@@ -2,6 +2,7 @@
 import difflib
 import functools
 import re
+import textwrap
 
 _KINDS = {"int": int, "float": (int, float), "bool": bool, "str": str}
 
@@ -47,6 +48,11 @@ def _explained(function, name):
     if signature is None:
         return function
 
+    # The first line is the signature.
+    head, *lines = function.__doc__.split("\n")
+    folded = [textwrap.fill(line, 99, subsequent_indent=" " * 12) if len(line) > 99 else line
+              for line in lines]
+
     @functools.wraps(function)
     def call(*given, **named):
         try:
@@ -59,6 +65,7 @@ def _explained(function, name):
                 raise
         raise TypeError(reason)
 
+    call.__doc__ = "\n".join([head, *folded])
     return call
 
 

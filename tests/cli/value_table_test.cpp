@@ -89,7 +89,7 @@ TEST_F(ValueTable, EveryOptionOfFreeTextStatesItsFilesOrNamesNone) {
         for (const CLI::Option* option : command->get_options()) {
             const bool text = option->get_type_name().starts_with("TEXT");
             if (!text || option->get_type_size() == 0 || !choicesOf(*option).empty()) continue;
-            const ValueRow* row = findValues(*command, *option);
+            const Values* row = findValues(*command, *option);
             if (row && (row->files != Files::none || row->words)) continue;
             const std::string name = option->get_positional() ? option->get_name(true, false)
                                                               : "--" + option->get_lnames().front();

@@ -3,9 +3,12 @@
 
 #include "places.h"
 
+#include <cli/command.h>
+#include <cli/command_table.h>
 #include <cli/wording.h>
 
 #include <gtest/gtest.h>
+#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <fstream>
@@ -22,7 +25,7 @@ namespace fs = std::filesystem;
 std::set<std::string> foundInSources(const std::string& pattern) {
     const std::regex expression(pattern);
     std::set<std::string> found;
-    for (const char* folder : {"/lib", "/jobs"}) {
+    for (const char* folder : {"/lib", "/brdfs", "/jobs"}) {
         for (const auto& entry :
              fs::recursive_directory_iterator(hshfit::test::sourceFolder() + std::string(folder))) {
             if (entry.path().extension() != ".cpp") continue;
@@ -36,12 +39,26 @@ std::set<std::string> foundInSources(const std::string& pattern) {
     return found;
 }
 
+/// The long options of all commands.
+std::set<std::string> optionsOfCommands() {
+    CLI::App app;
+    hshfit::cli::Globals globals;
+    std::set<std::string> names;
+    for (const hshfit::cli::Command& row : hshfit::cli::commands()) {
+        hshfit::cli::addCommand(app, globals, row);
+        for (const CLI::Option* option : app.get_subcommand(row.name)->get_options())
+            for (const std::string& name : option->get_lnames()) names.insert("--" + name);
+    }
+    return names;
+}
+
 TEST(Wording, EverySettingInMessagesIsAnOption) {
-    const auto members = foundInSources("\"([A-Z][A-Za-z]*::[A-Za-z]+)\"");
+    const auto members = foundInSources("\"([A-Z][A-Za-z]*::[A-Za-z.]+)\"");
     EXPECT_GE(members.size(), 25u);
+    const std::set<std::string> known = optionsOfCommands();
     for (const std::string& member : members) {
         const std::string option = hshfit::cli::optionWording().setting({member});
-        EXPECT_TRUE(option.starts_with("--")) << member << " -> " << option;
+        EXPECT_TRUE(known.contains(option)) << member << " -> " << option;
     }
 }
 

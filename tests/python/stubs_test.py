@@ -7,6 +7,7 @@ from pathlib import Path
 
 import hshfit
 import program
+import stub_signatures
 
 STUBS = Path(hshfit.__file__).with_name("__init__.pyi")
 
@@ -39,6 +40,12 @@ class Stubs(unittest.TestCase):
             with self.subTest(function=name):
                 doc = getattr(hshfit, name).__doc__
                 self.assertEqual(arguments_in(doc, name), arguments_of(node))
+
+    def test_signatures_with_options_are_those_of_the_module(self):
+        stubs = STUBS.read_text(encoding="utf-8")
+        self.assertIn("def project(\n", stubs)
+        self.assertEqual(stub_signatures.updated(stubs), stubs,
+                         "tests/python/stub_signatures.py --update writes them")
 
     def test_classes_have_the_members_of_their_stubs(self):
         for name, node in self.classes.items():

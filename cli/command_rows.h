@@ -1,0 +1,17 @@
+#pragma once
+
+// Rows of the options of commands, for the table of commands.
+
+#include <jobs/common/option_row.h>
+
+#include <span>
+#include <vector>
+
+namespace hshfit::cli {
+
+using OptionTables = std::vector<std::span<const jobs::OptionRow>>;
+
+OptionTables exportRows();
+OptionTables projectRows();
+
+}  // namespace hshfit::cli

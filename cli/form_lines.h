@@ -1,0 +1,16 @@
+#pragma once
+
+#include <hshfit/representation/representation.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+
+namespace hshfit::cli {
+
+/// Kind, bytes and steps, for JSON answers.
+nlohmann::ordered_json describeForm(const Representation& representation);
+/// The same in one line.
+std::string formLine(const Representation& representation);
+
+}  // namespace hshfit::cli

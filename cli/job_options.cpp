@@ -1,0 +1,111 @@
+#include "job_options.h"
+
+#include <hshfit/error.h>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <functional>
+#include <type_traits>
+#include <utility>
+
+namespace hshfit::cli {
+namespace {
+
+using jobs::OptionRow;
+
+std::string nameOf(const OptionRow& row) {
+    return fmt::format("--{}", row.name);
+}
+
+std::string nameWithout(const OptionRow& row) {
+    return fmt::format("--no-{}", row.name);
+}
+
+/// Adds one option by the type of its member.
+class Adder {
+public:
+    Adder(CLI::App& command, const OptionRow& row, const std::string& group)
+        : command_(command), row_(row), group_(group) {}
+
+    void operator()(bool* value) const {
+        if (*value)
+            addFlag(nameWithout(row_), row_.without, [value] { *value = false; });
+        else
+            addFlag(nameOf(row_), row_.help, [value] { *value = true; });
+    }
+    void operator()(std::optional<bool>* value) const {
+        CLI::Option& with = addFlag(nameOf(row_), row_.help, [value] { *value = true; });
+        addFlag(nameWithout(row_), row_.without, [value] { *value = false; }).excludes(&with);
+    }
+    void operator()(const jobs::Spelled& value) const {
+        const std::string fallback = value.word(value.at);
+        CLI::Option& option = added(command_.add_option_function<std::string>(
+            nameOf(row_), [value](const std::string& word) { value.set(value.at, word); }));
+        if (!fallback.empty()) option.default_str(fallback);
+    }
+    template <class Value>
+    void operator()(Value* value) const {
+        CLI::Option* option = command_.add_option(nameOf(row_), *value);
+        if constexpr (std::is_arithmetic_v<Value>) {
+            if (row_.range)
+                option->check(CLI::Range(static_cast<Value>(row_.range->least),
+                                         static_cast<Value>(row_.range->most)));
+        }
+        if (*value != Value{}) option->capture_default_str();
+        added(option);
+    }
+
+private:
+    CLI::Option& addFlag(const std::string& name, std::string_view help,
+                         std::function<void()> set) const {
+        CLI::Option& flag = added(command_.add_flag_callback(name, std::move(set)));
+        flag.description(std::string(help));
+        return flag;
+    }
+    /// States the help, the default in words and the choices.
+    CLI::Option& added(CLI::Option* option) const {
+        option->description(std::string(row_.help));
+        if (!group_.empty()) option->group(group_);
+        if (!row_.fallback.empty()) option->default_str(std::string(row_.fallback));
+        if (row_.values.complete) {
+            std::vector<std::string> words;
+            for (const jobs::Word& word : row_.values.words()) words.push_back(word.text);
+            option->check(CLI::IsMember(words));
+        }
+        return *option;
+    }
+
+    CLI::App& command_;
+    const OptionRow& row_;
+    const std::string& group_;
+};
+
+}  // namespace
+
+void addOptions(CLI::App& command, const std::vector<jobs::BoundOption>& options,
+                const std::string& group) {
+    for (const jobs::BoundOption& option : options)
+        std::visit(Adder(command, *option.row, group), option.value);
+}
+
+const OptionRow* rowOf(std::span<const OptionRow> rows, const CLI::Option& option) {
+    const auto row = std::ranges::find_if(rows, [&](const OptionRow& each) {
+        return option.check_lname(std::string(each.name)) ||
+               (!each.without.empty() && option.check_lname(nameWithout(each).substr(2)));
+    });
+    return row == rows.end() ? nullptr : &*row;
+}
+
+std::optional<GivenOption> misplacedOption(const CLI::App& command, std::span<const OptionRow> rows,
+                                           unsigned inputs) {
+    for (const CLI::Option* option : command.get_options()) {
+        const OptionRow* row = option->count() > 0 ? rowOf(rows, *option) : nullptr;
+        if (row && (row->inputs & inputs) == 0)
+            return GivenOption{"--" + option->get_lnames().front(), row};
+    }
+    return std::nullopt;
+}
+
+}  // namespace hshfit::cli

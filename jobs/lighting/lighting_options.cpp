@@ -1,0 +1,43 @@
+#include "lighting.h"
+
+#include <jobs/common/option_words.h>
+
+namespace hshfit::jobs {
+namespace {
+
+using options::at;
+
+std::vector<Word> engineWords() {
+    return wordsOf(lighting::prefilters());
+}
+
+constexpr OptionRow rows[] = {
+    OptionRow{
+        "lighting", at<&LightingExportOptions::models>,
+        "Tables, light and shaders for environments and area lights in place of textures: all, or "
+        "of coefficients, split-sum, ltc and prefiltered those named; with --light the light that "
+        "is written; shaders of materials that are not isotropic take a tangent"}
+        .takes({lightingWords, Syntax::list}),
+    OptionRow{"engine",
+              at<&LightingExportOptions::errors, &LightingErrorOptions::tables,
+                 &LightingTableOptions::engine>,
+              "Of --lighting prefiltered, the engine whose environment is looked up"}
+        .takes({.words = engineWords}),
+    OptionRow{"lobes",
+              at<&LightingExportOptions::errors, &LightingErrorOptions::tables,
+                 &LightingTableOptions::lobes>,
+              "Of --lighting prefiltered, lookups besides the diffuse one, 1 to 3"}
+        .within(Bounds<int>{1, 3}),
+};
+
+}  // namespace
+
+std::vector<Word> lightingWords() {
+    return withAll(summariesOf(lightingModels()));
+}
+
+OptionRows<LightingExportOptions> lightingExportOptions() {
+    return {rows};
+}
+
+}  // namespace hshfit::jobs

@@ -1,0 +1,165 @@
+#include "job_options.h"
+
+#include "arrays.h"
+
+#include <hshfit/coefficients/outgoing.h>
+#include <hshfit/error.h>
+#include <hshfit/spelling.h>
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <regex>
+#include <type_traits>
+
+namespace hshfit::python {
+namespace {
+
+using jobs::OptionRow;
+
+/// The beginning of pybind11's own message, for which hshfit/_arguments.py looks.
+[[noreturn]] void refuseType(const std::string& what) {
+    throw py::type_error("incompatible function arguments: " + what);
+}
+
+/// A word, a path, a number, an outgoing set, or a sequence of them with commas; "" for None.
+std::string textOf(const py::handle& value) {
+    if (value.is_none()) return {};
+    if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+    if (py::isinstance<OutgoingSet>(value)) return value.cast<const OutgoingSet&>().spec();
+    if (py::hasattr(value, "__fspath__"))
+        return py::module_::import("os").attr("fspath")(value).cast<std::string>();
+    if (!py::hasattr(value, "__iter__")) return py::str(value).cast<std::string>();
+    std::string text;
+    for (const py::handle each : value) text += (text.empty() ? "" : ",") + textOf(each);
+    return text;
+}
+
+/// Sets a member from an object of Python.
+struct Setter {
+    const OptionRow& row;
+    const std::string keyword;
+    const py::object& given;
+
+    template <class Value>
+    Value cast() const {
+        try {
+            return given.cast<Value>();
+        } catch (const py::cast_error&) {
+            refuseType(fmt::format("{} is {}", keyword, py::repr(given).cast<std::string>()));
+        }
+    }
+    void operator()(std::string* value) const {
+        *value = textOf(given);
+        if (!row.values.complete) return;
+        std::vector<std::string> known;
+        for (const jobs::Word& word : row.values.words()) known.push_back(word.text);
+        for (const std::string& word : known)
+            if (word == *value) return;
+        throw spelling::unknown(keyword, *value, known);
+    }
+    void operator()(std::vector<std::string>* value) const {
+        value->clear();
+        if (given.is_none()) return;
+        if (py::isinstance<py::str>(given) || py::hasattr(given, "__fspath__"))
+            value->push_back(textOf(given));
+        else
+            for (const py::handle each : given) value->push_back(textOf(each));
+    }
+    void operator()(const jobs::Spelled& value) const { value.set(value.at, textOf(given)); }
+    template <class Value>
+    void operator()(Value* value) const {
+        const auto asked = cast<Value>();
+        if constexpr (std::is_arithmetic_v<Value>) {
+            if (row.range && asked != *value) requireWithin(keyword.c_str(), asked, *row.range);
+        }
+        *value = asked;
+    }
+};
+
+/// Type and default in a signature.
+struct Stater {
+    const OptionRow& row;
+
+    static std::string stated(std::string_view type, const py::object& value) {
+        return fmt::format("{} = {}", type, py::repr(value).cast<std::string>());
+    }
+    std::string operator()(const bool* value) const { return stated("bool", py::bool_(*value)); }
+    std::string operator()(const std::optional<bool>* value) const {
+        return stated("Optional[bool]", py::cast(*value));
+    }
+    std::string operator()(const double* value) const {
+        return stated("float", py::float_(*value));
+    }
+    std::string operator()(const std::vector<std::string>* value) const {
+        return stated("Names", py::tuple(py::cast(*value)));
+    }
+    std::string operator()(const std::string* value) const {
+        switch (row.values.syntax) {
+            case jobs::Syntax::outgoing:
+                return stated("OutgoingLike", py::none());
+            case jobs::Syntax::list:
+                return stated("Names", py::str(*value));
+            default:
+                break;
+        }
+        return stated(row.values.files == jobs::Files::none ? "str" : "Path", py::str(*value));
+    }
+    std::string operator()(const jobs::Spelled& value) const {
+        return stated("str", py::str(value.word(value.at)));
+    }
+    template <class Value>
+    std::string operator()(const Value* value) const {
+        return stated("int", py::int_(*value));
+    }
+};
+
+/// Options in a help as arguments: "--rank-error" as "rank_error".
+std::string withKeywords(std::string_view help) {
+    static const std::regex option("--([a-z][a-z-]*[a-z])");
+    std::string text(help), out;
+    for (std::smatch found; std::regex_search(text, found, option); text = found.suffix()) {
+        std::string word = found[1];
+        std::ranges::replace(word, '-', '_');
+        out += found.prefix().str() + word;
+    }
+    return out + text;
+}
+
+}  // namespace
+
+void Keywords::set(const Options& options) {
+    for (const jobs::BoundOption& option : options) {
+        const std::string keyword = keywordOf(*option.row);
+        if (!left_.contains(keyword)) continue;
+        const py::object given = left_.attr("pop")(keyword);
+        std::visit(Setter{*option.row, keyword, given}, option.value);
+    }
+}
+
+py::object Keywords::take(const char* name) {
+    return left_.attr("pop")(name, py::none());
+}
+
+void Keywords::finish() const {
+    for (const auto& [name, value] : left_)
+        refuseType(fmt::format("no argument {}", py::str(name).cast<std::string>()));
+}
+
+std::string documented(std::string_view function, std::string_view before, const Options& options,
+                       std::string_view result, std::string_view text) {
+    std::string signature = fmt::format("{}({}, *", function, before), lines;
+    for (const jobs::BoundOption& option : options) {
+        const std::string keyword = keywordOf(*option.row);
+        signature +=
+            fmt::format(", {}: {}", keyword, std::visit(Stater{*option.row}, option.value));
+        lines += fmt::format("\n{:<11} {}", keyword, withKeywords(option.row->help));
+    }
+    return fmt::format(
+        "{}, progress: Progress = None) -> {}\n\n{}\n{}\nprogress    called as progress(part, "
+        "done, total) from this thread; an exception from it stops",
+        signature, result, text, lines);
+}
+
+}  // namespace hshfit::python
